@@ -1,0 +1,40 @@
+# Compiler settings that hold for every target of mjarm, and for nobody who uses it.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_VERIFY_INTERFACE_HEADER_SETS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+
+add_library(mjarm_options INTERFACE)
+target_compile_options(mjarm_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                                               -Wno-sign-conversion)
+if(MJARM_WARNINGS_AS_ERRORS)
+  target_compile_options(mjarm_options INTERFACE -Werror)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # These depend on what the optimiser sees, so they differ between releases of the compiler.
+    foreach(warning maybe-uninitialized array-bounds stringop-overflow stringop-overread restrict
+                    nonnull free-nonheap-object)
+      target_compile_options(mjarm_options INTERFACE -Wno-error=${warning})
+    endforeach()
+  endif()
+endif()
+if(MJARM_SANITIZE)
+  target_compile_options(mjarm_options INTERFACE -fsanitize=${MJARM_SANITIZE}
+                                                 -fno-omit-frame-pointer)
+  target_link_options(mjarm_options INTERFACE -fsanitize=${MJARM_SANITIZE})
+  if(MJARM_SANITIZE MATCHES "undefined")
+    target_compile_options(mjarm_options INTERFACE -fno-sanitize-recover=undefined)
+  endif()
+endif()
+if(MJARM_COVERAGE)
+  target_compile_options(mjarm_options INTERFACE --coverage)
+  target_link_options(mjarm_options INTERFACE --coverage)
+endif()

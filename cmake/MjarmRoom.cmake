@@ -1,0 +1,90 @@
+# One room = one folder = one library. The files say by their names what they are:
+#
+#   NAME.hpp            public header: installed, must compile alone with what users have
+#   NAME_internal.hpp   header of this room only: neither installed nor checked
+#   NAME.cpp            source; NAME_avx2.cpp and NAME_avx512.cpp get their flags, on x86-64 only
+#   NAME_test.cpp       into ROOM_test (GoogleTest)
+#   NAME_bench.cpp      into ROOM_bench (google-benchmark, where found)
+#
+# mjarm_room(ROOM [DEPENDS room...] [PUBLIC target...] [PRIVATE target...])
+function(mjarm_room room)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "DEPENDS;PUBLIC;PRIVATE")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "mjarm_room(${room}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  file(GLOB headers CONFIGURE_DEPENDS *.hpp)
+  file(GLOB lists CONFIGURE_DEPENDS messages/*.inc)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
+  file(GLOB benches CONFIGURE_DEPENDS *_bench.cpp)
+  list(FILTER headers EXCLUDE REGEX "_(internal|test)\\.hpp$")
+  list(REMOVE_ITEM sources ${tests} ${benches})
+  mjarm_simd_flags(sources)
+  if(NOT sources)
+    file(CONFIGURE OUTPUT empty.cpp CONTENT "")
+    set(sources "${CMAKE_CURRENT_BINARY_DIR}/empty.cpp")
+  endif()
+
+  set(lib mjarm_${room})
+  list(TRANSFORM arg_DEPENDS PREPEND mjarm::)
+  add_library(${lib} STATIC ${sources})
+  add_library(mjarm::${room} ALIAS ${lib})
+  set_target_properties(${lib} PROPERTIES EXPORT_NAME ${room})
+  target_compile_features(${lib} PUBLIC cxx_std_20)
+  target_sources(
+    ${lib} PUBLIC FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${headers}
+           FILE_SET lists TYPE HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${lists})
+  set_target_properties(${lib} PROPERTIES INTERFACE_HEADER_SETS_TO_VERIFY HEADERS)
+  target_link_libraries(${lib} PUBLIC ${arg_DEPENDS} ${arg_PUBLIC}
+                               PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:mjarm_options>)
+  set_property(GLOBAL APPEND PROPERTY mjarm_rooms ${room})
+
+  if(MJARM_TESTS AND tests)
+    mjarm_tests(${room}_test PREFIX ${room} SOURCES ${tests} LINK mjarm::${room} ${arg_PRIVATE})
+  endif()
+  if(benchmark_FOUND AND benches)
+    add_executable(${room}_bench EXCLUDE_FROM_ALL ${benches})
+    target_link_libraries(${room}_bench PRIVATE mjarm::${room} ${arg_PRIVATE} mjarm_options
+                                                benchmark::benchmark benchmark::benchmark_main)
+    set_property(GLOBAL APPEND PROPERTY mjarm_benches ${room}_bench)
+  endif()
+endfunction()
+
+# mjarm_tests(TARGET PREFIX text SOURCES file... LINK target...): one GoogleTest program, each of
+# its tests a test of ctest with the name PREFIX.Suite.Name; skipped ones are reported as skipped.
+function(mjarm_tests target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "PREFIX" "SOURCES;LINK")
+  add_executable(${target} ${arg_SOURCES})
+  target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing GTest::gtest_main
+                                          GTest::gmock)
+  gtest_discover_tests(${target} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
+                       DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+endfunction()
+
+# Sets the flags of the kernels for wider registers, and drops them where the machine has none.
+# What runs is chosen at run time, so no other file may be compiled for more than the baseline.
+function(mjarm_simd_flags list_name)
+  set(files ${${list_name}})
+  set(avx2 ${files})
+  set(avx512 ${files})
+  list(FILTER avx2 INCLUDE REGEX "_avx2\\.cpp$")
+  list(FILTER avx512 INCLUDE REGEX "_avx512\\.cpp$")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+    set_source_files_properties(${avx2} PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma")
+    set_source_files_properties(${avx512} PROPERTIES
+                                COMPILE_OPTIONS "-mavx2;-mfma;-mavx512f;-mavx512dq;-mavx512vl")
+  elseif(avx2 OR avx512)
+    list(REMOVE_ITEM files ${avx2} ${avx512})
+  endif()
+  set(${list_name} ${files} PARENT_SCOPE)
+endfunction()
+
+# mjarm::mjarm, all rooms in one target.
+function(mjarm_umbrella)
+  get_property(rooms GLOBAL PROPERTY mjarm_rooms)
+  list(TRANSFORM rooms PREPEND mjarm::)
+  add_library(mjarm_all INTERFACE)
+  add_library(mjarm::mjarm ALIAS mjarm_all)
+  set_target_properties(mjarm_all PROPERTIES EXPORT_NAME mjarm)
+  target_link_libraries(mjarm_all INTERFACE ${rooms})
+endfunction()

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+namespace mjarm {
+
+/// What kind of thing went wrong. The command line maps `bad_input` and `usage` to exit code 2 and
+/// every other value to exit code 1.
+enum class Errc {
+  bad_input,      ///< a file or value is malformed, missing or of the wrong size
+  usage,          ///< the call itself makes no sense (unknown name, contradicting options)
+  impossible,     ///< well-formed, but cannot be done (unreachable, limit broken, check failed)
+  system,         ///< the operating system refused (disk full, no permission, no display)
+  not_available,  ///< something optional is missing on this machine (GL back end, mesh, library)
+};
+
+/// A cold failure (loading, options, files): a code and one line of text in the user's language,
+/// which names the file and the element and what was expected.
+struct Error {
+  Errc code = Errc::bad_input;
+  std::string what;
+};
+
+/// Exit code of a program that ends with this failure: 2 for bad input or usage, else 1.
+[[nodiscard]] constexpr int exit_code(Errc code) noexcept {
+  return code == Errc::bad_input || code == Errc::usage ? 2 : 1;
+}
+
+}  // namespace mjarm

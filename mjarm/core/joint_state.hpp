@@ -1,0 +1,15 @@
+#pragma once
+
+#include "mjarm/core/joint_vec.hpp"
+
+namespace mjarm {
+
+/// Joint values and their first two derivatives at one time; what a trajectory asks for and what a
+/// controller is given as reference. All of shape (dof,).
+struct JointState {
+  JointVec q;  ///< [rad or m]
+  JointVec v;  ///< [rad/s or m/s]
+  JointVec a;  ///< [rad/s^2 or m/s^2]
+};
+
+}  // namespace mjarm

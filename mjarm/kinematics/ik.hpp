@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "mjarm/core/joint_vec.hpp"
+#include "mjarm/core/pose.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/arm.hpp"
+
+namespace mjarm {
+
+/// Why a pose has no answer.
+enum class IkErrc {
+  out_of_reach,    ///< farther than the arm can stretch (`amount` m too far)
+  inner_void,      ///< inside a region the arm cannot fold into (`amount` m too near)
+  joint_limit,     ///< reached only with `joint` beyond its limit by `amount` rad or m
+  collision,       ///< answers exist, the validity predicate refused them all
+  no_convergence,  ///< no answer found in the given number of restarts; not a proof
+  bad_input,       ///< NaN, a matrix that is no rotation, a seed of the wrong size
+};
+
+/// The word used in files: "out_of_reach", "inner_void", ...
+[[nodiscard]] std::string_view name(IkErrc code) noexcept;
+
+/// How hard to try, and when to call it solved. Every default is usable as is.
+struct IkOptions {
+  double pos_tol = 1e-7;        ///< [m]   |p_goal - p|, > 0
+  double rot_tol = 1e-7;        ///< [rad] angle of R^T R_goal, > 0
+  int max_iterations = 100;     ///< steps a start, > 0
+  int restarts = 50;            ///< random seeds tried after q_seed, >= 0
+  std::uint64_t rng_seed = 1;   ///< same inputs and seed, same answer
+  /// Accepts or refuses a configuration (collision, taste); empty accepts all. Must not throw.
+  std::function<bool(std::span<const double> q)> valid;
+};
+
+/// A configuration and how far its tool is from the goal.
+struct IkSolution {
+  JointVec q;            ///< [rad or m] within the limits
+  double pos_err = 0;    ///< [m]
+  double rot_err = 0;    ///< [rad]
+  int iterations = 0;    ///< steps taken in all
+  int restarts = 0;      ///< random starts used; 0 = solved from the seed
+};
+
+/// Why a solve failed, and the closest configuration it met.
+struct IkFailure {
+  IkErrc code = IkErrc::no_convergence;
+  IkSolution best;      ///< closest attempt, within the limits
+  double amount = 0;    ///< how far beyond: [m] for reach and void, [rad or m] for a joint limit
+  double bound = 0;     ///< [m] the radius that is broken (out_of_reach, inner_void), else 0
+  int joint = -1;       ///< which joint, for joint_limit
+};
+
+/// One line for people: what is wrong and by how much.
+[[nodiscard]] std::string describe(const IkFailure& failure, const Arm& arm);
+
+/// Inverse kinematics of one arm. A value: copy it to use it from another thread.
+class IkSolver {
+ public:
+  explicit IkSolver(const Arm& arm, IkOptions options = {});
+
+  /// Finds q with fk(q) within tolerance of `X_WT`, trying `q_seed` first, then random starts.
+  /// @param X_WT    tool pose in the world frame, translation in [m].
+  /// @param q_seed  [rad or m] shape (dof,); clamped to the limits before use.
+  /// @return IkFailure with the reason and the best attempt. Never throws.
+  [[nodiscard]] Result<IkSolution, IkFailure> solve(const Pose& X_WT,
+                                                    std::span<const double> q_seed) const;
+
+  [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
+  [[nodiscard]] const IkOptions& options() const noexcept { return options_; }
+
+ private:
+  Arm arm_;
+  IkOptions options_;
+};
+
+}  // namespace mjarm

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+
+struct mjModel_;
+
+namespace mjarm {
+
+/// How to read a model file.
+struct LoadOptions {
+  std::vector<std::filesystem::path> package_paths;  ///< where `package://NAME` is looked for first
+};
+
+/// Format of the file a model came from.
+enum class ModelFormat { mjcf, urdf };
+
+/// A compiled robot or scene; immutable and cheap to copy (copies share one compiled model), so it
+/// may be used from many threads at once. Scratch memory belongs to the callers (Dynamics, Sim).
+class Model {
+ public:
+  /// Loads MJCF or URDF (told apart by the root element). Meshes are looked for beside the file,
+  /// `package://` in `options.package_paths`, ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, then upwards from
+  /// the file. A URDF keeps its fixed frames.
+  /// @return one line that names file and element. Never throws, never ends the process.
+  [[nodiscard]] static Result<Model> load(const std::filesystem::path& file,
+                                          const LoadOptions& options = {});
+
+  [[nodiscard]] const std::filesystem::path& file() const noexcept;
+  [[nodiscard]] ModelFormat format() const noexcept;
+  [[nodiscard]] std::string_view name() const noexcept;  ///< model name inside the file
+  [[nodiscard]] double timestep() const noexcept;        ///< [s]
+  [[nodiscard]] int nq() const noexcept;                 ///< size of qpos
+  [[nodiscard]] int nv() const noexcept;                 ///< size of qvel
+  [[nodiscard]] int nu() const noexcept;                 ///< size of ctrl
+  [[nodiscard]] std::span<const double> qpos0() const noexcept;  ///< shape (nq,)
+
+  /// Velocity limit of a joint as the URDF gives it [rad/s or m/s]; 0 where the file has none (MJCF
+  /// has no such field).
+  [[nodiscard]] double urdf_velocity_limit(std::string_view joint) const noexcept;
+  /// Effort limit of a joint as the URDF gives it [N m or N]; 0 where the file has none.
+  [[nodiscard]] double urdf_effort_limit(std::string_view joint) const noexcept;
+
+  /// The compiled MuJoCo model, for the rooms that may include mujoco.h; never null.
+  [[nodiscard]] const mjModel_* raw() const noexcept;
+
+ private:
+  struct Impl;
+  explicit Model(std::shared_ptr<const Impl> impl);
+  std::shared_ptr<const Impl> impl_;
+};
+
+/// Finds a model by name (`ur5e`, `panda`, ...: the shipped scene) or by path. Shipped models are
+/// looked for in `share/mjarm/models` beside the program and beside its folder.
+/// @return the path of the file, or an error with the nearest known name.
+[[nodiscard]] Result<std::filesystem::path> find_model_file(std::string_view name_or_path);
+
+/// Names of the shipped models and their files, sorted by name.
+struct ShippedModel {
+  std::string name;
+  std::filesystem::path file;
+};
+[[nodiscard]] std::vector<ShippedModel> shipped_models();
+
+}  // namespace mjarm
