@@ -55,7 +55,8 @@ endfunction()
 function(mjarm_tests target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PREFIX" "SOURCES;LINK")
   add_executable(${target} ${arg_SOURCES})
-  target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options GTest::gtest_main GTest::gmock)
+  target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing GTest::gtest_main
+                                          GTest::gmock)
   gtest_discover_tests(${target} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
                        DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()

@@ -19,8 +19,7 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kM
 /// Copies `values` (at most kMaxDof) into a JointVec.
 [[nodiscard]] inline JointVec joint_vec(std::span<const double> values) {
   assert(values.size() <= static_cast<std::size_t>(kMaxDof));
-  return Eigen::Map<const Eigen::VectorXd>(values.data(),
-                                           static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 /// Views a JointVec as a span, so that it passes where plain memory is taken.

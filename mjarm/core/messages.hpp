@@ -34,6 +34,7 @@ void set_language(Language language) noexcept;
 using MsgArg = std::variant<std::string, double, long long>;
 
 /// The text of `id` in the language in use, its `{}` filled in order (fmt syntax, e.g. `{:.3f}`).
+/// An entry that does not fit its values comes back with its braces; never throws for that.
 [[nodiscard]] std::string format_message(Msg id, std::initializer_list<MsgArg> args);
 
 namespace detail {
@@ -46,6 +47,9 @@ MsgArg message_arg(Int value) {
   return static_cast<long long>(value);
 }
 }  // namespace detail
+
+/// The text of `id` in `language` as it stands in the catalogue, placeholders unfilled.
+[[nodiscard]] std::string_view message_template(Msg id, Language language) noexcept;
 
 /// Shorthand: `text(Msg::model_no_file, path)`.
 template <class... Args>

@@ -14,8 +14,10 @@ class Rng {
   std::uint64_t next() noexcept;
   /// Uniform in [0, 1).
   double uniform() noexcept;
-  /// Uniform in [lower, upper).
+  /// Uniform in [lower, upper); `lower` where both are equal.
   double uniform(double lower, double upper) noexcept;
+  /// Uniform integer in [0, n), n > 0, without bias (D. Lemire, ACM TOMACS 29 (2019) 3).
+  std::uint64_t below(std::uint64_t n) noexcept;
   /// Standard normal (Marsaglia's polar method, no state kept between calls).
   double normal() noexcept;
 

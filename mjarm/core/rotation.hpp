@@ -13,8 +13,9 @@ using Quat = Eigen::Quaterniond;
 /// Rotation matrix of `q`, which is normalised first; |q| must not be zero.
 [[nodiscard]] Eigen::Matrix3d to_matrix(const Quat& q);
 
-/// Unit quaternion of the rotation matrix `R`, first non-zero component positive. Exact to 1e-15 for
-/// every angle (largest-component branch; S. W. Shepperd, J. Guidance and Control 1 (1978) 223).
+/// Unit quaternion of the rotation matrix `R`, first non-zero component positive. Exact to 1e-15
+/// for every angle (largest-component branch; S. W. Shepperd, J. Guidance and Control 1 (1978)
+/// 223).
 [[nodiscard]] Quat to_quat(const Eigen::Matrix3d& R);
 
 /// Rotation matrix Rz(euler.z) Ry(euler.y) Rx(euler.x): angles [rad] about the fixed axes x, y, z
@@ -34,8 +35,8 @@ using Quat = Eigen::Quaterniond;
 [[nodiscard]] double angle_between(const Eigen::Matrix3d& A, const Eigen::Matrix3d& B);
 
 /// Spherical interpolation on the short way, t in [0, 1]; constant angular speed, unit norm.
-/// The sign of either quaternion does not matter. At exactly 180 degrees one of the two ways is taken.
-/// K. Shoemake, SIGGRAPH 1985.
+/// The sign of either quaternion does not matter. At exactly 180 degrees one of the two ways is
+/// taken. K. Shoemake, SIGGRAPH 1985.
 [[nodiscard]] Quat slerp(const Quat& q0, const Quat& q1, double t);
 
 /// Straight line of the origin, slerp of the rotation, t in [0, 1].

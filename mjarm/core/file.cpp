@@ -1,0 +1,142 @@
+#include "mjarm/core/file.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/os.hpp"
+
+namespace mjarm {
+namespace fs = std::filesystem;
+namespace {
+
+Error write_error(const fs::path& path, int code) {
+  return {Errc::system, text(Msg::core_cannot_write, path.string(), system_message(code))};
+}
+
+/// A name beside `target` that no other process and no other thread of this one uses.
+fs::path temporary_name(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};
+  return target.string() + ".tmp" + std::to_string(process_id()) + "-" + std::to_string(counter++);
+}
+
+}  // namespace
+
+Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
+  std::error_code status_error;
+  const fs::file_status status = fs::status(path, status_error);
+  if (status.type() == fs::file_type::not_found) {
+    return fail(Errc::bad_input, text(Msg::core_no_such_file, path.string()));
+  }
+  if (status.type() == fs::file_type::directory) {
+    return fail(Errc::bad_input, text(Msg::core_is_a_folder, path.string()));
+  }
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) {
+    return fail(Errc::bad_input, text(Msg::core_cannot_read, path.string(), system_message(errno)));
+  }
+  std::string content;
+  char buffer[65536];
+  std::size_t count = 0;
+  while (content.size() <= max_bytes && (count = std::fread(buffer, 1, sizeof buffer, file)) > 0) {
+    content.append(buffer, count);
+  }
+  const bool failed = std::ferror(file) != 0;
+  const int code = errno;
+  std::fclose(file);
+  if (failed) {
+    return fail(Errc::system, text(Msg::core_cannot_read, path.string(), system_message(code)));
+  }
+  if (content.size() > max_bytes) {
+    return fail(Errc::bad_input, text(Msg::core_file_too_large, path.string(), max_bytes));
+  }
+  return content;
+}
+
+Result<void> write_file(const fs::path& path, std::string_view content) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return fail(std::move(file.error()));
+  if (Result<void> written = file->write(content); !written) return written;
+  return file->commit();
+}
+
+Result<AtomicFile> AtomicFile::create(const fs::path& path) {
+  AtomicFile file;
+  file.path_ = path;
+  std::error_code ignored;
+  const fs::file_type type = fs::status(path, ignored).type();
+  if (type == fs::file_type::directory) {
+    return fail(Errc::bad_input, text(Msg::core_is_a_folder, path.string()));
+  }
+  if (type == fs::file_type::regular || type == fs::file_type::not_found) {
+    // A link keeps pointing where it does: its target is what gets replaced.
+    file.target_ = fs::weakly_canonical(path, ignored);
+    if (ignored) file.target_ = path;
+    file.temporary_ = temporary_name(file.target_);
+    file.file_ = std::fopen(file.temporary_.c_str(), "wbx");
+  } else {
+    file.file_ = std::fopen(path.c_str(), "wb");
+  }
+  if (file.file_ == nullptr) {
+    const int code = errno;
+    file.temporary_.clear();
+    return fail(write_error(path, code));
+  }
+  return file;
+}
+
+Result<void> AtomicFile::write(std::string_view content) {
+  if (std::fwrite(content.data(), 1, content.size(), file_) != content.size()) {
+    return fail(write_error(path_, errno));
+  }
+  return {};
+}
+
+Result<void> AtomicFile::commit() {
+  // Closing is where a full disk shows at the latest.
+  const bool flushed = std::fflush(file_) == 0;
+  int code = errno;
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (flushed && !closed) code = errno;
+  if (!flushed || !closed) {
+    discard();
+    return fail(write_error(path_, code));
+  }
+  if (temporary_.empty()) return {};
+  std::error_code error;
+  const fs::file_status old = fs::status(target_, error);
+  if (fs::exists(old)) fs::permissions(temporary_, old.permissions(), error);
+  fs::rename(temporary_, target_, error);
+  if (error) {
+    discard();
+    return fail(Errc::system, text(Msg::core_cannot_write, path_.string(), error.message()));
+  }
+  temporary_.clear();
+  return {};
+}
+
+void AtomicFile::discard() noexcept {
+  if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
+  if (temporary_.empty()) return;
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+  temporary_.clear();
+}
+
+AtomicFile::~AtomicFile() { discard(); }
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept { *this = std::move(other); }
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+  if (this == &other) return *this;
+  discard();
+  path_ = std::move(other.path_);
+  target_ = std::move(other.target_);
+  temporary_ = std::exchange(other.temporary_, {});
+  file_ = std::exchange(other.file_, nullptr);
+  return *this;
+}
+
+}  // namespace mjarm

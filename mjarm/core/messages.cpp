@@ -1,0 +1,61 @@
+#include "mjarm/core/messages.hpp"
+
+#include <fmt/args.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+
+#include "mjarm/core/os.hpp"
+
+namespace mjarm {
+namespace {
+
+struct Entry {
+  const char* english;
+  const char* chinese;
+};
+
+constexpr std::array kCatalogue = {
+#define MJARM_MSG(id, english, chinese) Entry{english, chinese},
+#include "mjarm/core/messages/all.inc"
+#undef MJARM_MSG
+};
+static_assert(kCatalogue.size() == static_cast<std::size_t>(Msg::count_));
+
+std::atomic<Language> current_language{Language::english};
+
+}  // namespace
+
+void set_language(Language language) noexcept { current_language = language; }
+
+Language language() noexcept { return current_language; }
+
+Language language_of(std::string_view name) noexcept {
+  const bool chinese =
+      name.size() >= 2 && (name[0] == 'z' || name[0] == 'Z') && (name[1] == 'h' || name[1] == 'H');
+  return chinese ? Language::chinese : Language::english;
+}
+
+Language language_of_locale() { return language_of(locale_name()); }
+
+std::string_view message_template(Msg id, Language language) noexcept {
+  const Entry& entry = kCatalogue[static_cast<std::size_t>(id)];
+  return language == Language::chinese ? entry.chinese : entry.english;
+}
+
+std::string format_message(Msg id, std::initializer_list<MsgArg> args) {
+  const std::string_view pattern = message_template(id, language());
+  fmt::dynamic_format_arg_store<fmt::format_context> store;
+  for (const MsgArg& arg : args) {
+    std::visit([&store](const auto& value) { store.push_back(value); }, arg);
+  }
+  try {
+    return fmt::vformat(fmt::string_view(pattern.data(), pattern.size()), store);
+  } catch (const fmt::format_error&) {
+    return std::string(pattern);  // a message with its braces is better than none
+  }
+}
+
+}  // namespace mjarm

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mjarm {
+
+/// Number of single-character changes (insert, delete, replace, swap of neighbours) from `a` to
+/// `b`; upper and lower case count as equal. Bytes, not characters.
+[[nodiscard]] int edit_distance(std::string_view a, std::string_view b);
+
+/// The word of `known` that was probably meant by `word`: the nearest by edit distance, the first
+/// of equals, and no farther than a third of the word's length (at least 2).
+[[nodiscard]] std::optional<std::string> nearest_word(std::string_view word,
+                                                      std::span<const std::string> known);
+
+/// ` (did you mean "NAME"?)` in the language in use, or nothing where no known word is near.
+[[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string> known);
+
+}  // namespace mjarm

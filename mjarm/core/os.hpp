@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "mjarm/core/result.hpp"
+
+/// Everything mjarm asks of the operating system, in one place.
+namespace mjarm {
+
+/// Absolute path of the running program.
+[[nodiscard]] Result<std::filesystem::path> executable_path();
+
+/// Value of an environment variable; none where it is not set.
+[[nodiscard]] std::optional<std::string> environment(const std::string& name);
+
+/// Name of the locale of messages: the first of LC_ALL, LC_MESSAGES, LANG that is not empty; empty
+/// where none is.
+[[nodiscard]] std::string locale_name();
+
+/// True where standard error is a terminal that understands cursor control.
+[[nodiscard]] bool stderr_is_terminal() noexcept;
+
+/// Columns of the terminal on standard error; 80 where unknown.
+[[nodiscard]] int terminal_width() noexcept;
+
+/// True where a graphical display is announced (X11 or Wayland); it may still refuse to open.
+[[nodiscard]] bool has_display();
+
+/// Folder for temporary files (TMPDIR, else the system's).
+[[nodiscard]] std::filesystem::path temp_directory();
+
+/// Number of this process.
+[[nodiscard]] long process_id() noexcept;
+
+/// Cores this process may use, at least 1.
+[[nodiscard]] int core_count() noexcept;
+
+/// From now on the first Ctrl-C (or SIGTERM) only sets `interrupted()`; the second ends the
+/// process.
+void catch_interrupts() noexcept;
+/// True once Ctrl-C was pressed after `catch_interrupts()`.
+[[nodiscard]] bool interrupted() noexcept;
+
+/// What the operating system says about error number `code` (errno), in English.
+[[nodiscard]] std::string system_message(int code);
+
+}  // namespace mjarm

@@ -1,0 +1,85 @@
+#include "mjarm/core/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/os.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr std::int64_t kFirstDrawNs = 500'000'000;  // short jobs show nothing at all
+constexpr std::int64_t kBetweenDrawsNs = 100'000'000;
+
+std::string duration_text(double seconds) {
+  const auto s = static_cast<long long>(std::ceil(std::min(seconds, 359'999.0)));
+  if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
+  return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+/// Columns a text takes on a terminal: a character beyond ASCII of three or more bytes (Chinese)
+/// counts two.
+int columns(const std::string& utf8) {
+  int count = 0;
+  for (const char c : utf8) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 || (byte >= 0xC0 && byte < 0xE0)) count += 1;
+    if (byte >= 0xE0) count += 2;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::string progress_line(const std::string& label, std::uint64_t done, std::uint64_t total,
+                          double seconds, int width) {
+  const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
+  const std::string rate_text = text(Msg::core_progress_rate, rate);
+  if (total == 0) return fmt::format("{} {} {}", label, done, rate_text);
+  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+  const auto left = static_cast<double>(total - std::min(done, total));
+  std::string tail = fmt::format(" {:3.0f}% {}/{} {}", 100 * share, done, total, rate_text);
+  if (rate > 0) tail += " " + text(Msg::core_progress_left, duration_text(left / rate));
+  const int room = std::min(40, width - 1 - columns(label) - columns(tail) - 3);
+  if (room < 5) return label + tail;
+  const auto filled = static_cast<std::size_t>(std::floor(share * room));
+  return label + " [" + std::string(filled, '#') +
+         std::string(static_cast<std::size_t>(room) - filled, '.') + "]" + tail;
+}
+
+Progress::Progress(std::string label, std::uint64_t total)
+    : label_(std::move(label)),
+      total_(total),
+      visible_(stderr_is_terminal() && log_level() <= LogLevel::info),
+      start_(Clock::now()),
+      next_draw_ns_(kFirstDrawNs) {}
+
+Progress::~Progress() {
+  if (visible_) show_status("");
+}
+
+void Progress::advance(std::uint64_t steps) noexcept {
+  done_.fetch_add(steps, std::memory_order_relaxed);
+  if (!visible_) return;
+  const Clock::time_point now = Clock::now();
+  if ((now - start_).count() >= next_draw_ns_.load(std::memory_order_relaxed)) draw(now);
+}
+
+void Progress::draw(Clock::time_point now) noexcept {
+  const std::unique_lock<std::mutex> lock(drawing_, std::try_to_lock);
+  if (!lock.owns_lock()) return;  // another thread is at it
+  const std::chrono::nanoseconds elapsed = now - start_;
+  if (elapsed.count() < next_draw_ns_) return;
+  next_draw_ns_ = elapsed.count() + kBetweenDrawsNs;
+  try {
+    const double seconds = std::chrono::duration<double>(elapsed).count();
+    show_status(progress_line(label_, done_, total_, seconds, terminal_width()));
+  } catch (...) {  // a bar that cannot be drawn is no reason to stop the job
+  }
+}
+
+}  // namespace mjarm

@@ -1,0 +1,113 @@
+#include "mjarm/core/units.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <string>
+#include <system_error>
+
+#include "mjarm/core/messages.hpp"
+
+namespace mjarm {
+namespace {
+
+struct Unit {
+  std::string_view suffix;
+  double factor;  ///< to SI
+};
+
+constexpr Unit kAngles[] = {{"rad", 1}, {"mrad", 1e-3}, {"deg", std::numbers::pi / 180}};
+constexpr Unit kLengths[] = {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}};
+constexpr Unit kTimes[] = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}};
+constexpr Unit kSpeeds[] = {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}};
+
+std::span<const Unit> units_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::angle:
+      return kAngles;
+    case Quantity::length:
+      return kLengths;
+    case Quantity::time:
+      return kTimes;
+    case Quantity::speed:
+      return kSpeeds;
+    case Quantity::number:
+      break;
+  }
+  return {};
+}
+
+std::string_view trimmed(std::string_view words) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::size_t first = words.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return words.substr(first, words.find_last_not_of(kBlank) - first + 1);
+}
+
+/// "rad, mrad, deg", for the message.
+std::string list(std::span<const Unit> units) {
+  std::string result;
+  for (const Unit& unit : units) {
+    if (!result.empty()) result += ", ";
+    result += unit.suffix;
+  }
+  return result;
+}
+
+/// What of `words` a message shows: all of it, or its beginning.
+std::string shown(std::string_view words) {
+  constexpr std::size_t kMost = 40;
+  return words.size() <= kMost ? std::string(words) : std::string(words.substr(0, kMost)) + "...";
+}
+
+}  // namespace
+
+Result<double> parse_quantity(std::string_view words, Quantity quantity) {
+  const std::string_view whole = trimmed(words);
+  std::string_view digits = whole;
+  if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool doubled_sign = digits.size() != whole.size() && !digits.empty() && digits[0] == '-';
+  if (error == std::errc::invalid_argument || doubled_sign) {
+    return fail(Errc::bad_input, text(Msg::core_not_a_number, shown(whole)));
+  }
+  if (error == std::errc::result_out_of_range || !std::isfinite(value)) {
+    return fail(Errc::bad_input, text(Msg::core_not_finite, shown(whole)));
+  }
+  const std::string_view suffix =
+      trimmed(digits.substr(static_cast<std::size_t>(end - digits.data())));
+  if (suffix.empty()) return value;
+  const std::span<const Unit> units = units_of(quantity);
+  for (const Unit& unit : units) {
+    // Division by a power of ten is exact where its inverse is not: 25mm is 0.025, to the last bit.
+    if (suffix != unit.suffix) continue;
+    return unit.factor < 1 && quantity != Quantity::angle ? value / std::round(1 / unit.factor)
+                                                          : value * unit.factor;
+  }
+  if (units.empty()) {
+    return fail(Errc::bad_input, text(Msg::core_unit_not_allowed, shown(suffix), shown(whole)));
+  }
+  return fail(Errc::bad_input,
+              text(Msg::core_unknown_unit, shown(suffix), shown(whole), list(units)));
+}
+
+Result<std::vector<double>> parse_quantities(std::string_view words, Quantity quantity) {
+  std::vector<double> values;
+  std::string_view rest = trimmed(words);
+  if (rest.empty()) return fail(Errc::bad_input, text(Msg::core_not_a_number, ""));
+  const bool has_commas = rest.find(',') != std::string_view::npos;
+  for (;;) {
+    // Without commas blanks part the entries; with commas they may stand before a unit.
+    const std::size_t end = rest.find_first_of(has_commas ? "," : " \t");
+    Result<double> value = parse_quantity(rest.substr(0, end), quantity);
+    if (!value) return fail(std::move(value.error()));
+    values.push_back(*value);
+    if (end == std::string_view::npos) return values;
+    rest.remove_prefix(end + 1);
+    if (!has_commas) rest = trimmed(rest);
+  }
+}
+
+}  // namespace mjarm

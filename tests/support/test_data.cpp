@@ -1,0 +1,45 @@
+#include "tests/support/test_data.hpp"
+
+#include <zlib.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
+namespace mjarm::support {
+
+std::optional<std::filesystem::path> test_data_file(const std::string& name) {
+  const char* folder = std::getenv("MJARM_TEST_DATA");
+  if (folder == nullptr || *folder == '\0') return std::nullopt;
+  return std::filesystem::path(folder) / name;
+}
+
+std::string read_data(const std::filesystem::path& file) {
+  // zlib reads plain files as they are.
+  const gzFile input = gzopen(file.c_str(), "rb");
+  if (input == nullptr) throw std::runtime_error("cannot open " + file.string());
+  std::string content;
+  char buffer[65536];
+  int count = 0;
+  while ((count = gzread(input, buffer, sizeof buffer)) > 0) {
+    content.append(buffer, static_cast<std::size_t>(count));
+  }
+  gzclose(input);
+  if (count < 0) throw std::runtime_error("cannot unpack " + file.string());
+  return content;
+}
+
+nlohmann::json load_json(const std::filesystem::path& file) {
+  return nlohmann::json::parse(read_data(file));
+}
+
+std::vector<nlohmann::json> load_json_lines(const std::filesystem::path& file) {
+  std::istringstream input(read_data(file));
+  std::vector<nlohmann::json> lines;
+  for (std::string line; std::getline(input, line);) {
+    if (!line.empty()) lines.push_back(nlohmann::json::parse(line));
+  }
+  return lines;
+}
+
+}  // namespace mjarm::support
