@@ -38,7 +38,7 @@ MUJOCO = [
 ]
 
 # Where the operating system may be called directly.
-SYSTEM = ["mjarm/core/os*.cpp", "*_test.cpp"]
+SYSTEM = ["mjarm/core/os*.cpp", "*_test.cpp", "tests/*"]
 SYSTEM_HEADERS = r"(unistd|dlfcn|fcntl|poll|signal|pthread|windows|termios|pwd|sys/.*|netinet/.*|arpa/.*)\.h"
 
 # What a public header may include besides mjarm, Eigen and the standard library.
@@ -108,6 +108,8 @@ def faults_of(path, text):
         header = found.group(2)
         if header.startswith("mjarm/"):
             fault = None if header.endswith(".inc") else room_fault(path, header)
+        elif header.startswith("tests/"):
+            fault = None if is_test(path) else f"includes {header}, which is for tests"
         elif found.group(1) == '"' and room_of(path):
             fault = f'includes "{header}"; write the path from the root: "mjarm/ROOM/FILE"'
         else:

@@ -49,7 +49,9 @@ class CheckLayersTest(unittest.TestCase):
     def test_test_headers_do_not_leak(self):
         self.assert_fault("mjarm/path/line.cpp", "#include <gtest/gtest.h>\n", "for tests")
         self.assert_fault("mjarm/path/line.cpp", '#include "mjarm/core/data_test.hpp"\n', "for tests")
+        self.assert_fault("mjarm/path/line.cpp", '#include "tests/support/data.hpp"\n', "for tests")
         self.assertEqual(faults("mjarm/path/line_test.cpp", '#include "mjarm/core/data_test.hpp"\n'), [])
+        self.assertEqual(faults("mjarm/path/line_test.cpp", '#include "tests/support/data.hpp"\n'), [])
 
     def test_internal_headers_stay_in_their_room(self):
         line = '#include "mjarm/model/impl_internal.hpp"\n'

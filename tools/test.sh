@@ -22,9 +22,13 @@ sources() {
 check_layers() { python3 "$root/tools/check_layers.py" "$root"; }
 
 check_format() {
-  local tool
+  local tool found
   tool=$(clang_tool clang-format) || return 77
-  sources | xargs -P "$(nproc)" -n 40 "$tool" --dry-run -Werror
+  found=$(sources | xargs -P "$(nproc)" -n 40 "$tool" --dry-run -Werror 2>&1) && return
+  sed -n "s|^$root/\([^:]*:[0-9]*\):.*error:|\1:|p" <<<"$found" | sort -V |
+    awk -F: '!seen[$1]++'  # the first fault of each file
+  say "./dev format mends these"
+  return 1
 }
 
 check_headers() { compile "$root/build/$1" all_verify_interface_header_sets; }
