@@ -1,11 +1,8 @@
-#include <cmath>
-
 #include "demos/demos.hpp"
 #include "demos/stage.hpp"
+#include "demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/path/joint_path.hpp"
-#include "mjarm/program/motion.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -17,29 +14,29 @@ Ellipse the_ellipse(bool guide) {
   ellipse.center = {0, guide ? -0.2 : -0.3, 0.5};
   ellipse.a = 0.3;
   ellipse.b = 0.15;
-  ellipse.R = from_euler({3.14, 0, 0});
+  ellipse.R = tool_down();
   return ellipse;
 }
 
 /// Says which points cannot be reached, why, and which shift of the whole curve mends it.
-Report refuse(const Stage& stage, std::span<const Pose> points,
-              std::span<const UnreachableRange> ranges) {
+Result<Report> refuse(Stage& stage, std::span<const Pose> points,
+                      std::span<const UnreachableRange> ranges) {
   Report report;
+  std::string detail;
   for (const UnreachableRange& range : ranges) {
-    const std::string why = describe(range.worst, stage.arm());
-    log_info(text(Msg::app_points_unreachable, range.first, range.last, points.size(), why));
-    report.reason = name(range.worst.code);
-    report.detail = why;
     for (std::size_t i = range.first; i <= range.last; ++i) report.unreachable.push_back(i);
+    if (!detail.empty()) detail += "; ";
+    detail += text(Msg::demo_points_unreachable, range.first, range.last, points.size(),
+                   describe(range.worst, stage.arm()));
   }
-  report.coverage = 0;
-  if (const auto shift = find_shift(stage.ik(), points, view(stage.arm().home))) {
+  const auto shift = find_shift(stage.ik(), points, view(stage.arm().home));
+  if (shift) {
     report.shift = *shift;
-    log_info(text(Msg::app_shift_mends, shift->x(), shift->y(), shift->z()));
+    detail += "; " + text(Msg::demo_shift_mends, shift->x(), shift->y(), shift->z());
   } else {
-    log_info(text(Msg::app_no_shift_mends));
+    detail += "; " + text(Msg::demo_no_shift);
   }
-  return report;
+  return stage.refuse(name(ranges.front().worst.code), detail, std::move(report));
 }
 
 }  // namespace
@@ -50,26 +47,34 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   Stage& stage = **opened;
 
   const Ellipse ellipse = the_ellipse(options.guide);
-  const std::vector<Pose> points = ellipse_points(ellipse, kPoints);
-  stage.show_points(points, 2);
-  const std::vector<UnreachableRange> ranges =
-      unreachable_ranges(stage.ik(), points, view(stage.arm().home));
-  if (!ranges.empty()) return stage.finish(refuse(stage, points, ranges), {});
-
   const Result<Curve> curve = Curve::ellipse(ellipse);
   if (!curve) return fail(curve.error());
-  const Result<ToolMotion, MotionFailure> motion =
-      plan_tool_motion(stage.ik(), *curve, view(stage.arm().home), {});
-  if (!motion) return stage.finish(stage.refusal(motion.error()), {});
-  Report report;
-  report.max_joint_step = step_between(motion->path, *curve, kPoints);
+  const std::vector<Pose> points = ellipse_points(ellipse, kPoints);
+  stage.show().add_points(points, 2);
+  const std::span<const double> home = view(stage.arm().home);
+  const std::vector<UnreachableRange> ranges = unreachable_ranges(stage.reach(), points, home);
+  if (!ranges.empty()) return refuse(stage, points, ranges);
 
-  const ControlMode mode = options.control.value_or(ControlMode::computed_torque);
+  std::vector<double> index;
+  for (int i = 0; i < kPoints; ++i) index.push_back(i);
+  const Result<JointPath, PathFailure> path = solve_path(stage.ik(), points, index, home);
+  if (!path) return stage.refuse({.path = path.error(), .timing = {}});
+  const Result<ToolMotion, MotionFailure> motion =
+      plan_tool_motion(stage.ik(), *curve, view(path->q.front()));
+  if (!motion) return stage.refuse(motion.error());
+  log_info(text(Msg::demo_plan, curve->length(), motion->trajectory.duration(),
+                path->max_step()));
+
+  Report report;
+  report.max_joint_step = path->max_step();
+  const ControlMode mode = stage.control(ControlMode::computed_torque);
   if (auto done = stage.approach(view(motion->path.q.front()), mode); !done) {
     return fail(std::move(done.error()));
   }
-  if (auto done = stage.draw(*motion, mode); !done) return fail(std::move(done.error()));
-  return stage.finish(report, {.curve = *curve});
+  if (auto done = stage.run(motion->trajectory, mode, 0.3, &*curve); !done) {
+    return fail(std::move(done.error()));
+  }
+  return stage.finish(std::move(report));
 }
 
 }  // namespace mjarm::app
