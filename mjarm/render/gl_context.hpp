@@ -23,6 +23,10 @@ enum class GlChoice {
   osmesa,     ///< OSMesa or an error
 };
 
+/// Notes that MuJoCo draws with `kind` from now on; called before it draws for the first time.
+/// @return not_available where it already draws with the other kind.
+[[nodiscard]] Result<void> claim_gl(GlKind kind);
+
 /// An OpenGL context without a window. It belongs to one thread at a time: the one that made it
 /// current last.
 class GlContext {
@@ -55,11 +59,11 @@ class GlContext {
 /// One way to draw without a window, tried out.
 struct GlBackend {
   GlKind kind = GlKind::egl;
-  std::string name;  ///< "EGL" or "OSMesa"
+  std::string name = {};  ///< "EGL" or "OSMesa"
   bool works = false;
-  std::string renderer;  ///< GL_RENDERER where it works
-  std::string version;   ///< GL_VERSION where it works
-  std::string reason;    ///< why it does not work, and what helps; empty where it works
+  std::string renderer = {};  ///< GL_RENDERER where it works
+  std::string version = {};   ///< GL_VERSION where it works
+  std::string reason = {};    ///< why it does not work, and what helps; empty where it works
 };
 
 /// Tries every way, in the order of preference; leaves no context current.
