@@ -1,5 +1,6 @@
 #include "mjarm/core/os.hpp"
 
+#include <dlfcn.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -31,6 +32,14 @@ Result<std::filesystem::path> executable_path() {
   std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) return fail(Errc::system, text(Msg::core_no_executable_path, error.message()));
   return path;
+}
+
+std::filesystem::path library_of(const void* address) {
+  Dl_info info{};
+  if (::dladdr(address, &info) == 0 || info.dli_fname == nullptr) return {};
+  std::error_code error;
+  std::filesystem::path path = std::filesystem::weakly_canonical(info.dli_fname, error);
+  return error ? std::filesystem::path(info.dli_fname) : path;
 }
 
 std::optional<std::string> environment(const std::string& name) {
