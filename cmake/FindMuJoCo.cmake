@@ -5,15 +5,19 @@
 # beside `include/`) and that of a release archive or an installed tree (`lib/` and `include/`).
 #
 # Sets MuJoCo_VERSION, MuJoCo_INCLUDE_DIR, MuJoCo_LIBRARY.
-get_filename_component(_mujoco_default "${CMAKE_CURRENT_LIST_DIR}/../.deps/mujoco-4.0.1" ABSOLUTE)
-if(DEFINED mjarm_PREFIX)
-  set(_mujoco_default "${mjarm_PREFIX}")
-endif()
-if(DEFINED ENV{MUJOCO_ROOT} AND NOT MUJOCO_ROOT)
+get_filename_component(_mujoco_default "${CMAKE_CURRENT_LIST_DIR}/../.deps/mujoco-core-4.0.1/mujoco" ABSOLUTE)
+if(DEFINED MJARM_PREFIX)  # set by the installed mjarmConfig.cmake
+  set(_mujoco_default "${MJARM_PREFIX}")
+elseif(DEFINED ENV{MUJOCO_ROOT})
   set(_mujoco_default "$ENV{MUJOCO_ROOT}")
 endif()
 set(MUJOCO_ROOT "${_mujoco_default}" CACHE PATH "Folder of MuJoCo: holds include/mujoco/mujoco.h")
 
+if(NOT MUJOCO_ROOT STREQUAL MuJoCo_SEARCHED)  # another folder than last time
+  unset(MuJoCo_INCLUDE_DIR CACHE)
+  unset(MuJoCo_LIBRARY CACHE)
+  set(MuJoCo_SEARCHED "${MUJOCO_ROOT}" CACHE INTERNAL "Folder of the last search")
+endif()
 find_path(MuJoCo_INCLUDE_DIR mujoco/mujoco.h HINTS "${MUJOCO_ROOT}" PATH_SUFFIXES include
           NO_DEFAULT_PATH)
 

@@ -1,1 +1,31 @@
-# placeholder
+# What `cmake --install` puts where, and what `find_package(mjarm CONFIG)` finds there.
+include(CMakePackageConfigHelpers)
+
+get_property(rooms GLOBAL PROPERTY mjarm_rooms)
+list(TRANSFORM rooms PREPEND mjarm_)
+install(TARGETS ${rooms} EXPORT mjarmTargets FILE_SET HEADERS FILE_SET lists)
+install(TARGETS mjarm_all EXPORT mjarmTargets)
+if(TARGET mjarm)
+  install(TARGETS mjarm)
+endif()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/models"
+        OPTIONAL)
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+
+# MuJoCo goes along, with its licences, so that the installed tree is complete.
+file(REAL_PATH "${MuJoCo_LIBRARY}" mujoco_file)
+install(PROGRAMS "${mujoco_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+        RENAME "libmujoco.so.${MuJoCo_VERSION}")
+install(DIRECTORY "${MuJoCo_INCLUDE_DIR}/mujoco" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+file(GLOB mujoco_licences "${MUJOCO_ROOT}/LICENSE*"
+     "${MUJOCO_ROOT}/../mujoco_core-*.dist-info/licenses/LICENSE*")
+install(FILES ${mujoco_licences} DESTINATION "${CMAKE_INSTALL_DOCDIR}/mujoco")
+
+set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/mjarm")
+install(EXPORT mjarmTargets NAMESPACE mjarm:: DESTINATION "${config_dir}")
+configure_package_config_file(cmake/mjarmConfig.cmake.in mjarmConfig.cmake
+                              INSTALL_DESTINATION "${config_dir}")
+write_basic_package_version_file(mjarmConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/mjarmConfig.cmake"
+              "${PROJECT_BINARY_DIR}/mjarmConfigVersion.cmake" cmake/FindMuJoCo.cmake
+        DESTINATION "${config_dir}")

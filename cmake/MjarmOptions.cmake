@@ -16,6 +16,8 @@ endif()
 add_library(mjarm_options INTERFACE)
 target_compile_options(mjarm_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                                                -Wno-sign-conversion)
+# No path of this machine in what is installed.
+target_compile_options(mjarm_options INTERFACE "-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=")
 if(MJARM_WARNINGS_AS_ERRORS)
   target_compile_options(mjarm_options INTERFACE -Werror)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

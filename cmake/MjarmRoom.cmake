@@ -52,11 +52,12 @@ endfunction()
 
 # mjarm_tests(TARGET PREFIX text SOURCES file... LINK target...): one GoogleTest program, each of
 # its tests a test of ctest with the name PREFIX.Suite.Name; skipped ones are reported as skipped.
+# Tests of every room may call MuJoCo, as their oracle.
 function(mjarm_tests target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PREFIX" "SOURCES;LINK")
   add_executable(${target} ${arg_SOURCES})
-  target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing GTest::gtest_main
-                                          GTest::gmock)
+  target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing MuJoCo::mujoco
+                                          GTest::gtest_main GTest::gmock)
   gtest_discover_tests(${target} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
                        DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Installs the build into an empty prefix, moves that prefix, and builds and runs a project against
+# it: what is installed must need neither the sources nor the place it was first put.
+# Usage: install_test.sh SOURCE_DIR BUILD_DIR
+set -euo pipefail
+source_dir=$1 build_dir=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+unset MUJOCO_ROOT MUJOCO_PATH LD_LIBRARY_PATH
+
+cmake --install "$build_dir" --strip --prefix "$work/first" >"$work/install.log" ||
+  { cat "$work/install.log" && exit 1; }
+prefix=$work/moved
+mv "$work/first" "$prefix"
+
+# (Archives of a build with debug information name their sources, as they should.)
+if grep -rlF --exclude='*.a' "$source_dir" "$prefix"; then
+  echo "the files above name the source folder $source_dir"
+  exit 1
+fi
+cmake -S "$source_dir/tests/install_consumer" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_PREFIX_PATH="$prefix"
+cmake --build "$work/build"
+"$work/build/consumer" "$prefix"
+
+if [[ -x $prefix/bin/mjarm ]]; then
+  ldd "$prefix/bin/mjarm" | grep -F "$prefix/lib" | grep libmujoco
+  (cd / && "$prefix/bin/mjarm" --version)
+fi

@@ -1,0 +1,218 @@
+# Part of ./dev: brings the machine to where mjarm can be built. Sourced, never run.
+
+# What a run needs, and what the tests need besides. Optional ones: not every release has them.
+run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libexpected-dev
+  libfmt-dev libspdlog-dev nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libcli11-dev
+  libpng-dev libcairo2-dev libglfw3-dev libegl-dev libgl-dev libopengl-dev libgl1-mesa-dri
+  fonts-dejavu-core"
+test_packages="libgtest-dev libgmock-dev libbenchmark-dev ccache xvfb xauth xdotool"
+optional_packages="libosmesa6"
+
+# One process at a time sets up or builds in this folder.
+lock() {
+  mkdir -p "$deps"
+  exec 9>"$deps/lock"
+  flock -n 9 && return
+  say "waiting for another ./dev in this folder"
+  flock 9
+}
+unlock() { exec 9>&-; }
+
+# step TEXT COMMAND...: says what is done, and when it is done, how long it took.
+step() {
+  local text=$1 from=$SECONDS
+  shift
+  say "$text ..."
+  "$@" || return
+  say "$text: done in $((SECONDS - from)) s"
+}
+
+# quiet COMMAND...: its output is shown only when it fails.
+quiet() {
+  local log
+  log=$(mktemp)
+  if "$@" >"$log" 2>&1; then
+    rm -f "$log"
+    return
+  fi
+  tail -n 25 "$log" >&2
+  rm -f "$log"
+  return 1
+}
+
+# missing PACKAGE...: those that are not installed.
+missing() {
+  local installed name
+  installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "$@" 2>/dev/null |
+    sed -n 's/^.i  *//p') || true
+  for name in "$@"; do
+    grep -qxF -- "$name" <<<"$installed" || echo "$name"
+  done
+}
+
+as_root() {
+  if ((EUID == 0)); then
+    DEBIAN_FRONTEND=noninteractive "$@"
+  else
+    sudo env DEBIAN_FRONTEND=noninteractive "$@"
+  fi
+}
+
+apt_install() {
+  quiet as_root apt-get install -y -qq --no-install-recommends "$@"
+}
+
+# The ones of PACKAGE... that apt knows a version of.
+available() {
+  apt-cache policy "$@" 2>/dev/null | awk '/^[^ ].*:$/ {name = substr($1, 1, length($1) - 1)}
+    /^  Candidate:/ && $2 != "(none)" {print name}'
+}
+
+install_packages() {
+  local wanted=("$@") extra
+  ((EUID == 0)) || command -v sudo >/dev/null ||
+    die "installing packages needs root: run ./dev as root, or install sudo"
+  if (($(available "${wanted[@]}" | wc -l) < ${#wanted[@]})); then
+    step "Package lists: apt-get update" quiet as_root apt-get update -qq ||
+      die "apt-get update failed: is the network there, and may you be root?"
+  fi
+  mapfile -t extra < <(available $(missing $optional_packages))
+  step "System packages: installing ${#wanted[@]}" apt_install "${wanted[@]}" "${extra[@]}" ||
+    { step "Package lists are old: apt-get update" quiet as_root apt-get update -qq &&
+      step "System packages: second try" apt_install "${wanted[@]}" "${extra[@]}"; } ||
+    die "apt-get could not install: ${wanted[*]}"
+}
+
+# set_up_packages run|test|NAME...
+set_up_packages() {
+  local wanted
+  if ! command -v dpkg-query >/dev/null; then
+    say "this is neither Debian nor Ubuntu, so no packages are installed; going on with what is there"
+    return
+  fi
+  mapfile -t wanted < <(missing "$@")
+  ((${#wanted[@]})) || return 0
+  say "missing system packages: ${wanted[*]}"
+  if [[ $may_install == no ]]; then
+    die "install them with: apt-get install --no-install-recommends ${wanted[*]}"
+  fi
+  install_packages "${wanted[@]}"
+}
+
+# A python3 that has pip: the first in PATH, else the system's own.
+python_with_pip() {
+  local python
+  for python in python3 /usr/bin/python3; do
+    if "$python" -m pip --version >/dev/null 2>&1; then
+      echo "$python"
+      return
+    fi
+  done
+  die "no python3 with pip: install python3-pip"
+}
+
+# fetch_wheel NAME VERSION SHA256 MEMBERS PIP_ARGS...: downloads one wheel, checks its hash, and
+# unpacks those members to .deps/NAME-VERSION; the folder appears only when it is whole.
+fetch_wheel() {
+  local name=$1 version=$2 hash=$3 members=$4 python work wheel
+  shift 4
+  [[ -e $deps/$name-$version ]] && return
+  [[ $may_install == yes ]] || die "$name $version is missing; ./dev without --no-install fetches it"
+  python=$(python_with_pip) || exit
+  work=$(mktemp -d "$deps/fetch.XXXXXX")
+  if ! quiet "$python" -m pip download --disable-pip-version-check --no-deps \
+    --only-binary=:all: "$@" --dest "$work" "$name==$version"; then
+    rm -rf "$work"
+    say "could not download $name $version: is the package index reachable?"
+    return 1
+  fi
+  wheel=$(echo "$work"/*.whl)
+  if ! sha256sum --status -c <<<"$hash  $wheel"; then
+    rm -rf "$work"
+    say "$name $version: the downloaded file is not the expected one (its SHA-256 differs)"
+    return 1
+  fi
+  (set -f && unzip -q "$wheel" $members -d "$work") || die "$name $version: cannot unpack the wheel"
+  rm "$wheel"
+  chmod 755 "$work"
+  mv -T "$work" "$deps/$name-$version"
+}
+
+# by_machine X86_64 AARCH64: the one of this machine.
+by_machine() {
+  case $(uname -m) in
+    x86_64) echo "$1" ;;
+    aarch64 | arm64) echo "$2" ;;
+    *) die "no files for machines of type $(uname -m): x86_64 and aarch64 are supported" ;;
+  esac
+}
+
+# The library does not depend on Python, but there is a wheel per Python version: always take cp311.
+fetch_mujoco() {
+  local hash platform
+  hash=$(by_machine be28c0c7587347ef996b4de0487264e9da296282082b092bae211a9163e9aed6 \
+    52d934614a56f7d75dcfc2bd8bb72f058b465ecc19a0583a56df242f9505bdb6) || exit
+  platform=$(by_machine manylinux_2_28_x86_64 manylinux_2_28_aarch64)
+  fetch_wheel mujoco-core 4.0.1 "$hash" \
+    "mujoco/libmujoco.so.* mujoco/include/* mujoco_core-*/licenses/*" \
+    --python-version 311 --implementation cp --abi cp311 --platform "$platform"
+}
+
+# Prints the path of the pinned clang-format or clang-tidy, after fetching it where needed.
+clang_tool() {
+  local tool=$1 hash version platform
+  case $tool in
+    clang-format)
+      version=20.1.8 platform=manylinux_2_28
+      hash=$(by_machine 7c6bcb7e01ba4f05a4c980fda147b330f7e4833c2aea8c92a0c2df9573ae7afe \
+        34de32fe53452a07497793d5faf3fd03f7cf8b960b915417471ae81227461a39) || exit
+      ;;
+    clang-tidy)
+      version=20.1.0 platform=manylinux2014
+      hash=$(by_machine e205541e350044ffe0b0d1fcaf62b9953890f8ecba31458bbcdcfe73040e58b6 \
+        14125fd35b2d324da33c884ab8b5a1d9d70a5a2e76f071ca14783d325a992917) || exit
+      ;;
+  esac
+  fetch_wheel "$tool" "$version" "$hash" "${tool/-/_}/*" --platform "${platform}_$(uname -m)" ||
+    return
+  echo "$deps/$tool-$version/${tool/-/_}/data/bin/$tool"
+}
+
+# set_up_machine run|test: packages and MuJoCo. Does nothing where all is there.
+set_up_machine() {
+  local packages=$run_packages
+  [[ $1 == test ]] && packages="$packages $test_packages"
+  set_up_packages $packages
+  if [[ -z ${MUJOCO_ROOT:-} && ! -e $mujoco ]]; then
+    step "MuJoCo 4.0.1: downloading" fetch_mujoco || exit
+  fi
+}
+
+# build PRESET TARGET...: configures where that was not done, and builds.
+build() {
+  local preset=$1 folder=$root/build/$1
+  shift
+  if [[ ! -e $folder/build.ninja ]] ||
+    { [[ -n ${MUJOCO_ROOT:-} ]] && ! uses_mujoco_root "$preset"; }; then
+    step "Configuring $preset" quiet cmake -S "$root" --preset "$preset" \
+      -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" ||
+      die "cmake could not configure the preset $preset"
+  fi
+  step "Building $preset" compile "$folder" "$@" || die "the build of the preset $preset failed"
+}
+
+# Ninja's own lines go to stderr, so that stdout holds only results; off a terminal it is quiet.
+compile() {
+  local folder=$1 talk=()
+  shift
+  [[ -t 2 ]] || talk=(--quiet)
+  NINJA_STATUS="  [%f/%t, %es] " ninja -C "$folder" -j "$(jobs_at_once)" "${talk[@]}" "$@" >&2
+}
+
+# A job needs about 1 GB, so memory bounds them as well as processors.
+jobs_at_once() {
+  local cores memory
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable/ {print int($2 / 1000000)}' /proc/meminfo)
+  echo $((memory < 1 ? 1 : memory < cores ? memory : cores))
+}

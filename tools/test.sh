@@ -1,0 +1,134 @@
+# Part of ./dev: checks, tests and what measures them. Sourced after setup.sh, never run.
+
+passed=0 failed=0 skipped=0
+
+# check NAME COMMAND...: one check, counted like a test. Exit code 77 of the command: it cannot run.
+check() {
+  local name=$1 code=0
+  shift
+  say "check: $name ..."
+  "$@" >&2 || code=$?
+  case $code in
+    0) passed=$((passed + 1)) ;;
+    77) skipped=$((skipped + 1)) && echo "SKIPPED: $name (see above)" ;;
+    *) failed=$((failed + 1)) && echo "FAILED: $name (see above)" ;;
+  esac
+}
+
+sources() {
+  find "$root"/{mjarm,apps,examples,tests} -type f \( -name '*.hpp' -o -name '*.cpp' \) | sort
+}
+
+check_layers() { python3 "$root/tools/check_layers.py" "$root"; }
+
+check_format() {
+  local tool found
+  tool=$(clang_tool clang-format) || return 77
+  found=$(sources | xargs -P "$(nproc)" -n 40 "$tool" --dry-run -Werror 2>&1) && return
+  sed -n "s|^$root/\([^:]*:[0-9]*\):.*error:|\1:|p" <<<"$found" | sort -V |
+    awk -F: '!seen[$1]++'  # the first fault of each file
+  say "./dev format mends these"
+  return 1
+}
+
+check_headers() { compile "$root/build/$1" all_verify_interface_header_sets; }
+
+format_sources() {
+  local tool
+  tool=$(clang_tool clang-format) || exit
+  sources | xargs -n 40 "$tool" -i
+}
+
+tidy_sources() {
+  local tool
+  tool=$(clang_tool clang-tidy) || exit
+  build dev all
+  { if (($#)); then realpath "$@"; else sources | grep '\.cpp$'; fi; } |
+    xargs -P "$(nproc)" -n 1 "$tool" -p "$root/build/dev" --quiet
+}
+
+# Starts a display of our own, so that tests of windows run anywhere and disturb nobody.
+start_display() {
+  local number
+  command -v Xvfb >/dev/null || return 0
+  coproc XVFB { exec Xvfb -displayfd 1 -screen 0 1280x1024x24 -nolisten tcp 2>/dev/null; }
+  trap 'kill "$XVFB_PID" 2>/dev/null || true' EXIT
+  if read -r -t 20 -u "${XVFB[0]}" number; then
+    export DISPLAY=:$number
+  else
+    say "Xvfb did not start: tests that need a window are skipped"
+  fi
+}
+
+# run_ctest PRESET: runs every test and adds to the counts.
+run_ctest() {
+  local folder=$root/build/$1 results=$root/build/$1/results.xml counts
+  rm -f "$results"
+  start_display
+  ctest --test-dir "$folder" -j "$(jobs_at_once)" --output-junit "$results" \
+    --output-on-failure --no-tests=error >&2 || true
+  [[ -e $results ]] || {
+    check "ctest" false
+    return
+  }
+  counts=$(python3 "$root/tools/test_summary.py" "$results")
+  sed '$d' <<<"$counts"
+  read -r p f s <<<"$(tail -n 1 <<<"$counts")"
+  passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+}
+
+# Prints the plain last line; its exit code tells whether all is well.
+finish() {
+  local line="$passed passed, $failed failed"
+  ((skipped)) && line+=", $skipped skipped"
+  echo "$line"
+  ((failed == 0))
+}
+
+build_counted() { (build "$@"); }
+
+run_tests() {
+  check "layers" check_layers
+  check "format" check_format
+  check "build" build_counted "$1" all
+  if ((failed == 0)) || [[ -x $root/build/$1/bin/core_test ]]; then
+    check "headers stand alone" check_headers "$1"
+    run_ctest "$1"
+  fi
+  finish
+}
+
+run_checks_only() {
+  check "layers" check_layers
+  check "format" check_format
+  check "headers stand alone" build_counted dev all_verify_interface_header_sets
+  finish
+}
+
+run_sanitizer() {
+  export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1:strict_string_checks=1}
+  export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$root/tools/leaks.supp:print_suppressions=0}
+  export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
+  export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$root/tools/races.supp}
+  check "build" build_counted "$1" all
+  ((failed)) || run_ctest "$1"
+  finish
+}
+
+run_coverage() {
+  set_up_packages gcovr
+  check "build" build_counted coverage all
+  ((failed)) || run_ctest coverage
+  gcovr --root "$root" --filter "$root/mjarm/" --filter "$root/apps/" --exclude '.*_test\.cpp$' \
+    --html-details "$root/build/coverage/coverage.html" --print-summary "$root/build/coverage"
+  say "line by line: build/coverage/coverage.html"
+  finish
+}
+
+run_benches() {
+  local bench
+  build release benches
+  for bench in "$root"/build/release/bin/*_bench; do
+    [[ -x $bench ]] && "$bench"
+  done
+}

@@ -1,0 +1,40 @@
+"""Reads a JUnit file of ctest: says what failed and what was skipped and why.
+
+Usage: test_summary.py FILE. The last line printed is "PASSED FAILED SKIPPED", three numbers.
+"""
+
+import collections
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+
+def skip_reason(case):
+    """The message a skipped GoogleTest gave, else what ctest says."""
+    output = case.findtext("system-out") or ""
+    found = re.search(r"Skipped\n(.+)", output)
+    if found:
+        return found.group(1).strip()
+    skipped = case.find("skipped")
+    return (skipped.get("message") if skipped is not None else "") or "no reason given"
+
+
+def main(path):
+    failed, skipped, passed = [], collections.defaultdict(list), 0
+    for case in ElementTree.parse(path).getroot().iter("testcase"):
+        status = case.get("status")
+        if status == "run":
+            passed += 1
+        elif status == "fail":
+            failed.append(case.get("name"))
+        else:
+            skipped[skip_reason(case)].append(case.get("name"))
+    for reason, names in sorted(skipped.items()):
+        print(f"SKIPPED: {len(names)} ({names[0]}{', ...' if names[1:] else ''}): {reason}")
+    for name in failed:
+        print(f"FAILED: {name}")
+    print(passed, len(failed), sum(len(names) for names in skipped.values()))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
