@@ -47,8 +47,7 @@ void add_batch_options(CLI::App& app, BatchOptions& options) {
   app.add_option("--out", options.out, text(Msg::app_option_out))->type_name("FILE");
 }
 
-Result<void> one_source(const std::string& in, const std::string& one,
-                        const std::string& option) {
+Result<void> one_source(const std::string& in, const std::string& one, const std::string& option) {
   if (in.empty() != one.empty()) return {};
   return fail(Errc::usage, text(Msg::app_need_one_of, "--in", option));
 }

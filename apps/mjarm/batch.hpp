@@ -30,8 +30,8 @@ using AnswerLine = std::function<Result<bool>(std::string_view request, std::str
 /// How a batch went.
 struct BatchResult {
   std::uint64_t requests = 0;
-  std::uint64_t failed = 0;     ///< well-formed, but could not be done
-  std::string first_failure;    ///< `file:line` of the first of them
+  std::uint64_t failed = 0;   ///< well-formed, but could not be done
+  std::string first_failure;  ///< `file:line` of the first of them
 };
 
 /// Answers all requests in order, one line each; blank lines are skipped. A file named by `out`

@@ -40,8 +40,7 @@ Result<void> choose_language(const std::vector<std::string>& arguments) {
   const std::vector<std::string> known = {"en", "zh-CN"};
   const bool chinese = *name == "zh-CN" || *name == "zh" || *name == "zh_CN";
   if (!chinese && *name != "en") {
-    return fail(Errc::usage,
-                text(Msg::app_unknown_language, *name) + did_you_mean(*name, known));
+    return fail(Errc::usage, text(Msg::app_unknown_language, *name) + did_you_mean(*name, known));
   }
   set_language(chinese ? Language::chinese : Language::english);
   return {};

@@ -19,9 +19,9 @@ using Run = std::function<Result<int>()>;
 /// the catalogue.
 struct Command {
   const char* name;
-  Msg summary;                 ///< one line for the list of commands
-  Msg examples;                ///< shown below the options in its help
-  Run (*setup)(CLI::App& app); ///< adds the options; the Run owns what they are bound to
+  Msg summary;                  ///< one line for the list of commands
+  Msg examples;                 ///< shown below the options in its help
+  Run (*setup)(CLI::App& app);  ///< adds the options; the Run owns what they are bound to
 };
 
 #define MJARM_COMMAND(name) Command name##_command();

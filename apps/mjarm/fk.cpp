@@ -1,3 +1,5 @@
+#include "mjarm/kinematics/fk.hpp"
+
 #include <memory>
 
 #include "apps/mjarm/batch.hpp"
@@ -7,7 +9,6 @@
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
-#include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -92,8 +92,7 @@ void append_number(std::string& out, const char* key, double value) {
 
 void append_branches(std::string& out, const Job& job, const Request& request,
                      const JointVec& first) {
-  const auto branches =
-      find_branches(job.solver, request.X_WT, first, {.rng_seed = job.rng_seed});
+  const auto branches = find_branches(job.solver, request.X_WT, first, {.rng_seed = job.rng_seed});
   out += ",\"branches\":[";
   for (std::size_t i = 0; i < branches.size(); ++i) {
     if (i > 0) out += ',';
@@ -102,12 +101,13 @@ void append_branches(std::string& out, const Job& job, const Request& request,
   out += ']';
 }
 
-/// Solves one request and appends the answer; true where there is one.
-bool answer(const Job& job, const Request& request, std::string& out) {
+/// Solves one request and appends the answer. Where there is none, returns why.
+std::optional<std::string> answer(const Job& job, const Request& request, std::string& out) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  std::optional<std::string> why;
   if (solution) {
     out += "{\"ok\":true";
     append_list(out, "q", solution->q);
@@ -119,37 +119,43 @@ bool answer(const Job& job, const Request& request, std::string& out) {
     out += "{\"ok\":false,\"reason\":";
     append_json_string(out, name(failure.code));
     out += ",\"detail\":";
-    append_json_string(out, describe(failure, job.solver.arm()));
+    why = describe(failure, job.solver.arm());
+    append_json_string(out, *why);
     append_list(out, "best", failure.best.q);
     if (job.all) out += ",\"branches\":[]";
   }
   if (job.timing) append_number(out, "us", std::round(us * 10) / 10);
   out += '}';
-  return solution.has_value();
+  return why;
 }
 
 Result<int> answer_one(const Job& job, const Options& options) {
   const Result<Request> request = read_request(options, job.solver.arm());
   if (!request) return fail(request.error());
   std::string line;
-  const bool done = answer(job, *request, line);
+  const std::optional<std::string> why = answer(job, *request, line);
   if (Result<void> written = write_answer(options.batch.out, line); !written) {
     return fail(std::move(written.error()));
   }
-  if (!done) log_error(text(Msg::app_ik_no_answer));
-  return done ? 0 : 1;
+  if (!why) return 0;
+  log_error(text(Msg::app_ik_no_answer, *why));
+  return 1;
 }
 
 Result<int> answer_all(const Job& job, const Options& options) {
-  const auto answer_line = [&job](std::string_view line, std::string& out) -> Result<bool> {
+  std::optional<std::string> first_why;
+  const auto answer_line = [&](std::string_view line, std::string& out) -> Result<bool> {
     const Result<Request> request = read_request(line, job.solver.arm());
     if (!request) return fail(request.error());
-    return answer(job, *request, out);
+    const std::optional<std::string> why = answer(job, *request, out);
+    if (why && !first_why) first_why = why;
+    return !why;
   };
   const auto done = run_batch(options.batch, text(Msg::app_ik_progress), answer_line);
   if (!done) return fail(done.error());
   if (done->failed == 0) return 0;
-  log_error(text(Msg::app_ik_some_failed, done->first_failure, done->failed, done->requests));
+  log_error(
+      text(Msg::app_ik_some_failed, done->first_failure, *first_why, done->failed, done->requests));
   return 1;
 }
 
@@ -161,8 +167,9 @@ Result<int> run(const Options& options) {
   if (!seed) return fail(seed.error());
   Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(std::move(robot.error()));
-  const Job job{IkSolver(robot->arm, {.rng_seed = *seed}), *seed, options.all,
-                !options.no_timing};
+  IkOptions ik;
+  ik.rng_seed = *seed;
+  const Job job{IkSolver(robot->arm, ik), *seed, options.all, !options.no_timing};
   return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
 }
 
@@ -172,8 +179,7 @@ Run setup(CLI::App& app) {
   app.add_option("--pos", options->pos, text(Msg::app_option_pos))->type_name("X,Y,Z");
   app.add_option("--euler", options->euler, text(Msg::app_option_euler))->type_name("A,B,C");
   app.add_option("--quat", options->quat, text(Msg::app_option_quat))->type_name("W,X,Y,Z");
-  app.add_option("--seed-q", options->seed_q, text(Msg::app_option_seed_q))
-      ->type_name("Q1,Q2,...");
+  app.add_option("--seed-q", options->seed_q, text(Msg::app_option_seed_q))->type_name("Q1,Q2,...");
   add_batch_options(app, options->batch);
   app.add_option("--seed", options->seed, text(Msg::app_option_seed))->type_name("N");
   app.add_flag("--all", options->all, text(Msg::app_option_all));

@@ -34,8 +34,8 @@ JointVec random_start(const Arm& arm, Rng& rng) {
 
 }  // namespace
 
-std::vector<JointVec> find_branches(const IkSolver& solver, const Pose& X_WT,
-                                    const JointVec& first, const BranchOptions& options) {
+std::vector<JointVec> find_branches(const IkSolver& solver, const Pose& X_WT, const JointVec& first,
+                                    const BranchOptions& options) {
   const Arm& arm = solver.arm();
   IkOptions one_start = solver.options();
   one_start.restarts = 0;

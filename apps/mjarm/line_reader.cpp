@@ -82,8 +82,8 @@ std::uint64_t LineReader::count_lines() const {
   std::error_code ignored;
   if (is_stream_ || !std::filesystem::is_regular_file(path_, ignored)) return 0;
   std::ifstream file(path_, std::ios::binary);
-  return static_cast<std::uint64_t>(std::count(std::istreambuf_iterator<char>(file),
-                                               std::istreambuf_iterator<char>(), '\n'));
+  return static_cast<std::uint64_t>(
+      std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
 }
 
 }  // namespace mjarm::app

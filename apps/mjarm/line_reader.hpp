@@ -19,8 +19,8 @@ class LineReader {
   [[nodiscard]] static Result<LineReader> open(const std::string& path);
 
   /// The next line that is not blank, without its end (LF or CRLF); none at the end of the input.
-  /// The view holds until the next call. @return an error at reading, at a line that is too long and
-  /// at Ctrl-C.
+  /// The view holds until the next call. @return an error at reading, at a line that is too long
+  /// and at Ctrl-C.
   [[nodiscard]] Result<std::optional<std::string_view>> next();
 
   /// `file:line` of the line last returned.

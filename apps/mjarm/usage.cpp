@@ -61,8 +61,8 @@ std::optional<Error> unknown_words(const CLI::App& app) {
   for (const std::string& word : unknown) {
     if (word.size() < 2 || word[0] != '-') continue;
     const std::string name = word.substr(0, word.find('='));
-    return Error{Errc::usage, text(Msg::app_unknown_option, name) +
-                                  did_you_mean(name, option_names(&called))};
+    return Error{Errc::usage,
+                 text(Msg::app_unknown_option, name) + did_you_mean(name, option_names(&called))};
   }
   const std::string& word = unknown.front();
   const std::vector<std::string> known = subcommand_names(called);

@@ -20,6 +20,11 @@ JointEntry joint_entry(const mjModel* m, int id) {
   joint.name = name_of(m, mjOBJ_JOINT, id);
   joint.type = kTypes[m->jnt_type[id]];
   joint.limited = m->jnt_limited[id] != 0;
+  joint.force_limited = m->jnt_actfrclimited[id] != 0;
+  for (int i = 0; i < m->nactuator; ++i) {
+    const bool drives = m->actuator_trntype[i] == mjTRN_JOINT && m->actuator_trnid[2 * i] == id;
+    joint.force_limited |= drives && m->actuator_forcelimited[i] != 0;
+  }
   if (joint.limited) {
     joint.lower = m->jnt_range[2 * id];
     joint.upper = m->jnt_range[2 * id + 1];
@@ -45,8 +50,7 @@ std::vector<BodyEntry> body_entries(const mjModel* m) {
     }
   }
   for (int i = 0; i < m->nsite; ++i) {
-    bodies[static_cast<std::size_t>(m->site_bodyid[i])].sites.push_back(
-        name_of(m, mjOBJ_SITE, i));
+    bodies[static_cast<std::size_t>(m->site_bodyid[i])].sites.push_back(name_of(m, mjOBJ_SITE, i));
   }
   return bodies;
 }

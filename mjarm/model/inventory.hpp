@@ -10,21 +10,22 @@ namespace mjarm {
 
 /// A joint as the file has it.
 struct JointEntry {
-  std::string name;      ///< "" where the file gives none
-  std::string type;      ///< "free", "ball", "slide" or "hinge"
+  std::string name;  ///< "" where the file gives none
+  std::string type;  ///< "free", "ball", "slide" or "hinge"
   bool limited = false;
-  double lower = 0;      ///< [rad or m] where limited
-  double upper = 0;      ///< [rad or m] where limited
+  double lower = 0;            ///< [rad or m] where limited
+  double upper = 0;            ///< [rad or m] where limited
+  bool force_limited = false;  ///< the file bounds its torque, at the joint or at an actuator
 };
 
 /// A body with what hangs on it.
 struct BodyEntry {
   std::string name;
-  int parent = 0;        ///< index in ModelInventory::bodies; the world (0) is its own parent
-  int depth = 0;         ///< 0 for the world
-  double mass = 0;       ///< [kg] without its children
-  int geoms = 0;         ///< all of them
-  int colliding = 0;     ///< those that can touch something
+  int parent = 0;     ///< index in ModelInventory::bodies; the world (0) is its own parent
+  int depth = 0;      ///< 0 for the world
+  double mass = 0;    ///< [kg] without its children
+  int geoms = 0;      ///< all of them
+  int colliding = 0;  ///< those that can touch something
   std::vector<JointEntry> joints;
   std::vector<std::string> sites;
 };
@@ -32,7 +33,7 @@ struct BodyEntry {
 /// An actuator as the file has it. Ranges are infinite where the file sets none.
 struct ActuatorEntry {
   std::string name;
-  std::string target;      ///< name of the joint, tendon, site or body it acts on
+  std::string target;                       ///< name of the joint, tendon, site or body it acts on
   double ctrl_lower = 0, ctrl_upper = 0;    ///< of its first control
   double force_lower = 0, force_upper = 0;  ///< [N or N m]
 };
