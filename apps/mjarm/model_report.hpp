@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/inventory.hpp"
+#include "mjarm/model/model.hpp"
+
+namespace mjarm::app {
+
+/// Which limits of a joint stand in the file; the others are defaults.
+struct LimitSource {
+  bool position = false, velocity = false, torque = false;  // no format has the other two
+};
+
+/// What `mjarm model info` tells.
+struct ModelReport {
+  std::string file, name, format;
+  double timestep = 0;  ///< [s]
+  ModelInventory contents;
+  std::optional<Arm> arm;
+  std::string no_arm;                ///< why there is none
+  std::vector<LimitSource> sources;  ///< one a joint of the arm
+  std::vector<std::string> tips;     ///< frames fixed to the last joint: possible tool frames
+};
+
+[[nodiscard]] ModelReport model_report(const Model& model, const Result<Arm>& arm);
+
+/// The report for people, in the language in use.
+[[nodiscard]] std::string to_text(const ModelReport& report);
+/// The report as one JSON document; numbers without a bound are null.
+[[nodiscard]] std::string to_json(const ModelReport& report);
+
+/// The bodies as an indented tree with joints, sites, geoms and masses.
+[[nodiscard]] std::string tree_text(const ModelInventory& contents);
+/// The same as one JSON document, children inside their parents.
+[[nodiscard]] std::string tree_json(const ModelInventory& contents);
+
+}  // namespace mjarm::app
