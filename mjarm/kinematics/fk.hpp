@@ -21,13 +21,15 @@ struct FkJacobian {
 };
 [[nodiscard]] FkJacobian fk_jacobian(const Arm& arm, std::span<const double> q) noexcept;
 
-/// sqrt(det(J J^T)) for dof >= 6, sqrt(det(J^T J)) below [mixed units] (T. Yoshikawa, IJRR 4 (1985)).
+/// sqrt(det(J J^T)) for dof >= 6, sqrt(det(J^T J)) below [mixed units] (T. Yoshikawa, IJRR 4
+/// (1985)).
 [[nodiscard]] double manipulability(const Jacobian& J) noexcept;
 
 /// Smallest singular value of J; 0 at a singularity.
 [[nodiscard]] double smallest_singular_value(const Jacobian& J) noexcept;
 
-/// True where every joint value is finite and within [lower, upper], with `slack` [rad or m] to spare.
+/// True where every joint value is finite and within [lower, upper], with `slack` [rad or m] to
+/// spare.
 [[nodiscard]] bool within_limits(const Arm& arm, std::span<const double> q,
                                  double slack = 0) noexcept;
 

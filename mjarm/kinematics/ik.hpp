@@ -3,11 +3,14 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/kinematics/chain.hpp"
+#include "mjarm/kinematics/reach.hpp"
 #include "mjarm/model/arm.hpp"
 
 namespace mjarm {
@@ -27,31 +30,32 @@ enum class IkErrc {
 
 /// How hard to try, and when to call it solved. Every default is usable as is.
 struct IkOptions {
-  double pos_tol = 1e-7;        ///< [m]   |p_goal - p|, > 0
-  double rot_tol = 1e-7;        ///< [rad] angle of R^T R_goal, > 0
-  int max_iterations = 100;     ///< steps a start, > 0
-  int restarts = 50;            ///< random seeds tried after q_seed, >= 0
-  std::uint64_t rng_seed = 1;   ///< same inputs and seed, same answer
+  double pos_tol = 1e-7;       ///< [m]   |p_goal - p|, > 0
+  double rot_tol = 1e-7;       ///< [rad] angle of R^T R_goal, > 0
+  int max_iterations = 100;    ///< steps a start, > 0
+  int restarts = 50;           ///< random seeds tried after q_seed, >= 0
+  std::uint64_t rng_seed = 1;  ///< same inputs and seed, same answer
   /// Accepts or refuses a configuration (collision, taste); empty accepts all. Must not throw.
   std::function<bool(std::span<const double> q)> valid;
 };
 
 /// A configuration and how far its tool is from the goal.
 struct IkSolution {
-  JointVec q;            ///< [rad or m] within the limits
-  double pos_err = 0;    ///< [m]
-  double rot_err = 0;    ///< [rad]
-  int iterations = 0;    ///< steps taken in all
-  int restarts = 0;      ///< random starts used; 0 = solved from the seed
+  JointVec q;          ///< [rad or m] within the limits
+  double pos_err = 0;  ///< [m]
+  double rot_err = 0;  ///< [rad]
+  int iterations = 0;  ///< steps taken in all
+  int restarts = 0;    ///< random starts used; 0 = solved from the seed
 };
 
 /// Why a solve failed, and the closest configuration it met.
 struct IkFailure {
   IkErrc code = IkErrc::no_convergence;
-  IkSolution best;      ///< closest attempt, within the limits
-  double amount = 0;    ///< how far beyond: [m] for reach and void, [rad or m] for a joint limit
-  double bound = 0;     ///< [m] the radius that is broken (out_of_reach, inner_void), else 0
-  int joint = -1;       ///< which joint, for joint_limit
+  IkSolution best;    ///< closest attempt, within the limits
+  double amount = 0;  ///< how far beyond: [m] for reach and void, [rad or m] for a joint limit
+  double bound = 0;   ///< [m] the radius that is broken (out_of_reach, inner_void), else 0
+  ReachShape shape = ReachShape::none;  ///< round what that radius is (out_of_reach, inner_void)
+  int joint = -1;                       ///< which joint, for joint_limit
 };
 
 /// One line for people: what is wrong and by how much.
@@ -62,19 +66,29 @@ class IkSolver {
  public:
   explicit IkSolver(const Arm& arm, IkOptions options = {});
 
-  /// Finds q with fk(q) within tolerance of `X_WT`, trying `q_seed` first, then random starts.
-  /// @param X_WT    tool pose in the world frame, translation in [m].
+  /// Finds q with fk(q) within tolerance of `X_WT`, trying `q_seed` first, then random starts. Of
+  /// the windings of an answer (hinges that turn more than a revolution) the one nearest to
+  /// `q_seed`.
+  /// @param X_WT    tool pose in the world frame, translation in [m]; its matrix orthonormal to
+  /// 1e-6.
   /// @param q_seed  [rad or m] shape (dof,); clamped to the limits before use.
-  /// @return IkFailure with the reason and the best attempt. Never throws.
+  /// @return IkFailure with the reason and the best attempt. out_of_reach and inner_void are proofs
+  ///         from geometry (reach.hpp) and come at once; the other reasons tell what the search
+  ///         met. Never throws, never allocates (but for what `options.valid` does).
   [[nodiscard]] Result<IkSolution, IkFailure> solve(const Pose& X_WT,
-                                                    std::span<const double> q_seed) const;
+                                                    std::span<const double> q_seed) const noexcept;
 
   [[nodiscard]] const Arm& arm() const noexcept { return arm_; }
   [[nodiscard]] const IkOptions& options() const noexcept { return options_; }
+  /// What the arm can never reach.
+  [[nodiscard]] const Reach& reach() const noexcept { return reach_; }
 
  private:
   Arm arm_;
   IkOptions options_;
+  Chain chain_;
+  Reach reach_;
+  double length_ = 1;  // [m] position error that weighs as much as 1 rad
 };
 
 }  // namespace mjarm

@@ -1,0 +1,128 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "mjarm/kinematics/axis_chain_internal.hpp"
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm {
+
+AxisChain::AxisChain(const Arm& arm) {
+  JointVec q = JointVec::Zero(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) {
+    if (arm.joints[static_cast<std::size_t>(i)].type == JointType::slide) {
+      const double middle = 0.5 * (arm.limits.lower[i] + arm.limits.upper[i]);
+      q[i] = std::isfinite(middle) ? middle : 0.0;
+    }
+  }
+  std::vector<Pose> X_WJ(arm.joints.size());
+  X_WT = fk_all(arm, view(q), X_WJ);
+  double open_slack = 0;
+  for (int i = 0; i < arm.dof(); ++i) {
+    const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
+    const double lower = arm.limits.lower[i];
+    const double upper = arm.limits.upper[i];
+    const Pose& X = X_WJ[static_cast<std::size_t>(i)];
+    if (joint.type == JointType::slide) {
+      open_slack += 0.5 * (upper - lower);
+      slack += 0.5 * (upper - lower);
+    } else {
+      axes.push_back({X.p, X.R * joint.axis, lower, upper, open_slack});
+      open_slack = 0;
+    }
+  }
+  slack_after = open_slack;
+}
+
+namespace {
+
+/// The length of a polyline with one point on each of several axes, as a convex function of their
+/// places t along the axes; every piece counts sqrt(|d|^2 + epsilon^2), which is smooth.
+class SmoothLength {
+ public:
+  SmoothLength(const HingeAxis* axes, int count) : axes_(axes), n_(count) {}
+
+  Eigen::Vector3d point(const JointVec& t, int i) const {
+    return axes_[i].p_W + t[i] * axes_[i].a_W;
+  }
+
+  double value(const JointVec& t, double epsilon) const {
+    double sum = 0;
+    for (int i = 0; i + 1 < n_; ++i) {
+      sum += std::hypot((point(t, i + 1) - point(t, i)).norm(), epsilon);
+    }
+    return sum;
+  }
+
+  /// Newton's step at `t`, with the decrease that it promises.
+  std::pair<JointVec, double> newton_step(const JointVec& t, double epsilon) const {
+    Matrix H = 1e-9 * Matrix::Identity(n_, n_);
+    JointVec g = JointVec::Zero(n_);
+    for (int i = 0; i + 1 < n_; ++i) {
+      const Eigen::Vector3d d = point(t, i + 1) - point(t, i);
+      const double r = std::hypot(d.norm(), epsilon);
+      Eigen::Matrix<double, 3, 2> D;  // how d moves with the places of its two ends
+      D << -axes_[i].a_W, axes_[i + 1].a_W;
+      const Eigen::Vector2d pull = D.transpose() * d / r;
+      g.segment<2>(i) += pull;
+      H.block<2, 2>(i, i) += (D.transpose() * D - pull * pull.transpose()) / r;
+    }
+    const JointVec step = -H.ldlt().solve(g);
+    return {step, -g.dot(step)};
+  }
+
+ private:
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDof, kMaxDof>;
+  const HingeAxis* axes_;
+  int n_;
+};
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> shortest_polyline(const AxisChain& chain, int first, int last) {
+  const int n = last - first + 1;
+  const SmoothLength length(chain.axes.data() + first, n);
+  JointVec t = JointVec::Zero(n);
+  // Newton's method with halved steps while the smoothing shrinks. Any t gives a valid bound, so
+  // that a loop cut short costs tightness only.
+  for (double epsilon = 1; epsilon > 1e-11; epsilon *= 0.3) {
+    for (int iteration = 0; iteration < 30; ++iteration) {
+      const auto [step, decrease] = length.newton_step(t, epsilon);
+      if (!(decrease > 1e-13)) break;
+      const double before = length.value(t, epsilon);
+      double share = 1;
+      while (share > 1e-6 && length.value(t + share * step, epsilon) > before) share *= 0.5;
+      if (share <= 1e-6) break;
+      t += share * step;
+    }
+  }
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < n; ++i) points.push_back(length.point(t, i));
+  return points;
+}
+
+DistanceRange distance_across(const Eigen::Vector3d& u, const Eigen::Vector3d& v,
+                              const Eigen::Vector3d& a, double lower, double upper) {
+  // |u - R v|^2 = k + C cos + S sin.
+  const double along = u.dot(a) * v.dot(a);
+  const double k = u.squaredNorm() + v.squaredNorm() - 2 * along;
+  const double C = -2 * (u.dot(v) - along);
+  const double S = -2 * u.dot(a.cross(v));
+  const double amplitude = std::hypot(C, S);
+  constexpr double turn = 2 * std::numbers::pi;
+  const double peak = std::atan2(S, C);
+  const auto meets = [&](double angle) {
+    return angle + turn * std::ceil((lower - angle) / turn) <= upper;
+  };
+  const auto value = [&](double angle) { return k + C * std::cos(angle) + S * std::sin(angle); };
+  const bool full = !(upper - lower < turn);
+  const auto ends = full ? std::pair{k, k} : std::minmax({value(lower), value(upper)});
+  const double high = full || meets(peak) ? k + amplitude : ends.second;
+  const double low = full || meets(peak + std::numbers::pi) ? k - amplitude : ends.first;
+  return {std::sqrt(std::max(low, 0.0)), std::sqrt(std::max(high, 0.0))};
+}
+
+}  // namespace mjarm

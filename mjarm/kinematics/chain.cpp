@@ -1,0 +1,51 @@
+#include "mjarm/kinematics/chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace mjarm {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// A rotation that carries z to the unit vector `axis`; exact for the axes of the frame.
+Eigen::Matrix3d frame_with_z(const Eigen::Vector3d& axis) {
+  Eigen::Index smallest = 0;
+  axis.cwiseAbs().minCoeff(&smallest);
+  const Eigen::Vector3d z = axis.normalized();
+  const Eigen::Vector3d x = Eigen::Vector3d::Unit(smallest).cross(z).normalized();
+  Eigen::Matrix3d R;
+  R << x, z.cross(x), z;
+  return R;
+}
+
+}  // namespace
+
+Chain::Chain(const Arm& arm) {
+  if (arm.dof() < 1 || arm.dof() > kMaxDof) return;
+  dof = arm.dof();
+  Eigen::Matrix3d R_before = Eigen::Matrix3d::Identity();
+  for (int i = 0; i < dof; ++i) {
+    const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
+    const Eigen::Matrix3d R_JZ = frame_with_z(joint.axis);
+    X_PJ[i] = {R_before.transpose() * joint.X_PJ.p, R_before.transpose() * joint.X_PJ.R * R_JZ};
+    R_before = R_JZ;
+    slide[i] = joint.type == JointType::slide;
+    lower[i] = arm.limits.lower[i];
+    upper[i] = arm.limits.upper[i];
+    full_turn[i] = !slide[i] && upper[i] - lower[i] >= kTurn - 1e-12;
+  }
+  X_JT = {R_before.transpose() * arm.X_JT.p, R_before.transpose() * arm.X_JT.R};
+}
+
+double nearest_winding(const Chain& chain, int i, double q, double q_near) noexcept {
+  if (!chain.full_turn[i]) return q;
+  q += kTurn * std::round((q_near - q) / kTurn);
+  if (q > chain.upper[i]) q -= kTurn;
+  if (q < chain.lower[i]) q += kTurn;
+  // A range of exactly one revolution leaves a rounding error at its ends.
+  return std::min(std::max(q, chain.lower[i]), chain.upper[i]);
+}
+
+}  // namespace mjarm

@@ -1,0 +1,63 @@
+#include "mjarm/core/messages.hpp"
+#include "mjarm/kinematics/ik.hpp"
+
+namespace mjarm {
+namespace {
+
+std::string describe_reach(const IkFailure& failure) {
+  if (failure.code == IkErrc::out_of_reach) {
+    return text(Msg::kinematics_out_of_reach, failure.amount, failure.bound);
+  }
+  const Msg id = failure.shape == ReachShape::cylinder ? Msg::kinematics_inside_cylinder
+                                                       : Msg::kinematics_inside_sphere;
+  return text(id, failure.bound, failure.amount);
+}
+
+std::string describe_limit(const IkFailure& failure, const Arm& arm) {
+  if (failure.joint < 0 || failure.joint >= arm.dof())
+    return text(Msg::kinematics_no_convergence, failure.best.restarts, failure.best.pos_err,
+                failure.best.rot_err);
+  const ArmJoint& joint = arm.joints[static_cast<std::size_t>(failure.joint)];
+  const char* const unit = joint.type == JointType::slide ? "m" : "rad";
+  return text(Msg::kinematics_joint_limit, joint.name, failure.amount, unit);
+}
+
+}  // namespace
+
+std::string_view name(IkErrc code) noexcept {
+  switch (code) {
+    case IkErrc::out_of_reach:
+      return "out_of_reach";
+    case IkErrc::inner_void:
+      return "inner_void";
+    case IkErrc::joint_limit:
+      return "joint_limit";
+    case IkErrc::collision:
+      return "collision";
+    case IkErrc::no_convergence:
+      return "no_convergence";
+    case IkErrc::bad_input:
+      return "bad_input";
+  }
+  return "no_convergence";
+}
+
+std::string describe(const IkFailure& failure, const Arm& arm) {
+  switch (failure.code) {
+    case IkErrc::out_of_reach:
+    case IkErrc::inner_void:
+      return describe_reach(failure);
+    case IkErrc::joint_limit:
+      return describe_limit(failure, arm);
+    case IkErrc::collision:
+      return text(Msg::kinematics_collision);
+    case IkErrc::bad_input:
+      return text(Msg::kinematics_bad_input, arm.dof());
+    case IkErrc::no_convergence:
+      break;
+  }
+  return text(Msg::kinematics_no_convergence, failure.best.restarts, failure.best.pos_err,
+              failure.best.rot_err);
+}
+
+}  // namespace mjarm

@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mjarm/kinematics/ik_search_internal.hpp"
+
+namespace mjarm::detail {
+
+bool check_goal(const Chain& chain, const IkOptions& options, const Pose& X_WT,
+                std::span<const double> q_seed, IkGoal& goal) noexcept {
+  if (chain.dof == 0 || q_seed.size() != static_cast<std::size_t>(chain.dof)) return false;
+  // Written so that NaN is refused.
+  if (!(options.pos_tol > 0) || !(options.rot_tol > 0)) return false;
+  if (options.max_iterations < 1 || options.restarts < 0) return false;
+  if (!X_WT.p.allFinite() || !X_WT.R.allFinite()) return false;
+  const Eigen::Matrix3d gram = X_WT.R.transpose() * X_WT.R;
+  if (!gram.isIdentity(1e-6) || X_WT.R.col(0).cross(X_WT.R.col(1)).dot(X_WT.R.col(2)) < 0) {
+    return false;
+  }
+  // One Newton step to the nearest orthonormal matrix squares the 1e-6.
+  goal.X_WT = {X_WT.p, 0.5 * X_WT.R * (3 * Eigen::Matrix3d::Identity() - gram)};
+  goal.seed.resize(chain.dof);
+  for (int i = 0; i < chain.dof; ++i) {
+    const double value = q_seed[static_cast<std::size_t>(i)];
+    if (!std::isfinite(value)) return false;
+    goal.seed[i] = std::min(std::max(value, chain.lower[i]), chain.upper[i]);
+  }
+  return true;
+}
+
+JointVec random_start(const Chain& chain, const JointVec& seed, Rng& rng) noexcept {
+  JointVec q(chain.dof);
+  for (int i = 0; i < chain.dof; ++i) {
+    const double half = chain.slide[i] ? 1.0 : std::numbers::pi;
+    double lower = chain.lower[i];
+    double upper = chain.upper[i];
+    // Two windings of a hinge are one start, so a revolution is enough.
+    if (chain.full_turn[i] || !std::isfinite(upper - lower)) {
+      lower = std::max(lower, seed[i] - half);
+      upper = std::min(upper, lower + 2 * half);
+      lower = std::max(chain.lower[i], upper - 2 * half);
+    }
+    q[i] = rng.uniform(lower, upper);
+  }
+  return q;
+}
+
+JointVec unwind(const Chain& chain, const JointVec& q, const JointVec& q_near) noexcept {
+  JointVec out(chain.dof);
+  for (int i = 0; i < chain.dof; ++i) out[i] = nearest_winding(chain, i, q[i], q_near[i]);
+  return out;
+}
+
+DescentOptions descent_options(const IkOptions& options, double length) noexcept {
+  DescentOptions out;
+  out.pos_tol = options.pos_tol;
+  out.rot_tol = options.rot_tol;
+  out.max_iterations = options.max_iterations;
+  out.length = length;
+  return out;
+}
+
+double characteristic_length(const Chain& chain) noexcept {
+  double length = chain.X_JT.p.norm();
+  for (int i = 1; i < chain.dof; ++i) length += chain.X_PJ[i].p.norm();
+  return length > 0 ? 0.5 * length : 1.0;
+}
+
+}  // namespace mjarm::detail

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/model.hpp"
+#include "mjarm/render/camera.hpp"
+#include "mjarm/render/gl_context.hpp"
+#include "mjarm/render/image.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm {
+
+/// How much work goes into a picture.
+enum class RenderQuality {
+  low,   ///< no shadows, reflections or smoothing: for many frames without a GPU
+  high,  ///< shadows, reflections, 8 samples a pixel as far as OpenGL has them: for pictures
+};
+
+/// How to draw. Every default is usable as is.
+struct OffscreenOptions {
+  int width = 1280;  ///< [px] 1 to 8192
+  int height = 720;  ///< [px] 1 to 8192
+  RenderQuality quality = RenderQuality::high;
+  GlChoice gl = GlChoice::automatic;
+};
+
+/// Draws pictures of a model without a window. Each renderer is used by one thread at a time; it
+/// holds its own copy of the simulated state and never touches a Sim.
+class OffscreenRenderer {
+ public:
+  /// @return not_available where no OpenGL works on this machine, bad_input for a bad size.
+  [[nodiscard]] static Result<OffscreenRenderer> create(const Model& model,
+                                                        const OffscreenOptions& options = {});
+  ~OffscreenRenderer();
+  OffscreenRenderer(OffscreenRenderer&&) noexcept;
+  OffscreenRenderer& operator=(OffscreenRenderer&&) noexcept;
+
+  /// One picture of the model in the state `snapshot`; a snapshot without state draws the model as
+  /// it starts. The same call on the same machine gives the same picture.
+  /// @return bad_input where the camera or the snapshot does not fit the model, system where OpenGL
+  ///         reports an error.
+  [[nodiscard]] Result<Image> draw(const Snapshot& snapshot, const Camera& camera = {},
+                                   const Overlay& overlay = {});
+
+  [[nodiscard]] const GlContext& gl() const noexcept;
+
+ private:
+  struct Impl;
+  explicit OffscreenRenderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mjarm

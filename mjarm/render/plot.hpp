@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/render/image.hpp"
+
+namespace mjarm {
+
+/// How a curve is drawn. Habit of mjarm: planned = dashed, executed = solid, limits = dotted.
+enum class LineStyle { solid, dashed, dotted, points };
+
+/// One curve of a panel. NaN in `x` or `y` leaves a gap.
+struct PlotLine {
+  std::vector<double> x;  ///< shape (n,), in the unit of the panel's x axis
+  std::vector<double> y;  ///< shape (n,)
+  std::string label;      ///< name in the legend; empty = not in the legend
+  LineStyle style = LineStyle::solid;
+  int color = -1;  ///< index into the palette (8 colours that colour-blind readers can tell
+                   ///< apart, then again from the first); -1 = next one of the panel; kInk = ink
+  double width = 1.4;  ///< [pt] > 0
+
+  static constexpr int kInk = -2;  ///< dark grey, for planned curves and limits
+};
+
+/// A shaded strip between two heights (a tolerance), behind the curves.
+struct PlotBand {
+  double lower = 0;   ///< in the unit of the panel's y axis
+  double upper = 0;   ///< >= lower
+  std::string label;  ///< name in the legend; empty = not in the legend
+};
+
+/// A range of an axis; `lower` < `upper`.
+struct PlotRange {
+  double lower = 0;
+  double upper = 1;
+};
+
+/// One pair of axes.
+struct PlotPanel {
+  std::string title;    ///< empty = none
+  std::string x_label;  ///< with its unit, e.g. "time [s]"
+  std::string y_label;  ///< with its unit
+  std::vector<PlotLine> lines;
+  std::vector<PlotBand> bands;
+  bool equal_aspect = false;         ///< one unit is equally long on both axes (tool paths)
+  bool legend = true;                ///< shown where a curve or band has a label
+  bool y_from_zero = false;          ///< the y axis begins at 0 (errors, speeds)
+  std::optional<PlotRange> x_range;  ///< default: fits the data
+  std::optional<PlotRange> y_range;
+};
+
+/// A page of panels, filled row by row.
+struct Plot {
+  std::string title;  ///< empty = none
+  std::string note;   ///< small line at the foot, e.g. the worst error; empty = none
+  std::vector<PlotPanel> panels;
+  int columns = 2;            ///< >= 1
+  double panel_width = 270;   ///< [pt] of one panel with its labels, >= 120
+  double panel_height = 200;  ///< [pt]
+};
+
+/// The plot as an SVG file in memory: text stays text, equal plots give equal bytes.
+/// @return bad_input that names the panel and curve whose lengths differ or whose range is empty.
+[[nodiscard]] Result<std::string> plot_svg(const Plot& plot);
+
+/// The plot as a picture; `pixels_per_point` = 2 suits a screen, 4 a printed page.
+[[nodiscard]] Result<Image> plot_image(const Plot& plot, double pixels_per_point = 2);
+
+/// Writes `STEM.svg` and `STEM.png`, each in one step.
+/// @param stem path without extension, e.g. "out/plot".
+[[nodiscard]] Result<void> save_plot(const Plot& plot, const std::filesystem::path& stem);
+
+}  // namespace mjarm
