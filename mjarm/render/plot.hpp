@@ -22,6 +22,7 @@ struct PlotLine {
   int color = -1;  ///< index into the palette (8 colours that colour-blind readers can tell
                    ///< apart, then again from the first); -1 = next one of the panel; kInk = ink
   double width = 1.4;  ///< [pt] > 0
+  bool fits = true;    ///< the axes reach as far as this curve; false: drawn as far as they reach
 
   static constexpr int kInk = -2;  ///< dark grey, for planned curves and limits
 };
@@ -31,6 +32,7 @@ struct PlotBand {
   double lower = 0;        ///< in the unit of the panel's y axis
   double upper = 0;        ///< >= lower
   std::string label = {};  ///< name in the legend; empty = not in the legend
+  bool fits = true;        ///< the y axis reaches as far as this strip
 };
 
 /// A range of an axis; `lower` < `upper`.
