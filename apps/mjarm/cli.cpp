@@ -106,6 +106,7 @@ int run(const std::vector<std::string>& arguments) {
   app.formatter(std::make_shared<HelpFormatter>());
   app.footer(text(Msg::app_examples));
   app.allow_extras();
+  app.require_subcommand(0, 1);
   GlobalOptions global;
   add_global_options(app, global);
   std::vector<std::pair<const CLI::App*, Run>> runs;

@@ -16,6 +16,7 @@ CLI::App& add_subcommand(CLI::App& parent, const std::string& name, Msg summary,
   app.footer(text(examples));
   app.allow_extras();  // what is not known is reported by us, with the nearest right word
   app.fallthrough();   // global options may stand anywhere
+  app.require_subcommand(0, 1);
   return app;
 }
 

@@ -61,7 +61,7 @@ std::string full_name(const CLI::App& app) {
 }
 
 std::string usage(const CLI::App& app, bool has_commands) {
-  std::string line = text(Msg::app_help_usage) + " " + full_name(app);
+  std::string line = text(Msg::app_help_usage) + full_name(app);
   if (has_commands) line += " " + text(Msg::app_help_command);
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional()) line += " " + option->get_type_name();

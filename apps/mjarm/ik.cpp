@@ -7,13 +7,13 @@
 
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/command.hpp"
-#include "apps/mjarm/ik_branches.hpp"
 #include "apps/mjarm/json_line.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/ik_all.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -28,7 +28,6 @@ struct Options {
 /// What stays the same for all requests.
 struct Job {
   IkSolver solver;
-  std::uint64_t rng_seed;
   bool all, timing;
 };
 
@@ -90,15 +89,28 @@ void append_number(std::string& out, const char* key, double value) {
   mjarm::append_number(out, value);
 }
 
-void append_branches(std::string& out, const Job& job, const Request& request,
-                     const JointVec& first) {
-  const auto branches = find_branches(job.solver, request.X_WT, first, {.rng_seed = job.rng_seed});
+void append_branches(std::string& out, const std::vector<IkSolution>& branches) {
   out += ",\"branches\":[";
   for (std::size_t i = 0; i < branches.size(); ++i) {
     if (i > 0) out += ',';
-    append_numbers(out, view(branches[i]));
+    append_numbers(out, view(branches[i].q));
   }
   out += ']';
+}
+
+void append_solution(std::string& out, const IkSolution& solution) {
+  out += "{\"ok\":true";
+  append_list(out, "q", solution.q);
+  append_number(out, "pos_err", solution.pos_err);
+  append_number(out, "rot_err", solution.rot_err);
+}
+
+void append_failure(std::string& out, const IkFailure& failure, const std::string& why) {
+  out += "{\"ok\":false,\"reason\":";
+  append_json_string(out, name(failure.code));
+  out += ",\"detail\":";
+  append_json_string(out, why);
+  append_list(out, "best", failure.best.q);
 }
 
 /// Solves one request and appends the answer. Where there is none, returns why.
@@ -106,24 +118,19 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
+  std::vector<IkSolution> branches;
+  if (job.all && solution) {
+    branches = solve_all(job.solver, request.X_WT, request.q_seed).value_or(branches);
+  }
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   std::optional<std::string> why;
   if (solution) {
-    out += "{\"ok\":true";
-    append_list(out, "q", solution->q);
-    append_number(out, "pos_err", solution->pos_err);
-    append_number(out, "rot_err", solution->rot_err);
-    if (job.all) append_branches(out, job, request, solution->q);
+    append_solution(out, *solution);
   } else {
-    const IkFailure& failure = solution.error();
-    out += "{\"ok\":false,\"reason\":";
-    append_json_string(out, name(failure.code));
-    out += ",\"detail\":";
-    why = describe(failure, job.solver.arm());
-    append_json_string(out, *why);
-    append_list(out, "best", failure.best.q);
-    if (job.all) out += ",\"branches\":[]";
+    why = describe(solution.error(), job.solver.arm());
+    append_failure(out, solution.error(), *why);
   }
+  if (job.all) append_branches(out, branches);
   if (job.timing) append_number(out, "us", std::round(us * 10) / 10);
   out += '}';
   return why;
@@ -169,7 +176,7 @@ Result<int> run(const Options& options) {
   if (!robot) return fail(std::move(robot.error()));
   IkOptions ik;
   ik.rng_seed = *seed;
-  const Job job{IkSolver(robot->arm, ik), *seed, options.all, !options.no_timing};
+  const Job job{IkSolver(robot->arm, ik), options.all, !options.no_timing};
   return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
 }
 
