@@ -4,11 +4,12 @@
 #include <numbers>
 #include <vector>
 
-#include "command.hpp"
-#include "demos/demos.hpp"
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/units.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -31,7 +32,7 @@ Result<const Demo*> find_demo(const std::string& name) {
     if (name == demo.name) return &demo;
     names.emplace_back(demo.name);
   }
-  return fail(Errc::usage, text(Msg::demo_unknown, name, nearest_word(name, names)));
+  return fail(Errc::usage, text(Msg::demo_unknown, name) + did_you_mean(name, names));
 }
 
 Result<DemoOptions> read_options(const DemoArguments& arguments) {
@@ -45,7 +46,7 @@ Result<DemoOptions> read_options(const DemoArguments& arguments) {
   options.timing = !arguments.no_timing;
   options.text = arguments.text;
   if (!arguments.seconds.empty()) {
-    const Result<double> seconds = parse_number(arguments.seconds, Quantity::time);
+    const Result<double> seconds = parse_quantity(arguments.seconds, Quantity::time);
     if (!seconds || !(*seconds > 0)) {
       return fail(Errc::usage, text(Msg::demo_bad_seconds, arguments.seconds));
     }
@@ -94,7 +95,7 @@ Result<int> run_demo(const DemoArguments& arguments) {
 
 Run setup(CLI::App& app) {
   auto arguments = std::make_shared<DemoArguments>();
-  app.add_option("NAME", arguments->name, text(Msg::demo_option_name));
+  app.add_option("NAME", arguments->name, text(Msg::demo_option_name))->type_name("");
   app.add_option("--out", arguments->out, text(Msg::demo_option_out))->type_name("DIR");
   app.add_flag("--headless", arguments->headless, text(Msg::demo_option_headless));
   app.add_flag("--guide", arguments->guide, text(Msg::demo_option_guide));

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "demos/demos.hpp"
-#include "demos/output.hpp"
-#include "demos/show.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/output.hpp"
+#include "apps/mjarm/demos/show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"

@@ -1,4 +1,4 @@
-#include "demos/charts.hpp"
+#include "apps/mjarm/demos/charts.hpp"
 
 #include <algorithm>
 #include <cmath>

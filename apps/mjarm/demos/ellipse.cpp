@@ -1,8 +1,10 @@
-#include "demos/demos.hpp"
-#include "demos/stage.hpp"
-#include "demos/tutorial.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/path/ellipse.hpp"
 #include "mjarm/path/joint_path.hpp"
+#include "mjarm/path/shift.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -1,7 +1,7 @@
-#include "demos/demos.hpp"
-#include "demos/stage.hpp"
-#include "demos/tutorial.hpp"
-#include "mjarm/core/log.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "apps/mjarm/demos/tutorial.hpp"
+#include "mjarm/path/letters.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -12,34 +12,34 @@ constexpr double kWidest = 0.7;         // [m] of a line of text
 constexpr double kTextPlane = -0.5;     // [m] y of the plane for longer texts, where the arm has room
 constexpr double kTextBottom = 0.35;    // [m]
 
-using Stroke = std::vector<Pose>;
+using Line = std::vector<Pose>;
 
-Stroke stroke(std::initializer_list<Eigen::Vector3d> points) {
-  Stroke out;
+Line line(std::initializer_list<Eigen::Vector3d> points) {
+  Line out;
   for (const Eigen::Vector3d& p : points) out.push_back({p, tool_down()});
   return out;
 }
 
 /// The tutorial's L and Z.
-std::vector<Stroke> tutorial_letters() {
+std::vector<Line> tutorial_letters() {
   const Eigen::Vector3d top_left(0.3, kPlane, 0.4), top_right(0.5, kPlane, 0.4);
   const Eigen::Vector3d bottom_left(0.3, kPlane, 0.2), bottom_right(0.5, kPlane, 0.2);
-  return {stroke({top_left, bottom_left, bottom_right}),
-          stroke({top_left, top_right, bottom_left, bottom_right})};
+  return {line({top_left, bottom_left, bottom_right}),
+          line({top_left, top_right, bottom_left, bottom_right})};
 }
 
 /// `text` upright in front of the arm, centred, smaller where it would get too wide.
-Result<std::vector<Stroke>> written(const std::string& text) {
+Result<std::vector<Line>> written(const std::string& text) {
   const auto flat = letter_strokes(text, 1);
   if (!flat) return fail(flat.error());
   double width = 0;
-  for (const auto& points : *flat) {
+  for (const Stroke& points : *flat) {
     for (const Eigen::Vector2d& p : points) width = std::max(width, p.x());
   }
   const double scale = std::min(kHeight, kWidest / std::max(width, 1e-9));
-  std::vector<Stroke> strokes;
-  for (const auto& points : *flat) {
-    Stroke& out = strokes.emplace_back();
+  std::vector<Line> strokes;
+  for (const Stroke& points : *flat) {
+    Line& out = strokes.emplace_back();
     for (const Eigen::Vector2d& p : points) {
       out.push_back({{scale * (p.x() - width / 2), kTextPlane, kTextBottom + scale * p.y()},
                      tool_down()});
@@ -51,7 +51,7 @@ Result<std::vector<Stroke>> written(const std::string& text) {
 }  // namespace
 
 Result<Report> run_letters(const DemoOptions& options) {
-  const Result<std::vector<Stroke>> strokes =
+  const Result<std::vector<Line>> strokes =
       options.text.empty() ? tutorial_letters() : written(options.text);
   if (!strokes) return fail(strokes.error());
   Result<std::unique_ptr<Stage>> opened = Stage::open("letters", options);
@@ -63,7 +63,7 @@ Result<Report> run_letters(const DemoOptions& options) {
   std::vector<ToolMotion> motions;
   JointVec q = stage.arm().home;
   Report report;
-  for (const Stroke& points : *strokes) {
+  for (const Line& points : *strokes) {
     const Result<Curve> curve = Curve::polyline(points);
     if (!curve) return fail(curve.error());
     stage.show().add_line(points);

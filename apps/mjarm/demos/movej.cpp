@@ -1,6 +1,6 @@
-#include "demos/demos.hpp"
-#include "demos/stage.hpp"
-#include "demos/tutorial.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/path/joint_path.hpp"
 
@@ -22,14 +22,15 @@ Result<Report> run_movej(const DemoOptions& options) {
   stage.show().plot_tool();
 
   constexpr int kWaypoints = 100;
-  const JointPath path = joint_line(seed, view(solution->q), kWaypoints);
+  const Result<JointPath> path = joint_line(seed, view(solution->q), kWaypoints);
+  if (!path) return fail(path.error());
   const ControlMode mode =
       stage.control(options.guide ? ControlMode::servo : ControlMode::computed_torque);
-  if (auto done = stage.wait_through(path.q, {}, mode); !done) return fail(std::move(done.error()));
+  if (auto done = stage.wait_through(path->q, {}, mode); !done) return fail(std::move(done.error()));
   if (auto done = stage.jump(solution->q, mode, 0.5); !done) return fail(std::move(done.error()));
 
   Report report;
-  report.max_joint_step = path.max_step();
+  report.max_joint_step = path->max_step();
   report.coverage = static_cast<double>(stage.reached()) / kWaypoints;
   report.static_error = pose_error(goal, stage.sim().tool(stage.arm()));
   log_info(text(Msg::demo_waypoints, stage.reached(), kWaypoints,

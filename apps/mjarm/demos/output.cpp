@@ -1,4 +1,4 @@
-#include "demos/output.hpp"
+#include "apps/mjarm/demos/output.hpp"
 
 #include <algorithm>
 #include <system_error>

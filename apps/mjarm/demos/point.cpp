@@ -1,8 +1,8 @@
 #include <numbers>
 
-#include "demos/demos.hpp"
-#include "demos/stage.hpp"
-#include "demos/tutorial.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
 
 namespace mjarm::app {

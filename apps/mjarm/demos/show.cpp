@@ -1,4 +1,4 @@
-#include "demos/show.hpp"
+#include "apps/mjarm/demos/show.hpp"
 
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages.hpp"

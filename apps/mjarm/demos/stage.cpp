@@ -1,11 +1,11 @@
-#include "demos/stage.hpp"
+#include "apps/mjarm/demos/stage.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "demos/charts.hpp"
-#include "demos/output.hpp"
+#include "apps/mjarm/demos/charts.hpp"
+#include "apps/mjarm/demos/output.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/model/find_arm.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 IkOptions without_contact(const Model& model, const Arm& arm) {
   IkOptions options;
-  options.valid = free_of_contact(ExactChecker(model, arm));
+  options.valid = ExactChecker(model, arm).predicate();
   return options;
 }
 

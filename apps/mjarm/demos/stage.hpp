@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "demos/demos.hpp"
-#include "demos/show.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/show.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"
@@ -15,6 +15,10 @@
 #include "mjarm/sim/follow.hpp"
 #include "mjarm/sim/recorder.hpp"
 #include "mjarm/sim/sim.hpp"
+
+namespace mjarm {
+struct Plot;
+}  // namespace mjarm
 
 namespace mjarm::app {
 

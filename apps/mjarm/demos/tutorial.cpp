@@ -1,4 +1,4 @@
-#include "demos/tutorial.hpp"
+#include "apps/mjarm/demos/tutorial.hpp"
 
 #include "mjarm/core/rotation.hpp"
 

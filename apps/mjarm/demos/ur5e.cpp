@@ -1,5 +1,5 @@
-#include "demos/demos.hpp"
-#include "demos/stage.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
