@@ -90,18 +90,21 @@ struct Painter {
     set_color(line.stroke.color);
     cairo_set_line_width(cr, line.stroke.width);
     cairo_set_dash(cr, line.stroke.dash.data(), static_cast<int>(line.stroke.dash.size()), 0);
+    cairo_new_path(cr);  // a text leaves a point behind
     for (const Point& p : line.points) cairo_line_to(cr, p.x, p.y);
     cairo_stroke(cr);
   }
   void operator()(const Dots& dots) const {
     set_color(dots.color);
     for (const Point& p : dots.centres) {
+      cairo_new_path(cr);
       cairo_arc(cr, p.x, p.y, dots.radius, 0, 2 * std::numbers::pi);
       cairo_fill(cr);
     }
   }
   void operator()(const Fill& fill) const {
     set_color(fill.color);
+    cairo_new_path(cr);
     add_box(fill.box);
     cairo_fill(cr);
   }

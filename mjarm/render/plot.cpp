@@ -96,6 +96,23 @@ Page lay_out(const Plot& plot) {
 
 }  // namespace
 
+PlotLine planned_line(std::vector<double> x, std::vector<double> y) {
+  return {.x = std::move(x),
+          .y = std::move(y),
+          .label = text(Msg::render_planned),
+          .style = LineStyle::dashed,
+          .color = PlotLine::kInk,
+          .width = 0.9};
+}
+
+PlotLine executed_line(std::vector<double> x, std::vector<double> y) {
+  return {.x = std::move(x),
+          .y = std::move(y),
+          .label = text(Msg::render_executed),
+          .color = 1,
+          .width = 2.2};
+}
+
 Result<std::string> plot_svg(const Plot& plot) {
   if (Result<void> checked = check(plot); !checked) return fail(std::move(checked.error()));
   return canvas::to_svg(lay_out(plot));

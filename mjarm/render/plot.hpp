@@ -27,6 +27,11 @@ struct PlotLine {
   static constexpr int kInk = -2;  ///< dark grey, for planned curves and limits
 };
 
+/// A curve as it was planned (thin, dashed, ink) and as it was executed (wide, solid, vermilion),
+/// with their names in the user's language. Add the executed one first, so that both are seen.
+[[nodiscard]] PlotLine planned_line(std::vector<double> x, std::vector<double> y);
+[[nodiscard]] PlotLine executed_line(std::vector<double> x, std::vector<double> y);
+
 /// A shaded strip between two heights (a tolerance), behind the curves.
 struct PlotBand {
   double lower = 0;        ///< in the unit of the panel's y axis
