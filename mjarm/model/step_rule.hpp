@@ -20,9 +20,9 @@ enum class Integrator {
 /// count as explicit forces.
 struct StepRule {
   Integrator integrator = Integrator::euler;
-  double timestep = 0;            ///< [s] > 0
-  bool implicit_damping = true;   ///< joint damping is taken at the end of the step
-  std::vector<double> damping;    ///< (nv,) [N m s/rad or N s/m] of the joints, with their actuators'
+  double timestep = 0;           ///< [s] > 0
+  bool implicit_damping = true;  ///< joint damping is taken at the end of the step
+  std::vector<double> damping;  ///< (nv,) [N m s/rad or N s/m] of the joints, with their actuators'
   std::vector<double> stiffness;  ///< (nv,) [N m/rad or N/m] springs of hinge and slide joints
 };
 

@@ -71,7 +71,8 @@ class Contestant {
 /// MuJoCo alone.
 class Bare {
  public:
-  Bare(const Model& model, const Arm& arm) : model_(model), arm_(arm), data_(mj_makeData(model.raw())) {}
+  Bare(const Model& model, const Arm& arm)
+      : model_(model), arm_(arm), data_(mj_makeData(model.raw())) {}
 
   double run(const JointVec& start_position, const std::vector<double>& ctrl) {
     const mjModel* m = model_.raw();

@@ -87,8 +87,8 @@ Followed follow_gated(const FollowSetup& setup, std::span<const JointVec> waypoi
                               .joint = gap.joint,
                               .distance = gap.distance,
                               .tolerance = tolerance};
-        return fail(FollowFailure{
-            explain(setup, stepper, waypoints[i], wait), {}, stepper.outcome()});
+        return fail(
+            FollowFailure{explain(setup, stepper, waypoints[i], wait), {}, stepper.outcome()});
       }
       auto stepped = stepper.step(reference);
       if (!stepped) return broken(std::move(stepped.error()), stepper);
@@ -162,11 +162,10 @@ std::string describe(const FollowFailure& failure, const Arm& arm) {
   if (!failure.wait) return {};
   const FollowWait& wait = *failure.wait;
   const std::string head =
-      wait.joint >= 0
-          ? text(Msg::sim_wait_joint, wait.waypoint + 1, wait.count, wait.steps,
-                 arm.joints[wait.joint].name, wait.distance, wait.tolerance)
-          : text(Msg::sim_wait_tool, wait.waypoint + 1, wait.count, wait.steps, arm.tip,
-                 wait.distance, wait.tolerance);
+      wait.joint >= 0 ? text(Msg::sim_wait_joint, wait.waypoint + 1, wait.count, wait.steps,
+                             arm.joints[wait.joint].name, wait.distance, wait.tolerance)
+                      : text(Msg::sim_wait_tool, wait.waypoint + 1, wait.count, wait.steps, arm.tip,
+                             wait.distance, wait.tolerance);
   return head + cause_of(wait, arm);
 }
 

@@ -14,8 +14,8 @@
 
 namespace mjarm {
 
-/// What a follower works with; all of it outlives the call. The arm starts where it stands; actuators
-/// that are not the arm's keep the ctrl they have (Sim::set_ctrl).
+/// What a follower works with; all of it outlives the call. The arm starts where it stands;
+/// actuators that are not the arm's keep the ctrl they have (Sim::set_ctrl).
 struct FollowSetup {
   Sim& sim;
   Controller& controller;
@@ -33,16 +33,16 @@ struct FirstContact {
 
 /// What a run did. Errors and uses are taken at every step, at its end.
 struct FollowOutcome {
-  std::size_t reached = 0;     ///< waypoints that were reached; 1 at the end of a trajectory
+  std::size_t reached = 0;  ///< waypoints that were reached; 1 at the end of a trajectory
   long long steps = 0;
-  double duration = 0;         ///< [s] simulated
-  bool stopped = false;        ///< `after_step` asked for the end
-  double worst_error = 0;      ///< [rad or m] largest |q_ref - q| of any joint
-  double final_error = 0;      ///< [rad or m] the same at the end
-  double final_tool_error = 0; ///< [m] distance of the tool from where q_ref puts it, at the end
-  double velocity_use = 0;     ///< largest share of a joint's velocity limit
-  double torque_use = 0;       ///< largest share of a joint's torque limit
-  long long limited_steps = 0; ///< steps in which a ctrl or force limit cut the command
+  double duration = 0;          ///< [s] simulated
+  bool stopped = false;         ///< `after_step` asked for the end
+  double worst_error = 0;       ///< [rad or m] largest |q_ref - q| of any joint
+  double final_error = 0;       ///< [rad or m] the same at the end
+  double final_tool_error = 0;  ///< [m] distance of the tool from where q_ref puts it, at the end
+  double velocity_use = 0;      ///< largest share of a joint's velocity limit
+  double torque_use = 0;        ///< largest share of a joint's torque limit
+  long long limited_steps = 0;  ///< steps in which a ctrl or force limit cut the command
   std::optional<FirstContact> first_contact;
 };
 
@@ -60,13 +60,13 @@ struct FollowWait {
   std::size_t waypoint = 0;  ///< index from 0
   std::size_t count = 0;     ///< number of waypoints
   int steps = 0;             ///< steps spent on it
-  int joint = -1;            ///< index in the arm of the worst joint; -1 where the tool is waited for
-  double distance = 0;       ///< [rad or m] of that joint, or [m] of the tool
-  double tolerance = 0;      ///< same unit
+  int joint = -1;        ///< index in the arm of the worst joint; -1 where the tool is waited for
+  double distance = 0;   ///< [rad or m] of that joint, or [m] of the tool
+  double tolerance = 0;  ///< same unit
   WaitCause cause = WaitCause::unknown;
-  double sag = 0;            ///< expected from gravity / gain, same unit; 0 where the mode has none
-  double torque = 0;         ///< [N m or N] of gravity at the worst joint, its share of `sag`
-  double stiffness = 0;      ///< [N m/rad or N/m] of that joint's servo
+  double sag = 0;        ///< expected from gravity / gain, same unit; 0 where the mode has none
+  double torque = 0;     ///< [N m or N] of gravity at the worst joint, its share of `sag`
+  double stiffness = 0;  ///< [N m/rad or N/m] of that joint's servo
   std::optional<Contact> contact;
 };
 

@@ -1,6 +1,6 @@
-#include "mjarm/sim/raw_internal.hpp"
-
 #include <cassert>
+
+#include "mjarm/sim/raw_internal.hpp"
 
 namespace mjarm::raw {
 namespace {

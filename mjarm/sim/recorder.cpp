@@ -66,7 +66,7 @@ struct Recorder::Impl {
   RecordOptions options;
   Ghost ghost;
   std::vector<double> numbers;
-  std::vector<std::size_t> touching;    ///< index into `pairs`, one a row
+  std::vector<std::size_t> touching;      ///< index into `pairs`, one a row
   std::vector<std::string> pairs = {""};  ///< distinct contact texts, in order of appearance
   std::size_t calls = 0;
   std::size_t stride;
@@ -79,9 +79,7 @@ struct Recorder::Impl {
     options.most_rows = std::max<std::size_t>(options.most_rows, 2);
   }
 
-  [[nodiscard]] std::size_t width() const {
-    return 25 + 5 * static_cast<std::size_t>(arm.dof());
-  }
+  [[nodiscard]] std::size_t width() const { return 25 + 5 * static_cast<std::size_t>(arm.dof()); }
   [[nodiscard]] std::size_t planned_at() const {
     return 1 + 5 * static_cast<std::size_t>(arm.dof());
   }

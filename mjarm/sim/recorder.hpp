@@ -20,14 +20,14 @@ struct RecordOptions {
 
 /// One row of a record: what was asked for and what the simulation had, at one time.
 struct RecordRow {
-  double time = 0;  ///< [s] of the simulation
-  JointVec q_ref;   ///< [rad or m] commanded
-  JointVec q;       ///< [rad or m] measured
-  JointVec v;       ///< [rad/s or m/s] measured
-  Pose X_ref;       ///< tool in the world at q_ref
-  Pose X_WT;        ///< tool in the world as simulated
-  JointVec ctrl;    ///< of the arm's actuators; 0 for a joint that has none
-  JointVec torque;  ///< [N m or N] of the arm's drives at the joints, after limits
+  double time = 0;       ///< [s] of the simulation
+  JointVec q_ref;        ///< [rad or m] commanded
+  JointVec q;            ///< [rad or m] measured
+  JointVec v;            ///< [rad/s or m/s] measured
+  Pose X_ref;            ///< tool in the world at q_ref
+  Pose X_WT;             ///< tool in the world as simulated
+  JointVec ctrl;         ///< of the arm's actuators; 0 for a joint that has none
+  JointVec torque;       ///< [N m or N] of the arm's drives at the joints, after limits
   std::string contacts;  ///< "geom|geom;geom|geom", all that touches; empty where nothing does
 };
 

@@ -81,7 +81,7 @@ struct Sim::Impl {
     std::vector<Contact> all;
     for (int i = 0; i < d().ncon; ++i) {
       const mjContact& contact = d().contact[i];
-      if (contact.exclude != 0 || contact.dist >= contact.includemargin) continue;
+      if (contact.exclude != 0 || contact.dist > contact.includemargin) continue;
       const auto counts = [&](int geom) {
         return geom >= 0 && moved_by(m(), m().geom_bodyid[geom], root);
       };
@@ -106,9 +106,9 @@ Result<void> Sim::reset(std::string_view keyframe) {
     const int key = mj_name2id(&m, mjOBJ_KEY, std::string(keyframe).c_str());
     if (key < 0) {
       const auto names = keyframe_names(m);
-      return fail(Errc::bad_input, text(Msg::sim_no_keyframe, model().file().string(), keyframe,
-                                        joined(names)) +
-                                       did_you_mean(keyframe, names));
+      return fail(Errc::bad_input,
+                  text(Msg::sim_no_keyframe, model().file().string(), keyframe, joined(names)) +
+                      did_you_mean(keyframe, names));
     }
     mj_resetDataKeyframe(&m, &impl_->d(), key);
   }
@@ -161,7 +161,8 @@ Result<void> Sim::step(std::span<const double> ctrl) {
   for (std::size_t i = 0; i < ctrl.size(); ++i) {
     if (!std::isfinite(ctrl[i])) {
       const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, static_cast<int>(i));
-      return fail(Errc::bad_input, text(Msg::sim_bad_ctrl, d.time, i, name != nullptr ? name : "-"));
+      return fail(Errc::bad_input,
+                  text(Msg::sim_bad_ctrl, d.time, i, name != nullptr ? name : "-"));
     }
   }
   if (ctrl.data() != d.ctrl) std::copy(ctrl.begin(), ctrl.end(), d.ctrl);

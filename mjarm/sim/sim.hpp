@@ -18,7 +18,7 @@ namespace mjarm {
 struct Contact {
   std::string first;  ///< geom name, or body name where the geom has none
   std::string second;
-  double depth = 0;   ///< [m] > 0 where they overlap, of the deepest point
+  double depth = 0;  ///< [m] > 0 where they overlap, of the deepest point
 };
 
 /// A copy of the full state, for drawing and for going back; holds no MuJoCo types.
@@ -65,9 +65,9 @@ class Sim {
   [[nodiscard]] std::span<const double> ctrl() const noexcept;  ///< (nu,) of the last step
   [[nodiscard]] std::span<const double> actuator_force() const noexcept;  ///< [N m or N], no gear
   [[nodiscard]] std::span<const double> sensor_data() const noexcept;     ///< as MuJoCo orders it
-  [[nodiscard]] JointState arm_state(const Arm& arm) const;     ///< q, v, a of the arm's joints
-  [[nodiscard]] JointVec arm_torque(const Arm& arm) const;      ///< (dof,) [N m or N] of its drives
-  [[nodiscard]] Pose tool(const Arm& arm) const;                ///< X_WT as simulated
+  [[nodiscard]] JointState arm_state(const Arm& arm) const;  ///< q, v, a of the arm's joints
+  [[nodiscard]] JointVec arm_torque(const Arm& arm) const;   ///< (dof,) [N m or N] of its drives
+  [[nodiscard]] Pose tool(const Arm& arm) const;             ///< X_WT as simulated
   [[nodiscard]] std::vector<Contact> contacts() const;
   /// Contacts of what the arm moves (links, gripper), with the world or with itself.
   [[nodiscard]] std::vector<Contact> contacts(const Arm& arm) const;

@@ -1,9 +1,8 @@
-#include "mjarm/sim/stepper_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "mjarm/sim/ghost_internal.hpp"
+#include "mjarm/sim/stepper_internal.hpp"
 
 namespace mjarm {
 
@@ -38,11 +37,11 @@ void Stepper::measure(const JointVec& q_ref) {
   outcome_.duration = sim.time() - start_;
   outcome_.limited_steps += limited_ ? 1 : 0;
   outcome_.worst_error = std::max(outcome_.worst_error, (q_ref - state.q).cwiseAbs().maxCoeff());
-  outcome_.velocity_use = std::max(outcome_.velocity_use,
-                                   state.v.cwiseAbs().cwiseQuotient(limits.velocity).maxCoeff());
+  outcome_.velocity_use =
+      std::max(outcome_.velocity_use, state.v.cwiseAbs().cwiseQuotient(limits.velocity).maxCoeff());
   const JointVec torque = sim.arm_torque(setup_.arm);
-  outcome_.torque_use = std::max(outcome_.torque_use,
-                                 torque.cwiseAbs().cwiseQuotient(limits.torque).maxCoeff());
+  outcome_.torque_use =
+      std::max(outcome_.torque_use, torque.cwiseAbs().cwiseQuotient(limits.torque).maxCoeff());
   if (!outcome_.first_contact) {
     const auto contacts = sim.contacts(setup_.arm);
     if (!contacts.empty()) outcome_.first_contact = FirstContact{contacts.front(), sim.time()};
