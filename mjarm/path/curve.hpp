@@ -11,9 +11,9 @@
 namespace mjarm {
 
 /// A curve of tool poses in the world, walked by its arc length s in [0, end()] [m]; where the tool
-/// turns on the spot, s counts the angle [rad] instead. Rotations take the short way. A plain value.
-/// Every maker fails on numbers that are not finite, on matrices that are no rotations (to 1e-6) and
-/// on neighbours that are the same pose.
+/// turns on the spot, s counts the angle [rad] instead. Rotations take the short way. A plain
+/// value. Every maker fails on numbers that are not finite, on matrices that are no rotations (to
+/// 1e-6) and on neighbours that are the same pose.
 class Curve {
  public:
   /// Straight line with slerp. Equal positions make a turn on the spot, of length 0.

@@ -157,8 +157,7 @@ Result<Curve> Curve::ellipse(const Ellipse& ellipse) {
   if (!ellipse.normal.allFinite() || ellipse.normal.isZero(0)) {
     return bad(text(Msg::path_ellipse_normal));
   }
-  const Result<std::vector<Pose>> pose =
-      checked(std::vector<Pose>{{ellipse.center, ellipse.R}});
+  const Result<std::vector<Pose>> pose = checked(std::vector<Pose>{{ellipse.center, ellipse.R}});
   if (!pose) return bad(text(Msg::path_ellipse_pose));
 
   const EllipseAxes axes = ellipse_axes(ellipse.normal);

@@ -55,7 +55,8 @@ double CurvePiece::nearest(const Eigen::Vector3d& p) const {
   const Eigen::Vector3d d = p - p0;
   if (!round) return std::clamp(u.dot(d), 0.0, span);
   const double x = u.dot(d) + a, y = v.dot(d);  // from the centre
-  if (a != b) return std::clamp(ellipse_arc_length(a, b, nearest_on_ellipse(a, b, x, y)), 0.0, span);
+  if (a != b)
+    return std::clamp(ellipse_arc_length(a, b, nearest_on_ellipse(a, b, x, y)), 0.0, span);
   const double theta = std::atan2(y, x);
   const double length_there = a * (theta < 0 ? theta + 2 * kPi : theta);
   if (length_there <= span) return length_there;

@@ -15,12 +15,12 @@ struct CurvePiece {
   double turn = 0;    ///< [rad] angle between the rotations at its ends
   double rate = 0;    ///< [rad per unit of x] the tool never turns faster along the piece
 
-  bool round = false;      ///< false: p = p0 + x u; true: p0 + a (cos(t) - 1) u + b sin(t) v
+  bool round = false;  ///< false: p = p0 + x u; true: p0 + a (cos(t) - 1) u + b sin(t) v
   Eigen::Vector3d p0 = Eigen::Vector3d::Zero();  ///< [m] first point
   Eigen::Vector3d u = Eigen::Vector3d::Zero();   ///< unit; zero for a turn on the spot
   Eigen::Vector3d v = Eigen::Vector3d::Zero();   ///< unit, perpendicular to u; for round ones
-  double a = 0;            ///< [m] semi-axis along u
-  double b = 0;            ///< [m] semi-axis along v
+  double a = 0;                                  ///< [m] semi-axis along u
+  double b = 0;                                  ///< [m] semi-axis along v
 
   /// R(x) = R_ref exp(w1 d + w2 d^2 + w3 d^3) with d = x - x_ref.
   Eigen::Matrix3d R_ref = Eigen::Matrix3d::Identity();

@@ -26,10 +26,9 @@ struct EllipseAxes {
 /// Axes for a `normal` of any length but zero.
 [[nodiscard]] EllipseAxes ellipse_axes(const Eigen::Vector3d& normal);
 
-/// The `n` poses at theta = linspace(0, 2 pi, n), the last one equal to the first where `endpoint`;
-/// empty for n <= 0.
-[[nodiscard]] std::vector<Pose> ellipse_points(const Ellipse& ellipse, int n,
-                                               bool endpoint = false);
+/// The `n` poses at theta = linspace(0, 2 pi, n); the last one equals the first where `endpoint`,
+/// else it stands one step before. Empty for n <= 0.
+[[nodiscard]] std::vector<Pose> ellipse_points(const Ellipse& ellipse, int n, bool endpoint = true);
 
 /// Length [m] of the ellipse (a cos(t), b sin(t)) from t = 0 to `theta`, any sign; odd and
 /// increasing in theta. Exact to rounding for every a, b > 0 (Carlson's symmetric integrals, B. C.

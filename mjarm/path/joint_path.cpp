@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "mjarm/core/messages.hpp"
-#include "mjarm/core/rng.hpp"
+#include "mjarm/kinematics/ik_all.hpp"
 
 namespace mjarm {
 namespace {
@@ -50,30 +50,22 @@ Result<JointPath, PathFailure> walk(const IkSolver& ik, std::span<const Pose> po
   return path;
 }
 
-/// Answers for `X_WT` other than `q_known`, from random starts: up to `count` of them, each of
-/// another branch or winding.
-std::vector<JointVec> other_starts(const IkSolver& ik, const Pose& X_WT, const JointVec& q_known,
-                                   int count) {
-  constexpr double kSame = 1e-3;    // [rad or m]
-  constexpr int kStartsEach = 8;    // random starts for every answer wanted
-  const JointLimits& limits = ik.arm().limits;
-  Rng rng(ik.options().rng_seed, 1);
-  std::vector<JointVec> found{q_known};
-  for (int i = 0; i < kStartsEach * count && static_cast<int>(found.size()) <= count; ++i) {
-    JointVec seed = q_known;
-    for (Eigen::Index j = 0; j < seed.size(); ++j) {
-      const double lower = std::max(limits.lower[j], q_known[j] - 4);
-      const double upper = std::min(limits.upper[j], q_known[j] + 4);
-      seed[j] = rng.uniform(lower, upper);
-    }
-    const auto answer = ik.solve(X_WT, view(seed));
-    if (!answer) continue;
-    const bool known = std::any_of(found.begin(), found.end(), [&](const JointVec& q) {
-      return largest_step(q, answer->q) < kSame;
-    });
-    if (!known) found.push_back(answer->q);
+/// Answers for `X_WT` to start from: the branches in the windings nearest to `q_start`, then those
+/// nearest to the middle of the limits, which leave most room to both sides.
+std::vector<JointVec> starts(const IkSolver& ik, const Pose& X_WT, std::span<const double> q_start,
+                             int branches) {
+  JointVec q_middle = joint_vec(q_start);
+  for (Eigen::Index j = 0; j < q_middle.size(); ++j) {
+    const double middle = 0.5 * (ik.arm().limits.lower[j] + ik.arm().limits.upper[j]);
+    if (std::isfinite(middle)) q_middle[j] = middle;
   }
-  found.erase(found.begin());
+  std::vector<JointVec> found;
+  for (const std::span<const double> seed : {q_start, view(q_middle)}) {
+    const auto answers = solve_all(ik, X_WT, seed);
+    if (!answers) continue;
+    const std::size_t count = std::min(answers->size(), static_cast<std::size_t>(branches));
+    for (std::size_t i = 0; i < count; ++i) found.push_back((*answers)[i].q);
+  }
   return found;
 }
 
@@ -111,7 +103,7 @@ Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Po
 
   std::optional<JointPath> best;
   PathFailure farthest = std::move(nearest.error());
-  for (const JointVec& q : other_starts(ik, poses[0], first->q, options.start_branches)) {
+  for (const JointVec& q : starts(ik, poses[0], q_start, options.start_branches)) {
     Result<JointPath, PathFailure> path = walk(ik, poses, s, q, options.max_step);
     if (path) {
       if (!best || path->max_step() < best->max_step()) best = std::move(*path);

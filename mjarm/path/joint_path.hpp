@@ -29,16 +29,16 @@ struct PathOptions {
 /// Why a path has no answer, and what was had before that.
 struct PathFailure {
   IkErrc code = IkErrc::no_convergence;  ///< reason at the first bad pose
-  bool flip = false;   ///< that pose has an answer, but only with a joint step over max_step
-  std::size_t at = 0;  ///< index of the first pose that cannot be had
+  bool flip = false;    ///< that pose has an answer, but only with a joint step over max_step
+  std::size_t at = 0;   ///< index of the first pose that cannot be had
   double fraction = 0;  ///< share of the poses before it, 0 to 1
   IkFailure ik;         ///< details at that pose
   JointPath partial;    ///< answers before it; never to be executed unasked
 };
 
 /// IK along `poses`, each seeded by the answer before. The answer nearest to `q_start` is tried
-/// first for pose 0; where it does not lead to the end, the other ones, and of those that do the one
-/// of the smallest largest step is taken.
+/// first for pose 0; where it does not lead to the end, the other ones, and of those that do the
+/// one of the smallest largest step is taken.
 /// @param s        parameter of each pose, ascending, as many as poses (at least 1).
 /// @param q_start  [rad or m] shape (dof,); where the arm is before.
 /// @return the failure of the branch that gets farthest; bad_input where the sizes do not fit.
@@ -58,6 +58,17 @@ struct UnreachableRange {
 [[nodiscard]] std::vector<UnreachableRange> unreachable_ranges(const IkSolver& ik,
                                                                std::span<const Pose> poses,
                                                                std::span<const double> q_seed);
+
+/// A shift of the whole path [m, world] that makes every pose reachable without a joint step over
+/// max_step, verified by solving it. Shifts are multiples of 0.05 m along the world's axes, so that
+/// people can read them; the shortest is taken, of equal ones that along the fewest axes. Zero
+/// where the path needs none.
+/// @param reach  [m] longest shift tried, >= 0 (at most 1 is used).
+/// @return impossible where none was found within `reach` and a bounded number of tries.
+[[nodiscard]] Result<Eigen::Vector3d> find_shift(const IkSolver& ik, std::span<const Pose> poses,
+                                                 std::span<const double> q_seed,
+                                                 const PathOptions& options = {},
+                                                 double reach = 0.4);
 
 /// `n` joint waypoints from `q0` to `q1`, linear, both ends included exactly.
 /// @return an error for n < 2, sizes that differ or numbers that are not finite.

@@ -1,13 +1,10 @@
-#include "mjarm/path/shift.hpp"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 #include <vector>
 
 #include "mjarm/core/messages.hpp"
+#include "mjarm/path/joint_path.hpp"
 
 namespace mjarm {
 namespace {
@@ -35,17 +32,19 @@ std::vector<Eigen::Vector3i> grid_of(double reach) {
 
 Pose moved(const Pose& X, const Eigen::Vector3d& shift) { return {X.p + shift, X.R}; }
 
-/// False where a pose is out of reach by proof, or a few of them, spread over the path, have no
-/// answer: cheap tests that spare a whole solve.
-bool may_work(const IkSolver& ik, std::span<const Pose> poses, const Eigen::Vector3d& shift,
-              std::span<const double> q_seed) {
+/// True where geometry proves that a pose is out of reach.
+bool proven_bad(const IkSolver& ik, std::span<const Pose> poses) {
+  return std::any_of(poses.begin(), poses.end(),
+                     [&](const Pose& X) { return ik.reach().check(X).has_value(); });
+}
+
+/// True where a few poses, spread over the path, all have answers: spares many a whole solve.
+bool probes_solved(const IkSolver& ik, std::span<const Pose> poses,
+                   std::span<const double> q_seed) {
   constexpr std::size_t kProbes = 8;
-  for (const Pose& X : poses) {
-    if (ik.reach().check(moved(X, shift))) return false;
-  }
   const std::size_t stride = std::max<std::size_t>(1, poses.size() / kProbes);
   for (std::size_t i = 0; i < poses.size(); i += stride) {
-    if (!ik.solve(moved(poses[i], shift), q_seed)) return false;
+    if (!ik.solve(poses[i], q_seed)) return false;
   }
   return true;
 }
@@ -64,14 +63,16 @@ Result<Eigen::Vector3d> find_shift(const IkSolver& ik, std::span<const Pose> pos
   std::vector<double> s(poses.size());
   std::iota(s.begin(), s.end(), 0.0);
   std::vector<Pose> candidate(poses.size());
-  int solved = 0;
+  int probed = 0, solved = 0;
   for (const Eigen::Vector3i& g : grid_of(std::min(reach, kLongest))) {
     const Eigen::Vector3d shift = g.cast<double>() * kStep;
-    if (!may_work(ik, poses, shift, q_seed)) continue;
     std::transform(poses.begin(), poses.end(), candidate.begin(),
                    [&](const Pose& X) { return moved(X, shift); });
+    if (proven_bad(ik, candidate)) continue;
+    if (++probed > kProbed || solved == kSolved) break;
+    if (!probes_solved(ik, candidate, q_seed)) continue;
+    ++solved;
     if (solve_path(ik, candidate, s, q_seed, options)) return shift;
-    if (++solved == kSolved) break;
   }
   return fail(Errc::impossible, text(Msg::path_no_shift, reach));
 }
