@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <ostream>
 
 #include "tests/robots.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -26,6 +27,7 @@ Eigen::Vector3d vector(const double* from) { return {from[0], from[1], from[2]};
 
 /// One robot in both formats, and what ties the two together.
 struct Twin {
+  const char* name;
   const char* mjcf;
   const char* urdf;
   const char* mjcf_tip;
@@ -34,6 +36,8 @@ struct Twin {
   double rot_tol = 1e-9;     ///< [rad]
   double torque_tol = 1e-9;  ///< [N m]
 };
+
+void PrintTo(const Twin& twin, std::ostream* out) { *out << twin.name; }
 
 class Twins : public ::testing::TestWithParam<Twin> {};
 
@@ -76,10 +80,12 @@ TEST_P(Twins, WeighAlike) {
 // The Panda's MJCF rounds the quaternion of the hand to seven digits, its URDF does not.
 INSTANTIATE_TEST_SUITE_P(
     Shipped, Twins,
-    ::testing::Values(Twin{kUr5e, kUr5eUrdf, "attachment_site", "tool0", testing::half_turn()},
-                      Twin{kUr5e, kUr5eUrdf, "ee_link", "ee_link", testing::half_turn()},
-                      Twin{kPanda, kPandaUrdf, "panda_link8", "panda_link8", {}, 1e-9, 2e-8},
-                      Twin{kPanda, kPandaUrdf, "hand_tcp", "panda_hand_tcp", {}, 1e-7, 2e-8}));
+    ::testing::Values(
+        Twin{"Ur5eTool0", kUr5e, kUr5eUrdf, "attachment_site", "tool0", testing::half_turn()},
+        Twin{"Ur5eEeLink", kUr5e, kUr5eUrdf, "ee_link", "ee_link", testing::half_turn()},
+        Twin{"PandaFlange", kPanda, kPandaUrdf, "panda_link8", "panda_link8", {}, 1e-9, 2e-8},
+        Twin{"PandaHand", kPanda, kPandaUrdf, "hand_tcp", "panda_hand_tcp", {}, 1e-7, 2e-8}),
+    [](const auto& twin) { return std::string(twin.param.name); });
 
 TEST(Models, EveryShippedModelLoadsAndIsNamedThroughout) {
   const auto models = shipped_models();
