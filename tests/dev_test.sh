@@ -44,3 +44,29 @@ for arguments in "--no-install" "--no-install fk" "--no-install test"; do
   grep -q 'apt-get install .*libeigen3-dev' <<<"$answer" || fail "$arguments: no apt line: $answer"
 done
 [[ ! -e $work/apt-called ]] || fail "--no-install called apt-get or sudo"
+
+# A download that is not what it should be never arrives; a machine without network is told so.
+cat >"$work/bin/dpkg-query" <<'END'
+#!/bin/sh
+shift 2
+for name in "$@"; do echo "ii  $name"; done
+END
+cat >"$work/bin/python3" <<'END'
+#!/bin/sh
+case "$*" in *--version*) exit 0 ;; esac
+[ -z "$NO_NETWORK" ] || exit 1
+while [ "$1" != --dest ]; do shift; done
+echo "something else" >"$2/mujoco_core-4.0.1-cp311.whl"
+END
+chmod +x "$work/bin/python3"
+rmdir "$work/mjarm/.deps/mujoco-core-4.0.1"
+code=0
+answer=$(PATH="$work/bin:$PATH" "$work/mjarm/dev" fk 2>&1) || code=$?
+[[ $code == 1 ]] || fail "wrong download: exit code $code: $answer"
+grep -q 'SHA-256 differs' <<<"$answer" || fail "wrong download: $answer"
+code=0
+answer=$(NO_NETWORK=yes PATH="$work/bin:$PATH" "$work/mjarm/dev" fk 2>&1) || code=$?
+[[ $code == 1 ]] || fail "no network: exit code $code: $answer"
+grep -q 'package index reachable' <<<"$answer" || fail "no network: $answer"
+left=$(find "$work/mjarm/.deps" -mindepth 1 ! -name lock)
+[[ -z $left ]] || fail "left behind: $left"

@@ -70,8 +70,8 @@ available() {
 
 install_packages() {
   local wanted=("$@") extra
-  ((EUID == 0)) || command -v sudo >/dev/null ||
-    die "installing packages needs root: run ./dev as root, or install sudo"
+  ((EUID == 0)) || { command -v sudo >/dev/null && sudo true; } ||
+    die "installing packages needs root: run ./dev as root, or as a user whom sudo lets in"
   if (($(available "${wanted[@]}" | wc -l) < ${#wanted[@]})); then
     step "Package lists: apt-get update" quiet as_root apt-get update -qq ||
       die "apt-get update failed: is the network there, and may you be root?"

@@ -14,7 +14,7 @@ RESULTS = """<?xml version="1.0"?>
   <testcase name="core.B" status="fail"><failure message="Failed"/></testcase>
   <testcase name="core.C" status="notrun"><skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
     <system-out>mjarm/core/x_test.cpp:4: Skipped
-set MJARM_TEST_DATA
+set MJARM_TEST_DATA; needed for a.json
 [  SKIPPED ] C</system-out></testcase>
   <testcase name="core.D" status="notrun"><skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
     <system-out>mjarm/core/x_test.cpp:9: Skipped
