@@ -100,6 +100,7 @@ GlContext::GlContext(GlContext&&) noexcept = default;
 GlContext& GlContext::operator=(GlContext&&) noexcept = default;
 
 Result<void> GlContext::make_current() { return impl_->make_current(); }
+void GlContext::release() noexcept { impl_->release(); }
 GlKind GlContext::kind() const noexcept { return impl_->kind; }
 const std::string& GlContext::renderer() const noexcept { return impl_->renderer; }
 const std::string& GlContext::version() const noexcept { return impl_->version; }

@@ -27,8 +27,8 @@ enum class GlChoice {
 /// @return not_available where it already draws with the other kind.
 [[nodiscard]] Result<void> claim_gl(GlKind kind);
 
-/// An OpenGL context without a window. It belongs to one thread at a time: the one that made it
-/// current last.
+/// An OpenGL context without a window. While it is current in a thread, no other thread and no
+/// window in that thread can draw.
 class GlContext {
  public:
   /// Opens the libraries at run time, makes a context and makes it current.
@@ -40,6 +40,8 @@ class GlContext {
 
   /// Makes it the context of the calling thread.
   [[nodiscard]] Result<void> make_current();
+  /// Leaves the calling thread without a context, so that a window may use it.
+  void release() noexcept;
 
   [[nodiscard]] GlKind kind() const noexcept;
   /// GL_RENDERER, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)".

@@ -11,6 +11,7 @@ namespace mjarm {
 struct GlContext::Impl {
   virtual ~Impl() = default;
   [[nodiscard]] virtual Result<void> make_current() = 0;
+  virtual void release() noexcept = 0;
   /// Address of an OpenGL function, or null.
   [[nodiscard]] virtual void* function(const char* name) = 0;
   /// Lets MuJoCo find the library when it looks for OpenGL.

@@ -86,9 +86,7 @@ class EglContext : public GlContext::Impl {
   }
   // The display stays initialised: other contexts of the process may stand on it.
   ~EglContext() override {
-    if (egl_.current_context() == context_) {
-      egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    }
+    release();
     egl_.destroy_context(display_, context_);
   }
   EglContext(const EglContext&) = delete;
@@ -102,6 +100,10 @@ class EglContext : public GlContext::Impl {
                   text(Msg::render_gl_call_failed, "eglMakeCurrent", egl_.get_error()));
     }
     return {};
+  }
+  void release() noexcept override {
+    if (egl_.current_context() != context_) return;
+    egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   }
   void* function(const char* name) override {
     return reinterpret_cast<void*>(egl_.get_proc_address(name));

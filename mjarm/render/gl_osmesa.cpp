@@ -54,7 +54,7 @@ class Osmesa : public GlContext::Impl {
   }
   ~Osmesa() override {
     if (context_ == nullptr) return;
-    library_.make_current(nullptr, nullptr, kUnsignedByte, 0, 0);
+    release();
     library_.destroy(context_);
   }
   Osmesa(const Osmesa&) = delete;
@@ -68,6 +68,7 @@ class Osmesa : public GlContext::Impl {
     }
     return {};
   }
+  void release() noexcept override { library_.make_current(nullptr, nullptr, kUnsignedByte, 0, 0); }
   void* function(const char* name) override { return library_.function(name); }
   void publish() override { publish_library(kLibrary); }
 

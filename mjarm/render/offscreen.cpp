@@ -36,7 +36,7 @@ struct OffscreenRenderer::Impl {
     if (gl.is_software()) m.vis.quality.shadowsize = std::min(m.vis.quality.shadowsize, 4096);
     mjr_defaultContext(&context_);
     mjr_makeContext(&m, &context_, mjFONTSCALE_150);
-    mjr_setBuffer(mjFB_OFFSCREEN, &context_);
+    gl.release();
   }
   ~Impl() {
     if (gl.make_current()) mjr_freeContext(&context_);
@@ -81,7 +81,9 @@ Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& ca
   Image image{impl_->viewport.width, impl_->viewport.height, {}};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
   mjr_readPixels(image.rgb.data(), nullptr, impl_->viewport, &impl_->context_);
-  if (const int error = mjr_getError(); error != 0) {
+  const int error = mjr_getError();
+  impl_->gl.release();
+  if (error != 0) {
     return fail(Errc::system, text(Msg::render_gl_error, error));
   }
   flip_rows(image);

@@ -6,8 +6,8 @@
 
 namespace mjarm {
 
-/// Fills a figure that is drawn `aspect` times as wide as high. Curves of more points than a figure
+/// Fills a figure that is drawn as wide as high. Curves of more points than a figure
 /// holds are thinned evenly; their last point stays.
-void fill_figure(const LivePlot& plot, double aspect, mjvFigure& figure);
+void fill_figure(const LivePlot& plot, mjvFigure& figure);
 
 }  // namespace mjarm

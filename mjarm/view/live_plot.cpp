@@ -11,28 +11,42 @@
 namespace mjarm {
 namespace {
 
-struct Range {
-  double lower = std::numeric_limits<double>::infinity();
-  double upper = -std::numeric_limits<double>::infinity();
+constexpr int kIntervals = 4;  ///< grid cells along an axis
 
+/// The smallest of 1, 2, 2.5, 5 times a power of ten that is not below `least`.
+double nice_step(double least) {
+  const double unit = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double factor : {1.0, 2.0, 2.5, 5.0}) {
+    if (factor * unit >= least * (1 - 1e-9)) return factor * unit;
+  }
+  return 10 * unit;
+}
+
+/// The part of an axis that shows all values seen, from one round number to another.
+class Range {
+ public:
   void add(double value) {
     if (!std::isfinite(value)) return;
-    lower = std::min(lower, value);
-    upper = std::max(upper, value);
+    seen_lower_ = std::min(seen_lower_, value);
+    seen_upper_ = std::max(seen_upper_, value);
   }
-  /// A length that can be drawn, with a margin.
-  void finish() {
-    if (lower > upper) lower = upper = 0;
-    const double middle = (lower + upper) / 2;
-    const double least = std::max(1e-4, 1e-3 * std::abs(middle));
-    widen(std::max(1.1 * (upper - lower), least));
+  /// The smallest round step with which the intervals cover all; 0 seen counts as one point.
+  [[nodiscard]] double step() {
+    if (seen_lower_ > seen_upper_) seen_lower_ = seen_upper_ = 0;
+    const double largest = std::max(std::abs(seen_lower_), std::abs(seen_upper_));
+    const double least = std::max(1e-4, 1e-3 * largest);
+    double found = nice_step(std::max(seen_upper_ - seen_lower_, least) / kIntervals);
+    while (lower(found) + kIntervals * found < seen_upper_) found = nice_step(1.01 * found);
+    return found;
   }
-  void widen(double length) {
-    const double middle = (lower + upper) / 2;
-    lower = middle - length / 2;
-    upper = middle + length / 2;
+  /// Where an axis of that step begins.
+  [[nodiscard]] double lower(double step) const {
+    return step * std::floor(seen_lower_ / step + 1e-9);
   }
-  [[nodiscard]] double length() const { return upper - lower; }
+
+ private:
+  double seen_lower_ = std::numeric_limits<double>::infinity();
+  double seen_upper_ = -std::numeric_limits<double>::infinity();
 };
 
 template <std::size_t N>
@@ -74,17 +88,16 @@ void copy_points(const LiveSeries& series, int line, mjvFigure& figure) {
 
 }  // namespace
 
-void fill_figure(const LivePlot& plot, double aspect, mjvFigure& figure) {
+void fill_figure(const LivePlot& plot, mjvFigure& figure) {
   mjv_defaultFigure(&figure);
   set_colors(figure);
   copy_text(figure.title, plot.title);
   copy_text(figure.xlabel, plot.x_label);
-  copy_text(figure.xformat, "%.3g");
-  copy_text(figure.yformat, "%.3g");
+  copy_text(figure.xformat, "%.4g");
+  copy_text(figure.yformat, "%.4g");
   copy_text(figure.minwidth, "-0.00");
   figure.flg_extend = 0;
   figure.flg_ticklabel[0] = figure.flg_ticklabel[1] = 1;
-  figure.gridsize[0] = figure.gridsize[1] = 5;
   Range x;
   Range y;
   const int lines = static_cast<int>(std::min<std::size_t>(plot.series.size(), mjMAXLINE));
@@ -98,17 +111,14 @@ void fill_figure(const LivePlot& plot, double aspect, mjvFigure& figure) {
     for (const double value : series.x) x.add(value);
     for (const double value : series.y) y.add(value);
   }
-  x.finish();
-  y.finish();
-  if (plot.equal_aspect) {
-    const double unit = std::max(x.length() / aspect, y.length());
-    x.widen(unit * aspect);
-    y.widen(unit);
+  double steps[2] = {x.step(), y.step()};
+  if (plot.equal_aspect) steps[0] = steps[1] = std::max(steps[0], steps[1]);
+  const double lower[2] = {x.lower(steps[0]), y.lower(steps[1])};
+  for (int i = 0; i < 2; ++i) {
+    figure.gridsize[i] = kIntervals + 1;
+    figure.range[i][0] = static_cast<float>(lower[i]);
+    figure.range[i][1] = static_cast<float>(lower[i] + kIntervals * steps[i]);
   }
-  figure.range[0][0] = static_cast<float>(x.lower);
-  figure.range[0][1] = static_cast<float>(x.upper);
-  figure.range[1][0] = static_cast<float>(y.lower);
-  figure.range[1][1] = static_cast<float>(y.upper);
 }
 
 }  // namespace mjarm

@@ -8,7 +8,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kMostAtOnce = 0.1;  // [s] of the clock
+constexpr double kMostAtOnce = 0.25;  // [s] of the clock
 
 }  // namespace
 

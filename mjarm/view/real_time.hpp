@@ -12,7 +12,7 @@ class RealTimePacer {
   /// @param speed simulated seconds a second, > 0; 1 = real time.
   explicit RealTimePacer(double timestep, double speed = 1);
 
-  /// Steps to run now. Time spent paused does not count; after a hiccup at most 0.1 s of physics
+  /// Steps to run now. Time spent paused does not count; after a hiccup at most 0.25 s of the clock
   /// is caught up at once, so that a window stays alive on a slow machine.
   [[nodiscard]] int steps_due(bool paused = false);
   /// The same with the clock given: `now` [s], from any fixed origin, never falling.

@@ -59,7 +59,7 @@ struct Window::Impl {
     glfwGetWindowContentScale(handle, &scale, nullptr);
     mjr_defaultContext(&context);
     mjr_makeContext(&scene.model(), &context, font_scale(scale));
-    mjr_setBuffer(mjFB_WINDOW, &context);
+    glfwMakeContextCurrent(nullptr);
   }
   // Once the display is lost, all that belongs to it is left to the end of the process.
   ~Impl() {
@@ -226,11 +226,12 @@ Result<void> Window::draw(const Snapshot& snapshot, const Overlay& overlay,
   impl_->time = snapshot.time;
   impl_->figures.resize(plots.size());
   for (std::size_t i = 0; i < plots.size(); ++i) {
-    fill_figure(plots[i], 1, impl_->figures[i]);
+    fill_figure(plots[i], impl_->figures[i]);
   }
   glfwMakeContextCurrent(impl_->handle);
   impl_->render();
   glfwSwapBuffers(impl_->handle);
+  glfwMakeContextCurrent(nullptr);  // so that a picture may be drawn in between
   glfwPollEvents();
   if (display_lost()) return lost();
   // Slow drawing takes at most two thirds of the time, so that the physics goes on.
@@ -250,6 +251,7 @@ Result<Image> Window::picture() {
   Image image{viewport.width, viewport.height, {}};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
   mjr_readPixels(image.rgb.data(), nullptr, viewport, &impl_->context);
+  glfwMakeContextCurrent(nullptr);
   flip_rows(image);
   return image;
 }
