@@ -41,9 +41,9 @@ struct World {
 World load(const support::TempFolder& folder, const std::string& xml) {
   const auto model = Model::load(folder.write("model.xml", xml));
   EXPECT_TRUE(model.has_value()) << model.error().what;
-  const auto arm = find_arm(*model, {.tip = "tip"});
+  const auto arm = find_arm(model.value(), {.tip = "tip"});
   EXPECT_TRUE(arm.has_value()) << arm.error().what;
-  return {*model, *arm};
+  return {model.value(), arm.value()};
 }
 
 CollisionReport check(ExactChecker& checker, std::initializer_list<double> q) {
