@@ -1,7 +1,10 @@
 // The shipped models: what they hold, where their frames lie, that they stand, hold, drive and
 // grip.
+#include <mujoco/mujoco.h>
+
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <ostream>
 
@@ -13,7 +16,6 @@ namespace {
 
 using testing::load;
 using testing::models_folder;
-using testing::State;
 
 constexpr double kPi = std::numbers::pi;
 constexpr const char* kUr5e = "universal_robots_ur5e/ur5e.xml";
@@ -24,6 +26,27 @@ constexpr const char* kPandaUrdf = "franka_emika_panda/panda.urdf";
 Model shipped(const char* file) { return load(models_folder() / file); }
 
 Eigen::Vector3d vector(const double* from) { return {from[0], from[1], from[2]}; }
+
+/// A bare MuJoCo state, at the keyframe `home` where there is one. The oracle of many tests.
+class State {
+ public:
+  explicit State(const Model& model) : m_(model.raw()), d_(mj_makeData(m_), &mj_deleteData) {
+    const int home = mj_name2id(m_, mjOBJ_KEY, "home");
+    if (home >= 0) mj_resetDataKeyframe(m_, d_.get(), home);
+    mj_forward(m_, d_.get());
+  }
+  mjData* operator->() const { return d_.get(); }
+  [[nodiscard]] mjData* get() const { return d_.get(); }
+  /// Steps the simulation for `seconds` [s].
+  void run(double seconds) const {
+    const double end = d_->time + seconds - m_->opt.timestep / 2;
+    while (d_->time < end) mj_step(m_, d_.get());
+  }
+
+ private:
+  const mjModel* m_;
+  std::unique_ptr<mjData, decltype(&mj_deleteData)> d_;
+};
 
 /// One robot in both formats, and what ties the two together.
 struct Twin {

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <mujoco/mujoco.h>
 
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -13,11 +11,12 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/describe.hpp"
 #include "mjarm/model/dynamics.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/model.hpp"
 
-/// What tests of whole robots share: loading, random configurations, a bare MuJoCo state.
+/// What tests of whole robots share: loading, finding the arm, random configurations.
 namespace mjarm::testing {
 
 /// Folder of the shipped models. @throws std::runtime_error where it is not found.
@@ -50,13 +49,13 @@ inline JointVec joints_of(const Arm& arm, std::span<const double> qpos) {
   return q;
 }
 
-/// A configuration, uniform within the limits of all (one-degree) joints of a model.
+/// A configuration, uniform within the limits of all joints of a model of hinges and slides.
 inline std::vector<double> random_qpos(const Model& model, Rng& rng) {
-  const mjModel* m = model.raw();
-  std::vector<double> qpos(static_cast<std::size_t>(m->nq));
-  for (int j = 0; j < m->njnt; ++j) {
-    qpos[static_cast<std::size_t>(m->jnt_qposadr[j])] =
-        rng.uniform(m->jnt_range[2 * j], m->jnt_range[2 * j + 1]);
+  std::vector<double> qpos(static_cast<std::size_t>(model.nq()));
+  for (const BodyInfo& body : describe(model).bodies) {
+    for (const JointInfo& joint : body.joints) {
+      qpos[static_cast<std::size_t>(joint.qpos)] = rng.uniform(joint.lower, joint.upper);
+    }
   }
   return qpos;
 }
@@ -67,27 +66,6 @@ inline std::vector<double> random_vector(int count, double size, Rng& rng) {
   for (double& value : values) value = rng.uniform(-size, size);
   return values;
 }
-
-/// A bare MuJoCo state, at the keyframe `home` where there is one. The oracle of many tests.
-class State {
- public:
-  explicit State(const Model& model) : m_(model.raw()), d_(mj_makeData(m_), &mj_deleteData) {
-    const int home = mj_name2id(m_, mjOBJ_KEY, "home");
-    if (home >= 0) mj_resetDataKeyframe(m_, d_.get(), home);
-    mj_forward(m_, d_.get());
-  }
-  mjData* operator->() const { return d_.get(); }
-  [[nodiscard]] mjData* get() const { return d_.get(); }
-  /// Steps the simulation for `seconds` [s].
-  void run(double seconds) const {
-    const double end = d_->time + seconds - m_->opt.timestep / 2;
-    while (d_->time < end) mj_step(m_, d_.get());
-  }
-
- private:
-  const mjModel* m_;
-  std::unique_ptr<mjData, decltype(&mj_deleteData)> d_;
-};
 
 /// Half a turn about z: from the URDF's base_link to the world of the UR5e's MJCF and back.
 inline Pose half_turn() {
