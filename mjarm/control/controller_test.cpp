@@ -147,6 +147,19 @@ TEST(Controller, SaysWhenALimitCutsTheCommand) {
   }
 }
 
+TEST(Controller, KnowsTheForceLimitOfTheJointItself) {
+  std::string mjcf = odd_arm("integrator=\"Euler\"");
+  const std::string joint = "<joint name=\"third\"";
+  mjcf.replace(mjcf.find(joint), joint.size(), joint + " actuatorfrcrange=\"-1 2\"");
+  const Loaded robot = load_text(mjcf);
+  EXPECT_DOUBLE_EQ(robot.arm.joints[2].actuator->force_lower, -0.4) << "the gear is -5";
+  EXPECT_DOUBLE_EQ(robot.arm.joints[2].actuator->force_upper, 0.2);
+  Controller controller = make(robot, ControlMode::computed_torque);
+  World world(robot, robot.arm.home);
+  const JointVec far = robot.arm.home + JointVec::Constant(3, 0.5);
+  EXPECT_TRUE(world.step(controller, hold(view(far))));
+}
+
 TEST(Controller, KeepsCtrlWithinItsRangeAndLeavesOthersAlone) {
   const Loaded robot = load_shipped("panda");
   Controller controller = make(robot, ControlMode::servo);

@@ -20,7 +20,7 @@ StepInverse::StepInverse(const Model& model, const Arm& arm)
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[i];
     dof_.push_back(joint.dof);
-    double damping = rule_.implicit_damping ? rule_.damping[joint.dof] : 0;
+    double damping = rule_.implicit_damping ? joint.damping : 0;
     if (implicit_actuators && joint.actuator) damping += servo_damping(*joint.actuator);
     if (discrete) {
       // Only what stabilises enters there.

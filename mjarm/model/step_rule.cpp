@@ -32,19 +32,6 @@ bool damping_is_implicit(const mjModel& m) {
   }
 }
 
-/// Adds what actuators contribute to the damping of their joints; reflected through the gear.
-void add_actuator_damping(const mjModel& m, std::vector<double>& damping) {
-  for (int i = 0; i < m.nactuator; ++i) {
-    const bool on_joint =
-        m.actuator_trntype[i] == mjTRN_JOINT || m.actuator_trntype[i] == mjTRN_JOINTINPARENT;
-    if (!on_joint || m.actuator_damping[i] == 0) continue;
-    const int joint = m.actuator_trnid[2 * i];
-    if (m.jnt_type[joint] != mjJNT_HINGE && m.jnt_type[joint] != mjJNT_SLIDE) continue;
-    const double gear = m.actuator_gear[6 * m.actuator_outadr[i]];
-    damping[m.jnt_dofadr[joint]] += gear * gear * m.actuator_damping[i];
-  }
-}
-
 }  // namespace
 
 StepRule step_rule(const Model& model) {
@@ -53,9 +40,7 @@ StepRule step_rule(const Model& model) {
   rule.integrator = integrator_of(m);
   rule.timestep = m.opt.timestep;
   rule.implicit_damping = damping_is_implicit(m);
-  rule.damping.assign(m.dof_damping, m.dof_damping + m.nv);
-  add_actuator_damping(m, rule.damping);
-  rule.stiffness.assign(m.nv, 0);
+  rule.stiffness.assign(static_cast<std::size_t>(m.nv), 0.0);
   if ((m.opt.disableflags & mjDSBL_SPRING) == 0) {
     for (int i = 0; i < m.njnt; ++i) {
       if (m.jnt_type[i] == mjJNT_HINGE || m.jnt_type[i] == mjJNT_SLIDE) {

@@ -19,6 +19,12 @@ using Followed = Result<FollowOutcome, FollowFailure>;
 /// Joints slower than this stand still [rad/s or m/s].
 constexpr double kStill = 1e-3;
 
+/// A motion of so many joints is not one of this arm.
+Followed other_arm(Eigen::Index joints, const Arm& arm) {
+  return fail(FollowFailure{
+      {}, Error{Errc::usage, text(Msg::sim_other_arm, joints, arm.name, arm.dof())}, {}});
+}
+
 Followed broken(Error error, const Stepper& stepper) {
   return fail(FollowFailure{{}, std::move(error), stepper.outcome()});
 }
@@ -74,26 +80,28 @@ FollowWait explain(const FollowSetup& setup, const Stepper& stepper, const Joint
 template <class GapAt>
 Followed follow_gated(const FollowSetup& setup, std::span<const JointVec> waypoints,
                       double tolerance, int most_steps, const GapAt& gap_at) {
+  for (const JointVec& q : waypoints) {
+    if (q.size() != setup.arm.dof()) return other_arm(q.size(), setup.arm);
+  }
   Stepper stepper(setup);
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const StepReference reference = hold(view(waypoints[i]));
+    FollowWait wait;
+    wait.waypoint = i;
+    wait.count = waypoints.size();
+    wait.tolerance = tolerance;
     Gap gap;
-    int steps = 0;
     do {
-      if (steps == most_steps) {
-        const FollowWait wait{.waypoint = i,
-                              .count = waypoints.size(),
-                              .steps = steps,
-                              .joint = gap.joint,
-                              .distance = gap.distance,
-                              .tolerance = tolerance};
+      if (wait.steps == most_steps) {
+        wait.joint = gap.joint;
+        wait.distance = gap.distance;
         return fail(
             FollowFailure{explain(setup, stepper, waypoints[i], wait), {}, stepper.outcome()});
       }
       auto stepped = stepper.step(reference);
       if (!stepped) return broken(std::move(stepped.error()), stepper);
       if (!*stepped) return stepper.outcome();
-      ++steps;
+      ++wait.steps;
       gap = gap_at(stepper, i);
     } while (gap.distance > tolerance);
     stepper.reached_one();
@@ -124,6 +132,7 @@ std::string cause_of(const FollowWait& wait, const Arm& arm) {
 
 Followed follow_time(const FollowSetup& setup, const Trajectory& trajectory,
                      const TimeOptions& options) {
+  if (trajectory.dof() != setup.arm.dof()) return other_arm(trajectory.dof(), setup.arm);
   const double h = setup.sim.model().timestep();
   const double end = trajectory.duration() + std::max(options.settle, 0.0);
   // Times are counted, not summed, so that a long run does not drift off its grid.
@@ -158,7 +167,7 @@ Followed follow_tool(const FollowSetup& setup, std::span<const JointVec> waypoin
 }
 
 std::string describe(const FollowFailure& failure, const Arm& arm) {
-  if (failure.instability) return failure.instability->what;
+  if (failure.error) return failure.error->what;
   if (!failure.wait) return {};
   const FollowWait& wait = *failure.wait;
   const std::string head =

@@ -72,8 +72,8 @@ struct FollowWait {
 
 /// Why a run ended early, and what it did before.
 struct FollowFailure {
-  std::optional<FollowWait> wait;    ///< set where a waypoint was waited for in vain
-  std::optional<Error> instability;  ///< set where the simulation broke down
+  std::optional<FollowWait> wait;  ///< set where a waypoint was waited for in vain
+  std::optional<Error> error;      ///< set where the simulation broke down, or nothing could begin
   FollowOutcome outcome;
 };
 /// One line for people.

@@ -140,9 +140,23 @@ TEST(FollowTime, InstabilityIsAFailureThatSaysSo) {
               ControlMode::servo);
   const auto outcome = follow_time(bench.setup(), move(bench.robot.arm.home, JointVec::Zero(2), 9));
   ASSERT_FALSE(outcome);
-  ASSERT_TRUE(outcome.error().instability);
+  ASSERT_TRUE(outcome.error().error);
   EXPECT_FALSE(outcome.error().wait);
   EXPECT_THAT(describe(outcome.error(), bench.robot.arm), HasSubstr("unstable"));
+}
+
+TEST(Follow, MotionsOfAnotherArmAreRefused) {
+  Bench bench(load_text(small_world()), ControlMode::servo);
+  const JointVec seven = JointVec::Zero(7);
+  const auto by_time = follow_time(bench.setup(), move(seven, seven, 1));
+  ASSERT_FALSE(by_time);
+  EXPECT_THAT(describe(by_time.error(), bench.robot.arm), HasSubstr("7 joints"));
+  const std::vector<JointVec> waypoints{bench.robot.arm.home, seven};
+  const auto gated = follow_joints(bench.setup(), waypoints);
+  ASSERT_FALSE(gated);
+  ASSERT_TRUE(gated.error().error);
+  EXPECT_EQ(gated.error().error->code, Errc::usage);
+  EXPECT_EQ(bench.sim.time(), 0);
 }
 
 TEST(FollowJoints, GoesFromWaypointToWaypoint) {

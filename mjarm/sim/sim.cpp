@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "mjarm/control/actuation.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/sim/raw_internal.hpp"
 
 namespace mjarm {
@@ -50,15 +53,33 @@ struct Sim::Impl {
   Model model;
   raw::Data data;
 
-  explicit Impl(const Model& source) : model(source), data(mj_makeData(source.raw())) {
-    mj_forward(&m(), &d());
-  }
+  std::optional<Error> fatal;  ///< MuJoCo refused to go on; no step is possible until a reset
+
+  explicit Impl(const Model& source) : model(source), data(mj_makeData(source.raw())) { refresh(); }
   [[nodiscard]] const mjModel& m() const { return *model.raw(); }
   [[nodiscard]] mjData& d() const { return *data; }
 
   [[nodiscard]] bool unstable() const {
     return d().warning[mjWARN_BADQPOS].number > 0 || d().warning[mjWARN_BADQVEL].number > 0 ||
            d().warning[mjWARN_BADQACC].number > 0;
+  }
+
+  /// Runs `work`, in which MuJoCo may give up; then the world is of no use until it is reset.
+  template <class Work>
+  void guarded(const Work& work) {
+    const MujocoOutcome said = call_mujoco(work);
+    if (said.failed) fatal = Error{Errc::impossible, text(Msg::sim_fatal, d().time, said.error)};
+    if (unstable()) return;  // said with the error
+    for (const std::string& warning : said.warnings) log_warning(text(Msg::sim_mujoco, warning));
+  }
+  /// Recomputes everything that follows from the state.
+  void refresh() {
+    guarded([this] { mj_forward(&m(), &d()); });
+  }
+  void reset() {
+    fatal.reset();
+    mj_resetData(&m(), &d());
+    refresh();
   }
 
   /// What went wrong at `time`, and back to the initial state, whether or not MuJoCo went there.
@@ -72,8 +93,7 @@ struct Sim::Impl {
     } else {
       joint = raw::qpos_name(m(), warning[mjWARN_BADQPOS].lastinfo);
     }
-    mj_resetData(&m(), &d());
-    mj_forward(&m(), &d());
+    reset();
     return {Errc::impossible, text(Msg::sim_unstable, time, joint, m().opt.timestep)};
   }
 
@@ -101,7 +121,7 @@ Sim& Sim::operator=(Sim&&) noexcept = default;
 Result<void> Sim::reset(std::string_view keyframe) {
   const mjModel& m = impl_->m();
   if (keyframe.empty()) {
-    mj_resetData(&m, &impl_->d());
+    impl_->reset();
   } else {
     const int key = mj_name2id(&m, mjOBJ_KEY, std::string(keyframe).c_str());
     if (key < 0) {
@@ -110,9 +130,10 @@ Result<void> Sim::reset(std::string_view keyframe) {
                   text(Msg::sim_no_keyframe, model().file().string(), keyframe, joined(names)) +
                       did_you_mean(keyframe, names));
     }
+    impl_->fatal.reset();
     mj_resetDataKeyframe(&m, &impl_->d(), key);
+    impl_->refresh();
   }
-  mj_forward(&m, &impl_->d());
   return {};
 }
 
@@ -127,7 +148,7 @@ void Sim::place(const Arm& arm, std::span<const double> q) {
       d.ctrl[joint.actuator->id] = ctrl_for_torque(*joint.actuator, 0, q[i], 0);
     }
   }
-  mj_forward(&impl_->m(), &d);
+  impl_->refresh();
 }
 
 void Sim::set_state(std::span<const double> qpos, std::span<const double> qvel) {
@@ -135,7 +156,7 @@ void Sim::set_state(std::span<const double> qpos, std::span<const double> qvel) 
   assert(static_cast<int>(qvel.size()) == model().nv());
   std::copy(qpos.begin(), qpos.end(), impl_->d().qpos);
   std::copy(qvel.begin(), qvel.end(), impl_->d().qvel);
-  mj_forward(&impl_->m(), &impl_->d());
+  impl_->refresh();
 }
 
 Result<void> Sim::restore(const Snapshot& snapshot) {
@@ -145,7 +166,7 @@ Result<void> Sim::restore(const Snapshot& snapshot) {
     return fail(Errc::bad_input, text(Msg::sim_other_snapshot, snapshot.state.size(), size));
   }
   mj_setState(&m, &impl_->d(), snapshot.state.data(), mjSTATE_INTEGRATION);
-  mj_forward(&m, &impl_->d());
+  impl_->refresh();
   return {};
 }
 
@@ -171,12 +192,16 @@ Result<void> Sim::step(std::span<const double> ctrl) {
   // before or by mj_forward, so that reads in between are fresh at no cost: mj_step is mj_step1
   // followed by mj_step2. Only RK4 has no such halves, and pays for a whole step and a half.
   const double time = d.time;
-  if (m.opt.integrator == mjINT_RK4) {
-    mj_step(&m, &d);
-  } else {
-    mj_step2(&m, &d);
-  }
-  if (!impl_->unstable()) mj_step1(&m, &d);
+  if (impl_->fatal) return fail(*impl_->fatal);
+  impl_->guarded([this, &m, &d] {
+    if (m.opt.integrator == mjINT_RK4) {
+      mj_step(&m, &d);
+    } else {
+      mj_step2(&m, &d);
+    }
+    if (!impl_->unstable()) mj_step1(&m, &d);
+  });
+  if (impl_->fatal) return fail(*impl_->fatal);
   if (impl_->unstable()) return fail(impl_->instability(time));
   return {};
 }
