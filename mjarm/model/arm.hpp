@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjarm/core/joint_vec.hpp"
@@ -15,14 +17,14 @@ enum class JointType { hinge, slide };
 /// bias[2] * velocity, clamped to the force range; joint torque = gear * force, length = gear * q.
 struct ArmActuator {
   std::string name;
-  int id = -1;            ///< index in the model's actuators (row of ctrl)
-  double gear = 1;        ///< transmission ratio, != 0
-  double gain = 0;        ///< [N m or N per unit ctrl], != 0
-  double bias[3] = {0};   ///< [N m], [N m/rad], [N m s/rad]
-  double ctrl_lower = 0;  ///< lowest ctrl, -inf where not limited
-  double ctrl_upper = 0;  ///< highest ctrl, inf where not limited
-  double force_lower = 0; ///< [N m or N] lowest force, -inf where not limited
-  double force_upper = 0; ///< [N m or N] highest force, inf where not limited
+  int id = -1;             ///< row of ctrl that drives it
+  double gear = 1;         ///< transmission ratio, != 0
+  double gain = 0;         ///< [N m or N per unit ctrl], != 0
+  double bias[3] = {0};    ///< [N m], [N m/rad], [N m s/rad]
+  double ctrl_lower = 0;   ///< lowest ctrl, -inf where not limited
+  double ctrl_upper = 0;   ///< highest ctrl, inf where not limited
+  double force_lower = 0;  ///< [N m or N] lowest force, -inf where not limited
+  double force_upper = 0;  ///< [N m or N] highest force, inf where not limited
 };
 
 /// One moving joint of an arm. The joint's frame J moves by the joint value q: X_PJ(q) = X_PJ *
@@ -30,44 +32,63 @@ struct ArmActuator {
 struct ArmJoint {
   std::string name;
   JointType type = JointType::hinge;
-  Pose X_PJ;                                           ///< frame J in frame P at q = 0
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();     ///< unit, in J
-  double damping = 0;                                  ///< [N m s/rad or N s/m] viscous, >= 0
-  double armature = 0;                                 ///< [kg m^2 or kg] rotor inertia, >= 0
-  int qpos = -1;                                       ///< index in the model's qpos
-  int dof = -1;                                        ///< index in the model's qvel
-  std::optional<ArmActuator> actuator;                 ///< none where nothing drives the joint
+  Pose X_PJ;                                        ///< frame J in frame P at q = 0
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit, in J
+  double damping = 0;                               ///< [N m s/rad or N s/m] viscous, >= 0
+  double armature = 0;                              ///< [kg m^2 or kg] rotor inertia, >= 0
+  int qpos = -1;                                    ///< index in the model's qpos
+  int dof = -1;                                     ///< index in the model's qvel
+  std::optional<ArmActuator> actuator;              ///< none where nothing drives the joint
+};
+
+/// Where a limit comes from.
+enum class LimitSource {
+  file,      ///< the model file itself
+  table,     ///< the public figures of a known robot (UR5e, Panda), recognised by its geometry
+  standard,  ///< a stated value of mjarm, where nothing better is known
+};
+
+/// "file", "table" or "default".
+[[nodiscard]] std::string_view name(LimitSource source) noexcept;
+
+/// Where each limit of one joint comes from. Positions are always the file's.
+struct LimitSources {
+  LimitSource velocity = LimitSource::standard;
+  LimitSource acceleration = LimitSource::standard;
+  LimitSource jerk = LimitSource::standard;
+  LimitSource torque = LimitSource::standard;
 };
 
 /// What the joints may do, one entry a joint; every entry is finite and positive except `lower` and
 /// `upper`, which are -inf and inf for a joint without stops.
 struct JointLimits {
-  JointVec lower;         ///< [rad or m]
-  JointVec upper;         ///< [rad or m]
-  JointVec velocity;      ///< [rad/s or m/s]
-  JointVec acceleration;  ///< [rad/s^2 or m/s^2]
-  JointVec jerk;          ///< [rad/s^3 or m/s^3]
-  JointVec torque;        ///< [N m or N]
+  JointVec lower;                             ///< [rad or m]
+  JointVec upper;                             ///< [rad or m]
+  JointVec velocity;                          ///< [rad/s or m/s]
+  JointVec acceleration;                      ///< [rad/s^2 or m/s^2]
+  JointVec jerk;                              ///< [rad/s^3 or m/s^3]
+  JointVec torque;                            ///< [N m or N]
+  std::array<LimitSources, kMaxDof> sources;  ///< the first dof entries are meant
 };
 
 /// The gripper at the end of an arm, as its actuator is driven.
 struct Gripper {
-  std::string actuator;    ///< name of the actuator
-  int id = -1;             ///< its index (row of ctrl)
-  double ctrl_open = 0;    ///< ctrl that opens it
-  double ctrl_closed = 0;  ///< ctrl that closes it
+  std::string actuator;             ///< name of the actuator
+  int id = -1;                      ///< row of ctrl that drives it
+  double ctrl_open = 0;             ///< ctrl that opens it
+  double ctrl_closed = 0;           ///< ctrl that closes it
   std::vector<std::string> joints;  ///< names of the joints it moves
 };
 
 /// The arm in a model: joints from base to tip and the fixed tool frame T. A plain value; needs no
 /// MuJoCo. Poses are in the world frame W of the loaded file (for a URDF: its root link).
 struct Arm {
-  std::string name;             ///< model name of the file
-  std::vector<ArmJoint> joints; ///< base to tip, 1 to kMaxDof
+  std::string name;              ///< model name of the file
+  std::vector<ArmJoint> joints;  ///< base to tip, 1 to kMaxDof
   JointLimits limits;
-  std::string tip;              ///< name of the tool frame (site or body)
-  Pose X_JT;                    ///< tool frame in the frame of the last joint
-  JointVec home;                ///< [rad or m] keyframe `home`, else the middle of the limits
+  std::string tip;  ///< name of the tool frame (site or body)
+  Pose X_JT;        ///< tool frame in the frame of the last joint
+  JointVec home;    ///< [rad or m] keyframe `home`, else the middle of the limits
   std::optional<Gripper> gripper;
 
   [[nodiscard]] int dof() const { return static_cast<int>(joints.size()); }

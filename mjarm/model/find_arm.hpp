@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
@@ -10,12 +12,20 @@ namespace mjarm {
 
 /// Which arm of a model is meant.
 struct ArmOptions {
-  std::string tip;  ///< site or body to use as tool frame; empty = the only sensible one
+  /// Site or body to use as tool frame (a site goes before a body of the same name; `#ID` names a
+  /// body without a name); empty = the only sensible one.
+  std::string tip;
 };
 
 /// Finds the arm: the chain of hinge and slide joints from the world to the tip, without gripper
 /// fingers. Limits that the file lacks come from a small table of known robots, else from stated
-/// defaults. Joints off the chain keep their `home` or initial value.
+/// defaults (see limits_table.hpp). Joints off the chain keep their `home` or initial value; an arm
+/// on a free base starts after the free joint.
+///
+/// Without `tip` the arm is the longest chain without fingers (joints with such a name, joints
+/// coupled with a neighbour, branches shorter than their trunk), and the tip is the frame rigidly
+/// after its last joint that bears a usual name (`hand_tcp`, `attachment_site`, `tool0`, ...), else
+/// the only site there, else the last body.
 /// @return an error that lists the choices where two arms or several tips are possible.
 [[nodiscard]] Result<Arm> find_arm(const Model& model, const ArmOptions& options = {});
 

@@ -26,19 +26,19 @@ enum class ModelFormat { mjcf, urdf };
 class Model {
  public:
   /// Loads MJCF or URDF (told apart by the root element). Meshes are looked for beside the file,
-  /// `package://` in `options.package_paths`, ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, then upwards from
-  /// the file. A URDF keeps its fixed frames.
+  /// `package://` in `options.package_paths`, ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, then upwards
+  /// from the file. A URDF keeps its fixed frames.
   /// @return one line that names file and element. Never throws, never ends the process.
   [[nodiscard]] static Result<Model> load(const std::filesystem::path& file,
                                           const LoadOptions& options = {});
 
   [[nodiscard]] const std::filesystem::path& file() const noexcept;
   [[nodiscard]] ModelFormat format() const noexcept;
-  [[nodiscard]] std::string_view name() const noexcept;  ///< model name inside the file
-  [[nodiscard]] double timestep() const noexcept;        ///< [s]
-  [[nodiscard]] int nq() const noexcept;                 ///< size of qpos
-  [[nodiscard]] int nv() const noexcept;                 ///< size of qvel
-  [[nodiscard]] int nu() const noexcept;                 ///< size of ctrl
+  [[nodiscard]] std::string_view name() const noexcept;          ///< model name inside the file
+  [[nodiscard]] double timestep() const noexcept;                ///< [s]
+  [[nodiscard]] int nq() const noexcept;                         ///< size of qpos
+  [[nodiscard]] int nv() const noexcept;                         ///< size of qvel
+  [[nodiscard]] int nu() const noexcept;                         ///< size of ctrl
   [[nodiscard]] std::span<const double> qpos0() const noexcept;  ///< shape (nq,)
 
   /// Velocity limit of a joint as the URDF gives it [rad/s or m/s]; 0 where the file has none (MJCF
@@ -46,6 +46,10 @@ class Model {
   [[nodiscard]] double urdf_velocity_limit(std::string_view joint) const noexcept;
   /// Effort limit of a joint as the URDF gives it [N m or N]; 0 where the file has none.
   [[nodiscard]] double urdf_effort_limit(std::string_view joint) const noexcept;
+
+  /// What was odd about the file though it loads (a mesh format that cannot be shown, a link
+  /// without inertia): one line each, in the language of the time of loading.
+  [[nodiscard]] std::span<const std::string> warnings() const noexcept;
 
   /// The compiled MuJoCo model, for the rooms that may include mujoco.h; never null.
   [[nodiscard]] const mjModel_* raw() const noexcept;
@@ -57,15 +61,17 @@ class Model {
 };
 
 /// Finds a model by name (`ur5e`, `panda`, ...: the shipped scene) or by path. Shipped models are
-/// looked for in `share/mjarm/models` beside the program and beside its folder.
+/// looked for in the folder that MJARM_MODELS in the environment names, in
+/// `../share/mjarm/models` and in `models` beside the program.
 /// @return the path of the file, or an error with the nearest known name.
 [[nodiscard]] Result<std::filesystem::path> find_model_file(std::string_view name_or_path);
 
-/// Names of the shipped models and their files, sorted by name.
+/// A model that comes with mjarm.
 struct ShippedModel {
-  std::string name;
-  std::filesystem::path file;
+  std::string name;            ///< what a user calls it: `ur5e`, `panda`, `car`, ...
+  std::filesystem::path file;  ///< absolute path of its scene
 };
+/// The shipped models that are found on this machine, sorted by name.
 [[nodiscard]] std::vector<ShippedModel> shipped_models();
 
 }  // namespace mjarm

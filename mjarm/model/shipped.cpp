@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/model/model.hpp"
+
+namespace mjarm {
+namespace fs = std::filesystem;
+namespace {
+
+/// Names that a user may say, and the file under the folder of models.
+struct Entry {
+  std::string_view name;
+  std::string_view file;
+};
+constexpr std::array<Entry, 4> kShipped = {{
+    {"car", "car.xml"},
+    {"hello", "hello.xml"},
+    {"panda", "franka_emika_panda/scene.xml"},
+    {"ur5e", "universal_robots_ur5e/scene.xml"},
+}};
+
+/// Folders in which shipped models may lie, in the order of search.
+std::vector<fs::path> model_folders() {
+  std::vector<fs::path> folders;
+  if (const auto named = environment("MJARM_MODELS"); named && !named->empty()) {
+    folders.push_back(fs::absolute(*named));
+  }
+  if (const Result<fs::path> program = executable_path()) {
+    const fs::path beside = program->parent_path();
+    folders.push_back((beside / ".." / "share" / "mjarm" / "models").lexically_normal());
+    folders.push_back(beside / "models");
+  }
+  return folders;
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+std::optional<fs::path> find_shipped(std::string_view relative) {
+  for (const fs::path& folder : model_folders()) {
+    if (is_there(folder / relative)) return folder / relative;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<ShippedModel> shipped_models() {
+  std::vector<ShippedModel> models;
+  for (const Entry& entry : kShipped) {
+    if (auto file = find_shipped(entry.file)) {
+      models.push_back({std::string(entry.name), std::move(*file)});
+    }
+  }
+  return models;
+}
+
+Result<fs::path> find_model_file(std::string_view name_or_path) {
+  const auto entry = std::find_if(kShipped.begin(), kShipped.end(),
+                                  [&](const Entry& e) { return e.name == name_or_path; });
+  if (entry != kShipped.end()) {
+    if (auto file = find_shipped(entry->file)) return std::move(*file);
+  }
+  const fs::path path = fs::path(name_or_path);
+  if (!name_or_path.empty() && is_there(path)) return path;
+  if (entry != kShipped.end()) {
+    std::string places;
+    for (const fs::path& folder : model_folders()) {
+      places += (places.empty() ? "" : ", ") + folder.string();
+    }
+    return fail(Errc::not_available,
+                text(Msg::model_not_shipped, name_or_path, entry->file, places));
+  }
+  // A name relative to the folder of models, such as `scenes/studio.xml`.
+  if (!name_or_path.empty() && path.is_relative()) {
+    if (auto file = find_shipped(name_or_path)) return std::move(*file);
+  }
+  std::vector<std::string> names;
+  for (const Entry& known : kShipped) names.emplace_back(known.name);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return fail(Errc::bad_input,
+              text(Msg::model_unknown, name_or_path, did_you_mean(name_or_path, names), list));
+}
+
+}  // namespace mjarm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <tinyxml2.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/model.hpp"
+
+namespace mjarm {
+
+/// Exactly `count` finite numbers, parted by white space; empty where `words` are anything else.
+[[nodiscard]] std::vector<double> parse_numbers(std::string_view words, std::size_t count);
+
+/// An error at an element: `FILE:LINE: <element "name">: what`.
+[[nodiscard]] Error urdf_error(const std::filesystem::path& file,
+                               const tinyxml2::XMLElement& element, std::string_view what);
+
+/// Checks what MuJoCo would pass over or would not place: names, references between links and
+/// joints, one root, joint types, numbers, limits.
+[[nodiscard]] Result<void> check_urdf(const std::filesystem::path& file,
+                                      const tinyxml2::XMLElement& robot);
+
+/// Makes every mesh file name absolute. Visual meshes of a format that MuJoCo cannot read are taken
+/// out, with a line in `warnings`.
+[[nodiscard]] Result<void> resolve_meshes(const std::filesystem::path& file,
+                                          tinyxml2::XMLElement& robot, const LoadOptions& options,
+                                          std::vector<std::string>& warnings);
+
+/// All child elements of `parent` of the given name.
+[[nodiscard]] std::vector<tinyxml2::XMLElement*> children(tinyxml2::XMLElement& parent,
+                                                          const char* name);
+[[nodiscard]] std::vector<const tinyxml2::XMLElement*> children(const tinyxml2::XMLElement& parent,
+                                                                const char* name);
+
+}  // namespace mjarm

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/model/urdf_internal.hpp"
+
+namespace mjarm {
+namespace fs = std::filesystem;
+using tinyxml2::XMLElement;
+namespace {
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+std::vector<fs::path> split_paths(const std::optional<std::string>& list) {
+  std::vector<fs::path> paths;
+  if (!list) return paths;
+  for (std::size_t begin = 0; begin <= list->size();) {
+    const std::size_t end = std::min(list->find(':', begin), list->size());
+    if (end > begin) paths.emplace_back(list->substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return paths;
+}
+
+/// Finds the files that a URDF names.
+class MeshFinder {
+ public:
+  MeshFinder(const fs::path& file, const XMLElement& robot, const LoadOptions& options)
+      : folder_(fs::absolute(file).parent_path().lexically_normal()) {
+    bases_ = options.package_paths;
+    for (fs::path& path : split_paths(environment("ROS_PACKAGE_PATH"))) {
+      bases_.push_back(std::move(path));
+    }
+    for (const fs::path& path : split_paths(environment("AMENT_PREFIX_PATH"))) {
+      bases_.push_back(path / "share");
+    }
+    for (fs::path up = folder_;; up = up.parent_path()) {
+      bases_.push_back(up);
+      if (up == up.root_path() || up.empty()) break;
+    }
+    if (const XMLElement* extension = robot.FirstChildElement("mujoco")) {
+      if (const XMLElement* compiler = extension->FirstChildElement("compiler")) {
+        if (const char* dir = compiler->Attribute("meshdir")) mesh_folder_ = folder_ / dir;
+      }
+    }
+  }
+
+  /// Absolute path of an existing file; none where nothing is found.
+  [[nodiscard]] std::optional<fs::path> find(std::string_view name) const {
+    for (const std::string_view scheme : {"package://", "model://"}) {
+      if (name.starts_with(scheme)) return in_package(name.substr(scheme.size()));
+    }
+    if (name.starts_with("file://")) name.remove_prefix(7);
+    const fs::path path = fs::path(name);
+    std::vector<fs::path> candidates = {folder_ / path};
+    if (!mesh_folder_.empty()) {
+      candidates.push_back(mesh_folder_ / path);
+      candidates.push_back(mesh_folder_ / path.filename());
+    }
+    return first_file(candidates);
+  }
+
+ private:
+  static std::optional<fs::path> first_file(const std::vector<fs::path>& candidates) {
+    const auto found = std::find_if(candidates.begin(), candidates.end(), is_file);
+    if (found == candidates.end()) return std::nullopt;
+    return found->lexically_normal();
+  }
+
+  /// `rest` is `PACKAGE/path`. A base is a folder of packages or the package itself.
+  [[nodiscard]] std::optional<fs::path> in_package(std::string_view rest) const {
+    const std::size_t slash = rest.find('/');
+    if (slash == std::string_view::npos) return std::nullopt;
+    const fs::path package = rest.substr(0, slash);
+    const fs::path inside = rest.substr(slash + 1);
+    std::vector<fs::path> candidates;
+    for (const fs::path& base : bases_) {
+      candidates.push_back(fs::absolute(base) / package / inside);
+      const fs::path plain = base.filename().empty() ? base.parent_path() : base;
+      if (plain.filename() == package) candidates.push_back(fs::absolute(plain) / inside);
+    }
+    if (!mesh_folder_.empty()) {
+      candidates.push_back(mesh_folder_ / inside);
+      candidates.push_back(mesh_folder_ / inside.filename());
+    }
+    return first_file(candidates);
+  }
+
+  fs::path folder_;              ///< of the URDF file, absolute
+  fs::path mesh_folder_;         ///< what `<mujoco><compiler meshdir>` names, or empty
+  std::vector<fs::path> bases_;  ///< where packages are looked for, in order
+};
+
+/// True for the mesh formats that MuJoCo reads.
+bool is_readable_format(const fs::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return ending == ".stl" || ending == ".obj" || ending == ".msh";
+}
+
+XMLElement* mesh_of(XMLElement& shape) {
+  XMLElement* geometry = shape.FirstChildElement("geometry");
+  return geometry != nullptr ? geometry->FirstChildElement("mesh") : nullptr;
+}
+
+}  // namespace
+
+Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadOptions& options,
+                            std::vector<std::string>& warnings) {
+  const MeshFinder finder(file, robot, options);
+  std::set<std::string> warned;
+  for (XMLElement* link : children(robot, "link")) {
+    for (const char* kind : {"visual", "collision"}) {
+      for (XMLElement* shape : children(*link, kind)) {
+        XMLElement* mesh = mesh_of(*shape);
+        if (mesh == nullptr) continue;
+        const char* name = mesh->Attribute("filename");
+        if (name == nullptr) {
+          return fail(urdf_error(file, *mesh, text(Msg::model_attribute_missing, "filename")));
+        }
+        const bool readable = is_readable_format(name);
+        if (!readable && std::string_view(kind) == "visual") {
+          if (warned.insert(name).second) {
+            warnings.push_back(
+                text(Msg::model_mesh_left_out, file.string(), mesh->GetLineNum(), name));
+          }
+          link->DeleteChild(shape);
+          continue;
+        }
+        if (!readable) return fail(urdf_error(file, *mesh, text(Msg::model_mesh_format, name)));
+        const std::optional<fs::path> path = finder.find(name);
+        if (!path) return fail(urdf_error(file, *mesh, text(Msg::model_no_mesh, name)));
+        mesh->SetAttribute("filename", path->c_str());
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace mjarm
