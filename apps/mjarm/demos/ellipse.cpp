@@ -4,7 +4,6 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/path/ellipse.hpp"
 #include "mjarm/path/joint_path.hpp"
-#include "mjarm/path/shift.hpp"
 
 namespace mjarm::app {
 namespace {

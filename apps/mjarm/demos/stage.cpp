@@ -86,7 +86,7 @@ void Stage::add(const FollowOutcome& outcome) {
 
 Result<void> Stage::take(Result<FollowOutcome, FollowFailure> outcome, double from,
                          const Curve* curve, bool measured) {
-  if (!outcome && outcome.error().instability) return fail(*outcome.error().instability);
+  if (!outcome && outcome.error().error) return fail(*outcome.error().error);
   add(outcome ? *outcome : outcome.error().outcome);
   if (!outcome) {
     end_reason_ = "waypoint_not_reached";
