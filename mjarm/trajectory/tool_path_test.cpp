@@ -199,7 +199,7 @@ TEST(ToolPath, RandomSplinesKeepTheirLimits) {
 
 TEST(ToolPath, ShortPathsAndSinglePoints) {
   const JointVec one = JointVec::Ones(1);
-  const JointLimits limits{-9 * one, 9 * one, one, 5 * one, 100 * one, one};
+  const JointLimits limits{-9 * one, 9 * one, one, 5 * one, 100 * one, one, {}};
   for (const double length : {1e-9, 1e-6, 1e-3}) {
     const JointPath path{{0, length}, {one, one + length * one}};
     const Trajectory timed = checked(path, {}, limits, {});
@@ -225,7 +225,7 @@ TEST(ToolPath, SameInputSameTrajectory) {
 
 TEST(ToolPath, RefusesBadInput) {
   const JointVec one = JointVec::Ones(1);
-  const JointLimits limits{-9 * one, 9 * one, one, one, one, one};
+  const JointLimits limits{-9 * one, 9 * one, one, one, one, one, {}};
   const auto what = [&](const JointPath& path, std::vector<double> stops = {},
                         const TimingOptions& options = {}) {
     const auto timed = time_tool_path(path, stops, limits, options);

@@ -116,7 +116,7 @@ TEST(CheckLimits, MeasuresEveryUse) {
   ASSERT_TRUE(trajectory.has_value());
   const auto one = [](double x) { return JointVec(JointVec::Constant(1, x)); };
   const LimitUse use =
-      check_limits(*trajectory, {one(-1), one(2.5), one(30), one(15), one(180), one(1)}, 1e-4);
+      check_limits(*trajectory, {one(-1), one(2.5), one(30), one(15), one(180), one(1), {}}, 1e-4);
   EXPECT_NEAR(use.velocity[0], 0.5, 1e-12);
   EXPECT_NEAR(use.acceleration[0], 4, 1e-12);
   EXPECT_NEAR(use.jerk[0], 1, 1e-3);
