@@ -24,8 +24,8 @@ struct Phase {
   double forward;  ///< ctrl
   double turn;     ///< ctrl
 };
-constexpr std::array kPhases = {Phase{Msg::demo_car_forward, 2.0, 0.15, 0.0},
-                                Phase{Msg::demo_car_turn, 2.0, 0.05, 0.1}};
+constexpr std::array kPhases = {Phase{Msg::demo_car_forward, 3.0, 0.6, 0.0},
+                                Phase{Msg::demo_car_turn, 2.0, 0.2, 0.5}};
 
 /// What was measured on the way.
 struct Drive {

@@ -27,13 +27,14 @@ Result<Report> run_movej(const DemoOptions& options) {
   const ControlMode mode =
       stage.control(options.guide ? ControlMode::servo : ControlMode::computed_torque);
   if (auto done = stage.wait_through(path->q, {}, mode); !done) return fail(std::move(done.error()));
+  const std::size_t reached = stage.reached();
   if (auto done = stage.jump(solution->q, mode, 0.5); !done) return fail(std::move(done.error()));
 
   Report report;
   report.max_joint_step = path->max_step();
-  report.coverage = static_cast<double>(stage.reached()) / kWaypoints;
+  report.coverage = static_cast<double>(reached) / kWaypoints;
   report.static_error = pose_error(goal, stage.sim().tool(stage.arm()));
-  log_info(text(Msg::demo_waypoints, stage.reached(), kWaypoints,
+  log_info(text(Msg::demo_waypoints, reached, kWaypoints,
                 1e3 * report.static_error->position));
   return stage.finish(std::move(report), options.guide ? 0.02 : 1e-4);
 }

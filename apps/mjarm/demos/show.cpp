@@ -16,7 +16,7 @@ constexpr Rgba kTrail = {0.10F, 0.45F, 0.85F, 1};
 
 Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
   Show show(model.timestep());
-  show.overlay_.lines.push_back({.points_W = {}, .width = 0.004, .color = kTrail});
+  show.overlay_.lines.push_back({.points_W = {}, .width = 0.006, .color = kTrail});
   if (headless || !has_display()) return show;
   Result<Window> window = Window::open(model, title);
   if (window) {

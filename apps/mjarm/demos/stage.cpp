@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "apps/mjarm/demos/charts.hpp"
 #include "apps/mjarm/demos/output.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
@@ -152,42 +151,54 @@ Result<void> Stage::wait_through(std::span<const JointVec> waypoints,
   return take(std::move(outcome), from, curve, true);
 }
 
-/// Errors of the measured runs together, and their course in time for the plot.
-void Stage::measure(Report& report, Plot& plot) const {
-  std::vector<RecordRow> rows;
-  for (std::size_t i = 0; i < recorder_.size(); ++i) rows.push_back(recorder_.row(i));
+/// The measured parts of the record.
+std::vector<MeasuredRun> Stage::measured_runs() const {
+  std::vector<MeasuredRun> runs;
+  for (const Measured& part : measured_) {
+    MeasuredRun& run = runs.emplace_back();
+    run.curve = part.curve ? &*part.curve : nullptr;
+    for (std::size_t i = 0; i < recorder_.size(); ++i) {
+      RecordRow row = recorder_.row(i);
+      if (row.time >= part.from && row.time <= part.to) run.rows.push_back(std::move(row));
+    }
+  }
+  return runs;
+}
+
+/// Errors of the measured runs together.
+void Stage::measure(std::span<const MeasuredRun> runs, Report& report) const {
   PathError all;
   double sum2 = 0, covered = 0, length = 0;
   std::size_t count = 0;
-  for (const Measured& part : measured_) {
-    if (!part.curve) continue;
+  for (const MeasuredRun& run : runs) {
+    if (run.curve == nullptr) continue;
     std::vector<Eigen::Vector3d> p_W;
-    for (const RecordRow& row : rows) {
-      if (row.time >= part.from && row.time <= part.to) p_W.push_back(row.X_WT.p);
-    }
-    const PathError error = measure_path(*part.curve, p_W);
+    for (const RecordRow& row : run.rows) p_W.push_back(row.X_WT.p);
+    const PathError error = measure_path(*run.curve, p_W);
     sum2 += error.rms * error.rms * static_cast<double>(p_W.size());
     count += p_W.size();
-    covered += error.coverage * part.curve->length();
-    length += part.curve->length();
-    if (error.max >= all.max) all = {.max = error.max, .rms = 0, .at = error.at, .coverage = 0};
+    covered += error.coverage * run.curve->length();
+    length += run.curve->length();
+    if (error.max >= all.max) {
+      all.max = error.max;
+      all.at = error.at;
+    }
     for (std::size_t i = 1; i < p_W.size(); ++i) {
-      const double speed = (p_W[i] - p_W[i - 1]).norm() / model_.timestep();
+      const double dt = run.rows[i].time - run.rows[i - 1].time;
+      const double speed = (p_W[i] - p_W[i - 1]).norm() / dt;
       report.tool_speed_max = std::max(report.tool_speed_max.value_or(0), speed);
     }
   }
-  if (count > 0 && length > 0) {
-    all.rms = std::sqrt(sum2 / static_cast<double>(count));
-    all.coverage = covered / length;
-    report.path_error = all;
-    report.coverage = all.coverage;
-  }
-  if (!rows.empty()) plot = motion_plot(demo_, arm_, rows);
+  if (count == 0 || length == 0) return;
+  all.rms = std::sqrt(sum2 / static_cast<double>(count));
+  all.coverage = covered / length;
+  report.path_error = all;
+  report.coverage = all.coverage;
 }
 
 Result<Report> Stage::finish(Report report, double tolerance) {
-  Plot plot;
-  measure(report, plot);
+  const std::vector<MeasuredRun> runs = measured_runs();
+  measure(runs, report);
   report.ok = !ended_early();
   report.reason = end_reason_;
   report.detail = end_detail_;
@@ -199,6 +210,11 @@ Result<Report> Stage::finish(Report report, double tolerance) {
     report.ok = false;
     report.reason = off_path ? "path_error" : "static_error";
     report.detail = text(Msg::demo_off_path, 1e3 * error, 1e3 * tolerance, 100 * report.coverage);
+  }
+  Plot plot = motion_plot(demo_, arm_, runs, tolerance);
+  if (report.path_error) {
+    plot.note = text(Msg::demo_plot_note, control_, 1e3 * report.path_error->max,
+                     1e3 * report.path_error->rms, 100 * report.coverage);
   }
   return write(std::move(report), std::move(plot));
 }

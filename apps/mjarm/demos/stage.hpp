@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/demos/charts.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/show.hpp"
 #include "mjarm/collision/exact.hpp"
@@ -15,10 +16,6 @@
 #include "mjarm/sim/follow.hpp"
 #include "mjarm/sim/recorder.hpp"
 #include "mjarm/sim/sim.hpp"
-
-namespace mjarm {
-struct Plot;
-}  // namespace mjarm
 
 namespace mjarm::app {
 
@@ -82,7 +79,8 @@ class Stage {
   [[nodiscard]] Result<void> take(Result<FollowOutcome, FollowFailure> outcome, double from,
                                   const Curve* curve, bool measured);
   void add(const FollowOutcome& outcome);
-  void measure(Report& report, Plot& plot) const;
+  [[nodiscard]] std::vector<MeasuredRun> measured_runs() const;
+  void measure(std::span<const MeasuredRun> runs, Report& report) const;
   [[nodiscard]] Result<Report> write(Report report, Plot plot);
 
   std::string demo_;
