@@ -1,5 +1,6 @@
 #include "mjarm/core/os.hpp"
 
+#include <dlfcn.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -92,5 +93,20 @@ void catch_interrupts() noexcept {
 bool interrupted() noexcept { return interrupt_seen.load(); }
 
 std::string system_message(int code) { return std::generic_category().message(code); }
+
+Result<void*> open_library(const std::string& name) {
+  void* library = ::dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library != nullptr) return library;
+  const char* reason = ::dlerror();
+  return fail(Errc::not_available, reason == nullptr ? name : std::string(reason));
+}
+
+void publish_library(const std::string& name) noexcept {
+  ::dlopen(name.c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL);
+}
+
+void* library_symbol(void* library, const std::string& symbol) noexcept {
+  return ::dlsym(library, symbol.c_str());
+}
 
 }  // namespace mjarm

@@ -46,4 +46,13 @@ void catch_interrupts() noexcept;
 /// What the operating system says about error number `code` (errno), in English.
 [[nodiscard]] std::string system_message(int code);
 
+/// Opens a shared library by name (e.g. "libEGL.so.1"), seen only by who holds the handle; it stays
+/// open until the process ends.
+/// @return not_available with what the system says.
+[[nodiscard]] Result<void*> open_library(const std::string& name);
+/// Lets every part of the process find the symbols of a library that is already open.
+void publish_library(const std::string& name) noexcept;
+/// Address of a symbol in a library that is open, or null.
+[[nodiscard]] void* library_symbol(void* library, const std::string& symbol) noexcept;
+
 }  // namespace mjarm

@@ -23,8 +23,12 @@ enum class GlChoice {
   osmesa,     ///< OSMesa or an error
 };
 
-/// An OpenGL context without a window. It belongs to one thread at a time: the one that made it
-/// current last.
+/// Notes that MuJoCo draws with `kind` from now on; called before it draws for the first time.
+/// @return not_available where it already draws with the other kind.
+[[nodiscard]] Result<void> claim_gl(GlKind kind);
+
+/// An OpenGL context without a window. While it is current in a thread, no other thread and no
+/// window in that thread can draw.
 class GlContext {
  public:
   /// Opens the libraries at run time, makes a context and makes it current.
@@ -36,6 +40,8 @@ class GlContext {
 
   /// Makes it the context of the calling thread.
   [[nodiscard]] Result<void> make_current();
+  /// Leaves the calling thread without a context, so that a window may use it.
+  void release() noexcept;
 
   [[nodiscard]] GlKind kind() const noexcept;
   /// GL_RENDERER, e.g. "llvmpipe (LLVM 15.0.6, 256 bits)".
@@ -55,11 +61,11 @@ class GlContext {
 /// One way to draw without a window, tried out.
 struct GlBackend {
   GlKind kind = GlKind::egl;
-  std::string name;  ///< "EGL" or "OSMesa"
+  std::string name = {};  ///< "EGL" or "OSMesa"
   bool works = false;
-  std::string renderer;  ///< GL_RENDERER where it works
-  std::string version;   ///< GL_VERSION where it works
-  std::string reason;    ///< why it does not work, and what helps; empty where it works
+  std::string renderer = {};  ///< GL_RENDERER where it works
+  std::string version = {};   ///< GL_VERSION where it works
+  std::string reason = {};    ///< why it does not work, and what helps; empty where it works
 };
 
 /// Tries every way, in the order of preference; leaves no context current.

@@ -9,9 +9,9 @@ namespace mjarm {
 
 /// A picture: 8-bit red, green, blue (sRGB) for each pixel, rows from top to bottom.
 struct Image {
-  int width = 0;                  ///< [px]
-  int height = 0;                 ///< [px]
-  std::vector<std::uint8_t> rgb;  ///< shape (height, width, 3), row by row
+  int width = 0;                       ///< [px]
+  int height = 0;                      ///< [px]
+  std::vector<std::uint8_t> rgb = {};  ///< shape (height, width, 3), row by row
 
   /// The pixel in column `x` (from the left) and row `y` (from the top), both inside the picture.
   [[nodiscard]] std::array<std::uint8_t, 3> pixel(int x, int y) const {

@@ -9,15 +9,10 @@
 #include "mjarm/render/gl_context.hpp"
 #include "mjarm/render/image.hpp"
 #include "mjarm/render/overlay.hpp"
+#include "mjarm/render/scene.hpp"
 #include "mjarm/sim/sim.hpp"
 
 namespace mjarm {
-
-/// How much work goes into a picture.
-enum class RenderQuality {
-  low,   ///< no shadows, reflections or smoothing: for many frames without a GPU
-  high,  ///< shadows, reflections, 8 samples a pixel as far as OpenGL has them: for pictures
-};
 
 /// How to draw. Every default is usable as is.
 struct OffscreenOptions {

@@ -27,8 +27,8 @@ struct OverlaySphere {
 
 /// A polyline in the world frame W, drawn as a round tube.
 struct OverlayLine {
-  std::vector<Eigen::Vector3d> points_W;  ///< [m] fewer than two draw nothing
-  double width = 0.003;                   ///< [m] diameter of the tube, > 0
+  std::vector<Eigen::Vector3d> points_W = {};  ///< [m] fewer than two draw nothing
+  double width = 0.003;                        ///< [m] diameter of the tube, > 0
   Rgba color = {0.85F, 0.15F, 0.15F, 1};
 };
 
@@ -42,7 +42,7 @@ struct OverlayArrow {
 
 /// The axes of a frame F: x red, y green, z blue.
 struct OverlayFrame {
-  Pose X_WF;
+  Pose X_WF = {};
   double length = 0.1;   ///< [m] > 0
   double width = 0.005;  ///< [m] diameter of the axes, > 0
 };
@@ -51,16 +51,16 @@ struct OverlayFrame {
 /// shown as `?`. At most 99 characters.
 struct OverlayLabel {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< [m]
-  std::string text;
+  std::string text = {};
 };
 
 /// What is drawn on top of a model: plain data, casts no shadow, takes no part in physics.
 struct Overlay {
-  std::vector<OverlaySphere> spheres;
-  std::vector<OverlayLine> lines;
-  std::vector<OverlayArrow> arrows;
-  std::vector<OverlayFrame> frames;
-  std::vector<OverlayLabel> labels;
+  std::vector<OverlaySphere> spheres = {};
+  std::vector<OverlayLine> lines = {};
+  std::vector<OverlayArrow> arrows = {};
+  std::vector<OverlayFrame> frames = {};
+  std::vector<OverlayLabel> labels = {};
 };
 
 }  // namespace mjarm

@@ -15,22 +15,29 @@ enum class LineStyle { solid, dashed, dotted, points };
 
 /// One curve of a panel. NaN in `x` or `y` leaves a gap.
 struct PlotLine {
-  std::vector<double> x;  ///< shape (n,), in the unit of the panel's x axis
-  std::vector<double> y;  ///< shape (n,)
-  std::string label;      ///< name in the legend; empty = not in the legend
+  std::vector<double> x = {};  ///< shape (n,), in the unit of the panel's x axis
+  std::vector<double> y = {};  ///< shape (n,)
+  std::string label = {};      ///< name in the legend; empty = not in the legend
   LineStyle style = LineStyle::solid;
   int color = -1;  ///< index into the palette (8 colours that colour-blind readers can tell
                    ///< apart, then again from the first); -1 = next one of the panel; kInk = ink
   double width = 1.4;  ///< [pt] > 0
+  bool fits = true;    ///< the axes reach as far as this curve; false: drawn as far as they reach
 
   static constexpr int kInk = -2;  ///< dark grey, for planned curves and limits
 };
 
+/// A curve as it was planned (thin, dashed, ink) and as it was executed (wide, solid, vermilion),
+/// with their names in the user's language. Add the executed one first, so that both are seen.
+[[nodiscard]] PlotLine planned_line(std::vector<double> x, std::vector<double> y);
+[[nodiscard]] PlotLine executed_line(std::vector<double> x, std::vector<double> y);
+
 /// A shaded strip between two heights (a tolerance), behind the curves.
 struct PlotBand {
-  double lower = 0;   ///< in the unit of the panel's y axis
-  double upper = 0;   ///< >= lower
-  std::string label;  ///< name in the legend; empty = not in the legend
+  double lower = 0;        ///< in the unit of the panel's y axis
+  double upper = 0;        ///< >= lower
+  std::string label = {};  ///< name in the legend; empty = not in the legend
+  bool fits = true;        ///< the y axis reaches as far as this strip
 };
 
 /// A range of an axis; `lower` < `upper`.
@@ -41,23 +48,23 @@ struct PlotRange {
 
 /// One pair of axes.
 struct PlotPanel {
-  std::string title;    ///< empty = none
-  std::string x_label;  ///< with its unit, e.g. "time [s]"
-  std::string y_label;  ///< with its unit
-  std::vector<PlotLine> lines;
-  std::vector<PlotBand> bands;
-  bool equal_aspect = false;         ///< one unit is equally long on both axes (tool paths)
-  bool legend = true;                ///< shown where a curve or band has a label
-  bool y_from_zero = false;          ///< the y axis begins at 0 (errors, speeds)
-  std::optional<PlotRange> x_range;  ///< default: fits the data
-  std::optional<PlotRange> y_range;
+  std::string title = {};    ///< empty = none
+  std::string x_label = {};  ///< with its unit, e.g. "time [s]"
+  std::string y_label = {};  ///< with its unit
+  std::vector<PlotLine> lines = {};
+  std::vector<PlotBand> bands = {};
+  bool equal_aspect = false;              ///< one unit is equally long on both axes (tool paths)
+  bool legend = true;                     ///< shown where a curve or band has a label
+  bool y_from_zero = false;               ///< the y axis begins at 0 (errors, speeds)
+  std::optional<PlotRange> x_range = {};  ///< default: fits the data
+  std::optional<PlotRange> y_range = {};
 };
 
 /// A page of panels, filled row by row.
 struct Plot {
-  std::string title;  ///< empty = none
-  std::string note;   ///< small line at the foot, e.g. the worst error; empty = none
-  std::vector<PlotPanel> panels;
+  std::string title = {};  ///< empty = none
+  std::string note = {};   ///< small line at the foot, e.g. the worst error; empty = none
+  std::vector<PlotPanel> panels = {};
   int columns = 2;            ///< >= 1
   double panel_width = 270;   ///< [pt] of one panel with its labels, >= 120
   double panel_height = 200;  ///< [pt]

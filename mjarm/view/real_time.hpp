@@ -12,8 +12,8 @@ class RealTimePacer {
   /// @param speed simulated seconds a second, > 0; 1 = real time.
   explicit RealTimePacer(double timestep, double speed = 1);
 
-  /// Steps to run now. Time spent paused does not count; after a hiccup at most 0.1 s of physics
-  /// is caught up, so that a window stays alive on a slow machine.
+  /// Steps to run now. Time spent paused does not count; after a hiccup at most 0.25 s of the clock
+  /// is caught up at once, so that a window stays alive on a slow machine.
   [[nodiscard]] int steps_due(bool paused = false);
   /// The same with the clock given: `now` [s], from any fixed origin, never falling.
   [[nodiscard]] int steps_due_at(double now, bool paused = false);

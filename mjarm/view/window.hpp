@@ -1,14 +1,16 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/render/camera.hpp"
-#include "mjarm/render/offscreen.hpp"
+#include "mjarm/render/image.hpp"
 #include "mjarm/render/overlay.hpp"
+#include "mjarm/render/scene.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/view/live_plot.hpp"
 
@@ -16,11 +18,11 @@ namespace mjarm {
 
 /// How a window opens. Every default is usable as is.
 struct WindowOptions {
-  int width = 1280;    ///< [screen units] > 0
-  int height = 800;    ///< [screen units] > 0
-  Camera camera = {};  ///< a named camera is where the free camera starts
-  RenderQuality quality = RenderQuality::high;
-  bool paused = false;  ///< starts paused
+  int width = 1280;                           ///< [screen units] > 0
+  int height = 800;                           ///< [screen units] > 0
+  Camera camera = {};                         ///< a named camera is where the free camera starts
+  std::optional<RenderQuality> quality = {};  ///< default: high with a GPU, low without
+  bool paused = false;                        ///< starts paused
 };
 
 /// A window that shows a simulated world. The caller owns the loop and the physics:
@@ -56,10 +58,10 @@ class Window {
   [[nodiscard]] Result<void> draw(const Snapshot& snapshot, const Overlay& overlay = {},
                                   std::span<const LivePlot> plots = {});
 
+  /// The last frame again, as a picture of the size of the window's framebuffer.
+  [[nodiscard]] Result<Image> picture();
   /// Where the camera stands now.
   [[nodiscard]] CameraView view() const;
-  /// What is shown now, as a picture (the last frame drawn).
-  [[nodiscard]] Result<Image> picture() const;
 
  private:
   struct Impl;

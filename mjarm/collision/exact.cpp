@@ -1,0 +1,265 @@
+#include "mjarm/collision/exact.hpp"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/core/messages.hpp"
+
+namespace mjarm {
+namespace {
+
+using detail::GeomGap;
+using detail::GeomIds;
+
+struct DeleteData {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+/// Index of the joint whose value stands at `qpos` of the model's qpos; -1 where there is none.
+int joint_at(const mjModel& m, int qpos) {
+  for (int j = 0; j < static_cast<int>(m.njnt); ++j) {
+    const bool single = m.jnt_type[j] == mjJNT_HINGE || m.jnt_type[j] == mjJNT_SLIDE;
+    if (single && m.jnt_qposadr[j] == qpos) return j;
+  }
+  return -1;
+}
+
+/// The keyframe `home`, else the initial configuration.
+std::vector<double> rest_configuration(const mjModel& m) {
+  const int key = mj_name2id(&m, mjOBJ_KEY, "home");
+  const mjtNum* q = key >= 0 ? m.key_qpos + key * m.nq : m.qpos0;
+  return {q, q + m.nq};
+}
+
+std::string name_of(const mjModel& m, int type, int id) {
+  const char* const name = mj_id2name(&m, type, id);
+  return name == nullptr ? std::string() : std::string(name);
+}
+
+Eigen::Vector3d vector(const mjtNum* v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+struct ExactChecker::Impl {
+  Impl(const Model& model_in, const Arm& arm, const CheckOptions& options_in)
+      : model(model_in), options(options_in), m(*model.raw()), m_wide(*model.raw()) {
+    // The arrays are those of the shared model; only the options of these two heads differ.
+    for (mjModel* head : {&m, &m_wide}) {
+      head->opt.disableflags &= ~(mjDSBL_CONTACT | mjDSBL_CONSTRAINT | mjDSBL_NATIVECCD);
+      head->opt.enableflags &= ~(mjENBL_SLEEP | mjENBL_SPECULATIVE);
+    }
+    m_wide.opt.enableflags |= mjENBL_OVERRIDE;
+    m_wide.opt.o_margin = options.margin;
+    q_rest = rest_configuration(m);
+    mark_moving(arm);
+    capsule_boxes = detail::capsule_box_pairs(m, moves);
+    make_data();
+  }
+  Impl(const Impl& other)
+      : model(other.model),
+        options(other.options),
+        m(other.m),
+        m_wide(other.m_wide),
+        q_rest(other.q_rest),
+        addresses(other.addresses),
+        moves(other.moves),
+        capsule_boxes(other.capsule_boxes),
+        matches(other.matches) {
+    make_data();
+  }
+
+  void make_data() {
+    d.reset(mj_makeData(&m));
+    if (d) std::copy(q_rest.begin(), q_rest.end(), d->qpos);
+  }
+
+  /// Fills `addresses` and `moves`: the bodies of the arm's joints and all that hangs on them.
+  void mark_moving(const Arm& arm) {
+    moves.assign(static_cast<std::size_t>(m.nbody), false);
+    matches = true;
+    for (const ArmJoint& joint : arm.joints) {
+      const int id = joint_at(m, joint.qpos);
+      if (id < 0) {
+        matches = false;
+        continue;
+      }
+      addresses.push_back(joint.qpos);
+      moves[static_cast<std::size_t>(m.jnt_bodyid[id])] = true;
+    }
+    for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
+      const auto parent = static_cast<std::size_t>(m.body_parentid[b]);
+      if (moves[parent]) moves[static_cast<std::size_t>(b)] = true;
+    }
+  }
+
+  bool accepts(std::span<const double> q) const {
+    return matches && d && q.size() == addresses.size() &&
+           std::all_of(q.begin(), q.end(), [](double value) { return std::isfinite(value); });
+  }
+
+  void place(std::span<const double> q) {
+    for (std::size_t i = 0; i < q.size(); ++i) d->qpos[addresses[i]] = q[i];
+    mj_kinematics(&m, d.get());
+    mj_comPos(&m, d.get());
+    if (m.nflex > 0) mj_flex(&m, d.get());
+  }
+
+  /// True for a contact between two geoms of which at least one moves with the arm, but for those
+  /// that are measured by capsule_box_gap().
+  bool counts(const mjContact& contact) const {
+    const int geom1 = contact.geom[0];
+    const int geom2 = contact.geom[1];
+    if (geom1 < 0 || geom2 < 0 || detail::is_capsule_box(m, geom1, geom2)) return false;
+    const auto moving = [&](int geom) {
+      return moves[static_cast<std::size_t>(m.geom_bodyid[geom])];
+    };
+    return moving(geom1) || moving(geom2);
+  }
+
+  std::span<const mjContact> detect(const mjModel& head) {
+    mj_collision(&head, d.get());
+    return {d->contact, static_cast<std::size_t>(d->ncon)};
+  }
+
+  bool overlaps() {
+    const double most = -options.allow_depth;
+    const std::span<const mjContact> all = detect(m);
+    return std::any_of(
+               all.begin(), all.end(),
+               [&](const mjContact& contact) { return contact.dist < most && counts(contact); }) ||
+           std::any_of(capsule_boxes.begin(), capsule_boxes.end(), [&](GeomIds ids) {
+             const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
+             return gap && gap->distance < most;
+           });
+  }
+
+  GeomPair name_pair(GeomIds ids) const {
+    const auto geom = [&](int id) {
+      std::string name = name_of(m, mjOBJ_GEOM, id);
+      if (!name.empty()) return name;
+      const int body = m.geom_bodyid[id];
+      return name_of(m, mjOBJ_BODY, body) + "[" + std::to_string(id - m.body_geomadr[body]) + "]";
+    };
+    return {geom(ids.geom1), geom(ids.geom2), name_of(m, mjOBJ_BODY, m.geom_bodyid[ids.geom1]),
+            name_of(m, mjOBJ_BODY, m.geom_bodyid[ids.geom2])};
+  }
+
+  /// The deepest contact of each pair that overlaps, deepest first.
+  std::vector<Contact> overlapping() {
+    std::map<GeomIds, GeomGap> deepest;  // ordered, so that equal depths come in a fixed order
+    for (const mjContact& contact : detect(m)) {
+      if (contact.dist >= 0 || !counts(contact)) continue;
+      const GeomGap gap{contact.dist, vector(contact.pos), vector(contact.frame)};
+      const auto [entry, fresh] = deepest.try_emplace({contact.geom[0], contact.geom[1]}, gap);
+      if (!fresh && gap.distance < entry->second.distance) entry->second = gap;
+    }
+    for (const GeomIds ids : capsule_boxes) {
+      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
+      if (gap && gap->distance < 0) deepest.emplace(ids, *gap);
+    }
+    std::vector<Contact> out;
+    for (const auto& [ids, gap] : deepest) {
+      out.push_back({name_pair(ids), -gap.distance, gap.point_W, gap.normal_W});
+    }
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
+    return out;
+  }
+
+  /// Candidates come from the collision detection with a wide margin, so that its rules decide
+  /// which pairs count; their distance is measured exactly.
+  std::optional<NearestPair> nearest() {
+    std::set<GeomIds> candidates;
+    for (const mjContact& contact : detect(m_wide)) {
+      if (counts(contact)) candidates.insert({contact.geom[0], contact.geom[1]});
+    }
+    GeomIds which;
+    NearestPair best;
+    best.distance = options.margin;
+    for (const GeomIds ids : candidates) {
+      std::array<mjtNum, 6> segment{};
+      const double distance =
+          mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, segment.data());
+      if (distance >= best.distance) continue;
+      which = ids;
+      best = {{}, distance, vector(segment.data()), vector(segment.data() + 3)};
+    }
+    for (const GeomIds ids : capsule_boxes) {
+      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
+      if (!gap || gap->distance >= best.distance) continue;
+      which = ids;
+      const Eigen::Vector3d half = 0.5 * gap->distance * gap->normal_W;
+      best = {{}, gap->distance, gap->point_W - half, gap->point_W + half};
+    }
+    if (which.geom1 < 0) return std::nullopt;
+    best.pair = name_pair(which);
+    return best;
+  }
+
+  Model model;  // keeps the arrays alive
+  CheckOptions options;
+  mjModel m;       // head of the model for contacts
+  mjModel m_wide;  // the same with `margin` round every geom
+  std::vector<double> q_rest;
+  std::vector<int> addresses;  // of the arm's joints in qpos
+  std::vector<bool> moves;     // per body
+  std::vector<GeomIds> capsule_boxes;
+  bool matches = false;  // the arm is one of this model
+  std::unique_ptr<mjData, DeleteData> d;
+};
+
+ExactChecker::ExactChecker(const Model& model, const Arm& arm, const CheckOptions& options)
+    : impl_(std::make_unique<Impl>(model, arm, options)) {}
+ExactChecker::~ExactChecker() = default;
+ExactChecker::ExactChecker(const ExactChecker& other)
+    : impl_(std::make_unique<Impl>(*other.impl_)) {}
+ExactChecker& ExactChecker::operator=(const ExactChecker& other) {
+  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+ExactChecker::ExactChecker(ExactChecker&&) noexcept = default;
+ExactChecker& ExactChecker::operator=(ExactChecker&&) noexcept = default;
+
+Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
+  if (!impl_->accepts(q)) {
+    return fail(Errc::bad_input, text(Msg::collision_bad_q, impl_->addresses.size(), q.size()));
+  }
+  impl_->place(q);
+  CollisionReport report;
+  report.contacts = impl_->overlapping();
+  report.free =
+      report.contacts.empty() || report.contacts.front().depth <= impl_->options.allow_depth;
+  if (impl_->options.margin > 0) report.nearest = impl_->nearest();
+  return report;
+}
+
+bool ExactChecker::is_free(std::span<const double> q) {
+  if (!impl_->accepts(q)) return false;
+  impl_->place(q);
+  return !impl_->overlaps();
+}
+
+std::function<bool(std::span<const double>)> ExactChecker::predicate() const {
+  auto own = std::make_shared<ExactChecker>(*this);
+  return [own](std::span<const double> q) { return own->is_free(q); };
+}
+
+std::string describe(const CollisionReport& report) {
+  if (!report.contacts.empty()) {
+    const Contact& worst = report.contacts.front();
+    return text(Msg::collision_overlap, worst.pair.geom1, worst.pair.body1, worst.pair.geom2,
+                worst.pair.body2, worst.depth);
+  }
+  if (!report.nearest) return text(Msg::collision_free);
+  const NearestPair& nearest = *report.nearest;
+  return text(Msg::collision_free_by, nearest.pair.geom1, nearest.pair.geom2, nearest.distance);
+}
+
+}  // namespace mjarm

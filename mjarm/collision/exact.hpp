@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/arm.hpp"
+#include "mjarm/model/model.hpp"
+
+namespace mjarm {
+
+/// How a configuration is checked. Every default is usable as is.
+struct CheckOptions {
+  double margin = 0.1;     ///< [m] up to where check() looks for the nearest pair, >= 0; 0 = never
+  double allow_depth = 0;  ///< [m] overlap that still counts as free, >= 0
+};
+
+/// Two geoms and the bodies they belong to, by name. A geom without a name is called BODY[k], the
+/// k-th (from 0) of its body.
+struct GeomPair {
+  std::string geom1, geom2;
+  std::string body1, body2;
+};
+
+/// Two geoms that overlap, at the place where they do so most.
+struct Contact {
+  GeomPair pair;
+  double depth = 0;          ///< [m] overlap along the normal, > 0
+  Eigen::Vector3d point_W;   ///< [m] midway between the two surfaces
+  Eigen::Vector3d normal_W;  ///< unit, from geom 1 to geom 2
+};
+
+/// The two geoms that are nearest to each other.
+struct NearestPair {
+  GeomPair pair;
+  double distance = 0;   ///< [m] between the surfaces; negative where they overlap
+  Eigen::Vector3d p1_W;  ///< [m] nearest point of geom 1
+  Eigen::Vector3d p2_W;  ///< [m] nearest point of geom 2
+};
+
+/// What a check found.
+struct CollisionReport {
+  bool free = true;                    ///< no overlap deeper than CheckOptions::allow_depth
+  std::vector<Contact> contacts;       ///< one a pair of geoms that overlap, deepest first
+  std::optional<NearestPair> nearest;  ///< none where nothing is nearer than CheckOptions::margin
+};
+
+/// One line for people: the deepest contact, or that the configuration is free and by how much.
+[[nodiscard]] std::string describe(const CollisionReport& report);
+
+/// The exact collision checker: MuJoCo's own kinematics and collision detection on one
+/// configuration of an arm, with MuJoCo's rules about which geoms collide (contype and conaffinity,
+/// parent and child, excludes, explicit pairs). Only pairs count of which at least one geom moves
+/// with the arm (gripper included); a box that lies on the floor does not. Joints off the arm stand
+/// at the keyframe `home`, else at their initial value. Contacts are checked even where the file
+/// switches them off. Owns its scratch memory: copy it to use it from another thread.
+class ExactChecker {
+ public:
+  /// `arm` must come from `model`; else every check answers with an error.
+  ExactChecker(const Model& model, const Arm& arm, const CheckOptions& options = {});
+  ~ExactChecker();
+  ExactChecker(const ExactChecker& other);
+  ExactChecker& operator=(const ExactChecker& other);
+  ExactChecker(ExactChecker&&) noexcept;
+  ExactChecker& operator=(ExactChecker&&) noexcept;
+
+  /// Looks at `q`, shape (dof,) [rad or m]; limits are not looked at.
+  /// @return bad_input for a wrong size or a number that is not finite.
+  [[nodiscard]] Result<CollisionReport> check(std::span<const double> q);
+
+  /// The short way: true where check(q) would be free; false where it would fail.
+  [[nodiscard]] bool is_free(std::span<const double> q);
+
+  /// is_free() of a checker of its own, as a predicate for IkOptions::valid. Copies of the
+  /// predicate share that checker, so each thread needs one of its own.
+  [[nodiscard]] std::function<bool(std::span<const double>)> predicate() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mjarm

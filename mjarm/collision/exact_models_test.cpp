@@ -1,0 +1,175 @@
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/core/rng.hpp"
+#include "mjarm/model/find_arm.hpp"
+
+/// The exact checker on the shipped models, against MuJoCo called directly.
+namespace mjarm {
+namespace {
+
+struct Shipped {
+  explicit Shipped(const char* name)
+      : model(Model::load(find_model_file(name).value()).value()),
+        arm(find_arm(model).value()),
+        d(mj_makeData(model.raw()), mj_deleteData) {
+    const mjModel& m = *model.raw();
+    const int home = mj_name2id(&m, mjOBJ_KEY, "home");
+    if (home >= 0) mj_resetDataKeyframe(&m, d.get(), home);
+    for (int b = 1; b < m.nbody; ++b) {
+      const int first = m.jnt_bodyid[joint_of(arm.joints.front())];
+      int above = b;
+      while (above > 0 && above != first) above = m.body_parentid[above];
+      if (above == first) moving.insert(b);
+    }
+  }
+
+  int joint_of(const ArmJoint& joint) const {
+    return mj_name2id(model.raw(), mjOBJ_JOINT, joint.name.c_str());
+  }
+  void place(const std::vector<double>& q) const {
+    for (std::size_t i = 0; i < q.size(); ++i) d->qpos[arm.joints[i].qpos] = q[i];
+    mj_forward(model.raw(), d.get());
+  }
+  bool moves(int geom) const { return moving.count(model.raw()->geom_bodyid[geom]) > 0; }
+  std::vector<double> random_q(Rng& rng) const {
+    std::vector<double> q;
+    for (int i = 0; i < arm.dof(); ++i) {
+      q.push_back(rng.uniform(arm.limits.lower[i], arm.limits.upper[i]));
+    }
+    return q;
+  }
+
+  Model model;
+  Arm arm;
+  std::unique_ptr<mjData, void (*)(mjData*)> d;
+  std::set<int> moving;
+};
+
+/// Every overlap that mj_forward sees is seen, and no other, but for capsules in boxes, of which
+/// MuJoCo misses some.
+void compare_with_forward(const Shipped& robot, std::uint64_t seed) {
+  const mjModel& m = *robot.model.raw();
+  ExactChecker checker(robot.model, robot.arm, {.margin = 0});
+  Rng rng(seed);
+  int touching = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const std::vector<double> q = robot.random_q(rng);
+    robot.place(q);
+    std::size_t expected = 0;
+    double deepest = 0;
+    std::set<std::pair<int, int>> pairs;
+    for (int i = 0; i < robot.d->ncon; ++i) {
+      const mjContact& contact = robot.d->contact[i];
+      if (!robot.moves(contact.geom[0]) && !robot.moves(contact.geom[1])) continue;
+      if (contact.dist >= 0 || detail::is_capsule_box(m, contact.geom[0], contact.geom[1]))
+        continue;
+      expected += pairs.insert({contact.geom[0], contact.geom[1]}).second ? 1 : 0;
+      deepest = std::max(deepest, -contact.dist);
+    }
+    const auto report = checker.check(q);
+    ASSERT_TRUE(report.has_value());
+    EXPECT_EQ(report->free, report->contacts.empty());
+    EXPECT_EQ(report->free, checker.is_free(q));
+    EXPECT_GE(report->contacts.size(), expected);
+    if (expected > 0) {
+      ++touching;
+      EXPECT_FALSE(report->free);
+      EXPECT_GE(report->contacts.front().depth, deepest - 1e-12);
+    }
+  }
+  EXPECT_GT(touching, 50);
+  EXPECT_LT(touching, 1000);
+}
+
+/// The nearest pair, against the distances of all pairs that may collide.
+void compare_with_all_pairs(const Shipped& robot, std::uint64_t seed) {
+  const mjModel& m = *robot.model.raw();
+  constexpr double margin = 0.15;
+  ExactChecker checker(robot.model, robot.arm, {.margin = margin});
+  Rng rng(seed);
+  int apart = 0;
+  for (int round = 0; round < 200; ++round) {
+    const std::vector<double> q = robot.random_q(rng);
+    robot.place(q);
+    double nearest = margin;
+    for (int i = 0; i < m.ngeom; ++i) {
+      for (int j = 0; j < m.ngeom; ++j) {
+        if (i == j || m.geom_type[i] > m.geom_type[j]) continue;
+        if (!robot.moves(i) && !robot.moves(j)) continue;
+        if (!detail::may_collide(m, i, j)) continue;
+        if (detail::is_capsule_box(m, i, j)) {
+          const auto gap = detail::capsule_box_gap(m, robot.d.get(), {i, j}, margin);
+          if (gap) nearest = std::min(nearest, gap->distance);
+        } else {
+          nearest = std::min(nearest, mj_geomDistance(&m, robot.d.get(), i, j, margin, nullptr));
+        }
+      }
+    }
+    const auto report = checker.check(q);
+    ASSERT_TRUE(report.has_value());
+    ASSERT_EQ(report->nearest.has_value(), nearest < margin);
+    if (!report->nearest) continue;
+    EXPECT_NEAR(report->nearest->distance, nearest, 1e-9);
+    apart += nearest > 0 ? 1 : 0;
+  }
+  EXPECT_GT(apart, 10);
+}
+
+TEST(ExactCheckerModels, AgreesWithForwardOnTheUr5e) { compare_with_forward(Shipped("ur5e"), 81); }
+TEST(ExactCheckerModels, AgreesWithForwardOnThePanda) {
+  compare_with_forward(Shipped("panda"), 82);
+}
+TEST(ExactCheckerModels, NearestIsNearestOnTheUr5e) { compare_with_all_pairs(Shipped("ur5e"), 83); }
+TEST(ExactCheckerModels, NearestIsNearestOnThePanda) {
+  compare_with_all_pairs(Shipped("panda"), 84);
+}
+
+TEST(ExactCheckerModels, HomeIsFree) {
+  for (const char* name : {"ur5e", "panda"}) {
+    const Shipped robot(name);
+    ExactChecker checker(robot.model, robot.arm);
+    const auto report = checker.check(view(robot.arm.home));
+    ASSERT_TRUE(report.has_value());
+    EXPECT_TRUE(report->free) << name << ": " << describe(*report);
+  }
+}
+
+TEST(ExactCheckerModels, Ur5eStartBelowTheFloorIsReported) {
+  const Shipped robot("ur5e");
+  ExactChecker checker(robot.model, robot.arm);
+  const auto report = checker.check(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
+  ASSERT_TRUE(report.has_value());
+  EXPECT_FALSE(report->free);
+  const bool floor_named =
+      std::any_of(report->contacts.begin(), report->contacts.end(), [](const Contact& contact) {
+        return contact.pair.geom1 == "floor" || contact.pair.geom2 == "floor";
+      });
+  EXPECT_TRUE(floor_named) << describe(*report);
+}
+
+TEST(ExactCheckerModels, PandaHandInTheFloorIsNamed) {
+  const Shipped robot("panda");
+  ExactChecker checker(robot.model, robot.arm);
+  // Stretched forwards and down, the hand first.
+  const auto report = checker.check(std::vector<double>{0, 1.6, 0, -0.6, 0, 2.2, 0.785});
+  ASSERT_TRUE(report.has_value());
+  ASSERT_FALSE(report->free);
+  const Contact& worst = report->contacts.front();
+  EXPECT_EQ(worst.pair.geom1, "floor");
+  EXPECT_NEAR(worst.normal_W.z(), 1, 1e-12);
+  EXPECT_TRUE(worst.pair.body2 == "hand" || worst.pair.body2.find("finger") != std::string::npos)
+      << describe(*report);
+}
+
+}  // namespace
+}  // namespace mjarm

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+
+#include <memory>
+
+#include "mjarm/core/rng.hpp"
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/ik.hpp"
+#include "mjarm/model/find_arm.hpp"
+
+/// Kinematics of arms that come out of files, against MuJoCo.
+namespace mjarm {
+namespace {
+
+struct Loaded {
+  Model model;
+  Arm arm;
+};
+
+Loaded load(const std::filesystem::path& file) {
+  auto model = Model::load(file);
+  EXPECT_TRUE(model.has_value()) << model.error().what;
+  auto arm = find_arm(model.value());  // throws, and so fails the test, where there is none
+  EXPECT_TRUE(arm.has_value()) << arm.error().what;
+  return {model.value(), arm.value()};
+}
+
+JointVec random_q(const Arm& arm, Rng& rng) {
+  JointVec q(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) {
+    q[i] = rng.uniform(arm.limits.lower[i], arm.limits.upper[i]);
+  }
+  return q;
+}
+
+/// Pose and Jacobian of a site by MuJoCo, row-major as MuJoCo has them.
+void compare_with_mujoco(const Loaded& robot, Rng& rng) {
+  const mjModel& m = *robot.model.raw();
+  const Arm& arm = robot.arm;
+  const int site = mj_name2id(&m, mjOBJ_SITE, arm.tip.c_str());
+  ASSERT_GE(site, 0) << arm.tip;
+  const std::unique_ptr<mjData, void (*)(mjData*)> d(mj_makeData(&m), mj_deleteData);
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Rows linear(3, m.nv), angular(3, m.nv);
+  for (int round = 0; round < 1000; ++round) {
+    const JointVec q = random_q(arm, rng);
+    for (int i = 0; i < arm.dof(); ++i) {
+      d->qpos[arm.joints[static_cast<std::size_t>(i)].qpos] = q[i];
+    }
+    mj_kinematics(&m, d.get());
+    mj_comPos(&m, d.get());
+    mj_jacSite(&m, d.get(), linear.data(), angular.data(), site);
+    const FkJacobian got = fk_jacobian(arm, view(q));
+    const Eigen::Map<const Eigen::Vector3d> p(d->site_xpos + 3 * site);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(d->site_xmat + 9 * site);
+    EXPECT_LT((got.X_WT.p - p).norm(), 1e-12);
+    EXPECT_LT((got.X_WT.R - R).norm(), 1e-12);
+    for (int i = 0; i < arm.dof(); ++i) {
+      const int dof = arm.joints[static_cast<std::size_t>(i)].dof;
+      EXPECT_LT((got.J_W.col(i).head<3>() - linear.col(dof)).norm(), 1e-12);
+      EXPECT_LT((got.J_W.col(i).tail<3>() - angular.col(dof)).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(ModelArms, FkAndJacobianAreMujocosOnTheShippedArms) {
+  Rng rng(91);
+  for (const char* name : {"ur5e", "panda"}) {
+    const auto file = find_model_file(name);
+    ASSERT_TRUE(file.has_value()) << file.error().what;
+    compare_with_mujoco(load(*file), rng);
+  }
+}
+
+TEST(ModelArms, Ur5eStandsWhereTheControllerHasIt) {
+  const Loaded robot = load(find_model_file("ur5e").value());
+  const Pose home = fk(robot.arm, view(robot.arm.home));
+  EXPECT_LT((home.p - Eigen::Vector3d(-0.134, 0.492, 0.488)).norm(), 1e-5);
+}
+
+/// With the hand's own tip, too, every pose the arm can take is found again.
+TEST(ModelArms, IkFindsRandomPosesOfTheShippedArms) {
+  Rng rng(92);
+  for (const char* name : {"ur5e", "panda"}) {
+    const Loaded robot = load(find_model_file(name).value());
+    const IkSolver ik(robot.arm);
+    for (int i = 0; i < 1000; ++i) {
+      const Pose X_goal = fk(robot.arm, view(random_q(robot.arm, rng)));
+      const auto answer = ik.solve(X_goal, view(random_q(robot.arm, rng)));
+      ASSERT_TRUE(answer.has_value()) << describe(answer.error(), robot.arm);
+      const Pose X = fk(robot.arm, view(answer->q));
+      EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
+      EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
+      EXPECT_TRUE(within_limits(robot.arm, view(answer->q)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mjarm

@@ -1,0 +1,71 @@
+#include "mjarm/path/letters.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+namespace mjarm {
+namespace {
+
+constexpr const char* kAll = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+
+TEST(Letters, EveryLetterFillsItsHeight) {
+  for (const char* c = kAll; *c != '\0'; ++c) {
+    const auto strokes = letter_strokes(std::string(1, *c), 0.2);
+    ASSERT_TRUE(strokes.has_value()) << *c;
+    double low = 1, high = 0, left = 1, right = 0;
+    for (const Stroke& stroke : *strokes) {
+      ASSERT_GE(stroke.size(), 2U) << *c;
+      for (std::size_t i = 0; i < stroke.size(); ++i) {
+        low = std::min(low, stroke[i].y());
+        high = std::max(high, stroke[i].y());
+        left = std::min(left, stroke[i].x());
+        right = std::max(right, stroke[i].x());
+        if (i == 0) continue;
+        EXPECT_GT((stroke[i] - stroke[i - 1]).norm(), 0.02) << *c;
+      }
+    }
+    EXPECT_NEAR(low, 0, 1e-12) << *c;
+    EXPECT_NEAR(high, 0.2, 1e-12) << *c;
+    EXPECT_GE(left, 0) << *c;
+    EXPECT_LE(right, 0.18) << *c;
+  }
+}
+
+TEST(Letters, LGoesDownThenRightAndZHasThreeStrokes) {
+  const auto l = letter_strokes("L", 0.9);
+  ASSERT_TRUE(l.has_value());
+  ASSERT_EQ(l->size(), 1U);
+  EXPECT_THAT(l->front(), testing::SizeIs(3));
+  EXPECT_LT(l->front()[1].y(), l->front()[0].y());
+  EXPECT_GT(l->front()[2].x(), l->front()[1].x());
+  const auto z = letter_strokes("z", 0.9);
+  ASSERT_TRUE(z.has_value());
+  EXPECT_THAT(z->front(), testing::SizeIs(4));
+}
+
+TEST(Letters, StandSideBySide) {
+  const auto one = letter_strokes("I", 0.1);
+  const auto many = letter_strokes("LI I", 0.1);
+  ASSERT_TRUE(one && many);
+  ASSERT_EQ(many->size(), 3U);
+  const double l_right = (*many)[0][2].x(), i_x = (*many)[1][0].x(), last_x = (*many)[2][0].x();
+  EXPECT_GT(i_x, l_right + 0.01);
+  EXPECT_GT(last_x, i_x + 0.04);
+}
+
+TEST(Letters, UnknownOnesAreNamed) {
+  const auto what = [](const Result<std::vector<Stroke>>& r) { return r ? "" : r.error().what; };
+  EXPECT_THAT(what(letter_strokes("A?", 0.1)), testing::HasSubstr("\"?\""));
+  EXPECT_THAT(what(letter_strokes("A\xE4\xB8\xAD", 0.1)), testing::HasSubstr("\"\xE4\xB8\xAD\""));
+  EXPECT_THAT(what(letter_strokes("  ", 0.1)), testing::HasSubstr("no letter"));
+  EXPECT_THAT(what(letter_strokes("", 0.1)), testing::HasSubstr("no letter"));
+  EXPECT_THAT(what(letter_strokes("A", 0)), testing::HasSubstr("height"));
+  EXPECT_THAT(what(letter_strokes("A", std::numeric_limits<double>::quiet_NaN())),
+              testing::HasSubstr("height"));
+}
+
+}  // namespace
+}  // namespace mjarm

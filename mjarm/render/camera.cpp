@@ -1,0 +1,66 @@
+#include "mjarm/render/camera.hpp"
+
+#include <mujoco/mujoco.h>
+
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/nearest_word.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180;
+
+Result<void> check_number(const char* name, double value, bool positive) {
+  if (std::isfinite(value) && (!positive || value > 0)) return {};
+  const std::string expected =
+      text(positive ? Msg::render_a_positive_number : Msg::render_a_finite_number);
+  return fail(Errc::bad_input, text(Msg::render_bad_view, name, value, expected));
+}
+
+Result<void> check_view(const CameraView& view) {
+  for (const auto& [name, value] :
+       {std::pair("lookat x", view.lookat_W.x()), std::pair("lookat y", view.lookat_W.y()),
+        std::pair("lookat z", view.lookat_W.z()), std::pair("azimuth", view.azimuth),
+        std::pair("elevation", view.elevation)}) {
+    if (Result<void> checked = check_number(name, value, false); !checked) return checked;
+  }
+  return check_number("distance", view.distance, true);
+}
+
+}  // namespace
+
+CameraView default_view(const Model& model) {
+  mjvCamera camera;
+  mjv_defaultFreeCamera(model.raw(), &camera);
+  return {.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
+          .distance = camera.distance,
+          .azimuth = camera.azimuth * kRadPerDeg,
+          .elevation = camera.elevation * kRadPerDeg};
+}
+
+std::vector<std::string> camera_names(const Model& model) {
+  std::vector<std::string> names;
+  for (int id = 0; id < model.raw()->ncam; ++id) {
+    const char* name = mj_id2name(model.raw(), mjOBJ_CAMERA, id);
+    if (name != nullptr && *name != '\0') names.emplace_back(name);
+  }
+  return names;
+}
+
+Result<void> check_camera(const Model& model, const Camera& camera) {
+  if (camera.view) return check_view(*camera.view);
+  if (camera.name.empty()) return {};
+  if (mj_name2id(model.raw(), mjOBJ_CAMERA, camera.name.c_str()) >= 0) return {};
+  const std::vector<std::string> names = camera_names(model);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  if (list.empty()) list = text(Msg::render_none);
+  return fail(Errc::bad_input, text(Msg::render_no_camera, model.file().string(), camera.name,
+                                    did_you_mean(camera.name, names), list));
+}
+
+}  // namespace mjarm

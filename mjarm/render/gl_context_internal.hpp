@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "mjarm/render/gl_context.hpp"
+
+namespace mjarm {
+
+/// A context of one kind.
+struct GlContext::Impl {
+  virtual ~Impl() = default;
+  [[nodiscard]] virtual Result<void> make_current() = 0;
+  virtual void release() noexcept = 0;
+  /// Address of an OpenGL function, or null.
+  [[nodiscard]] virtual void* function(const char* name) = 0;
+  /// Lets MuJoCo find the library when it looks for OpenGL.
+  virtual void publish() = 0;
+
+  GlKind kind = GlKind::egl;
+  std::string renderer;
+  std::string version;
+};
+
+/// A context that is current, its strings not yet read; the error says why, without advice.
+[[nodiscard]] Result<std::unique_ptr<GlContext::Impl>> make_egl_context();
+[[nodiscard]] Result<std::unique_ptr<GlContext::Impl>> make_osmesa_context();
+
+}  // namespace mjarm

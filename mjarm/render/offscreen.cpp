@@ -1,0 +1,95 @@
+#include "mjarm/render/offscreen.hpp"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "mjarm/core/messages.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr int kMaxSize = 8192;
+
+/// OpenGL gives rows from bottom to top.
+void flip_rows(Image& image) {
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+  auto top = image.rgb.begin();
+  auto bottom = image.rgb.end() - static_cast<std::ptrdiff_t>(row);
+  for (; top < bottom; top += row, bottom -= row) {
+    std::swap_ranges(top, top + static_cast<std::ptrdiff_t>(row), bottom);
+  }
+}
+
+}  // namespace
+
+struct OffscreenRenderer::Impl {
+  Impl(GlContext context, const Model& model, const OffscreenOptions& options)
+      : gl(std::move(context)),
+        scene(model, options.quality),
+        viewport{0, 0, options.width, options.height} {
+    mjModel m = scene.model();
+    m.vis.global.offwidth = options.width;
+    m.vis.global.offheight = options.height;
+    // Without a GPU a larger shadow map costs more time than the whole rest of the picture.
+    if (gl.is_software()) m.vis.quality.shadowsize = std::min(m.vis.quality.shadowsize, 4096);
+    mjr_defaultContext(&context_);
+    mjr_makeContext(&m, &context_, mjFONTSCALE_150);
+    gl.release();
+  }
+  ~Impl() {
+    if (gl.make_current()) mjr_freeContext(&context_);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  GlContext gl;  ///< must outlive `context_`
+  Scene scene;
+  mjrRect viewport;
+  mjrContext context_{};
+};
+
+Result<OffscreenRenderer> OffscreenRenderer::create(const Model& model,
+                                                    const OffscreenOptions& options) {
+  const auto fits = [](int size) { return size >= 1 && size <= kMaxSize; };
+  if (!fits(options.width) || !fits(options.height)) {
+    return fail(Errc::bad_input,
+                text(Msg::render_bad_size, options.width, options.height, kMaxSize));
+  }
+  Result<GlContext> gl = GlContext::create(options.gl);
+  if (!gl) return fail(std::move(gl.error()));
+  return OffscreenRenderer(std::make_unique<Impl>(std::move(*gl), model, options));
+}
+
+OffscreenRenderer::OffscreenRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+OffscreenRenderer::~OffscreenRenderer() = default;
+OffscreenRenderer::OffscreenRenderer(OffscreenRenderer&&) noexcept = default;
+OffscreenRenderer& OffscreenRenderer::operator=(OffscreenRenderer&&) noexcept = default;
+
+Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& camera,
+                                      const Overlay& overlay) {
+  Scene& scene = impl_->scene;
+  if (Result<void> set = scene.set_state(snapshot); !set) return fail(std::move(set.error()));
+  if (Result<void> set = scene.set_camera(camera); !set) return fail(std::move(set.error()));
+  if (Result<void> current = impl_->gl.make_current(); !current) {
+    return fail(std::move(current.error()));
+  }
+  scene.update(overlay);
+  mjr_setBuffer(mjFB_OFFSCREEN, &impl_->context_);
+  mjr_render(impl_->viewport, &scene.raw(), &impl_->context_);
+  Image image{impl_->viewport.width, impl_->viewport.height, {}};
+  image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
+  mjr_readPixels(image.rgb.data(), nullptr, impl_->viewport, &impl_->context_);
+  const int error = mjr_getError();
+  impl_->gl.release();
+  if (error != 0) {
+    return fail(Errc::system, text(Msg::render_gl_error, error));
+  }
+  flip_rows(image);
+  return image;
+}
+
+const GlContext& OffscreenRenderer::gl() const noexcept { return impl_->gl; }
+
+}  // namespace mjarm

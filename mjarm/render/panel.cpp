@@ -1,0 +1,295 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mjarm/render/panel_internal.hpp"
+
+namespace mjarm::panel {
+namespace {
+
+using canvas::Align;
+using canvas::Box;
+using canvas::Page;
+using canvas::Point;
+using canvas::TextStyle;
+
+/// Colours that readers with any common kind of colour blindness can tell apart: the set of Okabe
+/// and Ito without its yellow, which is too pale for lines, and two of Paul Tol.
+constexpr std::array<Rgba, 8> kPalette = {{{0.000F, 0.447F, 0.698F, 1},    // blue
+                                           {0.835F, 0.369F, 0.000F, 1},    // vermilion
+                                           {0.000F, 0.620F, 0.451F, 1},    // green
+                                           {0.800F, 0.475F, 0.655F, 1},    // pink
+                                           {0.902F, 0.624F, 0.000F, 1},    // orange
+                                           {0.337F, 0.706F, 0.914F, 1},    // sky
+                                           {0.533F, 0.133F, 0.333F, 1},    // wine
+                                           {0.600F, 0.600F, 0.200F, 1}}};  // olive
+constexpr Rgba kInk = {0.20F, 0.20F, 0.20F, 1};
+constexpr Rgba kAxis = {0.40F, 0.40F, 0.40F, 1};
+constexpr Rgba kGrid = {0.90F, 0.90F, 0.90F, 1};
+constexpr Rgba kBand = {0.00F, 0.62F, 0.45F, 0.13F};
+
+constexpr TextStyle kTitle{.size = 9, .bold = true};
+constexpr TextStyle kLabel{.size = 8, .align = Align::middle};
+constexpr TextStyle kTick{.size = 7, .color = {0.3F, 0.3F, 0.3F, 1}};
+constexpr TextStyle kLegend{.size = 7.5};
+constexpr double kTickLength = 2.5;
+constexpr double kSample = 16;        // length of a line in the legend
+constexpr double kLegendHeight = 11;  // of one row
+constexpr double kAwayFromText = 4;
+constexpr double kMarginShare = 0.04;
+
+struct Axes {
+  Box box;
+  PlotRange x;
+  PlotRange y;
+
+  [[nodiscard]] double to_x(double value) const {
+    return box.x + (value - x.lower) / (x.upper - x.lower) * box.width;
+  }
+  [[nodiscard]] double to_y(double value) const {
+    return box.y + box.height - (value - y.lower) / (y.upper - y.lower) * box.height;
+  }
+};
+
+struct Entry {
+  const PlotLine* line = nullptr;  ///< null for a band
+  std::string label;
+  Rgba color;
+  double x = 0;  ///< from the left of the axes
+  int row = 0;
+};
+
+TextStyle aligned(TextStyle style, Align align) {
+  style.align = align;
+  return style;
+}
+
+/// The colour of each line.
+std::vector<Rgba> colors_of(const PlotPanel& panel) {
+  std::vector<Rgba> colors;
+  std::size_t next = 0;
+  for (const PlotLine& line : panel.lines) {
+    if (line.color == PlotLine::kInk) {
+      colors.push_back(kInk);
+    } else {
+      const std::size_t index = line.color < 0 ? next++ : static_cast<std::size_t>(line.color);
+      colors.push_back(kPalette[index % kPalette.size()]);
+    }
+  }
+  return colors;
+}
+
+/// Legend entries in rows no wider than `width`.
+std::vector<Entry> legend_of(const PlotPanel& panel, double width) {
+  std::vector<Entry> entries;
+  if (!panel.legend) return entries;
+  const std::vector<Rgba> colors = colors_of(panel);
+  for (std::size_t i = 0; i < panel.lines.size(); ++i) {
+    if (panel.lines[i].label.empty()) continue;
+    entries.push_back({&panel.lines[i], panel.lines[i].label, colors[i]});
+  }
+  for (const PlotBand& band : panel.bands) {
+    if (!band.label.empty()) entries.push_back({nullptr, band.label, kBand});
+  }
+  double x = 0;
+  int row = 0;
+  for (Entry& entry : entries) {
+    const double length = kSample + kAwayFromText + canvas::text_width(entry.label, kLegend);
+    if (x > 0 && x + length > width) {
+      x = 0;
+      ++row;
+    }
+    entry.x = x;
+    entry.row = row;
+    x += length + 10;
+  }
+  return entries;
+}
+
+int rows_of(const std::vector<Entry>& legend) { return legend.empty() ? 0 : legend.back().row + 1; }
+
+/// The ranges that show all that counts, before they are fitted to a box.
+Axes ranges_of(const PlotPanel& panel) {
+  axis::Extent x;
+  axis::Extent y;
+  for (const PlotLine& line : panel.lines) {
+    if (!line.fits) continue;
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      if (std::isnan(line.x[i]) || std::isnan(line.y[i])) continue;
+      x.add(line.x[i]);
+      y.add(line.y[i]);
+    }
+  }
+  for (const PlotBand& band : panel.bands) {
+    if (!band.fits) continue;
+    y.add(band.lower);
+    y.add(band.upper);
+  }
+  Axes axes{{},
+            panel.x_range.value_or(x.range(panel.equal_aspect ? kMarginShare : 0.02)),
+            panel.y_range.value_or(y.range(kMarginShare))};
+  if (panel.y_from_zero && !panel.y_range && axes.y.upper > 0) axes.y.lower = 0;
+  return axes;
+}
+
+Axes fitted(const PlotPanel& panel, const Layout& layout) {
+  Axes axes = ranges_of(panel);
+  const Margins& m = layout.margins;
+  axes.box = {layout.place.x + m.left, layout.place.y + m.top,
+              layout.place.width - m.left - m.right, layout.place.height - m.top - m.bottom};
+  if (panel.equal_aspect) axis::equalise(axes.x, axes.y, axes.box.width, axes.box.height);
+  return axes;
+}
+
+axis::Ticks x_ticks(const Axes& axes) {
+  return axis::ticks_for(axes.x, static_cast<int>(axes.box.width / 38));
+}
+axis::Ticks y_ticks(const Axes& axes) {
+  return axis::ticks_for(axes.y, static_cast<int>(axes.box.height / 24));
+}
+
+double widest(const axis::Ticks& ticks) {
+  double width = 0;
+  for (const std::string& label : ticks.labels) {
+    width = std::max(width, canvas::text_width(label, kTick));
+  }
+  return width;
+}
+
+std::vector<double> dash_of(LineStyle style) {
+  if (style == LineStyle::dashed) return {4.5, 2.5};
+  if (style == LineStyle::dotted) return {1.2, 1.8};
+  return {};
+}
+
+void add_line(Page& page, std::vector<Point> points, const Rgba& color, double width,
+              LineStyle style = LineStyle::solid) {
+  page.items.push_back(canvas::Polyline{std::move(points), {color, width, dash_of(style)}});
+}
+
+void draw_grid(const Axes& axes, const axis::Ticks& xs, const axis::Ticks& ys, Page& page) {
+  const Box& box = axes.box;
+  const double bottom = box.y + box.height;
+  for (std::size_t i = 0; i < xs.at.size(); ++i) {
+    const double x = axes.to_x(xs.at[i]);
+    add_line(page, {{x, box.y}, {x, bottom}}, kGrid, 0.5);
+    add_line(page, {{x, bottom}, {x, bottom + kTickLength}}, kAxis, 0.6);
+    page.items.push_back(
+        canvas::Text{{x, bottom + 10}, xs.labels[i], aligned(kTick, Align::middle)});
+  }
+  for (std::size_t i = 0; i < ys.at.size(); ++i) {
+    const double y = axes.to_y(ys.at[i]);
+    add_line(page, {{box.x, y}, {box.x + box.width, y}}, kGrid, 0.5);
+    add_line(page, {{box.x - kTickLength, y}, {box.x, y}}, kAxis, 0.6);
+    page.items.push_back(
+        canvas::Text{{box.x - kAwayFromText, y + 2.5}, ys.labels[i], aligned(kTick, Align::right)});
+  }
+  if (!ys.factor.empty()) page.items.push_back(canvas::Text{{box.x, box.y - 4}, ys.factor, kTick});
+  if (!xs.factor.empty()) {
+    page.items.push_back(
+        canvas::Text{{box.x + box.width, bottom + 20}, xs.factor, aligned(kTick, Align::right)});
+  }
+}
+
+void draw_frame(const PlotPanel& panel, const Layout& layout, const Axes& axes, Page& page) {
+  const Box& box = axes.box;
+  const double bottom = box.y + box.height;
+  add_line(page, {{box.x, box.y}, {box.x, bottom}, {box.x + box.width, bottom}}, kAxis, 0.7);
+  if (!panel.title.empty()) {
+    page.items.push_back(canvas::Text{{box.x, layout.place.y + 12}, panel.title, kTitle});
+  }
+  if (!panel.x_label.empty()) {
+    page.items.push_back(canvas::Text{{box.x + box.width / 2, bottom + 21}, panel.x_label, kLabel});
+  }
+  if (!panel.y_label.empty()) {
+    TextStyle style = kLabel;
+    style.upright = true;
+    page.items.push_back(
+        canvas::Text{{layout.place.x + 11, box.y + box.height / 2}, panel.y_label, style});
+  }
+}
+
+/// Points closer together than the eye can see are left out.
+void draw_curve(const PlotLine& line, const Rgba& color, const Axes& axes, Page& page) {
+  constexpr double kNearest = 0.2;  // [pt]
+  std::vector<Point> points;
+  const auto end_part = [&] {
+    if (line.style == LineStyle::points) {
+      if (!points.empty()) page.items.push_back(canvas::Dots{points, line.width, color});
+    } else if (points.size() > 1) {
+      add_line(page, points, color, line.width, line.style);
+    }
+    points.clear();
+  };
+  Point last;
+  for (std::size_t i = 0; i < line.x.size(); ++i) {
+    last = {axes.to_x(line.x[i]), axes.to_y(line.y[i])};
+    if (!std::isfinite(last.x) || !std::isfinite(last.y)) {
+      end_part();
+      continue;
+    }
+    const bool final_point = i + 1 == line.x.size();
+    if (points.empty() || final_point ||
+        std::hypot(last.x - points.back().x, last.y - points.back().y) >= kNearest) {
+      points.push_back(last);
+    }
+  }
+  end_part();
+}
+
+void draw_legend(const std::vector<Entry>& legend, const Axes& axes, double top, Page& page) {
+  for (const Entry& entry : legend) {
+    const double x = axes.box.x + entry.x;
+    const double y = top + kLegendHeight * entry.row + 8;
+    const double middle = y - 2.7;
+    if (entry.line == nullptr) {
+      page.items.push_back(canvas::Fill{{x, y - 6.2, kSample, 7}, entry.color});
+    } else if (entry.line->style == LineStyle::points) {
+      page.items.push_back(
+          canvas::Dots{{{x + kSample / 2, middle}}, entry.line->width, entry.color});
+    } else {
+      add_line(page, {{x, middle}, {x + kSample, middle}}, entry.color, entry.line->width,
+               entry.line->style);
+    }
+    page.items.push_back(canvas::Text{{x + kSample + kAwayFromText, y}, entry.label, kLegend});
+  }
+}
+
+double title_height(const PlotPanel& panel) { return panel.title.empty() ? 4 : 17; }
+
+}  // namespace
+
+Layout measure(const PlotPanel& panel, const Box& place) {
+  Layout layout{place, {40, 20, 8, 28}};
+  if (panel.x_label.empty()) layout.margins.bottom = 17;
+  // The ticks depend on the room for them, and the room on the ticks: twice is enough.
+  for (int round = 0; round < 2; ++round) {
+    const Axes axes = fitted(panel, layout);
+    const axis::Ticks ticks = y_ticks(axes);
+    const int rows = rows_of(legend_of(panel, axes.box.width));
+    layout.margins.left = (panel.y_label.empty() ? 4 : 16) + widest(ticks) + kAwayFromText + 2;
+    layout.margins.top =
+        title_height(panel) + rows * kLegendHeight + 3 + (ticks.factor.empty() ? 0 : 9);
+  }
+  return layout;
+}
+
+void draw(const PlotPanel& panel, const Layout& layout, Page& page) {
+  const Axes axes = fitted(panel, layout);
+  draw_grid(axes, x_ticks(axes), y_ticks(axes), page);
+  page.items.push_back(canvas::Clip{axes.box});
+  for (const PlotBand& band : panel.bands) {
+    const double top = axes.to_y(band.upper);
+    page.items.push_back(
+        canvas::Fill{{axes.box.x, top, axes.box.width, axes.to_y(band.lower) - top}, kBand});
+  }
+  const std::vector<Rgba> colors = colors_of(panel);
+  for (std::size_t i = 0; i < panel.lines.size(); ++i) {
+    draw_curve(panel.lines[i], colors[i], axes, page);
+  }
+  page.items.push_back(canvas::Unclip{});
+  draw_frame(panel, layout, axes, page);
+  draw_legend(legend_of(panel, axes.box.width), axes, layout.place.y + title_height(panel), page);
+}
+
+}  // namespace mjarm::panel

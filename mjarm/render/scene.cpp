@@ -1,0 +1,164 @@
+#include "mjarm/render/scene.hpp"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/render/overlay_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180;
+
+struct DeleteData {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+/// A copy of the model's head that shares its arrays, with the quality set.
+mjModel with_quality(const mjModel& original, RenderQuality quality) {
+  mjModel m = original;
+  if (quality == RenderQuality::low) {
+    m.vis.quality.offsamples = 0;
+    m.vis.quality.shadowsize = 0;
+    m.vis.quality.numslices = std::min(m.vis.quality.numslices, 16);
+    m.vis.quality.numstacks = std::min(m.vis.quality.numstacks, 8);
+  } else {
+    m.vis.quality.offsamples = std::max(m.vis.quality.offsamples, 8);
+  }
+  return m;
+}
+
+/// Geoms that the model alone may fill, with room for what MuJoCo adds (frames, tendons, contacts).
+std::size_t geoms_of(const mjModel& m) {
+  return 2000 + static_cast<std::size_t>(m.ngeom + 2 * m.nsite + 4 * m.nwrap + 2 * m.njnt);
+}
+
+mjvCamera free_camera(const CameraView& view) {
+  mjvCamera camera;
+  mjv_defaultCamera(&camera);
+  camera.type = mjCAMERA_FREE;
+  Eigen::Map<Eigen::Vector3d>(camera.lookat) = view.lookat_W;
+  camera.distance = view.distance;
+  camera.azimuth = view.azimuth / kRadPerDeg;
+  camera.elevation = view.elevation / kRadPerDeg;
+  return camera;
+}
+
+}  // namespace
+
+struct Scene::Impl {
+  Impl(const Model& source, RenderQuality quality_asked)
+      : owner(source),
+        quality(quality_asked),
+        m(with_quality(*source.raw(), quality_asked)),
+        d(mj_makeData(&m)) {
+    mjv_defaultOption(&option);
+    mjv_defaultScene(&scene);
+    camera = free_camera(default_view(owner));
+    make_room(1000);
+    update_positions();
+  }
+  ~Impl() { mjv_freeScene(&scene); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  /// Makes room for an overlay of this many geoms beside the model.
+  void make_room(std::size_t overlay_geoms) {
+    const std::size_t needed = geoms_of(m) + overlay_geoms;
+    if (static_cast<std::size_t>(scene.maxgeom) >= needed) return;
+    mjv_freeScene(&scene);
+    mjv_defaultScene(&scene);
+    mjv_makeScene(&m, &scene, static_cast<int>(needed + overlay_geoms));
+    const bool high = quality == RenderQuality::high;
+    scene.flags[mjRND_SHADOW] = high;
+    scene.flags[mjRND_REFLECTION] = high;
+  }
+
+  /// All that drawing needs of a state; contacts and forces are not computed.
+  void update_positions() {
+    mj_kinematics(&m, d.get());
+    mj_comPos(&m, d.get());
+    mj_camlight(&m, d.get());
+    mj_flex(&m, d.get());
+    mj_tendon(&m, d.get());
+    mj_transmission(&m, d.get());
+  }
+
+  Model owner;  ///< keeps the arrays of `m` alive
+  RenderQuality quality;
+  mjModel m;
+  std::unique_ptr<mjData, DeleteData> d;
+  mjvOption option{};
+  mjvCamera camera{};
+  mjvScene scene{};
+};
+
+Scene::Scene(const Model& model, RenderQuality quality)
+    : impl_(std::make_unique<Impl>(model, quality)) {}
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+Result<void> Scene::set_state(const Snapshot& snapshot) {
+  const int size = mj_stateSize(&impl_->m, mjSTATE_INTEGRATION);
+  if (snapshot.state.empty()) {
+    mj_resetData(&impl_->m, impl_->d.get());
+  } else if (static_cast<int>(snapshot.state.size()) == size) {
+    mj_setState(&impl_->m, impl_->d.get(), snapshot.state.data(), mjSTATE_INTEGRATION);
+  } else {
+    return fail(Errc::bad_input, text(Msg::render_bad_snapshot, snapshot.state.size(), size));
+  }
+  impl_->update_positions();
+  return {};
+}
+
+Result<void> Scene::set_camera(const Camera& camera) {
+  if (Result<void> checked = check_camera(impl_->owner, camera); !checked) return checked;
+  if (camera.view || camera.name.empty()) {
+    impl_->camera = free_camera(camera.view.value_or(default_view(impl_->owner)));
+    return {};
+  }
+  mjv_defaultCamera(&impl_->camera);
+  impl_->camera.type = mjCAMERA_FIXED;
+  impl_->camera.fixedcamid = mj_name2id(&impl_->m, mjOBJ_CAMERA, camera.name.c_str());
+  return {};
+}
+
+CameraView Scene::view() const {
+  const mjvCamera& camera = impl_->camera;
+  if (camera.type != mjCAMERA_FIXED) {
+    return {.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
+            .distance = camera.distance,
+            .azimuth = camera.azimuth * kRadPerDeg,
+            .elevation = camera.elevation * kRadPerDeg};
+  }
+  using Eigen::Vector3d;
+  const Vector3d p_WC = Eigen::Map<const Vector3d>(impl_->d->cam_xpos + 3 * camera.fixedcamid);
+  const mjtNum* R_WC = impl_->d->cam_xmat + 9 * camera.fixedcamid;  // row by row; looks along -z
+  const Vector3d forward(-R_WC[2], -R_WC[5], -R_WC[8]);
+  const Vector3d middle = Eigen::Map<const Vector3d>(impl_->m.stat.center);
+  const double nearest = 0.1 * impl_->m.stat.extent;
+  const double distance = std::max((middle - p_WC).dot(forward), nearest);
+  return {.lookat_W = p_WC + distance * forward,
+          .distance = distance,
+          .azimuth = std::atan2(forward.y(), forward.x()),
+          .elevation = std::asin(std::clamp(forward.z(), -1.0, 1.0))};
+}
+
+void Scene::update(const Overlay& overlay) {
+  impl_->make_room(geoms_of(overlay));
+  mjv_updateScene(&impl_->m, impl_->d.get(), &impl_->option, nullptr, &impl_->camera, mjCAT_ALL,
+                  &impl_->scene);
+  add_overlay(overlay, impl_->scene);
+}
+
+const mjModel& Scene::model() const noexcept { return impl_->m; }
+mjvCamera& Scene::camera() noexcept { return impl_->camera; }
+mjvScene& Scene::raw() noexcept { return impl_->scene; }
+
+}  // namespace mjarm

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/model.hpp"
+#include "mjarm/render/camera.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/sim/sim.hpp"
+
+struct mjvCamera_;
+struct mjvScene_;
+
+namespace mjarm {
+
+/// How much work goes into a picture.
+enum class RenderQuality {
+  low,   ///< no shadows, reflections or smoothing: for many frames without a GPU
+  high,  ///< shadows, reflections, 8 samples a pixel as far as OpenGL has them: for pictures
+};
+
+/// What is to be seen: a model in some state, an overlay and a camera, without any OpenGL. Shared
+/// by pictures and windows; owns its copy of the simulated state.
+class Scene {
+ public:
+  Scene(const Model& model, RenderQuality quality);
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  /// Puts the model into a state; one without numbers leaves it as it starts.
+  /// @return bad_input where the snapshot belongs to another model.
+  [[nodiscard]] Result<void> set_state(const Snapshot& snapshot);
+  /// Chooses the camera; fails as `check_camera` does.
+  [[nodiscard]] Result<void> set_camera(const Camera& camera);
+  /// Where the camera stands. For a camera of the model: the same line of sight, about the point
+  /// nearest to the middle of the model.
+  [[nodiscard]] CameraView view() const;
+  /// Rebuilds the list of what is drawn.
+  void update(const Overlay& overlay);
+
+  /// For those who may include mujoco.h: the model with the quality set, camera and scene.
+  [[nodiscard]] const mjModel_& model() const noexcept;
+  [[nodiscard]] mjvCamera_& camera() noexcept;
+  [[nodiscard]] mjvScene_& raw() noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace mjarm
