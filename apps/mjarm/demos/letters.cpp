@@ -57,6 +57,7 @@ Result<Report> run_letters(const DemoOptions& options) {
   Result<std::unique_ptr<Stage>> opened = Stage::open("letters", options);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
+  stage.set_camera("front");
   const ControlMode mode = stage.control(ControlMode::computed_torque);
 
   std::vector<Curve> curves;

@@ -236,7 +236,7 @@ Result<Report> Stage::write(Report report, Plot plot) {
   if (options_.timing && !show_.has_window() && wall_seconds_ > 0) {
     report.rtf = total_.duration / wall_seconds_;
   }
-  const DemoOutput output{report, std::move(plot), show_.overlay(), "overview"};
+  const DemoOutput output{report, std::move(plot), show_.overlay(), camera_};
   auto written = recorder_.write_csv(options_.out / "log.csv").and_then([&] {
     return write_output(options_.out, model_, sim_.snapshot(), output);
   });

@@ -37,6 +37,9 @@ class Stage {
   /// The control the user chose, else `fallback`; the report names it.
   [[nodiscard]] ControlMode control(ControlMode fallback);
 
+  /// Camera of the picture at the end, where the model has it (default: `overview`).
+  void set_camera(const std::string& name) { camera_ = name; }
+
   /// Puts the arm at `q`, at rest.
   void start_at(std::span<const double> q);
   /// Joint move from where the arm is commanded to `q`; not part of what is measured.
@@ -97,6 +100,7 @@ class Stage {
   std::vector<Measured> measured_;
   std::string end_reason_, end_detail_;
   std::string control_;
+  std::string camera_ = "overview";
   double wall_seconds_ = 0;
 };
 
