@@ -14,7 +14,13 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 JointLimits limits_of(const JointVec& v, const JointVec& a, const JointVec& j) {
   const JointVec far = JointVec::Constant(v.size(), 10);
-  return {-far, far, v, a, j, far};
+  return {.lower = -far,
+          .upper = far,
+          .velocity = v,
+          .acceleration = a,
+          .jerk = j,
+          .torque = far,
+          .sources = {}};
 }
 
 JointLimits one_joint(double v, double a, double j) {

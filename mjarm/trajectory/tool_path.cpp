@@ -15,9 +15,7 @@ namespace {
 using detail::Bounds;
 using detail::CubicSpline;
 
-constexpr double kKnotTime = 0.002;  // [s] between knots, at most
-
-/// Knots of a growing trajectory.
+/// Knots of a growing trajectory, or of a part of it.
 struct Knots {
   std::vector<double> times;
   std::vector<JointState> states;
@@ -65,71 +63,94 @@ double excess(const JointState& x, const Bounds& bounds) {
                   std::sqrt(x.a.cwiseAbs().cwiseQuotient(bounds.a).maxCoeff()));
 }
 
-/// States of a smoothed profile at `n` + 1 even times.
-std::vector<JointState> sampled(const CubicSpline& spline, const detail::SmoothProfile& smooth,
-                                std::size_t n) {
-  std::vector<JointState> states(n + 1);
-  for (std::size_t k = 0; k <= n; ++k) {
-    const double t = smooth.duration() * (static_cast<double>(k) / static_cast<double>(n));
-    states[k] = state_at(spline, smooth.at(t));
+/// States of a smoothed profile, so near each other that quintics in between are as good as exact:
+/// at most 2 ms apart (20 ms on very long motions), and several between two waypoints.
+Knots sampled(const CubicSpline& spline, const detail::SmoothProfile& smooth) {
+  const std::vector<double>& s = spline.knots();
+  const double duration = smooth.duration();
+  const double longest = std::clamp(duration / 5000, 0.002, 0.02);  // [s]
+  Knots knots;
+  std::size_t piece = 0;
+  for (double t = 0; t < duration;) {
+    const detail::PathState x = smooth.at(t);
+    knots.times.push_back(t);
+    knots.states.push_back(state_at(spline, x));
+    while (piece + 2 < s.size() && s[piece + 1] <= x.s) ++piece;
+    const double here = s[piece + 1] - s[piece];
+    const double next = piece + 2 < s.size() ? s[piece + 2] - s[piece + 1] : here;
+    const double speed = std::abs(x.v) + std::abs(x.a) * longest;
+    const double step =
+        0.5 * std::min(here, next) < speed * longest ? 0.5 * std::min(here, next) / speed : longest;
+    const double left = duration - t;
+    t = left <= step ? duration : t + std::min(step, 0.5 * left);
   }
-  return states;
+  knots.times.push_back(duration);
+  knots.states.push_back(state_at(spline, smooth.at(duration)));
+  return knots;
 }
 
 /// Makes `slow` smaller where the profile caused states that are too fast; returns the worst
 /// excess.
-double slow_down(const std::vector<JointState>& states, double duration, double window,
-                 const Bounds& bounds, const detail::SpeedProfile& profile,
-                 std::vector<double>& slow) {
+double slow_down(const Knots& knots, double window, const Bounds& bounds,
+                 const detail::SpeedProfile& profile, std::vector<double>& slow) {
   const std::vector<double> before = slow;
   double worst = 0;
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    const double over = excess(states[k], bounds);
+  for (std::size_t k = 0; k < knots.times.size(); ++k) {
+    const double over = excess(knots.states[k], bounds);
     worst = std::max(worst, over);
     if (over <= 1) continue;
-    const double t = duration * (static_cast<double>(k) / static_cast<double>(states.size() - 1));
-    // The state is a mean over the window that ends at t.
-    const auto first = std::lower_bound(profile.t.begin(), profile.t.end(), t - window);
-    const auto last = std::upper_bound(profile.t.begin(), profile.t.end(), t);
-    const auto begin =
-        static_cast<std::size_t>(std::max<std::ptrdiff_t>(first - profile.t.begin() - 1, 0));
-    const auto end = std::min(static_cast<std::size_t>(last - profile.t.begin()) + 1, slow.size());
+    // The state is a mean over the window that ends at its time; one grid point more on both sides.
+    const auto index_of = [&](double t) {
+      return std::upper_bound(profile.t.begin(), profile.t.end(), t) - profile.t.begin();
+    };
+    const auto begin = static_cast<std::size_t>(
+        std::max<std::ptrdiff_t>(index_of(knots.times[k] - window) - 1, 0));
+    const auto end = std::min(static_cast<std::size_t>(index_of(knots.times[k])) + 1, slow.size());
     for (std::size_t i = begin; i < end; ++i) slow[i] = std::min(slow[i], before[i] / over);
   }
   return worst;
 }
 
-/// Adds the motion along `spline` from rest to rest.
-void add_piece(Knots& knots, const CubicSpline& spline, const Bounds& bounds,
-               const detail::PathBounds& path_bounds, double window) {
+/// Motion along `spline` from rest to rest: the fastest one, smoothed in time; where that breaks a
+/// bound (the mean of what is allowed here and a little further on need not be allowed), it is made
+/// slower there and tried again.
+Knots piece_along(const CubicSpline& spline, const Bounds& bounds,
+                  const detail::PathBounds& path_bounds, double window) {
   constexpr int kRounds = 20;
-  constexpr double kClose = 1e-4;  // the rest is had by stretching the time
+  constexpr double kClose = 1e-4;  // stretching the time does the rest
   const detail::PathGrid grid(spline);
   std::vector<double> slow(grid.s.size(), 1.0);
-  std::vector<JointState> states;
-  double duration = 0, worst = 0;
+  Knots knots;
   for (int round = 0; round < kRounds; ++round) {
     const detail::SpeedProfile profile = fastest_profile(grid, bounds, path_bounds, slow);
-    const detail::SmoothProfile smooth(profile, window);
-    duration = smooth.duration();
-    const auto n = static_cast<std::size_t>(std::max(16.0, std::ceil(duration / kKnotTime)));
-    states = sampled(spline, smooth, n);
-    worst = slow_down(states, duration, window, bounds, profile, slow);
-    if (worst <= 1 + kClose) break;
+    knots = sampled(spline, detail::SmoothProfile(profile, window));
+    if (slow_down(knots, window, bounds, profile, slow) <= 1 + kClose) break;
   }
-  const double stretch = std::max(worst, 1.0);
-  const double t0 = knots.times.back(), n = static_cast<double>(states.size() - 1);
-  for (std::size_t k = 1; k < states.size(); ++k) {
-    JointState& x = states[k];
-    x.v /= stretch;
-    x.a /= stretch * stretch;
-    knots.times.push_back(t0 + stretch * duration * (static_cast<double>(k) / n));
-    knots.states.push_back(std::move(x));
+  const JointVec zero = JointVec::Zero(knots.states[0].q.size());
+  knots.states.front() = {spline.at(spline.start()).q, zero, zero};
+  knots.states.back() = {spline.at(spline.end()).q, zero, zero};
+  return knots;
+}
+
+/// Stretches the time so that the quintics through the knots keep the bounds everywhere.
+Result<void> stretch_into(Knots& knots, const Bounds& bounds) {
+  constexpr int kSamples = 8;  // between two knots
+  const Result<Trajectory> trajectory = Trajectory::through(knots.times, knots.states);
+  if (!trajectory) return fail(trajectory.error());
+  double stretch = 1;
+  for (std::size_t k = 0; k + 1 < knots.times.size(); ++k) {
+    for (int i = 0; i < kSamples; ++i) {
+      const double share = static_cast<double>(i) / kSamples;
+      const double t = (1 - share) * knots.times[k] + share * knots.times[k + 1];
+      stretch = std::max(stretch, excess(trajectory->at(t), bounds));
+    }
   }
-  JointState& last = knots.states.back();
-  last.q = spline.at(spline.end()).q;
-  last.v.setZero();
-  last.a.setZero();
+  for (std::size_t k = 0; k < knots.times.size(); ++k) {
+    knots.times[k] *= stretch;
+    knots.states[k].v /= stretch;
+    knots.states[k].a /= stretch * stretch;
+  }
+  return {};
 }
 
 /// Time over which accelerations change: so long that a joint which starts at its acceleration
@@ -156,8 +177,14 @@ Result<Trajectory> time_tool_path(const JointPath& path, std::span<const double>
     const std::size_t first = (*rests)[i], count = (*rests)[i + 1] - first + 1;
     const CubicSpline spline(std::span(path.s).subspan(first, count),
                              std::span(path.q).subspan(first, count));
-    add_piece(knots, spline, *bounds, {options.tool_speed, options.tool_accel},
-              smoothing_window(*bounds));
+    Knots piece = piece_along(spline, *bounds, {options.tool_speed, options.tool_accel},
+                              smoothing_window(*bounds));
+    if (auto done = stretch_into(piece, *bounds); !done) return fail(std::move(done.error()));
+    const double t0 = knots.times.back();
+    for (std::size_t k = 1; k < piece.times.size(); ++k) {
+      knots.times.push_back(t0 + piece.times[k]);
+      knots.states.push_back(piece.states[k]);
+    }
   }
   return Trajectory::through(knots.times, knots.states);
 }
