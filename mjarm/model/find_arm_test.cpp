@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "mjarm/core/rng.hpp"
-#include "mjarm/model/arm_chain_test.hpp"
+#include "mjarm/model/test_chain_internal.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "mjarm/core/rotation.hpp"
-#include "mjarm/model/arm_chain_test.hpp"
 #include "mjarm/model/dynamics.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/test_chain_internal.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/support/test_data.hpp"
