@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "run_program.hpp"
-#include "temp_folder.hpp"
-#include "test_data.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/temp_folder.hpp"
+#include "tests/support/test_data.hpp"
 
 // The demos end to end, as a user runs them: the real program, real MuJoCo, files read back.
 namespace mjarm {
@@ -65,7 +65,7 @@ TEST_P(EveryDemo, EndsWellAndLeavesWholeFiles) {
 INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo,
                          testing::Values("car", "ur5e", "ur5e_vision", "point", "movej", "movel",
                                          "ellipse", "letters"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& demo) { return std::string(demo.param); });
 
 TEST(DemoEllipse, WholeCurveWithinHalfAMillimetre) {
   const TempFolder folder;
@@ -220,7 +220,7 @@ TEST(Demo, SpeaksChinese) {
 
 TEST(Demo, RunsFromAnyFolderAndWritesOnlyItsOwn) {
   const TempFolder folder, elsewhere;
-  const DemoRun run = run_demo(folder, {"car"}, {.folder = elsewhere.path()});
+  const DemoRun run = run_demo(folder, {"car"}, {.folder = elsewhere.path(), .input = {}, .environment = {}});
   EXPECT_EQ(run.result.exit_code, 0) << run.result.err;
   EXPECT_TRUE(std::filesystem::is_empty(elsewhere.path()));
 }

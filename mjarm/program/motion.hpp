@@ -14,8 +14,8 @@ namespace mjarm {
 
 /// How a tool motion is made from a curve.
 struct MotionOptions {
-  PathOptions path;
-  TimingOptions timing;
+  PathOptions path = {};
+  TimingOptions timing = {};
   double station_step = 0.001;  ///< [m]   IK every so far along the curve, > 0
   double station_angle = 0.01;  ///< [rad] and every so much turn, > 0
 };

@@ -59,7 +59,7 @@ TEST(Report, FailureSaysWhyAndHowToMendIt) {
 TEST(Report, BytesThatAreNotUtf8DoNotBreakTheFile) {
   Report report = full_report();
   report.model = "\xff\xfe";
-  EXPECT_NO_THROW((void)nlohmann::json::parse(to_json(report)));
+  EXPECT_TRUE(nlohmann::json::accept(to_json(report)));
 }
 
 }  // namespace
