@@ -9,8 +9,8 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
-#include "mjarm/model/inventory.hpp"
 #include "mjarm/model/model.hpp"
+#include "mjarm/model/mujoco_library.hpp"
 
 namespace mjarm::app {
 namespace {

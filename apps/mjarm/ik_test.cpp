@@ -223,22 +223,38 @@ TEST(Ik, BadOptions) {
   }
 }
 
-/// Solves a file of poses given in the frame B of its URDF and checks every answer with MuJoCo on
-/// our own model, whose world W stands to B as `X_WB` says.
-void expect_all_solved(const std::filesystem::path& poses, const std::string& robot,
-                       const std::string& tip, Oracle& oracle, const Pose& X_WB) {
-  const support::TempFolder folder;
-  const std::string out = (folder.path() / "sol.jsonl").string();
-  const auto result = ik({"--robot", robot, "--tip", tip, "--in", poses.string(), "--out", out});
+/// A frame in which poses are given, seen in the world of the robot's model, and its tool.
+struct Setting {
+  std::string robot, tip;
+  Pose X_WB;
+};
+
+/// The poses of a file of the data folder, moved into the robot's world.
+std::string poses_in_world(const std::filesystem::path& file, const Pose& X_WB) {
+  std::string lines;
+  for (json request : support::load_json_lines(file)) {
+    const Pose X = X_WB * pose_of(request);
+    const Quat r = to_quat(X.R);
+    request["pos"] = {X.p.x(), X.p.y(), X.p.z()};
+    request["quat"] = {r.w(), r.x(), r.y(), r.z()};
+    lines += request.dump() + "\n";
+  }
+  return lines;
+}
+
+/// Solves a file of poses and checks every answer with MuJoCo on our own model.
+void expect_all_solved(const std::filesystem::path& poses, const Setting& setting, Oracle& oracle) {
+  const std::string input = poses_in_world(poses, setting.X_WB);
+  const auto result = ik({"--robot", setting.robot, "--tip", setting.tip, "--in", "-"}, {},
+                         {.folder = {}, .input = input, .environment = {}});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  const auto requests = support::load_json_lines(poses);
-  const auto answers = json_lines(folder.read("sol.jsonl"));
+  const auto requests = json_lines(input), answers = json_lines(result.out);
   ASSERT_EQ(answers.size(), requests.size());
   std::size_t solved = 0;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i].at("ok").get<bool>()) continue;
     const std::vector<double> q = numbers(answers[i].at("q"));
-    const Pose goal = X_WB * pose_of(requests[i]), got = oracle.fk(q);
+    const Pose goal = pose_of(requests[i]), got = oracle.fk(q);
     const bool right = (goal.p - got.p).norm() < 1e-4 && angle_between(goal.R, got.R) < 1e-3;
     EXPECT_TRUE(right) << "line " << i + 1;
     EXPECT_TRUE(oracle.within_limits(q)) << "line " << i + 1;
@@ -247,9 +263,10 @@ void expect_all_solved(const std::filesystem::path& poses, const std::string& ro
   EXPECT_EQ(solved, requests.size());
 }
 
-void expect_all_refused(const std::filesystem::path& poses, const std::string& robot,
-                        const std::string& tip) {
-  const auto result = ik({"--robot", robot, "--tip", tip, "--in", poses.string()});
+void expect_all_refused(const std::filesystem::path& poses, const Setting& setting) {
+  const auto result =
+      ik({"--robot", setting.robot, "--tip", setting.tip, "--in", "-"}, {},
+         {.folder = {}, .input = poses_in_world(poses, setting.X_WB), .environment = {}});
   EXPECT_EQ(result.exit_code, 1);
   const auto answers = json_lines(result.out);
   EXPECT_GE(answers.size(), 100u);
@@ -260,23 +277,23 @@ void expect_all_refused(const std::filesystem::path& poses, const std::string& r
 }
 
 TEST(IkData, Ur5e) {
-  MJARM_TEST_FILE(urdf, "ik/ur5e.urdf");
   MJARM_TEST_FILE(reachable, "ik/ur5e_reachable.jsonl");
   MJARM_TEST_FILE(unreachable, "ik/ur5e_unreachable.jsonl");
   Oracle oracle(kUr5eScene, "attachment_site");
-  // A URDF's base_link is turned by half a turn about z against our world.
-  const Pose X_WB{Eigen::Vector3d::Zero(), from_euler({0, 0, std::numbers::pi})};
-  expect_all_solved(reachable, urdf.string(), "tool0", oracle, X_WB);
-  expect_all_refused(unreachable, urdf.string(), "tool0");
+  // The poses are in base_link of a URDF, which is turned by half a turn about z against our world.
+  const Setting setting{
+      "ur5e", "attachment_site", {Eigen::Vector3d::Zero(), from_euler({0, 0, std::numbers::pi})}};
+  expect_all_solved(reachable, setting, oracle);
+  expect_all_refused(unreachable, setting);
 }
 
 TEST(IkData, Panda) {
-  MJARM_TEST_FILE(urdf, "ik/panda.urdf");
   MJARM_TEST_FILE(reachable, "ik/panda_reachable.jsonl");
   MJARM_TEST_FILE(unreachable, "ik/panda_unreachable.jsonl");
   Oracle oracle(model_file("franka_emika_panda/scene.xml"), "panda_link8");
-  expect_all_solved(reachable, urdf.string(), "panda_link8", oracle, Pose{});
-  expect_all_refused(unreachable, urdf.string(), "panda_link8");
+  const Setting setting{"panda", "panda_link8", {}};
+  expect_all_solved(reachable, setting, oracle);
+  expect_all_refused(unreachable, setting);
 }
 
 TEST(IkData, ReachableEllipse) {

@@ -43,7 +43,7 @@ Result<int> run_info(const Options& options) {
 Result<int> run_tree(const Options& options) {
   const Result<Model> model = load(options);
   if (!model) return fail(model.error());
-  const ModelInventory contents = inventory(*model);
+  const ModelInfo contents = describe(*model);
   print(options.json ? tree_json(contents) : tree_text(contents));
   return 0;
 }

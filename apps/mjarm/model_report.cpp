@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/text_width.hpp"
@@ -29,43 +30,29 @@ std::string or_none(const std::string& words) {
   return words.empty() ? text(Msg::app_info_none) : words;
 }
 
-LimitSource limit_source(const Model& model, const ModelInventory& contents,
-                         const std::string& joint) {
-  LimitSource source;
-  source.velocity = model.urdf_velocity_limit(joint) > 0;
-  source.torque = model.urdf_effort_limit(joint) > 0;
-  for (const BodyEntry& body : contents.bodies) {
-    for (const JointEntry& entry : body.joints) {
-      if (entry.name != joint) continue;
-      source.position = entry.limited;
-      source.torque |= entry.force_limited;
-    }
-  }
-  return source;
-}
-
 /// Named frames that move with the last joint of the arm and with no joint after it.
-std::vector<std::string> possible_tips(const ModelInventory& contents, const std::string& last) {
-  std::vector<bool> fixed(contents.bodies.size(), false);
-  std::vector<std::string> bodies, sites;
-  for (std::size_t i = 0; i < contents.bodies.size(); ++i) {
-    const BodyEntry& body = contents.bodies[i];
+std::vector<std::string> possible_tips(const ModelInfo& contents, const std::string& last) {
+  std::set<std::string> fixed;
+  std::vector<bool> is_fixed(contents.bodies.size(), false);
+  for (std::size_t i = 1; i < contents.bodies.size(); ++i) {
+    const BodyInfo& body = contents.bodies[i];
     const bool carries = std::any_of(body.joints.begin(), body.joints.end(),
-                                     [&](const JointEntry& joint) { return joint.name == last; });
-    const bool hangs = body.joints.empty() && i > 0 && fixed[static_cast<std::size_t>(body.parent)];
-    fixed[i] = carries || hangs;
-    if (!fixed[i]) continue;
-    bodies.push_back(body.name);
-    sites.insert(sites.end(), body.sites.begin(), body.sites.end());
+                                     [&](const JointInfo& joint) { return joint.name == last; });
+    is_fixed[i] =
+        carries || (body.joints.empty() && is_fixed[static_cast<std::size_t>(body.parent)]);
+    if (is_fixed[i]) fixed.insert(body.name);
   }
-  sites.insert(sites.end(), bodies.begin(), bodies.end());
-  std::erase(sites, "");
-  return sites;
+  std::vector<std::string> tips;
+  for (const FrameInfo& frame : contents.frames) {
+    if (fixed.count(frame.body) > 0) tips.push_back(frame.name);
+  }
+  return tips;
 }
 
-/// "3.142", with a star where the file has no such limit.
-std::string limit(double value, bool from_file) {
-  return fmt::format("{:.5g}{}", value, from_file ? "" : "*");
+/// "3.142", with a mark where the file has no such limit.
+std::string limit(double value, LimitSource source) {
+  const char* mark = source == LimitSource::file ? "" : source == LimitSource::table ? "+" : "*";
+  return fmt::format("{:.5g}{}", value, mark);
 }
 
 /// Rows with their columns aligned.
@@ -94,14 +81,14 @@ std::string joint_table(const ModelReport& report) {
                             text(Msg::app_info_torque), text(Msg::app_info_actuator)}};
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
-    const LimitSource& source = report.sources[static_cast<std::size_t>(i)];
     const JointLimits& limits = arm.limits;
-    rows.push_back(
-        {joint.name, joint.type == JointType::hinge ? "hinge" : "slide",
-         fmt::format("{:.5g} .. {}", limits.lower[i], limit(limits.upper[i], source.position)),
-         limit(limits.velocity[i], source.velocity), limit(limits.acceleration[i], false),
-         limit(limits.jerk[i], false), limit(limits.torque[i], source.torque),
-         joint.actuator ? joint.actuator->name : text(Msg::app_info_none)});
+    const LimitSources& source = limits.sources[static_cast<std::size_t>(i)];
+    rows.push_back({joint.name, joint.type == JointType::hinge ? "hinge" : "slide",
+                    fmt::format("{:.5g} .. {:.5g}", limits.lower[i], limits.upper[i]),
+                    limit(limits.velocity[i], source.velocity),
+                    limit(limits.acceleration[i], source.acceleration),
+                    limit(limits.jerk[i], source.jerk), limit(limits.torque[i], source.torque),
+                    joint.actuator ? joint.actuator->name : text(Msg::app_info_none)});
   }
   return table(rows) + "  " + text(Msg::app_info_units) + "\n";
 }
@@ -131,12 +118,13 @@ Json list(const JointVec& values) {
   return Json(std::vector<double>(values.begin(), values.end()));
 }
 
-Json joint_json(const Arm& arm, const LimitSource& source, int i) {
+Json joint_json(const Arm& arm, int i) {
   const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
-  Json from_file = Json::array();
-  if (source.position) from_file.push_back("position");
-  if (source.velocity) from_file.push_back("velocity");
-  if (source.torque) from_file.push_back("torque");
+  const LimitSources& source = arm.limits.sources[static_cast<std::size_t>(i)];
+  const Json sources = {{"velocity", name(source.velocity)},
+                        {"acceleration", name(source.acceleration)},
+                        {"jerk", name(source.jerk)},
+                        {"torque", name(source.torque)}};
   return {{"name", joint.name},
           {"type", joint.type == JointType::hinge ? "hinge" : "slide"},
           {"position", {arm.limits.lower[i], arm.limits.upper[i]}},
@@ -144,7 +132,7 @@ Json joint_json(const Arm& arm, const LimitSource& source, int i) {
           {"acceleration", arm.limits.acceleration[i]},
           {"jerk", arm.limits.jerk[i]},
           {"torque", arm.limits.torque[i]},
-          {"from_file", from_file},
+          {"sources", sources},
           {"actuator", joint.actuator ? Json(joint.actuator->name) : Json(nullptr)}};
 }
 
@@ -153,7 +141,7 @@ Json arm_json(const ModelReport& report) {
   Json result = {{"tip", arm.tip}, {"tips", report.tips}, {"home", list(arm.home)}};
   Json& joints = result["joints"] = Json::array();
   for (int i = 0; i < arm.dof(); ++i) {
-    joints.push_back(joint_json(arm, report.sources[static_cast<std::size_t>(i)], i));
+    joints.push_back(joint_json(arm, i));
   }
   result["gripper"] = nullptr;
   if (arm.gripper) {
@@ -165,11 +153,42 @@ Json arm_json(const ModelReport& report) {
   return result;
 }
 
-Json actuator_json(const ActuatorEntry& actuator) {
+Json range(bool limited, double lower, double upper) {
+  return limited ? Json({lower, upper}) : Json(nullptr);
+}
+
+Json actuator_json(const ActuatorInfo& actuator) {
   return {{"name", actuator.name},
+          {"drives", actuator.drives},
           {"target", actuator.target},
-          {"ctrl", {actuator.ctrl_lower, actuator.ctrl_upper}},
-          {"force", {actuator.force_lower, actuator.force_upper}}};
+          {"ctrl", range(actuator.ctrl_limited, actuator.ctrl_lower, actuator.ctrl_upper)},
+          {"force", range(actuator.force_limited, actuator.force_lower, actuator.force_upper)}};
+}
+
+/// How many there are of everything, in the order of the output.
+struct Counts {
+  std::size_t bodies, joints = 0, actuators, geoms = 0, sites = 0, sensors, cameras;
+  int meshes;
+};
+
+Counts count(const ModelInfo& contents) {
+  Counts counts{.bodies = contents.bodies.size() - 1,
+                .actuators = contents.actuators.size(),
+                .sensors = contents.sensors.size(),
+                .cameras = contents.cameras.size(),
+                .meshes = contents.meshes};
+  for (const BodyInfo& body : contents.bodies) {
+    counts.joints += body.joints.size();
+    counts.geoms += body.geoms.size();
+    counts.sites += body.sites.size();
+  }
+  return counts;
+}
+
+std::vector<std::string> keyframe_names(const ModelInfo& contents) {
+  std::vector<std::string> names;
+  for (const KeyframeInfo& keyframe : contents.keyframes) names.push_back(keyframe.name);
+  return names;
 }
 
 /// Names come from files and may hold any bytes; numbers without a bound become null.
@@ -182,18 +201,13 @@ std::string document(const Json& json) {
 ModelReport model_report(const Model& model, const Result<Arm>& arm) {
   ModelReport report;
   report.file = model.file().string();
-  report.name = model.name();
   report.format = model.format() == ModelFormat::urdf ? "URDF" : "MJCF";
-  report.timestep = model.timestep();
-  report.contents = inventory(model);
+  report.contents = describe(model);
   if (!arm) {
     report.no_arm = arm.error().what;
     return report;
   }
   report.arm = *arm;
-  for (const ArmJoint& joint : arm->joints) {
-    report.sources.push_back(limit_source(model, report.contents, joint.name));
-  }
   report.tips = possible_tips(report.contents, arm->joints.back().name);
   return report;
 }
@@ -202,36 +216,33 @@ std::string to_text(const ModelReport& report) {
   const auto line = [](Msg what, const std::string& value) {
     return padded(text(what), 18) + value + "\n";
   };
-  const ModelInventory& all = report.contents;
-  return line(Msg::app_info_model, fmt::format("{} ({})", report.name, report.format)) +
+  const ModelInfo& all = report.contents;
+  const Counts counts = count(all);
+  return line(Msg::app_info_model, fmt::format("{} ({})", all.name, report.format)) +
          line(Msg::app_info_file, report.file) +
-         line(Msg::app_info_timestep, fmt::format("{:g} s", report.timestep)) +
+         line(Msg::app_info_timestep, fmt::format("{:g} s", all.timestep)) +
          line(Msg::app_info_contents,
-              text(Msg::app_info_counts, all.bodies.size() - 1, all.joints, all.actuators.size(),
-                   all.geoms, all.sites, all.sensors, all.tendons, all.meshes)) +
+              text(Msg::app_info_counts, counts.bodies, counts.joints, counts.actuators,
+                   counts.geoms, counts.sites, counts.sensors, counts.cameras, counts.meshes)) +
          line(Msg::app_info_mass, fmt::format("{:.5g} kg", all.mass)) +
-         line(Msg::app_info_keyframes, or_none(join(all.keyframes))) + arm_text(report);
+         line(Msg::app_info_keyframes, or_none(join(keyframe_names(all)))) + arm_text(report);
 }
 
 std::string to_json(const ModelReport& report) {
-  const ModelInventory& all = report.contents;
-  Json json = {{"name", report.name},
+  const ModelInfo& all = report.contents;
+  const Counts counts = count(all);
+  Json json = {{"name", all.name},
                {"file", report.file},
                {"format", report.format},
-               {"timestep", report.timestep},
+               {"timestep", all.timestep},
                {"mass", all.mass}};
-  json["counts"] = {{"bodies", all.bodies.size() - 1},
-                    {"joints", all.joints},
-                    {"actuators", all.actuators.size()},
-                    {"geoms", all.geoms},
-                    {"sites", all.sites},
-                    {"sensors", all.sensors},
-                    {"tendons", all.tendons},
-                    {"meshes", all.meshes},
-                    {"equalities", all.equalities}};
-  json["keyframes"] = all.keyframes;
+  json["counts"] = {{"bodies", counts.bodies},       {"joints", counts.joints},
+                    {"actuators", counts.actuators}, {"geoms", counts.geoms},
+                    {"sites", counts.sites},         {"sensors", counts.sensors},
+                    {"cameras", counts.cameras},     {"meshes", counts.meshes}};
+  json["keyframes"] = keyframe_names(all);
   Json& actuators = json["actuators"] = Json::array();
-  for (const ActuatorEntry& actuator : all.actuators) actuators.push_back(actuator_json(actuator));
+  for (const ActuatorInfo& actuator : all.actuators) actuators.push_back(actuator_json(actuator));
   json["arm"] = report.arm ? arm_json(report) : Json(nullptr);
   if (!report.arm) json["no_arm"] = report.no_arm;
   return document(json);

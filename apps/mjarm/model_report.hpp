@@ -5,26 +5,19 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/model/describe.hpp"
 #include "mjarm/model/find_arm.hpp"
-#include "mjarm/model/inventory.hpp"
 #include "mjarm/model/model.hpp"
 
 namespace mjarm::app {
 
-/// Which limits of a joint stand in the file; the others are defaults.
-struct LimitSource {
-  bool position = false, velocity = false, torque = false;  // no format has the other two
-};
-
 /// What `mjarm model info` tells.
 struct ModelReport {
-  std::string file, name, format;
-  double timestep = 0;  ///< [s]
-  ModelInventory contents;
+  std::string file, format;
+  ModelInfo contents;
   std::optional<Arm> arm;
-  std::string no_arm;                ///< why there is none
-  std::vector<LimitSource> sources;  ///< one a joint of the arm
-  std::vector<std::string> tips;     ///< frames fixed to the last joint: possible tool frames
+  std::string no_arm;             ///< why there is none
+  std::vector<std::string> tips;  ///< frames fixed to the last joint: possible tool frames
 };
 
 [[nodiscard]] ModelReport model_report(const Model& model, const Result<Arm>& arm);
@@ -35,8 +28,8 @@ struct ModelReport {
 [[nodiscard]] std::string to_json(const ModelReport& report);
 
 /// The bodies as an indented tree with joints, sites, geoms and masses.
-[[nodiscard]] std::string tree_text(const ModelInventory& contents);
+[[nodiscard]] std::string tree_text(const ModelInfo& contents);
 /// The same as one JSON document, children inside their parents.
-[[nodiscard]] std::string tree_json(const ModelInventory& contents);
+[[nodiscard]] std::string tree_json(const ModelInfo& contents);
 
 }  // namespace mjarm::app

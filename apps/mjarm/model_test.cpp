@@ -32,10 +32,11 @@ TEST(ModelInfo, Ur5eAsJson) {
   EXPECT_EQ(elbow.at("type"), "hinge");
   EXPECT_NEAR(elbow.at("position")[1].get<double>(), 3.1415, 1e-3);
   EXPECT_EQ(elbow.at("torque"), 150);
-  // MJCF has fields for positions and torques only; the rest must be marked as defaults.
-  EXPECT_EQ(elbow.at("from_file"), json::array({"position", "torque"}));
+  // MJCF has fields for positions and torques only; the rest must be marked as not the file's.
+  EXPECT_EQ(elbow.at("sources").at("torque"), "file");
   for (const char* limit : {"velocity", "acceleration", "jerk"}) {
     EXPECT_GT(elbow.at(limit).get<double>(), 0) << limit;
+    EXPECT_EQ(elbow.at("sources").at(limit), "table") << limit;
   }
   EXPECT_EQ(elbow.at("actuator"), "elbow");
 }
@@ -51,8 +52,7 @@ TEST(ModelInfo, PandaHasAGripperAndAChoiceOfTools) {
 TEST(ModelInfo, UrdfGivesVelocities) {
   const json urdf = info({model_file("universal_robots_ur5e/ur5e.urdf")});
   EXPECT_EQ(urdf.at("format"), "URDF");
-  const json& source = urdf.at("arm").at("joints").at(0).at("from_file");
-  EXPECT_TRUE(std::find(source.begin(), source.end(), "velocity") != source.end());
+  EXPECT_EQ(urdf.at("arm").at("joints").at(0).at("sources").at("velocity"), "file");
 }
 
 TEST(ModelInfo, AModelWithoutAnArmSaysWhy) {
