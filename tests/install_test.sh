@@ -21,9 +21,12 @@ fi
 cmake -S "$source_dir/tests/install_consumer" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$prefix"
 cmake --build "$work/build"
-"$work/build/consumer" "$prefix"
+place=$("$work/build/consumer" "$prefix/share/mjarm/models/universal_robots_ur5e/scene.xml")
+[[ $place == "-0.134 0.492 0.488" ]] || { echo "consumer: wrong place of the tool: $place" && exit 1; }
 
-if [[ -x $prefix/bin/mjarm ]]; then
-  ldd "$prefix/bin/mjarm" | grep -F "$prefix/lib" | grep libmujoco
-  (cd / && "$prefix/bin/mjarm" --version)
-fi
+# The installed program finds the installed library and models, from anywhere.
+[[ -x $prefix/bin/mjarm ]] || exit 0
+cd /
+ldd "$prefix/bin/mjarm" | grep -F "$prefix/" | grep libmujoco
+place=$("$prefix/bin/mjarm" fk --robot ur5e --in - <<<'{"q":[-1.5708,-1.5708,1.5708,-1.5708,-1.5708,0]}')
+grep -q '"pos":\[-0.13' <<<"$place" || { echo "installed mjarm: fk says $place" && exit 1; }

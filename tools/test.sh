@@ -130,6 +130,6 @@ run_benches() {
   local bench
   build release benches
   for bench in "$root"/build/release/bin/*_bench; do
-    [[ -x $bench ]] && "$bench"
+    if [[ -x $bench ]]; then "$bench"; fi
   done
 }

@@ -1,9 +1,16 @@
-// A project of somebody else, built against the installed mjarm.
+// A project of somebody else, built against the installed mjarm: where is the tool of the UR5e?
 #include <cstdio>
 
-#include "mjarm/core/pose.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/model.hpp"
 
-int main() {
-  const mjarm::Pose X_WT{};
-  std::printf("%g %g %g\n", X_WT.p.x(), X_WT.p.y(), X_WT.p.z());
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const auto model = mjarm::Model::load(argv[1]);
+  if (!model) return std::fprintf(stderr, "%s\n", model.error().what.c_str()), 1;
+  const auto arm = mjarm::find_arm(*model);
+  if (!arm) return std::fprintf(stderr, "%s\n", arm.error().what.c_str()), 1;
+  const mjarm::Pose X_WT = mjarm::fk(*arm, mjarm::view(arm->home));
+  std::printf("%.3f %.3f %.3f\n", X_WT.p.x(), X_WT.p.y(), X_WT.p.z());
 }
