@@ -24,8 +24,8 @@ int main() {
     sim.place(*arm, mjarm::view(arm->home));
     auto controller = mjarm::Controller::make(*model, *arm, mode);
     if (!controller) return std::fprintf(stderr, "%s\n", controller.error().what.c_str()), 1;
-    const auto outcome = mjarm::follow_time(
-        {.sim = sim, .controller = *controller, .arm = *arm}, *move, {.settle = 2});
+    const auto outcome = mjarm::follow_time({.sim = sim, .controller = *controller, .arm = *arm},
+                                            *move, {.settle = 2});
     if (!outcome) return std::fprintf(stderr, "%s\n", describe(outcome.error(), *arm).c_str()), 1;
     std::printf("%-16s static error %8.4f mm, torque used %3.0f %%\n",
                 std::string(mjarm::name(mode)).c_str(), 1e3 * outcome->final_tool_error,

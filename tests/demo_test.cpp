@@ -220,7 +220,8 @@ TEST(Demo, SpeaksChinese) {
 
 TEST(Demo, RunsFromAnyFolderAndWritesOnlyItsOwn) {
   const TempFolder folder, elsewhere;
-  const DemoRun run = run_demo(folder, {"car"}, {.folder = elsewhere.path(), .input = {}, .environment = {}});
+  const DemoRun run =
+      run_demo(folder, {"car"}, {.folder = elsewhere.path(), .input = {}, .environment = {}});
   EXPECT_EQ(run.result.exit_code, 0) << run.result.err;
   EXPECT_TRUE(std::filesystem::is_empty(elsewhere.path()));
 }

@@ -125,8 +125,6 @@ std::span<const Demo> demos() {
   return kDemos;
 }
 
-Command demo_command() {
-  return {"demo", Msg::demo_summary, Msg::demo_examples, setup};
-}
+Command demo_command() { return {"demo", Msg::demo_summary, Msg::demo_examples, setup}; }
 
 }  // namespace mjarm::app

@@ -168,8 +168,9 @@ struct ExactChecker::Impl {
     for (const auto& [ids, gap] : deepest) {
       out.push_back({name_pair(ids), -gap.distance, gap.point_W, gap.normal_W});
     }
-    std::stable_sort(out.begin(), out.end(),
-                     [](const ContactPoint& a, const ContactPoint& b) { return a.depth > b.depth; });
+    std::stable_sort(out.begin(), out.end(), [](const ContactPoint& a, const ContactPoint& b) {
+      return a.depth > b.depth;
+    });
     return out;
   }
 

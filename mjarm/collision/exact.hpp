@@ -46,7 +46,7 @@ struct NearestPair {
 /// What a check found.
 struct CollisionReport {
   bool free = true;                    ///< no overlap deeper than CheckOptions::allow_depth
-  std::vector<ContactPoint> contacts;       ///< one a pair of geoms that overlap, deepest first
+  std::vector<ContactPoint> contacts;  ///< one a pair of geoms that overlap, deepest first
   std::optional<NearestPair> nearest;  ///< none where nothing is nearer than CheckOptions::margin
 };
 

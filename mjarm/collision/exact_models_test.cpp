@@ -150,8 +150,8 @@ TEST(ExactCheckerModels, Ur5eStartBelowTheFloorIsReported) {
   const auto report = checker.check(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
   ASSERT_TRUE(report.has_value());
   EXPECT_FALSE(report->free);
-  const bool floor_named =
-      std::any_of(report->contacts.begin(), report->contacts.end(), [](const ContactPoint& contact) {
+  const bool floor_named = std::any_of(
+      report->contacts.begin(), report->contacts.end(), [](const ContactPoint& contact) {
         return contact.pair.geom1 == "floor" || contact.pair.geom2 == "floor";
       });
   EXPECT_TRUE(floor_named) << describe(*report);

@@ -16,8 +16,8 @@ struct PathError {
   double coverage = 0;  ///< share of the curve that was passed within `near`, 0 to 1
 };
 
-/// Measures positions `p_W` (in order of time) against `curve`. Coverage is counted on points of the
-/// curve at most `spacing` apart, each covered when the polyline through the executed positions
+/// Measures positions `p_W` (in order of time) against `curve`. Coverage is counted on points of
+/// the curve at most `spacing` apart, each covered when the polyline through the executed positions
 /// passes within `near`; a tool that never moved covers next to nothing, however small its error.
 /// @param near     [m] > 0
 /// @param spacing  [m] > 0

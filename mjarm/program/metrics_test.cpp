@@ -67,9 +67,7 @@ TEST(MeasurePath, GapIsNotCovered) {
   EXPECT_LT(coverage, 0.83);
 }
 
-TEST(MeasurePath, NothingExecuted) {
-  EXPECT_EQ(measure_path(x_axis_metre(), {}).coverage, 0.0);
-}
+TEST(MeasurePath, NothingExecuted) { EXPECT_EQ(measure_path(x_axis_metre(), {}).coverage, 0.0); }
 
 TEST(PoseError, PositionAndAngle) {
   Pose goal;

@@ -27,7 +27,8 @@ struct ToolMotion {
   Trajectory trajectory;
 };
 
-/// Why a motion has no answer: `path` where the geometry fails, `timing` where only the timing does.
+/// Why a motion has no answer: `path` where the geometry fails, `timing` where only the timing
+/// does.
 struct MotionFailure {
   std::optional<PathFailure> path;
   std::optional<Error> timing;

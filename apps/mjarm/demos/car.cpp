@@ -37,9 +37,7 @@ struct Drive {
   bool ended_by_user = false;
 };
 
-Eigen::Vector3d position(const Sim& sim) {
-  return {sim.qpos()[0], sim.qpos()[1], sim.qpos()[2]};
-}
+Eigen::Vector3d position(const Sim& sim) { return {sim.qpos()[0], sim.qpos()[1], sim.qpos()[2]}; }
 
 double heading(const Sim& sim) {
   const Quat q(sim.qpos()[3], sim.qpos()[4], sim.qpos()[5], sim.qpos()[6]);

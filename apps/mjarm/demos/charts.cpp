@@ -68,8 +68,7 @@ PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
 
 PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
   const bool ideal = !runs.empty() && runs.front().curve != nullptr;
-  PlotPanel panel =
-      over_time(ideal ? Msg::demo_plot_error : Msg::demo_plot_tracking, "mm");
+  PlotPanel panel = over_time(ideal ? Msg::demo_plot_error : Msg::demo_plot_tracking, "mm");
   panel.y_from_zero = true;
   PlotLine line;
   for (const MeasuredRun& run : runs) {
@@ -141,7 +140,8 @@ Plot motion_plot(const std::string& title, const Arm& arm, std::span<const Measu
                  joint_panel(arm, rows),
                  share_panel(Msg::demo_plot_velocity, rows,
                              [&](const RecordRow& row) {
-                               return 100 * row.v.cwiseQuotient(limits.velocity).cwiseAbs().maxCoeff();
+                               return 100 *
+                                      row.v.cwiseQuotient(limits.velocity).cwiseAbs().maxCoeff();
                              }),
                  share_panel(Msg::demo_plot_torque, rows, [&](const RecordRow& row) {
                    return 100 * row.torque.cwiseQuotient(limits.torque).cwiseAbs().maxCoeff();

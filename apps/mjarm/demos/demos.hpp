@@ -14,14 +14,14 @@ namespace mjarm::app {
 
 /// What the user chose for a demo.
 struct DemoOptions {
-  std::string robot = "ur5e";        ///< shipped name or path
-  std::string tip;                   ///< tool frame; empty = the robot's own
-  std::filesystem::path out;         ///< folder of all files written
-  bool headless = false;             ///< no window even where there is a display
-  bool guide = false;                ///< do it the tutorial's way
-  bool timing = true;                ///< wall-clock fields in the report
-  double seconds = 0;                ///< [s] most simulated time, 0 = as long as the motion takes
-  std::string text;                  ///< for `letters`
+  std::string robot = "ur5e";          ///< shipped name or path
+  std::string tip;                     ///< tool frame; empty = the robot's own
+  std::filesystem::path out;           ///< folder of all files written
+  bool headless = false;               ///< no window even where there is a display
+  bool guide = false;                  ///< do it the tutorial's way
+  bool timing = true;                  ///< wall-clock fields in the report
+  double seconds = 0;                  ///< [s] most simulated time, 0 = as long as the motion takes
+  std::string text;                    ///< for `letters`
   std::optional<ControlMode> control;  ///< none = the demo's own choice
 };
 

@@ -1,8 +1,9 @@
+#include "mjarm/path/ellipse.hpp"
+
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/path/ellipse.hpp"
 #include "mjarm/path/joint_path.hpp"
 
 namespace mjarm::app {
@@ -63,8 +64,7 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   const Result<ToolMotion, MotionFailure> motion =
       plan_tool_motion(stage.ik(), *curve, view(path->q.front()));
   if (!motion) return stage.refuse(motion.error());
-  log_info(text(Msg::demo_plan, curve->length(), motion->trajectory.duration(),
-                path->max_step()));
+  log_info(text(Msg::demo_plan, curve->length(), motion->trajectory.duration(), path->max_step()));
 
   Report report;
   report.max_joint_step = path->max_step();

@@ -1,16 +1,17 @@
+#include "mjarm/path/letters.hpp"
+
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
-#include "mjarm/path/letters.hpp"
 
 namespace mjarm::app {
 namespace {
 
-constexpr double kPlane = -0.2;         // [m] y of the plane written on, as the tutorial's
-constexpr double kHeight = 0.2;         // [m] of a letter, as the tutorial's
-constexpr double kWidest = 0.7;         // [m] of a line of text
-constexpr double kTextPlane = -0.5;     // [m] y of the plane for longer texts, where the arm has room
-constexpr double kTextBottom = 0.35;    // [m]
+constexpr double kPlane = -0.2;       // [m] y of the plane written on, as the tutorial's
+constexpr double kHeight = 0.2;       // [m] of a letter, as the tutorial's
+constexpr double kWidest = 0.7;       // [m] of a line of text
+constexpr double kTextPlane = -0.5;   // [m] y of the plane for longer texts, where the arm has room
+constexpr double kTextBottom = 0.35;  // [m]
 
 using Line = std::vector<Pose>;
 
@@ -41,8 +42,8 @@ Result<std::vector<Line>> written(const std::string& text) {
   for (const Stroke& points : *flat) {
     Line& out = strokes.emplace_back();
     for (const Eigen::Vector2d& p : points) {
-      out.push_back({{scale * (p.x() - width / 2), kTextPlane, kTextBottom + scale * p.y()},
-                     tool_down()});
+      out.push_back(
+          {{scale * (p.x() - width / 2), kTextPlane, kTextBottom + scale * p.y()}, tool_down()});
     }
   }
   return strokes;

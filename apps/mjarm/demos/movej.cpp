@@ -26,7 +26,8 @@ Result<Report> run_movej(const DemoOptions& options) {
   if (!path) return fail(path.error());
   const ControlMode mode =
       stage.control(options.guide ? ControlMode::servo : ControlMode::computed_torque);
-  if (auto done = stage.wait_through(path->q, {}, mode); !done) return fail(std::move(done.error()));
+  if (auto done = stage.wait_through(path->q, {}, mode); !done)
+    return fail(std::move(done.error()));
   const std::size_t reached = stage.reached();
   if (auto done = stage.jump(solution->q, mode, 0.5); !done) return fail(std::move(done.error()));
 
@@ -34,8 +35,7 @@ Result<Report> run_movej(const DemoOptions& options) {
   report.max_joint_step = path->max_step();
   report.coverage = static_cast<double>(reached) / kWaypoints;
   report.static_error = pose_error(goal, stage.sim().tool(stage.arm()));
-  log_info(text(Msg::demo_waypoints, reached, kWaypoints,
-                1e3 * report.static_error->position));
+  log_info(text(Msg::demo_waypoints, reached, kWaypoints, 1e3 * report.static_error->position));
   return stage.finish(std::move(report), options.guide ? 0.02 : 1e-4);
 }
 

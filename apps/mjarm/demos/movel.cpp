@@ -43,10 +43,9 @@ Result<Report> run_movel(const DemoOptions& options) {
   stage.start_at(seed);
   Report report;
   report.max_joint_step = path->max_step();
-  auto done = options.guide
-                  ? follow_as_tutorial(stage, *path, poses, *line)
-                  : stage.run(motion->trajectory, stage.control(ControlMode::computed_torque), 0.3,
-                              &*line);
+  auto done = options.guide ? follow_as_tutorial(stage, *path, poses, *line)
+                            : stage.run(motion->trajectory,
+                                        stage.control(ControlMode::computed_torque), 0.3, &*line);
   if (!done) return fail(std::move(done.error()));
   return stage.finish(std::move(report));
 }

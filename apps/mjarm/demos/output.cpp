@@ -43,7 +43,8 @@ Result<void> write_output(const std::filesystem::path& folder, const Model& mode
                           const Snapshot& snapshot, const DemoOutput& output) {
   return write_file(folder / "report.json", to_json(output.report))
       .and_then([&] {
-        return output.plot.panels.empty() ? Result<void>() : save_plot(output.plot, folder / "plot");
+        return output.plot.panels.empty() ? Result<void>()
+                                          : save_plot(output.plot, folder / "plot");
       })
       .and_then([&] { return write_picture(folder / "picture.png", model, snapshot, output); });
 }

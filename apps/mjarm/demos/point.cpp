@@ -8,8 +8,8 @@
 namespace mjarm::app {
 namespace {
 
-constexpr double kSettle = 2;         // [s] at rest before the error is read
-constexpr double kTolerance = 1e-4;   // [m] for computed torque
+constexpr double kSettle = 2;        // [s] at rest before the error is read
+constexpr double kTolerance = 1e-4;  // [m] for computed torque
 
 }  // namespace
 

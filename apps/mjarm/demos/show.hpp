@@ -34,7 +34,8 @@ class Show {
   /// Live plots of the tool: its path from above, and its coordinates over time.
   void plot_tool();
 
-  /// Called after each simulation step; draws where a frame is due and keeps real time with a window.
+  /// Called after each simulation step; draws where a frame is due and keeps real time with a
+  /// window.
   /// @return false when the user ended it.
   [[nodiscard]] bool step(const Sim& sim, const Eigen::Vector3d& p_WT);
   /// Keeps the window open until the user closes it; returns at once without one.

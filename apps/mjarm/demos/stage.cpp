@@ -38,8 +38,9 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
 }
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options) {
-  const auto model = find_model_file(options.robot).and_then(
-      [](const std::filesystem::path& file) { return Model::load(file); });
+  const auto model = find_model_file(options.robot).and_then([](const std::filesystem::path& file) {
+    return Model::load(file);
+  });
   if (!model) return fail(model.error());
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});
   if (!arm) return fail(std::move(arm.error()));
@@ -95,7 +96,8 @@ Result<void> Stage::take(Result<FollowOutcome, FollowFailure> outcome, double fr
     end_detail_ = text(Msg::demo_stopped, sim_.time());
   }
   if (measured) {
-    measured_.push_back({curve != nullptr ? std::optional(*curve) : std::nullopt, from, sim_.time()});
+    measured_.push_back(
+        {curve != nullptr ? std::optional(*curve) : std::nullopt, from, sim_.time()});
   }
   return {};
 }

@@ -53,17 +53,17 @@ class Stage {
   /// The tutorial's followers: each waypoint is waited for. With `points` [m] the tool is waited
   /// for, else the joints. A waypoint waited for in vain ends the demo with its reason.
   [[nodiscard]] Result<void> wait_through(std::span<const JointVec> waypoints,
-                                          std::span<const Eigen::Vector3d> points,
-                                          ControlMode mode, const Curve* curve = nullptr);
+                                          std::span<const Eigen::Vector3d> points, ControlMode mode,
+                                          const Curve* curve = nullptr);
 
   /// Waypoints and trajectories that were reached so far.
   [[nodiscard]] std::size_t reached() const { return total_.reached; }
   /// Something ended the motion early: the user, or a waypoint that was never reached.
   [[nodiscard]] bool ended_early() const { return !end_reason_.empty(); }
 
-  /// Writes report, log, plots and picture into the folder, and keeps the window open. `report` says
-  /// what the demo alone knows; measured values are filled in, and `ok` is withdrawn where the path
-  /// was not covered or left by more than `tolerance` [m].
+  /// Writes report, log, plots and picture into the folder, and keeps the window open. `report`
+  /// says what the demo alone knows; measured values are filled in, and `ok` is withdrawn where the
+  /// path was not covered or left by more than `tolerance` [m].
   [[nodiscard]] Result<Report> finish(Report report, double tolerance = 5e-4);
   /// Ends a demo that cannot be done, before anything moves.
   [[nodiscard]] Result<Report> refuse(std::string_view reason, const std::string& detail,

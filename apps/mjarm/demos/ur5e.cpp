@@ -32,8 +32,7 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   const double seconds = options.seconds > 0 ? options.seconds : kSeconds;
   if (auto done = stage.jump(goal, mode, seconds); !done) return fail(std::move(done.error()));
   const JointVec q = stage.sim().arm_state(stage.arm()).q;
-  const PoseError error =
-      pose_error(fk(stage.arm(), view(goal)), stage.sim().tool(stage.arm()));
+  const PoseError error = pose_error(fk(stage.arm(), view(goal)), stage.sim().tool(stage.arm()));
   report.static_error = error;
   report.coverage = 1 - (goal - q).norm() / (goal - start).norm();
   log_info(text(Msg::demo_arrived, 1e3 * error.position, (goal - q).cwiseAbs().maxCoeff()));
