@@ -95,7 +95,7 @@ Result<int> run_demo(const DemoArguments& arguments) {
 
 Run setup(CLI::App& app) {
   auto arguments = std::make_shared<DemoArguments>();
-  app.add_option("NAME", arguments->name, text(Msg::demo_option_name))->type_name("");
+  app.add_option("name", arguments->name, text(Msg::demo_option_name))->type_name("NAME");
   app.add_option("--out", arguments->out, text(Msg::demo_option_out))->type_name("DIR");
   app.add_flag("--headless", arguments->headless, text(Msg::demo_option_headless));
   app.add_flag("--guide", arguments->guide, text(Msg::demo_option_guide));

@@ -8,7 +8,7 @@ namespace mjarm::app {
 
 /// 100 joint waypoints, each waited for until all joints are within 0.02 rad, as the tutorial does.
 Result<Report> run_movej(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("movej", options);
+  Result<std::unique_ptr<Stage>> opened = Stage::open("movej", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const Pose goal = tutorial_goal();

@@ -21,7 +21,7 @@ Result<void> follow_as_tutorial(Stage& stage, const JointPath& path, std::span<c
 }  // namespace
 
 Result<Report> run_movel(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("movel", options);
+  Result<std::unique_ptr<Stage>> opened = Stage::open("movel", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const std::vector<double> seed = tutorial_seed();

@@ -14,7 +14,7 @@ constexpr double kTolerance = 1e-4;  // [m] for computed torque
 }  // namespace
 
 Result<Report> run_point(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("point", options);
+  Result<std::unique_ptr<Stage>> opened = Stage::open("point", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const Pose goal = tutorial_goal();

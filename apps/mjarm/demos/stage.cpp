@@ -37,13 +37,17 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
   start_at(view(arm_.home));
 }
 
-Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options) {
+Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
+                                            int dof) {
   const auto model = find_model_file(options.robot).and_then([](const std::filesystem::path& file) {
     return Model::load(file);
   });
   if (!model) return fail(model.error());
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});
   if (!arm) return fail(std::move(arm.error()));
+  if (dof != 0 && arm->dof() != dof) {
+    return fail(Errc::usage, text(Msg::demo_other_joints, demo, dof, arm->dof()));
+  }
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
   Result<Show> show = Show::open(*model, "mjarm " + demo, options.headless);
   if (!show) return fail(std::move(show.error()));

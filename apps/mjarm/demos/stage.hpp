@@ -24,8 +24,9 @@ namespace mjarm::app {
 class Stage {
  public:
   /// Loads the robot of `options`, makes the folder, opens the window. The arm stands at home.
+  /// @param dof  number of joints the demo's postures are for; 0 = any.
   [[nodiscard]] static Result<std::unique_ptr<Stage>> open(const std::string& demo,
-                                                           const DemoOptions& options);
+                                                           const DemoOptions& options, int dof = 0);
 
   [[nodiscard]] const Arm& arm() const { return arm_; }
   [[nodiscard]] Sim& sim() { return sim_; }

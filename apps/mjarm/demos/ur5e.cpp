@@ -10,14 +10,11 @@ constexpr double kSeconds = 3;  // [s] the tutorial's servo has settled long bef
 
 /// The tutorial's first move: the arm starts at one posture and all servos jump to another.
 Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vision) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open(demo, options);
+  Result<std::unique_ptr<Stage>> opened = Stage::open(demo, options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const JointVec start = joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
   const JointVec goal = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
-  if (stage.arm().dof() != start.size()) {
-    return fail(Errc::usage, text(Msg::demo_needs_six_joints, demo, stage.arm().dof()));
-  }
   const Pose X_start = fk(stage.arm(), view(start));
   if (X_start.p.z() < 0) log_warning(text(Msg::demo_below_floor, X_start.p.z()));
   stage.start_at(view(start));
