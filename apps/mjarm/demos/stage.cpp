@@ -88,8 +88,16 @@ void Stage::add(const FollowOutcome& outcome) {
   if (!total_.first_contact) total_.first_contact = outcome.first_contact;
 }
 
-Result<void> Stage::take(Result<FollowOutcome, FollowFailure> outcome, double from,
-                         const Curve* curve, bool measured) {
+Result<void> Stage::follow(ControlMode mode, bool measured, const Curve* curve,
+                           const Follower& follower) {
+  if (ended_early()) return {};
+  Result<Controller> controller = Controller::make(model_, arm_, mode);
+  if (!controller) return fail(std::move(controller.error()));
+  const double from = sim_.time();
+  const double wall = seconds_now();
+  const Result<FollowOutcome, FollowFailure> outcome = follower(setup(*controller, measured));
+  wall_seconds_ += seconds_now() - wall;
+
   if (!outcome && outcome.error().error) return fail(*outcome.error().error);
   add(outcome ? *outcome : outcome.error().outcome);
   if (!outcome) {
@@ -107,30 +115,20 @@ Result<void> Stage::take(Result<FollowOutcome, FollowFailure> outcome, double fr
 }
 
 Result<void> Stage::approach(std::span<const double> q, ControlMode mode) {
-  if (ended_early()) return {};
   const Result<Trajectory> move = time_joint_move(view(q_command_), q, arm_.limits);
   if (!move) return fail(move.error());
-  Result<Controller> controller = Controller::make(model_, arm_, mode);
-  if (!controller) return fail(std::move(controller.error()));
-  const double start = seconds_now();
-  const double from = sim_.time();
-  auto outcome = follow_time(setup(*controller, false), *move, {.settle = 0.2});
-  wall_seconds_ += seconds_now() - start;
   q_command_ = joint_vec(q);
-  return take(std::move(outcome), from, nullptr, false);
+  return follow(mode, false, nullptr, [&](const FollowSetup& setup) {
+    return follow_time(setup, *move, {.settle = 0.2});
+  });
 }
 
 Result<void> Stage::run(const Trajectory& trajectory, ControlMode mode, double settle,
                         const Curve* curve) {
-  if (ended_early()) return {};
-  Result<Controller> controller = Controller::make(model_, arm_, mode);
-  if (!controller) return fail(std::move(controller.error()));
-  const double start = seconds_now();
-  const double from = sim_.time();
-  auto outcome = follow_time(setup(*controller, true), trajectory, {.settle = settle});
-  wall_seconds_ += seconds_now() - start;
   q_command_ = trajectory.at(trajectory.duration()).q;
-  return take(std::move(outcome), from, curve, true);
+  return follow(mode, true, curve, [&](const FollowSetup& setup) {
+    return follow_time(setup, trajectory, {.settle = settle});
+  });
 }
 
 Result<void> Stage::jump(const JointVec& q, ControlMode mode, double seconds) {
@@ -144,17 +142,10 @@ Result<void> Stage::jump(const JointVec& q, ControlMode mode, double seconds) {
 Result<void> Stage::wait_through(std::span<const JointVec> waypoints,
                                  std::span<const Eigen::Vector3d> points, ControlMode mode,
                                  const Curve* curve) {
-  if (ended_early()) return {};
-  Result<Controller> controller = Controller::make(model_, arm_, mode);
-  if (!controller) return fail(std::move(controller.error()));
-  const double start = seconds_now();
-  const double from = sim_.time();
-  const FollowSetup follow = setup(*controller, true);
-  auto outcome =
-      points.empty() ? follow_joints(follow, waypoints) : follow_tool(follow, waypoints, points);
-  wall_seconds_ += seconds_now() - start;
   if (!waypoints.empty()) q_command_ = waypoints.back();
-  return take(std::move(outcome), from, curve, true);
+  return follow(mode, true, curve, [&](const FollowSetup& setup) {
+    return points.empty() ? follow_joints(setup, waypoints) : follow_tool(setup, waypoints, points);
+  });
 }
 
 /// The measured parts of the record.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -80,8 +81,11 @@ class Stage {
 
   Stage(std::string demo, const DemoOptions& options, Model model, Arm arm, Show show);
   [[nodiscard]] FollowSetup setup(Controller& controller, bool measured);
-  [[nodiscard]] Result<void> take(Result<FollowOutcome, FollowFailure> outcome, double from,
-                                  const Curve* curve, bool measured);
+  using Follower =
+      std::function<Result<FollowOutcome, FollowFailure>(const FollowSetup& setup)>;
+  /// Runs one follower and keeps what it did, unless something ended the motion before.
+  [[nodiscard]] Result<void> follow(ControlMode mode, bool measured, const Curve* curve,
+                                    const Follower& follower);
   void add(const FollowOutcome& outcome);
   [[nodiscard]] std::vector<MeasuredRun> measured_runs() const;
   void measure(std::span<const MeasuredRun> runs, Report& report) const;
