@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "mjarm/core/joint_state.hpp"
+#include "mjarm/control/reference.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
@@ -19,14 +19,18 @@ enum class ControlMode {
 };
 /// "servo", "servo_gravity", "computed_torque".
 [[nodiscard]] std::string_view name(ControlMode mode) noexcept;
+/// The mode of that name, or an error with the nearest one.
+[[nodiscard]] Result<ControlMode> control_mode(std::string_view name);
 
+/// Feedback of computed torque. At time step h the loop is stable for
+/// 2 h damping + h^2 stiffness < 4.
 struct ControlOptions {
-  double stiffness = 900;  ///< [1/s^2] error feedback of computed torque, > 0
-  double damping = 60;     ///< [1/s]   rate feedback of computed torque, >= 0
+  double stiffness = 900;  ///< [1/s^2] acceleration per position error, > 0
+  double damping = 60;     ///< [1/s]   acceleration per velocity error, > 0
 };
 
 /// Turns the state and a reference into actuator commands; never writes forces past the actuators.
-/// Owns its scratch memory: one a thread.
+/// Keeps no memory of earlier steps. Owns its scratch memory: one a thread.
 class Controller {
  public:
   /// @return an error that names the joint whose actuator cannot be used this way.
@@ -36,12 +40,16 @@ class Controller {
   Controller(Controller&&) noexcept;
   Controller& operator=(Controller&&) noexcept;
 
-  /// Writes the arm's rows of `ctrl` (nu,), others stay as they are.
+  [[nodiscard]] ControlMode mode() const noexcept;
+
+  /// Writes the arm's rows of `ctrl` (nu,) for the step that comes, within their range; others stay
+  /// as they are. Computed torque lands on `reference.next` where it stood on the reference before,
+  /// and closes an error like a spring and damper (ControlOptions) of unit mass. The servos only
+  /// look at `reference.next`.
   /// @param qpos, qvel  full state of the model, (nq,) and (nv,).
-  /// @param reference   of the arm's joints, at the end of the step that follows.
-  /// @return true where a ctrl or force limit cut the command.
+  /// @return true where a ctrl or force limit cuts the command.
   bool command(std::span<const double> qpos, std::span<const double> qvel,
-               const JointState& reference, std::span<double> ctrl);
+               const StepReference& reference, std::span<double> ctrl);
 
  private:
   struct Impl;

@@ -38,6 +38,14 @@ ArmActuator describe_actuator(const mjModel* m, int a) {
   const bool force_limited = m->actuator_forcelimited[a] != 0;
   actuator.force_lower = force_limited ? m->actuator_forcerange[2 * a] : -kInf;
   actuator.force_upper = force_limited ? m->actuator_forcerange[2 * a + 1] : kInf;
+  // A joint may limit what reaches it; with one drive that is a limit of the drive.
+  const int joint = m->actuator_trnid[2 * a];
+  if (m->jnt_actfrclimited[joint] != 0) {
+    const double* range = m->jnt_actfrcrange + 2 * joint;
+    const double ends[] = {range[0] / actuator.gear, range[1] / actuator.gear};
+    actuator.force_lower = std::max(actuator.force_lower, std::min(ends[0], ends[1]));
+    actuator.force_upper = std::min(actuator.force_upper, std::max(ends[0], ends[1]));
+  }
   return actuator;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <vector>
 
 namespace mjarm {
 
@@ -12,16 +13,21 @@ struct Dynamics::Impl {
       : model(std::move(the_model)),
         data(mj_makeData(model.raw())),
         mass(model.nv(), model.nv()),
-        force(model.nv()) {}
+        force(model.nv()),
+        rest(static_cast<std::size_t>(model.nv()), 0.0) {}
   ~Impl() { mj_deleteData(data); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  /// Everything that depends on positions alone and that the functions below read.
-  void set_position(std::span<const double> qpos) const {
+  /// Everything that depends on positions alone and that the functions below read. Controllers ask
+  /// several things about one state, so what is known of it already is kept.
+  void set_position(std::span<const double> qpos) {
     const mjModel* m = model.raw();
     assert(qpos.size() == static_cast<std::size_t>(m->nq));
+    if (position_known && std::equal(qpos.begin(), qpos.end(), data->qpos)) return;
     std::copy(qpos.begin(), qpos.end(), data->qpos);
+    position_known = true;
+    velocity_known = false;
     mj_kinematics(m, data);
     mj_comPos(m, data);
     mj_flex(m, data);
@@ -31,9 +37,11 @@ struct Dynamics::Impl {
   }
 
   /// Velocity-dependent forces, into data->qfrc_bias and data->qfrc_passive.
-  void set_velocity(std::span<const double> qvel) const {
+  void set_velocity(std::span<const double> qvel) {
     assert(qvel.size() == static_cast<std::size_t>(model.nv()));
+    if (velocity_known && std::equal(qvel.begin(), qvel.end(), data->qvel)) return;
     std::copy(qvel.begin(), qvel.end(), data->qvel);
+    velocity_known = true;
     mj_fwdVelocity(model.raw(), data);
   }
 
@@ -41,6 +49,9 @@ struct Dynamics::Impl {
   mjData* data;
   Eigen::MatrixXd mass;
   Eigen::VectorXd force;
+  std::vector<double> rest;  ///< no velocity
+  bool position_known = false;
+  bool velocity_known = false;
 };
 
 Dynamics::Dynamics(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
@@ -56,8 +67,7 @@ const Eigen::MatrixXd& Dynamics::mass_matrix(std::span<const double> qpos) {
 
 const Eigen::VectorXd& Dynamics::gravity(std::span<const double> qpos) {
   impl_->set_position(qpos);
-  std::fill_n(impl_->data->qvel, impl_->model.nv(), 0.0);
-  mj_fwdVelocity(impl_->model.raw(), impl_->data);
+  impl_->set_velocity(impl_->rest);
   std::copy_n(impl_->data->qfrc_bias, impl_->model.nv(), impl_->force.data());
   return impl_->force;
 }

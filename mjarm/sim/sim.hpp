@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjarm/core/joint_state.hpp"
@@ -15,9 +16,9 @@ namespace mjarm {
 
 /// One touching pair at one time.
 struct Contact {
-  std::string first;   ///< geom name, or body name where the geom has none
+  std::string first;  ///< geom name, or body name where the geom has none
   std::string second;
-  double depth = 0;    ///< [m] > 0 where they overlap
+  double depth = 0;  ///< [m] > 0 where they overlap, of the deepest point
 };
 
 /// A copy of the full state, for drawing and for going back; holds no MuJoCo types.
@@ -26,33 +27,50 @@ struct Snapshot {
   std::vector<double> state;  ///< MuJoCo's integration state, in its own order
 };
 
-/// One simulated world. Every read after a write is up to date: positions, contacts and sensors are
-/// recomputed before anybody can see them.
+/// One simulated world. Every read after a write is up to date: positions, velocities, contacts and
+/// their sensors are recomputed before anybody can see them. Forces and accelerations are those of
+/// the step just done; after `reset`, `place`, `set_state` and `restore` those that the state and
+/// the ctrl as they stand would give. Reading never changes what comes next.
 class Sim {
  public:
+  /// Stands in the initial state of the model (not in a keyframe).
   explicit Sim(const Model& model);
   ~Sim();
   Sim(Sim&&) noexcept;
   Sim& operator=(Sim&&) noexcept;
 
   /// Back to keyframe `name`, or to the initial state where `name` is empty.
+  /// @return an error with the nearest name.
   [[nodiscard]] Result<void> reset(std::string_view keyframe = {});
-  /// Puts the arm's joints at `q` (dof,), at rest, with matching ctrl where its actuators are servos.
+  /// Puts the arm's joints at `q` (dof,), at rest, with matching ctrl where its actuators are
+  /// servos. All else stays.
   void place(const Arm& arm, std::span<const double> q);
+  /// Puts the whole model at `qpos` (nq,), `qvel` (nv,). All else stays.
+  void set_state(std::span<const double> qpos, std::span<const double> qvel);
+  /// Back to a snapshot of the same model; what follows is the same to the last bit.
+  /// @return an error where the snapshot is of another model.
+  [[nodiscard]] Result<void> restore(const Snapshot& snapshot);
+  /// Sets one actuator command, for the followers to hold while they move the arm (a gripper).
+  void set_ctrl(int actuator, double value);
   /// One time step with these actuator commands (nu,).
-  /// @return an error when the simulation became unstable (NaN, huge values).
+  /// @return an error that names time and joint when the simulation became unstable (NaN, huge
+  ///         values); the world is then back in its initial state. A ctrl that is not a number is
+  ///         an error as well, and changes nothing.
   [[nodiscard]] Result<void> step(std::span<const double> ctrl);
 
   [[nodiscard]] const Model& model() const noexcept;
-  [[nodiscard]] double time() const noexcept;                     ///< [s]
-  [[nodiscard]] std::span<const double> qpos() const noexcept;    ///< (nq,)
-  [[nodiscard]] std::span<const double> qvel() const noexcept;    ///< (nv,)
-  [[nodiscard]] std::span<const double> ctrl() const noexcept;    ///< (nu,) of the last step
-  [[nodiscard]] std::span<const double> actuator_force() const noexcept;  ///< (nu,) [N m or N]
+  [[nodiscard]] double time() const noexcept;                   ///< [s]
+  [[nodiscard]] std::span<const double> qpos() const noexcept;  ///< (nq,)
+  [[nodiscard]] std::span<const double> qvel() const noexcept;  ///< (nv,)
+  [[nodiscard]] std::span<const double> ctrl() const noexcept;  ///< (nu,) of the last step
+  [[nodiscard]] std::span<const double> actuator_force() const noexcept;  ///< [N m or N], no gear
   [[nodiscard]] std::span<const double> sensor_data() const noexcept;     ///< as MuJoCo orders it
-  [[nodiscard]] JointState arm_state(const Arm& arm) const;       ///< q, v, a of the arm's joints
-  [[nodiscard]] Pose tool(const Arm& arm) const;                  ///< X_WT as simulated
+  [[nodiscard]] JointState arm_state(const Arm& arm) const;  ///< q, v, a of the arm's joints
+  [[nodiscard]] JointVec arm_torque(const Arm& arm) const;   ///< (dof,) [N m or N] of its drives
+  [[nodiscard]] Pose tool(const Arm& arm) const;             ///< X_WT as simulated
   [[nodiscard]] std::vector<Contact> contacts() const;
+  /// Contacts of what the arm moves (links, gripper), with the world or with itself.
+  [[nodiscard]] std::vector<Contact> contacts(const Arm& arm) const;
   [[nodiscard]] Snapshot snapshot() const;
 
  private:

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,40 +10,65 @@
 
 namespace mjarm {
 
-/// A motion in time: q(t), v(t), a(t) for t in [0, duration]; at rest at both ends unless made
-/// otherwise. A plain value.
+/// A motion in time: q(t), v(t), a(t) for t in [0, duration], q twice continuously differentiable;
+/// at rest at both ends unless made otherwise. A plain value; an empty one has no joints.
 class Trajectory {
  public:
-  /// Piecewise quintic through knots (times ascending from 0, states of equal size).
-  [[nodiscard]] static Result<Trajectory> through(std::vector<double> times,
-                                                  std::vector<JointState> knots);
+  /// Piecewise quintic through knots; one knot alone is a rest of no duration.
+  /// @param times  [s] strictly ascending from 0, at least one.
+  /// @param knots  as many states of equal size, all finite.
+  [[nodiscard]] static Result<Trajectory> through(const std::vector<double>& times,
+                                                  const std::vector<JointState>& knots);
+  /// Phases of constant jerk from `start`, exact however short they are.
+  /// @param durations  [s] >= 0; phases of no duration are left out.
+  /// @param jerks      [rad/s^3 or m/s^3] one vector a phase.
+  /// @param end        the state held from the end on, which the phases reach to rounding.
+  [[nodiscard]] static Result<Trajectory> from_jerks(const JointState& start,
+                                                     std::span<const double> durations,
+                                                     std::span<const JointVec> jerks,
+                                                     const JointState& end);
 
   [[nodiscard]] double duration() const noexcept;  ///< [s]
   [[nodiscard]] int dof() const noexcept;
-  /// State at time `t` [s]; held at the ends outside [0, duration].
+  /// State at time `t` [s]; before 0 and after the duration the first and the last q, at rest.
   [[nodiscard]] JointState at(double t) const;
 
  private:
-  std::vector<double> times_;
-  std::vector<JointState> knots_;
+  /// q(t) = sum of c[k] (t - start)^k.
+  struct Piece {
+    double start;  // [s]
+    JointVec c[6];
+  };
+  std::vector<Piece> pieces_;
+  JointState first_;
+  JointState last_;
+  double duration_ = 0;
 };
 
 /// Speeds asked for. Joint limits always hold and lower them where needed.
 struct TimingOptions {
-  double tool_speed = 0.25;  ///< [m/s] speed of the tool along a Cartesian path, > 0
+  double tool_speed = 0.25;  ///< [m/s] along a tool path ([rad/s] for turns on the spot), > 0
   double joint_share = 1.0;  ///< share of the joints' velocity and acceleration limits, (0, 1]
-  double tool_accel = 1.0;   ///< [m/s^2] along the path, > 0
+  double tool_accel = 1.0;   ///< [m/s^2] along a tool path ([rad/s^2] for turns), > 0
 };
 
-/// Point to point, all joints start and arrive together, at rest at both ends, within velocity,
-/// acceleration and jerk limits.
+/// Point to point on the straight line in joint space, at rest at both ends, within velocity,
+/// acceleration and jerk limits: the fastest such move. Seven phases of constant jerk (fewer for
+/// short moves), the same time law for all joints. Equal ends give a rest of no duration.
+/// @return an error for sizes that differ, numbers that are not finite, limits that are not
+///         positive.
 [[nodiscard]] Result<Trajectory> time_joint_move(std::span<const double> q0,
                                                  std::span<const double> q1,
                                                  const JointLimits& limits,
                                                  const TimingOptions& options = {});
 
 /// A joint path whose parameter is the tool's arc length, walked at `tool_speed` where the joint
-/// limits allow, slower elsewhere; at rest at both ends (and at sharp corners of the path).
+/// limits allow, slower elsewhere; at rest at both ends and at `stops`. Between stops the joints
+/// follow the cubic spline through the waypoints exactly, and accelerate without jumps, within a
+/// time that keeps the jerk limits when the tool starts and stops.
+/// @param path   s strictly ascending (parameters of turns on the spot are angles [rad]).
+/// @param stops  parameters of waypoints where the tool must rest: the corners of the curve.
+/// @return an error for bad sizes or numbers, or a stop that is no waypoint.
 [[nodiscard]] Result<Trajectory> time_tool_path(const JointPath& path,
                                                 std::span<const double> stops,
                                                 const JointLimits& limits,
@@ -54,10 +78,12 @@ struct TimingOptions {
 struct LimitUse {
   JointVec velocity;
   JointVec acceleration;
-  JointVec position;  ///< 0 inside, else how far beyond [rad or m]
+  JointVec jerk;                       ///< from differences of the acceleration over one sample
+  JointVec position;                   ///< 0 inside, else how far beyond [rad or m]
   [[nodiscard]] double worst() const;  ///< largest share of velocity and acceleration
 };
-/// Samples `trajectory` every `dt` [s]; shares no code with the timers.
+/// Samples `trajectory` every `dt` [s] (> 0) and at its end; shares no code with the timers.
+/// `limits` has the trajectory's number of joints.
 [[nodiscard]] LimitUse check_limits(const Trajectory& trajectory, const JointLimits& limits,
                                     double dt = 0.001);
 

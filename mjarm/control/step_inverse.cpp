@@ -1,0 +1,72 @@
+#include "mjarm/control/step_inverse.hpp"
+
+#include <algorithm>
+
+#include "mjarm/control/actuation.hpp"
+
+namespace mjarm {
+
+StepInverse::StepInverse(const Model& model, const Arm& arm)
+    : rule_(step_rule(model)),
+      dynamics_(model),
+      mass_(JointVec::Zero(arm.dof())),
+      stiffness_(JointVec::Zero(arm.dof())),
+      full_(model.nv(), 0.0),
+      rest_(model.nv(), 0.0) {
+  const double h = rule_.timestep;
+  const bool discrete = rule_.integrator == Integrator::discrete;
+  const bool implicit_actuators = rule_.integrator == Integrator::implicit ||
+                                  rule_.integrator == Integrator::implicitfast || discrete;
+  for (int i = 0; i < arm.dof(); ++i) {
+    const ArmJoint& joint = arm.joints[i];
+    dof_.push_back(joint.dof);
+    double damping = rule_.implicit_damping ? joint.damping : 0;
+    if (implicit_actuators && joint.actuator) damping += servo_damping(*joint.actuator);
+    if (discrete) {
+      // Only what stabilises enters there.
+      damping = std::max(damping, 0.0);
+      stiffness_[i] = rule_.stiffness[joint.dof];
+      if (joint.actuator) stiffness_[i] += std::max(servo_stiffness(*joint.actuator), 0.0);
+    }
+    mass_[i] = h * damping + h * h * stiffness_[i];
+  }
+}
+
+JointVec StepInverse::rows(const Eigen::VectorXd& full) const {
+  JointVec part(static_cast<Eigen::Index>(dof_.size()));
+  for (Eigen::Index i = 0; i < part.size(); ++i) part[i] = full[dof_[i]];
+  return part;
+}
+
+JointVec StepInverse::torque(std::span<const double> qpos, std::span<const double> qvel,
+                             const JointVec& a) {
+  std::fill(full_.begin(), full_.end(), 0.0);
+  JointVec v(a.size());
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    full_[dof_[i]] = a[i];
+    v[i] = qvel[dof_[i]];
+  }
+  JointVec torque = rows(dynamics_.inverse(qpos, qvel, full_));
+  torque -= rows(dynamics_.passive(qpos, qvel));
+  torque += mass_.cwiseProduct(a) + rule_.timestep * stiffness_.cwiseProduct(v);
+  if (rule_.integrator == Integrator::implicit) torque += coriolis_change(qpos, qvel, a);
+  return torque;
+}
+
+JointVec StepInverse::holding_torque(std::span<const double> qpos) {
+  const JointVec gravity = rows(dynamics_.gravity(qpos));
+  return gravity - rows(dynamics_.passive(qpos, rest_));
+}
+
+JointVec StepInverse::coriolis_change(std::span<const double> qpos, std::span<const double> qvel,
+                                      const JointVec& a) {
+  // c is a quadratic form in v (beside gravity), so its derivative along w is exactly
+  // (c(v + w) - c(v - w)) / 2.
+  full_.assign(qvel.begin(), qvel.end());
+  for (Eigen::Index i = 0; i < a.size(); ++i) full_[dof_[i]] += rule_.timestep * a[i];
+  const JointVec ahead = rows(dynamics_.bias(qpos, full_));
+  for (Eigen::Index i = 0; i < a.size(); ++i) full_[dof_[i]] -= 2 * rule_.timestep * a[i];
+  return 0.5 * (ahead - rows(dynamics_.bias(qpos, full_)));
+}
+
+}  // namespace mjarm

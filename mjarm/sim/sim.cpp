@@ -1,0 +1,264 @@
+#include "mjarm/sim/sim.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "mjarm/control/actuation.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/sim/raw_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+std::vector<std::string> keyframe_names(const mjModel& m) {
+  std::vector<std::string> names;
+  for (int i = 0; i < m.nkey; ++i) {
+    if (const char* name = mj_id2name(&m, mjOBJ_KEY, i)) names.emplace_back(name);
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all.empty() ? "-" : all;
+}
+
+/// Adds the pair, or deepens it where it is already there.
+void add_contact(std::vector<Contact>& all, Contact contact) {
+  for (Contact& known : all) {
+    if (known.first == contact.first && known.second == contact.second) {
+      known.depth = std::max(known.depth, contact.depth);
+      return;
+    }
+  }
+  all.push_back(std::move(contact));
+}
+
+/// True where `body` hangs on `root` or is it.
+bool moved_by(const mjModel& m, int body, int root) {
+  while (body > root) body = m.body_parentid[body];
+  return body == root;
+}
+
+}  // namespace
+
+struct Sim::Impl {
+  Model model;
+  raw::Data data;
+
+  std::optional<Error> fatal;  ///< MuJoCo refused to go on; no step is possible until a reset
+
+  explicit Impl(const Model& source) : model(source), data(mj_makeData(source.raw())) { refresh(); }
+  [[nodiscard]] const mjModel& m() const { return *model.raw(); }
+  [[nodiscard]] mjData& d() const { return *data; }
+
+  [[nodiscard]] bool unstable() const {
+    return d().warning[mjWARN_BADQPOS].number > 0 || d().warning[mjWARN_BADQVEL].number > 0 ||
+           d().warning[mjWARN_BADQACC].number > 0;
+  }
+
+  /// Runs `work`, in which MuJoCo may give up; then the world is of no use until it is reset.
+  template <class Work>
+  void guarded(const Work& work) {
+    const MujocoOutcome said = call_mujoco(work);
+    if (said.failed) fatal = Error{Errc::impossible, text(Msg::sim_fatal, d().time, said.error)};
+    if (unstable()) return;  // said with the error
+    for (const std::string& warning : said.warnings) log_warning(text(Msg::sim_mujoco, warning));
+  }
+  /// Recomputes everything that follows from the state.
+  void refresh() {
+    guarded([this] { mj_forward(&m(), &d()); });
+  }
+  void reset() {
+    fatal.reset();
+    mj_resetData(&m(), &d());
+    refresh();
+  }
+
+  /// What went wrong at `time`, and back to the initial state, whether or not MuJoCo went there.
+  Error instability(double time) {
+    const auto& warning = d().warning;
+    std::string joint;
+    if (warning[mjWARN_BADQACC].number > 0) {
+      joint = raw::dof_name(m(), warning[mjWARN_BADQACC].lastinfo);
+    } else if (warning[mjWARN_BADQVEL].number > 0) {
+      joint = raw::dof_name(m(), warning[mjWARN_BADQVEL].lastinfo);
+    } else {
+      joint = raw::qpos_name(m(), warning[mjWARN_BADQPOS].lastinfo);
+    }
+    reset();
+    return {Errc::impossible, text(Msg::sim_unstable, time, joint, m().opt.timestep)};
+  }
+
+  [[nodiscard]] std::vector<Contact> contacts(int root) const {
+    std::vector<Contact> all;
+    for (int i = 0; i < d().ncon; ++i) {
+      const mjContact& contact = d().contact[i];
+      if (contact.exclude != 0 || contact.dist > contact.includemargin) continue;
+      const auto counts = [&](int geom) {
+        return geom >= 0 && moved_by(m(), m().geom_bodyid[geom], root);
+      };
+      if (!counts(contact.geom[0]) && !counts(contact.geom[1])) continue;
+      add_contact(all, {raw::geom_name(m(), contact.geom[0]), raw::geom_name(m(), contact.geom[1]),
+                        -contact.dist});
+    }
+    return all;
+  }
+};
+
+Sim::Sim(const Model& model) : impl_(std::make_unique<Impl>(model)) {}
+Sim::~Sim() = default;
+Sim::Sim(Sim&&) noexcept = default;
+Sim& Sim::operator=(Sim&&) noexcept = default;
+
+Result<void> Sim::reset(std::string_view keyframe) {
+  const mjModel& m = impl_->m();
+  if (keyframe.empty()) {
+    impl_->reset();
+  } else {
+    const int key = mj_name2id(&m, mjOBJ_KEY, std::string(keyframe).c_str());
+    if (key < 0) {
+      const auto names = keyframe_names(m);
+      return fail(Errc::bad_input,
+                  text(Msg::sim_no_keyframe, model().file().string(), keyframe, joined(names)) +
+                      did_you_mean(keyframe, names));
+    }
+    impl_->fatal.reset();
+    mj_resetDataKeyframe(&m, &impl_->d(), key);
+    impl_->refresh();
+  }
+  return {};
+}
+
+void Sim::place(const Arm& arm, std::span<const double> q) {
+  assert(static_cast<int>(q.size()) == arm.dof());
+  mjData& d = impl_->d();
+  for (int i = 0; i < arm.dof(); ++i) {
+    const ArmJoint& joint = arm.joints[i];
+    d.qpos[joint.qpos] = q[i];
+    d.qvel[joint.dof] = 0;
+    if (joint.actuator && servo_stiffness(*joint.actuator) > 0) {
+      d.ctrl[joint.actuator->id] = ctrl_for_torque(*joint.actuator, 0, q[i], 0);
+    }
+  }
+  impl_->refresh();
+}
+
+void Sim::set_state(std::span<const double> qpos, std::span<const double> qvel) {
+  assert(static_cast<int>(qpos.size()) == model().nq());
+  assert(static_cast<int>(qvel.size()) == model().nv());
+  std::copy(qpos.begin(), qpos.end(), impl_->d().qpos);
+  std::copy(qvel.begin(), qvel.end(), impl_->d().qvel);
+  impl_->refresh();
+}
+
+Result<void> Sim::restore(const Snapshot& snapshot) {
+  const mjModel& m = impl_->m();
+  const int size = mj_stateSize(&m, mjSTATE_INTEGRATION);
+  if (static_cast<int>(snapshot.state.size()) != size) {
+    return fail(Errc::bad_input, text(Msg::sim_other_snapshot, snapshot.state.size(), size));
+  }
+  mj_setState(&m, &impl_->d(), snapshot.state.data(), mjSTATE_INTEGRATION);
+  impl_->refresh();
+  return {};
+}
+
+void Sim::set_ctrl(int actuator, double value) {
+  assert(actuator >= 0 && actuator < model().nu());
+  impl_->d().ctrl[actuator] = value;
+}
+
+Result<void> Sim::step(std::span<const double> ctrl) {
+  const mjModel& m = impl_->m();
+  mjData& d = impl_->d();
+  assert(static_cast<int>(ctrl.size()) == m.nu);
+  for (std::size_t i = 0; i < ctrl.size(); ++i) {
+    if (!std::isfinite(ctrl[i])) {
+      const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, static_cast<int>(i));
+      return fail(Errc::bad_input,
+                  text(Msg::sim_bad_ctrl, d.time, i, name != nullptr ? name : "-"));
+    }
+  }
+  if (ctrl.data() != d.ctrl) std::copy(ctrl.begin(), ctrl.end(), d.ctrl);
+
+  // The first half of a step (kinematics, contacts, velocities) was done at the end of the step
+  // before or by mj_forward, so that reads in between are fresh at no cost: mj_step is mj_step1
+  // followed by mj_step2. Only RK4 has no such halves, and pays for a whole step and a half.
+  const double time = d.time;
+  if (impl_->fatal) return fail(*impl_->fatal);
+  impl_->guarded([this, &m, &d] {
+    if (m.opt.integrator == mjINT_RK4) {
+      mj_step(&m, &d);
+    } else {
+      mj_step2(&m, &d);
+    }
+    if (!impl_->unstable()) mj_step1(&m, &d);
+  });
+  if (impl_->fatal) return fail(*impl_->fatal);
+  if (impl_->unstable()) return fail(impl_->instability(time));
+  return {};
+}
+
+const Model& Sim::model() const noexcept { return impl_->model; }
+double Sim::time() const noexcept { return impl_->d().time; }
+
+std::span<const double> Sim::qpos() const noexcept {
+  return {impl_->d().qpos, static_cast<std::size_t>(impl_->m().nq)};
+}
+std::span<const double> Sim::qvel() const noexcept {
+  return {impl_->d().qvel, static_cast<std::size_t>(impl_->m().nv)};
+}
+std::span<const double> Sim::ctrl() const noexcept {
+  return {impl_->d().ctrl, static_cast<std::size_t>(impl_->m().nu)};
+}
+std::span<const double> Sim::actuator_force() const noexcept {
+  return {impl_->d().actuator_force, static_cast<std::size_t>(impl_->m().nout)};
+}
+std::span<const double> Sim::sensor_data() const noexcept {
+  return {impl_->d().sensordata, static_cast<std::size_t>(impl_->m().nsensordata)};
+}
+
+JointState Sim::arm_state(const Arm& arm) const {
+  const mjData& d = impl_->d();
+  JointState state{JointVec(arm.dof()), JointVec(arm.dof()), JointVec(arm.dof())};
+  for (int i = 0; i < arm.dof(); ++i) {
+    state.q[i] = d.qpos[arm.joints[i].qpos];
+    state.v[i] = d.qvel[arm.joints[i].dof];
+    state.a[i] = d.qacc[arm.joints[i].dof];
+  }
+  return state;
+}
+
+JointVec Sim::arm_torque(const Arm& arm) const {
+  JointVec torque(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) {
+    torque[i] = impl_->d().qfrc_actuator[arm.joints[i].dof];
+  }
+  return torque;
+}
+
+Pose Sim::tool(const Arm& arm) const { return raw::tool_pose(impl_->m(), impl_->d(), arm); }
+
+std::vector<Contact> Sim::contacts() const { return impl_->contacts(0); }
+
+std::vector<Contact> Sim::contacts(const Arm& arm) const {
+  return impl_->contacts(impl_->m().dof_bodyid[arm.joints.front().dof]);
+}
+
+Snapshot Sim::snapshot() const {
+  const mjModel& m = impl_->m();
+  Snapshot snapshot;
+  snapshot.time = impl_->d().time;
+  snapshot.state.resize(static_cast<std::size_t>(mj_stateSize(&m, mjSTATE_INTEGRATION)));
+  mj_getState(&m, &impl_->d(), snapshot.state.data(), mjSTATE_INTEGRATION);
+  return snapshot;
+}
+
+}  // namespace mjarm

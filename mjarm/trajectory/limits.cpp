@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/trajectory/limits_internal.hpp"
+
+namespace mjarm {
+namespace detail {
+
+Result<Bounds> bounds_of(const JointLimits& limits, const TimingOptions& options,
+                         Eigen::Index dof) {
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+  for (const JointVec* limit : {&limits.velocity, &limits.acceleration, &limits.jerk}) {
+    if (limit->size() != dof || !std::all_of(limit->begin(), limit->end(), positive)) {
+      return fail(Errc::bad_input, text(Msg::trajectory_bad_limits, dof));
+    }
+  }
+  if (!positive(options.joint_share) || options.joint_share > 1) {
+    return fail(Errc::bad_input, text(Msg::trajectory_bad_share, options.joint_share));
+  }
+  if (!positive(options.tool_speed)) {
+    return fail(Errc::bad_input, text(Msg::trajectory_bad_speed, options.tool_speed));
+  }
+  if (!positive(options.tool_accel)) {
+    return fail(Errc::bad_input, text(Msg::trajectory_bad_accel, options.tool_accel));
+  }
+  return Bounds{options.joint_share * limits.velocity, options.joint_share * limits.acceleration,
+                limits.jerk};
+}
+
+}  // namespace detail
+
+double LimitUse::worst() const {
+  return velocity.size() == 0 ? 0 : std::max(velocity.maxCoeff(), acceleration.maxCoeff());
+}
+
+LimitUse check_limits(const Trajectory& trajectory, const JointLimits& limits, double dt) {
+  const JointVec zero = JointVec::Zero(trajectory.dof());
+  LimitUse use{zero, zero, zero, zero};
+  JointVec a_before;
+  double t_before = 0;
+  const auto samples = static_cast<long>(std::ceil(trajectory.duration() / dt));
+  for (long i = 0; i <= samples; ++i) {
+    const double t = std::min(static_cast<double>(i) * dt, trajectory.duration());
+    const JointState x = trajectory.at(t);
+    use.velocity = use.velocity.cwiseMax(x.v.cwiseAbs().cwiseQuotient(limits.velocity));
+    use.acceleration = use.acceleration.cwiseMax(x.a.cwiseAbs().cwiseQuotient(limits.acceleration));
+    use.position = use.position.cwiseMax(x.q - limits.upper).cwiseMax(limits.lower - x.q);
+    if (t > t_before) {
+      const JointVec jerk = (x.a - a_before) / (t - t_before);
+      use.jerk = use.jerk.cwiseMax(jerk.cwiseAbs().cwiseQuotient(limits.jerk));
+    }
+    a_before = x.a;
+    t_before = t;
+  }
+  return use;
+}
+
+}  // namespace mjarm
