@@ -74,9 +74,7 @@ std::optional<std::pair<double, double>> ctrl_range(const mjModel* m, int a,
     length.first += std::min(a0, a1);
     length.second += std::max(a0, a1);
   }
-  const auto [low, high] =
-      std::minmax(length.first * stiffness / gain, length.second * stiffness / gain);
-  return std::pair(low, high);
+  return std::minmax({length.first * stiffness / gain, length.second * stiffness / gain});
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 
 namespace tinyxml2 {
 class XMLDocument;
-class XMLElement;
 }  // namespace tinyxml2
 
 namespace mjarm {
@@ -40,15 +39,11 @@ struct LoadedModel {
 struct SpecSource {
   std::filesystem::path file;         ///< as the user named it, for messages
   const std::string* text = nullptr;  ///< what to parse instead of the file; null = the file itself
-  const tinyxml2::XMLElement* root = nullptr;  ///< the file as written, to find lines; may be null
 };
 
 /// Parses and compiles; MuJoCo's complaint becomes one line `FILE:LINE: <element>: what`.
 /// @param prepare  changes the description between the two steps; may be null.
 [[nodiscard]] Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpec*));
-
-/// Loads a description whose root element is `mujoco`.
-[[nodiscard]] Result<LoadedModel> load_mjcf(const std::filesystem::path& file);
 
 /// Loads a description whose root element is `robot`; changes `document`.
 [[nodiscard]] Result<LoadedModel> load_urdf(const std::filesystem::path& file,

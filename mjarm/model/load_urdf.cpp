@@ -1,4 +1,5 @@
 #include <set>
+#include <utility>
 
 #include "mjarm/core/messages.hpp"
 #include "mjarm/model/load_internal.hpp"
@@ -24,8 +25,8 @@ void drop_repeated_shape_names(XMLElement& robot) {
 }
 
 /// MuJoCo's own settings for this file: keep what is seen and every fixed frame; file names are
-/// absolute already.
-void set_compiler(tinyxml2::XMLDocument& document, XMLElement& robot) {
+/// absolute already. Returns the element that holds them.
+XMLElement& set_compiler(tinyxml2::XMLDocument& document, XMLElement& robot) {
   XMLElement* extension = robot.FirstChildElement("mujoco");
   if (extension == nullptr) {
     extension = document.NewElement("mujoco");
@@ -40,6 +41,7 @@ void set_compiler(tinyxml2::XMLDocument& document, XMLElement& robot) {
   for (const char* setting : {"discardvisual", "fusestatic", "strippath"}) {
     compiler->SetAttribute(setting, "false");
   }
+  return *compiler;
 }
 
 /// Sorts geoms into the groups of MuJoCo's viewers: what is seen into 2 (shown), what touches into
@@ -57,6 +59,13 @@ void sort_groups(mjSpec* spec) {
   }
 }
 
+Result<LoadedModel> compile_document(const fs::path& file, const tinyxml2::XMLDocument& document) {
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  document.Print(&printer);
+  const std::string xml = printer.CStr();
+  return compile_spec({.file = file, .text = &xml}, sort_groups);
+}
+
 double limit_of(const XMLElement& joint, const char* attribute) {
   const XMLElement* limit = joint.FirstChildElement("limit");
   return limit != nullptr ? limit->DoubleAttribute(attribute, 0.0) : 0.0;
@@ -71,13 +80,16 @@ Result<LoadedModel> load_urdf(const fs::path& file, tinyxml2::XMLDocument& docum
   std::vector<std::string> warnings;
   if (auto done = resolve_meshes(file, robot, options, warnings); !done) return fail(done.error());
   drop_repeated_shape_names(robot);
-  set_compiler(document, robot);
+  give_mass(file, robot, warnings);
+  XMLElement& compiler = set_compiler(document, robot);
 
-  tinyxml2::XMLPrinter printer(nullptr, true);
-  document.Print(&printer);
-  const std::string xml = printer.CStr();
-  Result<LoadedModel> loaded =
-      compile_spec({.file = file, .text = &xml, .root = &robot}, sort_groups);
+  Result<LoadedModel> loaded = compile_document(file, document);
+  if (!loaded && loaded.error().what.find(text(Msg::model_mj_inertia)) != std::string::npos) {
+    // Inertias that no body can have are common in URDF files and matter to dynamics alone.
+    warnings.push_back(text(Msg::model_balanced_inertia, loaded.error().what));
+    compiler.SetAttribute("balanceinertia", "true");
+    loaded = compile_document(file, document);
+  }
   if (!loaded) return loaded;
   loaded->warnings.insert(loaded->warnings.begin(), warnings.begin(), warnings.end());
   for (const XMLElement* joint : children(std::as_const(robot), "joint")) {

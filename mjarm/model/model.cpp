@@ -29,11 +29,24 @@ Error xml_error(const fs::path& file, const tinyxml2::XMLDocument& document) {
   if (document.ErrorID() == tinyxml2::XML_ERROR_EMPTY_DOCUMENT) {
     return {Errc::bad_input, text(Msg::model_empty_file, name)};
   }
-  // "Error=XML_ERROR_MISMATCHED_ELEMENT ErrorID=14 (0xe) Line number=2: XMLElement name=body"
-  std::string detail = tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID());
+  std::string detail;
+  switch (document.ErrorID()) {
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      detail = text(Msg::model_xml_mismatch);
+      break;
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      detail = text(Msg::model_xml_attribute);
+      break;
+    case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
+      detail = text(Msg::model_xml_depth);
+      break;
+    default:
+      detail = text(Msg::model_xml_other);
+  }
+  // "Error=... ErrorID=14 (0xe) Line number=2: XMLElement name=body"
   const std::string full = document.ErrorStr();
-  if (const std::size_t name_at = full.find("name="); name_at != std::string::npos) {
-    detail += " <" + full.substr(name_at + 5) + ">";
+  if (const std::size_t at = full.find("XMLElement name="); at != std::string::npos) {
+    detail = "<" + full.substr(at + 16) + ">: " + detail;
   }
   return {Errc::bad_input, text(Msg::model_not_xml, name, document.ErrorLineNum(), detail)};
 }
@@ -64,8 +77,9 @@ Result<Model> Model::load(const fs::path& file, const LoadOptions& options) {
           root_name == "mujocoinclude" ? Msg::model_is_a_part : Msg::model_wrong_root;
       return fail(Errc::bad_input, text(reason, file.string(), root->GetLineNum(), root_name));
     }
-    Result<LoadedModel> loaded =
-        impl->format == ModelFormat::urdf ? load_urdf(file, document, options) : load_mjcf(file);
+    Result<LoadedModel> loaded = impl->format == ModelFormat::urdf
+                                     ? load_urdf(file, document, options)
+                                     : compile_spec({.file = file}, nullptr);
     if (!loaded) return fail(std::move(loaded.error()));
     impl->loaded = std::move(*loaded);
     return Model(std::move(impl));

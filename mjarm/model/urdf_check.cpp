@@ -49,18 +49,20 @@ std::vector<double> parse_numbers(std::string_view words, std::size_t count) {
 }
 
 Error urdf_error(const fs::path& file, const XMLElement& element, std::string_view what) {
-  std::string label = std::string("<") + element.Name();
-  // An element without a name of its own is told by the link or joint around it.
-  const tinyxml2::XMLNode* node = &element;
-  while (node != nullptr && node->ToElement() != nullptr) {
-    if (const char* name = node->ToElement()->Attribute("name")) {
-      label += node == &element ? std::string(" \"") + name + "\""
-                                : std::string("> of \"") + name + "\"";
+  const std::string kind = element.Name();
+  std::string label = "<" + kind + ">";
+  if (const char* name = element.Attribute("name")) {
+    label = "<" + kind + " \"" + name + "\">";
+  } else {
+    // An element without a name of its own is told by the link or joint around it.
+    for (const tinyxml2::XMLNode* at = element.Parent(); at != nullptr; at = at->Parent()) {
+      const XMLElement* around = at->ToElement();
+      const char* name_around = around != nullptr ? around->Attribute("name") : nullptr;
+      if (name_around == nullptr) continue;
+      label = text(Msg::model_element_of, kind, name_around);
       break;
     }
-    node = node->Parent();
   }
-  if (label.find('>') == std::string::npos) label += ">";
   return {Errc::bad_input,
           text(Msg::model_element_refused,
                file.string() + ":" + std::to_string(element.GetLineNum()), label, what)};

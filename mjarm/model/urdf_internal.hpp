@@ -31,6 +31,12 @@ namespace mjarm {
                                           tinyxml2::XMLElement& robot, const LoadOptions& options,
                                           std::vector<std::string>& warnings);
 
+/// A URDF that describes geometry alone has links without mass; MuJoCo needs mass on whatever a
+/// joint moves. Such links get a trace of it. Where a link has collision shapes but no inertia,
+/// MuJoCo takes them for solid water; both are told in `warnings`.
+void give_mass(const std::filesystem::path& file, tinyxml2::XMLElement& robot,
+               std::vector<std::string>& warnings);
+
 /// All child elements of `parent` of the given name.
 [[nodiscard]] std::vector<tinyxml2::XMLElement*> children(tinyxml2::XMLElement& parent,
                                                           const char* name);

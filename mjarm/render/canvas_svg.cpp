@@ -106,7 +106,7 @@ struct Writer {
   }
   void operator()(const Clip& clip) {
     const std::string id = "clip" + std::to_string(++clips);
-    out += "<clipPath id=\"" + id + "\"><rect " + place(clip.box) + "/></clipPath>\n";
+    out += "<defs><clipPath id=\"" + id + "\"><rect " + place(clip.box) + "/></clipPath></defs>\n";
     out += "<g clip-path=\"url(#" + id + ")\">\n";
   }
   void operator()(const Unclip&) { out += "</g>\n"; }

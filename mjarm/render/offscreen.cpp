@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mjarm/core/messages.hpp"
+#include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
 namespace {
@@ -29,20 +30,29 @@ struct OffscreenRenderer::Impl {
       : gl(std::move(context)),
         scene(model, options.quality),
         viewport{0, 0, options.width, options.height} {
-    mjModel m = scene.model();
-    m.vis.global.offwidth = options.width;
-    m.vis.global.offheight = options.height;
-    // Without a GPU a larger shadow map costs more time than the whole rest of the picture.
-    if (gl.is_software()) m.vis.quality.shadowsize = std::min(m.vis.quality.shadowsize, 4096);
     mjr_defaultContext(&context_);
-    mjr_makeContext(&m, &context_, mjFONTSCALE_150);
-    gl.release();
   }
   ~Impl() {
     if (gl.make_current()) mjr_freeContext(&context_);
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+
+  /// Uploads the model; the context must be current, and is not any more afterwards.
+  Result<void> upload() {
+    mjModel m = scene.model();
+    m.vis.global.offwidth = viewport.width;
+    m.vis.global.offheight = viewport.height;
+    // Without a GPU a larger shadow map costs more time than the whole rest of the picture.
+    if (gl.is_software()) m.vis.quality.shadowsize = std::min(m.vis.quality.shadowsize, 4096);
+    const MujocoOutcome outcome =
+        call_mujoco([&] { mjr_makeContext(&m, &context_, mjFONTSCALE_150); });
+    gl.release();
+    if (outcome.failed) {
+      return fail(Errc::not_available, text(Msg::render_upload_failed, outcome.error));
+    }
+    return {};
+  }
 
   GlContext gl;  ///< must outlive `context_`
   Scene scene;
@@ -59,7 +69,9 @@ Result<OffscreenRenderer> OffscreenRenderer::create(const Model& model,
   }
   Result<GlContext> gl = GlContext::create(options.gl);
   if (!gl) return fail(std::move(gl.error()));
-  return OffscreenRenderer(std::make_unique<Impl>(std::move(*gl), model, options));
+  auto impl = std::make_unique<Impl>(std::move(*gl), model, options);
+  if (Result<void> uploaded = impl->upload(); !uploaded) return fail(std::move(uploaded.error()));
+  return OffscreenRenderer(std::move(impl));
 }
 
 OffscreenRenderer::OffscreenRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mjarm/core/messages.hpp"
+#include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/render/gl_context.hpp"
 #include "mjarm/view/display_internal.hpp"
 #include "mjarm/view/figure_internal.hpp"
@@ -55,11 +56,7 @@ struct Window::Impl {
     glfwSetScrollCallback(handle, on_scroll);
     glfwSetCursorPosCallback(handle, on_move);
     glfwSwapInterval(0);
-    float scale = 1;
-    glfwGetWindowContentScale(handle, &scale, nullptr);
     mjr_defaultContext(&context);
-    mjr_makeContext(&scene.model(), &context, font_scale(scale));
-    glfwMakeContextCurrent(nullptr);
   }
   // Once the display is lost, all that belongs to it is left to the end of the process.
   ~Impl() {
@@ -79,6 +76,7 @@ struct Window::Impl {
   static void on_scroll(GLFWwindow* window, double, double notches);
   static void on_move(GLFWwindow* window, double x, double y);
 
+  Result<void> upload();
   void set_view(const CameraView& view);
   void turn_or_pan(double dx, double dy);
   void render();
@@ -137,6 +135,17 @@ void Window::Impl::turn_or_pan(double dx, double dy) {
   }
 }
 
+/// Hands the model to OpenGL.
+Result<void> Window::Impl::upload() {
+  float scale = 1;
+  glfwGetWindowContentScale(handle, &scale, nullptr);
+  const MujocoOutcome outcome =
+      call_mujoco([&] { mjr_makeContext(&scene.model(), &context, font_scale(scale)); });
+  glfwMakeContextCurrent(nullptr);
+  if (!outcome.failed) return {};
+  return fail(Errc::not_available, text(Msg::view_no_window, outcome.error));
+}
+
 void Window::Impl::set_view(const CameraView& view) {
   // A view that was taken from a camera or checked before is never refused.
   (void)scene.set_camera({.view = view});
@@ -189,6 +198,7 @@ Result<Window> Window::open(const Model& model, const std::string& title,
     return fail(std::move(window.error()));
   }
   auto impl = std::make_unique<Impl>(*window, model, options);
+  if (Result<void> uploaded = impl->upload(); !uploaded) return fail(std::move(uploaded.error()));
   if (Result<void> set = impl->scene.set_camera(options.camera); !set) {
     return fail(std::move(set.error()));
   }

@@ -1,0 +1,61 @@
+#include <regex>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/model/complaint_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+/// What MuJoCo says, and the message of the catalogue that says the same; its placeholders take the
+/// groups of the pattern in order, then the hint.
+struct Phrase {
+  const char* pattern;
+  Msg message;
+};
+
+constexpr Phrase kPhrases[] = {
+    {"unrecognized attribute: '(.*)'", Msg::model_mj_attribute},
+    {"unrecognized element", Msg::model_mj_element},
+    {"invalid keyword: '(.*)'", Msg::model_mj_keyword},
+    {"required attribute missing: '(.*)'", Msg::model_attribute_missing},
+    {"(?:Error: )?repeated name '(.*)' in .*", Msg::model_repeated_name},
+    {"Error opening file '(.*)'", Msg::model_mj_no_file},
+    {"File '(.*)' already included", Msg::model_mj_included_twice},
+    {"mass and inertia of moving bodies must be larger than mjMINVAL", Msg::model_mj_no_mass},
+    {"inertia must satisfy A \\+ B >= C.*", Msg::model_mj_inertia},
+    {"size (\\d) must be positive in \\w+", Msg::model_mj_size},
+    {"bad format in attribute '(.*)'", Msg::model_mj_bad_number},
+    {"number is too large in attribute '(.*)'", Msg::model_mj_large_number},
+    {"attribute '(.*)' has too much data", Msg::model_mj_too_much},
+    {"attribute '(.*)' does not have enough data", Msg::model_mj_too_little},
+    {"(\\w+) '(.*)' not found in .*", Msg::model_mj_not_found},
+    {"unknown transmission target '(.*)' for actuator.*", Msg::model_mj_target},
+    {"unknown default class name '(.*)'", Msg::model_mj_class},
+    {"unknown element '(.*)' in .*", Msg::model_mj_object},
+    {"unrecognized name '(.*)' of sensorized object", Msg::model_mj_object},
+    {"range\\[0\\] should be smaller than range\\[1\\] in .*", Msg::model_mj_range},
+    {"axis too small in joint", Msg::model_zero_axis},
+    {"zero quaternion is not allowed", Msg::model_mj_zero_quat},
+    {"free joint can only be used on top level", Msg::model_mj_free_joint},
+    {"Could not allocate memory", Msg::model_mj_memory},
+};
+
+}  // namespace
+
+std::string in_users_words(const Complaint& complaint, const std::string& hint) {
+  std::smatch match;
+  for (const Phrase& phrase : kPhrases) {
+    if (!std::regex_match(complaint.what, match, std::regex(phrase.pattern))) continue;
+    switch (match.size()) {
+      case 1:
+        return text(phrase.message) + hint;
+      case 2:
+        return text(phrase.message, match[1].str()) + hint;
+      default:
+        return text(phrase.message, match[1].str(), match[2].str()) + hint;
+    }
+  }
+  return text(Msg::model_mujoco_says, complaint.what) + hint;
+}
+
+}  // namespace mjarm

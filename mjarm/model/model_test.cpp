@@ -1,0 +1,322 @@
+#include "mjarm/model/model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+#include "mjarm/model/find_arm.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace mjarm {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// A binary STL of a tetrahedron with edges of length `size` [m].
+std::string tetrahedron(float size) {
+  const std::array<std::array<float, 3>, 4> corners = {
+      {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}}};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  std::string file(80, ' ');
+  const auto put = [&](const void* bytes, std::size_t count) {
+    file.append(static_cast<const char*>(bytes), count);
+  };
+  const std::uint32_t count = 4;
+  put(&count, 4);
+  for (const auto& face : faces) {
+    const float normal[3] = {0, 0, 0};
+    put(normal, 12);
+    for (const int corner : face) put(corners[corner].data(), 12);
+    file.append(2, '\0');
+  }
+  return file;
+}
+
+std::string one_link(const std::string& shapes, const std::string& extension = "") {
+  return "<robot name=\"r\">" + extension + "<link name=\"base\">" + shapes + "</link></robot>";
+}
+std::string mesh(const char* kind, const std::string& file) {
+  return std::string("<") + kind + "><geometry><mesh filename=\"" + file + "\"/></geometry></" +
+         kind + ">";
+}
+
+/// An environment variable for the life of this object.
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value) : name_(name) {
+    setenv(name, value.c_str(), 1);
+  }
+  ~Environment() { unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+};
+
+constexpr const char* kTwoLinks = R"(<robot name="two">
+  <mujoco><compiler angle="degree" strippath="true"/></mujoco>
+  <link name="base">
+    <visual name="x"><geometry><box size="1 1 1"/></geometry></visual>
+    <collision name="x"><geometry><box size="1 1 1"/></geometry></collision>
+  </link>
+  <link name="arm">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <visual><geometry><sphere radius="0.1"/></geometry></visual>
+    <visual><geometry><sphere radius="0.2"/></geometry></visual>
+  </link>
+  <link name="tool"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 2"/>
+    <axis xyz="0 0 3"/><limit lower="-1" upper="1.5" velocity="2.5" effort="3"/>
+    <dynamics damping="0.5" friction="0.1"/></joint>
+  <joint name="flange" type="fixed"><parent link="arm"/><child link="tool"/><origin xyz="1 0 0"/></joint>
+</robot>)";
+
+TEST(Model, TellsTheFormatByTheRootElement) {
+  const support::TempFolder folder;
+  const auto urdf = Model::load(folder.write("named.xml", kTwoLinks));
+  ASSERT_TRUE(urdf) << urdf.error().what;
+  EXPECT_EQ(urdf->format(), ModelFormat::urdf);
+  EXPECT_EQ(urdf->name(), "two");
+  const auto mjcf = Model::load(folder.write(
+      "named.urdf",
+      "<!-- c --><mujoco model=\"m\"><option timestep=\"0.004\"/><worldbody/></mujoco>"));
+  ASSERT_TRUE(mjcf) << mjcf.error().what;
+  EXPECT_EQ(mjcf->format(), ModelFormat::mjcf);
+  EXPECT_EQ(mjcf->name(), "m");
+  EXPECT_DOUBLE_EQ(mjcf->timestep(), 0.004);
+  EXPECT_EQ(mjcf->nq() + mjcf->nv() + mjcf->nu(), 0);
+  EXPECT_EQ(mjcf->file(), folder.path() / "named.urdf");
+}
+
+TEST(Model, UrdfKeepsFixedFramesLimitsAndLooks) {
+  const support::TempFolder folder;
+  const auto model = Model::load(folder.write("two.urdf", kTwoLinks));
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_DOUBLE_EQ(model->urdf_velocity_limit("turn"), 2.5);
+  EXPECT_DOUBLE_EQ(model->urdf_effort_limit("turn"), 3);
+  EXPECT_DOUBLE_EQ(model->urdf_velocity_limit("flange"), 0);
+  EXPECT_DOUBLE_EQ(model->urdf_velocity_limit("none"), 0);
+  const mjModel* m = model->raw();
+  ASSERT_EQ(m->njnt, 1);
+  EXPECT_DOUBLE_EQ(m->jnt_range[0], -1);  // radian, whatever the extension says
+  EXPECT_DOUBLE_EQ(m->jnt_range[1], 1.5);
+  EXPECT_DOUBLE_EQ(m->jnt_actfrcrange[1], 3);
+  EXPECT_DOUBLE_EQ(m->dof_damping[0], 0.5);
+  ASSERT_EQ(m->ngeom, 5);  // three looks and two solids: none lost, none doubled
+  int looks = 0;
+  for (int g = 0; g < m->ngeom; ++g) looks += m->geom_contype[g] == 0 ? 1 : 0;
+  EXPECT_EQ(looks, 3);
+  const int base = mj_name2id(m, mjOBJ_BODY, "base");
+  const int tool = mj_name2id(m, mjOBJ_BODY, "tool");
+  for (int g = 0; g < m->ngeom; ++g) {
+    const bool hidden = m->geom_group[g] == 3;
+    // The solid of `base` hides behind its look; the tool has no other look than its solid.
+    EXPECT_EQ(hidden, m->geom_bodyid[g] == base && m->geom_contype[g] != 0);
+    if (m->geom_bodyid[g] == tool) {
+      EXPECT_EQ(m->geom_group[g], 2);
+    }
+  }
+  const auto X_WT = frame_pose(*model, "tool", std::vector<double>{1.0});
+  ASSERT_TRUE(X_WT) << X_WT.error().what;
+  EXPECT_NEAR((X_WT->p - Eigen::Vector3d(std::cos(1), std::sin(1), 2)).norm(), 0, 1e-15);
+}
+
+TEST(Model, MimicJointsAreCoupled) {
+  const support::TempFolder folder;
+  std::string text = kTwoLinks;
+  text.replace(
+      text.rfind("</robot>"), 8,
+      R"(<link name="f"><collision><geometry><sphere radius=".1"/></geometry></collision></link>
+    <joint name="follow" type="continuous"><parent link="tool"/><child link="f"/>
+    <mimic joint="turn" multiplier="2" offset="0.25"/></joint></robot>)");
+  const auto model = Model::load(folder.write("a.urdf", text));
+  ASSERT_TRUE(model) << model.error().what;
+  ASSERT_EQ(model->raw()->neq, 1);
+  EXPECT_DOUBLE_EQ(model->raw()->eq_data[0], 0.25);
+  EXPECT_DOUBLE_EQ(model->raw()->eq_data[1], 2);
+}
+
+TEST(Model, MeshesAreFoundBesideTheFileAndInPackages) {
+  const support::TempFolder folder;
+  folder.write("ws/robot_description/meshes/visual/link.stl", tetrahedron(1));
+  folder.write("ws/robot_description/meshes/collision/link.stl", tetrahedron(2));
+  const std::string package = "package://robot_description/meshes/";
+  const auto load = [&](const std::string& place, const std::string& text,
+                        const LoadOptions& options = {}) {
+    return Model::load(folder.write(place, text), options);
+  };
+  const std::string relative = one_link(mesh("visual", "../meshes/visual/link.stl") +
+                                        mesh("collision", "../meshes/collision/link.stl"));
+  const std::string in_package = one_link(mesh("visual", package + "visual/link.stl") +
+                                          mesh("collision", package + "collision/link.stl"));
+  const auto check = [](const Result<Model>& model, const char* how) {
+    ASSERT_TRUE(model) << how << ": " << model.error().what;
+    const mjModel* m = model->raw();
+    // Two files of one name in two folders stay two meshes.
+    ASSERT_EQ(m->nmesh, 2) << how;
+    ASSERT_EQ(m->ngeom, 2) << how;
+    EXPECT_GT(m->geom_rbound[1], 1.5 * m->geom_rbound[0]) << how;
+  };
+  check(load("ws/robot_description/urdf/a.urdf", relative), "relative");
+  check(load("ws/robot_description/urdf/b.urdf", in_package), "walking up");
+  check(load("else/c.urdf", in_package, {.package_paths = {folder.path() / "ws"}}),
+        "option, folder of packages");
+  check(
+      load("else/c.urdf", in_package, {.package_paths = {folder.path() / "ws/robot_description"}}),
+      "option, package");
+  EXPECT_FALSE(load("else/c.urdf", in_package));
+  {
+    const Environment ros("ROS_PACKAGE_PATH", "/nowhere:" + (folder.path() / "ws").string());
+    check(load("else/c.urdf", in_package), "ROS_PACKAGE_PATH");
+  }
+  {
+    fs::create_directories(folder.path() / "prefix/share");
+    fs::copy(folder.path() / "ws/robot_description",
+             folder.path() / "prefix/share/robot_description", fs::copy_options::recursive);
+    const Environment ament("AMENT_PREFIX_PATH", (folder.path() / "prefix").string());
+    check(load("else/c.urdf", in_package), "AMENT_PREFIX_PATH");
+  }
+  const std::string absolute = one_link(
+      mesh("visual",
+           "file://" + (folder.path() / "ws/robot_description/meshes/visual/link.stl").string()) +
+      mesh("collision",
+           (folder.path() / "ws/robot_description/meshes/collision/link.stl").string()));
+  check(load("else/d.urdf", absolute), "absolute");
+  const std::string by_dir = one_link(
+      mesh("visual", "visual/link.stl") + mesh("collision", "collision/link.stl"),
+      "<mujoco><compiler meshdir=\"../ws/robot_description/meshes\" strippath=\"true\"/></mujoco>");
+  check(load("else/e.urdf", by_dir), "meshdir");
+}
+
+TEST(Model, VisualMeshesOfOtherFormatsAreLeftOutWithAWarning) {
+  const support::TempFolder folder;
+  folder.write("a.stl", tetrahedron(1));
+  const auto model = Model::load(
+      folder.write("a.urdf", one_link(mesh("visual", "a.dae") + mesh("collision", "a.stl"))));
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_EQ(model->raw()->ngeom, 1);
+  EXPECT_EQ(model->raw()->geom_group[0], 2);  // shown, in place of the look
+  ASSERT_FALSE(model->warnings().empty());
+  EXPECT_THAT(model->warnings()[0], HasSubstr("a.urdf:1: visual mesh \"a.dae\" is left out"));
+}
+
+TEST(Model, UrdfWithoutMassStillMoves) {
+  const support::TempFolder folder;
+  const auto model = Model::load(folder.write(
+      "a.urdf",
+      R"(<robot name="r"><link name="base"/><link name="a"/><link name="b"/><link name="t"/>
+    <joint name="i" type="continuous"><parent link="base"/><child link="a"/></joint>
+    <joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>
+    <joint name="k" type="fixed"><parent link="b"/><child link="t"/></joint></robot>)"));
+  ASSERT_TRUE(model) << model.error().what;
+  ASSERT_EQ(model->warnings().size(), 1U);
+  EXPECT_THAT(model->warnings()[0], HasSubstr("a, b (1e-6 kg each)"));
+  EXPECT_EQ(find_arm(*model).value().tip, "t");
+}
+
+TEST(Model, UrdfWithImpossibleInertiaIsEvenedOutWithAWarning) {
+  const support::TempFolder folder;
+  std::string text = kTwoLinks;
+  text.replace(text.find("izz=\"1\""), 7, "izz=\"5\"");
+  const auto model = Model::load(folder.write("a.urdf", text));
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_THAT(model->warnings(),
+              testing::Contains(testing::AllOf(HasSubstr("\"arm\""), HasSubstr("evened out"))));
+}
+
+TEST(Model, PathsMayHoldSpacesAndChinese) {
+  const support::TempFolder folder;
+  folder.write("机器 人/网格.stl", tetrahedron(1));
+  const auto urdf =
+      Model::load(folder.write("机器 人/臂.urdf", one_link(mesh("visual", "网格.stl"))));
+  EXPECT_TRUE(urdf) << urdf.error().what;
+  const auto mjcf = Model::load(
+      folder.write("机器 人/臂.xml",
+                   "<mujoco><asset><mesh name=\"m\" file=\"网格.stl\"/></asset><worldbody><geom "
+                   "type=\"mesh\" mesh=\"m\"/></worldbody></mujoco>"));
+  EXPECT_TRUE(mjcf) << mjcf.error().what;
+}
+
+TEST(Model, RelativePathsAreThoseOfTheFileAndNotOfTheProcess) {
+  const support::TempFolder folder;
+  folder.write("in/part.xml",
+               "<mujocoinclude><asset><mesh name=\"m\" file=\"m.stl\"/></asset></mujocoinclude>");
+  folder.write("in/m.stl", tetrahedron(1));
+  const auto file = folder.write("in/a.xml",
+                                 "<mujoco><include file=\"part.xml\"/><worldbody><geom "
+                                 "type=\"mesh\" mesh=\"m\"/></worldbody></mujoco>");
+  const auto model = Model::load(file);
+  EXPECT_TRUE(model) << model.error().what;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  const auto relative = Model::load("in/a.xml");
+  fs::current_path(before);
+  EXPECT_TRUE(relative) << relative.error().what;
+}
+
+TEST(Model, ManyThreadsLoadGoodAndBadFilesAtOnce) {
+  const support::TempFolder folder;
+  const auto good = folder.write("good.urdf", kTwoLinks);
+  constexpr int kThreads = 8;
+  std::vector<fs::path> bad;
+  for (int i = 0; i < kThreads; ++i) {
+    bad.push_back(folder.write(
+        "bad" + std::to_string(i) + ".xml",
+        "<mujoco><worldbody><geom wrong" + std::to_string(i) + "=\"1\"/></worldbody></mujoco>"));
+  }
+  std::array<int, kThreads> right{};
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i) {
+    threads.emplace_back([&, i] {
+      for (int n = 0; n < 20; ++n) {
+        const auto model = Model::load(good);
+        const auto error = Model::load(bad[i]);
+        const bool own = !error && error.error().what.find("\"wrong" + std::to_string(i) + "\"") !=
+                                       std::string::npos;
+        right[i] += model && own ? 1 : 0;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const int count : right) EXPECT_EQ(count, 20);
+}
+
+TEST(ShippedModels, AreFoundByNameAndByEnvironment) {
+  for (const char* name : {"car", "hello", "panda", "ur5e"}) {
+    const auto file = find_model_file(name);
+    ASSERT_TRUE(file) << file.error().what;
+    EXPECT_TRUE(file->is_absolute());
+    EXPECT_TRUE(Model::load(*file)) << name;
+  }
+  std::vector<std::string> names;
+  for (const ShippedModel& model : shipped_models()) names.push_back(model.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"car", "hello", "panda", "ur5e"}));
+  const support::TempFolder folder;
+  folder.write("car.xml", "<mujoco model=\"my car\"/>");
+  const Environment models("MJARM_MODELS", folder.path().string());
+  EXPECT_EQ(find_model_file("car").value(), folder.path() / "car.xml");
+}
+
+TEST(ShippedModels, MissNamesTheNearestAndTheChoices) {
+  const auto miss = find_model_file("ur5");
+  ASSERT_FALSE(miss);
+  EXPECT_EQ(miss.error().code, Errc::bad_input);
+  EXPECT_THAT(miss.error().what, HasSubstr("did you mean \"ur5e\""));
+  EXPECT_THAT(miss.error().what, HasSubstr("car, hello, panda, ur5e"));
+  EXPECT_FALSE(find_model_file(""));
+  EXPECT_FALSE(find_model_file("no/such/file.xml"));
+  const support::TempFolder folder;
+  const auto file = folder.write("a.xml", "<mujoco/>");
+  EXPECT_EQ(find_model_file(file.string()).value(), file);
+}
+
+}  // namespace
+}  // namespace mjarm

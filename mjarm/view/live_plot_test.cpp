@@ -1,0 +1,96 @@
+#include "mjarm/view/live_plot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "mjarm/view/figure_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+class Figures : public testing::Test {
+ protected:
+  /// Figures are too large for the stack.
+  const mjvFigure& fill(const LivePlot& plot) {
+    fill_figure(plot, *figure_);
+    return *figure_;
+  }
+  std::unique_ptr<mjvFigure> figure_ = std::make_unique<mjvFigure>();
+};
+
+TEST_F(Figures, HoldTheCurvesAndTheirNames) {
+  const LivePlot plot = {.title = "joints",
+                         .x_label = "time [s]",
+                         .series = {{.name = "pan", .x = {0, 1, 2}, .y = {0, 0.5, 1}},
+                                    {.name = "lift", .x = {0, 1}, .y = {-1, 1}}}};
+  const mjvFigure& figure = fill(plot);
+  EXPECT_STREQ(figure.title, "joints");
+  EXPECT_STREQ(figure.xlabel, "time [s]");
+  EXPECT_STREQ(figure.linename[0], "pan");
+  EXPECT_STREQ(figure.linename[1], "lift");
+  EXPECT_EQ(figure.flg_legend, 1);
+  EXPECT_EQ(figure.linepnt[0], 3);
+  EXPECT_EQ(figure.linepnt[1], 2);
+  EXPECT_EQ(figure.linepnt[2], 0);
+  EXPECT_FLOAT_EQ(figure.linedata[0][3], 0.5F);
+  EXPECT_FLOAT_EQ(figure.range[0][0], 0);
+  EXPECT_FLOAT_EQ(figure.range[0][1], 2);
+  EXPECT_FLOAT_EQ(figure.range[1][0], -1);
+  EXPECT_FLOAT_EQ(figure.range[1][1], 1);
+}
+
+TEST_F(Figures, ThinLongCurvesAndKeepTheirEnds) {
+  for (const int count : {1000, 1001, 1002, 54321}) {
+    LivePlot plot = {.series = {{}}};
+    for (int i = 0; i < count; ++i) {
+      plot.series[0].x.push_back(i);
+      plot.series[0].y.push_back(2 * i);
+    }
+    const mjvFigure& figure = fill(plot);
+    const int points = figure.linepnt[0];
+    ASSERT_LE(points, mjMAXLINEPNT);
+    ASSERT_GE(points, std::min(count, 400));
+    EXPECT_FLOAT_EQ(figure.linedata[0][0], 0);
+    EXPECT_FLOAT_EQ(figure.linedata[0][2 * points - 2], static_cast<float>(count - 1));
+  }
+}
+
+TEST_F(Figures, RangesHoldAllAndOneUnitIsOneLength) {
+  LivePlot plot = {.series = {{}}, .equal_aspect = true};
+  for (int i = 0; i < 100; ++i) {
+    plot.series[0].x.push_back(0.3 * std::cos(0.0628 * i) - 0.01);
+    plot.series[0].y.push_back(0.15 * std::sin(0.0628 * i) + 0.5);
+  }
+  const mjvFigure& figure = fill(plot);
+  EXPECT_FLOAT_EQ(figure.range[0][1] - figure.range[0][0], figure.range[1][1] - figure.range[1][0]);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_GE(plot.series[0].x[i], figure.range[0][0]);
+    EXPECT_LE(plot.series[0].x[i], figure.range[0][1]);
+    EXPECT_GE(plot.series[0].y[i], figure.range[1][0]);
+    EXPECT_LE(plot.series[0].y[i], figure.range[1][1]);
+  }
+}
+
+TEST_F(Figures, TakeAnything) {
+  const double nan = std::nan("");
+  const mjvFigure& empty = fill({});
+  EXPECT_LT(empty.range[0][0], empty.range[0][1]);
+  const mjvFigure& odd =
+      fill({.title = std::string(5000, 'x'),
+            .series = {{.x = {nan, 1, 2}, .y = {1, nan}}, {.x = {5}, .y = {5}}}});
+  EXPECT_EQ(odd.linepnt[0], 0);
+  EXPECT_EQ(odd.linepnt[1], 1);
+  EXPECT_LT(odd.range[1][0], odd.range[1][1]);
+  EXPECT_LT(std::string(odd.title).size(), sizeof(odd.title));
+}
+
+TEST_F(Figures, HaveRoomForSoManyCurvesOnly) {
+  LivePlot plot;
+  plot.series.resize(mjMAXLINE + 10, {.x = {0, 1}, .y = {0, 1}});
+  EXPECT_EQ(fill(plot).linepnt[mjMAXLINE - 1], 2);
+}
+
+}  // namespace
+}  // namespace mjarm
