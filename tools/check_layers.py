@@ -34,7 +34,7 @@ MUJOCO = [
     "mjarm/sim/*.cpp", "mjarm/sim/*_internal.hpp", "mjarm/sim/raw.hpp",
     "mjarm/render/*.cpp", "mjarm/render/*_internal.hpp",
     "mjarm/view/*.cpp", "mjarm/view/*_internal.hpp",
-    "*_test.cpp", "*_bench.cpp",
+    "*_test.cpp", "*_test.hpp", "*_bench.cpp",
 ]
 
 # Where the operating system may be called directly.

@@ -34,6 +34,14 @@ Result<std::filesystem::path> executable_path() {
   return path;
 }
 
+std::filesystem::path library_of(const void* address) {
+  Dl_info info{};
+  if (::dladdr(address, &info) == 0 || info.dli_fname == nullptr) return {};
+  std::error_code error;
+  std::filesystem::path path = std::filesystem::weakly_canonical(info.dli_fname, error);
+  return error ? std::filesystem::path(info.dli_fname) : path;
+}
+
 std::optional<std::string> environment(const std::string& name) {
   const char* value = std::getenv(name.c_str());
   if (value == nullptr) return std::nullopt;

@@ -12,6 +12,10 @@ namespace mjarm {
 /// Absolute path of the running program.
 [[nodiscard]] Result<std::filesystem::path> executable_path();
 
+/// File of the shared library (or program) that holds the function at `address`; empty where
+/// unknown.
+[[nodiscard]] std::filesystem::path library_of(const void* address);
+
 /// Value of an environment variable; none where it is not set.
 [[nodiscard]] std::optional<std::string> environment(const std::string& name);
 

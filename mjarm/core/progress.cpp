@@ -8,6 +8,7 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/text_width.hpp"
 
 namespace mjarm {
 namespace {
@@ -21,18 +22,6 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-/// Columns a text takes on a terminal: a character beyond ASCII of three or more bytes (Chinese)
-/// counts two.
-int columns(const std::string& utf8) {
-  int count = 0;
-  for (const char c : utf8) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80 || (byte >= 0xC0 && byte < 0xE0)) count += 1;
-    if (byte >= 0xE0) count += 2;
-  }
-  return count;
-}
-
 }  // namespace
 
 std::string progress_line(const std::string& label, std::uint64_t done, std::uint64_t total,
@@ -44,7 +33,7 @@ std::string progress_line(const std::string& label, std::uint64_t done, std::uin
   const auto left = static_cast<double>(total - std::min(done, total));
   std::string tail = fmt::format(" {:3.0f}% {}/{} {}", 100 * share, done, total, rate_text);
   if (rate > 0) tail += " " + text(Msg::core_progress_left, duration_text(left / rate));
-  const int room = std::min(40, width - 1 - columns(label) - columns(tail) - 3);
+  const int room = std::min(40, width - 1 - text_width(label) - text_width(tail) - 3);
   if (room < 5) return label + tail;
   const auto filled = static_cast<std::size_t>(std::floor(share * room));
   return label + " [" + std::string(filled, '#') +

@@ -93,21 +93,30 @@ Result<double> parse_quantity(std::string_view words, Quantity quantity) {
               text(Msg::core_unknown_unit, shown(suffix), shown(whole), list(units)));
 }
 
-Result<std::vector<double>> parse_quantities(std::string_view words, Quantity quantity) {
-  std::vector<double> values;
+std::vector<std::string_view> split_list(std::string_view words) {
+  std::vector<std::string_view> entries;
   std::string_view rest = trimmed(words);
-  if (rest.empty()) return fail(Errc::bad_input, text(Msg::core_not_a_number, ""));
+  if (rest.empty()) return entries;
   const bool has_commas = rest.find(',') != std::string_view::npos;
   for (;;) {
     // Without commas blanks part the entries; with commas they may stand before a unit.
     const std::size_t end = rest.find_first_of(has_commas ? "," : " \t");
-    Result<double> value = parse_quantity(rest.substr(0, end), quantity);
-    if (!value) return fail(std::move(value.error()));
-    values.push_back(*value);
-    if (end == std::string_view::npos) return values;
-    rest.remove_prefix(end + 1);
+    entries.push_back(trimmed(rest.substr(0, end)));
+    if (end == std::string_view::npos) return entries;
+    rest = rest.substr(end + 1);
     if (!has_commas) rest = trimmed(rest);
   }
+}
+
+Result<std::vector<double>> parse_quantities(std::string_view words, Quantity quantity) {
+  std::vector<double> values;
+  for (const std::string_view entry : split_list(words)) {
+    Result<double> value = parse_quantity(entry, quantity);
+    if (!value) return fail(std::move(value.error()));
+    values.push_back(*value);
+  }
+  if (values.empty()) return fail(Errc::bad_input, text(Msg::core_not_a_number, ""));
+  return values;
 }
 
 }  // namespace mjarm

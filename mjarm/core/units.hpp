@@ -21,6 +21,9 @@ enum class Quantity {
 ///         does not fit.
 [[nodiscard]] Result<double> parse_quantity(std::string_view words, Quantity quantity);
 
+/// Entries of a list parted by commas or, where there is none, by blanks; views into `words`.
+[[nodiscard]] std::vector<std::string_view> split_list(std::string_view words);
+
 /// Reads a list parted by commas or spaces, each entry as in `parse_quantity`: `0,-90deg, 1.57`.
 [[nodiscard]] Result<std::vector<double>> parse_quantities(std::string_view words,
                                                            Quantity quantity);

@@ -1,0 +1,90 @@
+#include "apps/mjarm/batch.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "apps/mjarm/line_reader.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
+
+namespace mjarm::app {
+namespace {
+
+/// Standard output, or a file that appears at the end.
+class Output {
+ public:
+  static Result<Output> open(const std::string& path) {
+    Output output;
+    if (path.empty() || path == "-") return output;
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return fail(std::move(file.error()));
+    output.file_ = std::move(*file);
+    return output;
+  }
+
+  /// @param now  somebody waits for this very line.
+  Result<void> write(std::string_view line, bool now) {
+    if (file_) return file_->write(line);
+    const bool written = std::fwrite(line.data(), 1, line.size(), stdout) == line.size();
+    if (written && (!now || std::fflush(stdout) == 0)) return {};
+    return fail(Errc::system, text(Msg::core_cannot_write, "stdout", system_message(errno)));
+  }
+
+  Result<void> finish() { return file_ ? file_->commit() : Result<void>{}; }
+
+ private:
+  std::optional<AtomicFile> file_;
+};
+
+}  // namespace
+
+void add_batch_options(CLI::App& app, BatchOptions& options) {
+  app.add_option("--in", options.in, text(Msg::app_option_in))->type_name("FILE");
+  app.add_option("--out", options.out, text(Msg::app_option_out))->type_name("FILE");
+}
+
+Result<void> one_source(const std::string& in, const std::string& one, const std::string& option) {
+  if (in.empty() != one.empty()) return {};
+  return fail(Errc::usage, text(Msg::app_need_one_of, "--in", option));
+}
+
+Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,
+                              const AnswerLine& answer) {
+  Result<LineReader> reader = LineReader::open(options.in);
+  if (!reader) return fail(std::move(reader.error()));
+  Result<Output> output = Output::open(options.out);
+  if (!output) return fail(std::move(output.error()));
+  Progress progress(label, reader->count_lines());
+  BatchResult result;
+  std::string line;
+  for (;;) {
+    const Result<std::optional<std::string_view>> request = reader->next();
+    if (!request) return fail(request.error());
+    if (!*request) break;
+    line.clear();
+    const Result<bool> done = answer(**request, line);
+    if (!done) return fail(done.error().code, reader->place() + ": " + done.error().what);
+    if (!*done && result.failed++ == 0) result.first_failure = reader->place();
+    ++result.requests;
+    line += '\n';
+    if (Result<void> written = output->write(line, reader->is_stream()); !written) {
+      return fail(std::move(written.error()));
+    }
+    progress.advance();
+  }
+  if (Result<void> written = output->finish(); !written) return fail(std::move(written.error()));
+  return result;
+}
+
+Result<void> write_answer(const std::string& out, const std::string& answer) {
+  Result<Output> output = Output::open(out);
+  if (!output) return fail(std::move(output.error()));
+  if (Result<void> written = output->write(answer + "\n", true); !written) return written;
+  return output->finish();
+}
+
+}  // namespace mjarm::app

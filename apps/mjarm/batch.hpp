@@ -1,0 +1,48 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::app {
+
+/// Where requests come from and answers go to.
+struct BatchOptions {
+  std::string in;   ///< file of JSON lines, `-` = standard input
+  std::string out;  ///< file, `-` or empty = standard output
+};
+
+/// Adds `--in FILE` and `--out FILE`, bound to `options`.
+void add_batch_options(CLI::App& app, BatchOptions& options);
+
+/// Checks that requests come either from `--in` or from `option` (value `one`), not from both.
+[[nodiscard]] Result<void> one_source(const std::string& in, const std::string& one,
+                                      const std::string& option);
+
+/// Answers one request: appends the answer to `out`, without a line break, and tells whether the
+/// request could be done. An error is a malformed request; it says what is wrong, not where.
+using AnswerLine = std::function<Result<bool>(std::string_view request, std::string& out)>;
+
+/// How a batch went.
+struct BatchResult {
+  std::uint64_t requests = 0;
+  std::uint64_t failed = 0;   ///< well-formed, but could not be done
+  std::string first_failure;  ///< `file:line` of the first of them
+};
+
+/// Answers all requests in order, one line each; blank lines are skipped. A file named by `out`
+/// appears only when every request was well-formed; standard output gets every answer as it is
+/// ready.
+/// @param label  what the progress bar says.
+/// @return an error that begins with `file:line:` at the first malformed request.
+[[nodiscard]] Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,
+                                            const AnswerLine& answer);
+
+/// Writes the answer to a single request, one line, to `out` (a file, `-` or empty).
+[[nodiscard]] Result<void> write_answer(const std::string& out, const std::string& answer);
+
+}  // namespace mjarm::app

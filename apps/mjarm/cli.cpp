@@ -1,0 +1,131 @@
+#include "apps/mjarm/cli.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/help.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/os.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct GlobalOptions {
+  std::string language;
+  bool verbose = false;
+  bool quiet = false;
+  bool version = false;
+};
+
+/// The value of `--lang`, read before everything else: the help itself is in that language.
+std::optional<std::string> find_language(const std::vector<std::string>& arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == "--lang" && i + 1 < arguments.size()) return arguments[i + 1];
+    if (arguments[i].rfind("--lang=", 0) == 0) return arguments[i].substr(7);
+  }
+  return std::nullopt;
+}
+
+Result<void> choose_language(const std::vector<std::string>& arguments) {
+  set_language(language_of_locale());
+  const std::optional<std::string> name = find_language(arguments);
+  if (!name) return {};
+  const std::vector<std::string> known = {"en", "zh-CN"};
+  const bool chinese = *name == "zh-CN" || *name == "zh" || *name == "zh_CN";
+  if (!chinese && *name != "en") {
+    return fail(Errc::usage, text(Msg::app_unknown_language, *name) + did_you_mean(*name, known));
+  }
+  set_language(chinese ? Language::chinese : Language::english);
+  return {};
+}
+
+/// A value such as `-.5` begins like a short option; `-0.5` does not.
+std::vector<std::string> with_plain_numbers(std::vector<std::string> arguments) {
+  for (std::string& argument : arguments) {
+    const bool bare_point = argument.size() > 2 && argument[0] == '-' && argument[1] == '.' &&
+                            argument[2] >= '0' && argument[2] <= '9';
+    if (bare_point) argument.insert(1, "0");
+  }
+  return arguments;
+}
+
+void add_global_options(CLI::App& app, GlobalOptions& options) {
+  app.set_help_flag("-h,--help", text(Msg::app_option_help));
+  app.add_option("--lang", options.language, text(Msg::app_option_lang))->type_name("en|zh-CN");
+  app.add_flag("-v,--verbose", options.verbose, text(Msg::app_option_verbose));
+  app.add_flag("--quiet", options.quiet, text(Msg::app_option_quiet));
+  app.add_flag("--version", options.version, text(Msg::app_option_version));
+}
+
+int report(const Error& error) {
+  log_error(error.what);
+  return exit_code(error.code);
+}
+
+/// Results must have reached their reader before 0 is returned.
+int finish(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return report({Errc::system, text(Msg::core_cannot_write, "stdout", system_message(errno))});
+}
+
+int run_parsed(CLI::App& app, const GlobalOptions& global,
+               const std::vector<std::pair<const CLI::App*, Run>>& runs) {
+  if (global.quiet && global.verbose) {
+    return report({Errc::usage, text(Msg::app_exclusive_options, "--quiet", "--verbose")});
+  }
+  if (global.quiet) set_log_level(LogLevel::error);
+  if (global.verbose) set_log_level(LogLevel::debug);
+  if (global.version) {
+    std::printf("mjarm %s\n", MJARM_VERSION);
+    return finish(0);
+  }
+  for (const auto& [command, run] : runs) {
+    if (!app.got_subcommand(command)) continue;
+    const Result<int> code = run();
+    return code ? finish(*code) : report(code.error());
+  }
+  std::fputs(app.help().c_str(), stdout);
+  return report({Errc::usage, text(Msg::app_no_command)});
+}
+
+}  // namespace
+
+int run(const std::vector<std::string>& arguments) {
+  if (const Result<void> chosen = choose_language(arguments); !chosen) {
+    return report(chosen.error());
+  }
+  catch_interrupts();
+  CLI::App app(text(Msg::app_summary), "mjarm");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.footer(text(Msg::app_examples));
+  app.allow_extras();
+  app.require_subcommand(0, 1);
+  GlobalOptions global;
+  add_global_options(app, global);
+  std::vector<std::pair<const CLI::App*, Run>> runs;
+  for (const Command& command : commands()) {
+    CLI::App& sub = add_subcommand(app, command.name, command.summary, command.examples);
+    runs.emplace_back(&sub, command.setup(sub));
+  }
+  std::vector<std::string> reversed = with_plain_numbers(arguments);
+  std::reverse(reversed.begin(), reversed.end());
+  try {
+    app.parse(std::move(reversed));
+  } catch (const CLI::CallForHelp&) {
+    std::fputs(app.help().c_str(), stdout);
+    return finish(0);
+  } catch (const CLI::ParseError& error) {
+    return report(usage_error(error));
+  }
+  if (const std::optional<Error> error = unknown_words(app)) return report(*error);
+  return run_parsed(app, global, runs);
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::app {
+
+/// What a subcommand does after its options were read. Returns the exit code (0 done, 1 cannot be
+/// done), or an error, which is printed as one line and gives the exit code of its kind.
+using Run = std::function<Result<int>()>;
+
+/// One subcommand. Its file has one function `Command NAME_command()`; the list `commands.inc` has
+/// one line for it. Options are read as text and parsed by the command, so that messages come from
+/// the catalogue.
+struct Command {
+  const char* name;
+  Msg summary;                  ///< one line for the list of commands
+  Msg examples;                 ///< shown below the options in its help
+  Run (*setup)(CLI::App& app);  ///< adds the options; the Run owns what they are bound to
+};
+
+#define MJARM_COMMAND(name) Command name##_command();
+#include "apps/mjarm/commands.inc"
+#undef MJARM_COMMAND
+
+/// All subcommands, in the order of the help.
+[[nodiscard]] std::span<const Command> commands();
+
+/// Adds a subcommand with its help to `parent` (a command may have some of its own).
+CLI::App& add_subcommand(CLI::App& parent, const std::string& name, Msg summary, Msg examples);
+
+}  // namespace mjarm::app

@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/mjarm/command.hpp"
+#include "mjarm/core/cpu.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/text_width.hpp"
+#include "mjarm/model/model.hpp"
+#include "mjarm/model/mujoco_library.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Findings {
+  Json facts = Json::object();        ///< for `--json`
+  std::string lines;                  ///< for people
+  std::vector<std::string> problems;  ///< what is needed and missing, one line each
+};
+
+void add(Findings& findings, const char* key, const std::string& label, const Json& value,
+         const std::string& shown) {
+  findings.facts[key] = value;
+  findings.lines += padded(label, 14) + shown + "\n";
+}
+
+const char* compiler() {
+#if defined(__clang__)
+  return "clang " __clang_version__;
+#else
+  return "g++ " __VERSION__;
+#endif
+}
+
+void look_at_mujoco(Findings& findings) {
+  const MujocoLibrary library = mujoco_library();
+  add(findings, "mujoco", "MuJoCo", library.version,
+      library.version + "  " + library.file.string());
+  findings.facts["mujoco_library"] = library.file.string();
+  if (library.version != library.built_against) {
+    findings.problems.push_back(text(Msg::app_doctor_other_mujoco, library.built_against,
+                                     library.version, library.file.string()));
+  }
+}
+
+void look_at_machine(Findings& findings) {
+  const std::string simd(name(simd_level()));
+  add(findings, "compiler", text(Msg::app_doctor_compiler), compiler(), compiler());
+  add(findings, "simd", text(Msg::app_doctor_simd), simd, simd);
+  add(findings, "cores", text(Msg::app_doctor_cores), core_count(), std::to_string(core_count()));
+  const bool display = has_display();
+  add(findings, "display", text(Msg::app_doctor_display), display,
+      text(display ? Msg::app_doctor_display_yes : Msg::app_doctor_display_no));
+}
+
+void look_at_models(Findings& findings) {
+  Json found = Json::array();
+  std::string names;
+  for (const ShippedModel& shipped : shipped_models()) {
+    const Result<Model> model = Model::load(shipped.file);
+    if (!model) {
+      findings.problems.push_back(
+          text(Msg::app_doctor_bad_model, shipped.name, model.error().what));
+      continue;
+    }
+    found.push_back({{"name", shipped.name}, {"file", shipped.file.string()}});
+    names += (names.empty() ? "" : ", ") + shipped.name;
+  }
+  if (found.empty()) findings.problems.push_back(text(Msg::app_doctor_no_models));
+  add(findings, "models", text(Msg::app_doctor_models), found,
+      names.empty() ? text(Msg::app_info_none) : names);
+}
+
+Result<int> run(bool json) {
+  Findings findings;
+  add(findings, "mjarm", "mjarm", MJARM_VERSION, MJARM_VERSION);
+  look_at_mujoco(findings);
+  look_at_machine(findings);
+  look_at_models(findings);
+  const bool fine = findings.problems.empty();
+  if (json) {
+    findings.facts["problems"] = findings.problems;
+    findings.facts["ok"] = fine;
+    std::fputs((findings.facts.dump(2, ' ', false, Json::error_handler_t::replace) + "\n").c_str(),
+               stdout);
+  } else {
+    std::fputs(findings.lines.c_str(), stdout);
+    if (fine) std::fputs((text(Msg::app_doctor_fine) + "\n").c_str(), stdout);
+  }
+  for (const std::string& problem : findings.problems) log_error(problem);
+  return fine ? 0 : 1;
+}
+
+Run setup(CLI::App& app) {
+  auto json = std::make_shared<bool>(false);
+  app.add_flag("--json", *json, text(Msg::app_option_json));
+  return [json] { return run(*json); };
+}
+
+}  // namespace
+
+Command doctor_command() {
+  return {"doctor", Msg::app_doctor_summary, Msg::app_doctor_examples, setup};
+}
+
+}  // namespace mjarm::app

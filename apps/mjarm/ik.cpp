@@ -1,0 +1,201 @@
+#include "mjarm/kinematics/ik.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "apps/mjarm/batch.hpp"
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/robot.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/ik_all.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  RobotOptions robot;
+  BatchOptions batch;
+  std::string pos, euler, quat, seed_q, seed = "1";
+  bool all = false, no_timing = false;
+};
+
+/// What stays the same for all requests.
+struct Job {
+  IkSolver solver;
+  bool all, timing;
+};
+
+struct Request {
+  Pose X_WT;
+  std::vector<double> q_seed;
+};
+
+Result<Request> read_request(std::string_view line, const Arm& arm) {
+  const Result<nlohmann::json> object = parse_json_object(line);
+  if (!object) return fail(object.error());
+  const Result<Pose> X_WT = pose_of(*object);
+  if (!X_WT) return fail(X_WT.error());
+  if (!object->contains("seed")) {
+    return Request{*X_WT, {arm.home.begin(), arm.home.end()}};
+  }
+  Result<std::vector<double>> q_seed =
+      number_list(*object, "seed", static_cast<std::size_t>(arm.dof()));
+  if (!q_seed) return fail(std::move(q_seed.error()));
+  return Request{*X_WT, std::move(*q_seed)};
+}
+
+Result<Eigen::Matrix3d> read_rotation(const Options& options) {
+  if (options.euler.empty() == options.quat.empty()) {
+    return fail(Errc::usage, text(Msg::app_need_one_of, "--euler", "--quat"));
+  }
+  if (!options.euler.empty()) {
+    const auto euler = parse_list("--euler", options.euler, Quantity::angle, 3);
+    if (!euler) return fail(euler.error());
+    return from_euler({(*euler)[0], (*euler)[1], (*euler)[2]});
+  }
+  const auto quat = parse_list("--quat", options.quat, Quantity::number, 4);
+  if (!quat) return fail(quat.error());
+  Result<Eigen::Matrix3d> R = rotation_of_quat(*quat);
+  if (!R) return fail(in_option("--quat", R.error()));
+  return R;
+}
+
+Result<Request> read_request(const Options& options, const Arm& arm) {
+  const auto pos = parse_list("--pos", options.pos, Quantity::length, 3);
+  if (!pos) return fail(pos.error());
+  const Result<Eigen::Matrix3d> R = read_rotation(options);
+  if (!R) return fail(R.error());
+  Request request{{{(*pos)[0], (*pos)[1], (*pos)[2]}, *R}, {arm.home.begin(), arm.home.end()}};
+  if (options.seed_q.empty()) return request;
+  Result<std::vector<double>> q_seed = parse_joints("--seed-q", options.seed_q, arm);
+  if (!q_seed) return fail(std::move(q_seed.error()));
+  request.q_seed = std::move(*q_seed);
+  return request;
+}
+
+void append_list(std::string& out, const char* key, const JointVec& values) {
+  out += std::string(",\"") + key + "\":";
+  append_numbers(out, view(values));
+}
+
+void append_number(std::string& out, const char* key, double value) {
+  out += std::string(",\"") + key + "\":";
+  mjarm::append_number(out, value);
+}
+
+void append_branches(std::string& out, const std::vector<IkSolution>& branches) {
+  out += ",\"branches\":[";
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    if (i > 0) out += ',';
+    append_numbers(out, view(branches[i].q));
+  }
+  out += ']';
+}
+
+void append_solution(std::string& out, const IkSolution& solution) {
+  out += "{\"ok\":true";
+  append_list(out, "q", solution.q);
+  append_number(out, "pos_err", solution.pos_err);
+  append_number(out, "rot_err", solution.rot_err);
+}
+
+void append_failure(std::string& out, const IkFailure& failure, const std::string& why) {
+  out += "{\"ok\":false,\"reason\":";
+  append_json_string(out, name(failure.code));
+  out += ",\"detail\":";
+  append_json_string(out, why);
+  append_list(out, "best", failure.best.q);
+}
+
+/// Solves one request and appends the answer. Where there is none, returns why.
+std::optional<std::string> answer(const Job& job, const Request& request, std::string& out) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
+  std::vector<IkSolution> branches;
+  if (job.all && solution) {
+    branches = solve_all(job.solver, request.X_WT, request.q_seed).value_or(branches);
+  }
+  const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  std::optional<std::string> why;
+  if (solution) {
+    append_solution(out, *solution);
+  } else {
+    why = describe(solution.error(), job.solver.arm());
+    append_failure(out, solution.error(), *why);
+  }
+  if (job.all) append_branches(out, branches);
+  if (job.timing) append_number(out, "us", std::round(us * 10) / 10);
+  out += '}';
+  return why;
+}
+
+Result<int> answer_one(const Job& job, const Options& options) {
+  const Result<Request> request = read_request(options, job.solver.arm());
+  if (!request) return fail(request.error());
+  std::string line;
+  const std::optional<std::string> why = answer(job, *request, line);
+  if (Result<void> written = write_answer(options.batch.out, line); !written) {
+    return fail(std::move(written.error()));
+  }
+  if (!why) return 0;
+  log_error(text(Msg::app_ik_no_answer, *why));
+  return 1;
+}
+
+Result<int> answer_all(const Job& job, const Options& options) {
+  std::optional<std::string> first_why;
+  const auto answer_line = [&](std::string_view line, std::string& out) -> Result<bool> {
+    const Result<Request> request = read_request(line, job.solver.arm());
+    if (!request) return fail(request.error());
+    const std::optional<std::string> why = answer(job, *request, out);
+    if (why && !first_why) first_why = why;
+    return !why;
+  };
+  const auto done = run_batch(options.batch, text(Msg::app_ik_progress), answer_line);
+  if (!done) return fail(done.error());
+  if (done->failed == 0) return 0;
+  log_error(
+      text(Msg::app_ik_some_failed, done->first_failure, *first_why, done->failed, done->requests));
+  return 1;
+}
+
+Result<int> run(const Options& options) {
+  if (Result<void> fine = one_source(options.batch.in, options.pos, "--pos"); !fine) {
+    return fail(std::move(fine.error()));
+  }
+  const Result<std::uint64_t> seed = parse_whole("--seed", options.seed);
+  if (!seed) return fail(seed.error());
+  Result<Robot> robot = load_robot(options.robot);
+  if (!robot) return fail(std::move(robot.error()));
+  IkOptions ik;
+  ik.rng_seed = *seed;
+  const Job job{IkSolver(robot->arm, ik), options.all, !options.no_timing};
+  return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_robot_options(app, options->robot);
+  app.add_option("--pos", options->pos, text(Msg::app_option_pos))->type_name("X,Y,Z");
+  app.add_option("--euler", options->euler, text(Msg::app_option_euler))->type_name("A,B,C");
+  app.add_option("--quat", options->quat, text(Msg::app_option_quat))->type_name("W,X,Y,Z");
+  app.add_option("--seed-q", options->seed_q, text(Msg::app_option_seed_q))->type_name("Q1,Q2,...");
+  add_batch_options(app, options->batch);
+  app.add_option("--seed", options->seed, text(Msg::app_option_seed))->type_name("N");
+  app.add_flag("--all", options->all, text(Msg::app_option_all));
+  app.add_flag("--no-timing", options->no_timing, text(Msg::app_option_no_timing));
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command ik_command() { return {"ik", Msg::app_ik_summary, Msg::app_ik_examples, setup}; }
+
+}  // namespace mjarm::app

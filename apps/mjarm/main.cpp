@@ -1,0 +1,17 @@
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "apps/mjarm/cli.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages.hpp"
+
+int main(int argc, char** argv) {
+  try {
+    return mjarm::app::run(std::vector<std::string>(argv + (argc > 0), argv + argc));
+  } catch (const std::exception& error) {
+    // Nothing of ours throws; what comes here is memory that ran out, or a fault of ours.
+    mjarm::log_error(mjarm::text(mjarm::Msg::app_internal_error, error.what()));
+    return 1;
+  }
+}

@@ -1,0 +1,73 @@
+#include "mjarm/model/model.hpp"
+
+#include <memory>
+
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/model_report.hpp"
+#include "mjarm/core/log.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  std::string file, tip;
+  bool json = false;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_option("file", options.file, text(Msg::app_model_file))->type_name("FILE");
+  app.add_flag("--json", options.json, text(Msg::app_option_json));
+}
+
+Result<Model> load(const Options& options) {
+  if (options.file.empty()) return fail(Errc::usage, text(Msg::app_option_missing, "FILE"));
+  const Result<std::filesystem::path> file = find_model_file(options.file);
+  if (!file) return fail(file.error());
+  return Model::load(*file);
+}
+
+void print(const std::string& words) { std::fwrite(words.data(), 1, words.size(), stdout); }
+
+Result<int> run_info(const Options& options) {
+  const Result<Model> model = load(options);
+  if (!model) return fail(model.error());
+  const Result<Arm> arm = find_arm(*model, {.tip = options.tip});
+  // A car has no arm, and still there is much to tell about it; but a tip that was asked for must
+  // be.
+  if (!arm && !options.tip.empty()) return fail(arm.error());
+  const ModelReport report = model_report(*model, arm);
+  print(options.json ? to_json(report) : to_text(report));
+  return 0;
+}
+
+Result<int> run_tree(const Options& options) {
+  const Result<Model> model = load(options);
+  if (!model) return fail(model.error());
+  const ModelInfo contents = describe(*model);
+  print(options.json ? tree_json(contents) : tree_text(contents));
+  return 0;
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App& info =
+      add_subcommand(app, "info", Msg::app_model_info_summary, Msg::app_model_info_examples);
+  add_options(info, *options);
+  info.add_option("--tip", options->tip, text(Msg::app_option_tip))->type_name("FRAME");
+  CLI::App& tree =
+      add_subcommand(app, "tree", Msg::app_model_tree_summary, Msg::app_model_tree_examples);
+  add_options(tree, *options);
+  return [options, &info, &tree]() -> Result<int> {
+    if (info.parsed()) return run_info(*options);
+    if (tree.parsed()) return run_tree(*options);
+    return fail(Errc::usage, text(Msg::app_no_subcommand, "mjarm model", "info, tree"));
+  };
+}
+
+}  // namespace
+
+Command model_command() {
+  return {"model", Msg::app_model_summary, Msg::app_model_examples, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,27 @@
+#include "apps/mjarm/robot.hpp"
+
+#include <utility>
+
+#include "mjarm/core/messages.hpp"
+
+namespace mjarm::app {
+
+void add_robot_options(CLI::App& app, RobotOptions& options) {
+  app.add_option("--robot", options.robot, text(Msg::app_option_robot))->type_name("ROBOT");
+  app.add_option("--tip", options.tip, text(Msg::app_option_tip))->type_name("FRAME");
+}
+
+Result<Robot> load_robot(const RobotOptions& options) {
+  if (options.robot.empty()) {
+    return fail(Errc::usage, text(Msg::app_option_missing, "--robot"));
+  }
+  Result<std::filesystem::path> file = find_model_file(options.robot);
+  if (!file) return fail(std::move(file.error()));
+  Result<Model> model = Model::load(*file);
+  if (!model) return fail(std::move(model.error()));
+  Result<Arm> arm = find_arm(*model, {.tip = options.tip});
+  if (!arm) return fail(std::move(arm.error()));
+  return Robot{std::move(*model), std::move(*arm)};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/model.hpp"
+
+namespace mjarm::app {
+
+/// Which robot, and which frame of it is the tool.
+struct RobotOptions {
+  std::string robot;  ///< name of a shipped model, or path
+  std::string tip;    ///< empty = the robot's own
+};
+
+/// Adds `--robot ROBOT` and `--tip FRAME`, bound to `options`.
+void add_robot_options(CLI::App& app, RobotOptions& options);
+
+/// A loaded robot.
+struct Robot {
+  Model model;
+  Arm arm;
+};
+
+/// Finds, loads and searches the robot; a usage error where `--robot` is missing.
+[[nodiscard]] Result<Robot> load_robot(const RobotOptions& options);
+
+}  // namespace mjarm::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/core/units.hpp"
+#include "mjarm/model/arm.hpp"
+
+namespace mjarm::app {
+
+/// What the command-line parser complains about, as one line of ours.
+[[nodiscard]] Error usage_error(const CLI::ParseError& error);
+
+/// The first word of the parsed command line that nothing knows, with the nearest right one.
+[[nodiscard]] std::optional<Error> unknown_words(const CLI::App& app);
+
+/// Reads a whole number >= 0, as `--seed 7`. @return an error that names `option`.
+[[nodiscard]] Result<std::uint64_t> parse_whole(const std::string& option,
+                                                const std::string& value);
+
+/// Reads the value of an option that is a list of `size` numbers, e.g. `--pos 1,2,3`.
+/// @return an error that names `option`; a usage error where `value` is empty.
+[[nodiscard]] Result<std::vector<double>> parse_list(const std::string& option,
+                                                     const std::string& value, Quantity quantity,
+                                                     std::size_t size);
+
+/// Reads one value a joint: angles for hinges, lengths for slides.
+[[nodiscard]] Result<std::vector<double>> parse_joints(const std::string& option,
+                                                       const std::string& value, const Arm& arm);
+
+/// Puts the name of the option before an error about its value: `--q: "x" is not a number`.
+[[nodiscard]] Error in_option(const std::string& option, Error error);
+
+}  // namespace mjarm::app

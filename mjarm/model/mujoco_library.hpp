@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace mjarm {
+
+/// The MuJoCo library this program runs with.
+struct MujocoLibrary {
+  std::string version;         ///< as the library says, e.g. "4.0.1"
+  std::string built_against;   ///< as the headers said when mjarm was built
+  std::filesystem::path file;  ///< where it was loaded from; empty where unknown
+};
+[[nodiscard]] MujocoLibrary mujoco_library();
+
+}  // namespace mjarm
