@@ -152,7 +152,7 @@ struct ExactChecker::Impl {
   }
 
   /// The deepest contact of each pair that overlaps, deepest first.
-  std::vector<Contact> overlapping() {
+  std::vector<ContactPoint> overlapping() {
     std::map<GeomIds, GeomGap> deepest;  // ordered, so that equal depths come in a fixed order
     for (const mjContact& contact : detect(m)) {
       if (contact.dist >= 0 || !counts(contact)) continue;
@@ -164,12 +164,13 @@ struct ExactChecker::Impl {
       const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
       if (gap && gap->distance < 0) deepest.emplace(ids, *gap);
     }
-    std::vector<Contact> out;
+    std::vector<ContactPoint> out;
     for (const auto& [ids, gap] : deepest) {
       out.push_back({name_pair(ids), -gap.distance, gap.point_W, gap.normal_W});
     }
-    std::stable_sort(out.begin(), out.end(),
-                     [](const Contact& a, const Contact& b) { return a.depth > b.depth; });
+    std::stable_sort(out.begin(), out.end(), [](const ContactPoint& a, const ContactPoint& b) {
+      return a.depth > b.depth;
+    });
     return out;
   }
 
@@ -253,7 +254,7 @@ std::function<bool(std::span<const double>)> ExactChecker::predicate() const {
 
 std::string describe(const CollisionReport& report) {
   if (!report.contacts.empty()) {
-    const Contact& worst = report.contacts.front();
+    const ContactPoint& worst = report.contacts.front();
     return text(Msg::collision_overlap, worst.pair.geom1, worst.pair.body1, worst.pair.geom2,
                 worst.pair.body2, worst.depth);
   }

@@ -28,7 +28,7 @@ struct GeomPair {
 };
 
 /// Two geoms that overlap, at the place where they do so most.
-struct Contact {
+struct ContactPoint {
   GeomPair pair;
   double depth = 0;          ///< [m] overlap along the normal, > 0
   Eigen::Vector3d point_W;   ///< [m] midway between the two surfaces
@@ -46,7 +46,7 @@ struct NearestPair {
 /// What a check found.
 struct CollisionReport {
   bool free = true;                    ///< no overlap deeper than CheckOptions::allow_depth
-  std::vector<Contact> contacts;       ///< one a pair of geoms that overlap, deepest first
+  std::vector<ContactPoint> contacts;  ///< one a pair of geoms that overlap, deepest first
   std::optional<NearestPair> nearest;  ///< none where nothing is nearer than CheckOptions::margin
 };
 

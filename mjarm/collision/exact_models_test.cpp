@@ -150,8 +150,8 @@ TEST(ExactCheckerModels, Ur5eStartBelowTheFloorIsReported) {
   const auto report = checker.check(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
   ASSERT_TRUE(report.has_value());
   EXPECT_FALSE(report->free);
-  const bool floor_named =
-      std::any_of(report->contacts.begin(), report->contacts.end(), [](const Contact& contact) {
+  const bool floor_named = std::any_of(
+      report->contacts.begin(), report->contacts.end(), [](const ContactPoint& contact) {
         return contact.pair.geom1 == "floor" || contact.pair.geom2 == "floor";
       });
   EXPECT_TRUE(floor_named) << describe(*report);
@@ -164,7 +164,7 @@ TEST(ExactCheckerModels, PandaHandInTheFloorIsNamed) {
   const auto report = checker.check(std::vector<double>{0, 1.6, 0, -0.6, 0, 2.2, 0.785});
   ASSERT_TRUE(report.has_value());
   ASSERT_FALSE(report->free);
-  const Contact& worst = report->contacts.front();
+  const ContactPoint& worst = report->contacts.front();
   EXPECT_EQ(worst.pair.geom1, "floor");
   EXPECT_NEAR(worst.normal_W.z(), 1, 1e-12);
   EXPECT_TRUE(worst.pair.body2 == "hand" || worst.pair.body2.find("finger") != std::string::npos)

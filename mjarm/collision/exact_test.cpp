@@ -72,7 +72,7 @@ TEST(ExactChecker, TwoSpheres) {
     }
     if (gap >= 0) continue;
     ++touching;
-    const Contact& contact = report.contacts[0];
+    const ContactPoint& contact = report.contacts[0];
     EXPECT_NEAR(contact.depth, -gap, 1e-9);
     EXPECT_EQ((std::set<std::string>{contact.pair.geom1, contact.pair.geom2}),
               (std::set<std::string>{"ball", "rock"}));

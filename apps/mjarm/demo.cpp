@@ -1,0 +1,130 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/units.hpp"
+
+namespace mjarm::app {
+namespace {
+
+/// Options as the user wrote them.
+struct DemoArguments {
+  std::string name, out, seconds, text, robot = "ur5e", tip, control;
+  bool headless = false, guide = false, no_timing = false;
+};
+
+void list_demos() {
+  for (const Demo& demo : demos()) {
+    std::printf("%-12s  %s\n", demo.name, text(demo.summary).c_str());
+  }
+}
+
+Result<const Demo*> find_demo(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Demo& demo : demos()) {
+    if (name == demo.name) return &demo;
+    names.emplace_back(demo.name);
+  }
+  return fail(Errc::usage, text(Msg::demo_unknown, name) + did_you_mean(name, names));
+}
+
+Result<DemoOptions> read_options(const DemoArguments& arguments) {
+  DemoOptions options;
+  options.robot = arguments.robot;
+  options.tip = arguments.tip;
+  options.out = arguments.out.empty() ? std::filesystem::path("mjarm-out") / arguments.name
+                                      : std::filesystem::path(arguments.out);
+  options.headless = arguments.headless;
+  options.guide = arguments.guide;
+  options.timing = !arguments.no_timing;
+  options.text = arguments.text;
+  if (!arguments.seconds.empty()) {
+    const Result<double> seconds = parse_quantity(arguments.seconds, Quantity::time);
+    if (!seconds || !(*seconds > 0)) {
+      return fail(Errc::usage, text(Msg::demo_bad_seconds, arguments.seconds));
+    }
+    options.seconds = *seconds;
+  }
+  if (!arguments.control.empty()) {
+    const Result<ControlMode> mode = control_mode(arguments.control);
+    if (!mode) return fail(mode.error());
+    options.control = *mode;
+  }
+  return options;
+}
+
+/// Says what came of it; the exit code.
+int conclude(const Report& report, const DemoOptions& options) {
+  if (!report.ok) {
+    log_error(text(Msg::demo_not_ok, report.name, report.reason, report.detail));
+  } else if (report.path_error) {
+    log_info(text(Msg::demo_ok_path, report.name, 1e3 * report.path_error->max,
+                  1e3 * report.path_error->rms, 100 * report.coverage));
+  } else if (report.static_error) {
+    log_info(text(Msg::demo_ok_static, report.name, 1e3 * report.static_error->position,
+                  report.static_error->rotation * 180 / std::numbers::pi));
+  } else {
+    log_info(text(Msg::demo_ok, report.name));
+  }
+  if (report.rtf) log_info(text(Msg::demo_rtf, report.duration, *report.rtf));
+  std::printf("%s\n", text(Msg::demo_folder, options.out.string()).c_str());
+  return report.ok ? 0 : 1;
+}
+
+Result<int> run_demo(const DemoArguments& arguments) {
+  if (arguments.name.empty()) {
+    list_demos();
+    return 0;
+  }
+  const Result<const Demo*> demo = find_demo(arguments.name);
+  if (!demo) return fail(demo.error());
+  const Result<DemoOptions> options = read_options(arguments);
+  if (!options) return fail(options.error());
+  catch_interrupts();
+  const Result<Report> report = (*demo)->run(*options);
+  if (!report) return fail(report.error());
+  return conclude(*report, *options);
+}
+
+Run setup(CLI::App& app) {
+  auto arguments = std::make_shared<DemoArguments>();
+  app.add_option("NAME", arguments->name, text(Msg::demo_option_name))->type_name("");
+  app.add_option("--out", arguments->out, text(Msg::demo_option_out))->type_name("DIR");
+  app.add_flag("--headless", arguments->headless, text(Msg::demo_option_headless));
+  app.add_flag("--guide", arguments->guide, text(Msg::demo_option_guide));
+  app.add_option("--seconds", arguments->seconds, text(Msg::demo_option_seconds))->type_name("S");
+  app.add_option("--text", arguments->text, text(Msg::demo_option_text))->type_name("TEXT");
+  app.add_option("--control", arguments->control, text(Msg::demo_option_control))
+      ->type_name("MODE");
+  app.add_option("--robot", arguments->robot, text(Msg::demo_option_robot))->type_name("ROBOT");
+  app.add_option("--tip", arguments->tip, text(Msg::app_option_tip))->type_name("FRAME");
+  app.add_flag("--no-timing", arguments->no_timing, text(Msg::demo_option_no_timing));
+  return [arguments] { return run_demo(*arguments); };
+}
+
+}  // namespace
+
+std::span<const Demo> demos() {
+  static constexpr Demo kDemos[] = {
+      {"car", Msg::demo_about_car, run_car},
+      {"ur5e", Msg::demo_about_ur5e, run_ur5e},
+      {"ur5e_vision", Msg::demo_about_ur5e_vision, run_ur5e_vision},
+      {"point", Msg::demo_about_point, run_point},
+      {"movej", Msg::demo_about_movej, run_movej},
+      {"movel", Msg::demo_about_movel, run_movel},
+      {"ellipse", Msg::demo_about_ellipse, run_ellipse},
+      {"letters", Msg::demo_about_letters, run_letters},
+  };
+  return kDemos;
+}
+
+Command demo_command() { return {"demo", Msg::demo_summary, Msg::demo_examples, setup}; }
+
+}  // namespace mjarm::app

@@ -1,0 +1,152 @@
+#include "apps/mjarm/demos/charts.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+#include "mjarm/core/messages.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr std::size_t kMostPoints = 2000;  // a curve; more than that no page can show
+
+/// The rows of all runs to be drawn, with a gap (null) between runs.
+using Rows = std::vector<const RecordRow*>;
+using Value = std::function<double(const RecordRow& row)>;
+
+Rows rows_to_draw(std::span<const MeasuredRun> runs) {
+  std::size_t count = 0;
+  for (const MeasuredRun& run : runs) count += run.rows.size();
+  const std::size_t stride = std::max<std::size_t>(1, count / kMostPoints);
+  Rows rows;
+  for (const MeasuredRun& run : runs) {
+    if (!rows.empty()) rows.push_back(nullptr);
+    for (std::size_t i = 0; i < run.rows.size(); i += stride) rows.push_back(&run.rows[i]);
+    if (!run.rows.empty() && rows.back() != &run.rows.back()) rows.push_back(&run.rows.back());
+  }
+  return rows;
+}
+
+std::vector<double> column(const Rows& rows, const Value& value) {
+  std::vector<double> out;
+  for (const RecordRow* row : rows) {
+    out.push_back(row != nullptr ? value(*row) : std::numeric_limits<double>::quiet_NaN());
+  }
+  return out;
+}
+
+std::vector<double> times(const Rows& rows) {
+  return column(rows, [](const RecordRow& row) { return row.time; });
+}
+
+PlotPanel over_time(Msg title, const std::string& unit) {
+  PlotPanel panel;
+  panel.title = text(title);
+  panel.x_label = text(Msg::demo_plot_time);
+  panel.y_label = unit;
+  return panel;
+}
+
+PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
+  static constexpr const char* kAxes[] = {"x [m]", "y [m]", "z [m]"};
+  PlotPanel panel;
+  panel.title = text(title);
+  panel.x_label = kAxes[x];
+  panel.y_label = kAxes[y];
+  panel.equal_aspect = true;
+  panel.lines.push_back({.x = column(rows, [x](const RecordRow& row) { return row.X_WT.p[x]; }),
+                         .y = column(rows, [y](const RecordRow& row) { return row.X_WT.p[y]; }),
+                         .label = text(Msg::demo_plot_executed)});
+  panel.lines.push_back({.x = column(rows, [x](const RecordRow& row) { return row.X_ref.p[x]; }),
+                         .y = column(rows, [y](const RecordRow& row) { return row.X_ref.p[y]; }),
+                         .label = text(Msg::demo_plot_planned),
+                         .style = LineStyle::dashed,
+                         .color = PlotLine::kInk});
+  return panel;
+}
+
+PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
+  const bool ideal = !runs.empty() && runs.front().curve != nullptr;
+  PlotPanel panel = over_time(ideal ? Msg::demo_plot_error : Msg::demo_plot_tracking, "mm");
+  panel.y_from_zero = true;
+  PlotLine line;
+  for (const MeasuredRun& run : runs) {
+    const Rows rows = rows_to_draw({&run, 1});
+    const std::vector<double> t = times(rows);
+    const std::vector<double> error = column(rows, [&run](const RecordRow& row) {
+      const double metres = run.curve != nullptr ? run.curve->nearest(row.X_WT.p).distance
+                                                 : (row.X_WT.p - row.X_ref.p).norm();
+      return 1e3 * metres;
+    });
+    if (!line.x.empty()) {
+      line.x.push_back(std::numeric_limits<double>::quiet_NaN());
+      line.y.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    line.x.insert(line.x.end(), t.begin(), t.end());
+    line.y.insert(line.y.end(), error.begin(), error.end());
+  }
+  panel.lines.push_back(std::move(line));
+  if (ideal) panel.bands.push_back({0, 1e3 * tolerance, text(Msg::demo_plot_tolerance)});
+  return panel;
+}
+
+PlotPanel joint_panel(const Arm& arm, const Rows& rows) {
+  PlotPanel panel = over_time(Msg::demo_plot_joints, "rad");
+  for (int j = 0; j < arm.dof(); ++j) {
+    panel.lines.push_back({.x = times(rows),
+                           .y = column(rows, [j](const RecordRow& row) { return row.q[j]; }),
+                           .label = arm.joints[static_cast<std::size_t>(j)].name});
+  }
+  return panel;
+}
+
+PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
+  PlotPanel panel = over_time(title, text(Msg::demo_plot_share));
+  panel.y_from_zero = true;
+  panel.lines.push_back({.x = times(rows), .y = column(rows, share)});
+  return panel;
+}
+
+PlotPanel speed_panel(const Rows& rows) {
+  PlotPanel panel = over_time(Msg::demo_plot_speed, "m/s");
+  panel.y_from_zero = true;
+  PlotLine line;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool gap = rows[i] == nullptr || rows[i - 1] == nullptr;
+    const double dt = gap ? 0 : rows[i]->time - rows[i - 1]->time;
+    line.x.push_back(gap ? std::numeric_limits<double>::quiet_NaN() : rows[i]->time);
+    line.y.push_back(dt > 0 ? (rows[i]->X_WT.p - rows[i - 1]->X_WT.p).norm() / dt
+                            : std::numeric_limits<double>::quiet_NaN());
+  }
+  panel.lines.push_back(std::move(line));
+  return panel;
+}
+
+}  // namespace
+
+Plot motion_plot(const std::string& title, const Arm& arm, std::span<const MeasuredRun> runs,
+                 double tolerance) {
+  const Rows rows = rows_to_draw(runs);
+  const JointLimits& limits = arm.limits;
+  Plot plot;
+  plot.title = title;
+  plot.columns = 4;
+  plot.panels = {side_view(Msg::demo_plot_top, rows, 0, 1),
+                 side_view(Msg::demo_plot_front, rows, 0, 2),
+                 side_view(Msg::demo_plot_side, rows, 1, 2),
+                 speed_panel(rows),
+                 error_panel(runs, tolerance),
+                 joint_panel(arm, rows),
+                 share_panel(Msg::demo_plot_velocity, rows,
+                             [&](const RecordRow& row) {
+                               return 100 *
+                                      row.v.cwiseQuotient(limits.velocity).cwiseAbs().maxCoeff();
+                             }),
+                 share_panel(Msg::demo_plot_torque, rows, [&](const RecordRow& row) {
+                   return 100 * row.torque.cwiseQuotient(limits.torque).cwiseAbs().maxCoeff();
+                 })};
+  return plot;
+}
+
+}  // namespace mjarm::app

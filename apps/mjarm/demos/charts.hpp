@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mjarm/model/arm.hpp"
+#include "mjarm/path/curve.hpp"
+#include "mjarm/render/plot.hpp"
+#include "mjarm/sim/recorder.hpp"
+
+namespace mjarm::app {
+
+/// A part of a run that was measured against a curve, or against nothing but the plan.
+struct MeasuredRun {
+  std::vector<RecordRow> rows;
+  const Curve* curve = nullptr;  ///< null = errors are from planned to executed tool
+};
+
+/// One page about a run: tool path from three sides (planned dashed, executed solid), tool speed,
+/// error with its tolerance [m], joint values, worst use of velocity and torque limits.
+[[nodiscard]] Plot motion_plot(const std::string& title, const Arm& arm,
+                               std::span<const MeasuredRun> runs, double tolerance);
+
+}  // namespace mjarm::app

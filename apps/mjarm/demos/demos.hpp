@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "mjarm/control/controller.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/program/report.hpp"
+
+namespace mjarm::app {
+
+/// What the user chose for a demo.
+struct DemoOptions {
+  std::string robot = "ur5e";          ///< shipped name or path
+  std::string tip;                     ///< tool frame; empty = the robot's own
+  std::filesystem::path out;           ///< folder of all files written
+  bool headless = false;               ///< no window even where there is a display
+  bool guide = false;                  ///< do it the tutorial's way
+  bool timing = true;                  ///< wall-clock fields in the report
+  double seconds = 0;                  ///< [s] most simulated time, 0 = as long as the motion takes
+  std::string text;                    ///< for `letters`
+  std::optional<ControlMode> control;  ///< none = the demo's own choice
+};
+
+/// One demo. `run` makes the motion and writes its files; a report with `ok` false is a demo that
+/// ended with a reason (exit code 1), an Error one that could not start.
+struct Demo {
+  const char* name;
+  Msg summary;
+  Result<Report> (*run)(const DemoOptions& options);
+};
+
+/// All demos, in the order in which a newcomer would try them.
+[[nodiscard]] std::span<const Demo> demos();
+
+Result<Report> run_car(const DemoOptions& options);
+Result<Report> run_ur5e(const DemoOptions& options);
+Result<Report> run_ur5e_vision(const DemoOptions& options);
+Result<Report> run_point(const DemoOptions& options);
+Result<Report> run_movej(const DemoOptions& options);
+Result<Report> run_movel(const DemoOptions& options);
+Result<Report> run_ellipse(const DemoOptions& options);
+Result<Report> run_letters(const DemoOptions& options);
+
+}  // namespace mjarm::app

@@ -1,0 +1,42 @@
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "apps/mjarm/demos/tutorial.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/path/joint_path.hpp"
+
+namespace mjarm::app {
+
+/// 100 joint waypoints, each waited for until all joints are within 0.02 rad, as the tutorial does.
+Result<Report> run_movej(const DemoOptions& options) {
+  Result<std::unique_ptr<Stage>> opened = Stage::open("movej", options);
+  if (!opened) return fail(std::move(opened.error()));
+  Stage& stage = **opened;
+  const Pose goal = tutorial_goal();
+  const std::vector<double> seed = tutorial_seed();
+  const Result<IkSolution, IkFailure> solution = stage.ik().solve(goal, seed);
+  if (!solution) {
+    return stage.refuse(name(solution.error().code), describe(solution.error(), stage.arm()));
+  }
+  stage.start_at(seed);
+  stage.show().set_balls(true);
+  stage.show().plot_tool();
+
+  constexpr int kWaypoints = 100;
+  const Result<JointPath> path = joint_line(seed, view(solution->q), kWaypoints);
+  if (!path) return fail(path.error());
+  const ControlMode mode =
+      stage.control(options.guide ? ControlMode::servo : ControlMode::computed_torque);
+  if (auto done = stage.wait_through(path->q, {}, mode); !done)
+    return fail(std::move(done.error()));
+  const std::size_t reached = stage.reached();
+  if (auto done = stage.jump(solution->q, mode, 0.5); !done) return fail(std::move(done.error()));
+
+  Report report;
+  report.max_joint_step = path->max_step();
+  report.coverage = static_cast<double>(reached) / kWaypoints;
+  report.static_error = pose_error(goal, stage.sim().tool(stage.arm()));
+  log_info(text(Msg::demo_waypoints, reached, kWaypoints, 1e3 * report.static_error->position));
+  return stage.finish(std::move(report), options.guide ? 0.02 : 1e-4);
+}
+
+}  // namespace mjarm::app

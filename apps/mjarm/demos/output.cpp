@@ -1,0 +1,52 @@
+#include "apps/mjarm/demos/output.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/render/offscreen.hpp"
+#include "mjarm/render/png.hpp"
+
+namespace mjarm::app {
+namespace {
+
+Result<void> write_picture(const std::filesystem::path& file, const Model& model,
+                           const Snapshot& snapshot, const DemoOutput& output) {
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model);
+  if (!renderer) {
+    if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
+    log_warning(text(Msg::demo_no_picture, renderer.error().what));
+    return {};
+  }
+  const std::vector<std::string> cameras = camera_names(model);
+  Camera camera;
+  if (std::ranges::find(cameras, output.camera) != cameras.end()) camera.name = output.camera;
+  const Result<Image> image = renderer->draw(snapshot, camera, output.overlay);
+  if (!image) return fail(image.error());
+  return write_png(*image, file);
+}
+
+}  // namespace
+
+Result<void> make_folder(const std::filesystem::path& folder) {
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (code || !std::filesystem::is_directory(folder, code)) {
+    return fail(Errc::system, text(Msg::demo_no_folder, folder.string(), code.message()));
+  }
+  return {};
+}
+
+Result<void> write_output(const std::filesystem::path& folder, const Model& model,
+                          const Snapshot& snapshot, const DemoOutput& output) {
+  return write_file(folder / "report.json", to_json(output.report))
+      .and_then([&] {
+        return output.plot.panels.empty() ? Result<void>()
+                                          : save_plot(output.plot, folder / "plot");
+      })
+      .and_then([&] { return write_picture(folder / "picture.png", model, snapshot, output); });
+}
+
+}  // namespace mjarm::app

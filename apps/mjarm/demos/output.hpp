@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/model.hpp"
+#include "mjarm/program/report.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/render/plot.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm::app {
+
+/// What a demo leaves behind besides its log.
+struct DemoOutput {
+  Report report;
+  Plot plot;
+  Overlay overlay;     ///< drawn into the picture
+  std::string camera;  ///< of the model; empty or unknown = the model's own view
+};
+
+/// Makes `folder`. @return an error where it cannot be made or is a file.
+[[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
+
+/// Writes report.json, plot.svg, plot.png and picture.png into `folder`. A machine without any GL
+/// back end gets everything but the picture, and a line that says so.
+[[nodiscard]] Result<void> write_output(const std::filesystem::path& folder, const Model& model,
+                                        const Snapshot& snapshot, const DemoOutput& output);
+
+}  // namespace mjarm::app

@@ -1,0 +1,98 @@
+#include "apps/mjarm/demos/show.hpp"
+
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/os.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kTrailSpacing = 0.002;  // [m] the eye sees no difference below
+constexpr double kBallSpacing = 0.01;    // [m]
+constexpr Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
+constexpr Rgba kTrail = {0.10F, 0.45F, 0.85F, 1};
+
+}  // namespace
+
+Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
+  Show show(model.timestep());
+  show.overlay_.lines.push_back({.points_W = {}, .width = 0.006, .color = kTrail});
+  if (headless || !has_display()) return show;
+  Result<Window> window = Window::open(model, title);
+  if (window) {
+    show.window_ = std::move(*window);
+  } else if (window.error().code == Errc::not_available) {
+    log_info(window.error().what);
+  } else {
+    return fail(std::move(window.error()));
+  }
+  return show;
+}
+
+void Show::add_points(std::span<const Pose> X_WT, std::size_t every) {
+  for (std::size_t i = 0; i < X_WT.size(); i += every) {
+    overlay_.spheres.push_back({.p_W = X_WT[i].p, .radius = 0.005, .color = kPlanned});
+  }
+}
+
+void Show::grow_trail(const Eigen::Vector3d& p_WT) {
+  std::vector<Eigen::Vector3d>& trail = overlay_.lines.front().points_W;
+  const double spacing = trail_as_balls_ ? kBallSpacing : kTrailSpacing;
+  if (!trail.empty() && (trail.back() - p_WT).norm() < spacing) return;
+  trail.push_back(p_WT);
+  if (trail_as_balls_) {
+    overlay_.spheres.push_back({.p_W = p_WT, .radius = 0.005, .color = kPlanned});
+  }
+}
+
+void Show::add_line(std::span<const Pose> X_WT) {
+  OverlayLine& line = overlay_.lines.emplace_back();
+  for (const Pose& pose : X_WT) line.points_W.push_back(pose.p);
+  line.color = kPlanned;
+}
+
+void Show::plot_tool() {
+  LivePlot path{.title = "tool from above [m]", .x_label = "x [m]", .series = {}};
+  path.equal_aspect = true;
+  path.series.push_back({.name = ""});
+  LivePlot time{.title = "tool position [m]", .x_label = "time [s]", .series = {}};
+  time.series = {{.name = "x", .color = {0.90F, 0.35F, 0.30F, 1}},
+                 {.name = "y", .color = {0.30F, 0.75F, 0.35F, 1}},
+                 {.name = "z", .color = {0.35F, 0.55F, 0.95F, 1}}};
+  plots_ = {std::move(path), std::move(time)};
+}
+
+void Show::grow_plots(double time, const Eigen::Vector3d& p_WT) {
+  if (plots_.size() != 2) return;
+  plots_[0].series[0].x.push_back(p_WT.x());
+  plots_[0].series[0].y.push_back(p_WT.y());
+  for (int axis = 0; axis < 3; ++axis) {
+    LiveSeries& series = plots_[1].series[static_cast<std::size_t>(axis)];
+    series.x.push_back(time);
+    series.y.push_back(p_WT[axis]);
+  }
+}
+
+bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
+  if (interrupted()) return false;
+  if (trail_on_) grow_trail(p_WT);
+  grow_plots(sim.time(), p_WT);
+  if (!window_) return true;
+  if (due_ > 0) --due_;
+  while (due_ == 0) {
+    if (!window_->is_open() || interrupted()) return false;
+    if (!window_->draw(sim.snapshot(), overlay_, plots_)) return false;
+    due_ = pacer_.steps_due(window_->paused());
+  }
+  return true;
+}
+
+void Show::linger(const Sim& sim) {
+  if (!window_) return;
+  log_info(text(Msg::demo_close_window));
+  while (window_->is_open() && !interrupted()) {
+    if (!window_->draw(sim.snapshot(), overlay_, plots_)) return;
+  }
+}
+
+}  // namespace mjarm::app

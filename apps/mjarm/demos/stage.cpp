@@ -1,0 +1,263 @@
+#include "apps/mjarm/demos/stage.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "apps/mjarm/demos/output.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/model/find_arm.hpp"
+
+namespace mjarm::app {
+namespace {
+
+IkOptions without_contact(const Model& model, const Arm& arm) {
+  IkOptions options;
+  options.valid = ExactChecker(model, arm).predicate();
+  return options;
+}
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm, Show show)
+    : demo_(std::move(demo)),
+      options_(options),
+      model_(std::move(model)),
+      arm_(std::move(arm)),
+      reach_(arm_),
+      ik_(arm_, without_contact(model_, arm_)),
+      sim_(model_),
+      recorder_(model_, arm_),
+      show_(std::move(show)) {
+  start_at(view(arm_.home));
+}
+
+Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options) {
+  const auto model = find_model_file(options.robot).and_then([](const std::filesystem::path& file) {
+    return Model::load(file);
+  });
+  if (!model) return fail(model.error());
+  Result<Arm> arm = find_arm(*model, {.tip = options.tip});
+  if (!arm) return fail(std::move(arm.error()));
+  if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
+  Result<Show> show = Show::open(*model, "mjarm " + demo, options.headless);
+  if (!show) return fail(std::move(show.error()));
+  return std::unique_ptr<Stage>(
+      new Stage(demo, options, *model, std::move(*arm), std::move(*show)));
+}
+
+ControlMode Stage::control(ControlMode fallback) {
+  const ControlMode mode = options_.control.value_or(fallback);
+  control_ = name(mode);
+  return mode;
+}
+
+void Stage::start_at(std::span<const double> q) {
+  sim_.place(arm_, q);
+  q_command_ = joint_vec(q);
+}
+
+FollowSetup Stage::setup(Controller& controller, bool measured) {
+  show_.set_trail(measured);
+  return {.sim = sim_,
+          .controller = controller,
+          .arm = arm_,
+          .recorder = &recorder_,
+          .after_step = [this](const Sim& sim, const JointVec&) {
+            if (options_.seconds > 0 && sim.time() >= options_.seconds) return false;
+            return show_.step(sim, sim.tool(arm_).p);
+          }};
+}
+
+void Stage::add(const FollowOutcome& outcome) {
+  total_.steps += outcome.steps;
+  total_.duration += outcome.duration;
+  total_.limited_steps += outcome.limited_steps;
+  total_.velocity_use = std::max(total_.velocity_use, outcome.velocity_use);
+  total_.torque_use = std::max(total_.torque_use, outcome.torque_use);
+  total_.reached += outcome.reached;
+  if (!total_.first_contact) total_.first_contact = outcome.first_contact;
+}
+
+Result<void> Stage::take(Result<FollowOutcome, FollowFailure> outcome, double from,
+                         const Curve* curve, bool measured) {
+  if (!outcome && outcome.error().error) return fail(*outcome.error().error);
+  add(outcome ? *outcome : outcome.error().outcome);
+  if (!outcome) {
+    end_reason_ = "waypoint_not_reached";
+    end_detail_ = describe(outcome.error(), arm_);
+  } else if (outcome->stopped) {
+    end_reason_ = "stopped";
+    end_detail_ = text(Msg::demo_stopped, sim_.time());
+  }
+  if (measured) {
+    measured_.push_back(
+        {curve != nullptr ? std::optional(*curve) : std::nullopt, from, sim_.time()});
+  }
+  return {};
+}
+
+Result<void> Stage::approach(std::span<const double> q, ControlMode mode) {
+  if (ended_early()) return {};
+  const Result<Trajectory> move = time_joint_move(view(q_command_), q, arm_.limits);
+  if (!move) return fail(move.error());
+  Result<Controller> controller = Controller::make(model_, arm_, mode);
+  if (!controller) return fail(std::move(controller.error()));
+  const double start = seconds_now();
+  const double from = sim_.time();
+  auto outcome = follow_time(setup(*controller, false), *move, {.settle = 0.2});
+  wall_seconds_ += seconds_now() - start;
+  q_command_ = joint_vec(q);
+  return take(std::move(outcome), from, nullptr, false);
+}
+
+Result<void> Stage::run(const Trajectory& trajectory, ControlMode mode, double settle,
+                        const Curve* curve) {
+  if (ended_early()) return {};
+  Result<Controller> controller = Controller::make(model_, arm_, mode);
+  if (!controller) return fail(std::move(controller.error()));
+  const double start = seconds_now();
+  const double from = sim_.time();
+  auto outcome = follow_time(setup(*controller, true), trajectory, {.settle = settle});
+  wall_seconds_ += seconds_now() - start;
+  q_command_ = trajectory.at(trajectory.duration()).q;
+  return take(std::move(outcome), from, curve, true);
+}
+
+Result<void> Stage::jump(const JointVec& q, ControlMode mode, double seconds) {
+  const JointVec rest = JointVec::Zero(q.size());
+  const JointState state{q, rest, rest};
+  const Result<Trajectory> stay = Trajectory::through({0, seconds}, {state, state});
+  if (!stay) return fail(stay.error());
+  return run(*stay, mode, 0);
+}
+
+Result<void> Stage::wait_through(std::span<const JointVec> waypoints,
+                                 std::span<const Eigen::Vector3d> points, ControlMode mode,
+                                 const Curve* curve) {
+  if (ended_early()) return {};
+  Result<Controller> controller = Controller::make(model_, arm_, mode);
+  if (!controller) return fail(std::move(controller.error()));
+  const double start = seconds_now();
+  const double from = sim_.time();
+  const FollowSetup follow = setup(*controller, true);
+  auto outcome =
+      points.empty() ? follow_joints(follow, waypoints) : follow_tool(follow, waypoints, points);
+  wall_seconds_ += seconds_now() - start;
+  if (!waypoints.empty()) q_command_ = waypoints.back();
+  return take(std::move(outcome), from, curve, true);
+}
+
+/// The measured parts of the record.
+std::vector<MeasuredRun> Stage::measured_runs() const {
+  std::vector<MeasuredRun> runs;
+  for (const Measured& part : measured_) {
+    MeasuredRun& run = runs.emplace_back();
+    run.curve = part.curve ? &*part.curve : nullptr;
+    for (std::size_t i = 0; i < recorder_.size(); ++i) {
+      RecordRow row = recorder_.row(i);
+      if (row.time >= part.from && row.time <= part.to) run.rows.push_back(std::move(row));
+    }
+  }
+  return runs;
+}
+
+/// Errors of the measured runs together.
+void Stage::measure(std::span<const MeasuredRun> runs, Report& report) const {
+  PathError all;
+  double sum2 = 0, covered = 0, length = 0;
+  std::size_t count = 0;
+  for (const MeasuredRun& run : runs) {
+    if (run.curve == nullptr) continue;
+    std::vector<Eigen::Vector3d> p_W;
+    for (const RecordRow& row : run.rows) p_W.push_back(row.X_WT.p);
+    const PathError error = measure_path(*run.curve, p_W);
+    sum2 += error.rms * error.rms * static_cast<double>(p_W.size());
+    count += p_W.size();
+    covered += error.coverage * run.curve->length();
+    length += run.curve->length();
+    if (error.max >= all.max) {
+      all.max = error.max;
+      all.at = error.at;
+    }
+    for (std::size_t i = 1; i < p_W.size(); ++i) {
+      const double dt = run.rows[i].time - run.rows[i - 1].time;
+      const double speed = (p_W[i] - p_W[i - 1]).norm() / dt;
+      report.tool_speed_max = std::max(report.tool_speed_max.value_or(0), speed);
+    }
+  }
+  if (count == 0 || length == 0) return;
+  all.rms = std::sqrt(sum2 / static_cast<double>(count));
+  all.coverage = covered / length;
+  report.path_error = all;
+  report.coverage = all.coverage;
+}
+
+Result<Report> Stage::finish(Report report, double tolerance) {
+  const std::vector<MeasuredRun> runs = measured_runs();
+  measure(runs, report);
+  report.ok = !ended_early();
+  report.reason = end_reason_;
+  report.detail = end_detail_;
+  const bool off_path =
+      report.path_error && (report.path_error->max > tolerance || report.coverage < 0.999);
+  const bool off_goal = report.static_error && report.static_error->position > tolerance;
+  if (report.ok && (off_path || off_goal)) {
+    const double error = off_path ? report.path_error->max : report.static_error->position;
+    report.ok = false;
+    report.reason = off_path ? "path_error" : "static_error";
+    report.detail = text(Msg::demo_off_path, 1e3 * error, 1e3 * tolerance, 100 * report.coverage);
+  }
+  Plot plot = motion_plot(demo_, arm_, runs, tolerance);
+  if (report.path_error) {
+    plot.note = text(Msg::demo_plot_note, control_, 1e3 * report.path_error->max,
+                     1e3 * report.path_error->rms, 100 * report.coverage);
+  }
+  return write(std::move(report), std::move(plot));
+}
+
+Result<Report> Stage::write(Report report, Plot plot) {
+  report.name = demo_;
+  report.model = model_.name();
+  if (report.control.empty()) report.control = control_;
+  report.duration = total_.duration;
+  report.steps = static_cast<long>(total_.steps);
+  report.velocity_use = total_.velocity_use;
+  report.torque_use = total_.torque_use;
+  report.saturated_steps = static_cast<long>(total_.limited_steps);
+  if (total_.first_contact) {
+    const Contact& contact = total_.first_contact->contact;
+    report.first_contact =
+        contact.first + " - " + contact.second + " at " + number(total_.first_contact->time) + " s";
+  }
+  if (options_.timing && !show_.has_window() && wall_seconds_ > 0) {
+    report.rtf = total_.duration / wall_seconds_;
+  }
+  const DemoOutput output{report, std::move(plot), show_.overlay(), camera_};
+  auto written = recorder_.write_csv(options_.out / "log.csv").and_then([&] {
+    return write_output(options_.out, model_, sim_.snapshot(), output);
+  });
+  if (!written) return fail(std::move(written.error()));
+  show_.linger(sim_);
+  return report;
+}
+
+Result<Report> Stage::refuse(std::string_view reason, const std::string& detail, Report report) {
+  report.ok = false;
+  report.reason = reason;
+  report.detail = detail;
+  return write(std::move(report), {});
+}
+
+Result<Report> Stage::refuse(const MotionFailure& failure) {
+  const std::string_view reason = failure.path ? name(failure.path->code) : "timing";
+  return refuse(failure.path && failure.path->flip ? "branch_flip" : reason,
+                describe(failure, arm_));
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/mjarm/demos/charts.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/show.hpp"
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/kinematics/ik.hpp"
+#include "mjarm/path/curve.hpp"
+#include "mjarm/program/motion.hpp"
+#include "mjarm/sim/follow.hpp"
+#include "mjarm/sim/recorder.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm::app {
+
+/// A demo's world: model, arm, simulation, log, and whatever shows them. `finish` or `refuse` ends
+/// it and writes the files.
+class Stage {
+ public:
+  /// Loads the robot of `options`, makes the folder, opens the window. The arm stands at home.
+  [[nodiscard]] static Result<std::unique_ptr<Stage>> open(const std::string& demo,
+                                                           const DemoOptions& options);
+
+  [[nodiscard]] const Arm& arm() const { return arm_; }
+  [[nodiscard]] Sim& sim() { return sim_; }
+  [[nodiscard]] Show& show() { return show_; }
+  /// Geometry alone: what the arm can reach.
+  [[nodiscard]] const IkSolver& reach() const { return reach_; }
+  /// The same without touching itself or the scene: what it may do.
+  [[nodiscard]] const IkSolver& ik() const { return ik_; }
+  /// The control the user chose, else `fallback`; the report names it.
+  [[nodiscard]] ControlMode control(ControlMode fallback);
+
+  /// Camera of the picture at the end, where the model has it (default: `overview`).
+  void set_camera(const std::string& name) { camera_ = name; }
+
+  /// Puts the arm at `q`, at rest.
+  void start_at(std::span<const double> q);
+  /// Joint move from where the arm is commanded to `q`; not part of what is measured.
+  [[nodiscard]] Result<void> approach(std::span<const double> q, ControlMode mode);
+  /// Runs `trajectory` and stays `settle` [s] at its end. With `curve`, the executed tool positions
+  /// are measured against it.
+  [[nodiscard]] Result<void> run(const Trajectory& trajectory, ControlMode mode, double settle,
+                                 const Curve* curve = nullptr);
+  /// The reference jumps to `q` and stays there for `seconds`.
+  [[nodiscard]] Result<void> jump(const JointVec& q, ControlMode mode, double seconds);
+  /// The tutorial's followers: each waypoint is waited for. With `points` [m] the tool is waited
+  /// for, else the joints. A waypoint waited for in vain ends the demo with its reason.
+  [[nodiscard]] Result<void> wait_through(std::span<const JointVec> waypoints,
+                                          std::span<const Eigen::Vector3d> points, ControlMode mode,
+                                          const Curve* curve = nullptr);
+
+  /// Waypoints and trajectories that were reached so far.
+  [[nodiscard]] std::size_t reached() const { return total_.reached; }
+  /// Something ended the motion early: the user, or a waypoint that was never reached.
+  [[nodiscard]] bool ended_early() const { return !end_reason_.empty(); }
+
+  /// Writes report, log, plots and picture into the folder, and keeps the window open. `report`
+  /// says what the demo alone knows; measured values are filled in, and `ok` is withdrawn where the
+  /// path was not covered or left by more than `tolerance` [m].
+  [[nodiscard]] Result<Report> finish(Report report, double tolerance = 5e-4);
+  /// Ends a demo that cannot be done, before anything moves.
+  [[nodiscard]] Result<Report> refuse(std::string_view reason, const std::string& detail,
+                                      Report report = {});
+  [[nodiscard]] Result<Report> refuse(const MotionFailure& failure);
+
+ private:
+  struct Measured {
+    std::optional<Curve> curve;
+    double from = 0;  ///< [s]
+    double to = 0;    ///< [s]
+  };
+
+  Stage(std::string demo, const DemoOptions& options, Model model, Arm arm, Show show);
+  [[nodiscard]] FollowSetup setup(Controller& controller, bool measured);
+  [[nodiscard]] Result<void> take(Result<FollowOutcome, FollowFailure> outcome, double from,
+                                  const Curve* curve, bool measured);
+  void add(const FollowOutcome& outcome);
+  [[nodiscard]] std::vector<MeasuredRun> measured_runs() const;
+  void measure(std::span<const MeasuredRun> runs, Report& report) const;
+  [[nodiscard]] Result<Report> write(Report report, Plot plot);
+
+  std::string demo_;
+  DemoOptions options_;
+  Model model_;
+  Arm arm_;
+  IkSolver reach_;
+  IkSolver ik_;
+  Sim sim_;
+  Recorder recorder_;
+  Show show_;
+  JointVec q_command_;
+  FollowOutcome total_;
+  std::vector<Measured> measured_;
+  std::string end_reason_, end_detail_;
+  std::string control_;
+  std::string camera_ = "overview";
+  double wall_seconds_ = 0;
+};
+
+}  // namespace mjarm::app

@@ -1,0 +1,50 @@
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kSeconds = 3;  // [s] the tutorial's servo has settled long before
+
+/// The tutorial's first move: the arm starts at one posture and all servos jump to another.
+Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vision) {
+  Result<std::unique_ptr<Stage>> opened = Stage::open(demo, options);
+  if (!opened) return fail(std::move(opened.error()));
+  Stage& stage = **opened;
+  const JointVec start = joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
+  const JointVec goal = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
+  if (stage.arm().dof() != start.size()) {
+    return fail(Errc::usage, text(Msg::demo_needs_six_joints, demo, stage.arm().dof()));
+  }
+  const Pose X_start = fk(stage.arm(), view(start));
+  if (X_start.p.z() < 0) log_warning(text(Msg::demo_below_floor, X_start.p.z()));
+  stage.start_at(view(start));
+  if (vision) {
+    stage.show().set_balls(true);
+    stage.show().plot_tool();
+  }
+
+  Report report;
+  report.max_joint_step = (goal - start).cwiseAbs().maxCoeff();
+  const ControlMode mode = stage.control(ControlMode::servo);
+  const double seconds = options.seconds > 0 ? options.seconds : kSeconds;
+  if (auto done = stage.jump(goal, mode, seconds); !done) return fail(std::move(done.error()));
+  const JointVec q = stage.sim().arm_state(stage.arm()).q;
+  const PoseError error = pose_error(fk(stage.arm(), view(goal)), stage.sim().tool(stage.arm()));
+  report.static_error = error;
+  report.coverage = 1 - (goal - q).norm() / (goal - start).norm();
+  log_info(text(Msg::demo_arrived, 1e3 * error.position, (goal - q).cwiseAbs().maxCoeff()));
+  return stage.finish(std::move(report), 0.02);
+}
+
+}  // namespace
+
+Result<Report> run_ur5e(const DemoOptions& options) { return jump("ur5e", options, false); }
+
+Result<Report> run_ur5e_vision(const DemoOptions& options) {
+  return jump("ur5e_vision", options, true);
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,54 @@
+#include "mjarm/program/report.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace mjarm {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const PoseError& error) {
+  return {{"position", error.position}, {"rotation", error.rotation}};
+}
+
+void put_errors(const Report& report, Json& out) {
+  if (report.path_error) {
+    out["path_error_max"] = report.path_error->max;
+    out["path_error_rms"] = report.path_error->rms;
+    out["path_error_at"] = report.path_error->at;
+  }
+  if (report.static_error) out["static_error"] = to_json(*report.static_error);
+  for (const StaticError& entry : report.static_errors) {
+    out["static_errors"][entry.control] = to_json(entry.error);
+  }
+}
+
+}  // namespace
+
+std::string to_json(const Report& report) {
+  Json out;
+  out["name"] = report.name;
+  out["model"] = report.model;
+  out["ok"] = report.ok;
+  if (!report.ok) {
+    out["reason"] = report.reason;
+    out["detail"] = report.detail;
+  }
+  if (!report.control.empty()) out["control"] = report.control;
+  out["duration"] = report.duration;
+  out["steps"] = report.steps;
+  put_errors(report, out);
+  out["coverage"] = report.coverage;
+  out["max_joint_step"] = report.max_joint_step;
+  if (report.tool_speed_max) out["tool_speed_max"] = *report.tool_speed_max;
+  out["limits_used"] = {{"velocity", report.velocity_use},
+                        {"torque", report.torque_use},
+                        {"saturated_steps", report.saturated_steps}};
+  out["first_contact"] = report.first_contact.empty() ? Json() : Json(report.first_contact);
+  if (!report.unreachable.empty()) out["unreachable"] = report.unreachable;
+  if (report.shift) out["fix"]["shift"] = {report.shift->x(), report.shift->y(), report.shift->z()};
+  if (report.rtf) out["rtf"] = *report.rtf;
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace mjarm

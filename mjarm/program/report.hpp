@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/joint_vec.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/program/metrics.hpp"
+
+namespace mjarm {
+
+/// Static error of one way of control, as `demo point` compares them.
+struct StaticError {
+  std::string control;  ///< "servo", "servo_gravity", "computed_torque"
+  PoseError error;
+};
+
+/// What a motion did; becomes `report.json`. Optional parts are left out where they make no sense.
+struct Report {
+  std::string name;           ///< of the demo or program
+  std::string model;          ///< model name inside the file
+  bool ok = false;            ///< everything asked for was done within its tolerance
+  std::string reason;         ///< word of the reason where not ok, e.g. "inner_void"
+  std::string detail;         ///< one line for people where not ok
+  std::string control;        ///< control mode used
+  double duration = 0;        ///< [s] simulated time from start to end
+  long steps = 0;             ///< simulation steps
+  double coverage = 0;        ///< share of the path, or of the waypoints, that was done, 0 to 1
+  double max_joint_step = 0;  ///< [rad or m] largest joint step between neighbouring waypoints
+  std::optional<PathError> path_error;     ///< against the ideal curve
+  std::optional<PoseError> static_error;   ///< at rest at the goal
+  std::vector<StaticError> static_errors;  ///< the same for each way of control tried
+  double velocity_use = 0;               ///< largest share of a joint velocity limit used, measured
+  double torque_use = 0;                 ///< largest share of an actuator force limit used
+  long saturated_steps = 0;              ///< steps in which a ctrl or force limit cut the command
+  std::string first_contact;             ///< "geom a - geom b at t s"; empty where nothing touched
+  std::optional<double> tool_speed_max;  ///< [m/s] measured
+  std::vector<std::size_t> unreachable;  ///< indices of the poses that cannot be reached
+  std::optional<Eigen::Vector3d> shift;  ///< [m] shift of the path that was verified to mend it
+  std::optional<double> rtf;  ///< simulated seconds a wall-clock second, without rendering
+};
+
+/// `report` as one JSON document, keys in fixed order, full double precision, newline at the end.
+[[nodiscard]] std::string to_json(const Report& report);
+
+}  // namespace mjarm

@@ -1,0 +1,230 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/run_program.hpp"
+#include "tests/support/temp_folder.hpp"
+#include "tests/support/test_data.hpp"
+
+// The demos end to end, as a user runs them: the real program, real MuJoCo, files read back.
+namespace mjarm {
+namespace {
+
+using support::ProgramResult;
+using support::TempFolder;
+
+struct DemoRun {
+  ProgramResult result;
+  nlohmann::json report;
+};
+
+DemoRun run_demo(const TempFolder& folder, std::vector<std::string> arguments,
+                 const support::RunOptions& options = {}) {
+  arguments.insert(arguments.begin(), "demo");
+  for (const char* more : {"--headless", "--no-timing", "--out"}) arguments.emplace_back(more);
+  arguments.push_back((folder.path() / "out").string());
+  DemoRun run{support::run_program(MJARM_PROGRAM, arguments, options), {}};
+  if (folder.exists("out/report.json")) {
+    run.report = nlohmann::json::parse(folder.read("out/report.json"));
+  }
+  return run;
+}
+
+void expect_report_fields(const nlohmann::json& report) {
+  for (const char* key : {"ok", "coverage", "max_joint_step", "limits_used", "duration", "steps"}) {
+    EXPECT_TRUE(report.contains(key)) << key;
+  }
+  EXPECT_TRUE(report.contains("path_error_max") || report.contains("static_error"));
+  EXPECT_FALSE(report.contains("rtf"));
+}
+
+class EveryDemo : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryDemo, EndsWellAndLeavesWholeFiles) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {GetParam()});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  expect_report_fields(run.report);
+  EXPECT_TRUE(run.report["ok"].get<bool>());
+  EXPECT_GT(run.report["coverage"].get<double>(), 0.98);
+  for (const char* file : {"out/log.csv", "out/plot.svg", "out/plot.png"}) {
+    EXPECT_TRUE(folder.exists(file)) << file;
+  }
+  if (folder.exists("out/picture.png")) {
+    EXPECT_EQ(folder.read("out/picture.png").substr(1, 3), "PNG");
+  } else {
+    EXPECT_NE(run.result.err.find("no picture"), std::string::npos) << run.result.err;
+  }
+  EXPECT_NE(run.result.out.find((folder.path() / "out").string()), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo,
+                         testing::Values("car", "ur5e", "ur5e_vision", "point", "movej", "movel",
+                                         "ellipse", "letters"),
+                         [](const auto& demo) { return std::string(demo.param); });
+
+TEST(DemoEllipse, WholeCurveWithinHalfAMillimetre) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"ellipse"});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  EXPECT_LT(run.report["path_error_max"].get<double>(), 5e-4);
+  EXPECT_EQ(run.report["coverage"].get<double>(), 1.0);
+  EXPECT_NEAR(run.report["tool_speed_max"].get<double>(), 0.25, 0.005);
+  EXPECT_LT(run.report["max_joint_step"].get<double>(), 0.1);
+  EXPECT_TRUE(run.report["first_contact"].is_null());
+}
+
+TEST(DemoEllipse, ServoAloneIsReportedAsOffThePath) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"ellipse", "--control", "servo"});
+  EXPECT_EQ(run.result.exit_code, 1);
+  EXPECT_FALSE(run.report["ok"].get<bool>());
+  EXPECT_EQ(run.report["reason"], "path_error");
+  EXPECT_GT(run.report["path_error_max"].get<double>(), 5e-3);
+}
+
+TEST(DemoEllipse, TutorialsCentreIsRefusedWithTheReasonAndAShift) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"ellipse", "--guide"});
+  EXPECT_EQ(run.result.exit_code, 1);
+  EXPECT_EQ(run.report["reason"], "inner_void");
+  std::vector<int> expected;
+  for (int i = 37; i <= 62; ++i) expected.push_back(i);
+  EXPECT_EQ(run.report["unreachable"].get<std::vector<int>>(), expected);
+  EXPECT_EQ(run.report["steps"], 0);
+  ASSERT_TRUE(run.report.contains("fix"));
+  EXPECT_NE(run.result.err.find("37"), std::string::npos) << run.result.err;
+  EXPECT_NE(run.result.err.find("62"), std::string::npos) << run.result.err;
+  EXPECT_NE(run.result.err.find("0.134"), std::string::npos) << run.result.err;
+}
+
+TEST(DemoEllipse, EqualRunsGiveEqualBytes) {
+  const TempFolder first, second;
+  ASSERT_EQ(run_demo(first, {"ellipse"}).result.exit_code, 0);
+  ASSERT_EQ(run_demo(second, {"ellipse"}).result.exit_code, 0);
+  for (const char* file : {"out/report.json", "out/log.csv", "out/plot.svg", "out/plot.png"}) {
+    EXPECT_EQ(first.read(file), second.read(file)) << file;
+  }
+}
+
+TEST(DemoEllipse, DrawsOnMenageriesUr5e) {
+  MJARM_TEST_FILE(archive, "menagerie/universal_robots_ur5e.tar.xz");
+  const TempFolder models;
+  ASSERT_EQ(support::run_program("/bin/tar", {"xf", archive.string(), "-C", models.path().string()})
+                .exit_code,
+            0);
+  const TempFolder folder;
+  const std::string scene = (models.path() / "universal_robots_ur5e/scene.xml").string();
+  const DemoRun run = run_demo(folder, {"ellipse", "--robot", scene});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  EXPECT_LT(run.report["path_error_max"].get<double>(), 5e-4);
+  EXPECT_EQ(run.report["coverage"].get<double>(), 1.0);
+}
+
+TEST(DemoPoint, ComputedTorqueBeatsTheServoByFar) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"point"});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  const auto& errors = run.report["static_errors"];
+  EXPECT_GT(errors["servo"]["position"].get<double>(), 5e-3);
+  EXPECT_LT(errors["servo_gravity"]["position"].get<double>(), 1e-3);
+  EXPECT_LT(errors["computed_torque"]["position"].get<double>(), 1e-4);
+}
+
+TEST(DemoMovel, TutorialsFollowerSaysWhatItWaitsForInsteadOfHanging) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"movel", "--guide"});
+  EXPECT_EQ(run.result.exit_code, 1);
+  EXPECT_EQ(run.report["reason"], "waypoint_not_reached");
+  EXPECT_LT(run.report["coverage"].get<double>(), 1.0);
+}
+
+TEST(DemoUr5e, WarnsThatTheStartIsBelowTheFloor) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"ur5e"});
+  EXPECT_NE(run.result.err.find("-0.141"), std::string::npos) << run.result.err;
+}
+
+TEST(DemoLetters, WritesOtherTexts) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"letters", "--text", "HI 5"});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  EXPECT_LT(run.report["path_error_max"].get<double>(), 5e-4);
+  EXPECT_EQ(run.report["coverage"].get<double>(), 1.0);
+}
+
+TEST(DemoLetters, UnknownCharacterIsOneLine) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"letters", "--text", "A%"});
+  EXPECT_EQ(run.result.exit_code, 2);
+  EXPECT_EQ(support::lines_of(run.result.err).size(), 1U) << run.result.err;
+  EXPECT_NE(run.result.err.find('%'), std::string::npos);
+}
+
+TEST(Demo, UnknownNameGetsTheNearestOne) {
+  const ProgramResult result = support::run_program(MJARM_PROGRAM, {"demo", "elipse"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("ellipse"), std::string::npos) << result.err;
+}
+
+TEST(Demo, NoNameListsAll) {
+  const ProgramResult result = support::run_program(MJARM_PROGRAM, {"demo"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(support::lines_of(result.out).size(), 8U) << result.out;
+}
+
+TEST(Demo, BadOptionsAreUsageErrors) {
+  for (const std::vector<std::string>& bad :
+       {std::vector<std::string>{"ellipse", "--seconds", "-1"},
+        {"ellipse", "--seconds", "soon"},
+        {"ellipse", "--control", "serwo"},
+        {"ellipse", "--robot", "ur5"},
+        {"ellipse", "--tip", "attachment_sit"}}) {
+    const TempFolder folder;
+    const DemoRun run = run_demo(folder, bad);
+    EXPECT_EQ(run.result.exit_code, 2) << bad[1] << bad[2];
+    EXPECT_EQ(support::lines_of(run.result.err).size(), 1U) << run.result.err;
+  }
+}
+
+TEST(Demo, OutputFolderThatIsAFile) {
+  const TempFolder folder;
+  folder.write("out", "not a folder");
+  const DemoRun run = run_demo(folder, {"car"});
+  EXPECT_EQ(run.result.exit_code, 1);
+  EXPECT_EQ(support::lines_of(run.result.err).size(), 1U) << run.result.err;
+  EXPECT_EQ(folder.read("out"), "not a folder");
+}
+
+TEST(Demo, SecondsEndTheMotionEarlyAndSaySo) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"ellipse", "--seconds", "3"});
+  EXPECT_EQ(run.result.exit_code, 1);
+  EXPECT_EQ(run.report["reason"], "stopped");
+  EXPECT_LT(run.report["coverage"].get<double>(), 0.9);
+  EXPECT_TRUE(folder.exists("out/log.csv"));
+}
+
+TEST(Demo, SpeaksChinese) {
+  const TempFolder folder;
+  const ProgramResult result =
+      support::run_program(MJARM_PROGRAM, {"--lang", "zh-CN", "demo", "ellipse", "--headless",
+                                           "--out", (folder.path() / "out").string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("文件位于"), std::string::npos) << result.out;
+}
+
+TEST(Demo, RunsFromAnyFolderAndWritesOnlyItsOwn) {
+  const TempFolder folder, elsewhere;
+  const DemoRun run =
+      run_demo(folder, {"car"}, {.folder = elsewhere.path(), .input = {}, .environment = {}});
+  EXPECT_EQ(run.result.exit_code, 0) << run.result.err;
+  EXPECT_TRUE(std::filesystem::is_empty(elsewhere.path()));
+}
+
+}  // namespace
+}  // namespace mjarm
