@@ -11,6 +11,7 @@
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/model/mujoco_library.hpp"
+#include "mjarm/render/gl_context.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -58,6 +59,23 @@ void look_at_machine(Findings& findings) {
       text(display ? Msg::app_doctor_display_yes : Msg::app_doctor_display_no));
 }
 
+/// Pictures are part of every demo: one way to draw must work, two are better.
+void look_at_graphics(Findings& findings) {
+  Json ways = Json::array();
+  bool any = false;
+  for (const GlBackend& way : probe_gl_backends()) {
+    ways.push_back({{"name", way.name},
+                    {"works", way.works},
+                    {"renderer", way.renderer},
+                    {"version", way.version},
+                    {"reason", way.reason}});
+    findings.lines += padded(way.name, 14) + (way.works ? way.renderer : way.reason) + "\n";
+    any |= way.works;
+  }
+  findings.facts["gl"] = ways;
+  if (!any) findings.problems.push_back(text(Msg::app_doctor_no_gl));
+}
+
 void look_at_models(Findings& findings) {
   Json found = Json::array();
   std::string names;
@@ -81,6 +99,7 @@ Result<int> run(bool json) {
   add(findings, "mjarm", "mjarm", MJARM_VERSION, MJARM_VERSION);
   look_at_mujoco(findings);
   look_at_machine(findings);
+  look_at_graphics(findings);
   look_at_models(findings);
   const bool fine = findings.problems.empty();
   if (json) {

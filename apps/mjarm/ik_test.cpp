@@ -296,6 +296,20 @@ TEST(IkData, Panda) {
   expect_all_refused(unreachable, setting);
 }
 
+TEST(IkData, TheUrdfsBesideThePoses) {
+  MJARM_TEST_FILE(ur5e, "ik/ur5e.urdf");
+  MJARM_TEST_FILE(panda, "ik/panda.urdf");
+  MJARM_TEST_FILE(ur5e_poses, "ik/ur5e_reachable.jsonl");
+  MJARM_TEST_FILE(panda_poses, "ik/panda_reachable.jsonl");
+  for (const auto& [urdf, poses] : {std::pair(ur5e, ur5e_poses), std::pair(panda, panda_poses)}) {
+    // Geometry only, without any mass: enough for kinematics, and no reason to say anything.
+    const auto result = ik({"--robot", urdf.string(), "--in", poses.string()});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(json_lines(result.out).size(), 1000u);
+  }
+}
+
 TEST(IkData, ReachableEllipse) {
   MJARM_TEST_FILE(file, "ik/ur5e_ellipse_far.jsonl");
   const auto lines = support::load_json_lines(file);

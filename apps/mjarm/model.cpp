@@ -23,7 +23,10 @@ Result<Model> load(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(Msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
-  return Model::load(*file);
+  Result<Model> model = Model::load(*file);
+  if (!model) return model;
+  for (const std::string& warning : model->warnings()) log_warning(warning);
+  return model;
 }
 
 void print(const std::string& words) { std::fwrite(words.data(), 1, words.size(), stdout); }

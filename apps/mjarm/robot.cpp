@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages.hpp"
 
 namespace mjarm::app {
@@ -19,6 +20,7 @@ Result<Robot> load_robot(const RobotOptions& options) {
   if (!file) return fail(std::move(file.error()));
   Result<Model> model = Model::load(*file);
   if (!model) return fail(std::move(model.error()));
+  for (const std::string& warning : model->warnings()) log_debug(warning);
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});
   if (!arm) return fail(std::move(arm.error()));
   return Robot{std::move(*model), std::move(*arm)};

@@ -8,12 +8,13 @@
 #include <memory>
 #include <vector>
 
+#include "mjarm/control/robots_test.hpp"
 #include "mjarm/control/sag.hpp"
-#include "mjarm/control/test_arms_test.hpp"
 
 namespace mjarm {
 namespace {
 
+using testing::controller_of;
 using ::testing::HasSubstr;
 using testing::load_shipped;
 using testing::load_text;
@@ -53,12 +54,6 @@ class World {
   std::vector<double> ctrl_;
 };
 
-Controller make(const Loaded& robot, ControlMode mode) {
-  auto controller = Controller::make(robot.model, robot.arm, mode);
-  if (!controller) throw std::runtime_error(controller.error().what);
-  return std::move(*controller);
-}
-
 /// Smooth swing about `home`, at rest at t = 0.
 JointVec swing(const Arm& arm, double t, double size = 0.3) {
   const double s = 1 - std::cos(2 * std::max(t, 0.0));
@@ -66,7 +61,7 @@ JointVec swing(const Arm& arm, double t, double size = 0.3) {
 }
 
 double worst_tracking_error(const Loaded& robot, ControlMode mode) {
-  Controller controller = make(robot, mode);
+  Controller controller = controller_of(robot, mode);
   World world(robot, robot.arm.home);
   const double h = robot.model.timestep();
   double worst = 0;
@@ -81,7 +76,7 @@ double worst_tracking_error(const Loaded& robot, ControlMode mode) {
 
 /// Joint errors after standing at home for a while.
 JointVec static_error(const Loaded& robot, ControlMode mode) {
-  Controller controller = make(robot, mode);
+  Controller controller = controller_of(robot, mode);
   World world(robot, robot.arm.home);
   for (int i = 0; i < 3000; ++i) world.step(controller, hold(view(robot.arm.home)));
   return robot.arm.home - world.q();
@@ -127,7 +122,7 @@ TEST(Controller, StaticErrorIsTheSagOfTheServoAndNothingElse) {
 
 TEST(Controller, ComputedTorqueComesBackFromAnErrorWithoutOvershoot) {
   const Loaded robot = load_shipped("ur5e");
-  Controller controller = make(robot, ControlMode::computed_torque);
+  Controller controller = controller_of(robot, ControlMode::computed_torque);
   World world(robot, robot.arm.home + JointVec::Constant(6, 0.02));
   for (int i = 0; i < 250; ++i) {
     world.step(controller, hold(view(robot.arm.home)));
@@ -139,7 +134,7 @@ TEST(Controller, ComputedTorqueComesBackFromAnErrorWithoutOvershoot) {
 TEST(Controller, SaysWhenALimitCutsTheCommand) {
   const Loaded robot = load_shipped("ur5e");
   for (const ControlMode mode : {ControlMode::servo, ControlMode::computed_torque}) {
-    Controller controller = make(robot, mode);
+    Controller controller = controller_of(robot, mode);
     World world(robot, robot.arm.home);
     EXPECT_FALSE(world.step(controller, hold(view(robot.arm.home)))) << name(mode);
     const JointVec far = robot.arm.home + JointVec::Constant(6, 2.0);
@@ -154,7 +149,7 @@ TEST(Controller, KnowsTheForceLimitOfTheJointItself) {
   const Loaded robot = load_text(mjcf);
   EXPECT_DOUBLE_EQ(robot.arm.joints[2].actuator->force_lower, -0.4) << "the gear is -5";
   EXPECT_DOUBLE_EQ(robot.arm.joints[2].actuator->force_upper, 0.2);
-  Controller controller = make(robot, ControlMode::computed_torque);
+  Controller controller = controller_of(robot, ControlMode::computed_torque);
   World world(robot, robot.arm.home);
   const JointVec far = robot.arm.home + JointVec::Constant(3, 0.5);
   EXPECT_TRUE(world.step(controller, hold(view(far))));
@@ -162,7 +157,7 @@ TEST(Controller, KnowsTheForceLimitOfTheJointItself) {
 
 TEST(Controller, KeepsCtrlWithinItsRangeAndLeavesOthersAlone) {
   const Loaded robot = load_shipped("panda");
-  Controller controller = make(robot, ControlMode::servo);
+  Controller controller = controller_of(robot, ControlMode::servo);
   std::vector<double> ctrl(robot.model.nu(), 123.0);
   const std::vector<double> qpos(robot.model.qpos0().begin(), robot.model.qpos0().end());
   const std::vector<double> qvel(robot.model.nv(), 0.0);

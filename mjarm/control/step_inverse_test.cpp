@@ -6,8 +6,10 @@
 #include <memory>
 
 #include "mjarm/control/actuation.hpp"
-#include "mjarm/control/test_arms_test.hpp"
+#include "mjarm/control/robots_test.hpp"
 #include "mjarm/core/rng.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
@@ -126,6 +128,25 @@ TEST(StepInverse, OneStepGivesTheAccelerationOfTheShippedArms) {
   ASSERT_TRUE(panda) << panda.error().what;
   EXPECT_LT(worst_step_error(testing::load_file(panda->parent_path() / "panda_nohand.xml"), 0.5, 2),
             1e-9);
+}
+
+TEST(StepInverse, OneStepGivesTheAccelerationOfArmsFromElsewhere) {
+  const support::TempFolder folder;
+  const auto unpack = [&folder](const std::filesystem::path& archive) {
+    const auto result = support::run_program(
+        "/bin/sh",
+        {"-c", "exec tar -xJf \"$1\" -C \"$2\"", "sh", archive.string(), folder.path().string()});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  };
+  MJARM_TEST_FILE(ur5e, "menagerie/universal_robots_ur5e.tar.xz");
+  MJARM_TEST_FILE(panda, "menagerie/franka_emika_panda.tar.xz");
+  ASSERT_NO_FATAL_FAILURE(unpack(ur5e));
+  ASSERT_NO_FATAL_FAILURE(unpack(panda));
+  for (const char* file :
+       {"universal_robots_ur5e/scene.xml", "franka_emika_panda/panda_nohand.xml"}) {
+    SCOPED_TRACE(file);
+    EXPECT_LT(worst_step_error(testing::load_file(folder.path() / file), 0.5, 2), 1e-9);
+  }
 }
 
 TEST(StepInverse, LooseFingersDisturbLittle) {

@@ -11,6 +11,9 @@ namespace mjarm {
 namespace fs = std::filesystem;
 namespace {
 
+/// Most scratch memory that a file may ask for by `<size memory>` [bytes].
+constexpr mjtSize kMostMemory = mjtSize{1} << 36;
+
 /// Numbers without which nothing can be computed, by the kind of object they belong to.
 struct Numbers {
   mjtObj type;
@@ -90,6 +93,8 @@ Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpe
   if (spec == nullptr) return fail(refusal(error));
   LoadedModel loaded;
   loaded.warnings = std::move(outcome.warnings);
+  // More memory than any machine has is a slip of the pen; asking for it could end the process.
+  if (spec->memory > kMostMemory) return fail(refusal("Could not allocate memory"));
   if (prepare != nullptr) prepare(spec.get());
 
   mjModel* compiled = nullptr;

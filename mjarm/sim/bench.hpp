@@ -12,8 +12,9 @@
 namespace mjarm {
 
 struct SimBenchOptions {
-  int rounds = 8;    ///< every contestant once a round, > 0
-  int steps = 2000;  ///< simulation steps of one contestant in one round, > 0
+  int rounds = 40;  ///< every contestant once a round, > 0
+  int steps = 250;  ///< simulation steps of one contestant in one round, > 0; short ones dodge
+                    ///< what else the machine does
 };
 
 /// One way to step, timed.

@@ -1,47 +1,10 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <stdexcept>
 #include <string>
 
-#include "mjarm/control/controller.hpp"
-#include "mjarm/model/find_arm.hpp"
-#include "mjarm/model/model.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "mjarm/control/robots_test.hpp"
 
 namespace mjarm::testing {
-
-/// A model with its arm; fails the test where either cannot be had.
-struct Loaded {
-  Model model;
-  Arm arm;
-};
-
-inline Loaded load_file(const std::filesystem::path& file, const std::string& tip = {}) {
-  auto model = Model::load(file);
-  if (!model) throw std::runtime_error(model.error().what);
-  auto arm = find_arm(*model, {.tip = tip});
-  if (!arm) throw std::runtime_error(arm.error().what);
-  return {std::move(*model), std::move(*arm)};
-}
-
-inline Loaded load_shipped(const std::string& name) {
-  const auto file = find_model_file(name);
-  if (!file) throw std::runtime_error(file.error().what);
-  return load_file(*file);
-}
-
-inline Loaded load_text(const std::string& mjcf) {
-  const support::TempFolder folder;
-  return load_file(folder.write("arm.xml", mjcf), "tool");
-}
-
-inline Controller controller_of(const Loaded& robot, ControlMode mode) {
-  auto controller = Controller::make(robot.model, robot.arm, mode);
-  if (!controller) throw std::runtime_error(controller.error().what);
-  return std::move(*controller);
-}
 
 /// Two links above a floor with a box lying on it; `more` goes into the worldbody.
 /// @param option  attributes of <option>.

@@ -1,21 +1,24 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
+#include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "mjarm/control/controller.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/model.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::testing {
 
-/// A model with its arm; fails the test where either cannot be had.
+/// A model with its arm.
 struct Loaded {
   Model model;
   Arm arm;
 };
 
+/// These throw where a model, an arm or a controller cannot be had; the test fails by it.
 inline Loaded load_file(const std::filesystem::path& file, const std::string& tip = {}) {
   auto model = Model::load(file);
   if (!model) throw std::runtime_error(model.error().what);
@@ -33,6 +36,12 @@ inline Loaded load_shipped(const std::string& name) {
   const auto file = find_model_file(name);
   if (!file) throw std::runtime_error(file.error().what);
   return load_file(*file);
+}
+
+inline Controller controller_of(const Loaded& robot, ControlMode mode) {
+  auto controller = Controller::make(robot.model, robot.arm, mode);
+  if (!controller) throw std::runtime_error(controller.error().what);
+  return std::move(*controller);
 }
 
 /// Three joints of different kind whose actuators differ in every way a joint drive can: a geared

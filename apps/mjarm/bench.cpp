@@ -1,0 +1,99 @@
+#include "mjarm/sim/bench.hpp"
+
+#include <memory>
+
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/robot.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "mjarm/core/number.hpp"
+
+namespace mjarm::app {
+namespace {
+
+/// More than this takes hours.
+constexpr std::uint64_t kMost = 1'000'000;
+
+struct Options {
+  RobotOptions robot{.robot = "ur5e", .tip = {}};
+  std::string rounds = "40", steps = "250";
+  bool json = false, no_timing = false;
+};
+
+Result<int> parse_count(const std::string& option, const std::string& value) {
+  const Result<std::uint64_t> count = parse_whole(option, value);
+  if (!count) return fail(count.error());
+  if (*count < 1 || *count > kMost) {
+    return fail(Errc::usage, text(Msg::sim_bench_count, option, kMost, value));
+  }
+  return static_cast<int>(*count);
+}
+
+std::string to_json(const Robot& robot, const SimBenchOptions& work,
+                    const std::vector<SimBenchEntry>& entries, bool timing) {
+  std::string out = "{\"model\":";
+  append_json_string(out, robot.model.name());
+  out += ",\"timestep\":" + number(robot.model.timestep()) +
+         ",\"rounds\":" + std::to_string(work.rounds) + ",\"steps\":" + std::to_string(work.steps) +
+         ",\"entries\":[";
+  for (const SimBenchEntry& entry : entries) {
+    if (&entry != entries.data()) out += ',';
+    out += "{\"name\":";
+    append_json_string(out, entry.name);
+    // The ratio is made of times as well, so it goes with them.
+    if (timing) {
+      out += ",\"us\":" + number(entry.us) + ",\"rtf\":" + number(entry.rtf) +
+             ",\"ratio\":" + number(entry.ratio);
+    }
+    out += '}';
+  }
+  return out + "]}\n";
+}
+
+std::string to_table(const std::vector<SimBenchEntry>& entries, bool timing) {
+  std::string out = text(Msg::sim_bench_title) + '\n';
+  for (const SimBenchEntry& entry : entries) {
+    out += timing ? text(Msg::sim_bench_row, entry.name, entry.us, entry.rtf, entry.ratio)
+                  : entry.name;
+    out += '\n';
+  }
+  return out;
+}
+
+Result<int> run_sim(const Options& options) {
+  const Result<int> rounds = parse_count("--rounds", options.rounds);
+  if (!rounds) return fail(rounds.error());
+  const Result<int> steps = parse_count("--steps", options.steps);
+  if (!steps) return fail(steps.error());
+  const Result<Robot> robot = load_robot(options.robot);
+  if (!robot) return fail(robot.error());
+  const SimBenchOptions work{.rounds = *rounds, .steps = *steps};
+  const auto entries = bench_sim(robot->model, robot->arm, work);
+  if (!entries) return fail(entries.error());
+  const bool timing = !options.no_timing;
+  const std::string out =
+      options.json ? to_json(*robot, work, *entries, timing) : to_table(*entries, timing);
+  std::fwrite(out.data(), 1, out.size(), stdout);
+  return 0;
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App& sim = add_subcommand(app, "sim", Msg::sim_bench_summary, Msg::sim_bench_examples);
+  add_robot_options(sim, options->robot);
+  sim.add_option("--steps", options->steps, text(Msg::sim_bench_steps))->type_name("N");
+  sim.add_option("--rounds", options->rounds, text(Msg::sim_bench_rounds))->type_name("N");
+  sim.add_flag("--json", options->json, text(Msg::app_option_json));
+  sim.add_flag("--no-timing", options->no_timing, text(Msg::app_option_no_timing));
+  return [options, &sim]() -> Result<int> {
+    if (sim.parsed()) return run_sim(*options);
+    return fail(Errc::usage, text(Msg::app_no_subcommand, "mjarm bench", "sim"));
+  };
+}
+
+}  // namespace
+
+Command bench_command() {
+  return {"bench", Msg::sim_bench_all_summary, Msg::sim_bench_all_examples, setup};
+}
+
+}  // namespace mjarm::app
