@@ -38,7 +38,7 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
 }
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
-                                            int dof) {
+                                           int dof) {
   const auto model = find_model_file(options.robot).and_then([](const std::filesystem::path& file) {
     return Model::load(file);
   });

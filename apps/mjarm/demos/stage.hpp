@@ -81,8 +81,7 @@ class Stage {
 
   Stage(std::string demo, const DemoOptions& options, Model model, Arm arm, Show show);
   [[nodiscard]] FollowSetup setup(Controller& controller, bool measured);
-  using Follower =
-      std::function<Result<FollowOutcome, FollowFailure>(const FollowSetup& setup)>;
+  using Follower = std::function<Result<FollowOutcome, FollowFailure>(const FollowSetup& setup)>;
   /// Runs one follower and keeps what it did, unless something ended the motion before.
   [[nodiscard]] Result<void> follow(ControlMode mode, bool measured, const Curve* curve,
                                     const Follower& follower);
