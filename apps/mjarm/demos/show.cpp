@@ -88,7 +88,7 @@ bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
 }
 
 void Show::linger(const Sim& sim) {
-  if (!window_) return;
+  if (!window_ || !window_->is_open() || interrupted()) return;
   log_info(text(Msg::demo_close_window));
   while (window_->is_open() && !interrupted()) {
     if (!window_->draw(sim.snapshot(), overlay_, plots_)) return;
