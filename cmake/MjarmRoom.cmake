@@ -56,6 +56,9 @@ endfunction()
 function(mjarm_tests target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PREFIX" "SOURCES;LINK")
   add_executable(${target} ${arg_SOURCES})
+  if(MJARM_SANITIZE MATCHES "address")
+    target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/keep_libraries.cpp")
+  endif()
   target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing MuJoCo::mujoco
                                           GTest::gtest_main GTest::gmock)
   gtest_discover_tests(${target} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
