@@ -7,7 +7,8 @@
 
 #include "apps/mjarm/line_reader.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 
@@ -31,7 +32,7 @@ class Output {
     if (file_) return file_->write(line);
     const bool written = std::fwrite(line.data(), 1, line.size(), stdout) == line.size();
     if (written && (!now || std::fflush(stdout) == 0)) return {};
-    return fail(Errc::system, text(Msg::core_cannot_write, "stdout", system_message(errno)));
+    return fail(Errc::system, text(msg::core_cannot_write, "stdout", system_message(errno)));
   }
 
   Result<void> finish() { return file_ ? file_->commit() : Result<void>{}; }
@@ -43,13 +44,13 @@ class Output {
 }  // namespace
 
 void add_batch_options(CLI::App& app, BatchOptions& options) {
-  app.add_option("--in", options.in, text(Msg::app_option_in))->type_name("FILE");
-  app.add_option("--out", options.out, text(Msg::app_option_out))->type_name("FILE");
+  app.add_option("--in", options.in, text(msg::app_option_in))->type_name("FILE");
+  app.add_option("--out", options.out, text(msg::app_option_out))->type_name("FILE");
 }
 
 Result<void> one_source(const std::string& in, const std::string& one, const std::string& option) {
   if (in.empty() != one.empty()) return {};
-  return fail(Errc::usage, text(Msg::app_need_one_of, "--in", option));
+  return fail(Errc::usage, text(msg::app_need_one_of, "--in", option));
 }
 
 Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,

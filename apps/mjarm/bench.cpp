@@ -1,3 +1,5 @@
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/sim.hpp"
 #include "mjarm/sim/bench.hpp"
 
 #include <memory>
@@ -23,7 +25,7 @@ Result<int> parse_count(const std::string& option, const std::string& value) {
   const Result<std::uint64_t> count = parse_whole(option, value);
   if (!count) return fail(count.error());
   if (*count < 1 || *count > kMost) {
-    return fail(Errc::usage, text(Msg::sim_bench_count, option, kMost, value));
+    return fail(Errc::usage, text(msg::sim_bench_count, option, kMost, value));
   }
   return static_cast<int>(*count);
 }
@@ -50,9 +52,9 @@ std::string to_json(const Robot& robot, const SimBenchOptions& work,
 }
 
 std::string to_table(const std::vector<SimBenchEntry>& entries, bool timing) {
-  std::string out = text(Msg::sim_bench_title) + '\n';
+  std::string out = text(msg::sim_bench_title) + '\n';
   for (const SimBenchEntry& entry : entries) {
-    out += timing ? text(Msg::sim_bench_row, entry.name, entry.us, entry.rtf, entry.ratio)
+    out += timing ? text(msg::sim_bench_row, entry.name, entry.us, entry.rtf, entry.ratio)
                   : entry.name;
     out += '\n';
   }
@@ -78,22 +80,22 @@ Result<int> run_sim(const Options& options) {
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App& sim = add_subcommand(app, "sim", Msg::sim_bench_summary, Msg::sim_bench_examples);
+  CLI::App& sim = add_subcommand(app, "sim", msg::sim_bench_summary, msg::sim_bench_examples);
   add_robot_options(sim, options->robot);
-  sim.add_option("--steps", options->steps, text(Msg::sim_bench_steps))->type_name("N");
-  sim.add_option("--rounds", options->rounds, text(Msg::sim_bench_rounds))->type_name("N");
-  sim.add_flag("--json", options->json, text(Msg::app_option_json));
-  sim.add_flag("--no-timing", options->no_timing, text(Msg::app_option_no_timing));
+  sim.add_option("--steps", options->steps, text(msg::sim_bench_steps))->type_name("N");
+  sim.add_option("--rounds", options->rounds, text(msg::sim_bench_rounds))->type_name("N");
+  sim.add_flag("--json", options->json, text(msg::app_option_json));
+  sim.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
   return [options, &sim]() -> Result<int> {
     if (sim.parsed()) return run_sim(*options);
-    return fail(Errc::usage, text(Msg::app_no_subcommand, "mjarm bench", "sim"));
+    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm bench", "sim"));
   };
 }
 
 }  // namespace
 
 Command bench_command() {
-  return {"bench", Msg::sim_bench_all_summary, Msg::sim_bench_all_examples, setup};
+  return {"bench", msg::sim_bench_all_summary, msg::sim_bench_all_examples, setup};
 }
 
 }  // namespace mjarm::app

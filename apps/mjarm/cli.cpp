@@ -10,7 +10,8 @@
 #include "apps/mjarm/help.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 
@@ -40,7 +41,7 @@ Result<void> choose_language(const std::vector<std::string>& arguments) {
   const std::vector<std::string> known = {"en", "zh-CN"};
   const bool chinese = *name == "zh-CN" || *name == "zh" || *name == "zh_CN";
   if (!chinese && *name != "en") {
-    return fail(Errc::usage, text(Msg::app_unknown_language, *name) + did_you_mean(*name, known));
+    return fail(Errc::usage, text(msg::app_unknown_language, *name) + did_you_mean(*name, known));
   }
   set_language(chinese ? Language::chinese : Language::english);
   return {};
@@ -57,11 +58,11 @@ std::vector<std::string> with_plain_numbers(std::vector<std::string> arguments) 
 }
 
 void add_global_options(CLI::App& app, GlobalOptions& options) {
-  app.set_help_flag("-h,--help", text(Msg::app_option_help));
-  app.add_option("--lang", options.language, text(Msg::app_option_lang))->type_name("en|zh-CN");
-  app.add_flag("-v,--verbose", options.verbose, text(Msg::app_option_verbose));
-  app.add_flag("--quiet", options.quiet, text(Msg::app_option_quiet));
-  app.add_flag("--version", options.version, text(Msg::app_option_version));
+  app.set_help_flag("-h,--help", text(msg::app_option_help));
+  app.add_option("--lang", options.language, text(msg::app_option_lang))->type_name("en|zh-CN");
+  app.add_flag("-v,--verbose", options.verbose, text(msg::app_option_verbose));
+  app.add_flag("--quiet", options.quiet, text(msg::app_option_quiet));
+  app.add_flag("--version", options.version, text(msg::app_option_version));
 }
 
 int report(const Error& error) {
@@ -72,13 +73,13 @@ int report(const Error& error) {
 /// Results must have reached their reader before 0 is returned.
 int finish(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  return report({Errc::system, text(Msg::core_cannot_write, "stdout", system_message(errno))});
+  return report({Errc::system, text(msg::core_cannot_write, "stdout", system_message(errno))});
 }
 
 int run_parsed(CLI::App& app, const GlobalOptions& global,
                const std::vector<std::pair<const CLI::App*, Run>>& runs) {
   if (global.quiet && global.verbose) {
-    return report({Errc::usage, text(Msg::app_exclusive_options, "--quiet", "--verbose")});
+    return report({Errc::usage, text(msg::app_exclusive_options, "--quiet", "--verbose")});
   }
   if (global.quiet) set_log_level(LogLevel::error);
   if (global.verbose) set_log_level(LogLevel::debug);
@@ -92,7 +93,7 @@ int run_parsed(CLI::App& app, const GlobalOptions& global,
     return code ? finish(*code) : report(code.error());
   }
   std::fputs(app.help().c_str(), stdout);
-  return report({Errc::usage, text(Msg::app_no_command)});
+  return report({Errc::usage, text(msg::app_no_command)});
 }
 
 }  // namespace
@@ -102,9 +103,9 @@ int run(const std::vector<std::string>& arguments) {
     return report(chosen.error());
   }
   catch_interrupts();
-  CLI::App app(text(Msg::app_summary), "mjarm");
+  CLI::App app(text(msg::app_summary), "mjarm");
   app.formatter(std::make_shared<HelpFormatter>());
-  app.footer(text(Msg::app_examples));
+  app.footer(text(msg::app_examples));
   app.allow_extras();
   app.require_subcommand(0, 1);
   GlobalOptions global;

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <vector>
 
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/core/log.hpp"
@@ -32,7 +34,7 @@ Result<const Demo*> find_demo(const std::string& name) {
     if (name == demo.name) return &demo;
     names.emplace_back(demo.name);
   }
-  return fail(Errc::usage, text(Msg::demo_unknown, name) + did_you_mean(name, names));
+  return fail(Errc::usage, text(msg::demo_unknown, name) + did_you_mean(name, names));
 }
 
 Result<DemoOptions> read_options(const DemoArguments& arguments) {
@@ -48,7 +50,7 @@ Result<DemoOptions> read_options(const DemoArguments& arguments) {
   if (!arguments.seconds.empty()) {
     const Result<double> seconds = parse_quantity(arguments.seconds, Quantity::time);
     if (!seconds || !(*seconds > 0)) {
-      return fail(Errc::usage, text(Msg::demo_bad_seconds, arguments.seconds));
+      return fail(Errc::usage, text(msg::demo_bad_seconds, arguments.seconds));
     }
     options.seconds = *seconds;
   }
@@ -63,18 +65,18 @@ Result<DemoOptions> read_options(const DemoArguments& arguments) {
 /// Says what came of it; the exit code.
 int conclude(const Report& report, const DemoOptions& options) {
   if (!report.ok) {
-    log_error(text(Msg::demo_not_ok, report.name, report.reason, report.detail));
+    log_error(text(msg::demo_not_ok, report.name, report.reason, report.detail));
   } else if (report.path_error) {
-    log_info(text(Msg::demo_ok_path, report.name, 1e3 * report.path_error->max,
+    log_info(text(msg::demo_ok_path, report.name, 1e3 * report.path_error->max,
                   1e3 * report.path_error->rms, 100 * report.coverage));
   } else if (report.static_error) {
-    log_info(text(Msg::demo_ok_static, report.name, 1e3 * report.static_error->position,
+    log_info(text(msg::demo_ok_static, report.name, 1e3 * report.static_error->position,
                   report.static_error->rotation * 180 / std::numbers::pi));
   } else {
-    log_info(text(Msg::demo_ok, report.name));
+    log_info(text(msg::demo_ok, report.name));
   }
-  if (report.rtf) log_info(text(Msg::demo_rtf, report.duration, *report.rtf));
-  std::printf("%s\n", text(Msg::demo_folder, options.out.string()).c_str());
+  if (report.rtf) log_info(text(msg::demo_rtf, report.duration, *report.rtf));
+  std::printf("%s\n", text(msg::demo_folder, options.out.string()).c_str());
   return report.ok ? 0 : 1;
 }
 
@@ -95,17 +97,17 @@ Result<int> run_demo(const DemoArguments& arguments) {
 
 Run setup(CLI::App& app) {
   auto arguments = std::make_shared<DemoArguments>();
-  app.add_option("name", arguments->name, text(Msg::demo_option_name))->type_name("NAME");
-  app.add_option("--out", arguments->out, text(Msg::demo_option_out))->type_name("DIR");
-  app.add_flag("--headless", arguments->headless, text(Msg::demo_option_headless));
-  app.add_flag("--guide", arguments->guide, text(Msg::demo_option_guide));
-  app.add_option("--seconds", arguments->seconds, text(Msg::demo_option_seconds))->type_name("S");
-  app.add_option("--text", arguments->text, text(Msg::demo_option_text))->type_name("TEXT");
-  app.add_option("--control", arguments->control, text(Msg::demo_option_control))
+  app.add_option("name", arguments->name, text(msg::demo_option_name))->type_name("NAME");
+  app.add_option("--out", arguments->out, text(msg::demo_option_out))->type_name("DIR");
+  app.add_flag("--headless", arguments->headless, text(msg::demo_option_headless));
+  app.add_flag("--guide", arguments->guide, text(msg::demo_option_guide));
+  app.add_option("--seconds", arguments->seconds, text(msg::demo_option_seconds))->type_name("S");
+  app.add_option("--text", arguments->text, text(msg::demo_option_text))->type_name("TEXT");
+  app.add_option("--control", arguments->control, text(msg::demo_option_control))
       ->type_name("MODE");
-  app.add_option("--robot", arguments->robot, text(Msg::demo_option_robot))->type_name("ROBOT");
-  app.add_option("--tip", arguments->tip, text(Msg::app_option_tip))->type_name("FRAME");
-  app.add_flag("--no-timing", arguments->no_timing, text(Msg::demo_option_no_timing));
+  app.add_option("--robot", arguments->robot, text(msg::demo_option_robot))->type_name("ROBOT");
+  app.add_option("--tip", arguments->tip, text(msg::app_option_tip))->type_name("FRAME");
+  app.add_flag("--no-timing", arguments->no_timing, text(msg::demo_option_no_timing));
   return [arguments] { return run_demo(*arguments); };
 }
 
@@ -113,18 +115,18 @@ Run setup(CLI::App& app) {
 
 std::span<const Demo> demos() {
   static constexpr Demo kDemos[] = {
-      {"car", Msg::demo_about_car, run_car},
-      {"ur5e", Msg::demo_about_ur5e, run_ur5e},
-      {"ur5e_vision", Msg::demo_about_ur5e_vision, run_ur5e_vision},
-      {"point", Msg::demo_about_point, run_point},
-      {"movej", Msg::demo_about_movej, run_movej},
-      {"movel", Msg::demo_about_movel, run_movel},
-      {"ellipse", Msg::demo_about_ellipse, run_ellipse},
-      {"letters", Msg::demo_about_letters, run_letters},
+      {"car", msg::demo_about_car, run_car},
+      {"ur5e", msg::demo_about_ur5e, run_ur5e},
+      {"ur5e_vision", msg::demo_about_ur5e_vision, run_ur5e_vision},
+      {"point", msg::demo_about_point, run_point},
+      {"movej", msg::demo_about_movej, run_movej},
+      {"movel", msg::demo_about_movel, run_movel},
+      {"ellipse", msg::demo_about_ellipse, run_ellipse},
+      {"letters", msg::demo_about_letters, run_letters},
   };
   return kDemos;
 }
 
-Command demo_command() { return {"demo", Msg::demo_summary, Msg::demo_examples, setup}; }
+Command demo_command() { return {"demo", msg::demo_summary, msg::demo_examples, setup}; }
 
 }  // namespace mjarm::app

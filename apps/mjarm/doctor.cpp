@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "mjarm/core/messages/app.hpp"
 #include "apps/mjarm/command.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/log.hpp"
@@ -44,19 +45,19 @@ void look_at_mujoco(Findings& findings) {
       library.version + "  " + library.file.string());
   findings.facts["mujoco_library"] = library.file.string();
   if (library.version != library.built_against) {
-    findings.problems.push_back(text(Msg::app_doctor_other_mujoco, library.built_against,
+    findings.problems.push_back(text(msg::app_doctor_other_mujoco, library.built_against,
                                      library.version, library.file.string()));
   }
 }
 
 void look_at_machine(Findings& findings) {
   const std::string simd(name(simd_level()));
-  add(findings, "compiler", text(Msg::app_doctor_compiler), compiler(), compiler());
-  add(findings, "simd", text(Msg::app_doctor_simd), simd, simd);
-  add(findings, "cores", text(Msg::app_doctor_cores), core_count(), std::to_string(core_count()));
+  add(findings, "compiler", text(msg::app_doctor_compiler), compiler(), compiler());
+  add(findings, "simd", text(msg::app_doctor_simd), simd, simd);
+  add(findings, "cores", text(msg::app_doctor_cores), core_count(), std::to_string(core_count()));
   const bool display = has_display();
-  add(findings, "display", text(Msg::app_doctor_display), display,
-      text(display ? Msg::app_doctor_display_yes : Msg::app_doctor_display_no));
+  add(findings, "display", text(msg::app_doctor_display), display,
+      text(display ? msg::app_doctor_display_yes : msg::app_doctor_display_no));
 }
 
 /// Pictures are part of every demo: one way to draw must work, two are better.
@@ -73,7 +74,7 @@ void look_at_graphics(Findings& findings) {
     any |= way.works;
   }
   findings.facts["gl"] = ways;
-  if (!any) findings.problems.push_back(text(Msg::app_doctor_no_gl));
+  if (!any) findings.problems.push_back(text(msg::app_doctor_no_gl));
 }
 
 void look_at_models(Findings& findings) {
@@ -83,15 +84,15 @@ void look_at_models(Findings& findings) {
     const Result<Model> model = Model::load(shipped.file);
     if (!model) {
       findings.problems.push_back(
-          text(Msg::app_doctor_bad_model, shipped.name, model.error().what));
+          text(msg::app_doctor_bad_model, shipped.name, model.error().what));
       continue;
     }
     found.push_back({{"name", shipped.name}, {"file", shipped.file.string()}});
     names += (names.empty() ? "" : ", ") + shipped.name;
   }
-  if (found.empty()) findings.problems.push_back(text(Msg::app_doctor_no_models));
-  add(findings, "models", text(Msg::app_doctor_models), found,
-      names.empty() ? text(Msg::app_info_none) : names);
+  if (found.empty()) findings.problems.push_back(text(msg::app_doctor_no_models));
+  add(findings, "models", text(msg::app_doctor_models), found,
+      names.empty() ? text(msg::app_info_none) : names);
 }
 
 Result<int> run(bool json) {
@@ -109,7 +110,7 @@ Result<int> run(bool json) {
                stdout);
   } else {
     std::fputs(findings.lines.c_str(), stdout);
-    if (fine) std::fputs((text(Msg::app_doctor_fine) + "\n").c_str(), stdout);
+    if (fine) std::fputs((text(msg::app_doctor_fine) + "\n").c_str(), stdout);
   }
   for (const std::string& problem : findings.problems) log_error(problem);
   return fine ? 0 : 1;
@@ -117,14 +118,14 @@ Result<int> run(bool json) {
 
 Run setup(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
-  app.add_flag("--json", *json, text(Msg::app_option_json));
+  app.add_flag("--json", *json, text(msg::app_option_json));
   return [json] { return run(*json); };
 }
 
 }  // namespace
 
 Command doctor_command() {
-  return {"doctor", Msg::app_doctor_summary, Msg::app_doctor_examples, setup};
+  return {"doctor", msg::app_doctor_summary, msg::app_doctor_examples, setup};
 }
 
 }  // namespace mjarm::app

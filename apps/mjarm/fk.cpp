@@ -1,3 +1,4 @@
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 #include <memory>
@@ -58,7 +59,7 @@ Result<int> run(const FkOptions& options) {
     append_pose(out, fk(arm, *q));
     return true;
   };
-  const Result<BatchResult> done = run_batch(options.batch, text(Msg::app_fk_progress), answer);
+  const Result<BatchResult> done = run_batch(options.batch, text(msg::app_fk_progress), answer);
   if (!done) return fail(done.error());
   return 0;
 }
@@ -66,13 +67,13 @@ Result<int> run(const FkOptions& options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<FkOptions>();
   add_robot_options(app, options->robot);
-  app.add_option("--q", options->q, text(Msg::app_option_q))->type_name("Q1,Q2,...");
+  app.add_option("--q", options->q, text(msg::app_option_q))->type_name("Q1,Q2,...");
   add_batch_options(app, options->batch);
   return [options] { return run(*options); };
 }
 
 }  // namespace
 
-Command fk_command() { return {"fk", Msg::app_fk_summary, Msg::app_fk_examples, setup}; }
+Command fk_command() { return {"fk", msg::app_fk_summary, msg::app_fk_examples, setup}; }
 
 }  // namespace mjarm::app

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
@@ -61,12 +61,12 @@ std::string full_name(const CLI::App& app) {
 }
 
 std::string usage(const CLI::App& app, bool has_commands) {
-  std::string line = text(Msg::app_help_usage) + full_name(app);
-  if (has_commands) line += " " + text(Msg::app_help_command);
+  std::string line = text(msg::app_help_usage) + full_name(app);
+  if (has_commands) line += " " + text(msg::app_help_command);
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional()) line += " " + option->get_type_name();
   }
-  return line + " " + text(Msg::app_help_options) + "\n";
+  return line + " " + text(msg::app_help_options) + "\n";
 }
 
 }  // namespace
@@ -74,11 +74,11 @@ std::string usage(const CLI::App& app, bool has_commands) {
 std::string HelpFormatter::make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const {
   const Rows commands = command_rows(*app);
   std::string result = app->get_description() + "\n\n" + usage(*app, !commands.empty());
-  if (!commands.empty()) result += "\n" + text(Msg::app_help_commands) + "\n" + table(commands);
-  result += "\n" + text(Msg::app_help_option_list) + "\n" + table(option_rows(*app));
-  if (app->get_parent() != nullptr) result += text(Msg::app_help_global) + "\n";
+  if (!commands.empty()) result += "\n" + text(msg::app_help_commands) + "\n" + table(commands);
+  result += "\n" + text(msg::app_help_option_list) + "\n" + table(option_rows(*app));
+  if (app->get_parent() != nullptr) result += text(msg::app_help_global) + "\n";
   if (!app->get_footer().empty()) {
-    result += "\n" + text(Msg::app_help_examples) + "\n" + app->get_footer() + "\n";
+    result += "\n" + text(msg::app_help_examples) + "\n" + app->get_footer() + "\n";
   }
   return result;
 }

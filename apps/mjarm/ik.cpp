@@ -1,3 +1,4 @@
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/kinematics/ik.hpp"
 
 #include <chrono>
@@ -52,7 +53,7 @@ Result<Request> read_request(std::string_view line, const Arm& arm) {
 
 Result<Eigen::Matrix3d> read_rotation(const Options& options) {
   if (options.euler.empty() == options.quat.empty()) {
-    return fail(Errc::usage, text(Msg::app_need_one_of, "--euler", "--quat"));
+    return fail(Errc::usage, text(msg::app_need_one_of, "--euler", "--quat"));
   }
   if (!options.euler.empty()) {
     const auto euler = parse_list("--euler", options.euler, Quantity::angle, 3);
@@ -145,7 +146,7 @@ Result<int> answer_one(const Job& job, const Options& options) {
     return fail(std::move(written.error()));
   }
   if (!why) return 0;
-  log_error(text(Msg::app_ik_no_answer, *why));
+  log_error(text(msg::app_ik_no_answer, *why));
   return 1;
 }
 
@@ -158,11 +159,11 @@ Result<int> answer_all(const Job& job, const Options& options) {
     if (why && !first_why) first_why = why;
     return !why;
   };
-  const auto done = run_batch(options.batch, text(Msg::app_ik_progress), answer_line);
+  const auto done = run_batch(options.batch, text(msg::app_ik_progress), answer_line);
   if (!done) return fail(done.error());
   if (done->failed == 0) return 0;
   log_error(
-      text(Msg::app_ik_some_failed, done->first_failure, *first_why, done->failed, done->requests));
+      text(msg::app_ik_some_failed, done->first_failure, *first_why, done->failed, done->requests));
   return 1;
 }
 
@@ -183,19 +184,19 @@ Result<int> run(const Options& options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_robot_options(app, options->robot);
-  app.add_option("--pos", options->pos, text(Msg::app_option_pos))->type_name("X,Y,Z");
-  app.add_option("--euler", options->euler, text(Msg::app_option_euler))->type_name("A,B,C");
-  app.add_option("--quat", options->quat, text(Msg::app_option_quat))->type_name("W,X,Y,Z");
-  app.add_option("--seed-q", options->seed_q, text(Msg::app_option_seed_q))->type_name("Q1,Q2,...");
+  app.add_option("--pos", options->pos, text(msg::app_option_pos))->type_name("X,Y,Z");
+  app.add_option("--euler", options->euler, text(msg::app_option_euler))->type_name("A,B,C");
+  app.add_option("--quat", options->quat, text(msg::app_option_quat))->type_name("W,X,Y,Z");
+  app.add_option("--seed-q", options->seed_q, text(msg::app_option_seed_q))->type_name("Q1,Q2,...");
   add_batch_options(app, options->batch);
-  app.add_option("--seed", options->seed, text(Msg::app_option_seed))->type_name("N");
-  app.add_flag("--all", options->all, text(Msg::app_option_all));
-  app.add_flag("--no-timing", options->no_timing, text(Msg::app_option_no_timing));
+  app.add_option("--seed", options->seed, text(msg::app_option_seed))->type_name("N");
+  app.add_flag("--all", options->all, text(msg::app_option_all));
+  app.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
   return [options] { return run(*options); };
 }
 
 }  // namespace
 
-Command ik_command() { return {"ik", Msg::app_ik_summary, Msg::app_ik_examples, setup}; }
+Command ik_command() { return {"ik", msg::app_ik_summary, msg::app_ik_examples, setup}; }
 
 }  // namespace mjarm::app

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
 
@@ -45,16 +45,16 @@ std::vector<std::string> keys(const json& object) {
 }  // namespace
 
 Result<json> parse_json_object(std::string_view line) {
-  if (nesting(line) > kDeepest) return fail(Errc::bad_input, text(Msg::app_json_too_deep));
+  if (nesting(line) > kDeepest) return fail(Errc::bad_input, text(msg::app_json_too_deep));
   json value;
   try {
     value = json::parse(line);
   } catch (const json::parse_error& error) {
-    return fail(Errc::bad_input, text(Msg::app_json_invalid, error.byte));
+    return fail(Errc::bad_input, text(msg::app_json_invalid, error.byte));
   } catch (const json::exception&) {  // a number beyond the range of double
-    return fail(Errc::bad_input, text(Msg::app_json_number_range));
+    return fail(Errc::bad_input, text(msg::app_json_number_range));
   }
-  if (!value.is_object()) return fail(Errc::bad_input, text(Msg::app_json_no_object));
+  if (!value.is_object()) return fail(Errc::bad_input, text(msg::app_json_no_object));
   return value;
 }
 
@@ -63,18 +63,18 @@ Result<std::vector<double>> number_list(const json& object, const std::string& k
   const auto member = object.find(key);
   if (member == object.end()) {
     const std::optional<std::string> near = nearest_word(key, keys(object));
-    const std::string hint = near ? text(Msg::app_json_found_instead, *near) : std::string();
-    return fail(Errc::bad_input, text(Msg::app_json_missing, key) + hint);
+    const std::string hint = near ? text(msg::app_json_found_instead, *near) : std::string();
+    return fail(Errc::bad_input, text(msg::app_json_missing, key) + hint);
   }
-  if (!member->is_array()) return fail(Errc::bad_input, text(Msg::app_json_no_list, key, size));
+  if (!member->is_array()) return fail(Errc::bad_input, text(msg::app_json_no_list, key, size));
   if (member->size() != size) {
-    return fail(Errc::bad_input, text(Msg::app_json_wrong_size, key, size, member->size()));
+    return fail(Errc::bad_input, text(msg::app_json_wrong_size, key, size, member->size()));
   }
   std::vector<double> values;
   for (const json& entry : *member) {
     // Only numbers: `true`, `null` and "0.1" are faults of the program that wrote the file.
     if (!entry.is_number()) {
-      return fail(Errc::bad_input, text(Msg::app_json_no_number, key, values.size()));
+      return fail(Errc::bad_input, text(msg::app_json_no_number, key, values.size()));
     }
     values.push_back(entry.get<double>());
   }
@@ -85,7 +85,7 @@ Result<Eigen::Matrix3d> rotation_of_quat(const std::vector<double>& wxyz) {
   const Quat q(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   const double norm = q.coeffs().stableNorm();
   if (!(std::abs(norm - 1) <= kQuatSlack)) {
-    return fail(Errc::bad_input, text(Msg::app_quat_not_unit, norm));
+    return fail(Errc::bad_input, text(msg::app_quat_not_unit, norm));
   }
   return to_matrix(q);
 }

@@ -6,7 +6,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
@@ -30,14 +31,14 @@ Result<LineReader> LineReader::open(const std::string& path) {
   std::error_code ignored;
   const std::filesystem::file_type type = std::filesystem::status(path, ignored).type();
   if (type == std::filesystem::file_type::not_found) {
-    return fail(Errc::bad_input, text(Msg::core_no_such_file, path));
+    return fail(Errc::bad_input, text(msg::core_no_such_file, path));
   }
   if (type == std::filesystem::file_type::directory) {
-    return fail(Errc::bad_input, text(Msg::core_is_a_folder, path));
+    return fail(Errc::bad_input, text(msg::core_is_a_folder, path));
   }
   reader.file_.reset(std::fopen(path.c_str(), "rb"));
   if (reader.file_ == nullptr) {
-    return fail(Errc::bad_input, text(Msg::core_cannot_read, path, system_message(errno)));
+    return fail(Errc::bad_input, text(msg::core_cannot_read, path, system_message(errno)));
   }
   return reader;
 }
@@ -50,20 +51,20 @@ Result<bool> LineReader::read_line() {
     if (c == '\n') return true;
     if (current_.size() >= kLongestLine) {
       ++line_;
-      return fail(Errc::bad_input, place() + ": " + text(Msg::app_line_too_long, kLongestLine));
+      return fail(Errc::bad_input, place() + ": " + text(msg::app_line_too_long, kLongestLine));
     }
     current_.push_back(static_cast<char>(c));
   }
-  if (interrupted()) return fail(Errc::system, text(Msg::app_interrupted));
+  if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
   if (std::ferror(file_.get()) != 0) {
-    return fail(Errc::system, text(Msg::core_cannot_read, name_, system_message(errno)));
+    return fail(Errc::system, text(msg::core_cannot_read, name_, system_message(errno)));
   }
   return !current_.empty();
 }
 
 Result<std::optional<std::string_view>> LineReader::next() {
   for (;;) {
-    if (interrupted()) return fail(Errc::system, text(Msg::app_interrupted));
+    if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
     const Result<bool> has_line = read_line();
     if (!has_line) return fail(has_line.error());
     if (!*has_line) return std::nullopt;

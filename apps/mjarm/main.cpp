@@ -4,14 +4,14 @@
 
 #include "apps/mjarm/cli.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
 
 int main(int argc, char** argv) {
   try {
     return mjarm::app::run(std::vector<std::string>(argv + (argc > 0), argv + argc));
   } catch (const std::exception& error) {
     // Nothing of ours throws; what comes here is memory that ran out, or a fault of ours.
-    mjarm::log_error(mjarm::text(mjarm::Msg::app_internal_error, error.what()));
+    mjarm::log_error(mjarm::text(mjarm::msg::app_internal_error, error.what()));
     return 1;
   }
 }

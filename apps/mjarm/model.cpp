@@ -1,3 +1,4 @@
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/model/model.hpp"
 
 #include <memory>
@@ -15,12 +16,12 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& options) {
-  app.add_option("file", options.file, text(Msg::app_model_file))->type_name("FILE");
-  app.add_flag("--json", options.json, text(Msg::app_option_json));
+  app.add_option("file", options.file, text(msg::app_model_file))->type_name("FILE");
+  app.add_flag("--json", options.json, text(msg::app_option_json));
 }
 
 Result<Model> load(const Options& options) {
-  if (options.file.empty()) return fail(Errc::usage, text(Msg::app_option_missing, "FILE"));
+  if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
   Result<Model> model = Model::load(*file);
@@ -54,23 +55,23 @@ Result<int> run_tree(const Options& options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App& info =
-      add_subcommand(app, "info", Msg::app_model_info_summary, Msg::app_model_info_examples);
+      add_subcommand(app, "info", msg::app_model_info_summary, msg::app_model_info_examples);
   add_options(info, *options);
-  info.add_option("--tip", options->tip, text(Msg::app_option_tip))->type_name("FRAME");
+  info.add_option("--tip", options->tip, text(msg::app_option_tip))->type_name("FRAME");
   CLI::App& tree =
-      add_subcommand(app, "tree", Msg::app_model_tree_summary, Msg::app_model_tree_examples);
+      add_subcommand(app, "tree", msg::app_model_tree_summary, msg::app_model_tree_examples);
   add_options(tree, *options);
   return [options, &info, &tree]() -> Result<int> {
     if (info.parsed()) return run_info(*options);
     if (tree.parsed()) return run_tree(*options);
-    return fail(Errc::usage, text(Msg::app_no_subcommand, "mjarm model", "info, tree"));
+    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm model", "info, tree"));
   };
 }
 
 }  // namespace
 
 Command model_command() {
-  return {"model", Msg::app_model_summary, Msg::app_model_examples, setup};
+  return {"model", msg::app_model_summary, msg::app_model_examples, setup};
 }
 
 }  // namespace mjarm::app

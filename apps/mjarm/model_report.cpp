@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
@@ -27,7 +27,7 @@ std::string join(const std::vector<std::string>& words, const char* between = ",
 }
 
 std::string or_none(const std::string& words) {
-  return words.empty() ? text(Msg::app_info_none) : words;
+  return words.empty() ? text(msg::app_info_none) : words;
 }
 
 /// Named frames that move with the last joint of the arm and with no joint after it.
@@ -75,10 +75,10 @@ std::string table(const std::vector<Row>& rows) {
 
 std::string joint_table(const ModelReport& report) {
   const Arm& arm = *report.arm;
-  std::vector<Row> rows = {{text(Msg::app_info_joint), text(Msg::app_info_type),
-                            text(Msg::app_info_position), text(Msg::app_info_velocity),
-                            text(Msg::app_info_acceleration), text(Msg::app_info_jerk),
-                            text(Msg::app_info_torque), text(Msg::app_info_actuator)}};
+  std::vector<Row> rows = {{text(msg::app_info_joint), text(msg::app_info_type),
+                            text(msg::app_info_position), text(msg::app_info_velocity),
+                            text(msg::app_info_acceleration), text(msg::app_info_jerk),
+                            text(msg::app_info_torque), text(msg::app_info_actuator)}};
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
     const JointLimits& limits = arm.limits;
@@ -88,28 +88,28 @@ std::string joint_table(const ModelReport& report) {
                     limit(limits.velocity[i], source.velocity),
                     limit(limits.acceleration[i], source.acceleration),
                     limit(limits.jerk[i], source.jerk), limit(limits.torque[i], source.torque),
-                    joint.actuator ? joint.actuator->name : text(Msg::app_info_none)});
+                    joint.actuator ? joint.actuator->name : text(msg::app_info_none)});
   }
-  return table(rows) + "  " + text(Msg::app_info_units) + "\n";
+  return table(rows) + "  " + text(msg::app_info_units) + "\n";
 }
 
 std::string arm_text(const ModelReport& report) {
   const auto line = [](Msg what, const std::string& value) {
     return padded(text(what), 18) + value + "\n";
   };
-  if (!report.arm) return line(Msg::app_info_arm, text(Msg::app_info_no_arm, report.no_arm));
+  if (!report.arm) return line(msg::app_info_arm, text(msg::app_info_no_arm, report.no_arm));
   const Arm& arm = *report.arm;
   std::vector<std::string> home;
   for (const double value : arm.home) home.push_back(fmt::format("{:.5g}", value));
-  std::string result = line(Msg::app_info_arm, text(Msg::app_info_arm_joints, arm.dof()));
+  std::string result = line(msg::app_info_arm, text(msg::app_info_arm_joints, arm.dof()));
   result += joint_table(report);
-  result += line(Msg::app_info_tip, arm.tip);
-  result += line(Msg::app_info_tips, join(report.tips));
-  result += line(Msg::app_info_home, join(home));
-  if (!arm.gripper) return result + line(Msg::app_info_gripper, text(Msg::app_info_none));
+  result += line(msg::app_info_tip, arm.tip);
+  result += line(msg::app_info_tips, join(report.tips));
+  result += line(msg::app_info_home, join(home));
+  if (!arm.gripper) return result + line(msg::app_info_gripper, text(msg::app_info_none));
   const Gripper& gripper = *arm.gripper;
-  return result + line(Msg::app_info_gripper,
-                       text(Msg::app_info_gripper_line, gripper.actuator,
+  return result + line(msg::app_info_gripper,
+                       text(msg::app_info_gripper_line, gripper.actuator,
                             fmt::format("{:.5g}", gripper.ctrl_open),
                             fmt::format("{:.5g}", gripper.ctrl_closed), join(gripper.joints)));
 }
@@ -218,14 +218,14 @@ std::string to_text(const ModelReport& report) {
   };
   const ModelInfo& all = report.contents;
   const Counts counts = count(all);
-  return line(Msg::app_info_model, fmt::format("{} ({})", all.name, report.format)) +
-         line(Msg::app_info_file, report.file) +
-         line(Msg::app_info_timestep, fmt::format("{:g} s", all.timestep)) +
-         line(Msg::app_info_contents,
-              text(Msg::app_info_counts, counts.bodies, counts.joints, counts.actuators,
+  return line(msg::app_info_model, fmt::format("{} ({})", all.name, report.format)) +
+         line(msg::app_info_file, report.file) +
+         line(msg::app_info_timestep, fmt::format("{:g} s", all.timestep)) +
+         line(msg::app_info_contents,
+              text(msg::app_info_counts, counts.bodies, counts.joints, counts.actuators,
                    counts.geoms, counts.sites, counts.sensors, counts.cameras, counts.meshes)) +
-         line(Msg::app_info_mass, fmt::format("{:.5g} kg", all.mass)) +
-         line(Msg::app_info_keyframes, or_none(join(keyframe_names(all)))) + arm_text(report);
+         line(msg::app_info_mass, fmt::format("{:.5g} kg", all.mass)) +
+         line(msg::app_info_keyframes, or_none(join(keyframe_names(all)))) + arm_text(report);
 }
 
 std::string to_json(const ModelReport& report) {

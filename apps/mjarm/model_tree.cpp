@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/mjarm/model_report.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -21,7 +21,7 @@ std::string body_line(const BodyInfo& body) {
   line += body.name;
   if (body.mass > 0) line += fmt::format("  {:.4g} kg", body.mass);
   if (!body.geoms.empty()) {
-    line += "  " + text(Msg::app_tree_geoms, body.geoms.size(), count_colliding(body));
+    line += "  " + text(msg::app_tree_geoms, body.geoms.size(), count_colliding(body));
   }
   for (const JointInfo& joint : body.joints) {
     line += fmt::format("  {} {}", joint.type, joint.name);

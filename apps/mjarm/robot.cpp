@@ -3,18 +3,18 @@
 #include <utility>
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
 
 namespace mjarm::app {
 
 void add_robot_options(CLI::App& app, RobotOptions& options) {
-  app.add_option("--robot", options.robot, text(Msg::app_option_robot))->type_name("ROBOT");
-  app.add_option("--tip", options.tip, text(Msg::app_option_tip))->type_name("FRAME");
+  app.add_option("--robot", options.robot, text(msg::app_option_robot))->type_name("ROBOT");
+  app.add_option("--tip", options.tip, text(msg::app_option_tip))->type_name("FRAME");
 }
 
 Result<Robot> load_robot(const RobotOptions& options) {
   if (options.robot.empty()) {
-    return fail(Errc::usage, text(Msg::app_option_missing, "--robot"));
+    return fail(Errc::usage, text(msg::app_option_missing, "--robot"));
   }
   Result<std::filesystem::path> file = find_model_file(options.robot);
   if (!file) return fail(std::move(file.error()));

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <vector>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {
@@ -47,10 +47,10 @@ Error usage_error(const CLI::ParseError& error) {
   if (error.get_name() == "ArgumentMismatch") {
     const std::string option = what.substr(0, what.find(':'));
     const bool repeated = what.find("received") != std::string::npos;
-    return {Errc::usage, repeated ? text(Msg::app_option_once, option)
-                                  : text(Msg::app_option_needs_value, option)};
+    return {Errc::usage, repeated ? text(msg::app_option_once, option)
+                                  : text(msg::app_option_needs_value, option)};
   }
-  return {Errc::usage, text(Msg::app_bad_usage, what)};
+  return {Errc::usage, text(msg::app_bad_usage, what)};
 }
 
 std::optional<Error> unknown_words(const CLI::App& app) {
@@ -62,33 +62,33 @@ std::optional<Error> unknown_words(const CLI::App& app) {
     if (word.size() < 2 || word[0] != '-') continue;
     const std::string name = word.substr(0, word.find('='));
     return Error{Errc::usage,
-                 text(Msg::app_unknown_option, name) + did_you_mean(name, option_names(&called))};
+                 text(msg::app_unknown_option, name) + did_you_mean(name, option_names(&called))};
   }
   const std::string& word = unknown.front();
   const std::vector<std::string> known = subcommand_names(called);
   if (!known.empty()) {
-    return Error{Errc::usage, text(Msg::app_unknown_command, word, full_name(called)) +
+    return Error{Errc::usage, text(msg::app_unknown_command, word, full_name(called)) +
                                   did_you_mean(word, known)};
   }
-  return Error{Errc::usage, text(Msg::app_unexpected_word, word, full_name(called))};
+  return Error{Errc::usage, text(msg::app_unexpected_word, word, full_name(called))};
 }
 
 Result<std::uint64_t> parse_whole(const std::string& option, const std::string& value) {
   std::uint64_t number = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
   if (error != std::errc() || end != value.data() + value.size()) {
-    return fail(Errc::usage, text(Msg::app_not_whole, option, value));
+    return fail(Errc::usage, text(msg::app_not_whole, option, value));
   }
   return number;
 }
 
 Result<std::vector<double>> parse_list(const std::string& option, const std::string& value,
                                        Quantity quantity, std::size_t size) {
-  if (value.empty()) return fail(Errc::usage, text(Msg::app_option_missing, option));
+  if (value.empty()) return fail(Errc::usage, text(msg::app_option_missing, option));
   Result<std::vector<double>> values = parse_quantities(value, quantity);
   if (!values) return fail(in_option(option, std::move(values.error())));
   if (values->size() != size) {
-    return fail(Errc::usage, text(Msg::app_wrong_count, option, size, values->size()));
+    return fail(Errc::usage, text(msg::app_wrong_count, option, size, values->size()));
   }
   return values;
 }
@@ -98,7 +98,7 @@ Result<std::vector<double>> parse_joints(const std::string& option, const std::s
   const std::vector<std::string_view> words = split_list(value);
   const auto dof = static_cast<std::size_t>(arm.dof());
   if (words.size() != dof) {
-    return fail(Errc::usage, text(Msg::app_wrong_count, option, dof, words.size()));
+    return fail(Errc::usage, text(msg::app_wrong_count, option, dof, words.size()));
   }
   std::vector<double> q;
   for (std::size_t i = 0; i < dof; ++i) {

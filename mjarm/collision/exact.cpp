@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/collision.hpp"
 
 namespace mjarm {
 namespace {
@@ -230,7 +230,7 @@ ExactChecker& ExactChecker::operator=(ExactChecker&&) noexcept = default;
 
 Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
   if (!impl_->accepts(q)) {
-    return fail(Errc::bad_input, text(Msg::collision_bad_q, impl_->addresses.size(), q.size()));
+    return fail(Errc::bad_input, text(msg::collision_bad_q, impl_->addresses.size(), q.size()));
   }
   impl_->place(q);
   CollisionReport report;
@@ -255,12 +255,12 @@ std::function<bool(std::span<const double>)> ExactChecker::predicate() const {
 std::string describe(const CollisionReport& report) {
   if (!report.contacts.empty()) {
     const ContactPoint& worst = report.contacts.front();
-    return text(Msg::collision_overlap, worst.pair.geom1, worst.pair.body1, worst.pair.geom2,
+    return text(msg::collision_overlap, worst.pair.geom1, worst.pair.body1, worst.pair.geom2,
                 worst.pair.body2, worst.depth);
   }
-  if (!report.nearest) return text(Msg::collision_free);
+  if (!report.nearest) return text(msg::collision_free);
   const NearestPair& nearest = *report.nearest;
-  return text(Msg::collision_free_by, nearest.pair.geom1, nearest.pair.geom2, nearest.distance);
+  return text(msg::collision_free_by, nearest.pair.geom1, nearest.pair.geom2, nearest.distance);
 }
 
 }  // namespace mjarm

@@ -9,7 +9,7 @@
 
 #include "mjarm/control/actuation.hpp"
 #include "mjarm/control/step_inverse.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/control.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm {
@@ -20,15 +20,15 @@ constexpr std::array kModes = {ControlMode::servo, ControlMode::servo_gravity,
 
 Result<void> check_joint(const Arm& arm, const ArmJoint& joint, ControlMode mode) {
   if (!joint.actuator) {
-    return fail(Errc::impossible, text(Msg::control_no_actuator, arm.name, joint.name, joint.name));
+    return fail(Errc::impossible, text(msg::control_no_actuator, arm.name, joint.name, joint.name));
   }
   const ArmActuator& actuator = *joint.actuator;
   if (actuator.gain == 0 || actuator.gear == 0) {
-    return fail(Errc::impossible, text(Msg::control_no_gain, arm.name, actuator.name, joint.name));
+    return fail(Errc::impossible, text(msg::control_no_gain, arm.name, actuator.name, joint.name));
   }
   if (mode != ControlMode::computed_torque && !(servo_stiffness(actuator) > 0)) {
     return fail(Errc::impossible,
-                text(Msg::control_no_servo, arm.name, actuator.name, joint.name, name(mode)));
+                text(msg::control_no_servo, arm.name, actuator.name, joint.name, name(mode)));
   }
   return {};
 }
@@ -40,7 +40,7 @@ Result<void> check_feedback(const ControlOptions& options, double h) {
                       2 * h * options.damping + h * h * options.stiffness < 4;
   if (stable) return {};
   return fail(Errc::bad_input,
-              text(Msg::control_bad_feedback, options.stiffness, options.damping, h));
+              text(msg::control_bad_feedback, options.stiffness, options.damping, h));
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ Result<ControlMode> control_mode(std::string_view word) {
     if (name(mode) == word) return mode;
     words.emplace_back(name(mode));
   }
-  return fail(Errc::usage, text(Msg::control_unknown_mode, word) + did_you_mean(word, words));
+  return fail(Errc::usage, text(msg::control_unknown_mode, word) + did_you_mean(word, words));
 }
 
 struct Controller::Impl {

@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm {
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 Error write_error(const fs::path& path, int code) {
-  return {Errc::system, text(Msg::core_cannot_write, path.string(), system_message(code))};
+  return {Errc::system, text(msg::core_cannot_write, path.string(), system_message(code))};
 }
 
 /// A name beside `target` that no other process and no other thread of this one uses.
@@ -28,14 +28,14 @@ Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
   std::error_code status_error;
   const fs::file_status status = fs::status(path, status_error);
   if (status.type() == fs::file_type::not_found) {
-    return fail(Errc::bad_input, text(Msg::core_no_such_file, path.string()));
+    return fail(Errc::bad_input, text(msg::core_no_such_file, path.string()));
   }
   if (status.type() == fs::file_type::directory) {
-    return fail(Errc::bad_input, text(Msg::core_is_a_folder, path.string()));
+    return fail(Errc::bad_input, text(msg::core_is_a_folder, path.string()));
   }
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) {
-    return fail(Errc::bad_input, text(Msg::core_cannot_read, path.string(), system_message(errno)));
+    return fail(Errc::bad_input, text(msg::core_cannot_read, path.string(), system_message(errno)));
   }
   std::string content;
   char buffer[65536];
@@ -47,10 +47,10 @@ Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
   const int code = errno;
   std::fclose(file);
   if (failed) {
-    return fail(Errc::system, text(Msg::core_cannot_read, path.string(), system_message(code)));
+    return fail(Errc::system, text(msg::core_cannot_read, path.string(), system_message(code)));
   }
   if (content.size() > max_bytes) {
-    return fail(Errc::bad_input, text(Msg::core_file_too_large, path.string(), max_bytes));
+    return fail(Errc::bad_input, text(msg::core_file_too_large, path.string(), max_bytes));
   }
   return content;
 }
@@ -68,7 +68,7 @@ Result<AtomicFile> AtomicFile::create(const fs::path& path) {
   std::error_code ignored;
   const fs::file_type type = fs::status(path, ignored).type();
   if (type == fs::file_type::directory) {
-    return fail(Errc::bad_input, text(Msg::core_is_a_folder, path.string()));
+    return fail(Errc::bad_input, text(msg::core_is_a_folder, path.string()));
   }
   if (type == fs::file_type::regular || type == fs::file_type::not_found) {
     // A link keeps pointing where it does: its target is what gets replaced.
@@ -111,7 +111,7 @@ Result<void> AtomicFile::commit() {
   fs::rename(temporary_, target_, error);
   if (error) {
     discard();
-    return fail(Errc::system, text(Msg::core_cannot_write, path_.string(), error.message()));
+    return fail(Errc::system, text(msg::core_cannot_write, path_.string(), error.message()));
   }
   temporary_.clear();
   return {};

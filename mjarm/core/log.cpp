@@ -7,7 +7,7 @@
 #include <mutex>
 #include <string>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/core.hpp"
 
 namespace mjarm {
 namespace {
@@ -78,7 +78,7 @@ std::string one_line(std::string_view line) {
 void write(LogLevel level, std::string_view line) noexcept {
   try {
     std::string message = one_line(line);
-    if (level == LogLevel::warning) message = text(Msg::core_log_warning, message);
+    if (level == LogLevel::warning) message = text(msg::core_log_warning, message);
     the_log().logger.log(to_spdlog(level), message);
   } catch (...) {  // out of memory: saying nothing is all that is left
   }

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+
 namespace mjarm {
 
 /// How much is said on standard error.

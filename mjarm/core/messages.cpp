@@ -3,26 +3,12 @@
 #include <fmt/args.h>
 #include <fmt/format.h>
 
-#include <array>
 #include <atomic>
-#include <cstddef>
 
 #include "mjarm/core/os.hpp"
 
 namespace mjarm {
 namespace {
-
-struct Entry {
-  const char* english;
-  const char* chinese;
-};
-
-constexpr std::array kCatalogue = {
-#define MJARM_MSG(id, english, chinese) Entry{english, chinese},
-#include "mjarm/core/messages/all.inc"
-#undef MJARM_MSG
-};
-static_assert(kCatalogue.size() == static_cast<std::size_t>(Msg::count_));
 
 std::atomic<Language> current_language{Language::english};
 
@@ -40,13 +26,8 @@ Language language_of(std::string_view name) noexcept {
 
 Language language_of_locale() { return language_of(locale_name()); }
 
-std::string_view message_template(Msg id, Language language) noexcept {
-  const Entry& entry = kCatalogue[static_cast<std::size_t>(id)];
-  return language == Language::chinese ? entry.chinese : entry.english;
-}
-
-std::string format_message(Msg id, std::initializer_list<MsgArg> args) {
-  const std::string_view pattern = message_template(id, language());
+std::string format_message(Msg message, std::initializer_list<MsgArg> args) {
+  const std::string_view pattern = message.in(language());
   fmt::dynamic_format_arg_store<fmt::format_context> store;
   for (const MsgArg& arg : args) {
     std::visit([&store](const auto& value) { store.push_back(value); }, arg);

@@ -8,17 +8,21 @@
 
 namespace mjarm {
 
-/// Every text a user can see has one entry here, in English and in Chinese. The entries stand in
-/// `messages/ROOM.inc`, one list a room.
-enum class Msg {
-#define MJARM_MSG(id, english, chinese) id,
-#include "mjarm/core/messages/all.inc"
-#undef MJARM_MSG
-  count_  ///< number of entries, not a message
-};
-
 /// The languages of the catalogue.
 enum class Language { english, chinese };
+
+/// One text a user can see, in all languages, its values left open as `{}` (fmt syntax, e.g.
+/// `{:.3f}`). All of them stand in the catalogue `messages/`, one list a room, as constants
+/// `msg::ROOM_WHAT`; the header of a list is included only where its texts are used, so that a new
+/// text rebuilds one room.
+struct Msg {
+  const char* english;
+  const char* chinese;
+  /// The text in `language`, its values left open.
+  [[nodiscard]] constexpr std::string_view in(Language language) const {
+    return language == Language::chinese ? chinese : english;
+  }
+};
 
 /// Sets the language of all messages from now on; called once, at the start of a program.
 void set_language(Language language) noexcept;
@@ -33,9 +37,9 @@ void set_language(Language language) noexcept;
 /// A value put into a message.
 using MsgArg = std::variant<std::string, double, long long>;
 
-/// The text of `id` in the language in use, its `{}` filled in order (fmt syntax, e.g. `{:.3f}`).
-/// An entry that does not fit its values comes back with its braces; never throws for that.
-[[nodiscard]] std::string format_message(Msg id, std::initializer_list<MsgArg> args);
+/// The text in the language in use, its `{}` filled in order. A text that does not fit its values
+/// comes back with its braces; never throws for that.
+[[nodiscard]] std::string format_message(Msg message, std::initializer_list<MsgArg> args);
 
 namespace detail {
 inline MsgArg message_arg(std::string_view value) { return std::string(value); }
@@ -48,13 +52,10 @@ MsgArg message_arg(Int value) {
 }
 }  // namespace detail
 
-/// The text of `id` in `language` as it stands in the catalogue, placeholders unfilled.
-[[nodiscard]] std::string_view message_template(Msg id, Language language) noexcept;
-
-/// Shorthand: `text(Msg::model_no_file, path)`.
+/// Shorthand: `text(msg::model_no_file, path)`.
 template <class... Args>
-[[nodiscard]] std::string text(Msg id, const Args&... args) {
-  return format_message(id, {detail::message_arg(args)...});
+[[nodiscard]] std::string text(Msg message, const Args&... args) {
+  return format_message(message, {detail::message_arg(args)...});
 }
 
 }  // namespace mjarm

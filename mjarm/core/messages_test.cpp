@@ -6,8 +6,28 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/core/messages/core.hpp"
+
 namespace mjarm {
 namespace {
+
+constexpr Msg kCatalogue[] = {
+#define MJARM_MSG(id, english, chinese) {english, chinese},
+#include "mjarm/core/messages/app.inc"
+#include "mjarm/core/messages/collision.inc"
+#include "mjarm/core/messages/control.inc"
+#include "mjarm/core/messages/core.inc"
+#include "mjarm/core/messages/demo.inc"
+#include "mjarm/core/messages/kinematics.inc"
+#include "mjarm/core/messages/model.inc"
+#include "mjarm/core/messages/path.inc"
+#include "mjarm/core/messages/program.inc"
+#include "mjarm/core/messages/render.inc"
+#include "mjarm/core/messages/sim.inc"
+#include "mjarm/core/messages/trajectory.inc"
+#include "mjarm/core/messages/view.inc"
+#undef MJARM_MSG
+};
 
 struct Placeholder {
   std::string name;    ///< index in braces, usually empty
@@ -55,28 +75,26 @@ class EveryMessage : public ::testing::Test {
   ~EveryMessage() override { set_language(Language::english); }
   template <class Check>
   void for_each(Check check) {
-    ASSERT_GT(static_cast<int>(Msg::count_), 0);
-    for (int i = 0; i < static_cast<int>(Msg::count_); ++i) {
-      const Msg id = static_cast<Msg>(i);
-      SCOPED_TRACE(message_template(id, Language::english));
-      check(id);
+    for (const Msg& message : kCatalogue) {
+      SCOPED_TRACE(message.english);
+      check(message);
     }
   }
 };
 
 TEST_F(EveryMessage, HasBothLanguages) {
-  for_each([](Msg id) {
-    EXPECT_FALSE(message_template(id, Language::english).empty());
-    EXPECT_FALSE(message_template(id, Language::chinese).empty());
+  for_each([](const Msg& message) {
+    EXPECT_FALSE(message.in(Language::english).empty());
+    EXPECT_FALSE(message.in(Language::chinese).empty());
     // English stays ASCII, so that it shows everywhere.
-    EXPECT_FALSE(has_chinese(message_template(id, Language::english)));
+    EXPECT_FALSE(has_chinese(message.in(Language::english)));
   });
 }
 
 TEST_F(EveryMessage, HasTheSamePlaceholdersInBoth) {
-  for_each([](Msg id) {
-    const auto english = placeholders(message_template(id, Language::english));
-    const auto chinese = placeholders(message_template(id, Language::chinese));
+  for_each([](const Msg& message) {
+    const auto english = placeholders(message.in(Language::english));
+    const auto chinese = placeholders(message.in(Language::chinese));
     EXPECT_EQ(english.size(), chinese.size());
     // Numbered placeholders may change places, the others keep their order and format.
     auto by_index = [](const Placeholder& a, const Placeholder& b) { return a.name < b.name; };
@@ -88,9 +106,9 @@ TEST_F(EveryMessage, HasTheSamePlaceholdersInBoth) {
 }
 
 TEST_F(EveryMessage, FormatsInBothLanguages) {
-  for_each([](Msg id) {
+  for_each([](const Msg& message) {
     // As many values as placeholders, each of the kind its format asks for.
-    const auto wanted = placeholders(message_template(id, Language::english));
+    const auto wanted = placeholders(message.in(Language::english));
     ASSERT_LE(wanted.size(), 8u);
     auto value = [&](std::size_t i) -> MsgArg {
       if (i >= wanted.size()) return std::string("unused");
@@ -101,7 +119,7 @@ TEST_F(EveryMessage, FormatsInBothLanguages) {
     for (const Language language : {Language::english, Language::chinese}) {
       set_language(language);
       const std::string formatted = format_message(
-          id, {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)});
+          message, {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)});
       EXPECT_TRUE(formatted.find("{}") == std::string::npos &&
                   formatted.find("{:") == std::string::npos)
           << formatted;
@@ -121,15 +139,15 @@ TEST(Messages, LanguageOfNames) {
 }
 
 TEST(Messages, FillsInOrderAndInTheLanguageInUse) {
-  EXPECT_EQ(text(Msg::core_cannot_read, "a.txt", "why"), "a.txt: cannot be read: why");
+  EXPECT_EQ(text(msg::core_cannot_read, "a.txt", "why"), "a.txt: cannot be read: why");
   set_language(Language::chinese);
-  EXPECT_EQ(text(Msg::core_cannot_read, "a.txt", "why"), "a.txt：无法读取：why");
+  EXPECT_EQ(text(msg::core_cannot_read, "a.txt", "why"), "a.txt：无法读取：why");
   set_language(Language::english);
 }
 
 TEST(Messages, TooFewValuesDoNotThrow) {
-  EXPECT_EQ(text(Msg::core_cannot_read, "a.txt"), "{}: cannot be read: {}");
-  EXPECT_EQ(text(Msg::core_progress_rate, "no number"), "{:.1f}/s");
+  EXPECT_EQ(text(msg::core_cannot_read, "a.txt"), "{}: cannot be read: {}");
+  EXPECT_EQ(text(msg::core_progress_rate, "no number"), "{:.1f}/s");
 }
 
 }  // namespace

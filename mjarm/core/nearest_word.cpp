@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/core.hpp"
 
 namespace mjarm {
 namespace {
@@ -51,7 +51,7 @@ std::optional<std::string> nearest_word(std::string_view word, std::span<const s
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
   const std::optional<std::string> nearest = nearest_word(word, known);
-  return nearest ? text(Msg::core_did_you_mean, *nearest) : std::string();
+  return nearest ? text(msg::core_did_you_mean, *nearest) : std::string();
 }
 
 }  // namespace mjarm

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <thread>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/core.hpp"
 
 namespace mjarm {
 namespace {
@@ -30,7 +30,7 @@ extern "C" void on_interrupt(int signal) {
 Result<std::filesystem::path> executable_path() {
   std::error_code error;
   std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return fail(Errc::system, text(Msg::core_no_executable_path, error.message()));
+  if (error) return fail(Errc::system, text(msg::core_no_executable_path, error.message()));
   return path;
 }
 

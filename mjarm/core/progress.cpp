@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 
@@ -27,12 +27,12 @@ std::string duration_text(double seconds) {
 std::string progress_line(const std::string& label, std::uint64_t done, std::uint64_t total,
                           double seconds, int width) {
   const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
-  const std::string rate_text = text(Msg::core_progress_rate, rate);
+  const std::string rate_text = text(msg::core_progress_rate, rate);
   if (total == 0) return fmt::format("{} {} {}", label, done, rate_text);
   const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
   const auto left = static_cast<double>(total - std::min(done, total));
   std::string tail = fmt::format(" {:3.0f}% {}/{} {}", 100 * share, done, total, rate_text);
-  if (rate > 0) tail += " " + text(Msg::core_progress_left, duration_text(left / rate));
+  if (rate > 0) tail += " " + text(msg::core_progress_left, duration_text(left / rate));
   const int room = std::min(40, width - 1 - text_width(label) - text_width(tail) - 3);
   if (room < 5) return label + tail;
   const auto filled = static_cast<std::size_t>(std::floor(share * room));

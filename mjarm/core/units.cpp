@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/core.hpp"
 
 namespace mjarm {
 namespace {
@@ -71,10 +71,10 @@ Result<double> parse_quantity(std::string_view words, Quantity quantity) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool doubled_sign = digits.size() != whole.size() && !digits.empty() && digits[0] == '-';
   if (error == std::errc::invalid_argument || doubled_sign) {
-    return fail(Errc::bad_input, text(Msg::core_not_a_number, shown(whole)));
+    return fail(Errc::bad_input, text(msg::core_not_a_number, shown(whole)));
   }
   if (error == std::errc::result_out_of_range || !std::isfinite(value)) {
-    return fail(Errc::bad_input, text(Msg::core_not_finite, shown(whole)));
+    return fail(Errc::bad_input, text(msg::core_not_finite, shown(whole)));
   }
   const std::string_view suffix =
       trimmed(digits.substr(static_cast<std::size_t>(end - digits.data())));
@@ -87,10 +87,10 @@ Result<double> parse_quantity(std::string_view words, Quantity quantity) {
                                                           : value * unit.factor;
   }
   if (units.empty()) {
-    return fail(Errc::bad_input, text(Msg::core_unit_not_allowed, shown(suffix), shown(whole)));
+    return fail(Errc::bad_input, text(msg::core_unit_not_allowed, shown(suffix), shown(whole)));
   }
   return fail(Errc::bad_input,
-              text(Msg::core_unknown_unit, shown(suffix), shown(whole), list(units)));
+              text(msg::core_unknown_unit, shown(suffix), shown(whole), list(units)));
 }
 
 std::vector<std::string_view> split_list(std::string_view words) {
@@ -115,7 +115,7 @@ Result<std::vector<double>> parse_quantities(std::string_view words, Quantity qu
     if (!value) return fail(std::move(value.error()));
     values.push_back(*value);
   }
-  if (values.empty()) return fail(Errc::bad_input, text(Msg::core_not_a_number, ""));
+  if (values.empty()) return fail(Errc::bad_input, text(msg::core_not_a_number, ""));
   return values;
 }
 

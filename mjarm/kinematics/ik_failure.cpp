@@ -1,4 +1,4 @@
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/kinematics.hpp"
 #include "mjarm/kinematics/ik.hpp"
 
 namespace mjarm {
@@ -6,20 +6,20 @@ namespace {
 
 std::string describe_reach(const IkFailure& failure) {
   if (failure.code == IkErrc::out_of_reach) {
-    return text(Msg::kinematics_out_of_reach, failure.amount, failure.bound);
+    return text(msg::kinematics_out_of_reach, failure.amount, failure.bound);
   }
-  const Msg id = failure.shape == ReachShape::cylinder ? Msg::kinematics_inside_cylinder
-                                                       : Msg::kinematics_inside_sphere;
+  const Msg id = failure.shape == ReachShape::cylinder ? msg::kinematics_inside_cylinder
+                                                       : msg::kinematics_inside_sphere;
   return text(id, failure.bound, failure.amount);
 }
 
 std::string describe_limit(const IkFailure& failure, const Arm& arm) {
   if (failure.joint < 0 || failure.joint >= arm.dof())
-    return text(Msg::kinematics_no_convergence, failure.best.restarts, failure.best.pos_err,
+    return text(msg::kinematics_no_convergence, failure.best.restarts, failure.best.pos_err,
                 failure.best.rot_err);
   const ArmJoint& joint = arm.joints[static_cast<std::size_t>(failure.joint)];
   const char* const unit = joint.type == JointType::slide ? "m" : "rad";
-  return text(Msg::kinematics_joint_limit, joint.name, failure.amount, unit);
+  return text(msg::kinematics_joint_limit, joint.name, failure.amount, unit);
 }
 
 }  // namespace
@@ -50,13 +50,13 @@ std::string describe(const IkFailure& failure, const Arm& arm) {
     case IkErrc::joint_limit:
       return describe_limit(failure, arm);
     case IkErrc::collision:
-      return text(Msg::kinematics_collision);
+      return text(msg::kinematics_collision);
     case IkErrc::bad_input:
-      return text(Msg::kinematics_bad_input, arm.dof());
+      return text(msg::kinematics_bad_input, arm.dof());
     case IkErrc::no_convergence:
       break;
   }
-  return text(Msg::kinematics_no_convergence, failure.best.restarts, failure.best.pos_err,
+  return text(msg::kinematics_no_convergence, failure.best.restarts, failure.best.pos_err,
               failure.best.rot_err);
 }
 

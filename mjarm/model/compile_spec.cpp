@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/complaint_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
@@ -58,10 +58,10 @@ std::string first_bad_number(const mjModel* m) {
 Result<void> check_numbers(const fs::path& file, const mjModel* m) {
   if (const std::string bad = first_bad_number(m); !bad.empty()) {
     if (std::optional<Error> nan = nan_error(file)) return fail(std::move(*nan));
-    return fail(Errc::bad_input, text(Msg::model_not_finite, file.string(), bad));
+    return fail(Errc::bad_input, text(msg::model_not_finite, file.string(), bad));
   }
   if (!(m->opt.timestep > 0) || !std::isfinite(m->opt.timestep)) {
-    return fail(Errc::bad_input, text(Msg::model_bad_timestep, file.string(), m->opt.timestep));
+    return fail(Errc::bad_input, text(msg::model_bad_timestep, file.string(), m->opt.timestep));
   }
   return {};
 }

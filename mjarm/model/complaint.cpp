@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/complaint_internal.hpp"
 
@@ -203,8 +203,8 @@ Error complaint_error(const fs::path& file, std::string_view words, bool trust_l
   }
   const std::string label = label_of(kind, complaint.name);
   const std::string what = in_users_words(complaint, hint_for(sources, complaint));
-  return {Errc::bad_input, label.empty() ? text(Msg::model_refused, place, what)
-                                         : text(Msg::model_element_refused, place, label, what)};
+  return {Errc::bad_input, label.empty() ? text(msg::model_refused, place, what)
+                                         : text(msg::model_element_refused, place, label, what)};
 }
 
 std::optional<Error> nan_error(const fs::path& file) {
@@ -217,7 +217,7 @@ std::optional<Error> nan_error(const fs::path& file) {
       }
       const std::string place = *source.file + ":" + std::to_string(source.element->GetLineNum());
       const std::string what = label_of(source.element->Name(), "") + " " + a->Name();
-      return Error{Errc::bad_input, text(Msg::model_not_finite, place, what)};
+      return Error{Errc::bad_input, text(msg::model_not_finite, place, what)};
     }
   }
   return std::nullopt;

@@ -1,6 +1,6 @@
 #include <regex>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/complaint_internal.hpp"
 
 namespace mjarm {
@@ -14,30 +14,30 @@ struct Phrase {
 };
 
 constexpr Phrase kPhrases[] = {
-    {"unrecognized attribute: '(.*)'", Msg::model_mj_attribute},
-    {"unrecognized element", Msg::model_mj_element},
-    {"invalid keyword: '(.*)'", Msg::model_mj_keyword},
-    {"required attribute missing: '(.*)'", Msg::model_attribute_missing},
-    {"(?:Error: )?repeated name '(.*)' in .*", Msg::model_repeated_name},
-    {"Error opening file '(.*)'", Msg::model_mj_no_file},
-    {"File '(.*)' already included", Msg::model_mj_included_twice},
-    {"mass and inertia of moving bodies must be larger than mjMINVAL", Msg::model_mj_no_mass},
-    {"inertia must satisfy A \\+ B >= C.*", Msg::model_mj_inertia},
-    {"size (\\d) must be positive in \\w+", Msg::model_mj_size},
-    {"bad format in attribute '(.*)'", Msg::model_mj_bad_number},
-    {"number is too large in attribute '(.*)'", Msg::model_mj_large_number},
-    {"attribute '(.*)' has too much data", Msg::model_mj_too_much},
-    {"attribute '(.*)' does not have enough data", Msg::model_mj_too_little},
-    {"(\\w+) '(.*)' not found in .*", Msg::model_mj_not_found},
-    {"unknown transmission target '(.*)' for actuator.*", Msg::model_mj_target},
-    {"unknown default class name '(.*)'", Msg::model_mj_class},
-    {"unknown element '(.*)' in .*", Msg::model_mj_object},
-    {"unrecognized name '(.*)' of sensorized object", Msg::model_mj_object},
-    {"range\\[0\\] should be smaller than range\\[1\\] in .*", Msg::model_mj_range},
-    {"axis too small in joint", Msg::model_zero_axis},
-    {"zero quaternion is not allowed", Msg::model_mj_zero_quat},
-    {"free joint can only be used on top level", Msg::model_mj_free_joint},
-    {"Could not allocate memory", Msg::model_mj_memory},
+    {"unrecognized attribute: '(.*)'", msg::model_mj_attribute},
+    {"unrecognized element", msg::model_mj_element},
+    {"invalid keyword: '(.*)'", msg::model_mj_keyword},
+    {"required attribute missing: '(.*)'", msg::model_attribute_missing},
+    {"(?:Error: )?repeated name '(.*)' in .*", msg::model_repeated_name},
+    {"Error opening file '(.*)'", msg::model_mj_no_file},
+    {"File '(.*)' already included", msg::model_mj_included_twice},
+    {"mass and inertia of moving bodies must be larger than mjMINVAL", msg::model_mj_no_mass},
+    {"inertia must satisfy A \\+ B >= C.*", msg::model_mj_inertia},
+    {"size (\\d) must be positive in \\w+", msg::model_mj_size},
+    {"bad format in attribute '(.*)'", msg::model_mj_bad_number},
+    {"number is too large in attribute '(.*)'", msg::model_mj_large_number},
+    {"attribute '(.*)' has too much data", msg::model_mj_too_much},
+    {"attribute '(.*)' does not have enough data", msg::model_mj_too_little},
+    {"(\\w+) '(.*)' not found in .*", msg::model_mj_not_found},
+    {"unknown transmission target '(.*)' for actuator.*", msg::model_mj_target},
+    {"unknown default class name '(.*)'", msg::model_mj_class},
+    {"unknown element '(.*)' in .*", msg::model_mj_object},
+    {"unrecognized name '(.*)' of sensorized object", msg::model_mj_object},
+    {"range\\[0\\] should be smaller than range\\[1\\] in .*", msg::model_mj_range},
+    {"axis too small in joint", msg::model_zero_axis},
+    {"zero quaternion is not allowed", msg::model_mj_zero_quat},
+    {"free joint can only be used on top level", msg::model_mj_free_joint},
+    {"Could not allocate memory", msg::model_mj_memory},
 };
 
 }  // namespace
@@ -55,7 +55,7 @@ std::string in_users_words(const Complaint& complaint, const std::string& hint) 
         return text(phrase.message, match[1].str(), match[2].str()) + hint;
     }
   }
-  return text(Msg::model_mujoco_says, complaint.what) + hint;
+  return text(msg::model_mujoco_says, complaint.what) + hint;
 }
 
 }  // namespace mjarm

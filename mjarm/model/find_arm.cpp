@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
@@ -58,7 +58,7 @@ Result<TipFrame> find_frame(const Model& model, std::string_view name) {
   for (int body = 1; wanted.starts_with('#') && body < m->nbody; ++body) {
     if (object_name(m, mjOBJ_BODY, body) == wanted) return TipFrame{wanted, body, Pose()};
   }
-  return fail(Errc::usage, text(Msg::model_no_frame, model.file().string(), wanted,
+  return fail(Errc::usage, text(msg::model_no_frame, model.file().string(), wanted,
                                 did_you_mean(name, frame_names(m))));
 }
 
@@ -102,7 +102,7 @@ Result<void> fill_chain(const Model& model, const TipFrame& tip, const double* q
         continue;
       }
       if (m->jnt_type[j] == mjJNT_BALL) {
-        return fail(Errc::bad_input, text(Msg::model_ball_joint, model.file().string(),
+        return fail(Errc::bad_input, text(msg::model_ball_joint, model.file().string(),
                                           object_name(m, mjOBJ_JOINT, j), tip.name));
       }
       // MuJoCo turns a body about the anchor jnt_pos by q - qpos0, or shifts it by q - qpos0 along
@@ -140,10 +140,10 @@ Result<Arm> find_arm(const Model& model, const ArmOptions& options) {
   if (!tip) return fail(tip.error());
   const std::vector<int> joints = joints_to(m, tip->body);
   if (joints.empty()) {
-    return fail(Errc::usage, text(Msg::model_tip_fixed, model.file().string(), tip->name));
+    return fail(Errc::usage, text(msg::model_tip_fixed, model.file().string(), tip->name));
   }
   if (joints.size() > static_cast<std::size_t>(kMaxDof)) {
-    return fail(Errc::bad_input, text(Msg::model_too_many_joints, model.file().string(), tip->name,
+    return fail(Errc::bad_input, text(msg::model_too_many_joints, model.file().string(), tip->name,
                                       joints.size(), kMaxDof));
   }
   Arm arm;
@@ -163,7 +163,7 @@ Result<Arm> find_arm(const Model& model, const ArmOptions& options) {
 Result<Pose> frame_pose(const Model& model, std::string_view frame, std::span<const double> qpos) {
   const mjModel* m = model.raw();
   if (qpos.size() != static_cast<std::size_t>(m->nq)) {
-    return fail(Errc::usage, text(Msg::model_wrong_size, "qpos", qpos.size(), m->nq));
+    return fail(Errc::usage, text(msg::model_wrong_size, "qpos", qpos.size(), m->nq));
   }
   const Result<TipFrame> found = find_frame(model, frame);
   if (!found) return fail(found.error());

@@ -2,7 +2,7 @@
 #include <array>
 #include <set>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 
@@ -202,16 +202,16 @@ Result<TipFrame> find_tip(const Model& model) {
   const mjModel* m = model.raw();
   const std::vector<std::vector<int>> arms = join_hands(chains_of(m));
   const std::string file = model.file().string();
-  if (arms.empty()) return fail(Errc::bad_input, text(Msg::model_no_arm, file));
+  if (arms.empty()) return fail(Errc::bad_input, text(msg::model_no_arm, file));
   std::vector<std::string> tips;
   for (const std::vector<int>& arm : arms) {
     const std::vector<std::string> some = tips_of(m, m->jnt_bodyid[arm.back()]);
     tips.insert(tips.end(), some.begin(), some.end());
   }
   if (arms.size() > 1) {
-    return fail(Errc::usage, text(Msg::model_many_arms, file, arms.size(), join(tips)));
+    return fail(Errc::usage, text(msg::model_many_arms, file, arms.size(), join(tips)));
   }
-  if (tips.size() > 1) return fail(Errc::usage, text(Msg::model_many_tips, file, join(tips)));
+  if (tips.size() > 1) return fail(Errc::usage, text(msg::model_many_tips, file, join(tips)));
   return find_frame(model, tips.front());
 }
 

@@ -1,7 +1,7 @@
 #include <set>
 #include <utility>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
@@ -84,9 +84,9 @@ Result<LoadedModel> load_urdf(const fs::path& file, tinyxml2::XMLDocument& docum
   XMLElement& compiler = set_compiler(document, robot);
 
   Result<LoadedModel> loaded = compile_document(file, document);
-  if (!loaded && loaded.error().what.find(text(Msg::model_mj_inertia)) != std::string::npos) {
+  if (!loaded && loaded.error().what.find(text(msg::model_mj_inertia)) != std::string::npos) {
     // Inertias that no body can have are common in URDF files and matter to dynamics alone.
-    warnings.push_back(text(Msg::model_balanced_inertia, loaded.error().what));
+    warnings.push_back(text(msg::model_balanced_inertia, loaded.error().what));
     compiler.SetAttribute("balanceinertia", "true");
     loaded = compile_document(file, document);
   }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
@@ -27,28 +27,28 @@ constexpr std::size_t kMaxXmlBytes = std::size_t{64} << 20;
 Error xml_error(const fs::path& file, const tinyxml2::XMLDocument& document) {
   const std::string name = file.string();
   if (document.ErrorID() == tinyxml2::XML_ERROR_EMPTY_DOCUMENT) {
-    return {Errc::bad_input, text(Msg::model_empty_file, name)};
+    return {Errc::bad_input, text(msg::model_empty_file, name)};
   }
   std::string detail;
   switch (document.ErrorID()) {
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      detail = text(Msg::model_xml_mismatch);
+      detail = text(msg::model_xml_mismatch);
       break;
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-      detail = text(Msg::model_xml_attribute);
+      detail = text(msg::model_xml_attribute);
       break;
     case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
-      detail = text(Msg::model_xml_depth);
+      detail = text(msg::model_xml_depth);
       break;
     default:
-      detail = text(Msg::model_xml_other);
+      detail = text(msg::model_xml_other);
   }
   // "Error=... ErrorID=14 (0xe) Line number=2: XMLElement name=body"
   const std::string full = document.ErrorStr();
   if (const std::size_t at = full.find("XMLElement name="); at != std::string::npos) {
     detail = "<" + full.substr(at + 16) + ">: " + detail;
   }
-  return {Errc::bad_input, text(Msg::model_not_xml, name, document.ErrorLineNum(), detail)};
+  return {Errc::bad_input, text(msg::model_not_xml, name, document.ErrorLineNum(), detail)};
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ Result<Model> Model::load(const fs::path& file, const LoadOptions& options) {
     }
     const tinyxml2::XMLElement* root = document.RootElement();
     if (root == nullptr) {
-      return fail(Errc::bad_input, text(Msg::model_empty_file, file.string()));
+      return fail(Errc::bad_input, text(msg::model_empty_file, file.string()));
     }
     const std::string_view root_name = root->Name();
     auto impl = std::make_shared<Impl>();
@@ -74,7 +74,7 @@ Result<Model> Model::load(const fs::path& file, const LoadOptions& options) {
     impl->format = root_name == "robot" ? ModelFormat::urdf : ModelFormat::mjcf;
     if (root_name != "robot" && root_name != "mujoco") {
       const Msg reason =
-          root_name == "mujocoinclude" ? Msg::model_is_a_part : Msg::model_wrong_root;
+          root_name == "mujocoinclude" ? msg::model_is_a_part : msg::model_wrong_root;
       return fail(Errc::bad_input, text(reason, file.string(), root->GetLineNum(), root_name));
     }
     Result<LoadedModel> loaded = impl->format == ModelFormat::urdf
@@ -84,7 +84,7 @@ Result<Model> Model::load(const fs::path& file, const LoadOptions& options) {
     impl->loaded = std::move(*loaded);
     return Model(std::move(impl));
   } catch (const std::exception& problem) {
-    return fail(Errc::system, text(Msg::model_unexpected, file.string(), problem.what()));
+    return fail(Errc::system, text(msg::model_unexpected, file.string(), problem.what()));
   }
 }
 

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 
 namespace mjarm {
 namespace {
@@ -32,7 +32,7 @@ struct Guard {
 void take_error(const char* message) {
   if (current_guard == nullptr) {
     // MuJoCo may not be returned to after an error, so without a guard only the end is left.
-    log_error(text(Msg::model_mujoco_fatal, message));
+    log_error(text(msg::model_mujoco_fatal, message));
     std::exit(EXIT_FAILURE);
   }
   current_guard->outcome.failed = true;
@@ -47,10 +47,10 @@ void take_message(const mjLogMessage* message) {
     if (current_guard != nullptr) {
       current_guard->outcome.warnings.emplace_back(message->subject);
     } else {
-      log_warning(text(Msg::model_mujoco_says, message->subject));
+      log_warning(text(msg::model_mujoco_says, message->subject));
     }
   } else if (message->topic == mjTOPIC_NONE) {
-    log_debug(text(Msg::model_mujoco_says, message->subject));
+    log_debug(text(msg::model_mujoco_says, message->subject));
   }
 }
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <optional>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/model/model.hpp"
@@ -75,7 +75,7 @@ Result<fs::path> find_model_file(std::string_view name_or_path) {
       places += (places.empty() ? "" : ", ") + folder.string();
     }
     return fail(Errc::not_available,
-                text(Msg::model_not_shipped, name_or_path, entry->file, places));
+                text(msg::model_not_shipped, name_or_path, entry->file, places));
   }
   // A name relative to the folder of models, such as `scenes/studio.xml`.
   if (!name_or_path.empty() && path.is_relative()) {
@@ -86,7 +86,7 @@ Result<fs::path> find_model_file(std::string_view name_or_path) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return fail(Errc::bad_input,
-              text(Msg::model_unknown, name_or_path, did_you_mean(name_or_path, names), list));
+              text(msg::model_unknown, name_or_path, did_you_mean(name_or_path, names), list));
 }
 
 }  // namespace mjarm

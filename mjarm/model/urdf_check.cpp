@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
@@ -59,12 +59,12 @@ Error urdf_error(const fs::path& file, const XMLElement& element, std::string_vi
       const XMLElement* around = at->ToElement();
       const char* name_around = around != nullptr ? around->Attribute("name") : nullptr;
       if (name_around == nullptr) continue;
-      label = text(Msg::model_element_of, kind, name_around);
+      label = text(msg::model_element_of, kind, name_around);
       break;
     }
   }
   return {Errc::bad_input,
-          text(Msg::model_element_refused,
+          text(msg::model_element_refused,
                file.string() + ":" + std::to_string(element.GetLineNum()), label, what)};
 }
 
@@ -93,7 +93,7 @@ class Checker {
   Result<std::string> name_of(const XMLElement& element) const {
     const char* name = element.Attribute("name");
     if (name == nullptr || *name == '\0') {
-      return fault(element, text(Msg::model_attribute_missing, "name"));
+      return fault(element, text(msg::model_attribute_missing, "name"));
     }
     return std::string(name);
   }
@@ -105,7 +105,7 @@ class Checker {
     if (words == nullptr) return std::vector<double>();
     std::vector<double> values = parse_numbers(words, count);
     if (values.empty()) {
-      return fault(*element, text(Msg::model_bad_numbers, attribute, words, count));
+      return fault(*element, text(msg::model_bad_numbers, attribute, words, count));
     }
     return values;
   }
@@ -123,7 +123,7 @@ class Checker {
       const Result<std::string> name = name_of(*link);
       if (!name) return fail(name.error());
       if (!links_.emplace(*name, link).second) {
-        return fault(*link, text(Msg::model_repeated_name, *name));
+        return fault(*link, text(msg::model_repeated_name, *name));
       }
       link_names_.push_back(*name);
       if (auto done = inertial(*link); !done) return done;
@@ -131,12 +131,12 @@ class Checker {
         for (const XMLElement* shape : children(*link, kind)) {
           if (auto done = origin(*shape); !done) return done;
           if (shape->FirstChildElement("geometry") == nullptr) {
-            return fault(*shape, text(Msg::model_child_missing, "geometry"));
+            return fault(*shape, text(msg::model_child_missing, "geometry"));
           }
         }
       }
     }
-    if (links_.empty()) return fault(robot_, text(Msg::model_child_missing, "link"));
+    if (links_.empty()) return fault(robot_, text(msg::model_child_missing, "link"));
     return {};
   }
 
@@ -145,11 +145,11 @@ class Checker {
     if (inertial == nullptr) return {};
     if (auto done = origin(*inertial); !done) return done;
     const XMLElement* mass = inertial->FirstChildElement("mass");
-    if (mass == nullptr) return fault(*inertial, text(Msg::model_child_missing, "mass"));
+    if (mass == nullptr) return fault(*inertial, text(msg::model_child_missing, "mass"));
     const auto kilograms = numbers(mass, "value", 1);
     if (!kilograms) return fail(kilograms.error());
-    if (kilograms->empty()) return fault(*mass, text(Msg::model_attribute_missing, "value"));
-    if (kilograms->front() < 0) return fault(*mass, text(Msg::model_negative, "value"));
+    if (kilograms->empty()) return fault(*mass, text(msg::model_attribute_missing, "value"));
+    if (kilograms->front() < 0) return fault(*mass, text(msg::model_negative, "value"));
     const XMLElement* inertia = inertial->FirstChildElement("inertia");
     for (const char* entry : {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"}) {
       if (auto values = numbers(inertia, entry, 1); !values) return fail(values.error());
@@ -163,12 +163,12 @@ class Checker {
     const Result<std::string> name = name_of(joint);
     if (!name) return fail(name.error());
     if (!joint_names_.insert(*name).second) {
-      return fault(joint, text(Msg::model_repeated_name, *name));
+      return fault(joint, text(msg::model_repeated_name, *name));
     }
     const char* type = joint.Attribute("type");
-    if (type == nullptr) return fault(joint, text(Msg::model_attribute_missing, "type"));
+    if (type == nullptr) return fault(joint, text(msg::model_attribute_missing, "type"));
     if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
-      return fault(joint, text(Msg::model_unknown_joint_type, type, did_you_mean(type, kTypes)));
+      return fault(joint, text(msg::model_unknown_joint_type, type, did_you_mean(type, kTypes)));
     }
     if (auto done = origin(joint); !done) return done;
     if (auto done = ends(joint); !done) return done;
@@ -177,7 +177,7 @@ class Checker {
     if (!direction) return fail(direction.error());
     if (direction->size() == 3 &&
         std::hypot((*direction)[0], (*direction)[1], (*direction)[2]) < 1e-9) {
-      return fault(*axis, text(Msg::model_zero_axis));
+      return fault(*axis, text(msg::model_zero_axis));
     }
     return limit(joint, type);
   }
@@ -188,17 +188,17 @@ class Checker {
     for (int i = 0; i < 2; ++i) {
       const char* kind = i == 0 ? "parent" : "child";
       const XMLElement* element = joint.FirstChildElement(kind);
-      if (element == nullptr) return fault(joint, text(Msg::model_child_missing, kind));
+      if (element == nullptr) return fault(joint, text(msg::model_child_missing, kind));
       const char* link = element->Attribute("link");
-      if (link == nullptr) return fault(*element, text(Msg::model_attribute_missing, "link"));
+      if (link == nullptr) return fault(*element, text(msg::model_attribute_missing, "link"));
       if (links_.count(link) == 0) {
         return fault(*element,
-                     text(Msg::model_unknown_link, link, did_you_mean(link, link_names_)));
+                     text(msg::model_unknown_link, link, did_you_mean(link, link_names_)));
       }
       names[i] = link;
     }
     if (!parent_of_.emplace(names[1], names[0]).second) {
-      return fault(joint, text(Msg::model_two_parents, names[1]));
+      return fault(joint, text(msg::model_two_parents, names[1]));
     }
     return {};
   }
@@ -207,7 +207,7 @@ class Checker {
     const XMLElement* limit = joint.FirstChildElement("limit");
     if (limit == nullptr) {
       if (type != "revolute" && type != "prismatic") return {};
-      return fault(joint, text(Msg::model_child_missing, "limit"));
+      return fault(joint, text(msg::model_child_missing, "limit"));
     }
     std::array<double, 4> value{};
     const std::array<const char*, 4> names = {"lower", "upper", "velocity", "effort"};
@@ -215,10 +215,10 @@ class Checker {
       const auto number = numbers(limit, names[i], 1);
       if (!number) return fail(number.error());
       if (!number->empty()) value[i] = number->front();
-      if (i >= 2 && value[i] < 0) return fault(*limit, text(Msg::model_negative, names[i]));
+      if (i >= 2 && value[i] < 0) return fault(*limit, text(msg::model_negative, names[i]));
     }
     if ((type == "revolute" || type == "prismatic") && value[0] > value[1]) {
-      return fault(*limit, text(Msg::model_limits_crossed, value[0], value[1]));
+      return fault(*limit, text(msg::model_limits_crossed, value[0], value[1]));
     }
     return {};
   }
@@ -229,15 +229,15 @@ class Checker {
     for (const std::string& name : link_names_) {
       if (parent_of_.count(name) == 0) roots.push_back(name);
     }
-    if (roots.empty()) return fault(robot_, text(Msg::model_link_loop, link_names_.front()));
+    if (roots.empty()) return fault(robot_, text(msg::model_link_loop, link_names_.front()));
     if (roots.size() > 1) {
-      return fault(*links_.at(roots[1]), text(Msg::model_two_roots, roots[0], roots[1]));
+      return fault(*links_.at(roots[1]), text(msg::model_two_roots, roots[0], roots[1]));
     }
     for (const std::string& name : link_names_) {
       std::string at = name;
       for (std::size_t steps = 0; parent_of_.count(at) > 0; at = parent_of_.at(at)) {
         if (++steps > link_names_.size()) {
-          return fault(*links_.at(name), text(Msg::model_link_loop, name));
+          return fault(*links_.at(name), text(msg::model_link_loop, name));
         }
       }
     }

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
 namespace mjarm {
@@ -69,8 +69,8 @@ void give_mass(const fs::path& file, XMLElement& robot, std::vector<std::string>
     traces += (traces.empty() ? "" : ", ") + moved;
   }
   const std::string name = file.string();
-  if (!traces.empty()) warnings.push_back(text(Msg::model_no_inertia, name, traces, kTinyMass));
-  if (!guesses.empty()) warnings.push_back(text(Msg::model_guessed_inertia, name, guesses));
+  if (!traces.empty()) warnings.push_back(text(msg::model_no_inertia, name, traces, kTinyMass));
+  if (!guesses.empty()) warnings.push_back(text(msg::model_guessed_inertia, name, guesses));
 }
 
 }  // namespace mjarm

@@ -2,7 +2,7 @@
 #include <optional>
 #include <set>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
@@ -121,20 +121,20 @@ Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadO
         if (mesh == nullptr) continue;
         const char* name = mesh->Attribute("filename");
         if (name == nullptr) {
-          return fail(urdf_error(file, *mesh, text(Msg::model_attribute_missing, "filename")));
+          return fail(urdf_error(file, *mesh, text(msg::model_attribute_missing, "filename")));
         }
         const bool readable = is_readable_format(name);
         if (!readable && std::string_view(kind) == "visual") {
           if (warned.insert(name).second) {
             warnings.push_back(
-                text(Msg::model_mesh_left_out, file.string(), mesh->GetLineNum(), name));
+                text(msg::model_mesh_left_out, file.string(), mesh->GetLineNum(), name));
           }
           link->DeleteChild(shape);
           continue;
         }
-        if (!readable) return fail(urdf_error(file, *mesh, text(Msg::model_mesh_format, name)));
+        if (!readable) return fail(urdf_error(file, *mesh, text(msg::model_mesh_format, name)));
         const std::optional<fs::path> path = finder.find(name);
-        if (!path) return fail(urdf_error(file, *mesh, text(Msg::model_no_mesh, name)));
+        if (!path) return fail(urdf_error(file, *mesh, text(msg::model_no_mesh, name)));
         mesh->SetAttribute("filename", path->c_str());
       }
     }

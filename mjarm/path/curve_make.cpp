@@ -2,7 +2,7 @@
 #include <numbers>
 #include <optional>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/path.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/curve.hpp"
 
@@ -26,8 +26,8 @@ Result<std::vector<Pose>> checked(std::span<const Pose> poses) {
   clean.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose& X = poses[i];
-    if (!X.p.allFinite() || !X.R.allFinite()) return bad(text(Msg::path_pose_not_finite, i));
-    if (!is_rotation(X.R)) return bad(text(Msg::path_pose_no_rotation, i));
+    if (!X.p.allFinite() || !X.R.allFinite()) return bad(text(msg::path_pose_not_finite, i));
+    if (!is_rotation(X.R)) return bad(text(msg::path_pose_no_rotation, i));
     clean.push_back({X.p, to_matrix(to_quat(X.R))});
   }
   return clean;
@@ -100,14 +100,14 @@ Result<Curve> Curve::line(const Pose& from, const Pose& to) {
 }
 
 Result<Curve> Curve::polyline(std::span<const Pose> points) {
-  if (points.size() < 2) return bad(text(Msg::path_too_few_points, points.size()));
+  if (points.size() < 2) return bad(text(msg::path_too_few_points, points.size()));
   const Result<std::vector<Pose>> poses = checked(points);
   if (!poses) return fail(poses.error());
   std::vector<CurvePiece> pieces;
   for (std::size_t i = 0; i + 1 < poses->size(); ++i) {
     const std::optional<CurvePiece> piece = straight_piece((*poses)[i], (*poses)[i + 1]);
-    if (!piece) return bad(text(Msg::path_same_poses, i, i + 1));
-    if (!std::isfinite(piece->span)) return bad(text(Msg::path_pose_not_finite, i + 1));
+    if (!piece) return bad(text(msg::path_same_poses, i, i + 1));
+    if (!std::isfinite(piece->span)) return bad(text(msg::path_pose_not_finite, i + 1));
     pieces.push_back(*piece);
   }
   return Curve(std::move(pieces));
@@ -120,11 +120,11 @@ Result<Curve> Curve::arc(const Pose& from, const Pose& via, const Pose& to) {
   const Eigen::Matrix3d &R0 = (*poses)[0].R, &R1 = (*poses)[1].R, &R2 = (*poses)[2].R;
 
   const Eigen::Vector3d d1 = via.p - from.p, d2 = to.p - from.p;
-  if (d1.norm() < kSamePoint) return bad(text(Msg::path_same_points, 0, 1));
-  if (d2.norm() < kSamePoint) return bad(text(Msg::path_same_points, 0, 2));
-  if ((d2 - d1).norm() < kSamePoint) return bad(text(Msg::path_same_points, 1, 2));
+  if (d1.norm() < kSamePoint) return bad(text(msg::path_same_points, 0, 1));
+  if (d2.norm() < kSamePoint) return bad(text(msg::path_same_points, 0, 2));
+  if ((d2 - d1).norm() < kSamePoint) return bad(text(msg::path_same_points, 1, 2));
   const Eigen::Vector3d n = d1.cross(d2);
-  if (n.norm() <= kOnALine * d1.norm() * d2.norm()) return bad(text(Msg::path_arc_is_straight));
+  if (n.norm() <= kOnALine * d1.norm() * d2.norm()) return bad(text(msg::path_arc_is_straight));
 
   // Centre of the circle through three points, seen from the first one.
   const Eigen::Vector3d to_center =
@@ -137,7 +137,7 @@ Result<Curve> Curve::arc(const Pose& from, const Pose& via, const Pose& to) {
     return angle < 0 ? angle + 2 * kPi : angle;
   };
   const double angle1 = angle_of(d1), angle2 = angle_of(d2);
-  if (!std::isfinite(radius) || angle1 >= angle2) return bad(text(Msg::path_arc_is_straight));
+  if (!std::isfinite(radius) || angle1 >= angle2) return bad(text(msg::path_arc_is_straight));
 
   CurvePiece first = round_piece(from.p, radius, u, v, angle1);
   const Eigen::Vector3d u1 = std::cos(angle1) * u + std::sin(angle1) * v;
@@ -152,13 +152,13 @@ Result<Curve> Curve::arc(const Pose& from, const Pose& via, const Pose& to) {
 
 Result<Curve> Curve::ellipse(const Ellipse& ellipse) {
   const auto sound = [](double axis) { return std::isfinite(axis) && axis > 0; };
-  if (!sound(ellipse.a)) return bad(text(Msg::path_ellipse_axis, "a", ellipse.a));
-  if (!sound(ellipse.b)) return bad(text(Msg::path_ellipse_axis, "b", ellipse.b));
+  if (!sound(ellipse.a)) return bad(text(msg::path_ellipse_axis, "a", ellipse.a));
+  if (!sound(ellipse.b)) return bad(text(msg::path_ellipse_axis, "b", ellipse.b));
   if (!ellipse.normal.allFinite() || ellipse.normal.isZero(0)) {
-    return bad(text(Msg::path_ellipse_normal));
+    return bad(text(msg::path_ellipse_normal));
   }
   const Result<std::vector<Pose>> pose = checked(std::vector<Pose>{{ellipse.center, ellipse.R}});
-  if (!pose) return bad(text(Msg::path_ellipse_pose));
+  if (!pose) return bad(text(msg::path_ellipse_pose));
 
   const EllipseAxes axes = ellipse_axes(ellipse.normal);
   CurvePiece piece;
@@ -170,7 +170,7 @@ Result<Curve> Curve::ellipse(const Ellipse& ellipse) {
   piece.b = ellipse.b;
   piece.R_ref = pose->front().R;
   piece.length = piece.span = ellipse_arc_length(ellipse.a, ellipse.b, 2 * kPi);
-  if (!std::isfinite(piece.span)) return bad(text(Msg::path_ellipse_axis, "a", ellipse.a));
+  if (!std::isfinite(piece.span)) return bad(text(msg::path_ellipse_axis, "a", ellipse.a));
   return Curve({piece});
 }
 

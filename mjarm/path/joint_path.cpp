@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/path.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 
 namespace mjarm {
@@ -139,7 +139,7 @@ Result<JointPath> joint_line(std::span<const double> q0, std::span<const double>
   };
   if (n < 2 || q0.empty() || q0.size() != q1.size() ||
       q0.size() > static_cast<std::size_t>(kMaxDof) || !finite(q0) || !finite(q1)) {
-    return fail(Errc::bad_input, text(Msg::path_bad_call));
+    return fail(Errc::bad_input, text(msg::path_bad_call));
   }
   const JointVec from = joint_vec(q0), to = joint_vec(q1);
   const double length = (to - from).norm();

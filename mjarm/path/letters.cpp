@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/path.hpp"
 
 namespace mjarm {
 namespace {
@@ -94,7 +94,7 @@ double add_glyph(std::vector<Stroke>& strokes, const Glyph& glyph, double x, dou
 
 Result<std::vector<Stroke>> letter_strokes(std::string_view text, double height) {
   if (!std::isfinite(height) || height <= 0) {
-    return fail(Errc::bad_input, mjarm::text(Msg::path_letter_height, height));
+    return fail(Errc::bad_input, mjarm::text(msg::path_letter_height, height));
   }
   std::vector<Stroke> strokes;
   double x = 0;
@@ -105,12 +105,12 @@ Result<std::vector<Stroke>> letter_strokes(std::string_view text, double height)
     }
     const Glyph* glyph = find_glyph(text[i]);
     if (glyph == nullptr) {
-      return fail(Errc::bad_input, mjarm::text(Msg::path_letter_unknown, character_at(text, i)));
+      return fail(Errc::bad_input, mjarm::text(msg::path_letter_unknown, character_at(text, i)));
     }
     x += add_glyph(strokes, *glyph, x, height / kHeight) + kGap;
   }
   if (strokes.empty()) {
-    return fail(Errc::bad_input, mjarm::text(Msg::path_letters_empty, std::string(text)));
+    return fail(Errc::bad_input, mjarm::text(msg::path_letters_empty, std::string(text)));
   }
   return strokes;
 }

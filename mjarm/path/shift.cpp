@@ -3,7 +3,7 @@
 #include <numeric>
 #include <vector>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/path.hpp"
 #include "mjarm/path/joint_path.hpp"
 
 namespace mjarm {
@@ -58,7 +58,7 @@ Result<Eigen::Vector3d> find_shift(const IkSolver& ik, std::span<const Pose> pos
   constexpr int kProbed = 500;    // shifts that pass the geometric test
   constexpr int kSolved = 50;     // shifts solved as a whole
   if (poses.empty() || !(reach >= 0) || !(options.max_step > 0)) {
-    return fail(Errc::bad_input, text(Msg::path_bad_call));
+    return fail(Errc::bad_input, text(msg::path_bad_call));
   }
   std::vector<double> s(poses.size());
   std::iota(s.begin(), s.end(), 0.0);
@@ -74,7 +74,7 @@ Result<Eigen::Vector3d> find_shift(const IkSolver& ik, std::span<const Pose> pos
     ++solved;
     if (solve_path(ik, candidate, s, q_seed, options)) return shift;
   }
-  return fail(Errc::impossible, text(Msg::path_no_shift, reach));
+  return fail(Errc::impossible, text(msg::path_no_shift, reach));
 }
 
 }  // namespace mjarm

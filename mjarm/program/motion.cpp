@@ -1,6 +1,6 @@
 #include "mjarm/program/motion.hpp"
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/program.hpp"
 
 namespace mjarm {
 
@@ -9,8 +9,8 @@ std::string describe(const MotionFailure& failure, const Arm& arm) {
   if (!failure.path) return {};
   const PathFailure& path = *failure.path;
   const double percent = 100 * path.fraction;
-  if (path.flip) return text(Msg::program_path_flips, percent, path.at);
-  return text(Msg::program_path_stops, percent, path.at, describe(path.ik, arm));
+  if (path.flip) return text(msg::program_path_flips, percent, path.at);
+  return text(msg::program_path_stops, percent, path.at, describe(path.ik, arm));
 }
 
 Result<ToolMotion, MotionFailure> plan_tool_motion(const IkSolver& ik, const Curve& curve,

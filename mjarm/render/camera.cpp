@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm {
@@ -17,8 +17,8 @@ constexpr double kRadPerDeg = std::numbers::pi / 180;
 Result<void> check_number(const char* name, double value, bool positive) {
   if (std::isfinite(value) && (!positive || value > 0)) return {};
   const std::string expected =
-      text(positive ? Msg::render_a_positive_number : Msg::render_a_finite_number);
-  return fail(Errc::bad_input, text(Msg::render_bad_view, name, value, expected));
+      text(positive ? msg::render_a_positive_number : msg::render_a_finite_number);
+  return fail(Errc::bad_input, text(msg::render_bad_view, name, value, expected));
 }
 
 Result<void> check_view(const CameraView& view) {
@@ -58,8 +58,8 @@ Result<void> check_camera(const Model& model, const Camera& camera) {
   const std::vector<std::string> names = camera_names(model);
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  if (list.empty()) list = text(Msg::render_none);
-  return fail(Errc::bad_input, text(Msg::render_no_camera, model.file().string(), camera.name,
+  if (list.empty()) list = text(msg::render_none);
+  return fail(Errc::bad_input, text(msg::render_no_camera, model.file().string(), camera.name,
                                     did_you_mean(camera.name, names), list));
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <numbers>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/render/canvas_internal.hpp"
 
 namespace mjarm::canvas {
@@ -170,7 +170,7 @@ Result<Image> to_image(const Page& page, double pixels_per_point) {
   set_font_options(cr);
   for (const Item& item : page.items) std::visit(Painter{cr}, item);
   if (const cairo_status_t status = cairo_status(cr); status != CAIRO_STATUS_SUCCESS) {
-    return fail(Errc::system, text(Msg::render_cairo_failed, cairo_status_to_string(status)));
+    return fail(Errc::system, text(msg::render_cairo_failed, cairo_status_to_string(status)));
   }
   return image_of(surface.get(), width, height);
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/gl_context_internal.hpp"
 
@@ -36,7 +36,7 @@ Result<std::unique_ptr<GlContext::Impl>> attempt(GlKind kind) {
   using GetString = const unsigned char* (*)(unsigned);
   const auto get_string = reinterpret_cast<GetString>(context.function("glGetString"));
   if (get_string == nullptr) {
-    return fail(Errc::not_available, text(Msg::render_missing_function, "glGetString"));
+    return fail(Errc::not_available, text(msg::render_missing_function, "glGetString"));
   }
   const auto read = [get_string](unsigned name) {
     const unsigned char* value = get_string(name);
@@ -46,13 +46,13 @@ Result<std::unique_ptr<GlContext::Impl>> attempt(GlKind kind) {
   context.version = read(kGlVersion);
   // MuJoCo would end the process without them.
   if (read(kGlExtensions).find("GL_ARB_framebuffer_object") == std::string::npos) {
-    return fail(Errc::not_available, text(Msg::render_gl_too_old, context.version));
+    return fail(Errc::not_available, text(msg::render_gl_too_old, context.version));
   }
   return made;
 }
 
 std::string advice(GlKind kind, const std::string& reason) {
-  return text(kind == GlKind::egl ? Msg::render_no_egl : Msg::render_no_osmesa, reason);
+  return text(kind == GlKind::egl ? msg::render_no_egl : msg::render_no_osmesa, reason);
 }
 
 /// The kinds to try, in order.
@@ -71,7 +71,7 @@ Result<void> claim_gl(GlKind kind) {
   int expected = kNone;
   if (claimed_kind.compare_exchange_strong(expected, static_cast<int>(kind))) return {};
   if (expected == static_cast<int>(kind)) return {};
-  return fail(Errc::not_available, text(Msg::render_gl_other_kind,
+  return fail(Errc::not_available, text(msg::render_gl_other_kind,
                                         name_of(static_cast<GlKind>(expected)), name_of(kind)));
 }
 
@@ -89,7 +89,7 @@ Result<GlContext> GlContext::create(GlChoice choice) {
     return GlContext(std::move(*context));
   }
   if (kinds.size() == 2) {
-    return fail(Errc::not_available, text(Msg::render_no_gl, reasons[0], reasons[1]));
+    return fail(Errc::not_available, text(msg::render_no_gl, reasons[0], reasons[1]));
   }
   return fail(Errc::not_available, std::string(name_of(kinds[0])) + ": " + reasons[0]);
 }

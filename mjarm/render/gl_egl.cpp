@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/gl_context_internal.hpp"
 
@@ -56,7 +56,7 @@ Result<Egl> open_egl() {
     if (egl.platform_display == nullptr) missing = "eglGetPlatformDisplayEXT";
   }
   if (missing != nullptr) {
-    return fail(Errc::not_available, text(Msg::render_missing_function, missing));
+    return fail(Errc::not_available, text(msg::render_missing_function, missing));
   }
   return egl;
 }
@@ -97,7 +97,7 @@ class EglContext : public GlContext::Impl {
     egl_.bind_api(EGL_OPENGL_API);
     if (egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
       return fail(Errc::not_available,
-                  text(Msg::render_gl_call_failed, "eglMakeCurrent", egl_.get_error()));
+                  text(msg::render_gl_call_failed, "eglMakeCurrent", egl_.get_error()));
     }
     return {};
   }
@@ -118,7 +118,7 @@ class EglContext : public GlContext::Impl {
 
 Result<std::unique_ptr<GlContext::Impl>> context_on(const Egl& egl, EGLDisplay display) {
   const auto failed = [&egl](const char* call) {
-    return fail(Errc::not_available, text(Msg::render_gl_call_failed, call, egl.get_error()));
+    return fail(Errc::not_available, text(msg::render_gl_call_failed, call, egl.get_error()));
   };
   if (egl.initialize(display, nullptr, nullptr) == EGL_FALSE) return failed("eglInitialize");
   if (egl.bind_api(EGL_OPENGL_API) == EGL_FALSE) return failed("eglBindAPI");
@@ -140,7 +140,7 @@ Result<std::unique_ptr<GlContext::Impl>> context_on(const Egl& egl, EGLDisplay d
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (egl.choose_config(display, kWanted.data(), &config, 1, &count) == EGL_FALSE || count < 1) {
-    return fail(Errc::not_available, text(Msg::render_egl_no_config));
+    return fail(Errc::not_available, text(msg::render_egl_no_config));
   }
   EGLContext context = egl.create_context(display, config, EGL_NO_CONTEXT, nullptr);
   if (context == EGL_NO_CONTEXT) return failed("eglCreateContext");
@@ -156,7 +156,7 @@ Result<std::unique_ptr<GlContext::Impl>> context_on(const Egl& egl, EGLDisplay d
 Result<std::unique_ptr<GlContext::Impl>> make_egl_context() {
   const Result<Egl> egl = open_egl();
   if (!egl) return fail(egl.error());
-  Error reason{Errc::not_available, text(Msg::render_egl_no_display)};
+  Error reason{Errc::not_available, text(msg::render_egl_no_display)};
   for (EGLDisplay display : displays(*egl)) {
     Result<std::unique_ptr<GlContext::Impl>> context = context_on(*egl, display);
     if (context) return context;

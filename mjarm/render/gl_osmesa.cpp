@@ -1,7 +1,7 @@
 #include <array>
 #include <cstdint>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/gl_context_internal.hpp"
 
@@ -41,7 +41,7 @@ Result<Library> open_osmesa() {
   load(library.destroy, "OSMesaDestroyContext");
   load(library.function, "OSMesaGetProcAddress");
   if (missing != nullptr) {
-    return fail(Errc::not_available, text(Msg::render_missing_function, missing));
+    return fail(Errc::not_available, text(msg::render_missing_function, missing));
   }
   return library;
 }
@@ -64,7 +64,7 @@ class Osmesa : public GlContext::Impl {
   Result<void> make_current() override {
     // Pictures are drawn into a framebuffer object; the default one only has to exist.
     if (library_.make_current(context_, pixels_.data(), kUnsignedByte, kSize, kSize) == 0) {
-      return fail(Errc::not_available, text(Msg::render_gl_call_failed, "OSMesaMakeCurrent", 0));
+      return fail(Errc::not_available, text(msg::render_gl_call_failed, "OSMesaMakeCurrent", 0));
     }
     return {};
   }
@@ -86,7 +86,7 @@ Result<std::unique_ptr<GlContext::Impl>> make_osmesa_context() {
   if (!library) return fail(std::move(library.error()));
   auto context = std::make_unique<Osmesa>(*library);
   if (!context->created()) {
-    return fail(Errc::not_available, text(Msg::render_gl_call_failed, "OSMesaCreateContextExt", 0));
+    return fail(Errc::not_available, text(msg::render_gl_call_failed, "OSMesaCreateContextExt", 0));
   }
   if (Result<void> current = context->make_current(); !current) {
     return fail(std::move(current.error()));

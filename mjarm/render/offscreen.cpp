@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
@@ -49,7 +49,7 @@ struct OffscreenRenderer::Impl {
         call_mujoco([&] { mjr_makeContext(&m, &context_, mjFONTSCALE_150); });
     gl.release();
     if (outcome.failed) {
-      return fail(Errc::not_available, text(Msg::render_upload_failed, outcome.error));
+      return fail(Errc::not_available, text(msg::render_upload_failed, outcome.error));
     }
     return {};
   }
@@ -65,7 +65,7 @@ Result<OffscreenRenderer> OffscreenRenderer::create(const Model& model,
   const auto fits = [](int size) { return size >= 1 && size <= kMaxSize; };
   if (!fits(options.width) || !fits(options.height)) {
     return fail(Errc::bad_input,
-                text(Msg::render_bad_size, options.width, options.height, kMaxSize));
+                text(msg::render_bad_size, options.width, options.height, kMaxSize));
   }
   Result<GlContext> gl = GlContext::create(options.gl);
   if (!gl) return fail(std::move(gl.error()));
@@ -96,7 +96,7 @@ Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& ca
   const int error = mjr_getError();
   impl_->gl.release();
   if (error != 0) {
-    return fail(Errc::system, text(Msg::render_gl_error, error));
+    return fail(Errc::system, text(msg::render_gl_error, error));
   }
   flip_rows(image);
   return image;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/render/panel_internal.hpp"
 #include "mjarm/render/png.hpp"
 
@@ -28,11 +28,11 @@ Result<void> check_panel(const PlotPanel& panel, std::size_t number) {
     const PlotLine& line = panel.lines[i];
     if (line.x.size() == line.y.size()) continue;
     return fail(Errc::bad_input,
-                text(Msg::render_plot_lengths, number, i + 1, line.x.size(), line.y.size()));
+                text(msg::render_plot_lengths, number, i + 1, line.x.size(), line.y.size()));
   }
   for (const std::optional<PlotRange>& range : {panel.x_range, panel.y_range}) {
     if (!range || is_range(*range)) continue;
-    return fail(Errc::bad_input, text(Msg::render_plot_range, number, range->lower, range->upper));
+    return fail(Errc::bad_input, text(msg::render_plot_range, number, range->lower, range->upper));
   }
   return {};
 }
@@ -40,7 +40,7 @@ Result<void> check_panel(const PlotPanel& panel, std::size_t number) {
 Result<void> check(const Plot& plot) {
   const bool large = plot.panel_width >= kSmallestPanel && plot.panel_height >= kSmallestPanel;
   if (plot.panels.empty() || plot.columns < 1 || !large) {
-    return fail(Errc::bad_input, text(Msg::render_plot_empty, kSmallestPanel));
+    return fail(Errc::bad_input, text(msg::render_plot_empty, kSmallestPanel));
   }
   for (std::size_t i = 0; i < plot.panels.size(); ++i) {
     if (Result<void> checked = check_panel(plot.panels[i], i + 1); !checked) return checked;
@@ -99,7 +99,7 @@ Page lay_out(const Plot& plot) {
 PlotLine planned_line(std::vector<double> x, std::vector<double> y) {
   return {.x = std::move(x),
           .y = std::move(y),
-          .label = text(Msg::render_planned),
+          .label = text(msg::render_planned),
           .style = LineStyle::dashed,
           .color = PlotLine::kInk,
           .width = 0.9};
@@ -108,7 +108,7 @@ PlotLine planned_line(std::vector<double> x, std::vector<double> y) {
 PlotLine executed_line(std::vector<double> x, std::vector<double> y) {
   return {.x = std::move(x),
           .y = std::move(y),
-          .label = text(Msg::render_executed),
+          .label = text(msg::render_executed),
           .color = 1,
           .width = 2.2};
 }

@@ -3,7 +3,7 @@
 #include <png.h>
 
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 
 namespace mjarm {
 
@@ -13,7 +13,7 @@ Result<std::string> encode_png(const Image& image) {
                           : std::size_t{0};
   if (needed == 0 || image.rgb.size() != needed) {
     return fail(Errc::bad_input,
-                text(Msg::render_bad_image, image.width, image.height, needed, image.rgb.size()));
+                text(msg::render_bad_image, image.width, image.height, needed, image.rgb.size()));
   }
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
@@ -25,7 +25,7 @@ Result<std::string> encode_png(const Image& image) {
   std::string bytes(size, '\0');
   if (png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr) ==
       0) {
-    return fail(Errc::system, text(Msg::render_png_failed, header.message));
+    return fail(Errc::system, text(msg::render_png_failed, header.message));
   }
   bytes.resize(size);
   return bytes;

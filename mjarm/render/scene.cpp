@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/render.hpp"
 #include "mjarm/render/overlay_internal.hpp"
 
 namespace mjarm {
@@ -111,7 +111,7 @@ Result<void> Scene::set_state(const Snapshot& snapshot) {
   } else if (static_cast<int>(snapshot.state.size()) == size) {
     mj_setState(&impl_->m, impl_->d.get(), snapshot.state.data(), mjSTATE_INTEGRATION);
   } else {
-    return fail(Errc::bad_input, text(Msg::render_bad_snapshot, snapshot.state.size(), size));
+    return fail(Errc::bad_input, text(msg::render_bad_snapshot, snapshot.state.size(), size));
   }
   impl_->update_positions();
   return {};

@@ -7,7 +7,7 @@
 
 #include "mjarm/control/actuation.hpp"
 #include "mjarm/control/sag.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/sim.hpp"
 #include "mjarm/sim/ghost_internal.hpp"
 #include "mjarm/sim/stepper_internal.hpp"
 
@@ -22,7 +22,7 @@ constexpr double kStill = 1e-3;
 /// A motion of so many joints is not one of this arm.
 Followed other_arm(Eigen::Index joints, const Arm& arm) {
   return fail(FollowFailure{
-      {}, Error{Errc::usage, text(Msg::sim_other_arm, joints, arm.name, arm.dof())}, {}});
+      {}, Error{Errc::usage, text(msg::sim_other_arm, joints, arm.name, arm.dof())}, {}});
 }
 
 Followed broken(Error error, const Stepper& stepper) {
@@ -113,19 +113,19 @@ std::string cause_of(const FollowWait& wait, const Arm& arm) {
   switch (wait.cause) {
     case WaitCause::sag:
       if (wait.joint >= 0) {
-        return text(Msg::sim_wait_sag_joint, wait.sag, wait.torque, wait.stiffness);
+        return text(msg::sim_wait_sag_joint, wait.sag, wait.torque, wait.stiffness);
       }
-      return text(Msg::sim_wait_sag_tool, wait.sag, wait.torque, wait.stiffness);
+      return text(msg::sim_wait_sag_tool, wait.sag, wait.torque, wait.stiffness);
     case WaitCause::force_limit:
-      return text(Msg::sim_wait_force);
+      return text(msg::sim_wait_force);
     case WaitCause::contact:
-      return text(Msg::sim_wait_contact, wait.contact->first, wait.contact->second);
+      return text(msg::sim_wait_contact, wait.contact->first, wait.contact->second);
     case WaitCause::moving:
-      return text(Msg::sim_wait_moving, arm.name);
+      return text(msg::sim_wait_moving, arm.name);
     case WaitCause::unknown:
       break;
   }
-  return text(Msg::sim_wait_unknown);
+  return text(msg::sim_wait_unknown);
 }
 
 }  // namespace
@@ -171,9 +171,9 @@ std::string describe(const FollowFailure& failure, const Arm& arm) {
   if (!failure.wait) return {};
   const FollowWait& wait = *failure.wait;
   const std::string head =
-      wait.joint >= 0 ? text(Msg::sim_wait_joint, wait.waypoint + 1, wait.count, wait.steps,
+      wait.joint >= 0 ? text(msg::sim_wait_joint, wait.waypoint + 1, wait.count, wait.steps,
                              arm.joints[wait.joint].name, wait.distance, wait.tolerance)
-                      : text(Msg::sim_wait_tool, wait.waypoint + 1, wait.count, wait.steps, arm.tip,
+                      : text(msg::sim_wait_tool, wait.waypoint + 1, wait.count, wait.steps, arm.tip,
                              wait.distance, wait.tolerance);
   return head + cause_of(wait, arm);
 }

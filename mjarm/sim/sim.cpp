@@ -8,7 +8,7 @@
 
 #include "mjarm/control/actuation.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/sim/raw_internal.hpp"
@@ -68,9 +68,9 @@ struct Sim::Impl {
   template <class Work>
   void guarded(const Work& work) {
     const MujocoOutcome said = call_mujoco(work);
-    if (said.failed) fatal = Error{Errc::impossible, text(Msg::sim_fatal, d().time, said.error)};
+    if (said.failed) fatal = Error{Errc::impossible, text(msg::sim_fatal, d().time, said.error)};
     if (unstable()) return;  // said with the error
-    for (const std::string& warning : said.warnings) log_warning(text(Msg::sim_mujoco, warning));
+    for (const std::string& warning : said.warnings) log_warning(text(msg::sim_mujoco, warning));
   }
   /// Recomputes everything that follows from the state.
   void refresh() {
@@ -94,7 +94,7 @@ struct Sim::Impl {
       joint = raw::qpos_name(m(), warning[mjWARN_BADQPOS].lastinfo);
     }
     reset();
-    return {Errc::impossible, text(Msg::sim_unstable, time, joint, m().opt.timestep)};
+    return {Errc::impossible, text(msg::sim_unstable, time, joint, m().opt.timestep)};
   }
 
   [[nodiscard]] std::vector<Contact> contacts(int root) const {
@@ -127,7 +127,7 @@ Result<void> Sim::reset(std::string_view keyframe) {
     if (key < 0) {
       const auto names = keyframe_names(m);
       return fail(Errc::bad_input,
-                  text(Msg::sim_no_keyframe, model().file().string(), keyframe, joined(names)) +
+                  text(msg::sim_no_keyframe, model().file().string(), keyframe, joined(names)) +
                       did_you_mean(keyframe, names));
     }
     impl_->fatal.reset();
@@ -163,7 +163,7 @@ Result<void> Sim::restore(const Snapshot& snapshot) {
   const mjModel& m = impl_->m();
   const int size = mj_stateSize(&m, mjSTATE_INTEGRATION);
   if (static_cast<int>(snapshot.state.size()) != size) {
-    return fail(Errc::bad_input, text(Msg::sim_other_snapshot, snapshot.state.size(), size));
+    return fail(Errc::bad_input, text(msg::sim_other_snapshot, snapshot.state.size(), size));
   }
   mj_setState(&m, &impl_->d(), snapshot.state.data(), mjSTATE_INTEGRATION);
   impl_->refresh();
@@ -183,7 +183,7 @@ Result<void> Sim::step(std::span<const double> ctrl) {
     if (!std::isfinite(ctrl[i])) {
       const char* name = mj_id2name(&m, mjOBJ_ACTUATOR, static_cast<int>(i));
       return fail(Errc::bad_input,
-                  text(Msg::sim_bad_ctrl, d.time, i, name != nullptr ? name : "-"));
+                  text(msg::sim_bad_ctrl, d.time, i, name != nullptr ? name : "-"));
     }
   }
   if (ctrl.data() != d.ctrl) std::copy(ctrl.begin(), ctrl.end(), d.ctrl);

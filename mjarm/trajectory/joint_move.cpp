@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
@@ -46,11 +46,11 @@ SevenPhases seven_phases(double v, double a, double j) {
 Result<Trajectory> time_joint_move(std::span<const double> q0, std::span<const double> q1,
                                    const JointLimits& limits, const TimingOptions& options) {
   if (q0.empty() || q0.size() != q1.size() || q0.size() > static_cast<std::size_t>(kMaxDof)) {
-    return fail(Errc::bad_input, text(Msg::trajectory_bad_ends));
+    return fail(Errc::bad_input, text(msg::trajectory_bad_ends));
   }
   const JointVec from = joint_vec(q0), to = joint_vec(q1);
   const JointVec way = to - from, zero = JointVec::Zero(from.size());
-  if (!way.allFinite()) return fail(Errc::bad_input, text(Msg::trajectory_bad_ends));
+  if (!way.allFinite()) return fail(Errc::bad_input, text(msg::trajectory_bad_ends));
   const Result<detail::Bounds> bounds = detail::bounds_of(limits, options, from.size());
   if (!bounds) return fail(bounds.error());
   const JointState start{from, zero, zero}, end{to, zero, zero};

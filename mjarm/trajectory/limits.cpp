@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
 
 namespace mjarm {
@@ -12,17 +12,17 @@ Result<Bounds> bounds_of(const JointLimits& limits, const TimingOptions& options
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   for (const JointVec* limit : {&limits.velocity, &limits.acceleration, &limits.jerk}) {
     if (limit->size() != dof || !std::all_of(limit->begin(), limit->end(), positive)) {
-      return fail(Errc::bad_input, text(Msg::trajectory_bad_limits, dof));
+      return fail(Errc::bad_input, text(msg::trajectory_bad_limits, dof));
     }
   }
   if (!positive(options.joint_share) || options.joint_share > 1) {
-    return fail(Errc::bad_input, text(Msg::trajectory_bad_share, options.joint_share));
+    return fail(Errc::bad_input, text(msg::trajectory_bad_share, options.joint_share));
   }
   if (!positive(options.tool_speed)) {
-    return fail(Errc::bad_input, text(Msg::trajectory_bad_speed, options.tool_speed));
+    return fail(Errc::bad_input, text(msg::trajectory_bad_speed, options.tool_speed));
   }
   if (!positive(options.tool_accel)) {
-    return fail(Errc::bad_input, text(Msg::trajectory_bad_accel, options.tool_accel));
+    return fail(Errc::bad_input, text(msg::trajectory_bad_accel, options.tool_accel));
   }
   return Bounds{options.joint_share * limits.velocity, options.joint_share * limits.acceleration,
                 limits.jerk};

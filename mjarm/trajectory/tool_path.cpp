@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
 #include "mjarm/trajectory/smooth_profile_internal.hpp"
 #include "mjarm/trajectory/speed_profile_internal.hpp"
@@ -43,7 +43,7 @@ Result<std::vector<std::size_t>> rests_of(const JointPath& path, std::span<const
   for (const double stop : stops) {
     const auto above = std::lower_bound(path.s.begin(), path.s.end(), stop - slack);
     if (above == path.s.end() || !(std::abs(*above - stop) <= slack)) {
-      return fail(Errc::bad_input, text(Msg::trajectory_bad_stop, stop));
+      return fail(Errc::bad_input, text(msg::trajectory_bad_stop, stop));
     }
     rests.push_back(static_cast<std::size_t>(above - path.s.begin()));
   }
@@ -164,7 +164,7 @@ double smoothing_window(const Bounds& bounds) {
 Result<Trajectory> time_tool_path(const JointPath& path, std::span<const double> stops,
                                   const JointLimits& limits, const TimingOptions& options) {
   if (const auto bad = bad_waypoint(path)) {
-    return fail(Errc::bad_input, text(Msg::trajectory_bad_path, *bad));
+    return fail(Errc::bad_input, text(msg::trajectory_bad_path, *bad));
   }
   const Result<Bounds> bounds = detail::bounds_of(limits, options, path.q[0].size());
   if (!bounds) return fail(bounds.error());

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/trajectory.hpp"
 
 namespace mjarm {
 namespace {
@@ -43,13 +43,13 @@ JointState advanced(const JointState& x, const JointVec& jerk, double h) {
 Result<Trajectory> Trajectory::through(const std::vector<double>& times,
                                        const std::vector<JointState>& knots) {
   if (times.empty() || times.size() != knots.size() || times[0] != 0) {
-    return fail(Errc::bad_input, text(Msg::trajectory_bad_knots));
+    return fail(Errc::bad_input, text(msg::trajectory_bad_knots));
   }
   const Eigen::Index dof = knots[0].q.size();
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!sound(knots[i], dof) || !std::isfinite(times[i]) ||
         (i > 0 && !(times[i] > times[i - 1]))) {
-      return fail(Errc::bad_input, text(Msg::trajectory_bad_knots));
+      return fail(Errc::bad_input, text(msg::trajectory_bad_knots));
     }
   }
   Trajectory trajectory;
@@ -73,7 +73,7 @@ Result<Trajectory> Trajectory::from_jerks(const JointState& start,
     good = std::isfinite(durations[i]) && durations[i] >= 0 && jerks[i].size() == dof &&
            jerks[i].allFinite();
   }
-  if (!good) return fail(Errc::bad_input, text(Msg::trajectory_bad_knots));
+  if (!good) return fail(Errc::bad_input, text(msg::trajectory_bad_knots));
 
   Trajectory trajectory;
   JointState state = start;

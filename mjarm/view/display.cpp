@@ -4,7 +4,7 @@
 #include <atomic>
 #include <string_view>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/view/display_internal.hpp"
 
@@ -64,7 +64,7 @@ Result<GLFWwindow*> create(int width, int height, const std::string& title, bool
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   GLFWwindow* window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window == nullptr) {
-    return fail(Errc::not_available, text(Msg::view_no_window, last_glfw_error()));
+    return fail(Errc::not_available, text(msg::view_no_window, last_glfw_error()));
   }
   glfwMakeContextCurrent(window);
   return window;
@@ -73,10 +73,10 @@ Result<GLFWwindow*> create(int width, int height, const std::string& title, bool
 }  // namespace
 
 Result<void> open_display() {
-  if (!has_display()) return fail(Errc::not_available, text(Msg::view_no_display));
-  if (lost) return fail(Errc::system, text(Msg::view_display_lost));
+  if (!has_display()) return fail(Errc::not_available, text(msg::view_no_display));
+  if (lost) return fail(Errc::system, text(msg::view_display_lost));
   if (glfwInit() == GLFW_FALSE) {
-    return fail(Errc::not_available, text(Msg::view_no_window, last_glfw_error()));
+    return fail(Errc::not_available, text(msg::view_no_window, last_glfw_error()));
   }
   survive_loss_of_x11();
   return {};
@@ -102,7 +102,7 @@ Result<GlWindow> open_gl_window(int width, int height, const std::string& title,
     if (!window) return fail(std::move(window.error()));
   }
   if (glfwExtensionSupported("GL_ARB_framebuffer_object") == GLFW_FALSE) {
-    Error error{Errc::not_available, text(Msg::view_old_gl, gl_string(kGlVersion))};
+    Error error{Errc::not_available, text(msg::view_old_gl, gl_string(kGlVersion))};
     glfwDestroyWindow(*window);
     return fail(std::move(error));
   }

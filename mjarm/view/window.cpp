@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/view.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/render/gl_context.hpp"
 #include "mjarm/view/display_internal.hpp"
@@ -143,7 +143,7 @@ Result<void> Window::Impl::upload() {
       call_mujoco([&] { mjr_makeContext(&scene.model(), &context, font_scale(scale)); });
   glfwMakeContextCurrent(nullptr);
   if (!outcome.failed) return {};
-  return fail(Errc::not_available, text(Msg::view_no_window, outcome.error));
+  return fail(Errc::not_available, text(msg::view_no_window, outcome.error));
 }
 
 void Window::Impl::set_view(const CameraView& view) {
@@ -183,7 +183,7 @@ Result<Window> Window::open(const Model& model, const std::string& title,
                             const WindowOptions& options) {
   const auto fits = [](int size) { return size >= 1 && size <= kMaxSize; };
   if (!fits(options.width) || !fits(options.height)) {
-    return fail(Errc::bad_input, text(Msg::view_bad_size, options.width, options.height, kMaxSize));
+    return fail(Errc::bad_input, text(msg::view_bad_size, options.width, options.height, kMaxSize));
   }
   if (Result<void> checked = check_camera(model, options.camera); !checked) {
     return fail(std::move(checked.error()));
@@ -223,7 +223,7 @@ CameraView Window::view() const { return impl_->scene.view(); }
 
 Result<void> Window::draw(const Snapshot& snapshot, const Overlay& overlay,
                           std::span<const LivePlot> plots) {
-  const auto lost = [] { return fail(Errc::system, text(Msg::view_display_lost)); };
+  const auto lost = [] { return fail(Errc::system, text(msg::view_display_lost)); };
   if (display_lost()) return lost();
   if (Clock::now() < impl_->next_frame) {
     glfwWaitEventsTimeout(0.001);
@@ -253,7 +253,7 @@ Result<void> Window::draw(const Snapshot& snapshot, const Overlay& overlay,
 }
 
 Result<Image> Window::picture() {
-  if (display_lost()) return fail(Errc::system, text(Msg::view_display_lost));
+  if (display_lost()) return fail(Errc::system, text(msg::view_display_lost));
   glfwMakeContextCurrent(impl_->handle);
   impl_->render();
   mjrRect viewport = {0, 0, 0, 0};

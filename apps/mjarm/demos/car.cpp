@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/demos/show.hpp"
@@ -24,8 +25,8 @@ struct Phase {
   double forward;  ///< ctrl
   double turn;     ///< ctrl
 };
-constexpr std::array kPhases = {Phase{Msg::demo_car_forward, 3.0, 0.6, 0.0},
-                                Phase{Msg::demo_car_turn, 2.0, 0.2, 0.5}};
+constexpr std::array kPhases = {Phase{msg::demo_car_forward, 3.0, 0.6, 0.0},
+                                Phase{msg::demo_car_turn, 2.0, 0.2, 0.5}};
 
 /// What was measured on the way.
 struct Drive {
@@ -68,7 +69,7 @@ Result<void> drive_phase(const Phase& phase, double most_seconds, Sim& sim, Show
     drive.ended_by_user = !show.step(sim, position(sim));
   }
   const Eigen::Vector3d p = position(sim);
-  log_info(text(Msg::demo_car_state, text(phase.label), sim.time(), p.x(), p.y(),
+  log_info(text(msg::demo_car_state, text(phase.label), sim.time(), p.x(), p.y(),
                 heading(sim) * 180 / std::numbers::pi, drive.left.back(), drive.right.back()));
   return {};
 }
@@ -86,7 +87,7 @@ std::string to_csv(const Drive& drive) {
 }
 
 Plot plot_of(const Drive& drive) {
-  PlotPanel path{.title = text(Msg::demo_plot_top), .x_label = "x [m]", .y_label = "y [m]"};
+  PlotPanel path{.title = text(msg::demo_plot_top), .x_label = "x [m]", .y_label = "y [m]"};
   path.equal_aspect = true;
   PlotLine line;
   for (const Eigen::Vector3d& p : drive.p_W) {
@@ -94,8 +95,8 @@ Plot plot_of(const Drive& drive) {
     line.y.push_back(p.y());
   }
   path.lines.push_back(std::move(line));
-  PlotPanel torque{.title = text(Msg::demo_plot_sensors),
-                   .x_label = text(Msg::demo_plot_time),
+  PlotPanel torque{.title = text(msg::demo_plot_sensors),
+                   .x_label = text(msg::demo_plot_time),
                    .y_label = "N m"};
   torque.lines.push_back({.x = drive.time, .y = drive.left, .label = "left_torque"});
   torque.lines.push_back({.x = drive.time, .y = drive.right, .label = "right_torque"});
@@ -126,7 +127,7 @@ Report report_of(const Drive& drive, const Sim& sim) {
   report.ok = to.p.x() > 0.5 && turned > 0.5 && report.path_error && report.path_error->max < 0.01;
   if (!report.ok) {
     report.reason = "not_driven";
-    report.detail = text(Msg::demo_car_failed, to.p.x(), turned * 180 / std::numbers::pi);
+    report.detail = text(msg::demo_car_failed, to.p.x(), turned * 180 / std::numbers::pi);
   }
   return report;
 }

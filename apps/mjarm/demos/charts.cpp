@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/demo.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -43,7 +43,7 @@ std::vector<double> times(const Rows& rows) {
 PlotPanel over_time(Msg title, const std::string& unit) {
   PlotPanel panel;
   panel.title = text(title);
-  panel.x_label = text(Msg::demo_plot_time);
+  panel.x_label = text(msg::demo_plot_time);
   panel.y_label = unit;
   return panel;
 }
@@ -57,10 +57,10 @@ PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
   panel.equal_aspect = true;
   panel.lines.push_back({.x = column(rows, [x](const RecordRow& row) { return row.X_WT.p[x]; }),
                          .y = column(rows, [y](const RecordRow& row) { return row.X_WT.p[y]; }),
-                         .label = text(Msg::demo_plot_executed)});
+                         .label = text(msg::demo_plot_executed)});
   panel.lines.push_back({.x = column(rows, [x](const RecordRow& row) { return row.X_ref.p[x]; }),
                          .y = column(rows, [y](const RecordRow& row) { return row.X_ref.p[y]; }),
-                         .label = text(Msg::demo_plot_planned),
+                         .label = text(msg::demo_plot_planned),
                          .style = LineStyle::dashed,
                          .color = PlotLine::kInk});
   return panel;
@@ -68,7 +68,7 @@ PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
 
 PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
   const bool ideal = !runs.empty() && runs.front().curve != nullptr;
-  PlotPanel panel = over_time(ideal ? Msg::demo_plot_error : Msg::demo_plot_tracking, "mm");
+  PlotPanel panel = over_time(ideal ? msg::demo_plot_error : msg::demo_plot_tracking, "mm");
   panel.y_from_zero = true;
   PlotLine line;
   for (const MeasuredRun& run : runs) {
@@ -87,12 +87,12 @@ PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
     line.y.insert(line.y.end(), error.begin(), error.end());
   }
   panel.lines.push_back(std::move(line));
-  if (ideal) panel.bands.push_back({0, 1e3 * tolerance, text(Msg::demo_plot_tolerance)});
+  if (ideal) panel.bands.push_back({0, 1e3 * tolerance, text(msg::demo_plot_tolerance)});
   return panel;
 }
 
 PlotPanel joint_panel(const Arm& arm, const Rows& rows) {
-  PlotPanel panel = over_time(Msg::demo_plot_joints, "rad");
+  PlotPanel panel = over_time(msg::demo_plot_joints, "rad");
   for (int j = 0; j < arm.dof(); ++j) {
     panel.lines.push_back({.x = times(rows),
                            .y = column(rows, [j](const RecordRow& row) { return row.q[j]; }),
@@ -102,14 +102,14 @@ PlotPanel joint_panel(const Arm& arm, const Rows& rows) {
 }
 
 PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
-  PlotPanel panel = over_time(title, text(Msg::demo_plot_share));
+  PlotPanel panel = over_time(title, text(msg::demo_plot_share));
   panel.y_from_zero = true;
   panel.lines.push_back({.x = times(rows), .y = column(rows, share)});
   return panel;
 }
 
 PlotPanel speed_panel(const Rows& rows) {
-  PlotPanel panel = over_time(Msg::demo_plot_speed, "m/s");
+  PlotPanel panel = over_time(msg::demo_plot_speed, "m/s");
   panel.y_from_zero = true;
   PlotLine line;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -132,18 +132,18 @@ Plot motion_plot(const std::string& title, const Arm& arm, std::span<const Measu
   Plot plot;
   plot.title = title;
   plot.columns = 4;
-  plot.panels = {side_view(Msg::demo_plot_top, rows, 0, 1),
-                 side_view(Msg::demo_plot_front, rows, 0, 2),
-                 side_view(Msg::demo_plot_side, rows, 1, 2),
+  plot.panels = {side_view(msg::demo_plot_top, rows, 0, 1),
+                 side_view(msg::demo_plot_front, rows, 0, 2),
+                 side_view(msg::demo_plot_side, rows, 1, 2),
                  speed_panel(rows),
                  error_panel(runs, tolerance),
                  joint_panel(arm, rows),
-                 share_panel(Msg::demo_plot_velocity, rows,
+                 share_panel(msg::demo_plot_velocity, rows,
                              [&](const RecordRow& row) {
                                return 100 *
                                       row.v.cwiseQuotient(limits.velocity).cwiseAbs().maxCoeff();
                              }),
-                 share_panel(Msg::demo_plot_torque, rows, [&](const RecordRow& row) {
+                 share_panel(msg::demo_plot_torque, rows, [&](const RecordRow& row) {
                    return 100 * row.torque.cwiseQuotient(limits.torque).cwiseAbs().maxCoeff();
                  })};
   return plot;

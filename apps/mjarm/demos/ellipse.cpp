@@ -1,3 +1,4 @@
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/path/ellipse.hpp"
 
 #include "apps/mjarm/demos/demos.hpp"
@@ -28,15 +29,15 @@ Result<Report> refuse(Stage& stage, std::span<const Pose> points,
   for (const UnreachableRange& range : ranges) {
     for (std::size_t i = range.first; i <= range.last; ++i) report.unreachable.push_back(i);
     if (!detail.empty()) detail += "; ";
-    detail += text(Msg::demo_points_unreachable, range.first, range.last, points.size(),
+    detail += text(msg::demo_points_unreachable, range.first, range.last, points.size(),
                    describe(range.worst, stage.arm()));
   }
   const auto shift = find_shift(stage.ik(), points, view(stage.arm().home));
   if (shift) {
     report.shift = *shift;
-    detail += "; " + text(Msg::demo_shift_mends, shift->x(), shift->y(), shift->z());
+    detail += "; " + text(msg::demo_shift_mends, shift->x(), shift->y(), shift->z());
   } else {
-    detail += "; " + text(Msg::demo_no_shift);
+    detail += "; " + text(msg::demo_no_shift);
   }
   return stage.refuse(name(ranges.front().worst.code), detail, std::move(report));
 }
@@ -64,7 +65,7 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   const Result<ToolMotion, MotionFailure> motion =
       plan_tool_motion(stage.ik(), *curve, view(path->q.front()));
   if (!motion) return stage.refuse(motion.error());
-  log_info(text(Msg::demo_plan, curve->length(), motion->trajectory.duration(), path->max_step()));
+  log_info(text(msg::demo_plan, curve->length(), motion->trajectory.duration(), path->max_step()));
 
   Report report;
   report.max_joint_step = path->max_step();

@@ -1,3 +1,4 @@
+#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
@@ -35,7 +36,7 @@ Result<Report> run_movej(const DemoOptions& options) {
   report.max_joint_step = path->max_step();
   report.coverage = static_cast<double>(reached) / kWaypoints;
   report.static_error = pose_error(goal, stage.sim().tool(stage.arm()));
-  log_info(text(Msg::demo_waypoints, reached, kWaypoints, 1e3 * report.static_error->position));
+  log_info(text(msg::demo_waypoints, reached, kWaypoints, 1e3 * report.static_error->position));
   return stage.finish(std::move(report), options.guide ? 0.02 : 1e-4);
 }
 

@@ -5,7 +5,7 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/png.hpp"
 
@@ -17,7 +17,7 @@ Result<void> write_picture(const std::filesystem::path& file, const Model& model
   Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model);
   if (!renderer) {
     if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
-    log_warning(text(Msg::demo_no_picture, renderer.error().what));
+    log_warning(text(msg::demo_no_picture, renderer.error().what));
     return {};
   }
   const std::vector<std::string> cameras = camera_names(model);
@@ -34,7 +34,7 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (code || !std::filesystem::is_directory(folder, code)) {
-    return fail(Errc::system, text(Msg::demo_no_folder, folder.string(), code.message()));
+    return fail(Errc::system, text(msg::demo_no_folder, folder.string(), code.message()));
   }
   return {};
 }

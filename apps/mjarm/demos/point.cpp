@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
@@ -39,7 +40,7 @@ Result<Report> run_point(const DemoOptions& options) {
     report.static_errors.push_back({std::string(name(mode)), error});
     report.static_error = error;  // in the end that of computed torque
     report.coverage += 1.0 / 3.0;
-    log_info(text(Msg::demo_static_error, name(mode), 1e3 * error.position,
+    log_info(text(msg::demo_static_error, name(mode), 1e3 * error.position,
                   error.rotation * 180 / std::numbers::pi));
   }
   return stage.finish(std::move(report), kTolerance);

@@ -1,7 +1,7 @@
 #include "apps/mjarm/demos/show.hpp"
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
@@ -89,7 +89,7 @@ bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
 
 void Show::linger(const Sim& sim) {
   if (!window_ || !window_->is_open() || interrupted()) return;
-  log_info(text(Msg::demo_close_window));
+  log_info(text(msg::demo_close_window));
   while (window_->is_open() && !interrupted()) {
     if (!window_->draw(sim.snapshot(), overlay_, plots_)) return;
   }

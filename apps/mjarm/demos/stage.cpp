@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/output.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
@@ -46,7 +47,7 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOp
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});
   if (!arm) return fail(std::move(arm.error()));
   if (dof != 0 && arm->dof() != dof) {
-    return fail(Errc::usage, text(Msg::demo_other_joints, demo, dof, arm->dof()));
+    return fail(Errc::usage, text(msg::demo_other_joints, demo, dof, arm->dof()));
   }
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
   Result<Show> show = Show::open(*model, "mjarm " + demo, options.headless);
@@ -105,7 +106,7 @@ Result<void> Stage::follow(ControlMode mode, bool measured, const Curve* curve,
     end_detail_ = describe(outcome.error(), arm_);
   } else if (outcome->stopped) {
     end_reason_ = "stopped";
-    end_detail_ = text(Msg::demo_stopped, sim_.time());
+    end_detail_ = text(msg::demo_stopped, sim_.time());
   }
   if (measured) {
     measured_.push_back(
@@ -206,11 +207,11 @@ Result<Report> Stage::finish(Report report, double tolerance) {
     const double error = off_path ? report.path_error->max : report.static_error->position;
     report.ok = false;
     report.reason = off_path ? "path_error" : "static_error";
-    report.detail = text(Msg::demo_off_path, 1e3 * error, 1e3 * tolerance, 100 * report.coverage);
+    report.detail = text(msg::demo_off_path, 1e3 * error, 1e3 * tolerance, 100 * report.coverage);
   }
   Plot plot = motion_plot(demo_, arm_, runs, tolerance);
   if (report.path_error) {
-    plot.note = text(Msg::demo_plot_note, control_, 1e3 * report.path_error->max,
+    plot.note = text(msg::demo_plot_note, control_, 1e3 * report.path_error->max,
                      1e3 * report.path_error->rms, 100 * report.coverage);
   }
   return write(std::move(report), std::move(plot));

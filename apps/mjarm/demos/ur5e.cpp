@@ -1,3 +1,4 @@
+#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "mjarm/core/log.hpp"
@@ -16,7 +17,7 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   const JointVec start = joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
   const JointVec goal = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
   const Pose X_start = fk(stage.arm(), view(start));
-  if (X_start.p.z() < 0) log_warning(text(Msg::demo_below_floor, X_start.p.z()));
+  if (X_start.p.z() < 0) log_warning(text(msg::demo_below_floor, X_start.p.z()));
   stage.start_at(view(start));
   if (vision) {
     stage.show().set_balls(true);
@@ -32,7 +33,7 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   const PoseError error = pose_error(fk(stage.arm(), view(goal)), stage.sim().tool(stage.arm()));
   report.static_error = error;
   report.coverage = 1 - (goal - q).norm() / (goal - start).norm();
-  log_info(text(Msg::demo_arrived, 1e3 * error.position, (goal - q).cwiseAbs().maxCoeff()));
+  log_info(text(msg::demo_arrived, 1e3 * error.position, (goal - q).cwiseAbs().maxCoeff()));
   return stage.finish(std::move(report), 0.02);
 }
 
