@@ -1,5 +1,3 @@
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/sim.hpp"
 #include "mjarm/sim/bench.hpp"
 
 #include <memory>
@@ -7,6 +5,8 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/number.hpp"
 
 namespace mjarm::app {

@@ -1,14 +1,15 @@
+#include "mjarm/core/messages/demo.hpp"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <numbers>
 #include <vector>
 
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"

@@ -4,10 +4,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "mjarm/core/messages/app.hpp"
 #include "apps/mjarm/command.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/model/model.hpp"

@@ -1,4 +1,3 @@
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 #include <memory>
@@ -8,6 +7,7 @@
 #include "apps/mjarm/json_line.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 

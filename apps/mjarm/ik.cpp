@@ -1,4 +1,3 @@
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/kinematics/ik.hpp"
 
 #include <chrono>
@@ -12,6 +11,7 @@
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/ik_all.hpp"

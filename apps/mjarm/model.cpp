@@ -1,4 +1,3 @@
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/model/model.hpp"
 
 #include <memory>
@@ -6,6 +5,7 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/model_report.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -2,7 +2,6 @@
 
 #include <string_view>
 
-
 namespace mjarm {
 
 /// How much is said on standard error.

@@ -119,7 +119,8 @@ TEST_F(EveryMessage, FormatsInBothLanguages) {
     for (const Language language : {Language::english, Language::chinese}) {
       set_language(language);
       const std::string formatted = format_message(
-          message, {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)});
+          message,
+          {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)});
       EXPECT_TRUE(formatted.find("{}") == std::string::npos &&
                   formatted.find("{:") == std::string::npos)
           << formatted;

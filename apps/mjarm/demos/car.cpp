@@ -2,12 +2,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/demos/show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 

@@ -1,10 +1,10 @@
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/path/ellipse.hpp"
 
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/path/joint_path.hpp"
 
 namespace mjarm::app {

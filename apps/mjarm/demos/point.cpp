@@ -1,10 +1,10 @@
 #include <numbers>
 
-#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
 
 namespace mjarm::app {
 namespace {

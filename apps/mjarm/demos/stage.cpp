@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "mjarm/core/messages/demo.hpp"
 #include "apps/mjarm/demos/output.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/model/find_arm.hpp"
 
