@@ -4,6 +4,7 @@
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/model_report.hpp"
+#include "apps/mjarm/robot.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 
@@ -13,18 +14,20 @@ namespace {
 struct Options {
   std::string file, tip;
   bool json = false;
+  bool allow_outside = false;
 };
 
 void add_options(CLI::App& app, Options& options) {
   app.add_option("file", options.file, text(msg::app_model_file))->type_name("FILE");
   app.add_flag("--json", options.json, text(msg::app_option_json));
+  add_outside_option(app, options.allow_outside);
 }
 
 Result<Model> load(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
-  Result<Model> model = Model::load(*file);
+  Result<Model> model = Model::load(*file, {.allow_outside = options.allow_outside});
   if (!model) return model;
   for (const std::string& warning : model->warnings()) log_warning(warning);
   return model;

@@ -7,9 +7,14 @@
 
 namespace mjarm::app {
 
+void add_outside_option(CLI::App& app, bool& allowed) {
+  app.add_flag("--allow-outside", allowed, text(msg::app_option_outside));
+}
+
 void add_robot_options(CLI::App& app, RobotOptions& options) {
   app.add_option("--robot", options.robot, text(msg::app_option_robot))->type_name("ROBOT");
   app.add_option("--tip", options.tip, text(msg::app_option_tip))->type_name("FRAME");
+  add_outside_option(app, options.allow_outside);
 }
 
 Result<Robot> load_robot(const RobotOptions& options) {
@@ -18,7 +23,7 @@ Result<Robot> load_robot(const RobotOptions& options) {
   }
   Result<std::filesystem::path> file = find_model_file(options.robot);
   if (!file) return fail(std::move(file.error()));
-  Result<Model> model = Model::load(*file);
+  Result<Model> model = Model::load(*file, {.allow_outside = options.allow_outside});
   if (!model) return fail(std::move(model.error()));
   for (const std::string& warning : model->warnings()) log_debug(warning);
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});

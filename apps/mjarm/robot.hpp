@@ -11,11 +11,15 @@ namespace mjarm::app {
 
 /// Which robot, and which frame of it is the tool.
 struct RobotOptions {
-  std::string robot;  ///< name of a shipped model, or path
-  std::string tip;    ///< empty = the robot's own
+  std::string robot;           ///< name of a shipped model, or path
+  std::string tip;             ///< empty = the robot's own
+  bool allow_outside = false;  ///< as in LoadOptions
 };
 
-/// Adds `--robot ROBOT` and `--tip FRAME`, bound to `options`.
+/// Adds `--allow-outside`, bound to `allowed`.
+void add_outside_option(CLI::App& app, bool& allowed);
+
+/// Adds `--robot ROBOT`, `--tip FRAME` and `--allow-outside`, bound to `options`.
 void add_robot_options(CLI::App& app, RobotOptions& options);
 
 /// A loaded robot.

@@ -114,8 +114,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "a.xml",
                 "<mujoco><worldbody>\n<body pos=\"0 nan 0\">\n<joint/><geom "
                 "size=\"1\"/></body></worldbody></mujoco>",
-                "a.xml:2: <body> pos",
-                {"finite"}},
+                "a.xml:2: <body>",
+                {"\"pos\"", "finite"}},
         BadFile{"NoMass",
                 "a.xml",
                 "<mujoco><worldbody>\n<body name=\"b\">\n<joint/></body></worldbody></mujoco>",
@@ -317,13 +317,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"NoMesh",
                 "a.urdf",
                 "<robot name=\"r\">\n<link name=\"a\">\n<visual><geometry>\n<mesh "
-                "filename=\"package://gone/a.stl\"/></geometry></visual></link></robot>",
+                "filename=\"package://gone/a.stl\"/></geometry></visual></link><link "
+                "name=\"b\"/><joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child "
+                "link=\"b\"/></joint></robot>",
                 "a.urdf:4: <mesh> of \"a\"",
                 {"package://gone/a.stl", "not found"}},
         BadFile{"CollisionFormat",
                 "a.urdf",
                 "<robot name=\"r\">\n<link name=\"a\">\n<collision><geometry>\n<mesh "
-                "filename=\"shape.dae\"/></geometry></collision></link></robot>",
+                "filename=\"shape.dae\"/></geometry></collision></link><link name=\"b\"/><joint "
+                "name=\"j\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>",
                 "a.urdf:4: <mesh> of \"a\"",
                 {"shape.dae", ".stl"}}),
     [](const auto& test) { return test.param.label; });

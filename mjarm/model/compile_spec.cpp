@@ -1,18 +1,19 @@
-#include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
+#include <string>
+#include <vector>
 
+#include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/complaint_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
-namespace fs = std::filesystem;
 namespace {
 
 /// Most scratch memory that a file may ask for by `<size memory>` [bytes].
-constexpr mjtSize kMostMemory = mjtSize{1} << 36;
+constexpr mjtSize kMostMemory = mjtSize{1} << 30;
 
 /// Numbers without which nothing can be computed, by the kind of object they belong to.
 struct Numbers {
@@ -55,70 +56,141 @@ std::string first_bad_number(const mjModel* m) {
 }
 
 /// What MuJoCo lets pass, but no one can compute with.
-Result<void> check_numbers(const fs::path& file, const mjModel* m) {
+Result<void> check_numbers(const std::string& file, const mjModel* m) {
   if (const std::string bad = first_bad_number(m); !bad.empty()) {
-    if (std::optional<Error> nan = nan_error(file)) return fail(std::move(*nan));
-    return fail(Errc::bad_input, text(msg::model_not_finite, file.string(), bad));
+    return fail(Errc::bad_input, text(msg::model_not_finite, file, bad));
   }
   if (!(m->opt.timestep > 0) || !std::isfinite(m->opt.timestep)) {
-    return fail(Errc::bad_input, text(msg::model_bad_timestep, file.string(), m->opt.timestep));
+    return fail(Errc::bad_input, text(msg::model_bad_timestep, file, m->opt.timestep));
   }
   return {};
 }
 
-/// Makes and drops the scratch memory of `model`, to find out here whether it can be had.
-std::optional<std::string> memory_fault(const mjModel* model) {
-  const MujocoOutcome outcome = call_mujoco([&] { mj_deleteData(mj_makeData(model)); });
-  if (!outcome.failed) return std::nullopt;
-  return outcome.error;
+/// How many values the keyframes of a description give, before MuJoCo fills up what is missing.
+struct KeySizes {
+  const char* name;
+  std::array<int, 3> sizes;  ///< of qpos, qvel, ctrl
+};
+
+std::vector<KeySizes> key_sizes(mjSpec* spec) {
+  std::vector<KeySizes> keys;
+  for (mjsElement* e = mjs_firstElement(spec, mjOBJ_KEY); e; e = mjs_nextElement(spec, e)) {
+    const mjsKey* key = mjs_asKey(e);
+    KeySizes sizes{mjs_getString(mjs_getName(e)), {}};
+    mjs_getDouble(key->qpos, &sizes.sizes[0]);
+    mjs_getDouble(key->qvel, &sizes.sizes[1]);
+    mjs_getDouble(key->ctrl, &sizes.sizes[2]);
+    keys.push_back(sizes);
+  }
+  return keys;
 }
+
+Result<void> check_keys(const std::string& file, const std::vector<KeySizes>& keys,
+                        const mjModel* m) {
+  constexpr std::array<const char*, 3> kFields = {"qpos", "qvel", "ctrl"};
+  const std::array<mjtSize, 3> needed = {m->nq, m->nv, m->nu};
+  for (const KeySizes& key : keys) {
+    for (std::size_t i = 0; i < kFields.size(); ++i) {
+      if (key.sizes[i] == 0 || key.sizes[i] == needed[i]) continue;
+      return fail(Errc::bad_input,
+                  text(msg::guard_keyframe, file, key.name, kFields[i], key.sizes[i], needed[i]));
+    }
+  }
+  return {};
+}
+
+/// Simulates one step and drops it, to find out here whether there is memory for it, and whether
+/// MuJoCo can compute with the model at all.
+Result<void> check_step(const std::string& file, const mjModel* model, std::string& fault) {
+  mjData* data = nullptr;
+  MujocoOutcome outcome = call_mujoco([&] { data = mj_makeData(model); });
+  if (outcome.failed || data == nullptr) {
+    fault = outcome.failed ? outcome.error : "Could not allocate memory";
+    return {};
+  }
+  outcome = call_mujoco([&] { mj_step(model, data); });
+  // After an error inside a step, scratch memory may be in any state; it is given up, not freed.
+  if (!outcome.failed) outcome = call_mujoco([&] { mj_deleteData(data); });
+  if (!outcome.failed) return {};
+  return fail(Errc::bad_input,
+              text(msg::model_refused, file, text(msg::guard_first_step, outcome.error)));
+}
+
+/// One description on its way to a model.
+class Compiler {
+ public:
+  Compiler(const SpecSource& source, const std::function<void(Stage)>& enter)
+      : source_(source), enter_(enter) {}
+
+  Result<LoadedModel> run() {
+    if (auto done = parse(); !done) return fail(done.error());
+    // More memory than any machine has is a slip of the pen; asking for it could end the process.
+    if (spec_->memory > kMostMemory) return fail(refusal("Could not allocate memory"));
+    if (source_.prepare != nullptr) source_.prepare(spec_.get());
+    const std::vector<KeySizes> keys = key_sizes(spec_.get());
+    if (auto done = compile(); !done) return fail(done.error());
+    const mjModel* model = loaded_.model.get();
+    if (auto done = check_numbers(source_.name(), model); !done) return fail(done.error());
+    if (auto done = check_keys(source_.name(), keys, model); !done) return fail(done.error());
+    enter(Stage::stepping);
+    std::string fault;
+    if (auto done = check_step(source_.name(), model, fault); !done) return fail(done.error());
+    if (!fault.empty()) return fail(refusal(fault));
+    return std::move(loaded_);
+  }
+
+ private:
+  void enter(Stage stage) const {
+    if (enter_) enter_(stage);
+  }
+
+  [[nodiscard]] Error refusal(std::string_view words) const {
+    return complaint_error(source_.files, words, source_.text == nullptr);
+  }
+
+  Result<void> parse() {
+    enter(Stage::reading);
+    constexpr int kErrorSize = 2048;
+    char error[kErrorSize] = "";
+    mjSpec* parsed = nullptr;
+    MujocoOutcome outcome = call_mujoco([&] {
+      parsed = source_.text != nullptr
+                   ? mj_parseXMLString(source_.text->c_str(), nullptr, error, kErrorSize)
+                   : mj_parseXML(source_.name().c_str(), nullptr, error, kErrorSize);
+    });
+    spec_.reset(parsed);
+    if (outcome.failed) return fail(refusal(outcome.error));
+    if (spec_ == nullptr) return fail(refusal(error));
+    loaded_.warnings = std::move(outcome.warnings);
+    return {};
+  }
+
+  Result<void> compile() {
+    enter(Stage::compiling);
+    mjModel* compiled = nullptr;
+    MujocoOutcome outcome = call_mujoco([&] { compiled = mj_compile(spec_.get(), nullptr); });
+    loaded_.model.reset(compiled);
+    if (outcome.failed || compiled == nullptr) {
+      return fail(refusal(outcome.failed ? outcome.error : mjs_getError(spec_.get())));
+    }
+    for (std::string& warning : outcome.warnings) loaded_.warnings.push_back(std::move(warning));
+    for (int i = 0; i < mjs_numWarnings(spec_.get()); ++i) {
+      loaded_.warnings.emplace_back(mjs_getWarning(spec_.get(), i));
+    }
+    return {};
+  }
+
+  const SpecSource& source_;
+  const std::function<void(Stage)>& enter_;
+  MjSpecPtr spec_;
+  LoadedModel loaded_;
+};
 
 }  // namespace
 
-Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpec*)) {
-  constexpr int kErrorSize = 2048;
-  char error[kErrorSize] = "";
-  mjSpec* parsed = nullptr;
-  const std::string file = source.file.string();
-  const auto refusal = [&](std::string_view words) {
-    return complaint_error(source.file, words, source.text == nullptr);
-  };
-  MujocoOutcome outcome = call_mujoco([&] {
-    parsed = source.text != nullptr
-                 ? mj_parseXMLString(source.text->c_str(), nullptr, error, kErrorSize)
-                 : mj_parseXML(file.c_str(), nullptr, error, kErrorSize);
-  });
-  const MjSpecPtr spec(parsed);
-  if (outcome.failed) return fail(refusal(outcome.error));
-  if (spec == nullptr) return fail(refusal(error));
-  LoadedModel loaded;
-  loaded.warnings = std::move(outcome.warnings);
-  // More memory than any machine has is a slip of the pen; asking for it could end the process.
-  if (spec->memory > kMostMemory) return fail(refusal("Could not allocate memory"));
-  if (prepare != nullptr) prepare(spec.get());
-
-  mjModel* compiled = nullptr;
-  outcome = call_mujoco([&] { compiled = mj_compile(spec.get(), nullptr); });
-  loaded.model.reset(compiled);
-  if (outcome.failed || compiled == nullptr) {
-    // MuJoCo only warns of NaN while it reads; what it says later about its effects helps nobody.
-    const auto has_nan = [](const std::string& warning) {
-      return warning.find("NaN") != std::string::npos;
-    };
-    if (std::any_of(loaded.warnings.begin(), loaded.warnings.end(), has_nan)) {
-      if (std::optional<Error> nan = nan_error(source.file)) return fail(std::move(*nan));
-    }
-    return fail(refusal(outcome.failed ? outcome.error : mjs_getError(spec.get())));
-  }
-  for (std::string& warning : outcome.warnings) loaded.warnings.push_back(std::move(warning));
-  for (int i = 0; i < mjs_numWarnings(spec.get()); ++i) {
-    loaded.warnings.emplace_back(mjs_getWarning(spec.get(), i));
-  }
-  if (auto done = check_numbers(source.file, compiled); !done) return fail(done.error());
-  if (const std::optional<std::string> fault = memory_fault(compiled)) {
-    return fail(refusal(*fault));
-  }
-  return loaded;
+Result<LoadedModel> compile_here(const SpecSource& source,
+                                 const std::function<void(Stage)>& enter) {
+  return Compiler(source, enter).run();
 }
 
 }  // namespace mjarm

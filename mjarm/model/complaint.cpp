@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -13,40 +12,11 @@
 #include "mjarm/model/complaint_internal.hpp"
 
 namespace mjarm {
-namespace fs = std::filesystem;
 using tinyxml2::XMLElement;
-
-XmlSources::XmlSources(const fs::path& file) { add(file, file.parent_path()); }
-
-void XmlSources::add(const fs::path& path, const fs::path& folder) {
-  for (const auto& document : documents_) {
-    if (document->name == path.string()) return;  // MuJoCo refuses this; here it only must end
-  }
-  auto document = std::make_unique<Document>();
-  document->name = path.string();
-  if (document->xml.LoadFile(document->name.c_str()) != tinyxml2::XML_SUCCESS) return;
-  documents_.push_back(std::move(document));
-  const Document& here = *documents_.back();
-  std::vector<const XMLElement*> open = {here.xml.RootElement()};
-  std::vector<fs::path> includes;
-  while (!open.empty()) {
-    const XMLElement* element = open.back();
-    open.pop_back();
-    if (element == nullptr) continue;
-    elements_.push_back({element, &here.name});
-    open.push_back(element->NextSiblingElement());
-    open.push_back(element->FirstChildElement());
-    const char* included = element->Attribute("file");
-    if (included != nullptr && std::string_view(element->Name()) == "include") {
-      includes.push_back(folder / included);
-    }
-  }
-  for (const fs::path& include : includes) add(include, folder);
-}
 
 namespace {
 
-/// Longest attribute that is searched with a regular expression, whose use of stack grows with it.
+/// Most of MuJoCo's words that are looked at [bytes].
 constexpr std::size_t kLongest = 1000;
 
 /// Attributes of every element of MJCF, from MuJoCo's own table; elements of one name are joined.
@@ -187,11 +157,11 @@ Complaint take_apart(std::string_view words) {
   return result;
 }
 
-Error complaint_error(const fs::path& file, std::string_view words, bool trust_lines) {
-  Complaint complaint = take_apart(words);
+Error complaint_error(const XmlSources& sources, std::string_view words, bool trust_lines) {
+  // Regular expressions use stack as the text grows; what tells the fault stands in front.
+  Complaint complaint = take_apart(words.substr(0, kLongest));
   if (!trust_lines) complaint.line = 0;
-  const XmlSources sources(file);
-  std::string place = file.string();
+  std::string place = sources.documents().front()->name;
   std::string kind = complaint.kind;
   if (complaint.line > 0) {
     place += ":" + std::to_string(complaint.line);
@@ -205,22 +175,6 @@ Error complaint_error(const fs::path& file, std::string_view words, bool trust_l
   const std::string what = in_users_words(complaint, hint_for(sources, complaint));
   return {Errc::bad_input, label.empty() ? text(msg::model_refused, place, what)
                                          : text(msg::model_element_refused, place, label, what)};
-}
-
-std::optional<Error> nan_error(const fs::path& file) {
-  const XmlSources sources(file);
-  static const std::regex kNan("(^|\\s)[-+]?nan(\\s|$)", std::regex::icase);
-  for (const SourceElement& source : sources.elements()) {
-    for (const auto* a = source.element->FirstAttribute(); a != nullptr; a = a->Next()) {
-      if (std::string_view(a->Value()).size() > kLongest || !std::regex_search(a->Value(), kNan)) {
-        continue;
-      }
-      const std::string place = *source.file + ":" + std::to_string(source.element->GetLineNum());
-      const std::string what = label_of(source.element->Name(), "") + " " + a->Name();
-      return Error{Errc::bad_input, text(msg::model_not_finite, place, what)};
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace mjarm

@@ -3,6 +3,7 @@
 #include <mujoco/mujoco.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,10 +12,7 @@
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/model.hpp"
-
-namespace tinyxml2 {
-class XMLDocument;
-}  // namespace tinyxml2
+#include "mjarm/model/xml_sources_internal.hpp"
 
 namespace mjarm {
 
@@ -35,19 +33,32 @@ struct LoadedModel {
   std::vector<std::string> warnings;
 };
 
-/// A description before it is compiled.
+/// A description before it is compiled, which has passed `preflight`.
 struct SpecSource {
-  std::filesystem::path file;         ///< as the user named it, for messages
+  const XmlSources& files;            ///< as the user named them, for messages
   const std::string* text = nullptr;  ///< what to parse instead of the file; null = the file itself
+  bool trusted = false;               ///< compile in this process
+  void (*prepare)(mjSpec*) = nullptr;  ///< changes the description before it is compiled
+
+  [[nodiscard]] const std::string& name() const { return files.documents().front()->name; }
 };
 
-/// Parses and compiles; MuJoCo's complaint becomes one line `FILE:LINE: <element>: what`.
-/// @param prepare  changes the description between the two steps; may be null.
-[[nodiscard]] Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpec*));
+/// How far MuJoCo has come with a description.
+enum class Stage : char { reading = 'r', compiling = 'c', stepping = 's' };
 
-/// Loads a description whose root element is `robot`; changes `document`.
-[[nodiscard]] Result<LoadedModel> load_urdf(const std::filesystem::path& file,
-                                            tinyxml2::XMLDocument& document,
-                                            const LoadOptions& options);
+/// Parses, compiles and simulates one step; MuJoCo's complaint becomes one line
+/// `FILE:LINE: <element>: what`. What is not trusted is compiled in a process of its own.
+[[nodiscard]] Result<LoadedModel> compile_spec(const SpecSource& source);
+
+/// The same in this process, whatever `source.trusted` says.
+/// @param enter  called at the start of every stage; may be null.
+[[nodiscard]] Result<LoadedModel> compile_here(const SpecSource& source,
+                                               const std::function<void(Stage)>& enter);
+
+/// Loads a description whose root element is `robot`.
+[[nodiscard]] Result<LoadedModel> load_urdf(const XmlSources& files, const LoadOptions& options);
+
+/// True for files in the folders of shipped models, which need no guard.
+[[nodiscard]] bool is_shipped(const std::filesystem::path& file);
 
 }  // namespace mjarm

@@ -59,11 +59,12 @@ void sort_groups(mjSpec* spec) {
   }
 }
 
-Result<LoadedModel> compile_document(const fs::path& file, const tinyxml2::XMLDocument& document) {
+Result<LoadedModel> compile_document(const XmlSources& files, bool trusted,
+                                     const tinyxml2::XMLDocument& document) {
   tinyxml2::XMLPrinter printer(nullptr, true);
   document.Print(&printer);
   const std::string xml = printer.CStr();
-  return compile_spec({.file = file, .text = &xml}, sort_groups);
+  return compile_spec({.files = files, .text = &xml, .trusted = trusted, .prepare = sort_groups});
 }
 
 double limit_of(const XMLElement& joint, const char* attribute) {
@@ -73,8 +74,12 @@ double limit_of(const XMLElement& joint, const char* attribute) {
 
 }  // namespace
 
-Result<LoadedModel> load_urdf(const fs::path& file, tinyxml2::XMLDocument& document,
-                              const LoadOptions& options) {
+Result<LoadedModel> load_urdf(const XmlSources& files, const LoadOptions& options) {
+  // A second copy, to be changed: messages need the file as written.
+  const XmlSources::Document& main = *files.documents().front();
+  const fs::path file = main.name;
+  tinyxml2::XMLDocument document;
+  document.Parse(main.text.data(), main.text.size());
   XMLElement& robot = *document.RootElement();
   if (auto done = check_urdf(file, robot); !done) return fail(done.error());
   std::vector<std::string> warnings;
@@ -83,12 +88,12 @@ Result<LoadedModel> load_urdf(const fs::path& file, tinyxml2::XMLDocument& docum
   give_mass(file, robot, warnings);
   XMLElement& compiler = set_compiler(document, robot);
 
-  Result<LoadedModel> loaded = compile_document(file, document);
+  Result<LoadedModel> loaded = compile_document(files, options.trusted, document);
   if (!loaded && loaded.error().what.find(text(msg::model_mj_inertia)) != std::string::npos) {
     // Inertias that no body can have are common in URDF files and matter to dynamics alone.
     warnings.push_back(text(msg::model_balanced_inertia, loaded.error().what));
     compiler.SetAttribute("balanceinertia", "true");
-    loaded = compile_document(file, document);
+    loaded = compile_document(files, options.trusted, document);
   }
   if (!loaded) return loaded;
   loaded->warnings.insert(loaded->warnings.begin(), warnings.begin(), warnings.end());

@@ -1,14 +1,14 @@
 #include "mjarm/model/model.hpp"
 
-#include <tinyxml2.h>
-
+#include <algorithm>
 #include <exception>
 #include <utility>
 
-#include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/model.hpp"
+#include "mjarm/core/utf8.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/model/preflight_internal.hpp"
 
 namespace mjarm {
 namespace fs = std::filesystem;
@@ -21,34 +21,33 @@ struct Model::Impl {
 
 namespace {
 
-/// Largest text of a description that is read [bytes]; meshes are other files.
-constexpr std::size_t kMaxXmlBytes = std::size_t{64} << 20;
+/// `words` without what would break a line of a terminal, and cut where it is endless.
+std::string one_line(std::string_view words) {
+  constexpr std::size_t kLongest = 1000;
+  std::string line;
+  while (!words.empty() && line.size() < kLongest) {
+    const std::size_t length = utf8_length(words);
+    const auto first = static_cast<unsigned char>(words.front());
+    if (length == 0 || first < 0x20 || first == 0x7f) {
+      line += length == 0 ? '?' : ' ';
+    } else {
+      line += words.substr(0, length);
+    }
+    words.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  if (!words.empty()) line += "...";
+  return line;
+}
 
-Error xml_error(const fs::path& file, const tinyxml2::XMLDocument& document) {
-  const std::string name = file.string();
-  if (document.ErrorID() == tinyxml2::XML_ERROR_EMPTY_DOCUMENT) {
-    return {Errc::bad_input, text(msg::model_empty_file, name)};
-  }
-  std::string detail;
-  switch (document.ErrorID()) {
-    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      detail = text(msg::model_xml_mismatch);
-      break;
-    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-      detail = text(msg::model_xml_attribute);
-      break;
-    case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
-      detail = text(msg::model_xml_depth);
-      break;
-    default:
-      detail = text(msg::model_xml_other);
-  }
-  // "Error=... ErrorID=14 (0xe) Line number=2: XMLElement name=body"
-  const std::string full = document.ErrorStr();
-  if (const std::size_t at = full.find("XMLElement name="); at != std::string::npos) {
-    detail = "<" + full.substr(at + 16) + ">: " + detail;
-  }
-  return {Errc::bad_input, text(msg::model_not_xml, name, document.ErrorLineNum(), detail)};
+/// MJCF or URDF, by the root element.
+Result<ModelFormat> format_of(const XmlSources& files) {
+  const XmlSources::Document& main = *files.documents().front();
+  const tinyxml2::XMLElement& root = *main.xml.RootElement();
+  const std::string_view name = root.Name();
+  if (name == "robot") return ModelFormat::urdf;
+  if (name == "mujoco") return ModelFormat::mjcf;
+  const Msg reason = name == "mujocoinclude" ? msg::model_is_a_part : msg::model_wrong_root;
+  return fail(Errc::bad_input, text(reason, main.name, root.GetLineNum(), name));
 }
 
 }  // namespace
@@ -57,34 +56,26 @@ Model::Model(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 Result<Model> Model::load(const fs::path& file, const LoadOptions& options) {
   install_mujoco_handler();
+  Result<Model> model = load_guarded(file, options);
+  if (!model) model.error().what = one_line(model.error().what);
+  return model;
+}
+
+Result<Model> Model::load_guarded(const fs::path& file, LoadOptions options) {
   try {
-    const Result<std::string> content = read_file(file, kMaxXmlBytes);
-    if (!content) return fail(content.error());
-    tinyxml2::XMLDocument document;
-    if (document.Parse(content->data(), content->size()) != tinyxml2::XML_SUCCESS) {
-      return fail(xml_error(file, document));
-    }
-    const tinyxml2::XMLElement* root = document.RootElement();
-    if (root == nullptr) {
-      return fail(Errc::bad_input, text(msg::model_empty_file, file.string()));
-    }
-    const std::string_view root_name = root->Name();
-    auto impl = std::make_shared<Impl>();
-    impl->file = file;
-    impl->format = root_name == "robot" ? ModelFormat::urdf : ModelFormat::mjcf;
-    if (root_name != "robot" && root_name != "mujoco") {
-      const Msg reason =
-          root_name == "mujocoinclude" ? msg::model_is_a_part : msg::model_wrong_root;
-      return fail(Errc::bad_input, text(reason, file.string(), root->GetLineNum(), root_name));
-    }
-    Result<LoadedModel> loaded = impl->format == ModelFormat::urdf
-                                     ? load_urdf(file, document, options)
-                                     : compile_spec({.file = file}, nullptr);
+    if (is_shipped(file)) options.trusted = options.allow_outside = true;
+    const XmlSources files(file, options.allow_outside);
+    if (files.documents().empty()) return fail(*files.fault());
+    const Result<ModelFormat> format = format_of(files);
+    if (!format) return fail(format.error());
+    if (auto done = preflight(files, options); !done) return fail(done.error());
+    Result<LoadedModel> loaded = *format == ModelFormat::urdf
+                                     ? load_urdf(files, options)
+                                     : compile_spec({.files = files, .trusted = options.trusted});
     if (!loaded) return fail(std::move(loaded.error()));
-    impl->loaded = std::move(*loaded);
-    return Model(std::move(impl));
+    return Model(std::make_shared<const Impl>(Impl{file, *format, std::move(*loaded)}));
   } catch (const std::exception& problem) {
-    return fail(Errc::system, text(msg::model_unexpected, file.string(), problem.what()));
+    return fail(Errc::bad_input, text(msg::model_unexpected, file.string(), problem.what()));
   }
 }
 

@@ -16,6 +16,12 @@ namespace mjarm {
 /// How to read a model file.
 struct LoadOptions {
   std::vector<std::filesystem::path> package_paths;  ///< where `package://NAME` is looked for first
+  /// Read meshes, textures and includes outside of the folder of the model (for a URDF: of its ROS
+  /// packages) as well.
+  bool allow_outside = false;
+  /// Compile in this process. Files of others are compiled in a copy of it (fork) with bounds on
+  /// time and memory, since MuJoCo may crash or hang on them; shipped models are trusted anyway.
+  bool trusted = false;
 };
 
 /// Format of the file a model came from.
@@ -27,7 +33,7 @@ class Model {
  public:
   /// Loads MJCF or URDF (told apart by the root element). Meshes are looked for beside the file,
   /// `package://` in `options.package_paths`, ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, then upwards
-  /// from the file. A URDF keeps its fixed frames.
+  /// from the file. A URDF keeps its fixed frames. May be called from many threads at once.
   /// @return one line that names file and element. Never throws, never ends the process.
   [[nodiscard]] static Result<Model> load(const std::filesystem::path& file,
                                           const LoadOptions& options = {});
@@ -57,6 +63,8 @@ class Model {
  private:
   struct Impl;
   explicit Model(std::shared_ptr<const Impl> impl);
+  [[nodiscard]] static Result<Model> load_guarded(const std::filesystem::path& file,
+                                                  LoadOptions options);
   std::shared_ptr<const Impl> impl_;
 };
 

@@ -40,7 +40,9 @@ std::string tetrahedron(float size) {
 }
 
 std::string one_link(const std::string& shapes, const std::string& extension = "") {
-  return "<robot name=\"r\">" + extension + "<link name=\"base\">" + shapes + "</link></robot>";
+  return "<robot name=\"r\">" + extension + "<link name=\"base\">" + shapes +
+         "</link><link name=\"end\"/><joint name=\"j\" type=\"fixed\"><parent link=\"base\"/>"
+         "<child link=\"end\"/></joint></robot>";
 }
 std::string mesh(const char* kind, const std::string& file) {
   return std::string("<") + kind + "><geometry><mesh filename=\"" + file + "\"/></geometry></" +
@@ -165,8 +167,11 @@ TEST(Model, MeshesAreFoundBesideTheFileAndInPackages) {
     ASSERT_EQ(m->ngeom, 2) << how;
     EXPECT_GT(m->geom_rbound[1], 1.5 * m->geom_rbound[0]) << how;
   };
-  check(load("ws/robot_description/urdf/a.urdf", relative), "relative");
   check(load("ws/robot_description/urdf/b.urdf", in_package), "walking up");
+  EXPECT_FALSE(load("ws/robot_description/urdf/a.urdf", relative));  // above the file's folder
+  folder.write("ws/robot_description/package.xml", "<package/>");
+  check(load("ws/robot_description/urdf/a.urdf", relative), "relative, in its package");
+  check(load("ws/other_description/urdf/a.urdf", in_package), "a package beside");
   check(load("else/c.urdf", in_package, {.package_paths = {folder.path() / "ws"}}),
         "option, folder of packages");
   check(
@@ -189,11 +194,13 @@ TEST(Model, MeshesAreFoundBesideTheFileAndInPackages) {
            "file://" + (folder.path() / "ws/robot_description/meshes/visual/link.stl").string()) +
       mesh("collision",
            (folder.path() / "ws/robot_description/meshes/collision/link.stl").string()));
-  check(load("else/d.urdf", absolute), "absolute");
+  EXPECT_FALSE(load("else/d.urdf", absolute));
+  check(load("else/d.urdf", absolute, {.allow_outside = true}), "absolute");
   const std::string by_dir = one_link(
       mesh("visual", "visual/link.stl") + mesh("collision", "collision/link.stl"),
       "<mujoco><compiler meshdir=\"../ws/robot_description/meshes\" strippath=\"true\"/></mujoco>");
-  check(load("else/e.urdf", by_dir), "meshdir");
+  EXPECT_FALSE(load("else/e.urdf", by_dir));
+  check(load("else/e.urdf", by_dir, {.allow_outside = true}), "meshdir");
 }
 
 TEST(Model, VisualMeshesOfOtherFormatsAreLeftOutWithAWarning) {

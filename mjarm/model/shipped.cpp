@@ -5,7 +5,9 @@
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/model.hpp"
+#include "mjarm/model/preflight_internal.hpp"
 
 namespace mjarm {
 namespace fs = std::filesystem;
@@ -50,6 +52,17 @@ std::optional<fs::path> find_shipped(std::string_view relative) {
 }
 
 }  // namespace
+
+bool is_shipped(const fs::path& file) {
+  std::error_code error;
+  const fs::path whole = fs::canonical(file, error);
+  if (error) return false;
+  const std::vector<fs::path> folders = model_folders();
+  return std::any_of(folders.begin(), folders.end(), [&](const fs::path& folder) {
+    const fs::path real = fs::canonical(folder, error);
+    return !error && is_inside(whole, {real});
+  });
+}
 
 std::vector<ShippedModel> shipped_models() {
   std::vector<ShippedModel> models;

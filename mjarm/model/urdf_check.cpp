@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/urdf_internal.hpp"
@@ -76,6 +77,7 @@ class Checker {
   Checker(const fs::path& file, const XMLElement& robot) : file_(file), robot_(robot) {}
 
   Result<void> run() {
+    if (auto done = check_urdf_words(file_, robot_); !done) return done;
     if (auto done = links(); !done) return done;
     for (const XMLElement* joint : children(robot_, "joint")) {
       if (auto done = this->joint(*joint); !done) return done;
@@ -172,6 +174,9 @@ class Checker {
     }
     if (auto done = origin(joint); !done) return done;
     if (auto done = ends(joint); !done) return done;
+    const std::string_view kind = type;
+    // Joints without an axis of their own often have one of zeros.
+    if (kind == "fixed" || kind == "floating" || kind == "spherical") return {};
     const XMLElement* axis = joint.FirstChildElement("axis");
     const auto direction = numbers(axis, "xyz", 3);
     if (!direction) return fail(direction.error());
@@ -179,7 +184,7 @@ class Checker {
         std::hypot((*direction)[0], (*direction)[1], (*direction)[2]) < 1e-9) {
       return fault(*axis, text(msg::model_zero_axis));
     }
-    return limit(joint, type);
+    return limit(joint, kind);
   }
 
   /// Parent and child of a joint.
@@ -225,6 +230,9 @@ class Checker {
 
   /// One root, and every link hangs on it.
   Result<void> tree() const {
+    if (joint_names_.empty() && links_.size() == 1) {
+      return fault(robot_, text(msg::guard_no_joints));
+    }
     std::vector<std::string> roots;
     for (const std::string& name : link_names_) {
       if (parent_of_.count(name) == 0) roots.push_back(name);
@@ -233,13 +241,16 @@ class Checker {
     if (roots.size() > 1) {
       return fault(*links_.at(roots[1]), text(msg::model_two_roots, roots[0], roots[1]));
     }
+    std::set<std::string> hanging = {roots.front()};
     for (const std::string& name : link_names_) {
-      std::string at = name;
-      for (std::size_t steps = 0; parent_of_.count(at) > 0; at = parent_of_.at(at)) {
-        if (++steps > link_names_.size()) {
+      std::vector<std::string> way;
+      for (std::string at = name; hanging.count(at) == 0; at = parent_of_.at(at)) {
+        way.push_back(at);
+        if (way.size() > link_names_.size()) {
           return fault(*links_.at(name), text(msg::model_link_loop, name));
         }
       }
+      hanging.insert(way.begin(), way.end());
     }
     return {};
   }

@@ -25,8 +25,22 @@ namespace mjarm {
 [[nodiscard]] Result<void> check_urdf(const std::filesystem::path& file,
                                       const tinyxml2::XMLElement& robot);
 
-/// Makes every mesh file name absolute. Visual meshes of a format that MuJoCo cannot read are taken
-/// out, with a line in `warnings`.
+/// Refuses misspelt elements and attributes, which MuJoCo passes over in silence, with the nearest
+/// right word; words that are far from all of URDF's are somebody's extension and stay. A
+/// <geometry> must hold a shape.
+[[nodiscard]] Result<void> check_urdf_words(const std::filesystem::path& file,
+                                            const tinyxml2::XMLElement& robot);
+
+/// The folders whose files a URDF may name: its own, the ROS package it lies in, the packages it
+/// names by `package://` (they hold a package.xml, or the file), and what the user has named as a
+/// place of packages, by options or environment.
+[[nodiscard]] std::vector<std::filesystem::path> urdf_roots(const std::filesystem::path& file,
+                                                            const tinyxml2::XMLElement& robot,
+                                                            const LoadOptions& options);
+
+/// Makes every mesh file name absolute; refuses files outside of `urdf_roots`, unless the options
+/// allow them, and files that are no meshes. Visual meshes of a format that MuJoCo cannot read are
+/// taken out, with a line in `warnings`.
 [[nodiscard]] Result<void> resolve_meshes(const std::filesystem::path& file,
                                           tinyxml2::XMLElement& robot, const LoadOptions& options,
                                           std::vector<std::string>& warnings);

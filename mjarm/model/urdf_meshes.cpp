@@ -2,8 +2,10 @@
 #include <optional>
 #include <set>
 
+#include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/model/preflight_internal.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
 namespace mjarm {
@@ -113,6 +115,7 @@ XMLElement* mesh_of(XMLElement& shape) {
 Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadOptions& options,
                             std::vector<std::string>& warnings) {
   const MeshFinder finder(file, robot, options);
+  const std::vector<fs::path> roots = urdf_roots(file, robot, options);
   std::set<std::string> warned;
   for (XMLElement* link : children(robot, "link")) {
     for (const char* kind : {"visual", "collision"}) {
@@ -135,6 +138,12 @@ Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadO
         if (!readable) return fail(urdf_error(file, *mesh, text(msg::model_mesh_format, name)));
         const std::optional<fs::path> path = finder.find(name);
         if (!path) return fail(urdf_error(file, *mesh, text(msg::model_no_mesh, name)));
+        if (!options.allow_outside && !is_inside(*path, roots)) {
+          return fail(urdf_error(file, *mesh, text(msg::guard_outside, name)));
+        }
+        if (auto fault = asset_fault(*path, "mesh", name)) {
+          return fail(urdf_error(file, *mesh, *fault));
+        }
         mesh->SetAttribute("filename", path->c_str());
       }
     }

@@ -1,6 +1,7 @@
 #include "tests/support/run_program.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,8 +47,12 @@ ProgramResult run_program(const std::filesystem::path& program,
   if (child < 0) throw std::runtime_error("cannot fork");
   if (child == 0) become(std::filesystem::absolute(program), arguments, options, streams);
   int status = 0;
-  if (waitpid(child, &status, 0) != child) throw std::runtime_error("cannot wait");
+  rusage used{};
+  if (wait4(child, &status, 0, &used) != child) throw std::runtime_error("cannot wait");
   ProgramResult result;
+  const auto seconds = [](const timeval& t) { return t.tv_sec + 1e-6 * t.tv_usec; };
+  result.cpu_seconds = seconds(used.ru_utime) + seconds(used.ru_stime);
+  result.peak_memory = static_cast<std::size_t>(used.ru_maxrss) << 10;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = streams.read("out");
   result.err = streams.read("err");

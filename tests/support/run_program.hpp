@@ -18,9 +18,11 @@ struct RunOptions {
 
 /// What a program did.
 struct ProgramResult {
-  int exit_code = -1;  ///< as the program gave it; -N where signal N ended it
-  std::string out;     ///< standard output
-  std::string err;     ///< standard error
+  int exit_code = -1;           ///< as the program gave it; -N where signal N ended it
+  std::string out;              ///< standard output
+  std::string err;              ///< standard error
+  double cpu_seconds = 0;       ///< [s] computing time, its own children included
+  std::size_t peak_memory = 0;  ///< [bytes] resident, of it or of the largest of its children
 };
 
 /// Runs a program with its arguments and waits for its end.

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace mjarm {
+
+/// Bytes of the UTF-8 character at the front of `text`, which is not empty; 0 where it is malformed
+/// (cut off, overlong, half of a surrogate pair, beyond U+10FFFF).
+[[nodiscard]] std::size_t utf8_length(std::string_view text) noexcept;
+
+/// True where all of `text` is well-formed UTF-8.
+[[nodiscard]] bool is_utf8(std::string_view text) noexcept;
+
+}  // namespace mjarm
