@@ -222,7 +222,7 @@ std::vector<HostileFile> hostile_references() {
       {"StlNan",
        "a.xml",
        with_mesh("m.stl"),
-       {"a.xml", "m.stl"},
+       {"a.xml:2: <mesh \"m\">", "finite"},
        [](const TempFolder& folder) { folder.write("m.stl", stl(4, 4, std::stof("nan"))); }},
       {"ObjIndexOutOfRange",
        "a.xml",

@@ -5,7 +5,7 @@
 run_fuzz() {
   local seconds=${1:-600} folder=$root/build/fuzz
   [[ $seconds =~ ^[0-9]+$ ]] || die "fuzz: \"$seconds\" is no whole number of seconds"
-  set_up_packages clang
+  set_up_packages clang libclang-rt-dev
   build fuzz load_fuzz write_seeds
   unlock
   mkdir -p "$folder"/{corpus,seeds,found,caught}

@@ -46,12 +46,15 @@ std::size_t address_space() {
   return read ? pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) : 0;
 }
 
-void limit(__rlimit_resource_t resource, std::size_t most) {
+/// @param slack  how far the limit that cannot be passed lies above the one that is told of first.
+void limit(__rlimit_resource_t resource, std::size_t most, std::size_t slack = 0) {
   rlimit old{};
   if (::getrlimit(resource, &old) != 0) return;
   // Never above what this process may have itself.
-  const rlim_t value = old.rlim_max == RLIM_INFINITY ? most : std::min<rlim_t>(most, old.rlim_max);
-  const rlimit now{value, value};
+  const auto at_most = [&](std::size_t value) {
+    return old.rlim_max == RLIM_INFINITY ? value : std::min<rlim_t>(value, old.rlim_max);
+  };
+  const rlimit now{at_most(most), at_most(most + slack)};
   ::setrlimit(resource, &now);
 }
 
@@ -69,7 +72,7 @@ void become_harmless(const ChildLimits& limits, std::size_t base) {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, stream);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 0);
-  limit(RLIMIT_CPU, static_cast<std::size_t>(std::ceil(limits.cpu_seconds * kSlowness)));
+  limit(RLIMIT_CPU, static_cast<std::size_t>(std::ceil(limits.cpu_seconds * kSlowness)), 1);
   if (!kSanitized && base > 0) limit(RLIMIT_AS, base + limits.memory);
 }
 

@@ -11,7 +11,7 @@ namespace mjarm {
 
 /// What a piece of work in a process of its own may use.
 struct ChildLimits {
-  double cpu_seconds = 4;                       ///< [s] of all its threads, > 0
+  double cpu_seconds = 3;                       ///< [s] of all its threads, > 0
   double idle_seconds = 3;                      ///< [s] it may wait without computing, > 0
   std::size_t memory = std::size_t{3} << 29;    ///< [bytes] on top of what this process has
   std::size_t answer = std::size_t{400} << 20;  ///< [bytes] it may say

@@ -167,6 +167,9 @@ class Compiler {
 
   Result<void> compile() {
     enter(Stage::compiling);
+#if defined(__SANITIZE_THREAD__)
+    spec_->compiler.usethread = 0;  // this sanitizer knows no threads in a copy of a process
+#endif
     mjModel* compiled = nullptr;
     MujocoOutcome outcome = call_mujoco([&] { compiled = mj_compile(spec_.get(), nullptr); });
     loaded_.model.reset(compiled);

@@ -15,7 +15,8 @@ namespace mjarm {
 
 /// How to read a model file.
 struct LoadOptions {
-  std::vector<std::filesystem::path> package_paths;  ///< where `package://NAME` is looked for first
+  /// Where `package://NAME` is looked for first.
+  std::vector<std::filesystem::path> package_paths = {};
   /// Read meshes, textures and includes outside of the folder of the model (for a URDF: of its ROS
   /// packages) as well.
   bool allow_outside = false;

@@ -2,7 +2,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <set>
 #include <string_view>
 
 #include "mjarm/core/messages/guard.hpp"
@@ -21,7 +20,7 @@ constexpr double kLargestGeometry = 1e10;
 constexpr double kLargest = 1e20;
 
 /// Attributes that hold names, words or paths, where `nan` and `inf` are words as any other.
-constexpr std::array<std::string_view, 58> kWords = {
+constexpr std::array<std::string_view, 57> kWords = {
     "actuator", "angle",    "biastype",   "body",          "body1",        "body2",      "bone",
     "builtin",  "camera",   "childclass", "class",         "content_type", "cranksite",  "data",
     "datatype", "dyntype",  "element",    "eulerseq",      "file",         "filename",   "flex",
@@ -30,7 +29,7 @@ constexpr std::array<std::string_view, 58> kWords = {
     "mesh",     "model",    "name",       "node",          "objname",      "objtype",    "output",
     "plugin",   "prefix",   "reduce",     "refname",       "refsite",      "reftype",    "role",
     "sep",      "sidesite", "site",       "site1",         "site2",        "slidersite", "tendon",
-    "texture",  "value"};
+    "texture"};
 static_assert(std::is_sorted(kWords.begin(), kWords.end()));
 
 constexpr std::array<std::string_view, 20> kGeometry = {
@@ -121,10 +120,7 @@ Result<void> check_attributes(const XmlSources& sources) {
       return fail(urdf_error(*source.file, element, what));
     };
     if (!is_utf8(element.Name())) return refuse(text(msg::guard_not_utf8, element.Name()));
-    std::set<std::string_view> seen;
     for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next()) {
-      if (!seen.insert(a->Name()).second)
-        return refuse(text(msg::guard_attribute_twice, a->Name()));
       if (std::optional<std::string> fault = attribute_fault(*a)) return refuse(*fault);
     }
   }

@@ -30,7 +30,7 @@ namespace mjarm {
 /// The numbers at the front of `words`, parted by white space; what follows something else is left.
 [[nodiscard]] std::vector<double> numbers_of(std::string_view words);
 
-/// Names, attributes given twice, numbers that are not finite or absurdly large.
+/// Names and texts that are no UTF-8, numbers that are not finite or absurdly large.
 [[nodiscard]] Result<void> check_attributes(const XmlSources& sources);
 
 /// Counts and sizes that would eat all memory or time; the time step.

@@ -50,17 +50,21 @@ std::vector<double> parse_numbers(std::string_view words, std::size_t count) {
 }
 
 Error urdf_error(const fs::path& file, const XMLElement& element, std::string_view what) {
-  const std::string kind = element.Name();
+  const auto brief = [](std::string_view name) {
+    constexpr std::size_t kLongest = 80;
+    return std::string(name.substr(0, kLongest)) + (name.size() > kLongest ? "..." : "");
+  };
+  const std::string kind = brief(element.Name());
   std::string label = "<" + kind + ">";
   if (const char* name = element.Attribute("name")) {
-    label = "<" + kind + " \"" + name + "\">";
+    label = "<" + kind + " \"" + brief(name) + "\">";
   } else {
     // An element without a name of its own is told by the link or joint around it.
     for (const tinyxml2::XMLNode* at = element.Parent(); at != nullptr; at = at->Parent()) {
       const XMLElement* around = at->ToElement();
       const char* name_around = around != nullptr ? around->Attribute("name") : nullptr;
       if (name_around == nullptr) continue;
-      label = text(msg::model_element_of, kind, name_around);
+      label = text(msg::model_element_of, kind, brief(name_around));
       break;
     }
   }
@@ -241,20 +245,25 @@ class Checker {
     if (roots.size() > 1) {
       return fault(*links_.at(roots[1]), text(msg::model_two_roots, roots[0], roots[1]));
     }
-    std::set<std::string> hanging = {roots.front()};
+    std::map<std::string, std::size_t> depth = {{roots.front(), 0}};
     for (const std::string& name : link_names_) {
       std::vector<std::string> way;
-      for (std::string at = name; hanging.count(at) == 0; at = parent_of_.at(at)) {
+      std::string at = name;
+      for (; depth.count(at) == 0; at = parent_of_.at(at)) {
         way.push_back(at);
         if (way.size() > link_names_.size()) {
           return fault(*links_.at(name), text(msg::model_link_loop, name));
         }
       }
-      hanging.insert(way.begin(), way.end());
+      for (std::size_t above = depth.at(at); !way.empty(); way.pop_back()) {
+        depth[way.back()] = ++above;
+        if (above > kDeepest) return fault(*links_.at(way.back()), text(msg::guard_deep, kDeepest));
+      }
     }
     return {};
   }
 
+  static constexpr std::size_t kDeepest = 1000;  ///< joints between a link and the root
   const fs::path& file_;
   const XMLElement& robot_;
   std::map<std::string, const XMLElement*> links_;

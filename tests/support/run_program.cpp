@@ -50,7 +50,9 @@ ProgramResult run_program(const std::filesystem::path& program,
   rusage used{};
   if (wait4(child, &status, 0, &used) != child) throw std::runtime_error("cannot wait");
   ProgramResult result;
-  const auto seconds = [](const timeval& t) { return t.tv_sec + 1e-6 * t.tv_usec; };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   result.cpu_seconds = seconds(used.ru_utime) + seconds(used.ru_stime);
   result.peak_memory = static_cast<std::size_t>(used.ru_maxrss) << 10;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
