@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <csignal>
+
 #include "apps/mjarm/install/mesh_package_test.hpp"
 #include "apps/mjarm/install/mesh_store.hpp"
 #include "tests/support/http_server.hpp"

@@ -63,7 +63,8 @@ class MeshScene : public ::testing::TestWithParam<int> {
   void load_with_made_up_meshes() {
     load_with([&](const fs::path& assets) {
       for (const MeshFile& mesh : set.files) {
-        if (mesh.name.ends_with(".obj")) ASSERT_TRUE(write_file(assets / mesh.name, kTetrahedron));
+        if (!mesh.name.ends_with(".obj")) continue;
+        ASSERT_TRUE(write_file(assets / mesh.name, kTetrahedron));
       }
     });
   }
@@ -186,9 +187,10 @@ TEST_P(MeshScene, RealMeshesLieWhereTheShapesAre) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, MeshScene, ::testing::Values(0, 1), [](const auto& info) {
-  return mesh_sets()[static_cast<std::size_t>(info.param)].robot;
-});
+std::string robot_of(const ::testing::TestParamInfo<int>& test) {
+  return mesh_sets()[static_cast<std::size_t>(test.param)].robot;
+}
+INSTANTIATE_TEST_SUITE_P(Robots, MeshScene, ::testing::Values(0, 1), robot_of);
 
 TEST(MeshSceneFaults, NameTheFile) {
   const support::TempFolder folder;
