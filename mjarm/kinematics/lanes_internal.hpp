@@ -105,5 +105,40 @@ inline void sine_cosine(const Lanes& x, Lanes& s, Lanes& c) {
   __builtin_memcpy(&c, &bits, sizeof bits);
 }
 
+typedef float FloatLanes __attribute__((vector_size(8 * kLanes)));  ///< twice as many
+
+/// Sine and cosine for |x| < 100, to 1e-6; as above.
+inline void sine_cosine(const FloatLanes& x, FloatLanes& s, FloatLanes& c) {
+  using Mask = decltype(x < x);
+  constexpr float kMagic = 12582912.0F;  // 1.5 * 2^23
+  const FloatLanes shifted = x * static_cast<float>(2 / std::numbers::pi) + kMagic;
+  const FloatLanes n = shifted - kMagic;
+  FloatLanes r = x - n * 1.5703125F;  // the first 8 bits of pi/2, the next 11, the rest
+  r = r - n * 4.837512969970703e-4F;
+  r = r - n * 7.549789954891882e-8F;
+  const FloatLanes z = r * r;
+  FloatLanes a = FloatLanes{} + 1.0F / 362880;
+  a = a * z - 1.0F / 5040;
+  a = a * z + 1.0F / 120;
+  a = a * z - 1.0F / 6;
+  a = r + r * z * a;
+  FloatLanes b = FloatLanes{} + 1.0F / 40320;
+  b = b * z - 1.0F / 720;
+  b = b * z + 1.0F / 24;
+  b = 1.0F - 0.5F * z + z * z * b;
+  Mask quarter;
+  __builtin_memcpy(&quarter, &shifted, sizeof quarter);
+  const Mask odd = -(quarter & 1);
+  const FloatLanes s0 = odd ? b : a;
+  const FloatLanes c0 = odd ? a : b;
+  Mask bits;
+  __builtin_memcpy(&bits, &s0, sizeof bits);
+  bits ^= (quarter & 2) << 30;
+  __builtin_memcpy(&s, &bits, sizeof bits);
+  __builtin_memcpy(&bits, &c0, sizeof bits);
+  bits ^= ((quarter + 1) & 2) << 30;
+  __builtin_memcpy(&c, &bits, sizeof bits);
+}
+
 }  // namespace MJARM_LANES
 }  // namespace mjarm::detail

@@ -12,7 +12,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kWithin = kSevenWithin;
 constexpr double kAlmost = 1e-3;    // likewise: to be looked at more closely
 constexpr double kHopeless = 0.05;  // likewise: closer samples would not help
-constexpr double kNear = 0.02;      // 1 - cos: an answer within 0.2 rad of the seed ends the search
+constexpr double kNear = 0.2;       // [rad] an answer so near to the seed ends the search
 
 /// Range of cos(x) for x in [lower, upper].
 std::pair<double, double> cosine_range(double lower, double upper) noexcept {
@@ -115,26 +115,21 @@ void SevenSearch::add_arc(double from, double to, double low, double high) noexc
 void SevenSearch::run() noexcept {
   out_.complete = true;
   sample_near_seed();
-  const bool near = within_count_ > 0 && within_[0].rank < kNear;
-  if (!near || query_.all) {
+  double away = bring_nearest_to_front();
+  double slide = 0.03;
+  if (away > kNear || query_.all) {
+    slide = kSpacing;
     for (int i = 0; i < interval_count_; ++i) scan(intervals_[i], kSpacing);
+    away = bring_nearest_to_front();
   }
-  if (within_count_ == 0) descend_valleys();
-  if (within_count_ == 0) search_finely();
+  if (within_count_ == 0) {
+    descend_valleys();
+    if (within_count_ == 0) search_finely();
+    away = bring_nearest_to_front();
+  }
   if (within_count_ > 0) {
-    const int count = query_.all ? within_count_ : std::min(within_count_, kKept);
-    int nearest = 0;
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < count; ++i) {
-      const double away = distance(within_[i]);
-      if (away < best) {
-        best = away;
-        nearest = i;
-      }
-    }
-    std::swap(within_[0], within_[nearest]);
-    slide_towards_seed(within_[0]);
-    for (int i = 0; i < (query_.all ? count : 1); ++i) write(within_[i]);
+    slide_towards_seed(within_[0], slide);
+    for (int i = 0; i < (query_.all ? within_count_ : 1); ++i) write(within_[i]);
     return;
   }
   if (least_count_ > 0) write(least_[0]);
@@ -209,6 +204,43 @@ void SevenSearch::sample_near_seed() noexcept {
     }
   }
   sample(q7);
+  follow_from_seed();
+}
+
+/// Where the branch through the seed is just beyond a limit, looks for the way back along it.
+void SevenSearch::follow_from_seed() noexcept {
+  constexpr double kClose = 1e-3;  // 1 - cos of the distance to the seed
+  int branch = -1;
+  int at = 0;
+  for (int b = 0; b < 8; ++b) {
+    for (int lane = 0; lane < 3; ++lane) {
+      const double beyond = block_.beyond[b][lane];
+      const double away = block_.away[b][lane];
+      if (beyond > kHopeless || block_.open[b][lane] > kWithin || away > kClose) continue;
+      if (beyond <= kWithin) return;
+      if (branch >= 0 && away >= block_.away[branch][at]) continue;
+      branch = b;
+      at = lane;
+    }
+  }
+  if (branch < 0) return;
+  const Interval round{std::max(q7_[at] - 0.02, chain_.lower[6]),
+                       std::min(q7_[at] + 0.02, chain_.upper[6])};
+  follow({0, branch, round, 0, kPi});
+}
+
+/// Puts the answer nearest to the seed first; returns its distance, infinite without one.
+double SevenSearch::bring_nearest_to_front() noexcept {
+  int nearest = 0;
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < within_count_; ++i) {
+    const double away = distance(within_[i]);
+    if (away >= best) continue;
+    best = away;
+    nearest = i;
+  }
+  if (nearest > 0) std::swap(within_[0], within_[nearest]);
+  return best;
 }
 
 /// Samples an interval about every `spacing` rad and notes where branches come near to their
@@ -296,8 +328,7 @@ void SevenSearch::follow(const Valley& valley) noexcept {
 }
 
 /// Moves an answer along its branch to where it is nearest to the seed.
-void SevenSearch::slide_towards_seed(Met& met) noexcept {
-  double half = kSpacing;
+void SevenSearch::slide_towards_seed(Met& met, double half) noexcept {
   for (int round = 0; round < 3; ++round) {
     double q7[kBlock];
     for (int lane = 0; lane < kBlock; ++lane) {

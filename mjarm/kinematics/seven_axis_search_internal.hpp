@@ -46,7 +46,9 @@ class SevenSearch {
   void follow(const Valley& valley) noexcept;
   void descend_valleys() noexcept;
   void search_finely() noexcept;
-  void slide_towards_seed(Met& met) noexcept;
+  void follow_from_seed() noexcept;
+  double bring_nearest_to_front() noexcept;
+  void slide_towards_seed(Met& met, double half) noexcept;
   void keep(Met* list, int& count, int capacity, double rank, int branch, int lane) noexcept;
   void note(const Valley& valley) noexcept;
   void write(const Met& met) noexcept;
