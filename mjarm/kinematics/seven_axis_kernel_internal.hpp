@@ -46,10 +46,9 @@ inline Angle angle_between(const Vec3& from, const Vec3& to, const Lanes& c0, co
 
 /// Sine to the cosine `c`, which is clamped to [-1, 1]; raises `open` where it was beyond.
 inline Lanes sine_of(Lanes& c, Lanes& open) {
-  const Lanes rest = 1.0 - c * c;
-  open = larger(open, -rest);
+  open = larger(open, larger(c, -c) - 1.0);
   c = smaller(larger(c, splat(-1)), splat(1));
-  return square_root(larger(rest, splat(0)));
+  return square_root(1.0 - c * c);
 }
 
 /// True where joint 4 is beyond its limits in every lane.
@@ -177,7 +176,8 @@ class SevenLanes {
     judge(0, q1, beyond, away);
     judge(1, q2, beyond, away);
     judge(2, q3, beyond, away);
-    store(out_.beyond[branch] + at_, larger(beyond, open));
+    // Limits mean nothing to angles that do not exist.
+    store(out_.beyond[branch] + at_, select(open > kSevenWithin, open, beyond));
     store(out_.open[branch] + at_, open);
     store(out_.away[branch] + at_, away);
     double (*const to)[kBlock] = out_.shoulder[branch];

@@ -33,7 +33,6 @@ SevenSearch::SevenSearch(const SevenGeometry& geometry, const Chain& chain,
                          const BranchQuery& query, Branches& out) noexcept
     : g_(geometry), chain_(chain), query_(query), out_(out), kernel_(seven_kernel()) {
   set_goal();
-  find_intervals();
 }
 
 void SevenSearch::set_goal() noexcept {
@@ -114,27 +113,21 @@ void SevenSearch::add_arc(double from, double to, double low, double high) noexc
 
 void SevenSearch::run() noexcept {
   out_.complete = true;
-  sample_near_seed();
-  double away = bring_nearest_to_front();
-  double slide = 0.03;
-  if (away > kNear || query_.all) {
-    slide = kSpacing;
-    for (int i = 0; i < interval_count_; ++i) scan(intervals_[i], kSpacing);
-    away = bring_nearest_to_front();
-  }
-  if (within_count_ == 0) {
-    descend_valleys();
-    if (within_count_ == 0) search_finely();
-    away = bring_nearest_to_front();
-  }
+  if (!query_.all && step_from_seed()) return;
+  find_intervals();
+  for (int i = 0; i < interval_count_; ++i) scan(intervals_[i], kSpacing);
+  if (within_count_ == 0) descend_valleys();
+  if (within_count_ == 0) search_finely();
   if (within_count_ > 0) {
-    slide_towards_seed(within_[0], slide);
+    bring_nearest_to_front();
+    slide_towards_seed(within_[0]);
     for (int i = 0; i < (query_.all ? within_count_ : 1); ++i) write(within_[i]);
     return;
   }
   if (least_count_ > 0) write(least_[0]);
   // So near to the limits the samples may have missed a way between them.
-  out_.complete = least_count_ == 0 || least_[0].rank > kAlmost;
+  out_.complete = (least_count_ == 0 || least_[0].rank > kAlmost) &&
+                  (closest_count_ == 0 || closest_[0].rank > kAlmost);
   out_.has_best = closest_count_ > 0;
   if (out_.has_best) angles(closest_[0], out_.best);
   tell_breach();
@@ -188,49 +181,26 @@ void SevenSearch::keep(Met* list, int& count, int capacity, double rank, int bra
   }
 }
 
-void SevenSearch::sample_near_seed() noexcept {
-  constexpr double kSteps[kBlock] = {0, -0.005, 0.005, -0.02, 0.02, -0.06, 0.06, 0.15};
-  if (interval_count_ == 0) return;
-  double q7[kBlock];
-  for (int lane = 0; lane < kBlock; ++lane) {
-    const double wish = query_.near[6] + kSteps[lane];
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < interval_count_; ++i) {
-      const double value = std::min(std::max(wish, intervals_[i].a), intervals_[i].b);
-      if (std::abs(value - wish) < best) {
-        best = std::abs(value - wish);
-        q7[lane] = value;
-      }
-    }
-  }
-  sample(q7);
-  follow_from_seed();
+/// Where the seed is close to an answer, Newton's steps from it find that one; near a singularity
+/// they keep nearest to the seed. False where they lead elsewhere.
+bool SevenSearch::step_from_seed() noexcept {
+  constexpr double kClose = 0.01;  // [rad^2] weighted error after the first step
+  DescentOptions options;
+  options.pos_tol = query_.pos_tol;
+  options.rot_tol = query_.rot_tol;
+  options.max_iterations = 1;
+  const JointVec seed = joint_vec({query_.near, 7});
+  Descent descent = descend(chain_, query_.X_WT, seed, options);
+  if (descent.error > kClose) return false;
+  options.max_iterations = 8;
+  descent = descend(chain_, query_.X_WT, descent.q, options);
+  if (!descent.converged || (descent.q - seed).cwiseAbs().maxCoeff() > kNear) return false;
+  std::copy_n(descent.q.data(), 7, out_.add());
+  return true;
 }
 
-/// Where the branch through the seed is just beyond a limit, looks for the way back along it.
-void SevenSearch::follow_from_seed() noexcept {
-  constexpr double kClose = 1e-3;  // 1 - cos of the distance to the seed
-  int branch = -1;
-  int at = 0;
-  for (int b = 0; b < 8; ++b) {
-    for (int lane = 0; lane < 3; ++lane) {
-      const double beyond = block_.beyond[b][lane];
-      const double away = block_.away[b][lane];
-      if (beyond > kHopeless || block_.open[b][lane] > kWithin || away > kClose) continue;
-      if (beyond <= kWithin) return;
-      if (branch >= 0 && away >= block_.away[branch][at]) continue;
-      branch = b;
-      at = lane;
-    }
-  }
-  if (branch < 0) return;
-  const Interval round{std::max(q7_[at] - 0.02, chain_.lower[6]),
-                       std::min(q7_[at] + 0.02, chain_.upper[6])};
-  follow({0, branch, round, 0, kPi});
-}
-
-/// Puts the answer nearest to the seed first; returns its distance, infinite without one.
-double SevenSearch::bring_nearest_to_front() noexcept {
+/// Puts the answer nearest to the seed first.
+void SevenSearch::bring_nearest_to_front() noexcept {
   int nearest = 0;
   double best = std::numeric_limits<double>::infinity();
   for (int i = 0; i < within_count_; ++i) {
@@ -239,8 +209,7 @@ double SevenSearch::bring_nearest_to_front() noexcept {
     best = away;
     nearest = i;
   }
-  if (nearest > 0) std::swap(within_[0], within_[nearest]);
-  return best;
+  std::swap(within_[0], within_[nearest]);
 }
 
 /// Samples an interval about every `spacing` rad and notes where branches come near to their
@@ -270,8 +239,9 @@ void SevenSearch::scan(const Interval& interval, double spacing) noexcept {
           const double drop =
               std::max(std::isfinite(left) ? left : 0.0, std::isfinite(right) ? right : 0.0);
           const int at = first + lane - 1;
-          note({middle - 2 * drop, branch, interval, std::max(at - 1, 0) * step,
-                std::min(at + 1, count - 1) * step});
+          if (middle < 2 * drop)
+            note({middle, branch, interval, std::max(at - 1, 0) * step,
+                  std::min(at + 1, count - 1) * step});
         }
         before[0][branch] = middle;
         before[1][branch] = value;
@@ -281,10 +251,9 @@ void SevenSearch::scan(const Interval& interval, double spacing) noexcept {
 }
 
 void SevenSearch::note(const Valley& valley) noexcept {
-  if (valley.promise > 0) return;
-  if (valley_count_ == kValleys && !(valley.promise < valleys_[kValleys - 1].promise)) return;
+  if (valley_count_ == kValleys && !(valley.lowest < valleys_[kValleys - 1].lowest)) return;
   int i = valley_count_ < kValleys ? valley_count_++ : kValleys - 1;
-  for (; i > 0 && valley.promise < valleys_[i - 1].promise; --i) valleys_[i] = valleys_[i - 1];
+  for (; i > 0 && valley.lowest < valleys_[i - 1].lowest; --i) valleys_[i] = valleys_[i - 1];
   valleys_[i] = valley;
 }
 
@@ -316,9 +285,9 @@ void SevenSearch::follow(const Valley& valley) noexcept {
     double q7[kBlock];
     for (int lane = 0; lane < kBlock; ++lane) q7[lane] = valley.interval.at(t0 + (lane + 1) * step);
     sample(q7);
-    if (within_count_ > 0) return;
     const double* beyond = block_.beyond[valley.branch];
     const int lowest = static_cast<int>(std::min_element(beyond, beyond + kBlock) - beyond);
+    if (beyond[lowest] <= kWithin) return;
     const double left = lowest > 0 ? beyond[lowest - 1] - beyond[lowest] : 0;
     const double right = lowest + 1 < kBlock ? beyond[lowest + 1] - beyond[lowest] : 0;
     if (beyond[lowest] > 3 * std::max(left, right)) return;
@@ -328,7 +297,8 @@ void SevenSearch::follow(const Valley& valley) noexcept {
 }
 
 /// Moves an answer along its branch to where it is nearest to the seed.
-void SevenSearch::slide_towards_seed(Met& met, double half) noexcept {
+void SevenSearch::slide_towards_seed(Met& met) noexcept {
+  double half = kSpacing;
   for (int round = 0; round < 3; ++round) {
     double q7[kBlock];
     for (int lane = 0; lane < kBlock; ++lane) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mjarm/kinematics/branches_internal.hpp"
+#include "mjarm/kinematics/descent_internal.hpp"
 #include "mjarm/kinematics/seven_axis_block_internal.hpp"
 
 namespace mjarm::detail {
@@ -28,27 +29,26 @@ class SevenSearch {
   };
   /// Where a branch comes nearest to its limits between three samples.
   struct Valley {
-    double promise;  ///< how low it may get, from the slopes beside it
+    double lowest;  ///< of the samples
     int branch;
     Interval interval;
     double t0, t1;  ///< the range of t
   };
   static constexpr int kKept = 6;
-  static constexpr int kValleys = 16;
+  static constexpr int kValleys = 24;
   static constexpr int kMaxIntervals = 6;
 
   void set_goal() noexcept;
   void find_intervals() noexcept;
   void add_arc(double from, double to, double low, double high) noexcept;
   void sample(const double* q7) noexcept;
-  void sample_near_seed() noexcept;
   void scan(const Interval& interval, double spacing) noexcept;
   void follow(const Valley& valley) noexcept;
   void descend_valleys() noexcept;
   void search_finely() noexcept;
-  void follow_from_seed() noexcept;
-  double bring_nearest_to_front() noexcept;
-  void slide_towards_seed(Met& met, double half) noexcept;
+  bool step_from_seed() noexcept;
+  void bring_nearest_to_front() noexcept;
+  void slide_towards_seed(Met& met) noexcept;
   void keep(Met* list, int& count, int capacity, double rank, int branch, int lane) noexcept;
   void note(const Valley& valley) noexcept;
   void write(const Met& met) noexcept;
