@@ -10,10 +10,10 @@ namespace mjarm::support {
 
 /// How to run a program. Every default is usable as is.
 struct RunOptions {
-  std::filesystem::path folder;  ///< working directory; empty = that of the test
-  std::string input;             ///< what the program reads from standard input
+  std::filesystem::path folder = {};  ///< working directory; empty = that of the test
+  std::string input = {};             ///< what the program reads from standard input
   /// Set in its environment; locale variables are cleared first, so that messages are English.
-  std::vector<std::pair<std::string, std::string>> environment;
+  std::vector<std::pair<std::string, std::string>> environment = {};
 };
 
 /// What a program did.
