@@ -29,8 +29,8 @@ constexpr bool kSanitized = __has_feature(address_sanitizer);
 #else
 constexpr bool kSanitized = false;
 #endif
-/// A sanitizer takes all of the address space and several times the time.
-constexpr double kSlowness = kSanitized ? 8 : 1;
+/// A sanitizer takes all of the address space and makes work slower.
+constexpr double kSlowness = kSanitized ? 3 : 1;
 /// Once `work` is at its end the child says this; everything before is its answer.
 constexpr char kEnd = '\x04';
 

@@ -82,7 +82,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (what.find('\n') != std::string::npos) finding("more than one line", what);
     if (!mjarm::is_utf8(what)) finding("no UTF-8", what);
     if (what.find(folder.path().string()) == std::string::npos) finding("no file named", what);
-    if (what.find("crashed") != std::string::npos || what.find(" needed more") != std::string::npos) {
+    if (what.find("crashed") != std::string::npos ||
+        what.find(" needed more") != std::string::npos) {
       keep(input, what);
     }
   } else if (!(model->timestep() > 0)) {
