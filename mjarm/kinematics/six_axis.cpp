@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-
 #include "mjarm/kinematics/branches_internal.hpp"
 #include "mjarm/kinematics/trig_internal.hpp"
 
@@ -94,6 +93,7 @@ class SixAxis::Walk {
 
   void with_q1(const SinCos& q1, double angle) noexcept {
     q_[0] = angle;
+    elbow_miss_ = wrist_miss_ = {};
     const SinCos back{-q1.s, q1.c};
     const Eigen::Matrix3d& R_SB = form_.shoulder_.R_SB;
     e_S_ = R_SB * turn_z(back, e_B_);
@@ -245,11 +245,10 @@ class SixAxis::Walk {
   void add() noexcept {
     if (!is_wanted()) return;
     const double amount = missed();
-    double* row = out_.best;
     if (amount <= slack_) {
-      row = out_.add();
-      if (row == nullptr) return;
-    } else {
+      if (double* row = out_.add()) write(row);
+    }
+    if (amount > 0 && amount < out_.amount) {
       const Miss* worst = &shoulder_miss_;
       if (elbow_miss_.amount > worst->amount) worst = &elbow_miss_;
       if (wrist_miss_.amount > worst->amount) worst = &wrist_miss_;
@@ -258,7 +257,11 @@ class SixAxis::Walk {
       out_.amount = amount;
       out_.bound = worst->bound;
       out_.has_best = true;
+      write(out_.best);
     }
+  }
+
+  void write(double* row) const noexcept {
     for (int i = 0; i < 6; ++i) row[i] = form_.sign_[i] * q_[i];
     if (form_.parallel_) row[3] = form_.sign_[3] * (q_[3] - q_[1] - q_[2]);
   }
