@@ -106,6 +106,10 @@ class Walker {
     }
     e_.template head<3>() = w * (goal_.p - p);
     e_.template tail<3>() = rotation_error(R, goal_.R);
+    if (options_.task == IkTask::position) {
+      for (int i = 0; i < n(); ++i) J_[i].template tail<3>().setZero();
+      e_.template tail<3>().setZero();
+    }
     error_ = e_.squaredNorm();
     return error_;
   }

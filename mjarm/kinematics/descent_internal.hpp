@@ -3,6 +3,7 @@
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/kinematics/chain.hpp"
+#include "mjarm/kinematics/ik.hpp"
 
 namespace mjarm::detail {
 
@@ -13,6 +14,7 @@ struct DescentOptions {
   int max_iterations = 100;  ///< steps, > 0
   double length = 0.5;       ///< [m] position error that weighs as much as 1 rad, > 0
   bool limits = true;        ///< false: the limits are ignored
+  IkTask task = IkTask::pose;
 };
 
 /// Where a descent ended.

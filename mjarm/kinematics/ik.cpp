@@ -140,7 +140,9 @@ Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,
     return fail(failure);
   }
   Search search(chain_, options_, length_, goal);
-  if (const std::optional<ReachBreach> breach = reach_.check(goal.X_WT)) {
+  // The proofs of reach are about a tool whose orientation is given.
+  const auto breach = options_.task == IkTask::pose ? reach_.check(goal.X_WT) : std::nullopt;
+  if (breach) {
     IkFailure failure;
     failure.code =
         breach->shape == ReachShape::outer_sphere ? IkErrc::out_of_reach : IkErrc::inner_void;

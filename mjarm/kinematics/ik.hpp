@@ -28,6 +28,12 @@ enum class IkErrc {
 /// The word used in files: "out_of_reach", "inner_void", ...
 [[nodiscard]] std::string_view name(IkErrc code) noexcept;
 
+/// What of a goal pose must be met.
+enum class IkTask {
+  pose,      ///< position and orientation
+  position,  ///< position alone, as for an arm of fewer than six joints; any orientation will do
+};
+
 /// How hard to try, and when to call it solved. Every default is usable as is.
 struct IkOptions {
   double pos_tol = 1e-7;       ///< [m]   |p_goal - p|, > 0
@@ -35,15 +41,16 @@ struct IkOptions {
   int max_iterations = 100;    ///< steps a start, > 0
   int restarts = 50;           ///< random seeds tried after q_seed, >= 0
   std::uint64_t rng_seed = 1;  ///< same inputs and seed, same answer
+  IkTask task = IkTask::pose;  ///< with `position`, rot_tol plays no part
   /// Accepts or refuses a configuration (collision, taste); empty accepts all. Must not throw.
-  std::function<bool(std::span<const double> q)> valid;
+  std::function<bool(std::span<const double> q)> valid = {};
 };
 
 /// A configuration and how far its tool is from the goal.
 struct IkSolution {
   JointVec q;          ///< [rad or m] within the limits
   double pos_err = 0;  ///< [m]
-  double rot_err = 0;  ///< [rad]
+  double rot_err = 0;  ///< [rad] 0 where the task leaves the orientation free
   int iterations = 0;  ///< steps taken in all
   int restarts = 0;    ///< random starts used; 0 = solved from the seed
 };

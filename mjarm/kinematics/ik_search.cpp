@@ -57,6 +57,7 @@ DescentOptions descent_options(const IkOptions& options, double length) noexcept
   out.rot_tol = options.rot_tol;
   out.max_iterations = options.max_iterations;
   out.length = length;
+  out.task = options.task;
   return out;
 }
 
