@@ -12,7 +12,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file, tip;
+  std::string file, tip, against;
   bool json = false;
 };
 
@@ -57,7 +57,10 @@ Result<int> run_check(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
-  return check_file(*file, options.tip, options.json);
+  if (options.against.empty()) return check_file(*file, options.tip, options.json);
+  const Result<std::filesystem::path> other = find_model_file(options.against);
+  if (!other) return fail(other.error());
+  return check_against(*file, *other, options.tip, options.json);
 }
 
 Run setup(CLI::App& app) {
@@ -73,6 +76,7 @@ Run setup(CLI::App& app) {
       add_subcommand(app, "check", msg::app_model_check_summary, msg::app_model_check_examples);
   add_options(check, *options);
   check.add_option("--tip", options->tip, text(msg::app_option_tip))->type_name("FRAME");
+  check.add_option("--against", options->against, text(msg::app_model_against))->type_name("FILE");
   return [options, &info, &tree, &check]() -> Result<int> {
     if (info.parsed()) return run_info(*options);
     if (tree.parsed()) return run_tree(*options);

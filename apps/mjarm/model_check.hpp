@@ -16,4 +16,11 @@ namespace mjarm::app {
 [[nodiscard]] Result<int> check_file(const std::filesystem::path& file, const std::string& tip,
                                      bool json);
 
+/// Compares the forward kinematics of two descriptions and prints the difference and its likely
+/// cause; exit code 0 where they agree to 1e-9 m and rad (masses and limits may still differ), else
+/// 1. Where `other` has no frame `tip`, its own tool frame is taken.
+[[nodiscard]] Result<int> check_against(const std::filesystem::path& file,
+                                        const std::filesystem::path& other, const std::string& tip,
+                                        bool json);
+
 }  // namespace mjarm::app

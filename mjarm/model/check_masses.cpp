@@ -95,7 +95,9 @@ void check_body(const CheckContext& context, int b) {
   const std::string name = object_name(m, mjOBJ_BODY, b);
   const double mass = m->body_mass[b];
   const Place place = context.description.inertial(name);
-  if (m->body_jntnum[b] > 0 && m->body_subtreemass[b] < kLeastMass) {
+  // Links of a URDF without mass are told from the text.
+  const bool told = context.description.is_urdf() && !context.description.has_inertial(name);
+  if (m->body_jntnum[b] > 0 && m->body_subtreemass[b] < kLeastMass && !told) {
     context.add(CheckCode::mass_implausible, Grade::warning, place,
                 text(msg::check_mass_tiny, m->body_subtreemass[b]));
     return;
