@@ -61,8 +61,8 @@ std::string to_text(const CheckReport& report) {
   const int warnings = report.count(Grade::warning);
   const int notes = report.count(Grade::note);
   return result +
-         text(errors + warnings > 0 ? msg::app_check_counts : msg::app_check_fine, errors, warnings,
-              notes) +
+         (errors + warnings > 0 ? text(msg::app_check_counts, errors, warnings, notes)
+                                : text(msg::app_check_fine, notes)) +
          "\n";
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/mjarm/demos/output.hpp"
+#include "apps/mjarm/install/installed.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
@@ -40,9 +41,9 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
                                            int dof) {
-  const auto model = find_model_file(options.robot).and_then([](const std::filesystem::path& file) {
-    return Model::load(file);
-  });
+  const auto model =
+      (options.meshes ? find_mesh_scene(options.robot) : find_model_file(options.robot))
+          .and_then([](const std::filesystem::path& file) { return Model::load(file); });
   if (!model) return fail(model.error());
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});
   if (!arm) return fail(std::move(arm.error()));
