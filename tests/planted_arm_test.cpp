@@ -274,7 +274,7 @@ INSTANTIATE_TEST_SUITE_P(
               kError,
               R"(<body "left">)",
               R"(<body name="left")"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace mjarm::planted

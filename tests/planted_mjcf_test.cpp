@@ -172,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(
               CheckCode::radians_for_degrees,
               kError,
               R"(<body "one">)"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace mjarm::planted

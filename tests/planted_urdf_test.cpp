@@ -30,8 +30,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Continuous",
               kUrdf,
               kUrdf,
-              {{"",
-                R"(<joint name="wrist_3_joint" type="revolute">)",
+              {{"", R"(<joint name="wrist_3_joint" type="revolute">)",
                 R"(<joint name="wrist_3_joint" type="continuous">)"},
                {R"(<joint name="wrist_3_joint")", R"(effort="28")", R"(effort="29")"}},
               CheckCode::limits_missing,
@@ -178,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(
               R"(<inertial> of "forearm_link")",
               R"(<inertial>
       <origin xyz="0 0 0.196")"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace mjarm::planted
