@@ -79,7 +79,10 @@ void change(tinyxml2::XMLDocument& document, const std::vector<XMLElement*>& all
       if (attribute != nullptr) element.DeleteAttribute(std::string(attribute->Name()).c_str());
       break;
     case 3:
-      if (source != nullptr) element.SetAttribute(source->Name(), source->Value());
+      // A copy, for it may be the attribute itself that is set.
+      if (source == nullptr) break;
+      element.SetAttribute(std::string(source->Name()).c_str(),
+                           std::string(source->Value()).c_str());
       break;
     case 4:
       if (attribute == nullptr || source == nullptr) break;
