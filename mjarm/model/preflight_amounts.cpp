@@ -16,7 +16,7 @@ using tinyxml2::XMLElement;
 
 constexpr double kMostElements = 200'000;  ///< that <replicate> may make
 constexpr double kLongestStep = 10;        ///< [s]
-constexpr double kMostTexels = 1 << 26;    ///< of one texture
+constexpr double kMostTexels = 1 << 26;    ///< of all textures
 constexpr double kMostHeights = 1 << 25;   ///< of one height field
 constexpr double kMostNodes = 1'000'000;   ///< of one flexible body
 
@@ -49,6 +49,12 @@ double product_of(const XMLElement& element, const char* attribute) {
   return product;
 }
 
+double texels_of(const XMLElement& element) {
+  if (std::string_view(element.Name()) != "texture" || element.Attribute("width") == nullptr)
+    return 0;
+  return product_of(element, "width") * product_of(element, "height");
+}
+
 std::string too_big(std::string_view what, double amount, double most) {
   return text(msg::guard_too_big, what, amount, most);
 }
@@ -69,10 +75,6 @@ std::optional<std::string> amount_fault(const XMLElement& element) {
   if (kind == "hfield") {
     const double cells = product_of(element, "nrow") * product_of(element, "ncol");
     if (cells > kMostHeights) return too_big("nrow x ncol", cells, kMostHeights);
-  }
-  if (kind == "texture") {
-    const double texels = product_of(element, "width") * product_of(element, "height");
-    if (texels > kMostTexels) return too_big("width x height", texels, kMostTexels);
   }
   if (kind == "flexcomp") {
     const double nodes = product_of(element, "count");
@@ -140,7 +142,13 @@ class Replicas {
 }  // namespace
 
 Result<void> check_amounts(const XmlSources& sources) {
+  double texels = 0;
   for (const SourceElement& source : sources.elements()) {
+    texels += texels_of(*source.element);
+    if (texels > kMostTexels) {
+      return fail(urdf_error(*source.file, *source.element,
+                             too_big("width x height of all textures", texels, kMostTexels)));
+    }
     for (const auto& fault : {timestep_fault(*source.element), amount_fault(*source.element)}) {
       if (fault) return fail(urdf_error(*source.file, *source.element, *fault));
     }
