@@ -2,6 +2,7 @@
 
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/link_chain.hpp"
 
 namespace mjarm {
 namespace {
@@ -38,6 +39,14 @@ void fk_with_jacobian(benchmark::State& state) {
                 [](const Arm& arm, std::span<const double> q) { return fk_jacobian(arm, q); });
 }
 BENCHMARK(fk_with_jacobian)->Arg(6)->Arg(7);
+
+/// The same of a LinkChain, as inner loops call it.
+void fk_link_chain_jacobian(benchmark::State& state) {
+  const LinkChain chain{Chain(arm_of(state))};
+  over_random_q(state,
+                [&](const Arm&, std::span<const double> q) { return fk_jacobian(chain, q); });
+}
+BENCHMARK(fk_link_chain_jacobian)->Arg(6)->Arg(7);
 
 void fk_manipulability(benchmark::State& state) {
   over_random_q(state, [](const Arm& arm, std::span<const double> q) {
