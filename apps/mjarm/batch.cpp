@@ -1,9 +1,13 @@
 #include "apps/mjarm/batch.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <optional>
+#include <system_error>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "apps/mjarm/line_reader.hpp"
 #include "mjarm/core/file.hpp"
@@ -41,6 +45,44 @@ class Output {
   std::optional<AtomicFile> file_;
 };
 
+/// One request on its way.
+struct Line {
+  std::string request, place, answer;
+  Result<std::optional<std::string>> done;
+};
+
+/// Up to `count` requests; after an error those before it.
+Result<void> read_block(LineReader& reader, std::size_t count, std::vector<Line>& lines) {
+  lines.clear();
+  while (lines.size() < count) {
+    const Result<std::optional<std::string_view>> request = reader.next();
+    if (!request) return fail(request.error());
+    if (!*request) break;
+    lines.push_back({std::string(**request), reader.place(), {}, {}});
+  }
+  return {};
+}
+
+/// Every thread takes each n-th line.
+void answer_block(const AnswerLine& answer, int threads, std::vector<Line>& lines) {
+  const std::size_t step = std::clamp<std::size_t>(lines.size(), 1, std::max(threads, 1));
+  const auto work = [&](std::size_t first) {
+    for (std::size_t i = first; i < lines.size(); i += step) {
+      lines[i].done = answer(lines[i].request, lines[i].answer);
+      lines[i].answer += '\n';
+    }
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t first = 1; first < step; ++first) {
+    try {
+      others.emplace_back(work, first);
+    } catch (const std::system_error&) {  // no more threads to be had
+      work(first);
+    }
+  }
+  work(0);
+}
+
 }  // namespace
 
 void add_batch_options(CLI::App& app, BatchOptions& options) {
@@ -60,23 +102,29 @@ Result<BatchResult> run_batch(const BatchOptions& options, const std::string& la
   Result<Output> output = Output::open(options.out);
   if (!output) return fail(std::move(output.error()));
   Progress progress(label, reader->count_lines());
+  // Somebody may wait for each line of a stream; a file is taken in blocks that feed the threads.
+  const bool stream = reader->is_stream() || options.threads <= 1;
+  const std::size_t block = stream ? 1 : 64 * static_cast<std::size_t>(options.threads);
   BatchResult result;
-  std::string line;
-  for (;;) {
-    const Result<std::optional<std::string_view>> request = reader->next();
-    if (!request) return fail(request.error());
-    if (!*request) break;
-    line.clear();
-    const Result<bool> done = answer(**request, line);
-    if (!done) return fail(done.error().code, reader->place() + ": " + done.error().what);
-    if (!*done && result.failed++ == 0) result.first_failure = reader->place();
-    ++result.requests;
-    line += '\n';
-    if (Result<void> written = output->write(line, reader->is_stream()); !written) {
-      return fail(std::move(written.error()));
+  std::vector<Line> lines;
+  do {
+    const Result<void> read = read_block(*reader, block, lines);
+    answer_block(answer, options.threads, lines);
+    for (const Line& line : lines) {
+      if (!line.done)
+        return fail(line.done.error().code, line.place + ": " + line.done.error().what);
+      if (*line.done && result.failed++ == 0) {
+        result.first_failure = line.place;
+        result.first_why = **line.done;
+      }
+      ++result.requests;
+      if (Result<void> written = output->write(line.answer, reader->is_stream()); !written) {
+        return fail(std::move(written.error()));
+      }
     }
-    progress.advance();
-  }
+    if (!read) return fail(read.error());
+    progress.advance(lines.size());
+  } while (!lines.empty());
   if (Result<void> written = output->finish(); !written) return fail(std::move(written.error()));
   return result;
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,7 @@ namespace mjarm::app {
 struct BatchOptions {
   std::string in;   ///< file of JSON lines, `-` = standard input
   std::string out;  ///< file, `-` or empty = standard output
+  int threads = 1;  ///< >= 1
 };
 
 /// Adds `--in FILE` and `--out FILE`, bound to `options`.
@@ -23,20 +25,23 @@ void add_batch_options(CLI::App& app, BatchOptions& options);
 [[nodiscard]] Result<void> one_source(const std::string& in, const std::string& one,
                                       const std::string& option);
 
-/// Answers one request: appends the answer to `out`, without a line break, and tells whether the
-/// request could be done. An error is a malformed request; it says what is wrong, not where.
-using AnswerLine = std::function<Result<bool>(std::string_view request, std::string& out)>;
+/// Answers one request: appends the answer to `out`, without a line break. Returns why the request
+/// could not be done, nothing where it was. An error is a malformed request; it says what is wrong,
+/// not where. Called from several threads at once where `BatchOptions::threads` is not 1.
+using AnswerLine =
+    std::function<Result<std::optional<std::string>>(std::string_view request, std::string& out)>;
 
 /// How a batch went.
 struct BatchResult {
   std::uint64_t requests = 0;
   std::uint64_t failed = 0;   ///< well-formed, but could not be done
   std::string first_failure;  ///< `file:line` of the first of them
+  std::string first_why;      ///< why it could not be done
 };
 
 /// Answers all requests in order, one line each; blank lines are skipped. A file named by `out`
 /// appears only when every request was well-formed; standard output gets every answer as it is
-/// ready.
+/// ready. The answers are the same bytes whatever the number of threads.
 /// @param label  what the progress bar says.
 /// @return an error that begins with `file:line:` at the first malformed request.
 [[nodiscard]] Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,

@@ -1,6 +1,7 @@
 #include "mjarm/kinematics/fk.hpp"
 
 #include <memory>
+#include <optional>
 
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/command.hpp"
@@ -50,14 +51,15 @@ Result<int> run(const FkOptions& options) {
   if (!robot) return fail(robot.error());
   const Arm& arm = robot->arm;
   if (options.batch.in.empty()) return answer_one(arm, options);
-  const auto answer = [&arm](std::string_view request, std::string& out) -> Result<bool> {
+  const auto answer = [&arm](std::string_view request,
+                             std::string& out) -> Result<std::optional<std::string>> {
     const Result<nlohmann::json> object = parse_json_object(request);
     if (!object) return fail(object.error());
     const Result<std::vector<double>> q =
         number_list(*object, "q", static_cast<std::size_t>(arm.dof()));
     if (!q) return fail(q.error());
     append_pose(out, fk(arm, *q));
-    return true;
+    return std::nullopt;
   };
   const Result<BatchResult> done = run_batch(options.batch, text(msg::app_fk_progress), answer);
   if (!done) return fail(done.error());

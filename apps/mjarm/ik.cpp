@@ -19,17 +19,19 @@
 namespace mjarm::app {
 namespace {
 
+constexpr std::uint64_t kMostThreads = 1024;
+
 struct Options {
   RobotOptions robot;
   BatchOptions batch;
-  std::string pos, euler, quat, seed_q, seed = "1";
-  bool all = false, no_timing = false;
+  std::string pos, euler, quat, seed_q, seed = "1", threads = "1";
+  bool all = false, windings = false, no_timing = false;
 };
 
 /// What stays the same for all requests.
 struct Job {
   IkSolver solver;
-  bool all, timing;
+  bool all, windings, timing;
 };
 
 struct Request {
@@ -121,7 +123,8 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
   const Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
   std::vector<IkSolution> branches;
   if (job.all && solution) {
-    branches = solve_all(job.solver, request.X_WT, request.q_seed).value_or(branches);
+    const IkAllOptions all{.windings = job.windings};
+    branches = solve_all(job.solver, request.X_WT, request.q_seed, all).value_or(branches);
   }
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   std::optional<std::string> why;
@@ -151,33 +154,38 @@ Result<int> answer_one(const Job& job, const Options& options) {
 }
 
 Result<int> answer_all(const Job& job, const Options& options) {
-  std::optional<std::string> first_why;
-  const auto answer_line = [&](std::string_view line, std::string& out) -> Result<bool> {
+  const auto answer_line = [&](std::string_view line,
+                               std::string& out) -> Result<std::optional<std::string>> {
     const Result<Request> request = read_request(line, job.solver.arm());
     if (!request) return fail(request.error());
-    const std::optional<std::string> why = answer(job, *request, out);
-    if (why && !first_why) first_why = why;
-    return !why;
+    return answer(job, *request, out);
   };
   const auto done = run_batch(options.batch, text(msg::app_ik_progress), answer_line);
   if (!done) return fail(done.error());
   if (done->failed == 0) return 0;
-  log_error(
-      text(msg::app_ik_some_failed, done->first_failure, *first_why, done->failed, done->requests));
+  log_error(text(msg::app_ik_some_failed, done->first_failure, done->first_why, done->failed,
+                 done->requests));
   return 1;
 }
 
-Result<int> run(const Options& options) {
+Result<int> run(Options options) {
   if (Result<void> fine = one_source(options.batch.in, options.pos, "--pos"); !fine) {
     return fail(std::move(fine.error()));
   }
   const Result<std::uint64_t> seed = parse_whole("--seed", options.seed);
   if (!seed) return fail(seed.error());
+  const Result<std::uint64_t> threads = parse_whole("--threads", options.threads);
+  if (!threads) return fail(threads.error());
+  if (*threads < 1 || *threads > kMostThreads) {
+    return fail(Errc::usage, text(msg::app_bad_threads, *threads, kMostThreads));
+  }
+  options.batch.threads = static_cast<int>(*threads);
   Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(std::move(robot.error()));
   IkOptions ik;
   ik.rng_seed = *seed;
-  const Job job{IkSolver(robot->arm, ik), options.all, !options.no_timing};
+  const Job job{IkSolver(robot->arm, ik), options.all || options.windings, options.windings,
+                !options.no_timing};
   return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
 }
 
@@ -191,6 +199,8 @@ Run setup(CLI::App& app) {
   add_batch_options(app, options->batch);
   app.add_option("--seed", options->seed, text(msg::app_option_seed))->type_name("N");
   app.add_flag("--all", options->all, text(msg::app_option_all));
+  app.add_flag("--windings", options->windings, text(msg::app_option_windings));
+  app.add_option("--threads", options->threads, text(msg::app_option_threads))->type_name("N");
   app.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
   return [options] { return run(*options); };
 }

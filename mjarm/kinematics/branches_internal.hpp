@@ -40,7 +40,7 @@ struct BranchQuery {
 /// Answers of a closed form, in the order they were found. Left uninitialised on purpose: only the
 /// first `count` rows are read.
 struct Branches {
-  static constexpr int kCapacity = 64;
+  static constexpr int kCapacity = 128;
   static constexpr int kMaxJoints = 7;
 
   int count = 0;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mjarm/kinematics/trig_internal.hpp"
+
 namespace mjarm {
 namespace {
 
@@ -37,6 +39,24 @@ Chain::Chain(const Arm& arm) {
     full_turn[i] = !slide[i] && upper[i] - lower[i] >= kTurn - 1e-12;
   }
   X_JT = {R_before.transpose() * arm.X_JT.p, R_before.transpose() * arm.X_JT.R};
+}
+
+Pose Chain::fk(const double* q) const noexcept {
+  Pose X;
+  for (int i = 0; i < dof; ++i) {
+    const Pose& step = X_PJ[static_cast<std::size_t>(i)];
+    X.p += X.R * step.p;
+    X.R = X.R * step.R;
+    if (slide[static_cast<std::size_t>(i)]) {
+      X.p += q[i] * X.R.col(2);
+    } else {
+      const auto [s, c] = detail::sin_cos(q[i]);
+      const Eigen::Vector3d x = X.R.col(0);
+      X.R.col(0) = c * x + s * X.R.col(1);
+      X.R.col(1) = c * X.R.col(1) - s * x;
+    }
+  }
+  return X * X_JT;
 }
 
 double nearest_winding(const Chain& chain, int i, double q, double q_near) noexcept {

@@ -23,6 +23,9 @@ struct Chain {
   /// limits.
   std::array<bool, kMaxDof> full_turn{};
   Pose X_JT;  ///< tool in the frame of the last joint
+
+  /// Pose X_WT of the tool at `q`, shape (dof,) [rad or m].
+  [[nodiscard]] Pose fk(const double* q) const noexcept;
 };
 
 /// The winding q + 2 pi k of joint `i` that is nearest to `q_near` and within the limits; `q`

@@ -1,125 +1,43 @@
 #include "mjarm/kinematics/ik.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <optional>
 #include <utility>
 
-#include "mjarm/kinematics/ik_search_internal.hpp"
+#include "mjarm/kinematics/branch_choice_internal.hpp"
+#include "mjarm/kinematics/numeric_search_internal.hpp"
 
 namespace mjarm {
 namespace {
 
-using detail::Descent;
-using detail::DescentOptions;
+using detail::BranchChoice;
+using detail::Branches;
+using detail::BranchQuery;
 using detail::IkGoal;
 
-/// One solve: the goal, what has been met so far and what is counted.
-class Search {
- public:
-  Search(const Chain& chain, const IkOptions& options, double length, const IkGoal& goal) noexcept
-      : chain_(chain),
-        options_(options),
-        descent_(detail::descent_options(options, length)),
-        goal_(goal),
-        rng_(options.rng_seed) {}
+IkFailure failure_of(const ReachBreach& breach, const IkSolution& best) noexcept {
+  IkFailure out;
+  out.code = breach.shape == ReachShape::outer_sphere ? IkErrc::out_of_reach : IkErrc::inner_void;
+  out.best = best;
+  out.amount = breach.amount;
+  out.bound = breach.bound;
+  out.shape = breach.shape;
+  return out;
+}
 
-  /// The seed, then random starts, until an answer is found that `valid` accepts.
-  std::optional<IkSolution> run() noexcept {
-    for (int start = 0; start <= options_.restarts; ++start) {
-      if (try_start(start)) return best_;
-    }
-    return std::nullopt;
+/// Asks the closed form; where that has no answer and is no proof, the numeric search.
+Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) noexcept {
+  const IkOptions& options = ik.options();
+  Branches branches;
+  const BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
+  ik.six_axis()->branches(query, branches);
+  BranchChoice choice(ik.chain(), options, ik.length(), goal);
+  if (const auto solution = choice.nearest(branches)) return *solution;
+  if (branches.complete && branches.count > 0) return fail(choice.failure(branches));
+  if (const auto breach = ik.reach().check(goal.X_WT)) {
+    return fail(failure_of(*breach, choice.failure(branches).best));
   }
-
-  /// One descent from the seed, for the best attempt of a pose that is known to be out of reach.
-  IkSolution nearest_from_seed() noexcept {
-    try_start(0);
-    return best_;
-  }
-
-  /// What to say when run() found nothing.
-  IkFailure failure() noexcept {
-    IkFailure out;
-    out.best = best_;
-    if (refused_) {
-      out.code = IkErrc::collision;
-    } else {
-      find_beyond_limits(out);
-    }
-    return out;
-  }
-
- private:
-  bool try_start(int start) noexcept {
-    const JointVec q_start =
-        start == 0 ? goal_.seed : detail::random_start(chain_, goal_.seed, rng_);
-    const Descent descent = detail::descend(chain_, goal_.X_WT, q_start, descent_);
-    iterations_ += descent.iterations;
-    IkSolution met{detail::unwind(chain_, descent.q, goal_.seed), descent.pos_err, descent.rot_err,
-                   iterations_, start};
-    const bool accepted = descent.converged && is_valid(met.q);
-    // An answer that was refused beats any configuration that is none.
-    const bool closer = descent.converged ? !refused_ : !refused_ && descent.error < best_error_;
-    if (accepted || closer || start == 0) {
-      best_ = met;
-      best_error_ = descent.error;
-    }
-    if (descent.converged && !accepted) refused_ = true;
-    best_.iterations = iterations_;
-    best_.restarts = start;
-    return accepted;
-  }
-
-  bool is_valid(const JointVec& q) const noexcept {
-    return !options_.valid || options_.valid(view(q));
-  }
-
-  /// Searches without limits; where that reaches the pose, names the joint that is farthest beyond
-  /// its limit in the answer that breaks its limits least.
-  void find_beyond_limits(IkFailure& out) noexcept {
-    constexpr int kStarts = 12;
-    DescentOptions free = descent_;
-    free.limits = false;
-    for (int start = 0; start < kStarts; ++start) {
-      const JointVec q_start =
-          start == 0 ? goal_.seed : detail::random_start(chain_, goal_.seed, rng_);
-      const Descent descent = detail::descend(chain_, goal_.X_WT, q_start, free);
-      if (!descent.converged) continue;
-      const auto [joint, amount] = worst_violation(descent.q);
-      if (amount <= 0 || (out.joint >= 0 && amount >= out.amount)) continue;
-      out.code = IkErrc::joint_limit;
-      out.joint = joint;
-      out.amount = amount;
-    }
-  }
-
-  std::pair<int, double> worst_violation(const JointVec& q) const noexcept {
-    std::pair<int, double> worst{-1, 0.0};
-    for (int i = 0; i < chain_.dof; ++i) {
-      if (chain_.full_turn[i]) continue;
-      double value = q[i];
-      if (!chain_.slide[i]) {
-        const double middle = 0.5 * (chain_.lower[i] + chain_.upper[i]);
-        value = middle + std::remainder(value - middle, 2 * std::numbers::pi);
-      }
-      const double beyond = std::max(chain_.lower[i] - value, value - chain_.upper[i]);
-      if (beyond > worst.second) worst = {i, beyond};
-    }
-    return worst;
-  }
-
-  const Chain& chain_;
-  const IkOptions& options_;
-  const DescentOptions descent_;
-  const IkGoal& goal_;
-  Rng rng_;
-  IkSolution best_;
-  double best_error_ = 0;
-  int iterations_ = 0;
-  bool refused_ = false;
-};
+  if (branches.complete) return fail(choice.failure(branches));
+  return search_numeric(ik.chain(), options, ik.length(), goal);
+}
 
 }  // namespace
 
@@ -128,7 +46,9 @@ IkSolver::IkSolver(const Arm& arm, IkOptions options)
       options_(std::move(options)),
       chain_(arm),
       reach_(arm),
-      length_(detail::characteristic_length(chain_)) {}
+      length_(detail::characteristic_length(chain_)) {
+  if (options_.closed_form && options_.task == IkTask::pose) six_ = SixAxis::recognise(chain_);
+}
 
 Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,
                                               std::span<const double> q_seed) const noexcept {
@@ -139,21 +59,13 @@ Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,
     failure.best.q = JointVec::Zero(chain_.dof);
     return fail(failure);
   }
-  Search search(chain_, options_, length_, goal);
+  if (six_) return solve_six(*this, goal);
   // The proofs of reach are about a tool whose orientation is given.
   const auto breach = options_.task == IkTask::pose ? reach_.check(goal.X_WT) : std::nullopt;
   if (breach) {
-    IkFailure failure;
-    failure.code =
-        breach->shape == ReachShape::outer_sphere ? IkErrc::out_of_reach : IkErrc::inner_void;
-    failure.best = search.nearest_from_seed();
-    failure.amount = breach->amount;
-    failure.bound = breach->bound;
-    failure.shape = breach->shape;
-    return fail(failure);
+    return fail(failure_of(*breach, detail::nearest_from_seed(chain_, options_, length_, goal)));
   }
-  if (const std::optional<IkSolution> solution = search.run()) return *solution;
-  return fail(search.failure());
+  return detail::search_numeric(chain_, options_, length_, goal);
 }
 
 }  // namespace mjarm

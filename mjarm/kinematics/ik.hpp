@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/chain.hpp"
 #include "mjarm/kinematics/reach.hpp"
+#include "mjarm/kinematics/six_axis.hpp"
 #include "mjarm/model/arm.hpp"
 
 namespace mjarm {
@@ -22,6 +25,7 @@ enum class IkErrc {
   joint_limit,     ///< reached only with `joint` beyond its limit by `amount` rad or m
   collision,       ///< answers exist, the validity predicate refused them all
   no_convergence,  ///< no answer found in the given number of restarts; not a proof
+  too_far,         ///< answers exist, all with `joint` more than `max_step` from the seed
   bad_input,       ///< NaN, a matrix that is no rotation, a seed of the wrong size
 };
 
@@ -41,7 +45,10 @@ struct IkOptions {
   int max_iterations = 100;    ///< steps a start, > 0
   int restarts = 50;           ///< random seeds tried after q_seed, >= 0
   std::uint64_t rng_seed = 1;  ///< same inputs and seed, same answer
+  bool closed_form = true;     ///< false: by the numeric search even where a closed form is known
   IkTask task = IkTask::pose;  ///< with `position`, rot_tol plays no part
+  /// [rad or m] farthest that any joint may be from the seed, > 0: rather no answer than a flip.
+  double max_step = std::numeric_limits<double>::infinity();
   /// Accepts or refuses a configuration (collision, taste); empty accepts all. Must not throw.
   std::function<bool(std::span<const double> q)> valid = {};
 };
@@ -59,10 +66,10 @@ struct IkSolution {
 struct IkFailure {
   IkErrc code = IkErrc::no_convergence;
   IkSolution best;    ///< closest attempt, within the limits
-  double amount = 0;  ///< how far beyond: [m] for reach and void, [rad or m] for a joint limit
+  double amount = 0;  ///< how far beyond: [m] for reach and void, [rad or m] for a joint
   double bound = 0;   ///< [m] the radius that is broken (out_of_reach, inner_void), else 0
   ReachShape shape = ReachShape::none;  ///< round what that radius is (out_of_reach, inner_void)
-  int joint = -1;                       ///< which joint, for joint_limit
+  int joint = -1;                       ///< which joint, for joint_limit and too_far
 };
 
 /// One line for people: what is wrong and by how much.
@@ -73,15 +80,17 @@ class IkSolver {
  public:
   explicit IkSolver(const Arm& arm, IkOptions options = {});
 
-  /// Finds q with fk(q) within tolerance of `X_WT`, trying `q_seed` first, then random starts. Of
-  /// the windings of an answer (hinges that turn more than a revolution) the one nearest to
-  /// `q_seed`.
+  /// Finds q with fk(q) within tolerance of `X_WT`. Where a closed form is known (six_axis.hpp),
+  /// the answer nearest to `q_seed` by the largest joint distance, then by the sum, that
+  /// `options.valid` accepts; else the first that a search from `q_seed`, then from random starts,
+  /// finds. Every hinge stands in its winding nearest to `q_seed`.
   /// @param X_WT    tool pose in the world frame, translation in [m]; its matrix orthonormal to
   /// 1e-6.
   /// @param q_seed  [rad or m] shape (dof,); clamped to the limits before use.
   /// @return IkFailure with the reason and the best attempt. out_of_reach and inner_void are proofs
-  ///         from geometry (reach.hpp) and come at once; the other reasons tell what the search
-  ///         met. Never throws, never allocates (but for what `options.valid` does).
+  ///         from geometry (reach.hpp); with an exact closed form every reason is one. Otherwise
+  ///         the others tell what the search met. Never throws, never allocates (but for what
+  ///         `options.valid` does).
   [[nodiscard]] Result<IkSolution, IkFailure> solve(const Pose& X_WT,
                                                     std::span<const double> q_seed) const noexcept;
 
@@ -89,13 +98,19 @@ class IkSolver {
   [[nodiscard]] const IkOptions& options() const noexcept { return options_; }
   /// What the arm can never reach.
   [[nodiscard]] const Reach& reach() const noexcept { return reach_; }
+  [[nodiscard]] const Chain& chain() const noexcept { return chain_; }
+  /// The closed form in use, if any.
+  [[nodiscard]] const std::optional<SixAxis>& six_axis() const noexcept { return six_; }
+  /// [m] position error that weighs as much as 1 rad in the numeric search.
+  [[nodiscard]] double length() const noexcept { return length_; }
 
  private:
   Arm arm_;
   IkOptions options_;
   Chain chain_;
   Reach reach_;
-  double length_ = 1;  // [m] position error that weighs as much as 1 rad
+  std::optional<SixAxis> six_;
+  double length_ = 1;
 };
 
 }  // namespace mjarm

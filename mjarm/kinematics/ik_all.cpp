@@ -1,20 +1,96 @@
 #include "mjarm/kinematics/ik_all.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
-#include "mjarm/kinematics/ik_search_internal.hpp"
+#include "mjarm/kinematics/branch_choice_internal.hpp"
 
 namespace mjarm {
 namespace {
 
+using detail::IkGoal;
+using detail::nearness;
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
 double distance(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+/// Collects the distinct ones of what is given to it.
+class Answers {
+ public:
+  Answers(double same, IkSolution first) : same_(same), list_{std::move(first)} {}
+
+  [[nodiscard]] bool knows(const JointVec& q) const {
+    return std::any_of(list_.begin(), list_.end(),
+                       [&](const IkSolution& other) { return distance(other.q, q) < same_; });
+  }
+  void add(const IkSolution& solution) {
+    if (!knows(solution.q)) list_.push_back(solution);
+  }
+  [[nodiscard]] std::vector<IkSolution>& list() { return list_; }
+
+ private:
+  double same_;
+  std::vector<IkSolution> list_;
+};
+
+void add_branches(const IkSolver& ik, const IkGoal& goal, Answers& answers) {
+  const IkOptions& options = ik.options();
+  detail::Branches branches;
+  detail::BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
+  query.all = true;
+  ik.six_axis()->branches(query, branches);
+  detail::BranchChoice(ik.chain(), options, ik.length(), goal)
+      .each(branches, [&](const IkSolution& solution) { answers.add(solution); });
+}
+
+void add_samples(const IkSolver& ik, const IkGoal& goal, int starts, Answers& answers) {
+  const IkOptions& options = ik.options();
+  const detail::DescentOptions descent_options = detail::descent_options(options, ik.length());
+  Rng rng(options.rng_seed, 1);  // another stream than that of solve()
+  for (int start = 1; start <= starts; ++start) {
+    const JointVec q_start = detail::random_start(ik.chain(), goal.seed, rng);
+    const auto descent = detail::descend(ik.chain(), goal.X_WT, q_start, descent_options);
+    if (!descent.converged) continue;
+    const JointVec q = detail::unwind(ik.chain(), descent.q, goal.seed);
+    if (answers.knows(q) || distance(q, goal.seed) > options.max_step) continue;
+    if (options.valid && !options.valid(view(q))) continue;
+    answers.add({q, descent.pos_err, descent.rot_err, descent.iterations, start});
+  }
+}
+
+/// Appends `solution` in every winding within the limits, `most` in all.
+void expand(const Chain& chain, const IkSolution& solution, std::size_t most,
+            std::vector<IkSolution>& out) {
+  std::vector<JointVec> qs{solution.q};
+  for (int i = 0; i < chain.dof; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!chain.full_turn[k] || !std::isfinite(chain.upper[k] - chain.lower[k])) continue;
+    const double q = solution.q[i];
+    const double first = q - kTurn * std::floor((q - chain.lower[k]) / kTurn);
+    const std::size_t count = qs.size();
+    for (double other = first; other <= chain.upper[k] && qs.size() < most; other += kTurn) {
+      if (std::abs(other - q) < 1) continue;  // the winding that is there already
+      for (std::size_t j = 0; j < count && qs.size() < most; ++j) {
+        qs.push_back(qs[j]);
+        qs.back()[i] = other;
+      }
+    }
+  }
+  for (const JointVec& q : qs) {
+    out.push_back(solution);
+    out.back().q = q;
+  }
+}
 
 void sort_by_distance(std::vector<IkSolution>& answers, const JointVec& q_seed) {
   std::sort(answers.begin(), answers.end(), [&](const IkSolution& a, const IkSolution& b) {
-    const double da = distance(a.q, q_seed);
-    const double db = distance(b.q, q_seed);
-    if (da != db) return da < db;
+    const int dof = static_cast<int>(q_seed.size());
+    const auto near_a = nearness(a.q.data(), q_seed.data(), dof);
+    const auto near_b = nearness(b.q.data(), q_seed.data(), dof);
+    if (near_a < near_b || near_b < near_a) return near_a < near_b;
     return std::lexicographical_compare(a.q.begin(), a.q.end(), b.q.begin(), b.q.end());
   });
 }
@@ -26,27 +102,27 @@ Result<std::vector<IkSolution>, IkFailure> solve_all(const IkSolver& ik, const P
                                                      const IkAllOptions& options) {
   const auto first = ik.solve(X_WT, q_seed);
   if (!first) return fail(first.error());
-  const Chain chain(ik.arm());
-  detail::IkGoal goal;
-  if (!detail::check_goal(chain, ik.options(), X_WT, q_seed, goal)) return fail(IkFailure{});
-  const auto& valid = ik.options().valid;
-  const detail::DescentOptions descent_options =
-      detail::descent_options(ik.options(), detail::characteristic_length(chain));
-  std::vector<IkSolution> answers{*first};
-  Rng rng(ik.options().rng_seed, 1);  // another stream than that of solve()
-  for (int start = 1; start <= options.starts; ++start) {
-    const JointVec q_start = detail::random_start(chain, goal.seed, rng);
-    const auto descent = detail::descend(chain, goal.X_WT, q_start, descent_options);
-    if (!descent.converged) continue;
-    const JointVec q = detail::unwind(chain, descent.q, goal.seed);
-    const bool known = std::any_of(answers.begin(), answers.end(), [&](const IkSolution& other) {
-      return distance(other.q, q) < options.same;
-    });
-    if (known || (valid && !valid(view(q)))) continue;
-    answers.push_back({q, descent.pos_err, descent.rot_err, descent.iterations, start});
+  IkGoal goal;
+  if (!detail::check_goal(ik.chain(), ik.options(), X_WT, q_seed, goal)) return fail(IkFailure{});
+  Answers answers(options.same, *first);
+  if (ik.six_axis()) {
+    add_branches(ik, goal, answers);
+  } else {
+    add_samples(ik, goal, options.starts, answers);
   }
-  sort_by_distance(answers, goal.seed);
-  return answers;
+  std::vector<IkSolution> list = std::move(answers.list());
+  const auto most = static_cast<std::size_t>(std::max(options.most, 1));
+  if (options.windings) {
+    std::vector<IkSolution> wound;
+    for (const IkSolution& solution : list) expand(ik.chain(), solution, most, wound);
+    std::erase_if(wound, [&](const IkSolution& solution) {
+      return distance(solution.q, goal.seed) > ik.options().max_step;
+    });
+    list = std::move(wound);
+  }
+  sort_by_distance(list, goal.seed);
+  if (list.size() > most) list.resize(most);
+  return list;
 }
 
 }  // namespace mjarm

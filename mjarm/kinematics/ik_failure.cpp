@@ -5,21 +5,33 @@ namespace mjarm {
 namespace {
 
 std::string describe_reach(const IkFailure& failure) {
-  if (failure.code == IkErrc::out_of_reach) {
-    return text(msg::kinematics_out_of_reach, failure.amount, failure.bound);
+  switch (failure.shape) {
+    case ReachShape::cylinder:
+      return text(msg::kinematics_inside_cylinder, failure.bound, failure.amount);
+    case ReachShape::elbow_stretched:
+      return text(msg::kinematics_elbow_stretched, failure.amount, failure.bound);
+    case ReachShape::elbow_folded:
+      return text(msg::kinematics_elbow_folded, failure.bound, failure.amount);
+    case ReachShape::wrist_cone:
+      return text(msg::kinematics_wrist_cone, failure.amount);
+    case ReachShape::inner_sphere:
+      return text(msg::kinematics_inside_sphere, failure.bound, failure.amount);
+    case ReachShape::none:
+    case ReachShape::outer_sphere:
+      break;
   }
-  const Msg id = failure.shape == ReachShape::cylinder ? msg::kinematics_inside_cylinder
-                                                       : msg::kinematics_inside_sphere;
-  return text(id, failure.bound, failure.amount);
+  return text(msg::kinematics_out_of_reach, failure.amount, failure.bound);
 }
 
-std::string describe_limit(const IkFailure& failure, const Arm& arm) {
+std::string describe_joint(const IkFailure& failure, const Arm& arm) {
   if (failure.joint < 0 || failure.joint >= arm.dof())
     return text(msg::kinematics_no_convergence, failure.best.restarts, failure.best.pos_err,
                 failure.best.rot_err);
   const ArmJoint& joint = arm.joints[static_cast<std::size_t>(failure.joint)];
   const char* const unit = joint.type == JointType::slide ? "m" : "rad";
-  return text(msg::kinematics_joint_limit, joint.name, failure.amount, unit);
+  const Msg id =
+      failure.code == IkErrc::joint_limit ? msg::kinematics_joint_limit : msg::kinematics_too_far;
+  return text(id, joint.name, failure.amount, unit);
 }
 
 }  // namespace
@@ -36,6 +48,8 @@ std::string_view name(IkErrc code) noexcept {
       return "collision";
     case IkErrc::no_convergence:
       return "no_convergence";
+    case IkErrc::too_far:
+      return "too_far";
     case IkErrc::bad_input:
       return "bad_input";
   }
@@ -48,7 +62,8 @@ std::string describe(const IkFailure& failure, const Arm& arm) {
     case IkErrc::inner_void:
       return describe_reach(failure);
     case IkErrc::joint_limit:
-      return describe_limit(failure, arm);
+    case IkErrc::too_far:
+      return describe_joint(failure, arm);
     case IkErrc::collision:
       return text(msg::kinematics_collision);
     case IkErrc::bad_input:

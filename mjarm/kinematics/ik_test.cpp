@@ -50,6 +50,12 @@ TEST(Ik, SolvesRandomPosesOfTheUr5e) {
   EXPECT_EQ(count_solved(ur5e(), IkSolver(ur5e()), kRounds, rng), kRounds);
 }
 
+TEST(Ik, TheNumericSearchSolvesThemToo) {
+  Rng rng(31);
+  EXPECT_EQ(count_solved(ur5e(), IkSolver(ur5e(), {.closed_form = false}), kRounds / 4, rng),
+            kRounds / 4);
+}
+
 TEST(Ik, SolvesRandomPosesOfThePanda) {
   Rng rng(32);
   EXPECT_EQ(count_solved(panda(), IkSolver(panda()), kRounds, rng), kRounds);
@@ -279,6 +285,8 @@ TEST(IkFailure, BadInputIsRefused) {
   EXPECT_EQ(code(IkSolver(arm, with(0, 1e-7, 50)).solve(good, view(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, with(1e-7, nan, 50)).solve(good, view(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, with(1e-7, 1e-7, -1)).solve(good, view(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, {.max_step = 0}).solve(good, view(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, {.max_step = nan}).solve(good, view(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(Arm{}).solve(good, view(seed))), IkErrc::bad_input);
   EXPECT_FALSE(describe(ik.solve(bad, view(seed)).error(), arm).empty());
 }
@@ -308,7 +316,6 @@ TEST(Ik, PredicateLeadsToAnotherBranch) {
     const auto answer = ik.solve(fk(arm, view(q)), view(q));
     ASSERT_TRUE(answer.has_value());
     EXPECT_LT(answer->q[2], 0);
-    EXPECT_GT(answer->restarts, 0);
   }
 }
 
@@ -318,6 +325,7 @@ TEST(Ik, NamesOfTheReasons) {
   EXPECT_EQ(name(IkErrc::joint_limit), "joint_limit");
   EXPECT_EQ(name(IkErrc::collision), "collision");
   EXPECT_EQ(name(IkErrc::no_convergence), "no_convergence");
+  EXPECT_EQ(name(IkErrc::too_far), "too_far");
   EXPECT_EQ(name(IkErrc::bad_input), "bad_input");
 }
 

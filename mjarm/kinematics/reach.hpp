@@ -13,9 +13,12 @@ struct AxisChain;
 /// The shapes a proof of unreachability speaks of.
 enum class ReachShape {
   none,
-  outer_sphere,  ///< farther from a base point than the links can stretch
-  inner_sphere,  ///< nearer to a base point than the links can fold
-  cylinder,      ///< nearer to the base axis than the constant side offset of the arm
+  outer_sphere,     ///< farther from a base point than the links can stretch
+  inner_sphere,     ///< nearer to a base point than the links can fold
+  cylinder,         ///< nearer to the base axis than the constant side offset of the arm
+  elbow_stretched,  ///< in this orientation, farther from joint 2 than both links stretch
+  elbow_folded,     ///< in this orientation, nearer to joint 2 than both links fold
+  wrist_cone,       ///< a direction outside the cone of a slanting wrist; amounts are sines
 };
 
 /// Why no joint values whatever can reach a pose.

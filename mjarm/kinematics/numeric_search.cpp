@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "mjarm/kinematics/numeric_search_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+/// One search: the goal, what has been met so far and what is counted.
+class Search {
+ public:
+  Search(const Chain& chain, const IkOptions& options, double length, const IkGoal& goal) noexcept
+      : chain_(chain),
+        options_(options),
+        descent_(descent_options(options, length)),
+        goal_(goal),
+        rng_(options.rng_seed) {}
+
+  /// The seed, then random starts, until an answer is found that `valid` accepts.
+  std::optional<IkSolution> run() noexcept {
+    for (int start = 0; start <= options_.restarts; ++start) {
+      if (try_start(start)) return best_;
+    }
+    return std::nullopt;
+  }
+
+  /// One descent from the seed, for the best attempt of a pose that is known to be out of reach.
+  IkSolution nearest_from_seed() noexcept {
+    try_start(0);
+    return best_;
+  }
+
+  /// What to say when run() found nothing.
+  IkFailure failure() noexcept {
+    IkFailure out;
+    out.best = best_;
+    if (refused_) {
+      out.code = too_far_ ? IkErrc::too_far : IkErrc::collision;
+      if (too_far_) out.amount = largest_step(best_.q, &out.joint) - options_.max_step;
+    } else {
+      find_beyond_limits(out);
+    }
+    return out;
+  }
+
+ private:
+  bool try_start(int start) noexcept {
+    const JointVec q_start = start == 0 ? goal_.seed : random_start(chain_, goal_.seed, rng_);
+    const Descent descent = descend(chain_, goal_.X_WT, q_start, descent_);
+    iterations_ += descent.iterations;
+    IkSolution met{unwind(chain_, descent.q, goal_.seed), descent.pos_err, descent.rot_err,
+                   iterations_, start};
+    const bool near = descent.converged && largest_step(met.q, nullptr) <= options_.max_step;
+    const bool accepted = near && is_valid(met.q);
+    const bool first_valid_step = near && too_far_;  // a refusal by the predicate says more
+    // An answer that was refused beats any configuration that is none.
+    const bool closer = descent.converged ? !refused_ : !refused_ && descent.error < best_error_;
+    if (accepted || closer || first_valid_step || start == 0) {
+      best_ = met;
+      best_error_ = descent.error;
+    }
+    if (descent.converged && !accepted) {
+      too_far_ = !near && (too_far_ || !refused_);
+      refused_ = true;
+    }
+    best_.iterations = iterations_;
+    best_.restarts = start;
+    return accepted;
+  }
+
+  double largest_step(const JointVec& q, int* joint) const noexcept {
+    Eigen::Index i = 0;
+    const double step = (q - goal_.seed).cwiseAbs().maxCoeff(&i);
+    if (joint != nullptr) *joint = static_cast<int>(i);
+    return step;
+  }
+
+  bool is_valid(const JointVec& q) const noexcept {
+    return !options_.valid || options_.valid(view(q));
+  }
+
+  /// Searches without limits; where that reaches the pose, names the joint that is farthest beyond
+  /// its limit in the answer that breaks its limits least.
+  void find_beyond_limits(IkFailure& out) noexcept {
+    constexpr int kStarts = 12;
+    DescentOptions free = descent_;
+    free.limits = false;
+    for (int start = 0; start < kStarts; ++start) {
+      const JointVec q_start = start == 0 ? goal_.seed : random_start(chain_, goal_.seed, rng_);
+      const Descent descent = descend(chain_, goal_.X_WT, q_start, free);
+      if (!descent.converged) continue;
+      const auto [joint, amount] = worst_violation(descent.q);
+      if (amount <= 0 || (out.joint >= 0 && amount >= out.amount)) continue;
+      out.code = IkErrc::joint_limit;
+      out.joint = joint;
+      out.amount = amount;
+    }
+  }
+
+  std::pair<int, double> worst_violation(const JointVec& q) const noexcept {
+    std::pair<int, double> worst{-1, 0.0};
+    for (int i = 0; i < chain_.dof; ++i) {
+      if (chain_.full_turn[i]) continue;
+      double value = q[i];
+      if (!chain_.slide[i]) {
+        const double middle = 0.5 * (chain_.lower[i] + chain_.upper[i]);
+        value = middle + std::remainder(value - middle, 2 * std::numbers::pi);
+      }
+      const double beyond = std::max(chain_.lower[i] - value, value - chain_.upper[i]);
+      if (beyond > worst.second) worst = {i, beyond};
+    }
+    return worst;
+  }
+
+  const Chain& chain_;
+  const IkOptions& options_;
+  const DescentOptions descent_;
+  const IkGoal& goal_;
+  Rng rng_;
+  IkSolution best_;
+  double best_error_ = 0;
+  int iterations_ = 0;
+  bool refused_ = false;  // some answer was refused, by max_step alone where too_far_
+  bool too_far_ = false;
+};
+
+}  // namespace
+
+Result<IkSolution, IkFailure> search_numeric(const Chain& chain, const IkOptions& options,
+                                             double length, const IkGoal& goal) noexcept {
+  Search search(chain, options, length, goal);
+  if (const std::optional<IkSolution> solution = search.run()) return *solution;
+  return fail(search.failure());
+}
+
+IkSolution nearest_from_seed(const Chain& chain, const IkOptions& options, double length,
+                             const IkGoal& goal) noexcept {
+  return Search(chain, options, length, goal).nearest_from_seed();
+}
+
+}  // namespace mjarm::detail
