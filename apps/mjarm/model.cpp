@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/model_check.hpp"
 #include "apps/mjarm/model_report.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -11,7 +12,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file, tip;
+  std::string file, tip, against;
   bool json = false;
 };
 
@@ -52,6 +53,16 @@ Result<int> run_tree(const Options& options) {
   return 0;
 }
 
+Result<int> run_check(const Options& options) {
+  if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
+  const Result<std::filesystem::path> file = find_model_file(options.file);
+  if (!file) return fail(file.error());
+  if (options.against.empty()) return check_file(*file, options.tip, options.json);
+  const Result<std::filesystem::path> other = find_model_file(options.against);
+  if (!other) return fail(other.error());
+  return check_against(*file, *other, options.tip, options.json);
+}
+
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App& info =
@@ -61,10 +72,16 @@ Run setup(CLI::App& app) {
   CLI::App& tree =
       add_subcommand(app, "tree", msg::app_model_tree_summary, msg::app_model_tree_examples);
   add_options(tree, *options);
-  return [options, &info, &tree]() -> Result<int> {
+  CLI::App& check =
+      add_subcommand(app, "check", msg::app_model_check_summary, msg::app_model_check_examples);
+  add_options(check, *options);
+  check.add_option("--tip", options->tip, text(msg::app_option_tip))->type_name("FRAME");
+  check.add_option("--against", options->against, text(msg::app_model_against))->type_name("FILE");
+  return [options, &info, &tree, &check]() -> Result<int> {
     if (info.parsed()) return run_info(*options);
     if (tree.parsed()) return run_tree(*options);
-    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm model", "info, tree"));
+    if (check.parsed()) return run_check(*options);
+    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm model", "info, tree, check"));
   };
 }
 

@@ -108,7 +108,7 @@ Result<std::string> address_of(const std::string& from) {
   return file_url(from);
 }
 
-Result<void> install_one(const MeshSet& set, const MeshSources& sources) {
+Result<void> install_one(const MeshSet& set, MeshSources& sources) {
   const Result<Installed> before = look_up(set);
   if (!before) return fail(before.error());
   if (before->state.kind == MeshState::Kind::whole) {

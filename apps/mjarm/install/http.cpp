@@ -12,6 +12,7 @@
 #include <string_view>
 #include <thread>
 
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 constexpr std::uint64_t kLargestPage = std::uint64_t{64} << 20;
 constexpr int kMostAttempts = 200;
+constexpr std::uint64_t kWorthSaying = 4'000'000;  // bytes to be read past
 
 struct FreeHandle {
   void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
@@ -71,6 +73,8 @@ bool begin_body(Transfer& transfer) {
   long status = 0;
   curl_easy_getinfo(transfer.curl, CURLINFO_RESPONSE_CODE, &status);
   transfer.skip = status == 200 ? transfer.from : 0;
+  if (*transfer.skip >= kWorthSaying)
+    log_info(text(msg::install_no_ranges, *transfer.skip / 1000000));
   transfer.other_range = status == 206 && transfer.content_from != transfer.from;
   return !transfer.other_range;
 }

@@ -98,17 +98,31 @@ bool worth_another_source(const Error& error) {
   return error.code == Errc::not_available && !interrupted();
 }
 
-Result<void> fetch_meshes(const Job& job, const MeshSources& sources) {
-  const std::string& folder = sources.from.empty() ? sources.archives : sources.from;
+Result<void> fetch_meshes(const Job& job, MeshSources& sources) {
+  const std::string folder = sources.from.empty() ? sources.archives : sources.from;
   if (!folder.empty()) {
     Result<void> done = fetch_archive(job, folder + "/" + job.set.archive.name);
     if (done || !worth_another_source(done.error())) return done;
     log_info(text(sources.from.empty() ? msg::install_next_index : msg::install_next_wheel,
                   done.error().what, job.set.wheel.name));
+    sources.archives.clear();
   }
   if (!sources.from.empty()) return fetch_from_wheel(job, folder + "/" + job.set.wheel.name);
   return find_in_index(sources.index, job.set.project, job.set.wheel.name, job.set.wheel.sha256)
       .and_then([&](const std::string& url) { return fetch_from_wheel(job, url); });
+}
+
+/// After a failure only what was downloaded stays.
+void tidy(const Job& job) {
+  std::error_code ignored;
+  fs::remove_all(job.stage, ignored);
+  for (const RemoteFile& file : {job.set.archive, job.set.wheel}) {
+    const fs::path part = job.work / (file.name + ".part");
+    if (fs::is_empty(part, ignored)) fs::remove(part, ignored);
+  }
+  for (const fs::path& folder : {job.work, job.work.parent_path()}) {
+    fs::remove(folder, ignored);  // where nothing is in it
+  }
 }
 
 /// Puts the verified stage in its place. Ended half way, no meshes or the old ones are there, and
@@ -151,21 +165,23 @@ Result<FolderLock> lock_data_folder(const fs::path& data) {
 }
 
 Result<void> install_meshes(const fs::path& data, const MeshSet& set, const std::string& scene,
-                            const MeshSources& sources) {
+                            MeshSources& sources) {
   const fs::path work = data / "unfinished" / set.folder;
   const Job job{.set = set, .http = sources.index.http, .work = work, .stage = work / "stage"};
   std::error_code code;
   fs::remove_all(job.stage, code);
   if (code) return fail(write_error(job.stage, code));
-  return make_folders(job.stage / "assets")
-      .and_then([&] { return fetch_meshes(job, sources); })
-      .and_then([&] { return write_file(job.stage / "scene.xml", scene); })
-      .and_then([&]() -> Result<void> {
-        // Read back: what counts is what the disk gives.
-        const MeshState state = check_meshes(job.stage, set, scene);
-        if (state.kind != MeshState::Kind::whole) return fail(Errc::system, state.problem);
-        return publish(job, mesh_folder(data, set));
-      });
+  Result<void> done = make_folders(job.stage / "assets")
+                          .and_then([&] { return fetch_meshes(job, sources); })
+                          .and_then([&] { return write_file(job.stage / "scene.xml", scene); });
+  if (done) {
+    // Read back: what counts is what the disk gives.
+    const MeshState state = check_meshes(job.stage, set, scene);
+    const bool whole = state.kind == MeshState::Kind::whole;
+    done = whole ? publish(job, mesh_folder(data, set)) : fail(Errc::system, state.problem);
+  }
+  if (!done) tidy(job);
+  return done;
 }
 
 }  // namespace mjarm::app

