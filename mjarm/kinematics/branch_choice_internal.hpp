@@ -31,6 +31,9 @@ class BranchChoice {
   /// The nearest branch that holds; none where failure() has the reason.
   std::optional<IkSolution> nearest(const Branches& branches) noexcept;
 
+  /// True where the predicate or the bound on the step has refused an answer.
+  [[nodiscard]] bool has_refused() const noexcept { return refused_ || too_far_; }
+
   /// Every branch that holds, in its winding nearest to the seed: `take(solution)` for each.
   template <class Take>
   void each(const Branches& branches, Take take) noexcept {

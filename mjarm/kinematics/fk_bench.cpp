@@ -2,6 +2,7 @@
 
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/fk_batch.hpp"
 
 namespace mjarm {
 namespace {
@@ -45,6 +46,33 @@ void fk_manipulability(benchmark::State& state) {
   });
 }
 BENCHMARK(fk_manipulability)->Arg(6)->Arg(7);
+
+/// Many at a time; the time is that of one configuration.
+template <class T, class X>
+void batch(benchmark::State& state, std::vector<X>& out) {
+  const Arm arm = arm_of(state);
+  const Chain chain(arm);
+  std::vector<T> rows;
+  for (const JointVec& q : random_qs(arm)) rows.insert(rows.end(), q.begin(), q.end());
+  for (auto _ : state) {
+    fk_batch(chain, std::span<const T>(rows), std::span<X>(out));
+    benchmark::DoNotOptimize(out.data());
+  }
+  state.counters["each"] = benchmark::Counter(
+      1024, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void fk_batch_double(benchmark::State& state) {
+  std::vector<Pose> X(1024);
+  batch<double>(state, X);
+}
+BENCHMARK(fk_batch_double)->Arg(6)->Arg(7);
+
+void fk_batch_float(benchmark::State& state) {
+  std::vector<float> X(12 * 1024);
+  batch<float>(state, X);
+}
+BENCHMARK(fk_batch_float)->Arg(6)->Arg(7);
 
 }  // namespace
 }  // namespace mjarm

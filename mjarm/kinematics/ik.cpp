@@ -39,6 +39,28 @@ Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) 
   return search_numeric(ik.chain(), options, ik.length(), goal);
 }
 
+/// Likewise for seven axes: the answer nearest to the seed, or, where that is refused, the nearest
+/// one of those met along the whole range of the last joint.
+Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal) noexcept {
+  const IkOptions& options = ik.options();
+  BranchChoice choice(ik.chain(), options, ik.length(), goal);
+  BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
+  Branches branches;
+  ik.seven_axis()->branches(query, branches);
+  if (const auto breach = ik.reach().check(goal.X_WT)) {
+    return fail(failure_of(*breach, choice.failure(branches).best));
+  }
+  if (const auto solution = choice.nearest(branches)) return *solution;
+  if (choice.has_refused()) {
+    query.all = true;
+    branches.count = 0;
+    ik.seven_axis()->branches(query, branches);
+    if (const auto solution = choice.nearest(branches)) return *solution;
+  }
+  if (branches.complete) return fail(choice.failure(branches));
+  return search_numeric(ik.chain(), options, ik.length(), goal);
+}
+
 }  // namespace
 
 IkSolver::IkSolver(const Arm& arm, IkOptions options)
@@ -47,7 +69,9 @@ IkSolver::IkSolver(const Arm& arm, IkOptions options)
       chain_(arm),
       reach_(arm),
       length_(detail::characteristic_length(chain_)) {
-  if (options_.closed_form && options_.task == IkTask::pose) six_ = SixAxis::recognise(chain_);
+  if (!options_.closed_form || options_.task != IkTask::pose) return;
+  six_ = SixAxis::recognise(chain_);
+  seven_ = SevenAxis::recognise(chain_);
 }
 
 Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,
@@ -60,6 +84,7 @@ Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,
     return fail(failure);
   }
   if (six_) return solve_six(*this, goal);
+  if (seven_) return solve_seven(*this, goal);
   // The proofs of reach are about a tool whose orientation is given.
   const auto breach = options_.task == IkTask::pose ? reach_.check(goal.X_WT) : std::nullopt;
   if (breach) {

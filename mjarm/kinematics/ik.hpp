@@ -13,6 +13,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/chain.hpp"
 #include "mjarm/kinematics/reach.hpp"
+#include "mjarm/kinematics/seven_axis.hpp"
 #include "mjarm/kinematics/six_axis.hpp"
 #include "mjarm/model/arm.hpp"
 
@@ -80,10 +81,10 @@ class IkSolver {
  public:
   explicit IkSolver(const Arm& arm, IkOptions options = {});
 
-  /// Finds q with fk(q) within tolerance of `X_WT`. Where a closed form is known (six_axis.hpp),
-  /// the answer nearest to `q_seed` by the largest joint distance, then by the sum, that
-  /// `options.valid` accepts; else the first that a search from `q_seed`, then from random starts,
-  /// finds. Every hinge stands in its winding nearest to `q_seed`.
+  /// Finds q with fk(q) within tolerance of `X_WT`. Where a closed form is known (six_axis.hpp,
+  /// seven_axis.hpp), the answer nearest to `q_seed` by the largest joint distance, then by the
+  /// sum, that `options.valid` accepts; else the first that a search from `q_seed`, then from
+  /// random starts, finds. Every hinge stands in its winding nearest to `q_seed`.
   /// @param X_WT    tool pose in the world frame, translation in [m]; its matrix orthonormal to
   /// 1e-6.
   /// @param q_seed  [rad or m] shape (dof,); clamped to the limits before use.
@@ -101,6 +102,8 @@ class IkSolver {
   [[nodiscard]] const Chain& chain() const noexcept { return chain_; }
   /// The closed form in use, if any.
   [[nodiscard]] const std::optional<SixAxis>& six_axis() const noexcept { return six_; }
+  /// The same of seven axes.
+  [[nodiscard]] const std::optional<SevenAxis>& seven_axis() const noexcept { return seven_; }
   /// [m] position error that weighs as much as 1 rad in the numeric search.
   [[nodiscard]] double length() const noexcept { return length_; }
 
@@ -110,6 +113,7 @@ class IkSolver {
   Chain chain_;
   Reach reach_;
   std::optional<SixAxis> six_;
+  std::optional<SevenAxis> seven_;
   double length_ = 1;
 };
 

@@ -36,12 +36,13 @@ class Answers {
   std::vector<IkSolution> list_;
 };
 
-void add_branches(const IkSolver& ik, const IkGoal& goal, Answers& answers) {
+template <class Form>
+void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answers& answers) {
   const IkOptions& options = ik.options();
   detail::Branches branches;
   detail::BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
   query.all = true;
-  ik.six_axis()->branches(query, branches);
+  form.branches(query, branches);
   detail::BranchChoice(ik.chain(), options, ik.length(), goal)
       .each(branches, [&](const IkSolution& solution) { answers.add(solution); });
 }
@@ -106,7 +107,9 @@ Result<std::vector<IkSolution>, IkFailure> solve_all(const IkSolver& ik, const P
   if (!detail::check_goal(ik.chain(), ik.options(), X_WT, q_seed, goal)) return fail(IkFailure{});
   Answers answers(options.same, *first);
   if (ik.six_axis()) {
-    add_branches(ik, goal, answers);
+    add_branches(*ik.six_axis(), ik, goal, answers);
+  } else if (ik.seven_axis()) {
+    add_branches(*ik.seven_axis(), ik, goal, answers);
   } else {
     add_samples(ik, goal, options.starts, answers);
   }

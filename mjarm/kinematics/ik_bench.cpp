@@ -38,7 +38,7 @@ std::vector<Problem> problems(const Arm& arm, double step) {
 void run(benchmark::State& state, double step) {
   using Clock = std::chrono::steady_clock;
   const Arm arm = arm_of(state);
-  const IkSolver ik(arm);
+  const IkSolver ik(arm, {.closed_form = state.range(1) == 1});
   const std::vector<Problem> all = problems(arm, step);
   std::vector<double> us;
   std::size_t i = 0;
@@ -56,11 +56,12 @@ void run(benchmark::State& state, double step) {
   state.counters["solved"] = solved / static_cast<double>(us.size());
 }
 
+/// By the closed form (second argument 1) and by the numeric search alone (0).
 void ik_random_seed(benchmark::State& state) { run(state, 0); }
-BENCHMARK(ik_random_seed)->Arg(6)->Arg(7);
+BENCHMARK(ik_random_seed)->ArgsProduct({{6, 7}, {1, 0}});
 
 void ik_near_seed(benchmark::State& state) { run(state, 0.02); }
-BENCHMARK(ik_near_seed)->Arg(6)->Arg(7);
+BENCHMARK(ik_near_seed)->ArgsProduct({{6, 7}, {1, 0}});
 
 void ik_out_of_reach(benchmark::State& state) {
   const Arm arm = arm_of(state);

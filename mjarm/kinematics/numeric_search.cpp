@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjarm/kinematics/lane_search_internal.hpp"
 #include "mjarm/kinematics/numeric_search_internal.hpp"
 
 namespace mjarm::detail {
@@ -19,24 +20,30 @@ class Search {
         goal_(goal),
         rng_(options.rng_seed) {}
 
-  /// The seed, then random starts, until an answer is found that `valid` accepts.
+  /// The seed and random starts, until an answer is found that `valid` accepts.
   std::optional<IkSolution> run() noexcept {
-    for (int start = 0; start <= options_.restarts; ++start) {
-      if (try_start(start)) return best_;
+    LaneSearch lanes(chain_, goal_.X_WT, descent_, goal_.seed, options_.restarts + 1, rng_);
+    while (const auto end = lanes.next()) {
+      iterations_ = lanes.steps();
+      if (take(end->descent, end->start)) return best_;
     }
     return std::nullopt;
   }
 
   /// One descent from the seed, for the best attempt of a pose that is known to be out of reach.
   IkSolution nearest_from_seed() noexcept {
-    try_start(0);
+    const Descent descent = descend(chain_, goal_.X_WT, goal_.seed, descent_);
+    iterations_ = descent.iterations;
+    take(descent, 0);
     return best_;
   }
 
   /// What to say when run() found nothing.
   IkFailure failure() noexcept {
     IkFailure out;
+    if (!refused_) measure_best();
     out.best = best_;
+    out.best.restarts = options_.restarts;
     if (refused_) {
       out.code = too_far_ ? IkErrc::too_far : IkErrc::collision;
       if (too_far_) out.amount = largest_step(best_.q, &out.joint) - options_.max_step;
@@ -47,18 +54,16 @@ class Search {
   }
 
  private:
-  bool try_start(int start) noexcept {
-    const JointVec q_start = start == 0 ? goal_.seed : random_start(chain_, goal_.seed, rng_);
-    const Descent descent = descend(chain_, goal_.X_WT, q_start, descent_);
-    iterations_ += descent.iterations;
-    IkSolution met{unwind(chain_, descent.q, goal_.seed), descent.pos_err, descent.rot_err,
-                   iterations_, start};
+  /// Weighs the end of a descent; true where it is the answer.
+  bool take(const Descent& descent, int start) noexcept {
+    const IkSolution met{unwind(chain_, descent.q, goal_.seed), descent.pos_err, descent.rot_err,
+                         iterations_, start};
     const bool near = descent.converged && largest_step(met.q, nullptr) <= options_.max_step;
     const bool accepted = near && is_valid(met.q);
     const bool first_valid_step = near && too_far_;  // a refusal by the predicate says more
     // An answer that was refused beats any configuration that is none.
     const bool closer = descent.converged ? !refused_ : !refused_ && descent.error < best_error_;
-    if (accepted || closer || first_valid_step || start == 0) {
+    if (accepted || closer || first_valid_step || best_.q.size() == 0) {
       best_ = met;
       best_error_ = descent.error;
     }
@@ -67,8 +72,16 @@ class Search {
       refused_ = true;
     }
     best_.iterations = iterations_;
-    best_.restarts = start;
     return accepted;
+  }
+
+  /// Errors of the best attempt, which descents that were given up leave out.
+  void measure_best() noexcept {
+    DescentOptions still = descent_;
+    still.max_iterations = 0;
+    const Descent descent = descend(chain_, goal_.X_WT, best_.q, still);
+    best_.pos_err = descent.pos_err;
+    best_.rot_err = descent.rot_err;
   }
 
   double largest_step(const JointVec& q, int* joint) const noexcept {
@@ -85,12 +98,12 @@ class Search {
   /// Searches without limits; where that reaches the pose, names the joint that is farthest beyond
   /// its limit in the answer that breaks its limits least.
   void find_beyond_limits(IkFailure& out) noexcept {
-    constexpr int kStarts = 12;
+    constexpr int kStarts = 16;
     DescentOptions free = descent_;
     free.limits = false;
-    for (int start = 0; start < kStarts; ++start) {
-      const JointVec q_start = start == 0 ? goal_.seed : random_start(chain_, goal_.seed, rng_);
-      const Descent descent = descend(chain_, goal_.X_WT, q_start, free);
+    LaneSearch lanes(chain_, goal_.X_WT, free, goal_.seed, kStarts, rng_);
+    while (const auto end = lanes.next()) {
+      const Descent& descent = end->descent;
       if (!descent.converged) continue;
       const auto [joint, amount] = worst_violation(descent.q);
       if (amount <= 0 || (out.joint >= 0 && amount >= out.amount)) continue;

@@ -5,7 +5,7 @@
 
 #include "mjarm/kinematics/seven_axis_search_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm {
 namespace {
 
 using Eigen::Matrix3d;
@@ -75,8 +75,8 @@ bool SevenAxis::set_geometry() {
   return true;
 }
 
-void SevenAxis::branches(const BranchQuery& query, Branches& out) const noexcept {
-  SevenSearch(geometry_, chain_, query, out).run();
+void SevenAxis::branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept {
+  detail::SevenSearch(geometry_, chain_, query, out).run();
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm

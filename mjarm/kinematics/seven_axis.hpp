@@ -4,10 +4,11 @@
 
 #include "mjarm/kinematics/chain.hpp"
 
-namespace mjarm::detail {
-
+namespace mjarm {
+namespace detail {
 struct BranchQuery;
 struct Branches;
+}  // namespace detail
 
 /// What the closed form of seven axes reads of an arm. Matrices by columns. Frame k is the moved
 /// frame of joint k + 1, ku the same before its motion; S is the shoulder, W the wrist.
@@ -45,7 +46,7 @@ class SevenAxis {
   /// Appends answers within the limits, searched over the whole range of the last joint: the one
   /// nearest to the seed first, and all that the sampling met where `query.all` is set. Where none
   /// is within the limits, the configuration that breaks them least. Never allocates.
-  void branches(const BranchQuery& query, Branches& out) const noexcept;
+  void branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept;
 
   [[nodiscard]] const SevenGeometry& geometry() const noexcept { return geometry_; }
 
@@ -57,4 +58,4 @@ class SevenAxis {
   bool set_geometry();
 };
 
-}  // namespace mjarm::detail
+}  // namespace mjarm

@@ -14,7 +14,6 @@ namespace mjarm {
 namespace {
 
 using detail::Branches;
-using detail::SevenAxis;
 using testing::panda;
 using testing::random_q;
 
