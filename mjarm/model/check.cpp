@@ -140,7 +140,7 @@ int CheckReport::count(Grade grade) const {
 Result<CheckReport> check_model(const fs::path& file, const CheckOptions& options) {
   try {
     const Result<Model> model = Model::load(file, options.load);
-    const Description description(file);
+    const Description description(file, options.load.allow_outside);
     if (!model && description.empty()) return fail(model.error());
     CheckReport report;
     report.file = file.string();

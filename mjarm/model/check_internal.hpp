@@ -48,7 +48,7 @@ struct Setting {
 class Description {
  public:
   /// Reads the file and what it includes; what cannot be read is left out.
-  explicit Description(const std::filesystem::path& file);
+  explicit Description(const std::filesystem::path& file, bool allow_outside = false);
 
   [[nodiscard]] bool empty() const { return nodes_.empty(); }
   [[nodiscard]] bool is_urdf() const { return is_urdf_; }

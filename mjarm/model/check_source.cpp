@@ -39,7 +39,8 @@ struct Description::Surroundings {
   std::string cls = "main";
 };
 
-Description::Description(const fs::path& file) : sources_(file), folder_(file.parent_path()) {
+Description::Description(const fs::path& file, bool allow_outside)
+    : sources_(file, allow_outside), folder_(file.parent_path()) {
   for (const SourceElement& source : sources_.elements()) roots_.try_emplace(*source.file, &source);
   if (sources_.elements().empty()) return;
   const SourceElement& root = sources_.elements().front();
