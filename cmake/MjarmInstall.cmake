@@ -10,6 +10,7 @@ if(TARGET mjarm)
 endif()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/models"
         OPTIONAL)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/bench/peers" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/bench")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # MuJoCo goes along, with its licences, so that the installed tree is complete.

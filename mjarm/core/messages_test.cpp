@@ -14,6 +14,7 @@ namespace {
 constexpr Msg kCatalogue[] = {
 #define MJARM_MSG(id, english, chinese) {english, chinese},
 #include "mjarm/core/messages/app.inc"
+#include "mjarm/core/messages/bench.inc"
 #include "mjarm/core/messages/check.inc"
 #include "mjarm/core/messages/collision.inc"
 #include "mjarm/core/messages/control.inc"
@@ -26,9 +27,11 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/path.inc"
 #include "mjarm/core/messages/program.inc"
 #include "mjarm/core/messages/render.inc"
+#include "mjarm/core/messages/run.inc"
 #include "mjarm/core/messages/sim.inc"
 #include "mjarm/core/messages/trajectory.inc"
 #include "mjarm/core/messages/view.inc"
+#include "mjarm/core/messages/workspace.inc"
 #undef MJARM_MSG
 };
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "mjarm/render/field_internal.hpp"
 #include "mjarm/render/panel_internal.hpp"
 
 namespace mjarm::panel {
@@ -124,6 +125,10 @@ Axes ranges_of(const PlotPanel& panel) {
     if (!band.fits) continue;
     y.add(band.lower);
     y.add(band.upper);
+  }
+  if (panel.field) {
+    for (const double edge : {panel.field->x.lower, panel.field->x.upper}) x.add(edge);
+    for (const double edge : {panel.field->y.lower, panel.field->y.upper}) y.add(edge);
   }
   Axes axes{{},
             panel.x_range.value_or(x.range(panel.equal_aspect ? kMarginShare : 0.02)),
@@ -262,6 +267,7 @@ double title_height(const PlotPanel& panel) { return panel.title.empty() ? 4 : 1
 Layout measure(const PlotPanel& panel, const Box& place) {
   Layout layout{place, {40, 20, 8, 28}};
   if (panel.x_label.empty()) layout.margins.bottom = 17;
+  if (panel.field) layout.margins.right += field::kScaleWidth;
   // The ticks depend on the room for them, and the room on the ticks: twice is enough.
   for (int round = 0; round < 2; ++round) {
     const Axes axes = fitted(panel, layout);
@@ -278,6 +284,14 @@ void draw(const PlotPanel& panel, const Layout& layout, Page& page) {
   const Axes axes = fitted(panel, layout);
   draw_grid(axes, x_ticks(axes), y_ticks(axes), page);
   page.items.push_back(canvas::Clip{axes.box});
+  if (panel.field) {
+    const PlotRange& y = panel.field->y;
+    const double left = axes.to_x(panel.field->x.lower);
+    const double top = axes.to_y(y.upper);
+    field::draw_cells(*panel.field,
+                      {left, top, axes.to_x(panel.field->x.upper) - left, axes.to_y(y.lower) - top},
+                      page);
+  }
   for (const PlotBand& band : panel.bands) {
     const double top = axes.to_y(band.upper);
     page.items.push_back(
@@ -289,6 +303,7 @@ void draw(const PlotPanel& panel, const Layout& layout, Page& page) {
   }
   page.items.push_back(canvas::Unclip{});
   draw_frame(panel, layout, axes, page);
+  if (panel.field) field::draw_scale(*panel.field, axes.box, page);
   draw_legend(legend_of(panel, axes.box.width), axes, layout.place.y + title_height(panel), page);
 }
 

@@ -23,6 +23,17 @@ bool is_range(const PlotRange& range) {
   return std::isfinite(range.lower) && std::isfinite(range.upper) && range.lower < range.upper;
 }
 
+Result<void> check_field(const PlotField& field, std::size_t number) {
+  for (const PlotRange& range : {field.x, field.y, field.colors.value_or(PlotRange{})}) {
+    if (is_range(range)) continue;
+    return fail(Errc::bad_input, text(msg::render_plot_range, number, range.lower, range.upper));
+  }
+  const std::size_t columns = static_cast<std::size_t>(std::max(field.columns, 0));
+  if (columns > 0 && !field.values.empty() && field.values.size() % columns == 0) return {};
+  return fail(Errc::bad_input,
+              text(msg::render_plot_field, number, field.values.size(), field.columns));
+}
+
 Result<void> check_panel(const PlotPanel& panel, std::size_t number) {
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     const PlotLine& line = panel.lines[i];
@@ -34,6 +45,7 @@ Result<void> check_panel(const PlotPanel& panel, std::size_t number) {
     if (!range || is_range(*range)) continue;
     return fail(Errc::bad_input, text(msg::render_plot_range, number, range->lower, range->upper));
   }
+  if (panel.field) return check_field(*panel.field, number);
   return {};
 }
 

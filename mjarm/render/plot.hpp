@@ -46,6 +46,17 @@ struct PlotRange {
   double upper = 1;
 };
 
+/// A grid of cells coloured by their value, behind the curves, with a scale at the right.
+struct PlotField {
+  PlotRange x = {};                 ///< left edge of the first column and right edge of the last
+  PlotRange y = {};                 ///< lower edge of the first row and upper edge of the last
+  int columns = 0;                  ///< > 0
+  std::vector<double> values = {};  ///< shape (rows, columns), the lowest row first; NaN: bare
+  std::optional<PlotRange> colors = {};  ///< values of the first and the last colour; default:
+                                         ///< fits the data
+  bool whole_numbers = false;            ///< one colour a number, for counts
+};
+
 /// One pair of axes.
 struct PlotPanel {
   std::string title = {};    ///< empty = none
@@ -53,6 +64,7 @@ struct PlotPanel {
   std::string y_label = {};  ///< with its unit
   std::vector<PlotLine> lines = {};
   std::vector<PlotBand> bands = {};
+  std::optional<PlotField> field = {};
   bool equal_aspect = false;              ///< one unit is equally long on both axes (tool paths)
   bool legend = true;                     ///< shown where a curve or band has a label
   bool y_from_zero = false;               ///< the y axis begins at 0 (errors, speeds)

@@ -174,6 +174,58 @@ TEST(Plot, NamesThePanelAndCurveThatAreWrong) {
   EXPECT_FALSE(save_plot(circle(), "/no such folder/plot"));
 }
 
+/// Two rows of three cells, one of them bare.
+Plot chequers() {
+  PlotPanel panel{.x_label = "x [m]", .y_label = "y [m]", .equal_aspect = true};
+  panel.field = PlotField{.x = {0, 3}, .y = {0, 2}, .columns = 3, .values = {1, 1, 3, 3, 2, 0}};
+  panel.field->values[5] = std::nan("");
+  panel.field->colors = {.lower = 1, .upper = 3};
+  panel.field->whole_numbers = true;
+  return {.panels = {panel}, .columns = 1};
+}
+
+TEST(Plot, FieldColoursItsCellsFromTheLowestRow) {
+  const Image image = plot_image(chequers(), 4).value();
+  const std::string svg = plot_svg(chequers()).value();
+  for (const char* label : {">1</text>", ">2</text>", ">3</text>"}) {
+    EXPECT_THAT(svg, HasSubstr(label));
+  }
+  // Cells are wider than anything else that is filled but the page: 1 is dark, 3 is bright.
+  int dark = 0, bright = 0, low_dark = 0, low_bright = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width * 3 / 4; ++x) {
+      const auto [r, g, b] = image.pixel(x, y);
+      const bool is_dark = r < 80 && g < 10 && b > 70;
+      const bool is_bright = r > 240 && g > 220 && b < 60;
+      dark += is_dark ? 1 : 0;
+      bright += is_bright ? 1 : 0;
+      low_dark += is_dark && y > image.height / 2 ? 1 : 0;
+      low_bright += is_bright && y > image.height / 2 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(dark, 1000);
+  EXPECT_NEAR(dark, bright, 0.1 * dark);                // two cells each
+  EXPECT_GT(low_dark, 0.8 * dark);                      // both in the lower row
+  EXPECT_NEAR(low_bright, bright / 2.0, 0.2 * bright);  // one in each
+}
+
+TEST(Plot, NamesTheFieldThatIsWrong) {
+  Plot plot = chequers();
+  plot.panels[0].field->values.push_back(1);
+  const Result<std::string> svg = plot_svg(plot);
+  ASSERT_FALSE(svg);
+  EXPECT_THAT(svg.error().what, HasSubstr("panel 1: 7 values do not fill rows of 3 cells"));
+  plot = chequers();
+  plot.panels[0].field->columns = 0;
+  EXPECT_FALSE(plot_svg(plot));
+  plot = chequers();
+  plot.panels[0].field->x = {1, 1};
+  EXPECT_FALSE(plot_svg(plot));
+  plot = chequers();
+  plot.panels[0].field->values.assign(6, std::nan(""));
+  EXPECT_TRUE(plot_svg(plot));
+}
+
 TEST(Runs, CutTextByFontAndMendBadBytes) {
   const std::vector<canvas::Run> runs = canvas::runs_of("a×误差（b");
   ASSERT_EQ(runs.size(), 3U);

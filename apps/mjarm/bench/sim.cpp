@@ -1,13 +1,13 @@
-#include "mjarm/sim/bench.hpp"
+#include "mjarm/core/messages/sim.hpp"
 
 #include <memory>
 
-#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/bench/suites.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/number.hpp"
+#include "mjarm/sim/bench.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -78,24 +78,17 @@ Result<int> run_sim(const Options& options) {
   return 0;
 }
 
-Run setup(CLI::App& app) {
+}  // namespace
+
+BenchSuite add_bench_sim(CLI::App& bench) {
   auto options = std::make_shared<Options>();
-  CLI::App& sim = add_subcommand(app, "sim", msg::sim_bench_summary, msg::sim_bench_examples);
+  CLI::App& sim = add_subcommand(bench, "sim", msg::sim_bench_summary, msg::sim_bench_examples);
   add_robot_options(sim, options->robot);
   sim.add_option("--steps", options->steps, text(msg::sim_bench_steps))->type_name("N");
   sim.add_option("--rounds", options->rounds, text(msg::sim_bench_rounds))->type_name("N");
   sim.add_flag("--json", options->json, text(msg::app_option_json));
   sim.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
-  return [options, &sim]() -> Result<int> {
-    if (sim.parsed()) return run_sim(*options);
-    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm bench", "sim"));
-  };
-}
-
-}  // namespace
-
-Command bench_command() {
-  return {"bench", msg::sim_bench_all_summary, msg::sim_bench_all_examples, setup};
+  return {&sim, [options] { return run_sim(*options); }};
 }
 
 }  // namespace mjarm::app

@@ -1,0 +1,32 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/mjarm/bench/suites.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/sim.hpp"
+
+namespace mjarm::app {
+namespace {
+
+Run setup(CLI::App& app) {
+  auto suites = std::make_shared<std::vector<BenchSuite>>();
+  suites->push_back(add_bench_ik(app));
+  suites->push_back(add_bench_sim(app));
+  return [suites]() -> Result<int> {
+    std::string names;
+    for (const BenchSuite& suite : *suites) {
+      if (suite.app->parsed()) return suite.run();
+      names += (names.empty() ? "" : ", ") + suite.app->get_name();
+    }
+    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm bench", names));
+  };
+}
+
+}  // namespace
+
+Command bench_command() {
+  return {"bench", msg::sim_bench_all_summary, msg::sim_bench_all_examples, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,165 @@
+#include "apps/mjarm/bench/ik_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/line_reader.hpp"
+#include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/rng.hpp"
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kSeed = 1;
+constexpr int kReachable = 1000;
+constexpr int kUnreachable = 100;
+constexpr int kPaths = 20;
+constexpr int kPathPoses = 100;
+constexpr double kPathStep = 0.01;  // [rad or m] largest joint step from pose to pose
+
+/// Uniform within the limits; a joint without stops turns once, or slides a metre.
+JointVec random_q(const Arm& arm, Rng& rng) {
+  JointVec q(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) {
+    const double lower = arm.limits.lower[i];
+    const double upper = arm.limits.upper[i];
+    const double half =
+        arm.joints[static_cast<std::size_t>(i)].type == JointType::hinge ? std::numbers::pi : 0.5;
+    q[i] = std::isfinite(upper - lower) ? rng.uniform(lower, upper) : rng.uniform(-half, half);
+  }
+  return q;
+}
+
+std::vector<double> list(const JointVec& q) { return {q.begin(), q.end()}; }
+
+IkCaseSet make_reachable(const Arm& arm) {
+  IkCaseSet set{"reachable", true, {}};
+  Rng rng(kSeed);
+  for (int i = 0; i < kReachable; ++i) {
+    const Pose X_WT = fk(arm, view(random_q(arm, rng)));
+    set.cases.push_back({X_WT, list(random_q(arm, rng))});
+  }
+  return set;
+}
+
+/// Farther from the first joint than all links together are long.
+IkCaseSet make_unreachable(const Arm& arm) {
+  double stretch = arm.X_JT.p.norm();
+  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
+    if (i > 0) stretch += arm.joints[i].X_PJ.p.norm();
+    if (arm.joints[i].type == JointType::slide) {
+      const auto k = static_cast<Eigen::Index>(i);
+      stretch += std::max(std::abs(arm.limits.lower[k]), std::abs(arm.limits.upper[k]));
+    }
+  }
+  IkCaseSet set{"unreachable", false, {}};
+  if (!std::isfinite(stretch)) return set;
+  Rng rng(kSeed, 1);
+  for (int i = 0; i < kUnreachable; ++i) {
+    Eigen::Vector3d direction(rng.normal(), rng.normal(), rng.normal());
+    Pose X_WT = fk(arm, view(random_q(arm, rng)));
+    X_WT.p = arm.joints.front().X_PJ.p + stretch * rng.uniform(1.01, 1.5) * direction.normalized();
+    set.cases.push_back({X_WT, list(random_q(arm, rng))});
+  }
+  return set;
+}
+
+/// Tool poses along straight lines in joint space, which every arm can follow.
+std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
+  std::vector<std::vector<IkCase>> paths;
+  Rng rng(kSeed, 2);
+  for (int i = 0; i < kPaths; ++i) {
+    const JointVec from = random_q(arm, rng);
+    const JointVec way = random_q(arm, rng) - from;
+    const double length = std::max(way.cwiseAbs().maxCoeff(), 1e-9);
+    const double share = std::min(1.0, kPathPoses * kPathStep / length) / kPathPoses;
+    std::vector<IkCase> path;
+    for (int k = 1; k <= kPathPoses; ++k) {
+      path.push_back({fk(arm, view(JointVec(from + share * k * way))), list(from)});
+    }
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+Result<IkCaseSet> read_set(const fs::path& file, IkCaseSet set, const Arm& arm) {
+  Result<LineReader> reader = LineReader::open(file.string());
+  if (!reader) return fail(std::move(reader.error()));
+  Rng rng(kSeed, 3);
+  for (;;) {
+    const auto line = reader->next();
+    if (!line) return fail(line.error());
+    if (!*line) break;
+    const auto in_line = [&](const Error& error) {
+      return fail(error.code, reader->place() + ": " + error.what);
+    };
+    const Result<nlohmann::json> object = parse_json_object(**line);
+    if (!object) return in_line(object.error());
+    const Result<Pose> X_WT = pose_of(*object);
+    if (!X_WT) return in_line(X_WT.error());
+    IkCase entry{*X_WT, list(random_q(arm, rng))};
+    if (object->contains("seed")) {
+      auto seed = number_list(*object, "seed", static_cast<std::size_t>(arm.dof()));
+      if (!seed) return in_line(seed.error());
+      entry.seed = std::move(*seed);
+    }
+    set.cases.push_back(std::move(entry));
+  }
+  if (set.cases.empty()) return fail(Errc::bad_input, text(msg::bench_ik_no_cases, file.string()));
+  return set;
+}
+
+Result<std::vector<IkCaseSet>> read_sets(const fs::path& folder, const std::string& name,
+                                         const Arm& arm) {
+  std::vector<IkCaseSet> sets;
+  for (const char* kind : {"reachable", "unreachable", "hard_negatives"}) {
+    const fs::path file = folder / (name + "_" + kind + ".jsonl");
+    std::error_code ignored;
+    if (sets.empty() || fs::exists(file, ignored)) {  // the first one must be there
+      auto set = read_set(file, {kind, std::string_view(kind) == "reachable", {}}, arm);
+      if (!set) return fail(std::move(set.error()));
+      sets.push_back(std::move(*set));
+    }
+  }
+  return sets;
+}
+
+/// The file of a robot by name: peers read URDF, so that is taken where there is one.
+std::string file_of(const std::string& robot, const fs::path& folder) {
+  if (!folder.empty()) return (folder / (robot + ".urdf")).string();
+  if (robot == "ur5e") return "universal_robots_ur5e/ur5e.urdf";
+  if (robot == "panda") return "franka_emika_panda/panda.urdf";
+  return robot;
+}
+
+}  // namespace
+
+Result<IkProblem> load_ik_problem(const RobotOptions& options, const fs::path& folder) {
+  const std::string file = file_of(options.robot, folder);
+  // The bare flange of the Panda, as in its own URDF: every peer finds that frame.
+  const bool bare = options.tip.empty() && folder.empty() && options.robot == "panda";
+  Result<Robot> robot = load_robot({.robot = file, .tip = bare ? "panda_link8" : options.tip});
+  if (!robot) return fail(std::move(robot.error()));
+  IkProblem problem{fs::path(options.robot).stem().string(), std::move(*robot), {}, {}, {}};
+  const Arm& arm = problem.robot.arm;
+  if (folder.empty()) {
+    problem.sets = {make_reachable(arm), make_unreachable(arm)};
+  } else {
+    Result<std::vector<IkCaseSet>> sets = read_sets(folder, problem.name, arm);
+    if (!sets) return fail(std::move(sets.error()));
+    problem.sets = std::move(*sets);
+  }
+  Rng rng(kSeed, 4);
+  for (int i = 0; i < kReachable; ++i) problem.q.push_back(list(random_q(arm, rng)));
+  problem.paths = make_paths(arm);
+  return problem;
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,194 @@
+#include "apps/mjarm/bench/ik_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/ik.hpp"
+#include "mjarm/model/find_arm.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kPosTol = 1e-4;  // [m]
+constexpr double kRotTol = 1e-3;  // [rad]
+constexpr double kBeyond = 1e-9;  // [rad or m] peers may round at a limit
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+double microseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+/// Makes `run` the best of what it was and this call.
+void keep(IkRun& run, std::size_t i, double us, const Result<IkSolution, IkFailure>& answer) {
+  run.us[i] = std::min(run.us[i], us);
+  run.q[i].clear();
+  run.reasons[i].clear();
+  if (answer) {
+    run.q[i].assign(answer->q.begin(), answer->q.end());
+  } else {
+    run.reasons[i] = name(answer.error().code);
+  }
+}
+
+IkRun empty_run(std::string who, std::string set, std::size_t count) {
+  IkRun run{.who = std::move(who), .set = std::move(set), .timed = "c++"};
+  run.us.assign(count, kNever);
+  run.q.resize(count);
+  run.reasons.resize(count);
+  return run;
+}
+
+bool solve_set(const IkSolver& ik, const IkCaseSet& set, int rounds,
+               const std::function<bool()>& advance, IkRun& run) {
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < set.cases.size(); ++i) {
+      const auto start = Clock::now();
+      const auto answer = ik.solve(set.cases[i].X_WT, set.cases[i].seed);
+      keep(run, i, microseconds_since(start), answer);
+    }
+    if (!advance()) return false;
+  }
+  return true;
+}
+
+/// Every pose from the answer to the one before.
+bool follow_paths(const IkSolver& ik, const IkProblem& problem, int rounds,
+                  const std::function<bool()>& advance, IkRun& run) {
+  for (int round = 0; round < rounds; ++round) {
+    std::size_t i = 0;
+    for (const std::vector<IkCase>& path : problem.paths) {
+      std::vector<double> q = path.front().seed;
+      for (const IkCase& entry : path) {
+        const auto start = Clock::now();
+        const auto answer = ik.solve(entry.X_WT, q);
+        keep(run, i, microseconds_since(start), answer);
+        if (answer) {
+          for (std::size_t k = 0; k < q.size(); ++k) {
+            const double value = answer->q[static_cast<Eigen::Index>(k)];
+            run.max_step = std::max(run.max_step, std::abs(value - q[k]));
+            q[k] = value;
+          }
+        }
+        ++i;
+      }
+    }
+    if (!advance()) return false;
+  }
+  return true;
+}
+
+/// All in one go, as a call takes less than the clock does.
+bool run_jacobians(const IkProblem& problem, int rounds, const std::function<bool()>& advance,
+                   IkRun& run) {
+  const Arm& arm = problem.robot.arm;
+  double sum = 0;
+  for (int round = 0; round < rounds; ++round) {
+    const auto start = Clock::now();
+    for (const std::vector<double>& q : problem.q) {
+      const FkJacobian out = fk_jacobian(arm, q);
+      sum += out.X_WT.p[0] + out.J_W(0, 0);
+    }
+    const double us = microseconds_since(start) / static_cast<double>(problem.q.size());
+    run.us.assign(1, std::min(run.us.front(), us));
+    if (!advance()) return false;
+  }
+  return std::isfinite(sum);  // also keeps the compiler from leaving the work out
+}
+
+/// The poses of a set in the order of its answers.
+std::vector<const IkCase*> cases_of(const IkProblem& problem, const std::string& set,
+                                    bool& reachable) {
+  std::vector<const IkCase*> cases;
+  reachable = true;
+  for (const IkCaseSet& known : problem.sets) {
+    if (known.name != set) continue;
+    reachable = known.reachable;
+    for (const IkCase& entry : known.cases) cases.push_back(&entry);
+  }
+  if (set == "path") {
+    for (const std::vector<IkCase>& path : problem.paths) {
+      for (const IkCase& entry : path) cases.push_back(&entry);
+    }
+  }
+  return cases;
+}
+
+Result<bool> reaches(const IkProblem& problem, const Pose& X_WT, const std::vector<double>& q) {
+  const Arm& arm = problem.robot.arm;
+  if (q.size() != static_cast<std::size_t>(arm.dof())) return false;
+  if (!within_limits(arm, q, -kBeyond)) return false;
+  const std::span<const double> qpos0 = problem.robot.model.qpos0();
+  std::vector<double> qpos(qpos0.begin(), qpos0.end());
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    qpos[static_cast<std::size_t>(arm.joints[i].qpos)] = q[i];
+  }
+  const Result<Pose> X = frame_pose(problem.robot.model, arm.tip, qpos);
+  if (!X) return fail(X.error());
+  return (X->p - X_WT.p).norm() <= kPosTol && angle_between(X->R, X_WT.R) <= kRotTol;
+}
+
+}  // namespace
+
+int ik_run_steps(const IkProblem& problem, int rounds) {
+  return rounds * (2 * static_cast<int>(problem.sets.size()) + 2);
+}
+
+std::optional<std::vector<IkRun>> run_ik(const IkProblem& problem, int rounds,
+                                         const std::function<bool()>& advance) {
+  const Arm& arm = problem.robot.arm;
+  std::vector<IkRun> runs;
+  const IkSolver ik(arm);
+  const IkSolver numeric(arm, {.closed_form = false});
+  for (const IkCaseSet& set : problem.sets) {
+    for (const IkSolver* solver : {&ik, &numeric}) {
+      runs.push_back(
+          empty_run(solver == &ik ? "mjarm" : "mjarm numeric", set.name, set.cases.size()));
+      if (!solve_set(*solver, set, rounds, advance, runs.back())) return std::nullopt;
+    }
+  }
+  std::size_t poses = 0;
+  for (const std::vector<IkCase>& path : problem.paths) poses += path.size();
+  runs.push_back(empty_run("mjarm", "path", poses));
+  if (!follow_paths(ik, problem, rounds, advance, runs.back())) return std::nullopt;
+  runs.push_back({.who = "mjarm", .set = "fk_jacobian", .timed = "c++", .us = {kNever}});
+  if (!run_jacobians(problem, rounds, advance, runs.back())) return std::nullopt;
+  return runs;
+}
+
+Result<void> judge(const IkProblem& problem, IkRun& run) {
+  if (run.set == "fk_jacobian") return {};
+  bool reachable = true;
+  const std::vector<const IkCase*> cases = cases_of(problem, run.set, reachable);
+  run.cases = cases.size();
+  for (std::size_t i = 0; i < std::min(cases.size(), run.q.size()); ++i) {
+    bool right = run.q[i].empty() && !reachable;
+    if (!run.q[i].empty()) {
+      // Whoever meets a pose that was thought out of reach is right: then the set is wrong.
+      const Result<bool> fine = reaches(problem, cases[i]->X_WT, run.q[i]);
+      if (!fine) return fail(fine.error());
+      right = *fine;
+      run.false_ok += right ? 0 : 1;
+    }
+    if (right) {
+      ++run.right;
+    } else {
+      run.wrong.push_back(i);
+    }
+  }
+  return {};
+}
+
+Times times_of(const IkRun& run) {
+  if (run.us.empty()) return {};
+  std::vector<double> us = run.us;
+  std::sort(us.begin(), us.end());
+  return {us[us.size() / 2], us[us.size() * 99 / 100]};
+}
+
+}  // namespace mjarm::app

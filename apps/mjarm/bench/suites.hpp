@@ -1,0 +1,15 @@
+#pragma once
+
+#include "apps/mjarm/command.hpp"
+
+namespace mjarm::app {
+
+/// A suite of `mjarm bench`, added to `bench` as a subcommand of its own.
+struct BenchSuite {
+  const CLI::App* app;
+  Run run;
+};
+[[nodiscard]] BenchSuite add_bench_ik(CLI::App& bench);
+[[nodiscard]] BenchSuite add_bench_sim(CLI::App& bench);
+
+}  // namespace mjarm::app

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::app {
+
+/// Reads how the tool is to stand from the values of `--euler` and `--quat`.
+/// @return a usage error unless exactly one of them is given.
+[[nodiscard]] Result<Eigen::Matrix3d> parse_rotation(const std::string& euler,
+                                                     const std::string& quat);
+
+}  // namespace mjarm::app

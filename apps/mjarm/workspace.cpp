@@ -1,0 +1,124 @@
+#include "mjarm/kinematics/workspace.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/orientation.hpp"
+#include "apps/mjarm/robot.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/workspace_output.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/workspace.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
+#include "mjarm/core/rotation.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  RobotOptions robot;
+  std::string slice = "z=0.4", step = "20mm", euler, quat, out, threads = "1";
+  bool tool_down = false, position_only = false, json = false;
+};
+
+/// Reads `z=0.4` or `x=-10cm`.
+Result<void> read_slice(const std::string& words, WorkspaceOptions& work) {
+  const std::string_view view = words;
+  if (view.size() < 3 || view[0] < 'x' || view[0] > 'z' || view[1] != '=') {
+    return fail(Errc::usage, text(msg::workspace_bad_slice, words));
+  }
+  const Result<double> at = parse_quantity(view.substr(2), Quantity::length);
+  if (!at) return fail(in_option("--slice", at.error()));
+  work.normal = view[0] - 'x';
+  work.at = *at;
+  return {};
+}
+
+/// How the tool is to stand; none where any way will do.
+Result<std::optional<Eigen::Matrix3d>> read_rotation(const Options& options, const Arm& arm) {
+  const int given = (options.tool_down ? 1 : 0) + (options.position_only ? 1 : 0) +
+                    (options.euler.empty() ? 0 : 1) + (options.quat.empty() ? 0 : 1);
+  if (given > 1) return fail(Errc::usage, text(msg::workspace_one_orientation));
+  if (!options.euler.empty() || !options.quat.empty()) {
+    const Result<Eigen::Matrix3d> R = parse_rotation(options.euler, options.quat);
+    if (!R) return fail(R.error());
+    return *R;
+  }
+  if (options.position_only || (given == 0 && arm.dof() < 6)) return std::nullopt;
+  return from_euler({std::numbers::pi, 0, 0});
+}
+
+Result<WorkspaceOptions> read_work(const Options& options, const Arm& arm) {
+  WorkspaceOptions work;
+  if (Result<void> fine = read_slice(options.slice, work); !fine) return fail(fine.error());
+  const Result<double> step = parse_quantity(options.step, Quantity::length);
+  if (!step) return fail(in_option("--step", step.error()));
+  work.step = *step;
+  const Result<std::uint64_t> threads = parse_whole("--threads", options.threads);
+  if (!threads) return fail(threads.error());
+  constexpr std::uint64_t kMost = 1024;
+  if (*threads > kMost) {
+    return fail(Errc::usage, text(msg::workspace_count, "--threads", 0, kMost, *threads));
+  }
+  work.threads = *threads == 0 ? core_count() : static_cast<int>(*threads);
+  const auto R = read_rotation(options, arm);
+  if (!R) return fail(R.error());
+  work.R_WT = *R;
+  return work;
+}
+
+Result<int> run(const Options& options) {
+  const Result<WorkspaceFormat> format = workspace_format(options.out);
+  if (!format) return fail(format.error());
+  const Result<Robot> robot = load_robot(options.robot);
+  if (!robot) return fail(robot.error());
+  Result<WorkspaceOptions> work = read_work(options, robot->arm);
+  if (!work) return fail(work.error());
+  Result<WorkspaceMap> map = [&] {
+    Progress progress(text(msg::workspace_progress), 0);
+    work->progress = [&progress](std::size_t cells) {
+      progress.advance(cells);
+      return !interrupted();
+    };
+    return map_workspace(robot->arm, *work);
+  }();
+  if (!map) return fail(map.error());
+  const WorkspaceReport report{robot->arm, *work, *map};
+  if (Result<void> written = write_workspace(report, options.out, *format); !written) {
+    return fail(written.error());
+  }
+  const std::string out = options.json ? workspace_json(report) : workspace_summary(report) + '\n';
+  std::fwrite(out.data(), 1, out.size(), stdout);
+  return 0;
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_robot_options(app, options->robot);
+  app.add_option("--slice", options->slice, text(msg::workspace_option_slice))->type_name("z=0.4");
+  app.add_option("--step", options->step, text(msg::workspace_option_step))->type_name("LENGTH");
+  app.add_flag("--tool-down", options->tool_down, text(msg::workspace_option_tool_down));
+  app.add_option("--euler", options->euler, text(msg::app_option_euler))->type_name("A,B,C");
+  app.add_option("--quat", options->quat, text(msg::app_option_quat))->type_name("W,X,Y,Z");
+  app.add_flag("--position-only", options->position_only, text(msg::workspace_option_position));
+  app.add_option("--out", options->out, text(msg::workspace_option_out))
+      ->type_name("F.png|svg|csv|json");
+  app.add_option("--threads", options->threads, text(msg::workspace_option_threads))
+      ->type_name("N");
+  app.add_flag("--json", options->json, text(msg::app_option_json));
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command workspace_command() {
+  return {"workspace", msg::workspace_summary, msg::workspace_examples, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,253 @@
+"""Runs other inverse-kinematics libraries on the cases of `mjarm bench ik`.
+
+Usage: ik.py JOB.json ANSWERS.jsonl (mjarm calls it). Each peer runs in a process of its own, so that
+none can disturb another, in one thread. The clock stands right around the library's own call:
+targets are converted before, answers are unpacked after. Whether an answer is right is judged by
+mjarm, with MuJoCo's forward kinematics.
+"""
+
+import importlib.metadata
+import json
+import os
+import subprocess
+import sys
+import time
+import warnings
+import xml.etree.ElementTree
+
+SECONDS = 20  # a set gets no more than that: slow peers do fewer rounds, or only its first cases
+LIMIT = 300  # [s] for one peer
+
+
+def matrix(pose):
+    import numpy as np
+
+    w, x, y, z = pose["quat"]
+    target = np.eye(4)
+    target[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    target[:3, 3] = pose["pos"]
+    return target
+
+
+def root_link(urdf):
+    robot = xml.etree.ElementTree.parse(urdf).getroot()
+    children = {joint.find("child").get("link") for joint in robot.iter("joint") if joint.find("child") is not None}
+    return next(link.get("name") for link in robot.findall("link") if link.get("name") not in children)
+
+
+def within(q, job):
+    return all(lower - 1e-9 <= v <= upper + 1e-9 for v, lower, upper in zip(q, job["lower"], job["upper"]))
+
+
+# Each maker takes the job and gives three functions: prepare(case) -> arguments, call(*arguments) ->
+# whatever the library returns, which is timed, and pick(that) -> joint values, or None for "no".
+
+
+def eaik(job):
+    import numpy as np
+    from eaik.IK_URDF import UrdfRobot
+
+    robot = UrdfRobot(job["urdf"])
+    if not robot.hasKnownDecomposition() or len(job["joints"]) != 6:
+        raise NotImplementedError("no closed form for this arm")
+    # Its end effector is another frame of the last link.
+    to_tip = np.linalg.inv(matrix(job["zero"])) @ robot.fwdKin(np.zeros(6))
+
+    def pick(answer):
+        for q, least_squares in zip(answer.Q, answer.is_LS):
+            if not least_squares and within(q, job):
+                return q
+        return None
+
+    return lambda case: (matrix(case) @ to_tip,), robot._robot.calculate_IK, pick
+
+
+def ssik(job):
+    import numpy as np
+
+    # Its build tool writes a module for the arm, which calls compiled code.
+    path = os.path.join(job["folder"], "peer_arm_ik.py")
+    command = [os.path.join(os.path.dirname(sys.executable), "ssik"), "build", job["urdf"], "--no-validate"]
+    command += ["--base", root_link(job["urdf"]), "--ee", job["tip"], "--out", path]
+    subprocess.run(command, check=True, capture_output=True)
+    sys.path.insert(0, job["folder"])
+    import peer_arm_ik
+
+    def call(target, seed):
+        return peer_arm_ik.solve(target, max_solutions=1, q_seed=seed, enumerate_windings=False)
+
+    return lambda case: (matrix(case), np.array(case["seed"])), call, lambda found: found[0].q if found else None
+
+
+def roboticstoolbox(job):
+    import numpy as np
+    from roboticstoolbox import Robot
+
+    chain = Robot.URDF(job["urdf"]).ets(end=job["tip"])
+
+    def call(target, seed):
+        return chain.ik_LM(target, q0=seed)
+
+    return lambda case: (matrix(case), np.array(case["seed"])), call, lambda a: a.q if a.success else None
+
+
+def pytracik(job):
+    import numpy as np
+    import pytracik as library
+    from trac_ik import TracIK
+
+    # It stops by the clock; with its default of 5 ms a busy machine would make it fail.
+    solver = TracIK(root_link(job["urdf"]), job["tip"], job["urdf"], timeout=0.05)._ik_solver
+
+    def prepare(case):
+        w, x, y, z = case["quat"]
+        return solver, np.array(case["seed"]), *case["pos"], x, y, z, w
+
+    return prepare, library.ik, lambda answer: answer[1:] if answer[0] >= 0 else None
+
+
+def ikpy(job):
+    import numpy as np
+    from ikpy.chain import Chain
+
+    chain = Chain.from_urdf_file(job["urdf"], base_elements=[root_link(job["urdf"])])
+    names = [link.name for link in chain.links]
+    at = [names.index(joint) for joint in job["joints"]]
+    chain.active_links_mask[:] = [i in at for i in range(len(names))]
+
+    def prepare(case):
+        start = np.zeros(len(names))
+        start[at] = case["seed"]
+        return matrix(case), start
+
+    def call(target, start):
+        return chain.inverse_kinematics_frame(target, initial_position=start, orientation_mode="all")
+
+    # It never says no; what it gives is always an answer.
+    return prepare, call, lambda q: q[at]
+
+
+def pinocchio(job):
+    import numpy as np
+    import pinocchio as pin
+
+    model = pin.buildModelFromUrdf(job["urdf"])
+    data = model.createData()
+    tip = model.getFrameId(job["tip"])
+    local = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+    joints = [model.joints[model.getJointId(name)] for name in job["joints"]]
+
+    def prepare(values):
+        q = pin.neutral(model)
+        for joint, value in zip(joints, values):
+            q[joint.idx_q : joint.idx_q + joint.nq] = [value] if joint.nq == 1 else [np.cos(value), np.sin(value)]
+        return (q,)
+
+    return prepare, lambda q: pin.computeFrameJacobian(model, data, q, tip, local), lambda J: None
+
+
+PEERS = {
+    "EAIK": (eaik, "eaik"),
+    "ssik": (ssik, "ssik"),
+    "roboticstoolbox": (roboticstoolbox, "roboticstoolbox-python"),
+    "TRAC-IK": (pytracik, "pytracik"),
+    "ikpy": (ikpy, "ikpy"),
+    "pinocchio": (pinocchio, "pin"),
+}
+
+
+def run_set(cases, rounds, prepare, call, pick):
+    """Best time of each case [us], and its answer."""
+    arguments = [prepare(case) for case in cases]
+    for words in arguments[:5]:
+        call(*words)  # caches and lazy imports
+    best, answers = [], []
+    end = time.monotonic() + SECONDS
+    for words in arguments:
+        if time.monotonic() > end:
+            break
+        start = time.perf_counter_ns()
+        answer = call(*words)
+        best.append((time.perf_counter_ns() - start) / 1000)
+        answers.append(pick(answer))
+    for _ in range(1, rounds):
+        if time.monotonic() > end:
+            break
+        for i, words in enumerate(arguments[: len(best)]):
+            start = time.perf_counter_ns()
+            call(*words)
+            best[i] = min(best[i], (time.perf_counter_ns() - start) / 1000)
+    return best, [None if q is None else [float(v) for v in q] for q in answers]
+
+
+def run_mean(cases, rounds, prepare, call):
+    """Best mean time of all [us]: one call is too short for the clock."""
+    arguments = [prepare(case) for case in cases]
+    best = float("inf")
+    for _ in range(rounds):
+        start = time.perf_counter_ns()
+        for words in arguments:
+            call(*words)
+        best = min(best, (time.perf_counter_ns() - start) / 1000 / len(arguments))
+    return [best]
+
+
+def run_peer(job, name):
+    maker, package = PEERS[name]
+    row = {"who": name, "version": importlib.metadata.version(package), "timed": "python"}
+    prepare, call, pick = maker(job)
+    if name == "pinocchio":
+        return [row | {"set": "fk_jacobian", "us": run_mean(job["fk"], job["rounds"], prepare, call)}]
+    rows = []
+    for group in job["sets"]:
+        us, q = run_set(group["cases"], job["rounds"], prepare, call, pick)
+        rows.append(row | {"set": group["name"], "us": us, "q": q})
+    return rows
+
+
+def child(job_file, name):
+    """The answers of one peer, one a line on standard output."""
+    warnings.simplefilter("ignore")
+    out = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # what libraries print is no answer
+    with open(job_file, encoding="utf-8") as file:
+        job = json.load(file)
+    try:
+        rows = run_peer(job, name)
+    except Exception as error:  # whatever a peer cannot do is its result
+        line = str(error).splitlines() or [type(error).__name__]
+        version = "?"
+        try:
+            version = importlib.metadata.version(PEERS[name][1])
+        except importlib.metadata.PackageNotFoundError:
+            line = ["not installed"]
+        rows = [{"who": name, "version": version, "error": line[0][:80]}]
+    for row in rows:
+        print(json.dumps(row), file=out)
+    out.close()
+
+
+def main(job_file, answer_file):
+    environment = os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+    with open(answer_file, "w", encoding="utf-8") as file:
+        for name in PEERS:
+            command = [sys.executable, os.path.abspath(__file__), "--peer", name, job_file]
+            try:
+                done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=LIMIT)
+                rows = done.stdout
+                if done.returncode != 0:
+                    rows = json.dumps({"who": name, "version": "?", "error": f"ended with {done.returncode}"}) + "\n"
+            except subprocess.TimeoutExpired:
+                rows = json.dumps({"who": name, "version": "?", "error": f"more than {LIMIT} s"}) + "\n"
+            file.write(rows)
+
+
+if __name__ == "__main__":
+    if sys.argv[1] == "--peer":
+        child(sys.argv[3], sys.argv[2])
+    else:
+        main(sys.argv[1], sys.argv[2])
