@@ -88,7 +88,7 @@ Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpe
                  ? mj_parseXMLString(source.text->c_str(), nullptr, error, kErrorSize)
                  : mj_parseXML(file.c_str(), nullptr, error, kErrorSize);
   });
-  const MjSpecPtr spec(parsed);
+  MjSpecPtr spec(parsed);
   if (outcome.failed) return fail(refusal(outcome.error));
   if (spec == nullptr) return fail(refusal(error));
   LoadedModel loaded;
@@ -118,6 +118,7 @@ Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpe
   if (const std::optional<std::string> fault = memory_fault(compiled)) {
     return fail(refusal(*fault));
   }
+  loaded.spec = std::move(spec);
   return loaded;
 }
 

@@ -59,11 +59,17 @@ void sort_groups(mjSpec* spec) {
   }
 }
 
+/// What MuJoCo does not take from a URDF by itself.
+void finish_spec(mjSpec* spec) {
+  sort_groups(spec);
+  add_motors(spec);
+}
+
 Result<LoadedModel> compile_document(const fs::path& file, const tinyxml2::XMLDocument& document) {
   tinyxml2::XMLPrinter printer(nullptr, true);
   document.Print(&printer);
   const std::string xml = printer.CStr();
-  return compile_spec({.file = file, .text = &xml}, sort_groups);
+  return compile_spec({.file = file, .text = &xml}, finish_spec);
 }
 
 double limit_of(const XMLElement& joint, const char* attribute) {
@@ -80,6 +86,7 @@ Result<LoadedModel> load_urdf(const fs::path& file, tinyxml2::XMLDocument& docum
   std::vector<std::string> warnings;
   if (auto done = resolve_meshes(file, robot, options, warnings); !done) return fail(done.error());
   drop_repeated_shape_names(robot);
+  mend_inertia(file, robot, warnings);
   give_mass(file, robot, warnings);
   XMLElement& compiler = set_compiler(document, robot);
 
@@ -91,6 +98,7 @@ Result<LoadedModel> load_urdf(const fs::path& file, tinyxml2::XMLDocument& docum
     loaded = compile_document(file, document);
   }
   if (!loaded) return loaded;
+  if (auto done = leave_out_touching(file, *loaded); !done) return fail(std::move(done.error()));
   loaded->warnings.insert(loaded->warnings.begin(), warnings.begin(), warnings.end());
   for (const XMLElement* joint : children(std::as_const(robot), "joint")) {
     const std::string name = joint->Attribute("name");

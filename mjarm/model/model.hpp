@@ -10,6 +10,7 @@
 #include "mjarm/core/result.hpp"
 
 struct mjModel_;
+struct mjSpec_;
 
 namespace mjarm {
 
@@ -27,7 +28,8 @@ class Model {
  public:
   /// Loads MJCF or URDF (told apart by the root element). Meshes are looked for beside the file,
   /// `package://` in `options.package_paths`, ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, then upwards
-  /// from the file. A URDF keeps its fixed frames.
+  /// from the file. A URDF keeps its fixed frames, and every joint of it gets a motor of the same
+  /// name that is as strong as its effort limit.
   /// @return one line that names file and element. Never throws, never ends the process.
   [[nodiscard]] static Result<Model> load(const std::filesystem::path& file,
                                           const LoadOptions& options = {});
@@ -53,6 +55,8 @@ class Model {
 
   /// The compiled MuJoCo model, for the rooms that may include mujoco.h; never null.
   [[nodiscard]] const mjModel_* raw() const noexcept;
+  /// The description that it was compiled from, for the same rooms; never null.
+  [[nodiscard]] const mjSpec_* spec() const noexcept;
 
  private:
   struct Impl;
