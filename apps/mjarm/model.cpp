@@ -3,7 +3,9 @@
 #include <memory>
 
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/model_export.hpp"
 #include "apps/mjarm/model_report.hpp"
+#include "apps/mjarm/robot.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 
@@ -12,11 +14,18 @@ namespace {
 
 struct Options {
   std::string file, tip;
+  std::vector<std::string> package_paths;
   bool json = false;
+  ExportOptions export_to;
 };
 
-void add_options(CLI::App& app, Options& options) {
+void add_file_options(CLI::App& app, Options& options) {
   app.add_option("file", options.file, text(msg::app_model_file))->type_name("FILE");
+  add_package_path_option(app, options.package_paths);
+}
+
+void add_options(CLI::App& app, Options& options) {
+  add_file_options(app, options);
   app.add_flag("--json", options.json, text(msg::app_option_json));
 }
 
@@ -24,7 +33,8 @@ Result<Model> load(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
-  Result<Model> model = Model::load(*file);
+  Result<Model> model = Model::load(
+      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()}});
   if (!model) return model;
   for (const std::string& warning : model->warnings()) log_warning(warning);
   return model;
@@ -61,10 +71,18 @@ Run setup(CLI::App& app) {
   CLI::App& tree =
       add_subcommand(app, "tree", msg::app_model_tree_summary, msg::app_model_tree_examples);
   add_options(tree, *options);
-  return [options, &info, &tree]() -> Result<int> {
+  CLI::App& export_to =
+      add_subcommand(app, "export", msg::app_model_export_summary, msg::app_model_export_examples);
+  add_file_options(export_to, *options);
+  add_export_options(export_to, options->export_to);
+  return [options, &info, &tree, &export_to]() -> Result<int> {
     if (info.parsed()) return run_info(*options);
     if (tree.parsed()) return run_tree(*options);
-    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm model", "info, tree"));
+    if (export_to.parsed()) {
+      const Result<Model> model = load(*options);
+      return model ? run_export(*model, options->export_to) : fail(model.error());
+    }
+    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm model", "info, tree, export"));
   };
 }
 

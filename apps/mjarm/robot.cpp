@@ -10,6 +10,13 @@ namespace mjarm::app {
 void add_robot_options(CLI::App& app, RobotOptions& options) {
   app.add_option("--robot", options.robot, text(msg::app_option_robot))->type_name("ROBOT");
   app.add_option("--tip", options.tip, text(msg::app_option_tip))->type_name("FRAME");
+  add_package_path_option(app, options.package_paths);
+}
+
+void add_package_path_option(CLI::App& app, std::vector<std::string>& folders) {
+  app.add_option("--package-path", folders, text(msg::app_option_package_path))
+      ->type_name("DIR")
+      ->take_all();
 }
 
 Result<Robot> load_robot(const RobotOptions& options) {
@@ -18,9 +25,10 @@ Result<Robot> load_robot(const RobotOptions& options) {
   }
   Result<std::filesystem::path> file = find_model_file(options.robot);
   if (!file) return fail(std::move(file.error()));
-  Result<Model> model = Model::load(*file);
+  Result<Model> model = Model::load(
+      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()}});
   if (!model) return fail(std::move(model.error()));
-  for (const std::string& warning : model->warnings()) log_debug(warning);
+  for (const std::string& warning : model->warnings()) log_warning(warning);
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});
   if (!arm) return fail(std::move(arm.error()));
   return Robot{std::move(*model), std::move(*arm)};
