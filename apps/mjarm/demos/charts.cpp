@@ -55,14 +55,14 @@ PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
   panel.x_label = kAxes[x];
   panel.y_label = kAxes[y];
   panel.equal_aspect = true;
-  panel.lines.push_back({.x = column(rows, [x](const RecordRow& row) { return row.X_WT.p[x]; }),
-                         .y = column(rows, [y](const RecordRow& row) { return row.X_WT.p[y]; }),
-                         .label = text(msg::demo_plot_executed)});
-  panel.lines.push_back({.x = column(rows, [x](const RecordRow& row) { return row.X_ref.p[x]; }),
-                         .y = column(rows, [y](const RecordRow& row) { return row.X_ref.p[y]; }),
-                         .label = text(msg::demo_plot_planned),
-                         .style = LineStyle::dashed,
-                         .color = PlotLine::kInk});
+  const auto executed = [&](int axis) {
+    return column(rows, [axis](const RecordRow& row) { return row.X_WT.p[axis]; });
+  };
+  const auto planned = [&](int axis) {
+    return column(rows, [axis](const RecordRow& row) { return row.X_ref.p[axis]; });
+  };
+  panel.lines.push_back(executed_line(executed(x), executed(y)));
+  panel.lines.push_back(planned_line(planned(x), planned(y)));
   return panel;
 }
 

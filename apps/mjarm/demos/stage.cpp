@@ -154,11 +154,12 @@ Result<void> Stage::wait_through(std::span<const JointVec> waypoints,
 std::vector<MeasuredRun> Stage::measured_runs() const {
   std::vector<MeasuredRun> runs;
   for (const Measured& part : measured_) {
-    MeasuredRun& run = runs.emplace_back();
-    run.curve = part.curve ? &*part.curve : nullptr;
-    for (std::size_t i = 0; i < recorder_.size(); ++i) {
-      RecordRow row = recorder_.row(i);
-      if (row.time >= part.from && row.time <= part.to) run.rows.push_back(std::move(row));
+    runs.push_back({.rows = {}, .curve = part.curve ? &*part.curve : nullptr});
+  }
+  for (std::size_t i = 0; i < recorder_.size(); ++i) {
+    const RecordRow row = recorder_.row(i);
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      if (row.time >= measured_[k].from && row.time <= measured_[k].to) runs[k].rows.push_back(row);
     }
   }
   return runs;
