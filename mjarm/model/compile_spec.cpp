@@ -75,7 +75,8 @@ std::optional<std::string> memory_fault(const mjModel* model) {
 
 }  // namespace
 
-Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpec*)) {
+Result<LoadedModel> compile_spec(const SpecSource& source,
+                                 const std::function<void(mjSpec*)>& prepare) {
   constexpr int kErrorSize = 2048;
   char error[kErrorSize] = "";
   mjSpec* parsed = nullptr;
@@ -88,14 +89,14 @@ Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpe
                  ? mj_parseXMLString(source.text->c_str(), nullptr, error, kErrorSize)
                  : mj_parseXML(file.c_str(), nullptr, error, kErrorSize);
   });
-  MjSpecPtr spec(parsed);
+  const MjSpecPtr spec(parsed);
   if (outcome.failed) return fail(refusal(outcome.error));
   if (spec == nullptr) return fail(refusal(error));
   LoadedModel loaded;
   loaded.warnings = std::move(outcome.warnings);
   // More memory than any machine has is a slip of the pen; asking for it could end the process.
   if (spec->memory > kMostMemory) return fail(refusal("Could not allocate memory"));
-  if (prepare != nullptr) prepare(spec.get());
+  if (prepare) prepare(spec.get());
 
   mjModel* compiled = nullptr;
   outcome = call_mujoco([&] { compiled = mj_compile(spec.get(), nullptr); });
@@ -118,7 +119,6 @@ Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpe
   if (const std::optional<std::string> fault = memory_fault(compiled)) {
     return fail(refusal(*fault));
   }
-  loaded.spec = std::move(spec);
   return loaded;
 }
 

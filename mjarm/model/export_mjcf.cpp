@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/model.hpp"
+#include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/export_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
@@ -87,16 +88,41 @@ std::string saved(const mjSpec* spec, std::string& error) {
   return xml;
 }
 
+/// The description that `model` was compiled from, read once more; null, with `error` filled, where
+/// that is not possible any more.
+MjSpecPtr description_of(const Model& model, std::string& error) {
+  char words[kErrorSize] = "";
+  mjSpec* parsed = nullptr;
+  const std::string& urdf = model.urdf_text();
+  const MujocoOutcome outcome = call_mujoco([&] {
+    parsed = urdf.empty() ? mj_parseXML(model.file().c_str(), nullptr, words, kErrorSize)
+                          : mj_parseXMLString(urdf.c_str(), nullptr, words, kErrorSize);
+  });
+  MjSpecPtr spec(parsed);
+  if (outcome.failed || spec == nullptr) {
+    error = outcome.failed ? outcome.error : words;
+    return nullptr;
+  }
+  if (!urdf.empty()) {
+    BodyPairs apart;
+    const mjModel* m = model.raw();
+    for (int e = 0; e < m->nexclude; ++e) {  // ids of both bodies in one number
+      const int pair = m->exclude_signature[e];
+      apart.emplace_back(object_name(m, mjOBJ_BODY, pair >> 16),
+                         object_name(m, mjOBJ_BODY, pair & 0xffff));
+    }
+    finish_urdf(spec.get(), apart);
+  }
+  return spec;
+}
+
 }  // namespace
 
 Result<Exported> export_mjcf(const Model& model, const fs::path& folder) {
   const std::string file = model.file().string();
-  mjSpec* copy = nullptr;
-  const MujocoOutcome outcome = call_mujoco([&] { copy = mj_copySpec(model.spec()); });
-  const MjSpecPtr spec(copy);
-  if (outcome.failed || spec == nullptr) {
-    return fail(Errc::impossible, text(msg::model_not_exported, file, outcome.error));
-  }
+  std::string error;
+  const MjSpecPtr spec = description_of(model, error);
+  if (spec == nullptr) return fail(Errc::impossible, text(msg::model_not_exported, file, error));
   Exported exported;
   if (FileNames(spec.get(), model.file(), folder).rename()) {
     exported.notes.push_back(text(msg::model_files_stay));
@@ -106,7 +132,6 @@ Result<Exported> export_mjcf(const Model& model, const fs::path& folder) {
   // (Programming, Model Editing, "Model Encoding & Saving").
   spec->compiler.savecompiled = 0;
   spec->compiler.savecanonical = 1;
-  std::string error;
   exported.content = saved(spec.get(), error);
   if (exported.content.empty()) {
     return fail(Errc::impossible, text(msg::model_not_exported, file, error));

@@ -3,10 +3,12 @@
 #include <mujoco/mujoco.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mjarm/core/result.hpp"
@@ -29,11 +31,11 @@ using MjSpecPtr = std::unique_ptr<mjSpec, DeleteMjSpec>;
 
 /// What comes out of a file.
 struct LoadedModel {
-  MjSpecPtr spec;  ///< what `model` was compiled from
   MjModelPtr model;
   std::map<std::string, double, std::less<>> velocity_limits;  ///< URDF, by joint [rad/s or m/s]
   std::map<std::string, double, std::less<>> effort_limits;    ///< URDF, by joint [N m or N]
   std::vector<std::string> warnings;
+  std::string urdf_text;  ///< what MuJoCo was given in place of a URDF
 };
 
 /// A description before it is compiled.
@@ -44,17 +46,22 @@ struct SpecSource {
 
 /// Parses and compiles; MuJoCo's complaint becomes one line `FILE:LINE: <element>: what`.
 /// @param prepare  changes the description between the two steps; may be null.
-[[nodiscard]] Result<LoadedModel> compile_spec(const SpecSource& source, void (*prepare)(mjSpec*));
+[[nodiscard]] Result<LoadedModel> compile_spec(const SpecSource& source,
+                                               const std::function<void(mjSpec*)>& prepare);
 
-/// Gives every hinge and slide a motor of its name: ctrl = torque [N m or N], bounded by the
-/// joint's own effort limit. A URDF has no actuators, and nothing moves an arm past its actuators.
-void add_motors(mjSpec* spec);
+/// Names of pairs of bodies.
+using BodyPairs = std::vector<std::pair<std::string, std::string>>;
+
+/// Adds to a parsed URDF what MuJoCo does not take from it by itself: groups of geoms, light and
+/// sky, and a motor of its name for every hinge and slide (ctrl = torque [N m or N], bounded by the
+/// joint's own effort limit; a URDF has no actuators, and nothing moves an arm past its actuators).
+/// @param apart  bodies that shall not collide.
+void finish_urdf(mjSpec* spec, const BodyPairs& apart);
 
 /// Neighbouring shapes of a URDF overlap where they are joined, and convex hulls of meshes more so.
-/// Links that touch in every one of many postures within the limits do not collide: the pairs are
-/// excluded from contact, `loaded` is compiled again, and a warning names them.
-[[nodiscard]] Result<void> leave_out_touching(const std::filesystem::path& file,
-                                              LoadedModel& loaded);
+/// These are the pairs that touch in the initial posture and in each of many drawn within the
+/// limits.
+[[nodiscard]] BodyPairs always_touching(const mjModel* model);
 
 /// Loads a description whose root element is `robot`; changes `document`.
 [[nodiscard]] Result<LoadedModel> load_urdf(const std::filesystem::path& file,

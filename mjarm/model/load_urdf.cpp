@@ -44,32 +44,28 @@ XMLElement& set_compiler(tinyxml2::XMLDocument& document, XMLElement& robot) {
   return *compiler;
 }
 
-/// Sorts geoms into the groups of MuJoCo's viewers: what is seen into 2 (shown), what touches into
-/// 3 (hidden), or 2 where a link has no other look.
-void sort_groups(mjSpec* spec) {
-  std::set<const mjsBody*> has_look;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (mjsElement* e = mjs_firstElement(spec, mjOBJ_GEOM); e; e = mjs_nextElement(spec, e)) {
-      mjsGeom* geom = mjs_asGeom(e);
-      const bool look = geom->contype == 0 && geom->conaffinity == 0;
-      const mjsBody* body = mjs_getParent(e);
-      if (pass == 0 && look) has_look.insert(body);
-      if (pass == 1) geom->group = look || has_look.count(body) == 0 ? 2 : 3;
-    }
-  }
-}
-
-/// What MuJoCo does not take from a URDF by itself.
-void finish_spec(mjSpec* spec) {
-  sort_groups(spec);
-  add_motors(spec);
-}
-
-Result<LoadedModel> compile_document(const fs::path& file, const tinyxml2::XMLDocument& document) {
+Result<LoadedModel> compile_document(const fs::path& file, const tinyxml2::XMLDocument& document,
+                                     const BodyPairs& apart) {
   tinyxml2::XMLPrinter printer(nullptr, true);
   document.Print(&printer);
   const std::string xml = printer.CStr();
-  return compile_spec({.file = file, .text = &xml}, finish_spec);
+  Result<LoadedModel> loaded =
+      compile_spec({.file = file, .text = &xml}, [&](mjSpec* spec) { finish_urdf(spec, apart); });
+  if (loaded) loaded->urdf_text = xml;
+  return loaded;
+}
+
+/// Compiles once more where links touch that do so in every posture, with a line in `warnings`.
+Result<LoadedModel> without_constant_contacts(const fs::path& file,
+                                              const tinyxml2::XMLDocument& document,
+                                              LoadedModel loaded,
+                                              std::vector<std::string>& warnings) {
+  const BodyPairs apart = always_touching(loaded.model.get());
+  if (apart.empty()) return loaded;
+  std::string words;
+  for (const auto& [a, b] : apart) words += (words.empty() ? "" : ", ") + a + " - " + b;
+  warnings.push_back(text(msg::model_always_touching, file.string(), words));
+  return compile_document(file, document, apart);
 }
 
 double limit_of(const XMLElement& joint, const char* attribute) {
@@ -90,15 +86,16 @@ Result<LoadedModel> load_urdf(const fs::path& file, tinyxml2::XMLDocument& docum
   give_mass(file, robot, warnings);
   XMLElement& compiler = set_compiler(document, robot);
 
-  Result<LoadedModel> loaded = compile_document(file, document);
+  Result<LoadedModel> loaded = compile_document(file, document, {});
   if (!loaded && loaded.error().what.find(text(msg::model_mj_inertia)) != std::string::npos) {
     // Inertias that no body can have are common in URDF files and matter to dynamics alone.
     warnings.push_back(text(msg::model_balanced_inertia, loaded.error().what));
     compiler.SetAttribute("balanceinertia", "true");
-    loaded = compile_document(file, document);
+    loaded = compile_document(file, document, {});
   }
   if (!loaded) return loaded;
-  if (auto done = leave_out_touching(file, *loaded); !done) return fail(std::move(done.error()));
+  loaded = without_constant_contacts(file, document, std::move(*loaded), warnings);
+  if (!loaded) return loaded;
   loaded->warnings.insert(loaded->warnings.begin(), warnings.begin(), warnings.end());
   for (const XMLElement* joint : children(std::as_const(robot), "joint")) {
     const std::string name = joint->Attribute("name");

@@ -10,7 +10,6 @@
 #include "mjarm/core/result.hpp"
 
 struct mjModel_;
-struct mjSpec_;
 
 namespace mjarm {
 
@@ -55,8 +54,8 @@ class Model {
 
   /// The compiled MuJoCo model, for the rooms that may include mujoco.h; never null.
   [[nodiscard]] const mjModel_* raw() const noexcept;
-  /// The description that it was compiled from, for the same rooms; never null.
-  [[nodiscard]] const mjSpec_* spec() const noexcept;
+  /// The URDF as MuJoCo was given it (meshes by absolute path, odd values mended); empty for MJCF.
+  [[nodiscard]] const std::string& urdf_text() const noexcept;
 
  private:
   struct Impl;

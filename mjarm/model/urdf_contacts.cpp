@@ -3,7 +3,6 @@
 #include <set>
 #include <utility>
 
-#include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
@@ -45,8 +44,7 @@ void draw_posture(const mjModel* m, Rng& rng, mjtNum* qpos) {
   }
 }
 
-/// Pairs of bodies that touch in the first and in every drawn posture.
-Pairs always_touching(const mjModel* m) {
+Pairs find_always_touching(const mjModel* m) {
   const std::unique_ptr<mjData, DeleteMjData> d(mj_makeData(m));
   Pairs always = touching(m, d.get());
   Rng rng(1);
@@ -60,29 +58,15 @@ Pairs always_touching(const mjModel* m) {
 
 }  // namespace
 
-Result<void> leave_out_touching(const std::filesystem::path& file, LoadedModel& loaded) {
-  Pairs pairs;
-  MujocoOutcome outcome = call_mujoco([&] { pairs = always_touching(loaded.model.get()); });
-  if (outcome.failed || pairs.empty()) return {};
-  std::string words;
-  for (const auto& [a, b] : pairs) {
-    const std::string first = object_name(loaded.model.get(), mjOBJ_BODY, a);
-    const std::string second = object_name(loaded.model.get(), mjOBJ_BODY, b);
-    mjsExclude* exclude = mjs_addExclude(loaded.spec.get());
-    mjs_setString(exclude->bodyname1, first.c_str());
-    mjs_setString(exclude->bodyname2, second.c_str());
-    words += (words.empty() ? "" : ", ") + first + " - " + second;
+BodyPairs always_touching(const mjModel* model) {
+  Pairs found;
+  const MujocoOutcome outcome = call_mujoco([&] { found = find_always_touching(model); });
+  BodyPairs pairs;
+  if (outcome.failed) return pairs;
+  for (const auto& [a, b] : found) {
+    pairs.emplace_back(object_name(model, mjOBJ_BODY, a), object_name(model, mjOBJ_BODY, b));
   }
-  mjModel* compiled = nullptr;
-  outcome = call_mujoco([&] { compiled = mj_compile(loaded.spec.get(), nullptr); });
-  if (outcome.failed || compiled == nullptr) {
-    return fail(Errc::bad_input,
-                text(msg::model_unexpected, file.string(),
-                     outcome.failed ? outcome.error : mjs_getError(loaded.spec.get())));
-  }
-  loaded.model.reset(compiled);
-  loaded.warnings.push_back(text(msg::model_always_touching, file.string(), words));
-  return {};
+  return pairs;
 }
 
 }  // namespace mjarm
