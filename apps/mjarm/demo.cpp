@@ -10,6 +10,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"
@@ -21,7 +22,7 @@ namespace {
 struct DemoArguments {
   std::string name, out, seconds, text, control;
   RobotOptions robot{.robot = "ur5e"};
-  bool headless = false, guide = false, no_timing = false;
+  bool headless = false, meshes = false, guide = false, no_timing = false;
 };
 
 void list_demos() {
@@ -45,6 +46,7 @@ Result<DemoOptions> read_options(const DemoArguments& arguments) {
   options.out = arguments.out.empty() ? std::filesystem::path("mjarm-out") / arguments.name
                                       : std::filesystem::path(arguments.out);
   options.headless = arguments.headless;
+  options.meshes = arguments.meshes;
   options.guide = arguments.guide;
   options.timing = !arguments.no_timing;
   options.text = arguments.text;
@@ -101,6 +103,7 @@ Run setup(CLI::App& app) {
   app.add_option("name", arguments->name, text(msg::demo_option_name))->type_name("NAME");
   app.add_option("--out", arguments->out, text(msg::demo_option_out))->type_name("DIR");
   app.add_flag("--headless", arguments->headless, text(msg::demo_option_headless));
+  app.add_flag("--meshes", arguments->meshes, text(msg::install_option_meshes));
   app.add_flag("--guide", arguments->guide, text(msg::demo_option_guide));
   app.add_option("--seconds", arguments->seconds, text(msg::demo_option_seconds))->type_name("S");
   app.add_option("--text", arguments->text, text(msg::demo_option_text))->type_name("TEXT");

@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/install/installed.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/model/model.hpp"
@@ -95,6 +97,24 @@ void look_at_models(Findings& findings) {
       names.empty() ? text(msg::app_info_none) : names);
 }
 
+/// Meshes are a choice: without them robots are drawn with simple shapes.
+void look_at_meshes(Findings& findings) {
+  Json found = Json::array();
+  std::string shown, known;
+  for (const MeshSet& set : mesh_sets()) {
+    known += (known.empty() ? "" : ", ") + set.robot;
+    const Result<Installed> meshes = look_up(set);
+    if (!meshes || meshes->state.kind == MeshState::Kind::absent) continue;
+    const MeshState& state = meshes->state;
+    const bool whole = state.kind == MeshState::Kind::whole;
+    found.push_back({{"robot", set.robot}, {"whole", whole}, {"folder", meshes->folder.string()}});
+    shown += (shown.empty() ? "" : ", ") +
+             (whole ? set.robot : text(msg::install_mend, state.problem, set.robot));
+  }
+  add(findings, "meshes", text(msg::install_doctor), found,
+      shown.empty() ? text(msg::install_doctor_none, known) : shown);
+}
+
 Result<int> run(bool json) {
   Findings findings;
   add(findings, "mjarm", "mjarm", MJARM_VERSION, MJARM_VERSION);
@@ -102,6 +122,7 @@ Result<int> run(bool json) {
   look_at_machine(findings);
   look_at_graphics(findings);
   look_at_models(findings);
+  look_at_meshes(findings);
   const bool fine = findings.problems.empty();
   if (json) {
     findings.facts["problems"] = findings.problems;

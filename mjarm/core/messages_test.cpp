@@ -18,6 +18,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/control.inc"
 #include "mjarm/core/messages/core.inc"
 #include "mjarm/core/messages/demo.inc"
+#include "mjarm/core/messages/install.inc"
 #include "mjarm/core/messages/kinematics.inc"
 #include "mjarm/core/messages/model.inc"
 #include "mjarm/core/messages/path.inc"

@@ -5,6 +5,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/demos/show.hpp"
+#include "apps/mjarm/install/installed.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
@@ -135,8 +136,9 @@ Report report_of(const Drive& drive, const Sim& sim) {
 }  // namespace
 
 Result<Report> run_car(const DemoOptions& options) {
-  const auto model = find_model_file("car").and_then(
-      [](const std::filesystem::path& file) { return Model::load(file); });
+  const auto model =
+      (options.meshes ? find_mesh_scene("car") : find_model_file("car"))
+          .and_then([](const std::filesystem::path& file) { return Model::load(file); });
   if (!model) return fail(model.error());
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
   Sim sim(*model);

@@ -18,6 +18,7 @@ struct DemoOptions {
   RobotOptions robot;                  ///< which arm, and which frame of it is the tool
   std::filesystem::path out;           ///< folder of all files written
   bool headless = false;               ///< no window even where there is a display
+  bool meshes = false;                 ///< the robot's real meshes, which must be installed
   bool guide = false;                  ///< do it the tutorial's way
   bool timing = true;                  ///< wall-clock fields in the report
   double seconds = 0;                  ///< [s] most simulated time, 0 = as long as the motion takes

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/mjarm/demos/output.hpp"
+#include "apps/mjarm/install/installed.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
@@ -43,7 +44,13 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
                                            int dof) {
-  Result<Robot> robot = load_robot(options.robot);
+  RobotOptions chosen = options.robot;
+  if (options.meshes) {
+    const Result<std::filesystem::path> scene = find_mesh_scene(chosen.robot);
+    if (!scene) return fail(scene.error());
+    chosen.robot = scene->string();
+  }
+  Result<Robot> robot = load_robot(chosen);
   if (!robot) return fail(std::move(robot.error()));
   const int joints = robot->arm.dof();
   if (dof != 0 && joints != dof) {

@@ -1,0 +1,338 @@
+#include "apps/mjarm/install/install.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "apps/mjarm/install/mesh_package_test.hpp"
+#include "apps/mjarm/install/mesh_store.hpp"
+#include "tests/support/http_server.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using support::HttpServer;
+using support::Served;
+
+namespace fs = std::filesystem;
+constexpr const char* kScene = "<mujoco/>";
+
+/// A server with both sources, and an empty data folder.
+class Install : public ::testing::Test {
+ protected:
+  Install() {
+    fs::create_directories(data);
+    sources.archives = server.url() + "/releases";
+    sources.index.url = server.url() + "/simple";
+    sources.index.http.stall_timeout = 2;
+    serve_archive({.body = package.archive});
+    serve_wheel({.body = package.wheel});
+    const std::string link = server.url() + "/files/" + package.set.wheel.name;
+    server.serve(
+        "/simple/toy-world/",
+        {.body = "<a href=\"" + link + "#sha256=" + package.set.wheel.sha256 + "\">wheel</a>",
+         .type = "text/html"});
+  }
+  void serve_archive(Served served) {
+    server.serve("/releases/" + package.set.archive.name, std::move(served));
+  }
+  void serve_wheel(Served served) {
+    server.serve("/files/" + package.set.wheel.name, std::move(served));
+  }
+  void no_archive() { serve_archive({.body = "", .status = 404}); }
+
+  Result<void> install() {
+    MeshSources asked = sources;
+    return install_meshes(data, package.set, kScene, asked);
+  }
+  fs::path target() { return mesh_folder(data, package.set); }
+  MeshState state() { return check_meshes(target(), package.set, kScene); }
+  /// Whole, and nothing else in the data folder.
+  void expect_installed() {
+    EXPECT_EQ(state().kind, MeshState::Kind::whole) << state().problem;
+    EXPECT_FALSE(fs::exists(data / "unfinished"));
+    std::size_t files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(data))
+      files += entry.is_regular_file();
+    EXPECT_EQ(files, package.set.files.size() + 1);
+  }
+  static void flip(const fs::path& file, std::size_t at) {
+    std::FILE* stream = std::fopen(file.c_str(), "r+b");
+    ASSERT_NE(stream, nullptr) << file;
+    std::fseek(stream, static_cast<long>(at), SEEK_SET);
+    const int byte = std::fgetc(stream);
+    std::fseek(stream, static_cast<long>(at), SEEK_SET);
+    std::fputc(byte ^ 0x40, stream);
+    std::fclose(stream);
+  }
+  fs::path part(const RemoteFile& file) {
+    return data / "unfinished" / package.set.folder / (file.name + ".part");
+  }
+  static std::string flipped(std::string bytes, std::size_t at) {
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x40);
+    return bytes;
+  }
+
+  HttpServer server;
+  support::TempFolder folder;
+  fs::path data = folder.path() / "share" / "mjarm";
+  MeshPackage package = toy_package();
+  MeshSources sources;
+};
+
+TEST_F(Install, FromTheArchive) {
+  ASSERT_TRUE(install());
+  expect_installed();
+  EXPECT_EQ(server.requests().size(), 1u);
+}
+
+TEST_F(Install, FromTheWheelWhereThereIsNoArchive) {
+  no_archive();
+  ASSERT_TRUE(install());
+  expect_installed();
+  // Of the wheel, only the part with the meshes was read.
+  EXPECT_LT(server.sent(), package.wheel.size() - 9000);
+}
+
+TEST_F(Install, AsksOnceForArchivesThatAreNotThere) {
+  no_archive();
+  for (int robot = 0; robot < 2; ++robot) {
+    ASSERT_TRUE(install_meshes(data, package.set, kScene, sources));
+    ASSERT_TRUE(remove_meshes(data, package.set));
+  }
+  const std::vector<std::string> asked = server.requests();
+  EXPECT_EQ(
+      std::ranges::count_if(
+          asked, [](const std::string& request) { return request.starts_with("/releases/"); }),
+      1);
+}
+
+TEST_F(Install, FromTheWheelWithoutRanges) {
+  no_archive();
+  serve_wheel({.body = package.wheel, .ranges = false});
+  ASSERT_TRUE(install());
+  expect_installed();
+}
+
+TEST_F(Install, FromAFolderOfThisMachine) {
+  const support::TempFolder files;
+  sources.from = file_url(files.path());
+  sources.archives = "http://127.0.0.1:1";
+  EXPECT_FALSE(install());
+  files.write(package.set.wheel.name, package.wheel);
+  ASSERT_TRUE(install());
+  expect_installed();
+  ASSERT_TRUE(remove_meshes(data, package.set));
+  files.write(package.set.archive.name, package.archive);
+  ASSERT_TRUE(install());
+  expect_installed();
+  EXPECT_TRUE(server.requests().empty());
+}
+
+TEST_F(Install, AFlippedByteInTheArchiveLeadsToTheWheel) {
+  serve_archive({.body = flipped(package.archive, package.archive.size() / 2)});
+  ASSERT_TRUE(install());
+  expect_installed();
+}
+
+TEST_F(Install, AFlippedByteInTheWheelIsAnError) {
+  no_archive();
+  serve_wheel({.body = flipped(package.wheel, package.set.files[1].offset + 50)});
+  const auto result = install();
+  ASSERT_FALSE(result);
+  EXPECT_EQ(exit_code(result.error().code), 1);
+  EXPECT_NE(result.error().what.find("b.obj"), std::string::npos) << result.error().what;
+  EXPECT_EQ(state().kind, MeshState::Kind::absent);
+  // Once the server is well again, so is the install.
+  serve_wheel({.body = package.wheel});
+  ASSERT_TRUE(install());
+  expect_installed();
+}
+
+TEST_F(Install, AWrongArchiveOfTheRightHashIsNotBelieved) {
+  package.archive = tar_xz({{"toy_robot/assets/a.obj", "short"}});
+  sign_archive(package);
+  serve_archive({.body = package.archive});
+  sources.index.url = "http://127.0.0.1:1";
+  EXPECT_FALSE(install());
+  EXPECT_EQ(state().kind, MeshState::Kind::absent);
+}
+
+TEST_F(Install, APartDamagedBetweenRunsIsFetchedAgain) {
+  for (const bool from_wheel : {false, true}) {
+    if (from_wheel) no_archive();
+    Served broken{.body = from_wheel ? package.wheel : package.archive,
+                  .status = 200,
+                  .ranges = false,
+                  .cut_after = 60000};
+    if (from_wheel) {
+      serve_wheel(broken);
+    } else {
+      serve_archive(broken);
+      sources.index.url = "http://127.0.0.1:1";
+    }
+    ASSERT_FALSE(install());
+    const fs::path there = part(from_wheel ? package.set.wheel : package.set.archive);
+    ASSERT_TRUE(fs::exists(there));
+    flip(there, 20000);
+    broken.cut_after = SIZE_MAX;
+    if (from_wheel) serve_wheel(broken);
+    if (!from_wheel) serve_archive(broken);
+    ASSERT_TRUE(install());
+    expect_installed();
+    ASSERT_TRUE(remove_meshes(data, package.set));
+    sources.index.url = server.url() + "/simple";
+  }
+}
+
+TEST_F(Install, TheSecondRunFetchesOnlyTheRest) {
+  serve_archive({.body = package.archive, .ranges = false, .cut_after = 60000});
+  sources.index.url = "http://127.0.0.1:1";
+  ASSERT_FALSE(install());
+  const std::size_t before = server.sent(), have = fs::file_size(part(package.set.archive));
+  EXPECT_EQ(have, 60000u);
+  serve_archive({.body = package.archive});
+  ASSERT_TRUE(install());
+  EXPECT_EQ(server.sent() - before, package.archive.size() - have);
+  expect_installed();
+}
+
+/// Installs in a child process that is killed as soon as `bytes` were sent to it, or after `pause`.
+void install_and_kill(HttpServer& server, std::size_t bytes, std::chrono::microseconds pause,
+                      const std::function<Result<void>()>& install) {
+  std::atomic<pid_t> child = -1;
+  std::atomic<bool> due = false;
+  const std::size_t from = server.sent();
+  server.on_sent([&](std::size_t sent) { due = due || sent - from >= bytes; });
+  child = fork();
+  if (child == 0) _exit(install() ? 0 : 1);
+  int status = 0;
+  while (!due && waitpid(child, &status, WNOHANG) == 0) {
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  std::this_thread::sleep_for(pause);
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  server.on_sent(nullptr);
+}
+
+TEST_F(Install, SurvivesBeingKilledAtAnyMoment) {
+  Rng rng(5);
+  for (int round = 0; round < 24; ++round) {
+    const bool wheel = round % 2 == 1;
+    if (wheel) no_archive();
+    const std::string& body = wheel ? package.wheel : package.archive;
+    const Served slow{.body = body, .piece = 2000, .pause = std::chrono::microseconds(300)};
+    wheel ? serve_wheel(slow) : serve_archive(slow);
+    // Half of the rounds while it downloads, half while it unpacks and publishes.
+    const bool early = round % 4 < 2;
+    const auto bytes = static_cast<std::size_t>(
+        early ? rng.uniform(0, static_cast<double>(body.size()) * 0.9) : 0.0);
+    const std::chrono::microseconds pause(early ? 0 : static_cast<long>(rng.uniform(0, 60000)));
+    for (int kills = 0; kills < 3; ++kills) {
+      install_and_kill(server, bytes / 3, pause, [&] { return install(); });
+      // At no moment is there a half model under its name.
+      const MeshState::Kind kind = state().kind;
+      ASSERT_TRUE(kind == MeshState::Kind::absent || kind == MeshState::Kind::whole);
+    }
+    ASSERT_TRUE(install());
+    expect_installed();
+    ASSERT_TRUE(remove_meshes(data, package.set));
+    ASSERT_FALSE(fs::exists(data));
+    fs::create_directories(data);
+    serve_archive({.body = package.archive});
+  }
+}
+
+TEST_F(Install, KilledWhileReplacingItMends) {
+  ASSERT_TRUE(install());
+  // As a kill between the two renames leaves it: the old moved away, the new not there.
+  fs::create_directories(data / "unfinished" / package.set.folder / "stage");
+  fs::rename(target(), data / "unfinished" / package.set.folder / "old");
+  ASSERT_TRUE(install());
+  expect_installed();
+}
+
+TEST_F(Install, SeesWhatChangedAfterwards) {
+  ASSERT_TRUE(install());
+  flip(target() / "assets" / "c.stl", 39999);
+  EXPECT_EQ(state().kind, MeshState::Kind::damaged);
+  EXPECT_NE(state().problem.find("c.stl"), std::string::npos);
+  ASSERT_TRUE(install());
+  expect_installed();
+  fs::remove(target() / "assets" / "a.obj");
+  EXPECT_EQ(state().kind, MeshState::Kind::damaged);
+  ASSERT_TRUE(install());
+  expect_installed();
+  flip(target() / "scene.xml", 3);
+  EXPECT_EQ(state().kind, MeshState::Kind::outdated);
+  ASSERT_TRUE(install());
+  expect_installed();
+}
+
+TEST_F(Install, RemovesOnlyItsOwn) {
+  ASSERT_TRUE(install());
+  folder.write("share/mjarm/notes.txt", "mine");
+  folder.write("share/mjarm/models/other/scene.xml", "mine");
+  EXPECT_TRUE(remove_meshes(data, package.set).value());
+  EXPECT_FALSE(remove_meshes(data, package.set).value());
+  EXPECT_TRUE(folder.exists("share/mjarm/notes.txt"));
+  EXPECT_TRUE(folder.exists("share/mjarm/models/other/scene.xml"));
+  EXPECT_FALSE(fs::exists(target()));
+}
+
+TEST_F(Install, AFullDiskIsOneClearLine) {
+  // A limit on the size of files stands for a full disk: writing fails half way in the same manner.
+  int report[2];
+  ASSERT_EQ(pipe(report), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit limit{30000, 30000};
+    std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const auto result = install();
+    const std::string what = result ? "" : result.error().what;
+    const bool written = write(report[1], what.data(), what.size()) >= 0;
+    _exit(!result && result.error().code == Errc::system && written ? 7 : 1);
+  }
+  close(report[1]);
+  std::string what(4096, '\0');
+  what.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(report[0], what.data(), 4096))));
+  close(report[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 7) << what;
+  EXPECT_NE(what.find("cannot be written"), std::string::npos) << what;
+  EXPECT_EQ(state().kind, MeshState::Kind::absent);
+  ASSERT_TRUE(install());
+  expect_installed();
+}
+
+TEST_F(Install, AFolderThatCannotBeMadeIsNamed) {
+  data = folder.write("file", "x") / "mjarm";
+  const auto lock = lock_data_folder(data);
+  ASSERT_FALSE(lock);
+  EXPECT_EQ(lock.error().code, Errc::system);
+  EXPECT_NE(lock.error().what.find("file"), std::string::npos);
+}
+
+TEST_F(Install, OneAtATime) {
+  std::optional<FolderLock> first(std::move(*lock_data_folder(data)));
+  std::atomic<bool> second = false;
+  std::thread waiting([&] {
+    const auto lock = lock_data_folder(data);
+    second = lock.has_value();
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_FALSE(second);
+  first.reset();
+  waiting.join();
+  EXPECT_TRUE(second);
+}
+
+}  // namespace
+}  // namespace mjarm::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "apps/mjarm/install/http.hpp"
+#include "apps/mjarm/install/index_settings.hpp"
+
+namespace mjarm::app {
+
+/// Where `file` lies according to a page of a simple package index.
+struct IndexEntry {
+  std::string url;     ///< absolute; empty where the page does not list the file
+  std::string sha256;  ///< as the page says; empty where it does not
+};
+
+/// Looks `file` up on a page in JSON (PEP 691) or HTML (PEP 503); never throws, whatever the page.
+[[nodiscard]] IndexEntry find_entry(const Page& page, std::string_view file);
+
+/// Address of one file of `project`, whose hash must be `sha256` where the index tells one.
+[[nodiscard]] Result<std::string> find_in_index(const IndexSettings& index,
+                                                const std::string& project, const std::string& file,
+                                                const std::string& sha256);
+
+}  // namespace mjarm::app
