@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/model_check.hpp"
 #include "apps/mjarm/model_export.hpp"
 #include "apps/mjarm/model_report.hpp"
 #include "apps/mjarm/robot.hpp"
@@ -13,7 +14,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file, tip;
+  std::string file, tip, against;
   std::vector<std::string> package_paths;
   bool json = false;
   ExportOptions export_to;
@@ -62,6 +63,16 @@ Result<int> run_tree(const Options& options) {
   return 0;
 }
 
+Result<int> run_check(const Options& options) {
+  if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
+  const Result<std::filesystem::path> file = find_model_file(options.file);
+  if (!file) return fail(file.error());
+  if (options.against.empty()) return check_file(*file, options.tip, options.json);
+  const Result<std::filesystem::path> other = find_model_file(options.against);
+  if (!other) return fail(other.error());
+  return check_against(*file, *other, options.tip, options.json);
+}
+
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App& info =
@@ -71,18 +82,25 @@ Run setup(CLI::App& app) {
   CLI::App& tree =
       add_subcommand(app, "tree", msg::app_model_tree_summary, msg::app_model_tree_examples);
   add_options(tree, *options);
+  CLI::App& check =
+      add_subcommand(app, "check", msg::app_model_check_summary, msg::app_model_check_examples);
+  add_options(check, *options);
+  check.add_option("--tip", options->tip, text(msg::app_option_tip))->type_name("FRAME");
+  check.add_option("--against", options->against, text(msg::app_model_against))->type_name("FILE");
   CLI::App& export_to =
       add_subcommand(app, "export", msg::app_model_export_summary, msg::app_model_export_examples);
   add_file_options(export_to, *options);
   add_export_options(export_to, options->export_to);
-  return [options, &info, &tree, &export_to]() -> Result<int> {
+  return [options, &info, &tree, &check, &export_to]() -> Result<int> {
     if (info.parsed()) return run_info(*options);
     if (tree.parsed()) return run_tree(*options);
+    if (check.parsed()) return run_check(*options);
     if (export_to.parsed()) {
       const Result<Model> model = load(*options);
       return model ? run_export(*model, options->export_to) : fail(model.error());
     }
-    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm model", "info, tree, export"));
+    return fail(Errc::usage,
+                text(msg::app_no_subcommand, "mjarm model", "info, tree, check, export"));
   };
 }
 

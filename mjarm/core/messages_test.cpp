@@ -14,6 +14,7 @@ namespace {
 constexpr Msg kCatalogue[] = {
 #define MJARM_MSG(id, english, chinese) {english, chinese},
 #include "mjarm/core/messages/app.inc"
+#include "mjarm/core/messages/check.inc"
 #include "mjarm/core/messages/collision.inc"
 #include "mjarm/core/messages/control.inc"
 #include "mjarm/core/messages/core.inc"

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "mjarm/model/check.hpp"
+
+namespace mjarm::app {
+
+/// The findings for people, one a line, in the language in use.
+[[nodiscard]] std::string to_text(const CheckReport& report);
+/// The findings as one JSON document.
+[[nodiscard]] std::string to_json(const CheckReport& report);
+
+/// Checks `file`, prints what is found; exit code 0 where there is no error, 1 where there is, 2
+/// where the file does not load. Warnings do not change it: what works may be used.
+[[nodiscard]] Result<int> check_file(const std::filesystem::path& file, const std::string& tip,
+                                     bool json);
+
+/// Compares the forward kinematics of two descriptions and prints the difference and its likely
+/// cause; exit code 0 where they agree to 1e-9 m and rad (masses and limits may still differ), else
+/// 1. Where `other` has no frame `tip`, its own tool frame is taken.
+[[nodiscard]] Result<int> check_against(const std::filesystem::path& file,
+                                        const std::filesystem::path& other, const std::string& tip,
+                                        bool json);
+
+}  // namespace mjarm::app
