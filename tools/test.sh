@@ -128,6 +128,15 @@ run_coverage() {
   finish
 }
 
+# Public robots as users bring them; what is fetched lies in .deps and is no part of mjarm.
+run_arms() {
+  "$root/tools/fetch_arms.sh" "$deps/arms" || exit
+  check "build" build_counted dev whole_test
+  ((failed)) || check "arms" env MJARM_ARMS_DATA="$deps/arms/robots" \
+    "$root/build/dev/bin/whole_test" --gtest_filter='*TwelveArms*'
+  finish
+}
+
 run_benches() {
   local bench
   build release benches

@@ -20,7 +20,8 @@ namespace {
 
 /// Options as the user wrote them.
 struct DemoArguments {
-  std::string name, out, seconds, text, robot = "ur5e", tip, control;
+  std::string name, out, seconds, text, control;
+  RobotOptions robot{.robot = "ur5e"};
   bool headless = false, meshes = false, guide = false, no_timing = false;
 };
 
@@ -42,7 +43,6 @@ Result<const Demo*> find_demo(const std::string& name) {
 Result<DemoOptions> read_options(const DemoArguments& arguments) {
   DemoOptions options;
   options.robot = arguments.robot;
-  options.tip = arguments.tip;
   options.out = arguments.out.empty() ? std::filesystem::path("mjarm-out") / arguments.name
                                       : std::filesystem::path(arguments.out);
   options.headless = arguments.headless;
@@ -109,8 +109,7 @@ Run setup(CLI::App& app) {
   app.add_option("--text", arguments->text, text(msg::demo_option_text))->type_name("TEXT");
   app.add_option("--control", arguments->control, text(msg::demo_option_control))
       ->type_name("MODE");
-  app.add_option("--robot", arguments->robot, text(msg::demo_option_robot))->type_name("ROBOT");
-  app.add_option("--tip", arguments->tip, text(msg::app_option_tip))->type_name("FRAME");
+  add_robot_options(app, arguments->robot);
   app.add_flag("--no-timing", arguments->no_timing, text(msg::demo_option_no_timing));
   return [arguments] { return run_demo(*arguments); };
 }
@@ -127,6 +126,7 @@ std::span<const Demo> demos() {
       {"movel", msg::demo_about_movel, run_movel},
       {"ellipse", msg::demo_about_ellipse, run_ellipse},
       {"letters", msg::demo_about_letters, run_letters},
+      {"square", msg::demo_about_square, run_square},
   };
   return kDemos;
 }

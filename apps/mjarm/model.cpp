@@ -4,6 +4,7 @@
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/model_check.hpp"
+#include "apps/mjarm/model_export.hpp"
 #include "apps/mjarm/model_report.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "mjarm/core/log.hpp"
@@ -14,12 +15,19 @@ namespace {
 
 struct Options {
   std::string file, tip, against;
+  std::vector<std::string> package_paths;
   bool json = false;
+  ExportOptions export_to;
   bool allow_outside = false;
 };
 
-void add_options(CLI::App& app, Options& options) {
+void add_file_options(CLI::App& app, Options& options) {
   app.add_option("file", options.file, text(msg::app_model_file))->type_name("FILE");
+  add_package_path_option(app, options.package_paths);
+}
+
+void add_options(CLI::App& app, Options& options) {
+  add_file_options(app, options);
   app.add_flag("--json", options.json, text(msg::app_option_json));
   add_outside_option(app, options.allow_outside);
 }
@@ -28,7 +36,9 @@ Result<Model> load(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
-  Result<Model> model = Model::load(*file, {.allow_outside = options.allow_outside});
+  Result<Model> model = Model::load(
+      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
+              .allow_outside = options.allow_outside});
   if (!model) return model;
   for (const std::string& warning : model->warnings()) log_warning(warning);
   return model;
@@ -80,11 +90,20 @@ Run setup(CLI::App& app) {
   add_options(check, *options);
   check.add_option("--tip", options->tip, text(msg::app_option_tip))->type_name("FRAME");
   check.add_option("--against", options->against, text(msg::app_model_against))->type_name("FILE");
-  return [options, &info, &tree, &check]() -> Result<int> {
+  CLI::App& export_to =
+      add_subcommand(app, "export", msg::app_model_export_summary, msg::app_model_export_examples);
+  add_file_options(export_to, *options);
+  add_export_options(export_to, options->export_to);
+  return [options, &info, &tree, &check, &export_to]() -> Result<int> {
     if (info.parsed()) return run_info(*options);
     if (tree.parsed()) return run_tree(*options);
     if (check.parsed()) return run_check(*options);
-    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm model", "info, tree, check"));
+    if (export_to.parsed()) {
+      const Result<Model> model = load(*options);
+      return model ? run_export(*model, options->export_to) : fail(model.error());
+    }
+    return fail(Errc::usage,
+                text(msg::app_no_subcommand, "mjarm model", "info, tree, check, export"));
   };
 }
 

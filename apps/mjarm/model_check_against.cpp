@@ -107,7 +107,7 @@ std::string cause_text(const Cause& cause, const Side& first, const Side& second
 std::string all_causes(const Comparison& comparison, const Side& first, const Side& second) {
   std::string words;
   for (const Cause& cause : comparison.causes) {
-    words += (words.empty() ? "" : "; ") + cause_text(cause, first, second);
+    words += (words.empty() ? "" : text(msg::app_against_and)) + cause_text(cause, first, second);
   }
   return words.empty() ? text(msg::app_against_unknown) : words;
 }
@@ -209,7 +209,10 @@ Result<int> check_against(const fs::path& file, const fs::path& other, const std
   if (!second) return fail(second.error());
   const CompareOptions options;
   const Result<Comparison> comparison = compare_arms(first->arm, second->arm, options);
-  if (!comparison) return fail(comparison.error());
+  if (!comparison) {
+    return fail(comparison.error().code, text(msg::app_check_worst_element, file.string(),
+                                              other.string(), comparison.error().what));
+  }
   const auto figures = compare_figures(first->model, first->arm, second->model, second->arm);
   const std::string words =
       json ? to_json(*comparison, figures, *first, *second, options.configurations)

@@ -14,7 +14,14 @@ void add_outside_option(CLI::App& app, bool& allowed) {
 void add_robot_options(CLI::App& app, RobotOptions& options) {
   app.add_option("--robot", options.robot, text(msg::app_option_robot))->type_name("ROBOT");
   app.add_option("--tip", options.tip, text(msg::app_option_tip))->type_name("FRAME");
+  add_package_path_option(app, options.package_paths);
   add_outside_option(app, options.allow_outside);
+}
+
+void add_package_path_option(CLI::App& app, std::vector<std::string>& folders) {
+  app.add_option("--package-path", folders, text(msg::app_option_package_path))
+      ->type_name("DIR")
+      ->take_all();
 }
 
 Result<Robot> load_robot(const RobotOptions& options) {
@@ -23,7 +30,9 @@ Result<Robot> load_robot(const RobotOptions& options) {
   }
   Result<std::filesystem::path> file = find_model_file(options.robot);
   if (!file) return fail(std::move(file.error()));
-  Result<Model> model = Model::load(*file, {.allow_outside = options.allow_outside});
+  Result<Model> model = Model::load(
+      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
+              .allow_outside = options.allow_outside});
   if (!model) return fail(std::move(model.error()));
   for (const std::string& warning : model->warnings()) log_debug(warning);
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});

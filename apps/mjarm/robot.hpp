@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/find_arm.hpp"
@@ -11,15 +12,20 @@ namespace mjarm::app {
 
 /// Which robot, and which frame of it is the tool.
 struct RobotOptions {
-  std::string robot;           ///< name of a shipped model, or path
-  std::string tip;             ///< empty = the robot's own
-  bool allow_outside = false;  ///< as in LoadOptions
+  std::string robot;                            ///< name of a shipped model, or path
+  std::string tip = {};                         ///< empty = the robot's own
+  std::vector<std::string> package_paths = {};  ///< where `package://NAME` is looked for first
+  bool allow_outside = false;                   ///< as in LoadOptions
 };
+
+/// Adds `--package-path DIR`, which may be given several times, bound to `folders`.
+void add_package_path_option(CLI::App& app, std::vector<std::string>& folders);
 
 /// Adds `--allow-outside`, bound to `allowed`.
 void add_outside_option(CLI::App& app, bool& allowed);
 
-/// Adds `--robot ROBOT`, `--tip FRAME` and `--allow-outside`, bound to `options`.
+/// Adds `--robot ROBOT`, `--tip FRAME`, `--package-path DIR` and `--allow-outside`, bound to
+/// `options`.
 void add_robot_options(CLI::App& app, RobotOptions& options);
 
 /// A loaded robot.

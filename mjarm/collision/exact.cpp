@@ -59,7 +59,10 @@ struct ExactChecker::Impl {
     m_wide.opt.o_margin = options.margin;
     q_rest = rest_configuration(m);
     mark_moving(arm);
+    std::vector<bool> moves;
+    for (const int joints : pieces) moves.push_back(joints > 0);
     capsule_boxes = detail::capsule_box_pairs(m, moves);
+    std::erase_if(capsule_boxes, [&](GeomIds ids) { return are_rigid(ids.geom1, ids.geom2); });
     make_data();
   }
   Impl(const Impl& other)
@@ -69,7 +72,7 @@ struct ExactChecker::Impl {
         m_wide(other.m_wide),
         q_rest(other.q_rest),
         addresses(other.addresses),
-        moves(other.moves),
+        pieces(other.pieces),
         capsule_boxes(other.capsule_boxes),
         matches(other.matches) {
     make_data();
@@ -80,9 +83,9 @@ struct ExactChecker::Impl {
     if (d) std::copy(q_rest.begin(), q_rest.end(), d->qpos);
   }
 
-  /// Fills `addresses` and `moves`: the bodies of the arm's joints and all that hangs on them.
+  /// Fills `addresses` and `pieces`.
   void mark_moving(const Arm& arm) {
-    moves.assign(static_cast<std::size_t>(m.nbody), false);
+    pieces.assign(static_cast<std::size_t>(m.nbody), 0);
     matches = true;
     for (const ArmJoint& joint : arm.joints) {
       const int id = joint_at(m, joint.qpos);
@@ -91,12 +94,22 @@ struct ExactChecker::Impl {
         continue;
       }
       addresses.push_back(joint.qpos);
-      moves[static_cast<std::size_t>(m.jnt_bodyid[id])] = true;
+      pieces[static_cast<std::size_t>(m.jnt_bodyid[id])] = static_cast<int>(addresses.size());
     }
     for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
       const auto parent = static_cast<std::size_t>(m.body_parentid[b]);
-      if (moves[parent]) moves[static_cast<std::size_t>(b)] = true;
+      int& piece = pieces[static_cast<std::size_t>(b)];
+      piece = std::max(piece, pieces[parent]);
     }
+  }
+
+  /// True where no joint of the arm is between two geoms: both are at rest, or both on one link or
+  /// in its hand (closed fingers touch each other, wherever the arm is).
+  bool are_rigid(int geom1, int geom2) const {
+    const auto piece = [&](int geom) {
+      return pieces[static_cast<std::size_t>(m.geom_bodyid[geom])];
+    };
+    return piece(geom1) == piece(geom2);
   }
 
   bool accepts(std::span<const double> q) const {
@@ -111,16 +124,13 @@ struct ExactChecker::Impl {
     if (m.nflex > 0) mj_flex(&m, d.get());
   }
 
-  /// True for a contact between two geoms of which at least one moves with the arm, but for those
-  /// that are measured by capsule_box_gap().
+  /// True for a contact between two geoms that the arm moves against each other, but for those that
+  /// are measured by capsule_box_gap().
   bool counts(const mjContact& contact) const {
     const int geom1 = contact.geom[0];
     const int geom2 = contact.geom[1];
     if (geom1 < 0 || geom2 < 0 || detail::is_capsule_box(m, geom1, geom2)) return false;
-    const auto moving = [&](int geom) {
-      return moves[static_cast<std::size_t>(m.geom_bodyid[geom])];
-    };
-    return moving(geom1) || moving(geom2);
+    return !are_rigid(geom1, geom2);
   }
 
   std::span<const mjContact> detect(const mjModel& head) {
@@ -210,7 +220,7 @@ struct ExactChecker::Impl {
   mjModel m_wide;  // the same with `margin` round every geom
   std::vector<double> q_rest;
   std::vector<int> addresses;  // of the arm's joints in qpos
-  std::vector<bool> moves;     // per body
+  std::vector<int> pieces;     // per body: how many joints of the arm move it
   std::vector<GeomIds> capsule_boxes;
   bool matches = false;  // the arm is one of this model
   std::unique_ptr<mjData, DeleteData> d;

@@ -55,10 +55,11 @@ struct CollisionReport {
 
 /// The exact collision checker: MuJoCo's own kinematics and collision detection on one
 /// configuration of an arm, with MuJoCo's rules about which geoms collide (contype and conaffinity,
-/// parent and child, excludes, explicit pairs). Only pairs count of which at least one geom moves
-/// with the arm (gripper included); a box that lies on the floor does not. Joints off the arm stand
-/// at the keyframe `home`, else at their initial value. Contacts are checked even where the file
-/// switches them off. Owns its scratch memory: copy it to use it from another thread.
+/// parent and child, excludes, explicit pairs). Only pairs count that the arm's joints move
+/// against each other (gripper included); a box that lies on the floor does not, nor do two
+/// fingers. Joints off the arm stand at the keyframe `home`, else at their initial value. Contacts
+/// are checked even where the file switches them off. Owns its scratch memory: copy it to use it
+/// from another thread.
 class ExactChecker {
  public:
   /// `arm` must come from `model`; else every check answers with an error.

@@ -1,5 +1,6 @@
 #include "mjarm/control/step_inverse.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "mjarm/control/actuation.hpp"
@@ -48,8 +49,24 @@ JointVec StepInverse::torque(std::span<const double> qpos, std::span<const doubl
   }
   JointVec torque = rows(dynamics_.inverse(qpos, qvel, full_));
   torque -= rows(dynamics_.passive(qpos, qvel));
-  torque += mass_.cwiseProduct(a) + rule_.timestep * stiffness_.cwiseProduct(v);
-  if (rule_.integrator == Integrator::implicit) torque += coriolis_change(qpos, qvel, a);
+  JointVec implicit = mass_.cwiseProduct(a) + rule_.timestep * stiffness_.cwiseProduct(v);
+  if (rule_.integrator == Integrator::implicit) implicit += coriolis_change(qpos, qvel, a);
+  return torque + implicit + friction(qpos, v, a, implicit);
+}
+
+JointVec StepInverse::friction(std::span<const double> qpos, const JointVec& v, const JointVec& a,
+                               const JointVec& implicit) {
+  JointVec torque = JointVec::Zero(a.size());
+  const auto is_dry = [&](int dof) { return rule_.friction[dof].most > 0; };
+  if (std::none_of(dof_.begin(), dof_.end(), is_dry)) return torque;
+  // Constraints are solved before the integrator takes its implicit part.
+  const Eigen::MatrixXd& whole = dynamics_.mass_matrix(qpos);
+  const Eigen::MatrixXd mass = whole(dof_, dof_);
+  const JointVec before = a + JointVec(mass.ldlt().solve(Eigen::VectorXd(implicit)));
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    const DryFriction& dry = rule_.friction[dof_[i]];
+    torque[i] = std::clamp(dry.mass * (before[i] + dry.damping * v[i]), -dry.most, dry.most);
+  }
   return torque;
 }
 

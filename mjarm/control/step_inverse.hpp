@@ -19,7 +19,8 @@ namespace mjarm {
 /// actuators' velocity gains for implicitfast; also the derivative of the Coriolis forces for
 /// implicit. `discrete` has h^2 K beside it and -h K v on the right, K the position gains.
 /// The arm's rows of this equation, with every joint outside the arm held as it moves, give the
-/// torque. Exact without contact, where no limit cuts the command; for RK4 to first order in h.
+/// torque. Exact without contact, where no limit cuts the command; for RK4 to first order in h. Dry
+/// friction is inverted as MuJoCo models it (see DryFriction).
 class StepInverse {
  public:
   StepInverse(const Model& model, const Arm& arm);
@@ -40,6 +41,10 @@ class StepInverse {
   /// Arm's rows of (dc/dv) h a, where c are the Coriolis and centrifugal forces.
   JointVec coriolis_change(std::span<const double> qpos, std::span<const double> qvel,
                            const JointVec& a);
+  /// Torque (dof,) that makes up for dry friction at velocity `v`, where `implicit` is what the
+  /// integrator needs beside the explicit torque.
+  JointVec friction(std::span<const double> qpos, const JointVec& v, const JointVec& a,
+                    const JointVec& implicit);
   [[nodiscard]] JointVec rows(const Eigen::VectorXd& full) const;
 
   StepRule rule_;

@@ -104,6 +104,16 @@ TEST(StepInverse, OneStepGivesTheAccelerationUnderEveryIntegrator) {
   }
 }
 
+TEST(StepInverse, DryFrictionIsMadeUpFor) {
+  std::string arm = odd_arm("integrator=\"implicitfast\"");
+  for (std::size_t at = arm.find("<joint "); at != std::string::npos;
+       at = arm.find("<joint ", at + 1)) {
+    arm.insert(at + 7, "frictionloss=\"0.4\" ");
+  }
+  EXPECT_LT(worst_step_error(load_text(arm), 1.5, 8), 1e-5);
+  EXPECT_LT(worst_step_error(load_text(arm), 0.01, 0.1), 1e-5);  // hardly moving
+}
+
 TEST(StepInverse, KnowsWhenDampingIsExplicit) {
   for (const char* flag : {"eulerdamp=\"disable\"", "damper=\"disable\"", "spring=\"disable\"",
                            "gravity=\"disable\""}) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
+#include <array>
 #include <memory>
 
 #include "mjarm/core/rng.hpp"
@@ -8,6 +9,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "tests/support/test_data.hpp"
 
 /// Kinematics of arms that come out of files, against MuJoCo.
 namespace mjarm {
@@ -93,6 +95,31 @@ TEST(ModelArms, IkFindsRandomPosesOfTheShippedArms) {
       EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
       EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
       EXPECT_TRUE(within_limits(robot.arm, view(answer->q)));
+    }
+  }
+}
+
+Pose pose_of(const nlohmann::json& entry) {
+  const auto p = entry.at("pos").get<std::array<double, 3>>();
+  const auto q = entry.at("quat").get<std::array<double, 4>>();
+  return {Eigen::Vector3d(p[0], p[1], p[2]), to_matrix(Quat(q[0], q[1], q[2], q[3]))};
+}
+
+TEST(ModelArms, IkSolvesTheCasesOfTheUrdfs) {
+  for (const std::string name : {"ur5e", "panda"}) {
+    MJARM_TEST_FILE(urdf, "ik/" + name + ".urdf");
+    MJARM_TEST_FILE(reachable, "ik/" + name + "_reachable.jsonl");
+    MJARM_TEST_FILE(unreachable, "ik/" + name + "_unreachable.jsonl");
+    const Loaded robot = load(urdf);
+    const IkSolver ik(robot.arm);
+    for (const auto& entry : support::load_json_lines(reachable)) {
+      const auto answer = ik.solve(pose_of(entry), entry.at("seed").get<std::vector<double>>());
+      ASSERT_TRUE(answer.has_value()) << describe(answer.error(), robot.arm);
+    }
+    for (const auto& entry : support::load_json_lines(unreachable)) {
+      const auto answer = ik.solve(pose_of(entry), view(robot.arm.home));
+      ASSERT_FALSE(answer.has_value());
+      EXPECT_EQ(answer.error().code, IkErrc::out_of_reach);
     }
   }
 }

@@ -19,6 +19,9 @@ constexpr double kMostFixedAngle = 2 * pi + 0.01;
 /// 1.57, 3.14 and 6.28 are this far from what they stand for, relatively.
 constexpr double kRounding = 6e-4;
 
+/// Beyond this, numbers stand for "no limit" rather than for degrees.
+constexpr double kMostDegrees = 1000;
+
 bool is_whole(double value) { return std::abs(value - std::round(value)) < 1e-9; }
 
 /// True for multiples of pi/4 up to two revolutions, as people write them (1.57, 3.1416, ...).
@@ -78,9 +81,9 @@ std::vector<Angles> angles_of_urdf(const Description& description) {
     for (const char* end : {"lower", "upper"}) {
       all.push_back({&node, end, numbers_in(node.attribute(end)), kMostHingeAngle});
     }
-    // No arm's hinge turns at six revolutions a second and more by whole multiples of 5 rad/s.
+    // 45, 90, 180 and their like; 50, 100 or 1000 rad/s are what people write for "no limit".
     const std::vector<double> speed = numbers_in(node.attribute("velocity"));
-    if (!speed.empty() && speed[0] > 40 && std::fmod(speed[0], 5) == 0) {
+    if (!speed.empty() && speed[0] > 40 && std::fmod(speed[0], 15) == 0) {
       all.push_back({&node, "velocity", speed, kMostHingeAngle});
     }
   }
@@ -98,7 +101,7 @@ void report(const CheckContext& context, const Angles& angles, CheckCode code, G
 void find_degrees(const CheckContext& context, const std::vector<Angles>& all) {
   for (const Angles& angles : all) {
     for (const double value : angles.values) {
-      if (!(std::abs(value) > angles.most) || !std::isfinite(value)) continue;
+      if (!(std::abs(value) > angles.most) || !(std::abs(value) < kMostDegrees)) continue;
       report(context, angles, CheckCode::degrees_for_radians,
              is_whole(value) && std::string_view(angles.attribute) != "velocity" ? Grade::error
                                                                                  : Grade::warning,

@@ -55,8 +55,10 @@ Place place_of(const CheckContext& context, const SourceNode& node, const XMLEle
   return place;
 }
 
-void check_link(const CheckContext& context, const SourceNode& link, bool moves,
+/// @param mover  the link that moves this one, itself or one before it; empty where nothing does.
+void check_link(const CheckContext& context, const SourceNode& link, const std::string& mover,
                 bool mover_has_mass) {
+  const bool moves = !mover.empty();
   const XMLElement* inertial = link.element->FirstChildElement("inertial");
   const bool seen = link.element->FirstChildElement("visual") != nullptr;
   const bool touches = link.element->FirstChildElement("collision") != nullptr;
@@ -85,7 +87,9 @@ void check_link(const CheckContext& context, const SourceNode& link, bool moves,
   Eigen::Matrix3d I;
   I << entry("ixx"), entry("ixy"), entry("ixz"), entry("ixy"), entry("iyy"), entry("iyz"),
       entry("ixz"), entry("iyz"), entry("izz");
-  check_moments(context, place_of(context, link, inertia), principal_moments(I));
+  // A sensor fixed to a link may well be a mere point of mass.
+  const bool is_point = mover != link.attribute("name") && I.norm() < 1e-9;
+  if (!is_point) check_moments(context, place_of(context, link, inertia), principal_moments(I));
 }
 
 }  // namespace
@@ -101,7 +105,7 @@ void check_urdf_links(const CheckContext& context) {
   for (const SourceNode& node : context.description.nodes()) {
     if (node.kind() != "link" || node.section != "link" || !node.around.empty()) continue;
     const std::string mover = tree.mover(std::string(node.attribute("name")));
-    check_link(context, node, !mover.empty(), mover.empty() || mass[mover] > 0);
+    check_link(context, node, mover, mover.empty() || mass[mover] > 0);
   }
 }
 

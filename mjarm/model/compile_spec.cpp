@@ -126,7 +126,7 @@ class Compiler {
     if (auto done = parse(); !done) return fail(done.error());
     // More memory than any machine has is a slip of the pen; asking for it could end the process.
     if (spec_->memory > kMostMemory) return fail(refusal("Could not allocate memory"));
-    if (source_.prepare != nullptr) source_.prepare(spec_.get());
+    if (source_.prepare) source_.prepare(spec_.get());
     const std::vector<KeySizes> keys = key_sizes(spec_.get());
     if (auto done = compile(); !done) return fail(done.error());
     const mjModel* model = loaded_.model.get();

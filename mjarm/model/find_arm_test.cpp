@@ -104,14 +104,14 @@ TEST(FindArm, Panda) {
   }
 }
 
-TEST(FindArm, UrdfHasLimitsOfTheFileAndNoActuators) {
+TEST(FindArm, UrdfHasLimitsOfTheFileAndMotors) {
   const auto model = Model::load(find_model_file("universal_robots_ur5e/ur5e.urdf").value());
   ASSERT_TRUE(model) << model.error().what;
   const auto arm = find_arm(*model);
   ASSERT_TRUE(arm) << arm.error().what;
   EXPECT_EQ(arm->tip, "tool0");
   for (int i = 0; i < 6; ++i) {
-    EXPECT_FALSE(arm->joints[i].actuator);
+    EXPECT_TRUE(arm->joints[i].actuator);
     EXPECT_EQ(arm->limits.sources[i].velocity, LimitSource::file);
     EXPECT_EQ(arm->limits.sources[i].torque, LimitSource::file);
     EXPECT_EQ(arm->limits.sources[i].acceleration, LimitSource::table);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mjarm/core/result.hpp"
@@ -31,6 +32,7 @@ struct LoadedModel {
   std::map<std::string, double, std::less<>> velocity_limits;  ///< URDF, by joint [rad/s or m/s]
   std::map<std::string, double, std::less<>> effort_limits;    ///< URDF, by joint [N m or N]
   std::vector<std::string> warnings;
+  std::string urdf_text;  ///< what MuJoCo was given in place of a URDF
 };
 
 /// A description before it is compiled, which has passed `preflight`.
@@ -38,13 +40,27 @@ struct SpecSource {
   const XmlSources& files;            ///< as the user named them, for messages
   const std::string* text = nullptr;  ///< what to parse instead of the file; null = the file itself
   bool trusted = false;               ///< compile in this process
-  void (*prepare)(mjSpec*) = nullptr;  ///< changes the description before it is compiled
+  std::function<void(mjSpec*)> prepare = {};  ///< changes the description before it is compiled
 
   [[nodiscard]] const std::string& name() const { return files.documents().front()->name; }
 };
 
 /// How far MuJoCo has come with a description.
 enum class Stage : char { reading = 'r', compiling = 'c', stepping = 's' };
+
+/// Names of pairs of bodies.
+using BodyPairs = std::vector<std::pair<std::string, std::string>>;
+
+/// Adds to a parsed URDF what MuJoCo does not take from it by itself: groups of geoms, light and
+/// sky, and a motor of its name for every hinge and slide (ctrl = torque [N m or N], bounded by the
+/// joint's own effort limit; a URDF has no actuators, and nothing moves an arm past its actuators).
+/// @param apart  bodies that shall not collide.
+void finish_urdf(mjSpec* spec, const BodyPairs& apart);
+
+/// Neighbouring shapes of a URDF overlap where they are joined, and convex hulls of meshes more so.
+/// These are the pairs that touch in the initial posture and in each of many drawn within the
+/// limits.
+[[nodiscard]] BodyPairs always_touching(const mjModel* model);
 
 /// Parses, compiles and simulates one step; MuJoCo's complaint becomes one line
 /// `FILE:LINE: <element>: what`. What is not trusted is compiled in a process of its own.

@@ -44,27 +44,31 @@ XMLElement& set_compiler(tinyxml2::XMLDocument& document, XMLElement& robot) {
   return *compiler;
 }
 
-/// Sorts geoms into the groups of MuJoCo's viewers: what is seen into 2 (shown), what touches into
-/// 3 (hidden), or 2 where a link has no other look.
-void sort_groups(mjSpec* spec) {
-  std::set<const mjsBody*> has_look;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (mjsElement* e = mjs_firstElement(spec, mjOBJ_GEOM); e; e = mjs_nextElement(spec, e)) {
-      mjsGeom* geom = mjs_asGeom(e);
-      const bool look = geom->contype == 0 && geom->conaffinity == 0;
-      const mjsBody* body = mjs_getParent(e);
-      if (pass == 0 && look) has_look.insert(body);
-      if (pass == 1) geom->group = look || has_look.count(body) == 0 ? 2 : 3;
-    }
-  }
-}
-
 Result<LoadedModel> compile_document(const XmlSources& files, bool trusted,
-                                     const tinyxml2::XMLDocument& document) {
+                                     const tinyxml2::XMLDocument& document,
+                                     const BodyPairs& apart) {
   tinyxml2::XMLPrinter printer(nullptr, true);
   document.Print(&printer);
   const std::string xml = printer.CStr();
-  return compile_spec({.files = files, .text = &xml, .trusted = trusted, .prepare = sort_groups});
+  const auto finish = [&](mjSpec* spec) { finish_urdf(spec, apart); };
+  Result<LoadedModel> loaded =
+      compile_spec({.files = files, .text = &xml, .trusted = trusted, .prepare = finish});
+  if (loaded) loaded->urdf_text = xml;
+  return loaded;
+}
+
+/// Compiles once more where links touch that do so in every posture, with a line in `warnings`.
+Result<LoadedModel> without_constant_contacts(const XmlSources& files, bool trusted,
+                                              const tinyxml2::XMLDocument& document,
+                                              LoadedModel loaded,
+                                              std::vector<std::string>& warnings) {
+  const BodyPairs apart = always_touching(loaded.model.get());
+  if (apart.empty()) return loaded;
+  std::string words;
+  for (const auto& [a, b] : apart) words += (words.empty() ? "" : ", ") + a + " - " + b;
+  const std::string& file = files.documents().front()->name;
+  warnings.push_back(text(msg::model_always_touching, file, words));
+  return compile_document(files, trusted, document, apart);
 }
 
 double limit_of(const XMLElement& joint, const char* attribute) {
@@ -85,16 +89,20 @@ Result<LoadedModel> load_urdf(const XmlSources& files, const LoadOptions& option
   std::vector<std::string> warnings;
   if (auto done = resolve_meshes(file, robot, options, warnings); !done) return fail(done.error());
   drop_repeated_shape_names(robot);
+  mend_inertia(file, robot, warnings);
   give_mass(file, robot, warnings);
   XMLElement& compiler = set_compiler(document, robot);
 
-  Result<LoadedModel> loaded = compile_document(files, options.trusted, document);
+  Result<LoadedModel> loaded = compile_document(files, options.trusted, document, {});
   if (!loaded && loaded.error().what.find(text(msg::model_mj_inertia)) != std::string::npos) {
     // Inertias that no body can have are common in URDF files and matter to dynamics alone.
     warnings.push_back(text(msg::model_balanced_inertia, loaded.error().what));
     compiler.SetAttribute("balanceinertia", "true");
-    loaded = compile_document(files, options.trusted, document);
+    loaded = compile_document(files, options.trusted, document, {});
   }
+  if (!loaded) return loaded;
+  loaded =
+      without_constant_contacts(files, options.trusted, document, std::move(*loaded), warnings);
   if (!loaded) return loaded;
   loaded->warnings.insert(loaded->warnings.begin(), warnings.begin(), warnings.end());
   for (const XMLElement* joint : children(std::as_const(robot), "joint")) {

@@ -104,5 +104,6 @@ double Model::urdf_effort_limit(std::string_view joint) const noexcept {
 std::span<const std::string> Model::warnings() const noexcept { return impl_->loaded.warnings; }
 
 const mjModel_* Model::raw() const noexcept { return impl_->loaded.model.get(); }
+const std::string& Model::urdf_text() const noexcept { return impl_->loaded.urdf_text; }
 
 }  // namespace mjarm

@@ -34,7 +34,8 @@ class Model {
  public:
   /// Loads MJCF or URDF (told apart by the root element). Meshes are looked for beside the file,
   /// `package://` in `options.package_paths`, ROS_PACKAGE_PATH, AMENT_PREFIX_PATH, then upwards
-  /// from the file. A URDF keeps its fixed frames. May be called from many threads at once.
+  /// from the file. A URDF keeps its fixed frames, and every joint of it gets a motor of the same
+  /// name that is as strong as its effort limit. May be called from many threads at once.
   /// @return one line that names file and element. Never throws, never ends the process.
   [[nodiscard]] static Result<Model> load(const std::filesystem::path& file,
                                           const LoadOptions& options = {});
@@ -60,6 +61,8 @@ class Model {
 
   /// The compiled MuJoCo model, for the rooms that may include mujoco.h; never null.
   [[nodiscard]] const mjModel_* raw() const noexcept;
+  /// The URDF as MuJoCo was given it (meshes by absolute path, odd values mended); empty for MJCF.
+  [[nodiscard]] const std::string& urdf_text() const noexcept;
 
  private:
   struct Impl;

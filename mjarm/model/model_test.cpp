@@ -17,6 +17,7 @@ namespace mjarm {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 /// A binary STL of a tetrahedron with edges of length `size` [m].
@@ -203,16 +204,49 @@ TEST(Model, MeshesAreFoundBesideTheFileAndInPackages) {
   check(load("else/e.urdf", by_dir, {.allow_outside = true}), "meshdir");
 }
 
-TEST(Model, VisualMeshesOfOtherFormatsAreLeftOutWithAWarning) {
+TEST(Model, MeshesOfOtherFormatsAreLeftOutWithAWarning) {
   const support::TempFolder folder;
   folder.write("a.stl", tetrahedron(1));
   const auto model = Model::load(
-      folder.write("a.urdf", one_link(mesh("visual", "a.dae") + mesh("collision", "a.stl"))));
+      folder.write("a.urdf", one_link(mesh("visual", "a.dae") + mesh("visual", "b.DAE") +
+                                      mesh("visual", "a.dae") + mesh("collision", "a.stl"))));
   ASSERT_TRUE(model) << model.error().what;
   EXPECT_EQ(model->raw()->ngeom, 1);
   EXPECT_EQ(model->raw()->geom_group[0], 2);  // shown, in place of the look
-  ASSERT_FALSE(model->warnings().empty());
-  EXPECT_THAT(model->warnings()[0], HasSubstr("a.urdf:1: visual mesh \"a.dae\" is left out"));
+  ASSERT_EQ(model->warnings().size(), 1U);
+  EXPECT_THAT(model->warnings()[0], HasSubstr("a.urdf:1: visual meshes are left out"));
+  EXPECT_THAT(model->warnings()[0], EndsWith(": a.dae, b.DAE"));
+
+  const auto bare = Model::load(folder.write("b.urdf", one_link(mesh("collision", "c.dae"))));
+  ASSERT_TRUE(bare) << bare.error().what;
+  EXPECT_EQ(bare->raw()->ngeom, 0);
+  EXPECT_THAT(bare->warnings()[0], HasSubstr("b.urdf:1: collision meshes are left out"));
+}
+
+TEST(Model, UrdfJointsHaveMotorsAsStrongAsTheirEffort) {
+  const support::TempFolder folder;
+  const auto model = Model::load(folder.write(
+      "a.urdf",
+      R"(<robot name="r"><link name="base"/><link name="a"/><link name="b"/><link name="c"/>
+    <joint name="i" type="revolute"><parent link="base"/><child link="a"/>
+      <limit lower="-1" upper="1" effort="7" velocity="2"/></joint>
+    <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
+    <joint name="k" type="prismatic"><parent link="b"/><child link="c"/>
+      <limit lower="0" upper="1" effort="30" velocity="2"/></joint></robot>)"));
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_EQ(model->nu(), 2);
+  const Arm arm = find_arm(*model).value();
+  ASSERT_EQ(arm.dof(), 2);
+  const double efforts[] = {7, 30};
+  for (int i = 0; i < 2; ++i) {
+    const ArmJoint& joint = arm.joints[i];
+    ASSERT_TRUE(joint.actuator) << joint.name;
+    EXPECT_EQ(joint.actuator->name, joint.name);
+    EXPECT_EQ(joint.actuator->gain, 1);
+    EXPECT_EQ(joint.actuator->bias[1], 0);
+    EXPECT_EQ(joint.actuator->force_upper, efforts[i]);
+    EXPECT_EQ(joint.actuator->force_lower, -efforts[i]);
+  }
 }
 
 TEST(Model, UrdfWithoutMassStillMoves) {

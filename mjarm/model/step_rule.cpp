@@ -2,6 +2,8 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
+
 namespace mjarm {
 namespace {
 
@@ -32,6 +34,26 @@ bool damping_is_implicit(const mjModel& m) {
   }
 }
 
+DryFriction friction_of(const mjModel& m, int dof) {
+  constexpr int kOff = mjDSBL_FRICTIONLOSS | mjDSBL_CONSTRAINT;
+  DryFriction friction;
+  if ((m.opt.disableflags & kOff) != 0 || !(m.dof_frictionloss[dof] > 0)) return friction;
+  friction.most = m.dof_frictionloss[dof];
+  const mjtNum* reference = m.dof_solref + mjNREF * dof;
+  const mjtNum* impedance = m.dof_solimp + mjNIMP * dof;
+  const double most = std::clamp(impedance[1], mjMINIMP, mjMAXIMP);
+  if (reference[0] > 0) {
+    const bool safe = (m.opt.disableflags & mjDSBL_REFSAFE) == 0;
+    const double time = safe ? std::max(reference[0], 2 * m.opt.timestep) : reference[0];
+    friction.damping = 2 / std::max(mjMINVAL, most * time);
+  } else {
+    friction.damping = -reference[1] / std::max(mjMINVAL, most);
+  }
+  const double share = std::clamp(impedance[0], mjMINIMP, mjMAXIMP);
+  friction.mass = 1 / std::max(mjMINVAL, (1 - share) / share * m.dof_invweight0[dof]);
+  return friction;
+}
+
 }  // namespace
 
 StepRule step_rule(const Model& model) {
@@ -40,6 +62,7 @@ StepRule step_rule(const Model& model) {
   rule.integrator = integrator_of(m);
   rule.timestep = m.opt.timestep;
   rule.implicit_damping = damping_is_implicit(m);
+  for (int i = 0; i < m.nv; ++i) rule.friction.push_back(friction_of(m, i));
   rule.stiffness.assign(static_cast<std::size_t>(m.nv), 0.0);
   if ((m.opt.disableflags & mjDSBL_SPRING) == 0) {
     for (int i = 0; i < m.njnt; ++i) {

@@ -184,7 +184,9 @@ class Checker {
     const XMLElement* axis = joint.FirstChildElement("axis");
     const auto direction = numbers(axis, "xyz", 3);
     if (!direction) return fail(direction.error());
-    if (direction->size() == 3 &&
+    // A fixed joint needs no axis, and exporters write one of zeros.
+    const bool turns = std::string_view(type) != "fixed" && std::string_view(type) != "floating";
+    if (turns && direction->size() == 3 &&
         std::hypot((*direction)[0], (*direction)[1], (*direction)[2]) < 1e-9) {
       return fault(*axis, text(msg::model_zero_axis));
     }

@@ -1,5 +1,6 @@
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Eigenvalues>
 #include <map>
 
 #include "mjarm/core/messages/model.hpp"
@@ -37,6 +38,27 @@ void set_tiny_inertia(XMLElement& link) {
 }
 
 }  // namespace
+
+void mend_inertia(const fs::path& file, XMLElement& robot, std::vector<std::string>& warnings) {
+  std::string mended;
+  for (XMLElement* link : children(robot, "link")) {
+    XMLElement* inertial = link->FirstChildElement("inertial");
+    XMLElement* given = inertial != nullptr ? inertial->FirstChildElement("inertia") : nullptr;
+    if (given == nullptr || !has_inertia(*link)) continue;
+    const auto entry = [&](const char* name) { return given->DoubleAttribute(name); };
+    Eigen::Matrix3d I;
+    I << entry("ixx"), entry("ixy"), entry("ixz"),  //
+        entry("ixy"), entry("iyy"), entry("iyz"),   //
+        entry("ixz"), entry("iyz"), entry("izz");
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(I, Eigen::EigenvaluesOnly);
+    if (solver.eigenvalues()[0] > 0) continue;
+    for (const char* name : {"ixy", "ixz", "iyz"}) given->SetAttribute(name, "0");
+    mended += (mended.empty() ? "" : ", ") + std::string(link->Attribute("name"));
+  }
+  if (!mended.empty()) {
+    warnings.push_back(text(msg::model_mended_inertia, file.string(), mended));
+  }
+}
 
 void give_mass(const fs::path& file, XMLElement& robot, std::vector<std::string>& warnings) {
   std::map<std::string, XMLElement*> links;

@@ -45,6 +45,11 @@ namespace mjarm {
                                           tinyxml2::XMLElement& robot, const LoadOptions& options,
                                           std::vector<std::string>& warnings);
 
+/// Inertias with a principal moment that is not positive, which MuJoCo refuses, lose their products
+/// of inertia; told in `warnings`.
+void mend_inertia(const std::filesystem::path& file, tinyxml2::XMLElement& robot,
+                  std::vector<std::string>& warnings);
+
 /// A URDF that describes geometry alone has links without mass; MuJoCo needs mass on whatever a
 /// joint moves. Such links get a trace of it. Where a link has collision shapes but no inertia,
 /// MuJoCo takes them for solid water; both are told in `warnings`.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <optional>
-#include <set>
+#include <string>
+#include <vector>
 
 #include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
@@ -90,6 +91,10 @@ class MeshFinder {
       candidates.push_back(mesh_folder_ / inside);
       candidates.push_back(mesh_folder_ / inside.filename());
     }
+    // A package in a folder of another name, as archives of robots have them.
+    for (fs::path up = folder_; up != up.root_path(); up = up.parent_path()) {
+      candidates.push_back(up / inside);
+    }
     return first_file(candidates);
   }
 
@@ -110,13 +115,32 @@ XMLElement* mesh_of(XMLElement& shape) {
   return geometry != nullptr ? geometry->FirstChildElement("mesh") : nullptr;
 }
 
+/// Mesh files of one kind of shape that were left out.
+struct LeftOut {
+  int line = 0;  ///< of the first one
+  std::vector<std::string> names;
+
+  void add(int at, const std::string& name) {
+    if (names.empty()) line = at;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  /// One line for people, where there is anything to tell.
+  void warn(Msg words, const fs::path& file, std::vector<std::string>& warnings) const {
+    if (names.empty()) return;
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    warnings.push_back(text(words, file.string(), line, all));
+  }
+};
+
 }  // namespace
 
 Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadOptions& options,
                             std::vector<std::string>& warnings) {
   const MeshFinder finder(file, robot, options);
   const std::vector<fs::path> roots = urdf_roots(file, robot, options);
-  std::set<std::string> warned;
+  LeftOut unseen;
+  LeftOut untouchable;
   for (XMLElement* link : children(robot, "link")) {
     for (const char* kind : {"visual", "collision"}) {
       for (XMLElement* shape : children(*link, kind)) {
@@ -126,16 +150,12 @@ Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadO
         if (name == nullptr) {
           return fail(urdf_error(file, *mesh, text(msg::model_attribute_missing, "filename")));
         }
-        const bool readable = is_readable_format(name);
-        if (!readable && std::string_view(kind) == "visual") {
-          if (warned.insert(name).second) {
-            warnings.push_back(
-                text(msg::model_mesh_left_out, file.string(), mesh->GetLineNum(), name));
-          }
+        if (!is_readable_format(name)) {
+          const bool visual = std::string_view(kind) == "visual";
+          (visual ? unseen : untouchable).add(mesh->GetLineNum(), name);
           link->DeleteChild(shape);
           continue;
         }
-        if (!readable) return fail(urdf_error(file, *mesh, text(msg::model_mesh_format, name)));
         const std::optional<fs::path> path = finder.find(name);
         if (!path) return fail(urdf_error(file, *mesh, text(msg::model_no_mesh, name)));
         if (!options.allow_outside && !is_inside(*path, roots)) {
@@ -148,6 +168,8 @@ Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadO
       }
     }
   }
+  unseen.warn(msg::model_mesh_left_out, file, warnings);
+  untouchable.warn(msg::model_collision_left_out, file, warnings);
   return {};
 }
 

@@ -47,6 +47,10 @@ std::vector<fs::path> urdf_roots(const fs::path& file, const XMLElement& robot,
   const fs::path folder = fs::absolute(file).parent_path().lexically_normal();
   std::vector<fs::path> roots = options.package_paths;
   roots.push_back(folder);
+  // Packages keep descriptions in a folder of this name, beside that of the meshes.
+  if (folder.filename() == "urdf" || folder.filename() == "robots") {
+    roots.push_back(folder.parent_path());
+  }
   for (fs::path& path : folders_in("ROS_PACKAGE_PATH")) roots.push_back(std::move(path));
   for (const fs::path& path : folders_in("AMENT_PREFIX_PATH")) roots.push_back(path / "share");
   std::set<std::string> packages;

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "apps/mjarm/robot.hpp"
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
@@ -14,8 +15,7 @@ namespace mjarm::app {
 
 /// What the user chose for a demo.
 struct DemoOptions {
-  std::string robot = "ur5e";          ///< shipped name or path
-  std::string tip;                     ///< tool frame; empty = the robot's own
+  RobotOptions robot;                  ///< which arm, and which frame of it is the tool
   std::filesystem::path out;           ///< folder of all files written
   bool headless = false;               ///< no window even where there is a display
   bool meshes = false;                 ///< the robot's real meshes, which must be installed
@@ -45,5 +45,6 @@ Result<Report> run_movej(const DemoOptions& options);
 Result<Report> run_movel(const DemoOptions& options);
 Result<Report> run_ellipse(const DemoOptions& options);
 Result<Report> run_letters(const DemoOptions& options);
+Result<Report> run_square(const DemoOptions& options);
 
 }  // namespace mjarm::app

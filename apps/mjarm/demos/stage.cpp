@@ -9,13 +9,16 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
-#include "mjarm/model/find_arm.hpp"
 
 namespace mjarm::app {
 namespace {
 
+/// Fewer than six joints cannot turn the tool as they like.
+IkTask task_of(const Arm& arm) { return arm.dof() < 6 ? IkTask::position : IkTask::pose; }
+
 IkOptions without_contact(const Model& model, const Arm& arm) {
   IkOptions options;
+  options.task = task_of(arm);
   options.valid = ExactChecker(model, arm).predicate();
   return options;
 }
@@ -31,7 +34,7 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
       options_(options),
       model_(std::move(model)),
       arm_(std::move(arm)),
-      reach_(arm_),
+      reach_(arm_, {.task = task_of(arm_)}),
       ik_(arm_, without_contact(model_, arm_)),
       sim_(model_),
       recorder_(model_, arm_),
@@ -41,20 +44,25 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
                                            int dof) {
-  const auto model =
-      (options.meshes ? find_mesh_scene(options.robot) : find_model_file(options.robot))
-          .and_then([](const std::filesystem::path& file) { return Model::load(file); });
-  if (!model) return fail(model.error());
-  Result<Arm> arm = find_arm(*model, {.tip = options.tip});
-  if (!arm) return fail(std::move(arm.error()));
-  if (dof != 0 && arm->dof() != dof) {
-    return fail(Errc::usage, text(msg::demo_other_joints, demo, dof, arm->dof()));
+  RobotOptions chosen = options.robot;
+  if (options.meshes) {
+    const Result<std::filesystem::path> scene = find_mesh_scene(chosen.robot);
+    if (!scene) return fail(scene.error());
+    chosen.robot = scene->string();
   }
+  Result<Robot> robot = load_robot(chosen);
+  if (!robot) return fail(std::move(robot.error()));
+  for (const std::string& warning : robot->model.warnings()) log_info(warning);
+  const int joints = robot->arm.dof();
+  if (dof != 0 && joints != dof) {
+    return fail(Errc::usage, text(msg::demo_other_joints, demo, dof, joints));
+  }
+  if (task_of(robot->arm) == IkTask::position) log_info(text(msg::demo_position_only, joints));
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
-  Result<Show> show = Show::open(*model, "mjarm " + demo, options.headless);
+  Result<Show> show = Show::open(robot->model, "mjarm " + demo, options.headless);
   if (!show) return fail(std::move(show.error()));
   return std::unique_ptr<Stage>(
-      new Stage(demo, options, *model, std::move(*arm), std::move(*show)));
+      new Stage(demo, options, robot->model, std::move(robot->arm), std::move(*show)));
 }
 
 ControlMode Stage::control(ControlMode fallback) {

@@ -1,0 +1,112 @@
+#include <array>
+#include <string_view>
+
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/program/start_posture.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kSide = 0.1;  // [m]
+
+/// A plane of the world, by its two directions.
+struct Plane {
+  std::string_view name;
+  Eigen::Vector3d right;
+  Eigen::Vector3d up;
+};
+
+std::array<Plane, 3> planes() {
+  using Eigen::Vector3d;
+  return {{{"xy", Vector3d::UnitX(), Vector3d::UnitY()},
+           {"xz", Vector3d::UnitX(), Vector3d::UnitZ()},
+           {"yz", Vector3d::UnitY(), Vector3d::UnitZ()}}};
+}
+
+/// The corners of the square round `X_WT`, the first one again at the end.
+std::vector<Pose> square(const Pose& X_WT, const Plane& plane) {
+  constexpr double kHalf = kSide / 2;
+  std::vector<Pose> corners;
+  for (const auto& [right, up] : {std::pair(-kHalf, -kHalf), std::pair(kHalf, -kHalf),
+                                  std::pair(kHalf, kHalf), std::pair(-kHalf, kHalf)}) {
+    corners.push_back({X_WT.p + right * plane.right + up * plane.up, X_WT.R});
+  }
+  corners.push_back(corners.front());
+  return corners;
+}
+
+/// A square that can be drawn, and where it starts.
+struct Choice {
+  StartPosture start;
+  std::string_view plane;
+  std::vector<Pose> corners;
+  ToolMotion motion;
+};
+
+/// The first square that can be drawn: postures in their order, planes in theirs. Each posture that
+/// fails in every plane is told.
+Result<Choice, MotionFailure> choose(Stage& stage, std::span<const StartPosture> starts) {
+  MotionFailure nearest;
+  for (const StartPosture& start : starts) {
+    const Pose X_WT = fk(stage.arm(), view(start.q));
+    for (const Plane& plane : planes()) {
+      std::vector<Pose> corners = square(X_WT, plane);
+      const Result<Curve> curve = Curve::polyline(corners);
+      if (!curve) return fail(MotionFailure{{}, curve.error()});
+      auto motion = plan_tool_motion(stage.ik(), *curve, view(start.q));
+      if (motion) return Choice{start, plane.name, std::move(corners), std::move(*motion)};
+      log_debug(text(msg::demo_square_not, plane.name, describe(motion.error(), stage.arm())));
+      const bool farther = motion.error().path && (!nearest.path || motion.error().path->fraction >
+                                                                        nearest.path->fraction);
+      if (farther || motion.error().timing) nearest = std::move(motion.error());
+    }
+  }
+  return fail(std::move(nearest));
+}
+
+void tell(const Stage& stage, const Choice& choice) {
+  const Pose X_WT = fk(stage.arm(), view(choice.start.q));
+  std::string q;
+  append_numbers(q, view(choice.start.q));
+  log_info(text(choice.start.is_home ? msg::demo_start_home : msg::demo_start_picked, q,
+                stage.arm().tip, X_WT.p.x(), X_WT.p.y(), X_WT.p.z()));
+  log_info(text(msg::demo_square_plane, choice.plane));
+}
+
+}  // namespace
+
+Result<Report> run_square(const DemoOptions& options) {
+  Result<std::unique_ptr<Stage>> opened = Stage::open("square", options);
+  if (!opened) return fail(std::move(opened.error()));
+  Stage& stage = **opened;
+  Rng rng(1);
+  const std::vector<StartPosture> starts =
+      start_postures(stage.arm(), stage.ik().options().valid, rng);
+  if (starts.empty()) return stage.refuse("collision", text(msg::demo_no_start));
+  const Result<Choice, MotionFailure> choice = choose(stage, starts);
+  if (!choice) return stage.refuse(choice.error());
+  tell(stage, *choice);
+
+  const ToolMotion& motion = choice->motion;
+  log_info(text(msg::demo_plan, motion.curve.length(), motion.trajectory.duration(),
+                motion.path.max_step()));
+  stage.show().add_line(choice->corners);
+  stage.start_at(view(choice->start.q));
+  Report report;
+  report.max_joint_step = motion.path.max_step();
+  const ControlMode mode = stage.control(ControlMode::computed_torque);
+  if (auto done = stage.approach(view(motion.path.q.front()), mode); !done) {
+    return fail(std::move(done.error()));
+  }
+  if (auto done = stage.run(motion.trajectory, mode, 0.3, &motion.curve); !done) {
+    return fail(std::move(done.error()));
+  }
+  return stage.finish(std::move(report));
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,142 @@
+#include <mujoco/mujoco.h>
+
+#include <utility>
+
+#include "mjarm/core/messages/model.hpp"
+#include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/export_internal.hpp"
+#include "mjarm/model/load_internal.hpp"
+#include "mjarm/model/mujoco_guard.hpp"
+
+namespace mjarm {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kErrorSize = 1024;
+
+/// Renames the files of a description that will stand in another folder.
+class FileNames {
+ public:
+  FileNames(mjSpec* spec, const fs::path& source, const fs::path& folder)
+      : spec_(spec), source_(fs::absolute(source).parent_path()), folder_(folder) {}
+
+  /// @return true where a file stays outside the folder.
+  bool rename() {
+    const fs::path meshes = directory(spec_->compiler.meshdir);
+    const fs::path textures = directory(spec_->compiler.texturedir);
+    for_each(mjOBJ_MESH, [&](mjsElement* e) { move(mjs_asMesh(e)->file, meshes); });
+    for_each(mjOBJ_HFIELD, [&](mjsElement* e) { move(mjs_asHField(e)->file, meshes); });
+    for_each(mjOBJ_SKIN, [&](mjsElement* e) { move(mjs_asSkin(e)->file, meshes); });
+    for_each(mjOBJ_TEXTURE, [&](mjsElement* e) {
+      mjsTexture* texture = mjs_asTexture(e);
+      move(texture->file, textures);
+      for (int side = 0; side < 6; ++side) {
+        const std::string name = mjs_getInStringVec(texture->cubefiles, side);
+        if (!name.empty()) {
+          mjs_setInStringVec(texture->cubefiles, side, moved(name, textures).c_str());
+        }
+      }
+    });
+    mjs_setString(spec_->compiler.meshdir, "");
+    mjs_setString(spec_->compiler.texturedir, "");
+    return outside_;
+  }
+
+ private:
+  template <class Work>
+  void for_each(mjtObj type, const Work& work) {
+    for (mjsElement* e = mjs_firstElement(spec_, type); e; e = mjs_nextElement(spec_, e)) work(e);
+  }
+  [[nodiscard]] fs::path directory(const mjString* name) const {
+    return source_ / mjs_getString(name);
+  }
+  std::string moved(const std::string& name, const fs::path& directory) {
+    const fs::path path = spec_->strippath ? fs::path(name).filename() : fs::path(name);
+    const std::string out = name_from(folder_, directory / path);
+    outside_ = outside_ || fs::path(out).is_absolute();
+    return out;
+  }
+  void move(mjString* file, const fs::path& directory) {
+    const std::string name = mjs_getString(file);
+    if (!name.empty()) mjs_setString(file, moved(name, directory).c_str());
+  }
+
+  mjSpec* spec_;
+  fs::path source_;
+  fs::path folder_;
+  bool outside_ = false;
+};
+
+/// MuJoCo's own text of a description; empty, with `error` filled, where it has none.
+std::string saved(const mjSpec* spec, std::string& error) {
+  std::string xml(std::size_t{1} << 20, '\0');
+  char words[kErrorSize] = "";
+  int left = 0;
+  const auto save = [&] {
+    left = mj_saveXMLString(spec, xml.data(), static_cast<int>(xml.size()), words, kErrorSize);
+  };
+  MujocoOutcome outcome = call_mujoco(save);
+  if (!outcome.failed && left > 0) {  // the size that is needed
+    xml.assign(static_cast<std::size_t>(left) + 1, '\0');
+    outcome = call_mujoco(save);
+  }
+  if (outcome.failed || left != 0) {
+    error = outcome.failed ? outcome.error : words;
+    return "";
+  }
+  xml.resize(xml.find('\0'));
+  return xml;
+}
+
+/// The description that `model` was compiled from, read once more; null, with `error` filled, where
+/// that is not possible any more.
+MjSpecPtr description_of(const Model& model, std::string& error) {
+  char words[kErrorSize] = "";
+  mjSpec* parsed = nullptr;
+  const std::string& urdf = model.urdf_text();
+  const MujocoOutcome outcome = call_mujoco([&] {
+    parsed = urdf.empty() ? mj_parseXML(model.file().c_str(), nullptr, words, kErrorSize)
+                          : mj_parseXMLString(urdf.c_str(), nullptr, words, kErrorSize);
+  });
+  MjSpecPtr spec(parsed);
+  if (outcome.failed || spec == nullptr) {
+    error = outcome.failed ? outcome.error : words;
+    return nullptr;
+  }
+  if (!urdf.empty()) {
+    BodyPairs apart;
+    const mjModel* m = model.raw();
+    for (int e = 0; e < m->nexclude; ++e) {  // ids of both bodies in one number
+      const int pair = m->exclude_signature[e];
+      apart.emplace_back(object_name(m, mjOBJ_BODY, pair >> 16),
+                         object_name(m, mjOBJ_BODY, pair & 0xffff));
+    }
+    finish_urdf(spec.get(), apart);
+  }
+  return spec;
+}
+
+}  // namespace
+
+Result<Exported> export_mjcf(const Model& model, const fs::path& folder) {
+  const std::string file = model.file().string();
+  std::string error;
+  const MjSpecPtr spec = description_of(model, error);
+  if (spec == nullptr) return fail(Errc::impossible, text(msg::model_not_exported, file, error));
+  Exported exported;
+  if (FileNames(spec.get(), model.file(), folder).rename()) {
+    exported.notes.push_back(text(msg::model_files_stay));
+  }
+  spec->strippath = 0;
+  // MuJoCo rounds what it compiled to six digits, but writes what was written to the last one
+  // (Programming, Model Editing, "Model Encoding & Saving").
+  spec->compiler.savecompiled = 0;
+  spec->compiler.savecanonical = 1;
+  exported.content = saved(spec.get(), error);
+  if (exported.content.empty()) {
+    return fail(Errc::impossible, text(msg::model_not_exported, file, error));
+  }
+  return exported;
+}
+
+}  // namespace mjarm

@@ -1,0 +1,112 @@
+#include "mjarm/program/start_posture.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm {
+namespace {
+
+/// [m] the tool of a good posture is this high above the plane z = 0 of the world.
+constexpr double kAboveFloor = 0.1;
+/// More dexterity than this is of no use.
+constexpr double kEnough = 0.25;
+/// [rad or m] two postures are different where a joint differs by more.
+constexpr double kDifferent = 0.3;
+
+/// The values from which a joint is drawn: its limits, at most half a turn (hinge) or 0.5 m (slide)
+/// to either side of the value nearest to 0, without the outer tenth.
+struct Range {
+  double lower;
+  double upper;
+  [[nodiscard]] double middle() const { return 0.5 * (lower + upper); }
+};
+
+Range draw_range(const Arm& arm, int i) {
+  const double most = arm.joints[i].type == JointType::hinge ? 0.75 * std::numbers::pi : 0.5;
+  const double lower = arm.limits.lower[i];
+  const double upper = arm.limits.upper[i];
+  const double centre = std::clamp(0.0, lower, upper);
+  Range range{std::max(lower, centre - most), std::min(upper, centre + most)};
+  const double inset = 0.1 * (range.upper - range.lower);
+  return {range.lower + inset, range.upper - inset};
+}
+
+double limit_room(const Arm& arm, const JointVec& q) {
+  const double room =
+      std::min((q - arm.limits.lower).minCoeff(), (arm.limits.upper - q).minCoeff());
+  return std::min(room, std::numbers::pi);
+}
+
+/// Length of the stretched arm [m].
+double reach_of(const Arm& arm) {
+  double length = arm.X_JT.p.norm();
+  for (int i = 1; i < arm.dof(); ++i) length += arm.joints[i].X_PJ.p.norm();
+  return std::max(length, 1e-3);
+}
+
+/// How much a posture is wanted: dexterous, not far from the middle of the joints' ranges, above
+/// the floor.
+double merit(const Arm& arm, const StartPosture& posture) {
+  double twist = 0;
+  for (int i = 0; i < arm.dof(); ++i) {
+    const Range range = draw_range(arm, i);
+    twist += std::abs(posture.q[i] - range.middle()) / std::max(range.upper - range.lower, 1e-9) /
+             arm.dof();
+  }
+  const double height = fk(arm, view(posture.q)).p.z();
+  return std::min(posture.dexterity, kEnough) / kEnough - twist - (height < kAboveFloor ? 1 : 0);
+}
+
+}  // namespace
+
+double dexterity(const Arm& arm, std::span<const double> q) {
+  Jacobian J = fk_jacobian(arm, q).J_W;
+  J.topRows<3>() /= reach_of(arm);
+  if (arm.dof() >= 6) return smallest_singular_value(J);
+  const Eigen::Matrix3d gram = J.topRows<3>() * J.topRows<3>().transpose();
+  return std::sqrt(Eigen::JacobiSVD<Eigen::Matrix3d>(gram).singularValues()[2]);
+}
+
+std::vector<StartPosture> start_postures(
+    const Arm& arm, const std::function<bool(std::span<const double> q)>& valid, Rng& rng,
+    const StartOptions& options) {
+  const auto posture_at = [&](const JointVec& q) {
+    return StartPosture{q, false, dexterity(arm, view(q)), limit_room(arm, q)};
+  };
+  const auto accepted = [&](const JointVec& q) { return !valid || valid(view(q)); };
+  std::vector<StartPosture> postures;
+  StartPosture home = posture_at(arm.home);
+  home.is_home = true;
+  if (home.dexterity >= options.least_dexterity && home.limit_room >= options.least_limit_room &&
+      accepted(home.q)) {
+    postures.push_back(home);
+  }
+
+  std::vector<std::pair<double, StartPosture>> drawn;
+  for (int n = 0; n < options.draws; ++n) {
+    JointVec q(arm.dof());
+    for (int i = 0; i < arm.dof(); ++i) {
+      const Range range = draw_range(arm, i);
+      q[i] = rng.uniform(range.lower, range.upper);
+    }
+    const StartPosture posture = posture_at(q);
+    drawn.emplace_back(-merit(arm, posture), posture);
+  }
+  std::stable_sort(drawn.begin(), drawn.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  const std::size_t most = postures.size() + static_cast<std::size_t>(options.postures);
+  for (const auto& [negative_merit, posture] : drawn) {
+    if (postures.size() >= most) break;
+    const bool known = std::any_of(postures.begin(), postures.end(), [&](const StartPosture& p) {
+      return (p.q - posture.q).cwiseAbs().maxCoeff() < kDifferent;
+    });
+    if (!known && accepted(posture.q)) postures.push_back(posture);
+  }
+  return postures;
+}
+
+}  // namespace mjarm
