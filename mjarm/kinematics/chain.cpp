@@ -43,17 +43,23 @@ Chain::Chain(const Arm& arm) {
 
 Pose Chain::fk(const double* q) const noexcept {
   Pose X;
+  Eigen::Matrix3d& R = X.R;
   for (int i = 0; i < dof; ++i) {
     const Pose& step = X_PJ[static_cast<std::size_t>(i)];
-    X.p += X.R * step.p;
-    X.R = X.R * step.R;
-    if (slide[static_cast<std::size_t>(i)]) {
-      X.p += q[i] * X.R.col(2);
-    } else {
-      const auto [s, c] = detail::sin_cos(q[i]);
-      const Eigen::Vector3d x = X.R.col(0);
-      X.R.col(0) = c * x + s * X.R.col(1);
-      X.R.col(1) = c * X.R.col(1) - s * x;
+    double turned[3][3];
+    for (int k = 0; k < 3; ++k) {
+      X.p[k] += R(k, 0) * step.p[0] + R(k, 1) * step.p[1] + R(k, 2) * step.p[2];
+      for (int j = 0; j < 3; ++j) {
+        turned[j][k] = R(k, 0) * step.R(0, j) + R(k, 1) * step.R(1, j) + R(k, 2) * step.R(2, j);
+      }
+    }
+    const bool slides = slide[static_cast<std::size_t>(i)];
+    const auto [s, c] = detail::sin_cos(slides ? 0 : q[i]);
+    for (int k = 0; k < 3; ++k) {
+      R(k, 0) = c * turned[0][k] + s * turned[1][k];
+      R(k, 1) = c * turned[1][k] - s * turned[0][k];
+      R(k, 2) = turned[2][k];
+      if (slides) X.p[k] += q[i] * turned[2][k];
     }
   }
   return X * X_JT;

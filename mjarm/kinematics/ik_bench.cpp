@@ -7,6 +7,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
+#include "mjarm/kinematics/track.hpp"
 
 namespace mjarm {
 namespace {
@@ -62,6 +63,40 @@ BENCHMARK(ik_random_seed)->ArgsProduct({{6, 7}, {1, 0}});
 
 void ik_near_seed(benchmark::State& state) { run(state, 0.02); }
 BENCHMARK(ik_near_seed)->ArgsProduct({{6, 7}, {1, 0}});
+
+void ik_tracked_path(benchmark::State& state) {
+  const Arm arm = testing::ur5e();
+  IkOptions options;
+  options.max_step = 0.1;
+  const IkSolver ik(arm, options);
+  JointVec q = joint_vec(std::vector<double>{-1.57, -1.34, 2.0, -1.3, 1.55, 0});
+  const Pose start = fk(arm, view(q));
+  double phase = 0;
+  for (auto _ : state) {
+    phase += 1e-3;
+    Pose X = start;
+    X.p += Eigen::Vector3d(0.1 * std::cos(phase) - 0.1, 0.1 * std::sin(phase), 0);
+    const auto answer = ik.solve(X, view(q));
+    if (!answer) {
+      state.SkipWithError("lost the path");
+      break;
+    }
+    q = answer->q;
+  }
+}
+BENCHMARK(ik_tracked_path);
+
+void ik_servo_step(benchmark::State& state) {
+  const Arm arm = arm_of(state);
+  const Tracker tracker(arm);
+  const std::vector<Problem> all = problems(arm, 0.02);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(tracker.step(all[i].X_WT, view(all[i].seed)));
+    i = (i + 1) % all.size();
+  }
+}
+BENCHMARK(ik_servo_step)->Arg(6)->Arg(7);
 
 void ik_out_of_reach(benchmark::State& state) {
   const Arm arm = arm_of(state);

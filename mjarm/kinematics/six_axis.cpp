@@ -18,6 +18,13 @@ using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
 
+/// R v, written out so that the compiler keeps it in line.
+Vector3d times(const Eigen::Matrix3d& R, const Vector3d& v) noexcept {
+  return {R(0, 0) * v.x() + R(0, 1) * v.y() + R(0, 2) * v.z(),
+          R(1, 0) * v.x() + R(1, 1) * v.y() + R(1, 2) * v.z(),
+          R(2, 0) * v.x() + R(2, 1) * v.y() + R(2, 2) * v.z()};
+}
+
 /// `v` turned by `a` about z.
 Vector3d turn_z(const SinCos& a, const Vector3d& v) noexcept {
   return {a.c * v.x() - a.s * v.y(), a.s * v.x() + a.c * v.y(), v.z()};
@@ -52,9 +59,10 @@ class SixAxis::Walk {
         slack_(query.pos_tol + form.slack_),
         free_turn_(std::max(query.rot_tol, 1e-7)) {
     const Pose& X_WT = query.X_WT;
-    p_BC_ = form.X_BW_ * (X_WT * form.p_TC_);
-    e_B_ = form.X_BW_.R * (X_WT.R * form.h6_T_);
-    f_B_ = form.X_BW_.R * (X_WT.R * form.side_T_);
+    const Eigen::Matrix3d& R_BW = form.X_BW_.R;
+    p_BC_ = times(R_BW, times(X_WT.R, form.p_TC_) + X_WT.p) + form.X_BW_.p;
+    e_B_ = times(R_BW, times(X_WT.R, form.h6_T_));
+    f_B_ = times(R_BW, times(X_WT.R, form.side_T_));
   }
 
   void run() noexcept {
@@ -96,9 +104,9 @@ class SixAxis::Walk {
     elbow_miss_ = wrist_miss_ = {};
     const SinCos back{-q1.s, q1.c};
     const Eigen::Matrix3d& R_SB = form_.shoulder_.R_SB;
-    e_S_ = R_SB * turn_z(back, e_B_);
-    f_S_ = R_SB * turn_z(back, f_B_);
-    const Vector3d p_SC = R_SB * turn_z(back, p_BC_);
+    e_S_ = times(R_SB, turn_z(back, e_B_));
+    f_S_ = times(R_SB, turn_z(back, f_B_));
+    const Vector3d p_SC = times(R_SB, turn_z(back, p_BC_));
     end_ = p_SC.head<2>() - form_.elbow_.p_shoulder;
     if (form_.parallel_) {
       wrist(e_S_, f_S_);
@@ -120,10 +128,11 @@ class SixAxis::Walk {
     }
     const double w = std::sqrt(std::max(w2, 0.0));
     const double scale = 1 / std::sqrt(level * level + w * w);
+    const double turned = arc_tangent(w, level);
     const bool is_free = across2 < free_turn_ * free_turn_;
     for (const double k : {w, -w}) {
       const SinCos t{k * scale, level * scale};
-      q_[4] = arc_tangent(t.s, t.c) + step.phase;
+      q_[4] = step.phase + (k < 0 ? -turned : turned);
       const Vector3d m = turn_about(step.h5, t, step.h6);
       const Vector3d u = turn_about(step.h5, t, step.side);
       const Vector3d v = turn_about(step.h5, t, step.side2);
@@ -229,7 +238,7 @@ class SixAxis::Walk {
     }
     const SinCos q23 = sin_cos(q_[1] + q_[2]);
     const SinCos back{-q23.s, q23.c};
-    wrist(form_.R_FS_ * turn_z(back, e_S_), form_.R_FS_ * turn_z(back, f_S_));
+    wrist(times(form_.R_FS_, turn_z(back, e_S_)), times(form_.R_FS_, turn_z(back, f_S_)));
   }
 
   double missed() const noexcept {
