@@ -21,7 +21,7 @@ fi
 cmake -S "$source_dir/tests/install_consumer" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$prefix"
 cmake --build "$work/build"
-place=$("$work/build/consumer" "$prefix/share/mjarm/models/universal_robots_ur5e/scene.xml")
+place=$(MJARM_MODELS="$prefix/share/mjarm/models" "$work/build/consumer" ur5e)
 [[ $place == "-0.134 0.492 0.488" ]] || { echo "consumer: wrong place of the tool: $place" && exit 1; }
 
 # The installed program finds the installed library and models, from anywhere.

@@ -258,7 +258,7 @@ TEST(Models, HandHoldsACube) {
                       "\"/><worldbody><body name=\"cube\" pos=\"0.5545 0 0.5195\"><freejoint/>"
                       "<geom name=\"cube\" type=\"box\" size=\".02 .02 .02\" mass=\".1\"/>"
                       "</body></worldbody></mujoco>");
-  const Model model = load(file);
+  const Model model = *Model::load(file, {.allow_outside = true});
   const int cube = mj_name2id(model.raw(), mjOBJ_BODY, "cube");
   const int tip = mj_name2id(model.raw(), mjOBJ_SITE, "hand_tcp");
   for (const double ctrl : {0.0, 255.0}) {

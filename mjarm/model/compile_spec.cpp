@@ -85,15 +85,19 @@ std::vector<KeySizes> key_sizes(mjSpec* spec) {
   return keys;
 }
 
+/// Too many values are an error. Too few are what a scene has that adds bodies to a robot with
+/// keyframes: MuJoCo takes the others from the initial state, and a line in `warnings` says so.
 Result<void> check_keys(const std::string& file, const std::vector<KeySizes>& keys,
-                        const mjModel* m) {
+                        const mjModel* m, std::vector<std::string>& warnings) {
   constexpr std::array<const char*, 3> kFields = {"qpos", "qvel", "ctrl"};
   const std::array<mjtSize, 3> needed = {m->nq, m->nv, m->nu};
   for (const KeySizes& key : keys) {
     for (std::size_t i = 0; i < kFields.size(); ++i) {
       if (key.sizes[i] == 0 || key.sizes[i] == needed[i]) continue;
-      return fail(Errc::bad_input,
-                  text(msg::guard_keyframe, file, key.name, kFields[i], key.sizes[i], needed[i]));
+      std::string line =
+          text(msg::guard_keyframe, file, key.name, kFields[i], key.sizes[i], needed[i]);
+      if (key.sizes[i] > needed[i]) return fail(Errc::bad_input, std::move(line));
+      warnings.push_back(std::move(line));
     }
   }
   return {};
@@ -131,7 +135,9 @@ class Compiler {
     if (auto done = compile(); !done) return fail(done.error());
     const mjModel* model = loaded_.model.get();
     if (auto done = check_numbers(source_.name(), model); !done) return fail(done.error());
-    if (auto done = check_keys(source_.name(), keys, model); !done) return fail(done.error());
+    if (auto done = check_keys(source_.name(), keys, model, loaded_.warnings); !done) {
+      return fail(done.error());
+    }
     enter(Stage::stepping);
     std::string fault;
     if (auto done = check_step(source_.name(), model, fault); !done) return fail(done.error());

@@ -147,6 +147,20 @@ TEST(Model, MimicJointsAreCoupled) {
   EXPECT_DOUBLE_EQ(model->raw()->eq_data[1], 2);
 }
 
+TEST(Model, ShortKeyframesAreFilledFromTheStartWithAWarning) {
+  const support::TempFolder folder;
+  const auto file = folder.write("a.xml", R"(<mujoco><worldbody>
+      <body><joint/><geom size="1"/></body><body pos="5 0 0"><freejoint/><geom size="1"/></body>
+    </worldbody><keyframe><key name="home" qpos="0.5"/></keyframe></mujoco>)");
+  const Result<Model> model = Model::load(file);
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_EQ(model->raw()->key_qpos[0], 0.5);
+  EXPECT_EQ(model->raw()->key_qpos[1], 5);
+  ASSERT_EQ(model->warnings().size(), 1U);
+  EXPECT_NE(model->warnings()[0].find("\"home\": qpos has 1 values"), std::string::npos)
+      << model->warnings()[0];
+}
+
 TEST(Model, MeshesAreFoundBesideTheFileAndInPackages) {
   const support::TempFolder folder;
   folder.write("ws/robot_description/meshes/visual/link.stl", tetrahedron(1));
@@ -169,9 +183,10 @@ TEST(Model, MeshesAreFoundBesideTheFileAndInPackages) {
     EXPECT_GT(m->geom_rbound[1], 1.5 * m->geom_rbound[0]) << how;
   };
   check(load("ws/robot_description/urdf/b.urdf", in_package), "walking up");
-  EXPECT_FALSE(load("ws/robot_description/urdf/a.urdf", relative));  // above the file's folder
+  EXPECT_FALSE(load("ws/robot_description/own/a.urdf", relative));  // above the file's folder
+  check(load("ws/robot_description/urdf/a.urdf", relative), "relative, from the folder urdf");
   folder.write("ws/robot_description/package.xml", "<package/>");
-  check(load("ws/robot_description/urdf/a.urdf", relative), "relative, in its package");
+  check(load("ws/robot_description/own/a.urdf", relative), "relative, in its package");
   check(load("ws/other_description/urdf/a.urdf", in_package), "a package beside");
   check(load("else/c.urdf", in_package, {.package_paths = {folder.path() / "ws"}}),
         "option, folder of packages");

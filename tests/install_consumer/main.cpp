@@ -7,7 +7,8 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const auto model = mjarm::Model::load(argv[1]);
+  const auto model = mjarm::find_model_file(argv[1]).and_then(
+      [](const auto& file) { return mjarm::Model::load(file); });
   if (!model) return std::fprintf(stderr, "%s\n", model.error().what.c_str()), 1;
   const auto arm = mjarm::find_arm(*model);
   if (!arm) return std::fprintf(stderr, "%s\n", arm.error().what.c_str()), 1;
