@@ -1,11 +1,10 @@
 #include "apps/mjarm/batch.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <optional>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/core/threads.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -63,24 +63,14 @@ Result<void> read_block(LineReader& reader, std::size_t count, std::vector<Line>
   return {};
 }
 
-/// Every thread takes each n-th line.
 void answer_block(const AnswerLine& answer, int threads, std::vector<Line>& lines) {
-  const std::size_t step = std::clamp<std::size_t>(lines.size(), 1, std::max(threads, 1));
-  const auto work = [&](std::size_t first) {
-    for (std::size_t i = first; i < lines.size(); i += step) {
+  std::atomic<std::size_t> next = 0;
+  run_in_threads(std::min(threads, static_cast<int>(lines.size())), [&](int) {
+    for (std::size_t i = next++; i < lines.size(); i = next++) {
       lines[i].done = answer(lines[i].request, lines[i].answer);
       lines[i].answer += '\n';
     }
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t first = 1; first < step; ++first) {
-    try {
-      others.emplace_back(work, first);
-    } catch (const std::system_error&) {  // no more threads to be had
-      work(first);
-    }
-  }
-  work(0);
+  });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/orientation.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
@@ -53,26 +54,10 @@ Result<Request> read_request(std::string_view line, const Arm& arm) {
   return Request{*X_WT, std::move(*q_seed)};
 }
 
-Result<Eigen::Matrix3d> read_rotation(const Options& options) {
-  if (options.euler.empty() == options.quat.empty()) {
-    return fail(Errc::usage, text(msg::app_need_one_of, "--euler", "--quat"));
-  }
-  if (!options.euler.empty()) {
-    const auto euler = parse_list("--euler", options.euler, Quantity::angle, 3);
-    if (!euler) return fail(euler.error());
-    return from_euler({(*euler)[0], (*euler)[1], (*euler)[2]});
-  }
-  const auto quat = parse_list("--quat", options.quat, Quantity::number, 4);
-  if (!quat) return fail(quat.error());
-  Result<Eigen::Matrix3d> R = rotation_of_quat(*quat);
-  if (!R) return fail(in_option("--quat", R.error()));
-  return R;
-}
-
 Result<Request> read_request(const Options& options, const Arm& arm) {
   const auto pos = parse_list("--pos", options.pos, Quantity::length, 3);
   if (!pos) return fail(pos.error());
-  const Result<Eigen::Matrix3d> R = read_rotation(options);
+  const Result<Eigen::Matrix3d> R = parse_rotation(options.euler, options.quat);
   if (!R) return fail(R.error());
   Request request{{{(*pos)[0], (*pos)[1], (*pos)[2]}, *R}, {arm.home.begin(), arm.home.end()}};
   if (options.seed_q.empty()) return request;

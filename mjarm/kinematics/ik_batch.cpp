@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <system_error>
 #include <thread>
+
+#include "mjarm/core/threads.hpp"
 
 namespace mjarm {
 namespace {
@@ -60,18 +61,12 @@ std::vector<Result<IkSolution, IkFailure>> solve_batch(const IkSolver& ik,
   const unsigned wish = options.threads > 0 ? static_cast<unsigned>(options.threads)
                                             : std::thread::hardware_concurrency();
   const std::size_t most = (X_WT.size() + kChunk - 1) / kChunk;
-  std::vector<std::jthread> others;
-  // With fewer threads than wished for, those there are do the work.
-  try {
-    while (others.size() + 1 < std::min<std::size_t>(wish, most)) {
-      others.emplace_back([&batch, own = ik] { batch.work(own, [](std::size_t) {}); });
-    }
-  } catch (const std::system_error&) {
-  }
-  batch.work(ik, [&](std::size_t done) {
-    if (options.progress) options.progress(done);
+  run_in_threads(static_cast<int>(std::min<std::size_t>(wish, most)), [&](int thread) {
+    const IkSolver own = ik;
+    batch.work(own, [&](std::size_t done) {
+      if (thread == 0 && options.progress) options.progress(done);
+    });
   });
-  others.clear();
   if (options.progress && !X_WT.empty()) options.progress(X_WT.size());
   return batch.take();
 }

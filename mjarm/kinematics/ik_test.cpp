@@ -7,11 +7,13 @@
 
 #include "mjarm/core/messages.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/count_solved_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
 namespace {
 
+using testing::count_solved;
 using testing::panda;
 using testing::random_arm;
 using testing::random_q;
@@ -26,23 +28,6 @@ constexpr int kRounds = 2000;
 bool same_bits(const JointVec& a, const JointVec& b) {
   return a.size() == b.size() &&
          std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
-}
-
-/// Solves for fk of random configurations from random seeds and checks every answer on its own;
-/// returns how many had one.
-int count_solved(const Arm& arm, const IkSolver& ik, int rounds, Rng& rng) {
-  int solved = 0;
-  for (int i = 0; i < rounds; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
-    const auto answer = ik.solve(X_goal, view(random_q(arm, rng)));
-    if (!answer) continue;
-    ++solved;
-    const Pose X = fk(arm, view(answer->q));
-    EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
-    EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
-    EXPECT_TRUE(within_limits(arm, view(answer->q)));
-  }
-  return solved;
 }
 
 TEST(Ik, SolvesRandomPosesOfTheUr5e) {

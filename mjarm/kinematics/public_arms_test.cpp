@@ -5,11 +5,9 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 
 #include "mjarm/core/rng.hpp"
-#include "mjarm/core/rotation.hpp"
-#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/count_solved_test.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/find_arm.hpp"
 
@@ -24,34 +22,6 @@ struct PublicArm {
 
 class PublicArms : public ::testing::TestWithParam<PublicArm> {};
 
-JointVec random_q(const Arm& arm, Rng& rng) {
-  JointVec q(arm.dof());
-  for (int i = 0; i < arm.dof(); ++i) {
-    q[i] = rng.uniform(arm.limits.lower[i], arm.limits.upper[i]);
-  }
-  return q;
-}
-
-/// How many of `count` poses are solved; every miss is listed with its reason.
-int count_solved(const Arm& arm, const IkSolver& ik, int count) {
-  Rng rng(61);
-  int solved = 0;
-  for (int i = 0; i < count; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
-    const auto answer = ik.solve(X_goal, view(random_q(arm, rng)));
-    if (!answer) {
-      std::cout << arm.name << ", pose " << i << ": " << describe(answer.error(), arm) << '\n';
-      continue;
-    }
-    ++solved;
-    const Pose X = fk(arm, view(answer->q));
-    EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
-    EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
-    EXPECT_TRUE(within_limits(arm, view(answer->q)));
-  }
-  return solved;
-}
-
 TEST_P(PublicArms, PosesAreFoundAgain) {
   const char* data = std::getenv("MJARM_ARMS_DATA");
   if (data == nullptr || *data == '\0') {
@@ -64,8 +34,11 @@ TEST_P(PublicArms, PosesAreFoundAgain) {
   ASSERT_TRUE(model.has_value()) << model.error().what;
   const auto arm = find_arm(*model, {.tip = GetParam().tip});
   ASSERT_TRUE(arm.has_value()) << arm.error().what;
-  EXPECT_GE(count_solved(*arm, IkSolver(*arm), 1000), 999);
-  EXPECT_GE(count_solved(*arm, IkSolver(*arm, {.closed_form = false}), 1000), 999);
+  for (const bool closed_form : {true, false}) {
+    Rng rng(61);
+    const IkSolver ik(*arm, {.closed_form = closed_form});
+    EXPECT_GE(testing::count_solved(*arm, ik, 1000, rng), 999) << closed_form;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

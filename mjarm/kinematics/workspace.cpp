@@ -4,9 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "mjarm/core/messages/kinematics.hpp"
+#include "mjarm/core/threads.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 
@@ -87,7 +87,7 @@ bool fill(const Arm& arm, const WorkspaceOptions& options, WorkspaceMap& map) {
   const IkSolver ik(arm, {.task = options.R_WT ? IkTask::pose : IkTask::position});
   std::atomic<int> next_row = 0;
   std::atomic<bool> stopped = false;
-  const auto work = [&] {
+  run_in_threads(std::min(options.threads, map.rows), [&](int) {
     const IkSolver mine = ik;
     for (int row = next_row++; row < map.rows && !stopped; row = next_row++) {
       fill_row(mine, options, row, map);
@@ -95,11 +95,7 @@ bool fill(const Arm& arm, const WorkspaceOptions& options, WorkspaceMap& map) {
         stopped = true;
       }
     }
-  };
-  std::vector<std::jthread> helpers;
-  for (int i = 1; i < std::min(options.threads, map.rows); ++i) helpers.emplace_back(work);
-  work();
-  helpers.clear();
+  });
   return !stopped;
 }
 

@@ -13,6 +13,7 @@
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/check.hpp"
 #include "mjarm/model/complaint_internal.hpp"
+#include "mjarm/model/numbers_internal.hpp"
 
 namespace mjarm {
 
@@ -132,8 +133,5 @@ void check_home(const CheckContext& context);
 /// `principal` moments of inertia: positive, and no one above the sum of the others.
 void check_moments(const CheckContext& context, const Place& place,
                    const Eigen::Vector3d& principal);
-
-/// The numbers of an attribute, as many as can be read.
-[[nodiscard]] std::vector<double> numbers_in(std::string_view words);
 
 }  // namespace mjarm

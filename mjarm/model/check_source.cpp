@@ -1,4 +1,3 @@
-#include <charconv>
 #include <set>
 
 #include "mjarm/core/messages/model.hpp"
@@ -11,24 +10,6 @@ using tinyxml2::XMLElement;
 std::string_view SourceNode::attribute(const char* name) const {
   const char* value = element->Attribute(name);
   return value != nullptr ? value : std::string_view();
-}
-
-std::vector<double> numbers_in(std::string_view words) {
-  std::vector<double> numbers;
-  const char* at = words.data();
-  const char* const end = at + words.size();
-  while (at != end) {
-    if (std::string_view(" \t\r\n+").find(*at) != std::string_view::npos) {
-      ++at;
-      continue;
-    }
-    double value = 0;
-    const auto [next, failure] = std::from_chars(at, end, value);
-    if (failure != std::errc()) break;
-    numbers.push_back(value);
-    at = next;
-  }
-  return numbers;
 }
 
 /// What is passed down while a description is walked through.

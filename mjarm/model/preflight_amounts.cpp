@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "mjarm/core/messages/guard.hpp"
+#include "mjarm/model/numbers_internal.hpp"
 #include "mjarm/model/preflight_internal.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
@@ -45,7 +46,7 @@ double product_of(const XMLElement& element, const char* attribute) {
   const char* words = element.Attribute(attribute);
   if (words == nullptr) return 1;
   double product = 1;
-  for (const double number : numbers_of(words)) product *= std::abs(number);
+  for (const double number : numbers_in(words)) product *= std::abs(number);
   return product;
 }
 
@@ -86,7 +87,7 @@ std::optional<std::string> amount_fault(const XMLElement& element) {
 std::optional<std::string> timestep_fault(const XMLElement& element) {
   if (std::string_view(element.Name()) != "option") return std::nullopt;
   const char* words = element.Attribute("timestep");
-  const std::vector<double> step = words != nullptr ? numbers_of(words) : std::vector<double>();
+  const std::vector<double> step = words != nullptr ? numbers_in(words) : std::vector<double>();
   if (step.size() != 1 || (step[0] > 0 && step[0] <= kLongestStep)) return std::nullopt;
   return text(msg::guard_timestep, step[0], kLongestStep);
 }

@@ -96,23 +96,6 @@ std::optional<std::string> attribute_fault(const tinyxml2::XMLAttribute& attribu
 
 }  // namespace
 
-std::vector<double> numbers_of(std::string_view words) {
-  std::vector<double> numbers;
-  const char* const end = words.data() + words.size();
-  for (const char* at = words.data(); at != end;) {
-    if (*at == '+' || *at == ' ' || *at == '\t' || *at == '\r' || *at == '\n') {
-      ++at;
-      continue;
-    }
-    double value = 0;
-    const auto [next, failure] = std::from_chars(at, end, value);
-    if (failure != std::errc()) break;
-    numbers.push_back(value);
-    at = next;
-  }
-  return numbers;
-}
-
 Result<void> check_attributes(const XmlSources& sources) {
   for (const SourceElement& source : sources.elements()) {
     const tinyxml2::XMLElement& element = *source.element;

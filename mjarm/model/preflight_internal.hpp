@@ -27,9 +27,6 @@ namespace mjarm {
 /// @param sources  without fault.
 [[nodiscard]] Result<void> preflight(const XmlSources& sources, const LoadOptions& options);
 
-/// The numbers at the front of `words`, parted by white space; what follows something else is left.
-[[nodiscard]] std::vector<double> numbers_of(std::string_view words);
-
 /// Names and texts that are no UTF-8, numbers that are not finite or absurdly large.
 [[nodiscard]] Result<void> check_attributes(const XmlSources& sources);
 
