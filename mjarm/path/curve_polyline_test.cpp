@@ -105,8 +105,9 @@ TEST(BlendedPolyline, TellsTheRadiusAndTheDistanceOfEveryCorner) {
                                              points.begin() + static_cast<std::ptrdiff_t>(c) + 2),
                            b.radius);
       double least = 1e9, turn = 0;
+      const double from = alone.nearest(points[c].p).s - b.radius;
       for (int k = 0; k <= 4000; ++k) {
-        const Pose X = alone.at(alone.end() * k / 4000);
+        const Pose X = alone.at(from + 2 * b.radius * k / 4000);
         const double distance = (X.p - points[c].p).norm();
         if (distance < least) {
           least = distance;
@@ -122,7 +123,7 @@ TEST(BlendedPolyline, TellsTheRadiusAndTheDistanceOfEveryCorner) {
 
 TEST(BlendedPolyline, TurnsPositionAndRotationWithoutJumps) {
   Rng rng(3);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const double scale = std::pow(10, rng.uniform(-5, 4));
     const std::vector<Pose> points = gentle_poses(rng, 3, scale);
     const double leg =

@@ -40,14 +40,16 @@ TEST(JointPolyline, SharpOnesMeetEveryWaypoint) {
     }
     EXPECT_NEAR(line.path.s.back(), length, 1e-12);
     EXPECT_EQ(line.radii, std::vector<double>(waypoints.size() - 2, 0.0));
-    if (dof > 1) EXPECT_EQ(line.corners.size(), waypoints.size());
+    if (dof > 1) {
+      EXPECT_EQ(line.corners.size(), waypoints.size());
+    }
   }
 }
 
 TEST(JointPolyline, IsWalkedByItsLengthAndStaysWithinTheBlend) {
   Rng rng(2);
   for (int i = 0; i < 100; ++i) {
-    const std::vector<JointVec> waypoints = random_waypoints(rng, 5, 1 + i % 8 + 1);
+    const std::vector<JointVec> waypoints = random_waypoints(rng, 5, 4 + i % 6);
     const JointPolylineOptions options{.blend = rng.uniform(0.05, 4),
                                        .step = rng.uniform(0.002, 0.1)};
     const JointPolyline line = *joint_polyline(waypoints, options);
