@@ -34,7 +34,7 @@ Peak peak(double gain, double a_max, double inverse_jerk) {
 
 }  // namespace
 
-Reach::Reach(const OneJoint& joint) noexcept : joint_(joint) {
+FarthestMotions::FarthestMotions(const OneJoint& joint) noexcept : joint_(joint) {
   const double r = joint.inverse_jerk;
   gain_ = joint.v1 - joint.v0 - 0.5 * r * (square(joint.a1) - square(joint.a0));
   ramp_time_ = r * (joint.a1 - joint.a0);
@@ -52,20 +52,23 @@ Reach::Reach(const OneJoint& joint) noexcept : joint_(joint) {
 /// With x half the time of the jerk phases down (and of those up, less what the ends need): the
 /// durations of the phases add up to T and their gains to that of the velocity. Both are linear in
 /// the sum and the difference of the two peaks.
-Farthest Reach::without_cruise(double duration) const noexcept {
+Farthest FarthestMotions::without_cruise(double duration) const noexcept {
   const double r = joint_.inverse_jerk, a = joint_.a_max;
   const double x = std::max(0.0, 0.5 * (duration - ramp_time_));
-  const double sum = x > 0 ? r * gain_ / x : r * (joint_.a0 + joint_.a1);
+  // No phase up is shorter than nothing, whatever rounding says where x is next to 0.
+  const double least = 2 * r * joint_.a0 - x, most = 2 * r * joint_.a1 + x;
+  const double sum = std::max(least, std::min(most, x > 0 ? r * gain_ / x : 0));
   if (x + std::abs(sum) <= 2 * r * a) {
     if (r == 0) return {a, 0, -a, 0, 0};
     return {0.5 * (sum + x) / r, 0, 0.5 * (sum - x) / r, 0, 0};
   }
   // The higher peak is held; `fall` is what the jerk phase down then takes squared.
   const double fall = 2 * a * x - std::abs(gain_);
-  if (fall < 4 * r * a * a) {
+  if (r > 0 && fall < 4 * r * a * a) {
     const double drop = std::sqrt(std::max(0.0, fall) / r);
     const double held = 2 * std::max(0.0, x - r * drop);
-    return gain_ > 0 ? Farthest{a, held, a - drop, 0, 0} : Farthest{drop - a, 0, -a, held, 0};
+    return gain_ > 0 ? Farthest{a, held, std::min(a - drop, joint_.a1), 0, 0}
+                     : Farthest{std::max(drop - a, joint_.a0), 0, -a, held, 0};
   }
   const double held = x - 2 * r * a, more = 0.5 * gain_ / a;
   return {a, std::max(0.0, held + more), -a, std::max(0.0, held - more), 0};
@@ -74,7 +77,7 @@ Farthest Reach::without_cruise(double duration) const noexcept {
 /// The way is the sum over the phases, from both ends to the middle. Its derivative is the
 /// Hamiltonian, constant along the motion: v where the acceleration is or would be 0 on the way
 /// down, plus half the inverse jerk times both peaks.
-Reach::Value Reach::measured(const Farthest& m) const noexcept {
+FarthestMotions::Value FarthestMotions::measured(const Farthest& m) const noexcept {
   const double r = joint_.inverse_jerk;
   const double up = std::max(0.0, r * (m.a_top - joint_.a0));
   const double down = r * (m.a_top - m.a_low);
@@ -91,14 +94,14 @@ Reach::Value Reach::measured(const Farthest& m) const noexcept {
           v_top + 0.5 * r * m.a_top * (m.a_top - m.a_low)};
 }
 
-Reach::Value Reach::at(double duration) const noexcept {
+FarthestMotions::Value FarthestMotions::at(double duration) const noexcept {
   if (duration >= cruise_from_) {
     return {cruise_way_ + joint_.v_max * (duration - cruise_from_), joint_.v_max};
   }
   return measured(without_cruise(duration));
 }
 
-std::array<JerkPhase, 7> Reach::phases(double duration) const noexcept {
+std::array<JerkPhase, 7> FarthestMotions::phases(double duration) const noexcept {
   const double r = joint_.inverse_jerk;
   Farthest m = fastest_;
   if (duration >= cruise_from_) {
@@ -119,7 +122,7 @@ std::array<JerkPhase, 7> Reach::phases(double duration) const noexcept {
 
 /// The duration at which the speed of the reach is least: before, the reach is concave, after it
 /// convex up to the cruise. It lies where both peaks have the same sign, see `at`.
-double Reach::bend_time() const noexcept {
+double FarthestMotions::bend_time() const noexcept {
   const double r = joint_.inverse_jerk, a = joint_.a_max, gain = std::abs(gain_);
   constexpr double kSqrt3 = 1.7320508075688772;
   double x = std::sqrt(r * gain / kSqrt3);
@@ -130,7 +133,7 @@ double Reach::bend_time() const noexcept {
   return 2 * x + ramp_time_;
 }
 
-double Reach::first_far_enough(double from, double until) const noexcept {
+double FarthestMotions::first_far_enough(double from, double until) const noexcept {
   Value value = at(from);
   // What rounding alone may leave: both ends' velocities over the time, and the way itself.
   const double noise =
@@ -157,7 +160,7 @@ double Reach::first_far_enough(double from, double until) const noexcept {
 }
 
 /// @param value  at `from`, not far enough.
-double Reach::first_on_convex(double from, double until, Value value) const noexcept {
+double FarthestMotions::first_on_convex(double from, double until, Value value) const noexcept {
   const double missing = joint_.way - value.way;
   if (missing <= 0) return from;
   double low = from, high = std::min(until, cruise_from_);
@@ -184,7 +187,7 @@ double Reach::first_on_convex(double from, double until, Value value) const noex
 }
 
 /// Motions exist where no phase up is shorter than nothing: a_top >= a0 and a_low <= a1, two
-/// parabolas in x (see `Reach::without_cruise`). One of them bounds x below, the other may leave a
+/// parabolas in x (see `FarthestMotions::without_cruise`). One of them bounds x below, the other may leave a
 /// gap: too late to go straight on, too early to turn back.
 Durations::Durations(const OneJoint& joint) noexcept {
   const double r = joint.inverse_jerk, a_max = joint.a_max;

@@ -41,9 +41,9 @@ struct Farthest {
 };
 
 /// The farthest motions of one joint, for all durations for which `Durations` has motions at all.
-class Reach {
+class FarthestMotions {
  public:
-  explicit Reach(const OneJoint& joint) noexcept;
+  explicit FarthestMotions(const OneJoint& joint) noexcept;
 
   struct Value {
     double way;    ///< [rad] farthest way to get in that time
@@ -86,13 +86,13 @@ class JointTimes {
 
   /// First duration >= `from` in which the joint can do its move.
   [[nodiscard]] double first_possible(double from) const noexcept;
-  [[nodiscard]] const Reach& up() const noexcept { return up_; }
-  [[nodiscard]] const Reach& down() const noexcept { return down_; }
+  [[nodiscard]] const FarthestMotions& up() const noexcept { return up_; }
+  [[nodiscard]] const FarthestMotions& down() const noexcept { return down_; }
 
  private:
   Durations durations_;
-  Reach up_;
-  Reach down_;
+  FarthestMotions up_;
+  FarthestMotions down_;
 };
 
 }  // namespace mjarm::detail
