@@ -133,9 +133,9 @@ TEST(IkPrefer, HomeIsThePostureWithoutASeed) {
   const auto home =
       ik(kPanda, {"--prefer", "posture", "--pos", "0.45,0.1,0.4", "--euler", "3,0,0"});
   ASSERT_EQ(home.exit_code, 0) << home.err;
-  const json info = json_lines(mjarm({"model", "info", "panda", "--json"}).out).at(0);
+  const json info = json::parse(mjarm({"model", "info", "panda", "--json"}).out);
   std::string q;
-  for (const double value : numbers(info.at("home")))
+  for (const double value : numbers(info.at("arm").at("home")))
     q += (q.empty() ? "" : ",") + json(value).dump();
   const auto seeded = ik(
       kPanda, {"--prefer", "posture", "--pos", "0.45,0.1,0.4", "--euler", "3,0,0", "--seed-q", q});
