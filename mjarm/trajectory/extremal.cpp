@@ -8,6 +8,9 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kEps = std::numeric_limits<double>::epsilon();
+// What comes out of a calculation, such as a state on the way of another motion, is that far from
+// where it should be, relative to the largest numbers in it.
+constexpr double kRounding = 1e-12;
 constexpr int kMostSteps = 100;  // bisection alone needs fewer
 
 double square(double x) { return x * x; }
@@ -133,6 +136,13 @@ double FarthestMotions::bend_time() const noexcept {
   return 2 * x + ramp_time_;
 }
 
+bool FarthestMotions::far_enough(double duration, double way) const noexcept {
+  const double a = std::abs(joint_.a0) + std::abs(joint_.a1);
+  const double scale =
+      std::abs(joint_.way) + duration * (std::abs(joint_.v0) + std::abs(joint_.v1) + duration * a);
+  return way >= joint_.way - joint_.noise - kRounding * scale;
+}
+
 double FarthestMotions::first_far_enough(double from, double until) const noexcept {
   Value value = at(from);
   // What rounding alone may leave: both ends' velocities over the time, and the way itself.
@@ -148,11 +158,11 @@ double FarthestMotions::first_far_enough(double from, double until) const noexce
       const double step = (joint_.way - value.way) / value.speed;
       if (t + step > std::min(bend, until)) break;
       t += step;
-      if (step <= 2 * kEps * t) return t;
       value = at(t);
-      if (value.way >= joint_.way) return t;
+      if (step <= 2 * kEps * t || value.way >= joint_.way) return t;
     }
-    if (bend > until) return kInf;
+    if (far_enough(t, value.way)) return t;  // it but touches
+    if (bend > until) return far_enough(until, at(until).way) ? until : kInf;
     t = bend;
     value = at(t);
   }
@@ -167,7 +177,8 @@ double FarthestMotions::first_on_convex(double from, double until, Value value) 
   if (high < kInf) {
     const double there = high == cruise_from_ ? cruise_way_ : at(high).way;
     if (there < joint_.way) {
-      return high < until ? high + (joint_.way - there) / joint_.v_max : kInf;
+      if (high < until) return high + (joint_.way - there) / joint_.v_max;
+      return far_enough(until, there) ? until : kInf;
     }
   }
   // First guess: as if at rest. On a convex function Newton's steps overshoot at most once.
@@ -187,11 +198,13 @@ double FarthestMotions::first_on_convex(double from, double until, Value value) 
 }
 
 /// Motions exist where no phase up is shorter than nothing: a_top >= a0 and a_low <= a1, two
-/// parabolas in x (see `FarthestMotions::without_cruise`). One of them bounds x below, the other may leave a
-/// gap: too late to go straight on, too early to turn back.
+/// parabolas in x (see `FarthestMotions::without_cruise`). One of them bounds x below, the other
+/// may leave a gap: too late to go straight on, too early to turn back.
 Durations::Durations(const OneJoint& joint) noexcept {
   const double r = joint.inverse_jerk, a_max = joint.a_max;
-  const double gain = joint.v1 - joint.v0 - 0.5 * r * (square(joint.a1) - square(joint.a0));
+  double gain = joint.v1 - joint.v0 - 0.5 * r * (square(joint.a1) - square(joint.a0));
+  const double v_scale = std::min(joint.v_max, std::abs(joint.v0) + std::abs(joint.v1));
+  if (std::abs(gain) <= 0.01 * kRounding * v_scale) gain = 0;
   const double ramp_time = r * (joint.a1 - joint.a0);
   // Seen with a gain that is positive: `own` bounds below, `other` leaves the gap.
   const bool rising = gain > 0 || (gain == 0 && joint.a1 >= 0);
@@ -206,14 +219,14 @@ Durations::Durations(const OneJoint& joint) noexcept {
   }
   from = 2 * x + ramp_time;
   const double left = square(r * other) - c;
-  if (other <= 0 || left <= 64 * kEps * square(r * other)) return;
+  if (other <= 0 || left <= kRounding * square(r * other)) return;
   const Roots gap = roots(r * other, c);
   if (x >= gap.high) return;
-  if (x > gap.low || from < 0) {
+  if (x > gap.low + kRounding * gap.high || from < 0) {
     from = 2 * gap.high + ramp_time;
     return;
   }
-  gap_from = 2 * gap.low + ramp_time;
+  gap_from = std::max(from, 2 * gap.low + ramp_time);
   gap_to = 2 * gap.high + ramp_time;
 }
 
@@ -224,8 +237,9 @@ double JointTimes::first_possible(double from) const noexcept {
   double t = std::max(from, durations_.from);
   // Each round goes on to a later duration that one of the three asks for, and few do.
   for (int i = 0; i < kMostSteps; ++i) {
-    if (t > durations_.gap_from && t < durations_.gap_to) t = durations_.gap_to;
-    const double until = t <= durations_.gap_from ? durations_.gap_from : kInf;
+    const bool before = t <= durations_.gap_from * (1 + kRounding);
+    if (!before) t = std::max(t, durations_.gap_to);
+    const double until = before ? std::max(t, durations_.gap_from) : kInf;
     const double far = up_.first_far_enough(t, until);
     const double near = far <= until ? down_.first_far_enough(far, until) : kInf;
     if (near == t) return t;

@@ -19,9 +19,10 @@ struct OneJoint {
   double way;           ///< [rad] to go
   double v_max, a_max;  ///< [rad/s], [rad/s^2]
   double inverse_jerk;  ///< [s^3/rad]
+  double noise;         ///< [rad] of the way that is but rounding
 
   [[nodiscard]] OneJoint mirrored() const noexcept {
-    return {-v0, -a0, -v1, -a1, -way, v_max, a_max, inverse_jerk};
+    return {-v0, -a0, -v1, -a1, -way, v_max, a_max, inverse_jerk, noise};
   }
 };
 
@@ -60,6 +61,7 @@ class FarthestMotions {
   [[nodiscard]] Value measured(const Farthest& motion) const noexcept;
   [[nodiscard]] double first_on_convex(double from, double until, Value value) const noexcept;
   [[nodiscard]] double bend_time() const noexcept;
+  [[nodiscard]] bool far_enough(double duration, double way) const noexcept;
 
   OneJoint joint_;
   double gain_;         // [rad/s] velocity to gain beyond what the ends' own ramps bring

@@ -1,47 +1,13 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
 
 #include "mjarm/core/messages/trajectory.hpp"
+#include "mjarm/trajectory/extremal_internal.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm {
-namespace {
-
-/// Durations [s] of the phases of the fastest move from 0 to 1 from rest to rest: speeding up (jerk
-/// +, 0, -), cruise, slowing down (jerk -, 0, +).
-struct SevenPhases {
-  double jerk_time = 0;
-  double accel_time = 0;
-  double cruise_time = 0;
-};
-
-/// @param v,a,j  limits in units of the whole move. L. Biagiotti and C. Melchiorri, Trajectory
-///               Planning for Automatic Machines and Robots (2008), section 3.4 (double S).
-SevenPhases seven_phases(double v, double a, double j) {
-  SevenPhases phases;
-  // To the speed v and back, whether or not the acceleration limit is met on the way.
-  phases.jerk_time = std::min(a / j, std::sqrt(v / j));
-  phases.accel_time = std::max(0.0, v / a - a / j);
-  const double ramp = 2 * phases.jerk_time + phases.accel_time;
-  if (v * ramp <= 1) {
-    phases.cruise_time = 1 / v - ramp;
-    return phases;
-  }
-  // Too short for that speed: without cruise, with the acceleration limit met or not.
-  const double t = a / j;
-  if (2 * a * t * t <= 1) {
-    phases.jerk_time = t;
-    phases.accel_time = 0.5 * (std::sqrt(t * t + 4 / a) - 3 * t);
-  } else {
-    phases.jerk_time = std::cbrt(0.5 / j);
-    phases.accel_time = 0;
-  }
-  return phases;
-}
-
-}  // namespace
 
 Result<Trajectory> time_joint_move(std::span<const double> q0, std::span<const double> q1,
                                    const JointLimits& limits, const TimingOptions& options) {
@@ -60,12 +26,16 @@ Result<Trajectory> time_joint_move(std::span<const double> q0, std::span<const d
   const double v = 1 / distance.cwiseQuotient(bounds->v).maxCoeff();
   const double a = 1 / distance.cwiseQuotient(bounds->a).maxCoeff();
   const double j = 1 / distance.cwiseQuotient(bounds->j).maxCoeff();
-  const SevenPhases phases = seven_phases(v, a, j);
-  const double tj = phases.jerk_time, ta = phases.accel_time;
-  const JointVec jerk = j * way;
-  return Trajectory::from_jerks(start, std::array{tj, ta, tj, phases.cruise_time, tj, ta, tj},
-                                std::array<JointVec, 7>{jerk, zero, -jerk, zero, -jerk, zero, jerk},
-                                end);
+  const detail::FarthestMotions moves({0, 0, 0, 0, 1, v, a, 1 / j, 0});
+  const double duration = moves.first_far_enough(0, std::numeric_limits<double>::infinity());
+  std::array<double, 7> durations{};
+  std::array<JointVec, 7> jerks;
+  std::size_t i = 0;
+  for (const detail::JerkPhase& phase : moves.phases(duration)) {
+    durations[i] = phase.duration;
+    jerks[i++] = phase.jerk * way;
+  }
+  return Trajectory::from_jerks(start, durations, jerks, end);
 }
 
 }  // namespace mjarm

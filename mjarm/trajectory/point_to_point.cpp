@@ -116,21 +116,74 @@ class Mover {
 };
 
 std::optional<PointToPointErrc> fault(const OneJoint& joint) noexcept {
-  const auto positive = [](double x) { return x > 0; };
-  if (!positive(joint.v_max) || !positive(joint.a_max) || !(joint.inverse_jerk >= 0) ||
-      std::isinf(joint.inverse_jerk) || (std::isinf(joint.a_max) && joint.inverse_jerk == 0)) {
+  const double r = joint.inverse_jerk;
+  const bool limited = std::isfinite(joint.a_max) || r > 0;
+  if (!(joint.v_max > 0 && joint.a_max > 0 && r >= 0 && std::isfinite(r) && limited)) {
     return PointToPointErrc::bad_limits;
   }
-  constexpr double kSlack = 1 + detail::kLimitSlack;
-  // Where the joint comes from, with full jerk, when it arrives with an acceleration.
-  const double r = joint.inverse_jerk;
+  // The velocity it comes from when it arrives with an acceleration.
   const double before = joint.v1 - 0.5 * r * joint.a1 * std::abs(joint.a1);
-  if (std::abs(joint.v1) > joint.v_max * kSlack || std::abs(joint.a1) > joint.a_max * kSlack ||
-      std::abs(before) > joint.v_max * kSlack) {
+  constexpr double kSlack = 1 + detail::kLimitSlack;
+  if (std::max(std::abs(joint.v1), std::abs(before)) > joint.v_max * kSlack ||
+      std::abs(joint.a1) > joint.a_max * kSlack) {
     return PointToPointErrc::end_outside;
   }
   return std::nullopt;
 }
+
+/// All joints of a problem.
+class Movers {
+ public:
+  /// @return why there is no motion.
+  std::optional<PointToPointFailure> set(const JointState& start, const JointState& end,
+                                         const JointLimits& limits) noexcept {
+    dof_ = static_cast<int>(start.q.size());
+    if (dof_ == 0 || !sound(start, dof_) || !sound(end, dof_)) {
+      return PointToPointFailure{PointToPointErrc::bad_states, 0};
+    }
+    if (limits.velocity.size() != dof_ || limits.acceleration.size() != dof_ ||
+        limits.jerk.size() != dof_) {
+      return PointToPointFailure{PointToPointErrc::bad_limits, 0};
+    }
+    for (int i = 0; i < dof_; ++i) {
+      const double r = 1 / limits.jerk[i], way = end.q[i] - start.q[i];
+      // Without a jerk limit the acceleration jumps, whatever it was.
+      const double a0 = r == 0 ? 0 : start.a[i], a1 = r == 0 ? 0 : end.a[i];
+      const OneJoint joint{start.v[i],
+                           a0,
+                           end.v[i],
+                           a1,
+                           way,
+                           limits.velocity[i],
+                           limits.acceleration[i],
+                           r,
+                           8 * kEps * (std::abs(start.q[i]) + std::abs(end.q[i]))};
+      if (const auto code = fault(joint)) return PointToPointFailure{*code, i};
+      movers_[static_cast<std::size_t>(i)].emplace(joint);
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] const Mover& operator[](int i) const noexcept {
+    return *movers_[static_cast<std::size_t>(i)];
+  }
+
+  /// Whatever a joint asks for bounds all from below; the first duration that suits all is the
+  /// answer. Each asks for a few later ones at most, one for each of its gaps.
+  [[nodiscard]] double common_duration() const noexcept {
+    double duration = 0;
+    for (int i = 0, content = 0; content < dof_; i = (i + 1) % dof_) {
+      const double asked = (*this)[i].first_possible(duration);
+      content = asked > duration ? 1 : content + 1;
+      duration = std::max(duration, asked);
+    }
+    return duration;
+  }
+
+ private:
+  int dof_ = 0;
+  std::array<std::optional<Mover>, kMaxDof> movers_;
+};
 
 /// @param piece  one that begins at or before `t`.
 PointToPoint::Piece moved_on(const PointToPoint::Piece& piece, double t) noexcept {
@@ -145,59 +198,27 @@ Result<PointToPoint, PointToPointFailure> PointToPoint::solve(const JointState& 
                                                               const JointState& end,
                                                               const JointLimits& limits) noexcept {
   Result<PointToPoint, PointToPointFailure> result;
-  const Eigen::Index dof = start.q.size();
-  const auto refuse = [&](PointToPointErrc code, Eigen::Index joint) {
-    result = tl::unexpected(PointToPointFailure{code, static_cast<int>(joint)});
-  };
-  if (dof == 0 || !sound(start, dof) || !sound(end, dof)) {
-    refuse(PointToPointErrc::bad_states, 0);
+  Movers movers;
+  if (const auto failure = movers.set(start, end, limits)) {
+    result = tl::unexpected(*failure);
     return result;
   }
-  if (limits.velocity.size() != dof || limits.acceleration.size() != dof ||
-      limits.jerk.size() != dof) {
-    refuse(PointToPointErrc::bad_limits, 0);
-    return result;
-  }
-  std::array<std::optional<Mover>, kMaxDof> movers;
-  const auto mover = [&](Eigen::Index i) -> std::optional<Mover>& {
-    return movers[static_cast<std::size_t>(i)];
-  };
-  for (Eigen::Index i = 0; i < dof; ++i) {
-    const OneJoint joint{start.v[i],
-                         start.a[i],
-                         end.v[i],
-                         end.a[i],
-                         end.q[i] - start.q[i],
-                         limits.velocity[i],
-                         limits.acceleration[i],
-                         1 / limits.jerk[i]};
-    if (const auto code = fault(joint)) {
-      refuse(*code, i);
-      return result;
-    }
-    mover(i).emplace(joint);
-  }
-
-  // Whatever a joint asks for is a lower bound for all; the first that suits all is the answer.
-  double duration = 0;
-  for (Eigen::Index i = 0, content = 0; content < dof; i = (i + 1) % dof) {
-    const double t = mover(i)->first_possible(duration);
-    content = t > duration ? 1 : content + 1;
-    duration = t;
-  }
-
   result->start_ = start;
   result->end_ = end;
-  result->duration_ = duration;
-  for (Eigen::Index i = 0; i < dof; ++i) {
+  result->duration_ = movers.common_duration();
+  if (!std::isfinite(result->duration_)) {
+    result = tl::unexpected(PointToPointFailure{PointToPointErrc::bad_states, 0});
+    return result;
+  }
+  for (int i = 0; i < result->dof(); ++i) {
     Joint& joint = result->joints_[static_cast<std::size_t>(i)];
     joint.count = 0;
-    Piece at{0, start.q[i], start.v[i], start.a[i], 0};
-    mover(i)->for_each(duration, [&](double h, double a, double jerk) {
-      at.a = a;
-      at.jerk = jerk;
-      joint.pieces[static_cast<std::size_t>(joint.count++)] = at;
-      at = moved_on(at, at.t + h);
+    Piece piece{0, start.q[i], start.v[i], start.a[i], 0};
+    movers[i].for_each(result->duration_, [&](double duration, double a, double jerk) {
+      piece.a = a;
+      piece.jerk = jerk;
+      joint.pieces[static_cast<std::size_t>(joint.count++)] = piece;
+      piece = moved_on(piece, piece.t + duration);
     });
   }
   return result;

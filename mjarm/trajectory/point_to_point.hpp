@@ -12,9 +12,9 @@ namespace mjarm {
 
 /// Why there is no point-to-point motion.
 enum class PointToPointErrc {
-  bad_states,   ///< sizes that differ, no joint or more than kMaxDof, numbers that are not finite
+  bad_states,   ///< sizes that differ, no joint, numbers that are not finite or that overflow
   bad_limits,   ///< a limit that is not above 0, or neither acceleration nor jerk limited
-  end_outside,  ///< no motion within the limits ends like this: too fast, or just coming from there
+  end_outside,  ///< the end is beyond a limit, or an approach with full jerk would come from there
 };
 /// The reason, and the first joint (from 0) it holds for.
 struct PointToPointFailure {
