@@ -1,10 +1,11 @@
+#include "mjarm/path/shift.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "mjarm/core/messages/path.hpp"
-#include "mjarm/path/joint_path.hpp"
 
 namespace mjarm {
 namespace {
