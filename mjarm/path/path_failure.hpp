@@ -30,10 +30,11 @@ enum class PathErrc {
 /// Why a path has no answer, and what was had before that.
 struct PathFailure {
   PathErrc code = PathErrc::no_convergence;
-  std::size_t at = 0;                      ///< index of the first pose that cannot be had
-  double fraction = 0;                     ///< share of the poses before it, 0 to 1
-  double amount = 0;                       ///< see PathErrc
-  int joint = -1;                          ///< which joint, where the reason is about one
+  std::size_t at = 0;   ///< index of the first pose that cannot be had
+  double fraction = 0;  ///< share of the poses before it, 0 to 1; of a curve: of its parameter
+  double s = 0;         ///< parameter of the last answer before it
+  double amount = 0;    ///< see PathErrc
+  int joint = -1;       ///< which joint, where the reason is about one
   SingularKind kind = SingularKind::none;  ///< which singularity
   double smallest = 0;                     ///< smallest singular value met there (singularity)
   GeomPair pair;      ///< what touches (collision), empty where only a predicate refused

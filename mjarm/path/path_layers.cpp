@@ -1,10 +1,12 @@
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <tuple>
 
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/path_layers_internal.hpp"
@@ -44,13 +46,15 @@ IkOptions near_only(IkOptions options, double max_step) {
 }
 
 /// `q` with every hinge in the winding within the limits that is nearest to `q_near`; none where a
-/// joint has no such winding.
-std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const JointVec& q_near) {
+/// joint has no such winding, or none within `max_step`.
+std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const JointVec& q_near,
+                               double max_step) {
   constexpr double kRounding = 1e-9;  // [rad or m]
-  JointVec out = q;
+  std::array<double, kMaxDof> out;
   for (int i = 0; i < chain.dof; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    double& value = out[i];
+    double& value = out[k];
+    value = q[i];
     if (!chain.slide[k]) {
       value += kTurn * std::round((q_near[i] - value) / kTurn);
       if (value > chain.upper[k] + kRounding) value -= kTurn;
@@ -60,8 +64,9 @@ std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const Join
       return std::nullopt;
     }
     value = std::clamp(value, chain.lower[k], chain.upper[k]);
+    if (std::abs(value - q_near[i]) > max_step) return std::nullopt;
   }
-  return out;
+  return joint_vec({out.data(), static_cast<std::size_t>(chain.dof)});
 }
 
 void keep_best(Layer& layer) {
@@ -126,16 +131,40 @@ TrackRank PathLayers::extended(const TrackNode& node, const JointVec& q, double 
           node.rank.length + step.norm()};
 }
 
+/// The pose itself, and with a tolerance the tool turned by it in eight directions across its z
+/// axis, and both ways about that.
+std::vector<Pose> PathLayers::allowed(const Pose& X_WT) const {
+  std::vector<Pose> out{X_WT};
+  const double tol = options_.orientation_tol;
+  if (tol == 0) return out;
+  for (int k = 0; k < 8; ++k) {
+    const double way = k * kTurn / 8;
+    const Eigen::Vector3d tilt(tol * std::cos(way), tol * std::sin(way), 0);
+    out.push_back({X_WT.p, X_WT.R * rotation_exp(tilt)});
+  }
+  for (const double way : {tol, -tol}) {
+    out.push_back({X_WT.p, X_WT.R * rotation_exp(Eigen::Vector3d(0, 0, way))});
+  }
+  return out;
+}
+
 Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
   Layer layer;
-  const auto answers = solve_all(all_, X_WT, view(q_start), {.windings = true});
-  if (!answers) return layer;
-  for (const IkSolution& answer : *answers) {
-    const double start = largest(answer.q - q_start);
-    if (options_.keep_start && !layer.empty() && start > layer.front().rank.start + kSame) break;
-    const auto tight = tightness(answer.q);
-    if (!tight) continue;
-    layer.push_back({answer.q, -1, {level(std::max(*tight, limit_tightness(answer.q))), start, 0}});
+  double nearest = kInfinity;
+  for (const Pose& X : allowed(X_WT)) {
+    const auto answers = solve_all(all_, X, view(q_start), {.windings = true});
+    if (!answers) continue;
+    for (const IkSolution& answer : *answers) {
+      const double start = largest(answer.q - q_start);
+      nearest = std::min(nearest, start);
+      const auto tight = tightness(answer.q);
+      if (!tight) continue;
+      layer.push_back(
+          {answer.q, -1, {level(std::max(*tight, limit_tightness(answer.q))), start, 0}});
+    }
+  }
+  if (options_.keep_start) {
+    std::erase_if(layer, [&](const TrackNode& node) { return node.rank.start > nearest + kSame; });
   }
   keep_best(layer);
   return layer;
@@ -155,15 +184,17 @@ Layer PathLayers::join(const Pose& X_WT, const Layer& before) const {
     bool looked_at = false;
     std::vector<std::size_t> nodes;  // its windings in the new layer
   };
-  const auto answers = solve_all(boundless_, X_WT, view(before.front().q));
   Layer layer;
-  if (!answers) return layer;
   std::vector<Branch> branches;
-  for (const IkSolution& answer : *answers) branches.push_back({answer.q, {}, false, {}});
+  for (const Pose& X : allowed(X_WT)) {
+    const auto answers = solve_all(boundless_, X, view(before.front().q));
+    if (!answers) continue;
+    for (const IkSolution& answer : *answers) branches.push_back({answer.q, {}, false, {}});
+  }
   for (std::size_t i = 0; i < before.size(); ++i) {
     for (Branch& branch : branches) {
-      const auto q = placed(ik_.chain(), branch.q, before[i].q);
-      if (!q || largest(*q - before[i].q) > options_.max_step) continue;
+      const auto q = placed(ik_.chain(), branch.q, before[i].q, options_.max_step);
+      if (!q) continue;
       if (!branch.looked_at) branch.tight = tightness(*q);
       branch.looked_at = true;
       if (!branch.tight) continue;
@@ -206,8 +237,8 @@ std::vector<JointVec> PathLayers::aside(const JointVec& q) const {
 Layer PathLayers::follow(const Pose& X_WT, const Layer& before) const {
   const double same = ik_.arm().dof() > 6 ? kSameOfMany : kSame;
   Layer layer;
-  const auto add = [&](std::size_t i, const JointVec& seed) {
-    const auto answer = near_.solve(X_WT, view(seed));
+  const auto add = [&](const Pose& X, std::size_t i, const JointVec& seed) {
+    const auto answer = near_.solve(X, view(seed));
     if (!answer || largest(answer->q - before[i].q) > options_.max_step) return kInfinity;
     const auto tight = tightness(answer->q);
     if (!tight) return kInfinity;
@@ -224,9 +255,11 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before) const {
   };
   constexpr double kTight = 0.5;
   constexpr std::size_t kAside = 64;  // only the best of them look to the sides
+  const std::vector<Pose> poses = allowed(X_WT);
   for (std::size_t i = 0; i < before.size(); ++i) {
-    if (add(i, before[i].q) < kTight || i >= kAside) continue;
-    for (const JointVec& seed : aside(before[i].q)) add(i, seed);
+    if (add(X_WT, i, before[i].q) < kTight || i >= kAside) continue;
+    for (const JointVec& seed : aside(before[i].q)) add(X_WT, i, seed);
+    for (std::size_t k = 1; k < poses.size(); ++k) add(poses[k], i, before[i].q);
   }
   return layer;
 }

@@ -51,6 +51,7 @@ class PathLayers {
   [[nodiscard]] double smallest_singular_value(const JointVec& q) const;
 
  private:
+  [[nodiscard]] std::vector<Pose> allowed(const Pose& X_WT) const;
   [[nodiscard]] Layer join(const Pose& X_WT, const Layer& before) const;
   [[nodiscard]] Layer follow(const Pose& X_WT, const Layer& before) const;
   [[nodiscard]] std::vector<JointVec> aside(const JointVec& q) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "mjarm/path/path_cause_internal.hpp"
@@ -9,6 +10,8 @@
 
 namespace mjarm {
 namespace {
+
+constexpr double kMostTilt = std::numbers::pi / 2;  // [rad]
 
 bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
@@ -18,8 +21,9 @@ bool is_sound(const IkSolver& ik, std::span<const Pose> poses, std::span<const d
               std::span<const double> q_start, const PathOptions& options) {
   return !poses.empty() && poses.size() == s.size() && all_finite(s) &&
          std::is_sorted(s.begin(), s.end()) && all_finite(q_start) &&
-         q_start.size() == ik.arm().joints.size() && options.max_step > 0 && options.comfort >= 0 &&
-         options.comfort <= 1;
+         q_start.size() == ik.arm().joints.size() && options.max_step > 0 &&
+         options.orientation_tol >= 0 && options.orientation_tol < kMostTilt &&
+         options.comfort >= 0 && options.comfort <= 1;
 }
 
 }  // namespace
@@ -42,6 +46,7 @@ Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Po
   if (path.q.size() == poses.size()) return path;
   track.q = path.q;
   PathFailure failure = detail::find_cause(layers, poses, track, q_from);
+  if (!path.s.empty()) failure.s = path.s.back();
   failure.partial = std::move(path);
   return fail(std::move(failure));
 }

@@ -21,6 +21,9 @@ struct PathOptions {
   /// [1] Tracks no tighter than this count as equally good, and the one that starts nearest to
   /// q_start is taken; 0 to 1. 0: the one with most room, wherever it starts.
   double comfort = 0.5;
+  /// [rad] The tool may stand so much aside of the given orientations, >= 0 and < pi/2: lets it
+  /// pass a wrist singularity. Answers turned about the tool's x, y and z axes are tried besides.
+  double orientation_tol = 0;
   ClearanceCheck clearance = {};  ///< refuses overlap, prefers distance; empty: looks at neither
 };
 

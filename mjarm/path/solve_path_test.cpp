@@ -10,7 +10,7 @@
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/curve.hpp"
-#include "mjarm/path/shift.hpp"
+#include "mjarm/path/path_fix.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {

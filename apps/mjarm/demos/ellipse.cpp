@@ -5,7 +5,7 @@
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
-#include "mjarm/path/shift.hpp"
+#include "mjarm/path/path_fix.hpp"
 
 namespace mjarm::app {
 namespace {
