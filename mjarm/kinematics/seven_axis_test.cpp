@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/branches_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/long_tests_test.hpp"
 #include "mjarm/kinematics/seven_axis_block_internal.hpp"
 
 namespace mjarm {
@@ -17,10 +16,7 @@ using detail::Branches;
 using testing::panda;
 using testing::random_q;
 
-/// 10,000 rounds; a hundred times as many where MJARM_LONG_TESTS is set.
-int rounds(int normal) {
-  return std::getenv("MJARM_LONG_TESTS") != nullptr ? 100 * normal : normal;
-}
+int rounds(int normal) { return testing::rounds(normal, 100 * normal); }
 
 /// The offsets of an arm whose shoulder, elbow and wrist are spheres, like KUKA's iiwa.
 Arm iiwa() {

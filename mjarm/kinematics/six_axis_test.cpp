@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <functional>
 #include <numbers>
 
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
+#include "mjarm/kinematics/long_tests_test.hpp"
 
 namespace mjarm {
 namespace {
@@ -19,14 +19,13 @@ using testing::ur5e;
 
 constexpr double kPi = std::numbers::pi;
 
-/// Poses an arm: 10,000 of a usual run; MJARM_LONG_TESTS=1 makes it a million.
+/// Poses an arm.
 int rounds() {
 #ifdef NDEBUG
-  constexpr int usual = 10000;
+  return testing::rounds(10000, 1000000);
 #else
-  constexpr int usual = 1500;
+  return testing::rounds(1500, 1000000);
 #endif
-  return std::getenv("MJARM_LONG_TESTS") != nullptr ? 1000000 : usual;
 }
 
 /// Six hinges with a spherical wrist, Puma-like; `offset` moves the shoulder off axis 1.
