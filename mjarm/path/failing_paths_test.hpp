@@ -52,14 +52,14 @@ inline std::vector<Pose> line_of(const Pose& from, const Eigen::Vector3d& to, do
   return poses;
 }
 
-/// Outwards from a bent posture to a tool point beyond all that the links can reach: 0.163 m high,
-/// 0.425 + 0.392 + 0.127 + 0.1 + 0.1 m long at most, and 0.138 m aside.
+/// Outwards from a bent posture to a tool point beyond all that the links can reach from the
+/// shoulder: 0.425 + 0.392 m, 0.134 m aside and 0.1 + 0.1 m behind the elbow's plane.
 inline FailingPath out_of_reach(Rng& rng, double depth) {
   FailingPath out{.arm = ur5e(), .cause = PathErrc::out_of_reach};
   const Pose X = fk(out.arm, view(bent(rng)));
   const Eigen::Vector3d shoulder(0, 0, 0.163);
   const Eigen::Vector3d way = (X.p - shoulder).normalized();
-  out.poses = line_of(X, shoulder + (1.3 + depth) * way, 0.004);
+  out.poses = line_of(X, shoulder + (1.151 + depth) * way, 0.004);
   return out;
 }
 
@@ -100,6 +100,7 @@ inline FailingPath collision(Rng& rng, double depth) {
   FailingPath out = joint_limit(rng, 0.1);
   out.arm.limits = ur5e().limits;
   out.cause = PathErrc::collision;
+  out.joint = -1;
   out.amount = depth;
   const Eigen::Vector3d center = out.poses[out.poses.size() / 2].p;
   const auto arm = std::make_shared<const Arm>(out.arm);
@@ -114,6 +115,7 @@ inline FailingPath collision(Rng& rng, double depth) {
 inline FailingPath singularity(Rng& rng, double depth) {
   FailingPath out{.arm = ur5e(), .cause = PathErrc::singularity};
   JointVec q = bent(rng);
+  q[2] = rng.uniform(1.5, 1.9);  // the wrist may swing by 0.2 m
   q[4] = depth;
   std::vector<Pose> X_WJ(6);
   const Pose X = fk_all(out.arm, view(q), X_WJ);
@@ -127,10 +129,9 @@ inline FailingPath singularity(Rng& rng, double depth) {
     const Eigen::Vector3d wrist = X_WJ[5].p;
     out.poses.push_back({wrist + R * (X.p - wrist), R * X.R});
   }
-  for (const int i : {0, 1, 2}) {
-    out.arm.limits.lower[i] = q[i] - 0.8;
-    out.arm.limits.upper[i] = q[i] + 0.8;
-  }
+  out.arm.limits.lower[0] = q[0] - 1;
+  out.arm.limits.upper[0] = q[0] + 1;
+  out.arm.limits.lower[2] = 0.1;
   out.arm.home = q;
   return out;
 }
@@ -176,7 +177,7 @@ struct FailureClass {
   double depths[3];
 };
 inline constexpr FailureClass kFailureClasses[] = {
-    {"out_of_reach", out_of_reach, {0.01, 0.1, 0.3}},
+    {"out_of_reach", out_of_reach, {0.01, 0.05, 0.1}},
     {"inner_void", inner_void, {0.005, 0.04, 0.12}},
     {"joint_limit", joint_limit, {0.02, 0.1, 0.25}},
     {"collision", collision, {0.01, 0.04, 0.1}},

@@ -127,7 +127,7 @@ std::optional<PathFix> FixSearch::find(FixKind kind, const PathFailure& failure)
     case FixKind::start:
       return start();
     case FixKind::shift:
-      return shift(0.4);
+      return shift(0.6);
     case FixKind::tilt:
       return tilt();
     case FixKind::max_step:

@@ -150,7 +150,7 @@ void tell_start(const PathLayers& layers, const Pose& X_WT, const JointVec& q_st
 void tell_step(const PathLayers& layers, std::span<const Pose> poses, const Track& track,
                const Onward& onward, PathFailure& out) {
   constexpr double kNear = 0.05;  // smallest singular value
-  constexpr double kFair = 0.2;   // one that needs no long step for a short way
+  constexpr double kFair = 0.3;   // one that needs no long step for a short way
   out.amount = onward.amount;
   out.joint = onward.joint;
   const Pose &X0 = poses[track.size() - 1], &X1 = poses[track.size()];
