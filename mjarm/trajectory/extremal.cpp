@@ -123,8 +123,8 @@ std::array<JerkPhase, 7> FarthestMotions::phases(double duration) const noexcept
            {std::max(0.0, r * (joint_.a1 - m.a_low)), m.a_low, jerk}}};
 }
 
-/// The duration at which the speed of the reach is least: before, the reach is concave, after it
-/// convex up to the cruise. It lies where both peaks have the same sign, see `at`.
+/// The duration at which `at` has its least speed: the way is concave in the duration before, and
+/// convex after it up to the cruise. Both peaks have the same sign there.
 double FarthestMotions::bend_time() const noexcept {
   const double r = joint_.inverse_jerk, a = joint_.a_max, gain = std::abs(gain_);
   constexpr double kSqrt3 = 1.7320508075688772;
@@ -145,10 +145,7 @@ bool FarthestMotions::far_enough(double duration, double way) const noexcept {
 
 double FarthestMotions::first_far_enough(double from, double until) const noexcept {
   Value value = at(from);
-  // What rounding alone may leave: both ends' velocities over the time, and the way itself.
-  const double noise =
-      16 * kEps * (std::abs(joint_.way) + from * (std::abs(joint_.v0) + std::abs(joint_.v1)));
-  if (value.way >= joint_.way - noise) return from;
+  if (far_enough(from, value.way)) return from;
   if (from >= cruise_from_) return from + (joint_.way - value.way) / joint_.v_max;
   double t = from;
   const double bend = std::min(bend_time(), cruise_from_);
@@ -191,7 +188,8 @@ double FarthestMotions::first_on_convex(double from, double until, Value value) 
     value = at(t);
     (value.way < joint_.way ? low : high) = t;
     const double next = t + (joint_.way - value.way) / value.speed;
-    if (std::abs(next - t) <= 2 * kEps * t || low >= high * (1 - 2 * kEps)) return next;
+    if (std::abs(next - t) <= 2 * kEps * t) return next;
+    if (low >= high * (1 - 2 * kEps)) return high;
     t = next;
   }
   return t;
