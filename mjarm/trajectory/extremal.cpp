@@ -140,7 +140,7 @@ bool FarthestMotions::far_enough(double duration, double way) const noexcept {
   const double a = std::abs(joint_.a0) + std::abs(joint_.a1);
   const double scale =
       std::abs(joint_.way) + duration * (std::abs(joint_.v0) + std::abs(joint_.v1) + duration * a);
-  return way >= joint_.way - joint_.noise - kRounding * scale;
+  return way >= joint_.way - joint_.noise - 0.01 * kRounding * scale;
 }
 
 double FarthestMotions::first_far_enough(double from, double until) const noexcept {
