@@ -32,13 +32,16 @@ void add_options(CLI::App& app, Options& options) {
   add_outside_option(app, options.allow_outside);
 }
 
+LoadOptions load_options(const Options& options) {
+  return {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
+          .allow_outside = options.allow_outside};
+}
+
 Result<Model> load(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
-  Result<Model> model = Model::load(
-      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
-              .allow_outside = options.allow_outside});
+  Result<Model> model = Model::load(*file, load_options(options));
   if (!model) return model;
   for (const std::string& warning : model->warnings()) log_warning(warning);
   return model;
@@ -70,10 +73,11 @@ Result<int> run_check(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::app_option_missing, "FILE"));
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
-  if (options.against.empty()) return check_file(*file, options.tip, options.json);
+  const CheckOptions check{.tip = options.tip, .load = load_options(options)};
+  if (options.against.empty()) return check_file(*file, check, options.json);
   const Result<std::filesystem::path> other = find_model_file(options.against);
   if (!other) return fail(other.error());
-  return check_against(*file, *other, options.tip, options.json);
+  return check_against(*file, *other, check, options.json);
 }
 
 Run setup(CLI::App& app) {

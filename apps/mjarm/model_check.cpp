@@ -86,8 +86,8 @@ std::string to_json(const CheckReport& report) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Result<int> check_file(const fs::path& file, const std::string& tip, bool json) {
-  const Result<CheckReport> report = check_model(file, {.tip = tip});
+Result<int> check_file(const fs::path& file, const CheckOptions& options, bool json) {
+  const Result<CheckReport> report = check_model(file, options);
   if (!report) return fail(report.error());
   const std::string words = json ? to_json(*report) : to_text(*report);
   std::fwrite(words.data(), 1, words.size(), stdout);

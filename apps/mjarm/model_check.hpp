@@ -13,14 +13,14 @@ namespace mjarm::app {
 
 /// Checks `file`, prints what is found; exit code 0 where there is no error, 1 where there is, 2
 /// where the file does not load. Warnings do not change it: what works may be used.
-[[nodiscard]] Result<int> check_file(const std::filesystem::path& file, const std::string& tip,
+[[nodiscard]] Result<int> check_file(const std::filesystem::path& file, const CheckOptions& options,
                                      bool json);
 
 /// Compares the forward kinematics of two descriptions and prints the difference and its likely
 /// cause; exit code 0 where they agree to 1e-9 m and rad (masses and limits may still differ), else
-/// 1. Where `other` has no frame `tip`, its own tool frame is taken.
+/// 1. Where `other` has no frame `options.tip`, its own tool frame is taken.
 [[nodiscard]] Result<int> check_against(const std::filesystem::path& file,
-                                        const std::filesystem::path& other, const std::string& tip,
-                                        bool json);
+                                        const std::filesystem::path& other,
+                                        const CheckOptions& options, bool json);
 
 }  // namespace mjarm::app

@@ -28,8 +28,8 @@ struct Side {
   Arm arm;
 };
 
-Result<Side> load_side(const fs::path& file, const std::string& tip) {
-  Result<Model> model = Model::load(file);
+Result<Side> load_side(const fs::path& file, const LoadOptions& load, const std::string& tip) {
+  Result<Model> model = Model::load(file, load);
   if (!model) return fail(std::move(model.error()));
   Result<Arm> arm = find_arm(*model, {.tip = tip});
   if (!arm) return fail(std::move(arm.error()));
@@ -199,13 +199,13 @@ std::string to_json(const Comparison& comparison, const std::vector<FigureDiffer
 
 }  // namespace
 
-Result<int> check_against(const fs::path& file, const fs::path& other, const std::string& tip,
+Result<int> check_against(const fs::path& file, const fs::path& other, const CheckOptions& check,
                           bool json) {
-  const Result<Side> first = load_side(file, tip);
+  const Result<Side> first = load_side(file, check.load, check.tip);
   if (!first) return fail(first.error());
   // The other description may call its frames differently.
-  Result<Side> second = load_side(other, tip);
-  if (!second && !tip.empty()) second = load_side(other, "");
+  Result<Side> second = load_side(other, check.load, check.tip);
+  if (!second && !check.tip.empty()) second = load_side(other, check.load, "");
   if (!second) return fail(second.error());
   const CompareOptions options;
   const Result<Comparison> comparison = compare_arms(first->arm, second->arm, options);

@@ -57,6 +57,22 @@ TEST(ModelCheck, AFileThatDoesNotLoadHasItsOwnExitCode) {
   EXPECT_EQ(mjarm({"model", "check"}).exit_code, 2);
 }
 
+TEST(ModelCheck, FilesOutsideAreReadOnRequest) {
+  const support::TempFolder folder;
+  const std::string file = folder.write("link.xml", "<body><geom size=\"0.1\"/></body>").string();
+  const std::string model = folder
+                                .write("inner/model.xml", "<mujoco><worldbody><include file=\"" +
+                                                              file + "\"/></worldbody></mujoco>")
+                                .string();
+  const auto refused = mjarm({"model", "check", model});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(only_line(refused).find("--allow-outside"), std::string::npos) << refused.err;
+  const auto read = mjarm({"model", "check", model, "--allow-outside"});
+  EXPECT_NE(read.out.find("[arm_missing]"), std::string::npos) << read.out << read.err;
+  const auto compared = mjarm({"model", "check", "ur5e", "--against", model, "--allow-outside"});
+  EXPECT_EQ(compared.err.find("--allow-outside"), std::string::npos) << compared.err;
+}
+
 TEST(ModelCheck, AgainstFindsTheTurnedBase) {
   const std::string urdf = model_file("universal_robots_ur5e/ur5e.urdf");
   const auto result = mjarm({"model", "check", "ur5e", "--against", urdf, "--json"});

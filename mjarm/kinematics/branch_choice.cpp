@@ -139,7 +139,7 @@ IkFailure BranchChoice::failure(const Branches& branches) noexcept {
   }
   out.code = branches.why;
   out.shape = branches.shape;
-  out.amount = branches.amount;
+  if (out.code != IkErrc::no_convergence) out.amount = branches.amount;
   out.bound = branches.bound;
   out.best = measure(place(branches.best).q);
   return out;

@@ -43,10 +43,13 @@ TEST_P(PublicArms, PosesAreFoundAgain) {
 
 INSTANTIATE_TEST_SUITE_P(
     Public, PublicArms,
-    ::testing::Values(PublicArm{"Ur5", "ur_description/urdf/ur5_robot.urdf", ""},
-                      PublicArm{"XArm7", "xarm_description/urdf/xarm7.urdf", ""},
-                      PublicArm{"So100", "so_arm_description/urdf/so100.urdf", ""},
-                      PublicArm{"Z1", "z1_description/urdf/z1.urdf", ""}),
+    ::testing::Values(
+        PublicArm{"Ur5", "ur_description/urdf/ur5_robot.urdf", ""},
+        PublicArm{"XArm7", "xarm_description/urdf/xarm7.urdf", ""},
+        PublicArm{"So100", "so_arm_description/urdf/so100.urdf", ""},
+        PublicArm{"Z1", "z1_description/urdf/z1.urdf", ""},
+        PublicArm{"Tiago", "tiago_description/robots/tiago_no_hand.urdf", "wrist_ft_tool_link"},
+        PublicArm{"TalosArm", "talos_data/robots/talos_left_arm.urdf", "gripper_left_base_link"}),
     [](const auto& arm) { return std::string(arm.param.label); });
 
 }  // namespace

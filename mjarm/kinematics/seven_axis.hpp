@@ -45,7 +45,8 @@ class SevenAxis {
 
   /// Appends answers within the limits, searched over the whole range of the last joint: the one
   /// nearest to the seed first, and all that the sampling met where `query.all` is set. Where none
-  /// is within the limits, the configuration that breaks them least. Never allocates.
+  /// is within the limits, the sample of a whole turn of the last joint that breaks them least, by
+  /// the cosine of the angle beyond. Never allocates.
   void branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept;
 
   [[nodiscard]] const SevenGeometry& geometry() const noexcept { return geometry_; }

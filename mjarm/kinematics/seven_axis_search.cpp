@@ -261,19 +261,18 @@ void SevenSearch::descend_valleys() noexcept {
   for (int i = 0; i < valley_count_ && within_count_ == 0; ++i) follow(valleys_[i]);
 }
 
-/// The same once more with closer samples, for a pose that seems to break a limit. Where no elbow
-/// is within the limits of joint 4, looks for the least breach.
+/// The same once more with closer samples, for a pose that seems to break a limit. Where that finds
+/// nothing, looks for the least breach, of joint 7 too.
 void SevenSearch::search_finely() noexcept {
   valley_count_ = 0;
   if (least_count_ > 0 && least_[0].rank < kHopeless) {
     for (int i = 0; i < interval_count_; ++i) scan(intervals_[i], kSpacing / 8);
     descend_valleys();
   }
-  if (within_count_ > 0 || least_count_ > 0) return;
+  if (within_count_ > 0) return;
   goal_.beyond_limits = true;
-  scan({std::max(chain_.lower[6], query_.near[6] - kPi),
-        std::min(chain_.upper[6], query_.near[6] + kPi)},
-       2 * kSpacing);
+  const double middle = chain_.full_turn[6] ? query_.near[6] : g_.middle[6];
+  scan({middle - kPi, middle + kPi}, 2 * kSpacing);
 }
 
 /// Narrows a valley, eight samples at a time, until an answer is met or none can be there.

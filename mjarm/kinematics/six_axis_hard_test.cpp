@@ -1,39 +1,26 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <map>
 
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
-#include "mjarm/kinematics/numeric_search_internal.hpp"
-#include "mjarm/kinematics/six_axis.hpp"
+#include "mjarm/kinematics/hard_negatives_test.hpp"
+#include "mjarm/kinematics/long_tests_test.hpp"
 
-/// Poses that are near what the arm can reach and yet out of it, confirmed by a search that shares
-/// nothing with the closed form but the description of the arm.
 namespace mjarm {
 namespace {
 
+using testing::nothing_found;
 using testing::random_q;
 
-int negatives() { return std::getenv("MJARM_LONG_TESTS") != nullptr ? 1000 : 150; }
-
-/// True where descents from the seed and 200 random starts all end short of the pose.
-bool nothing_found(const IkSolver& ik, const Pose& X_WT) {
-  IkOptions options;
-  options.restarts = 200;
-  const detail::IkGoal goal{X_WT, ik.arm().home};
-  return !detail::search_numeric(ik.chain(), options, ik.length(), goal).has_value();
-}
+int negatives() { return testing::rounds(150, 1000); }
 
 /// Poses near random reachable ones that the solver refuses.
 std::vector<std::pair<Pose, IkFailure>> refused_near(const IkSolver& ik, double place, double turn,
                                                      int count, Rng& rng) {
   std::vector<std::pair<Pose, IkFailure>> out;
   while (static_cast<int>(out.size()) < count) {
-    Pose X = fk(ik.arm(), view(random_q(ik.arm(), rng)));
-    const auto vec = [&] { return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()); };
-    X.p += place * vec();
-    X.R = rotation_exp(turn * vec()) * X.R;
+    const Pose X = testing::moved(fk(ik.arm(), view(random_q(ik.arm(), rng))), place, turn, rng);
     const auto answer = ik.solve(X, view(random_q(ik.arm(), rng)));
     if (!answer) out.emplace_back(X, answer.error());
   }
@@ -82,8 +69,7 @@ TEST(SixAxisHard, TheWrongWayRoundAtTheRim) {
   while (told < negatives()) {
     JointVec q = random_q(arm, rng);
     q[2] = rng.uniform(-0.2, 0.2);
-    Pose X = fk(arm, view(q));
-    X.R = rotation_exp(Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal())) * X.R;
+    const Pose X = testing::moved(fk(arm, view(q)), 0, 1, rng);
     const auto answer = ik.solve(X, view(arm.home));
     if (answer) continue;
     ++told;
@@ -100,7 +86,7 @@ TEST(SixAxisHard, InsideTheCylinder) {
   for (int i = 0; i < negatives(); ++i) {
     const double r = rng.uniform(0, 0.1339), around = rng.uniform(-3.2, 3.2);
     Pose X;
-    X.R = rotation_exp(2 * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()));
+    X.R = rotation_exp(2 * testing::normal_vector(rng));
     // The wrist centre lies 0.1 m behind the tool.
     X.p = Eigen::Vector3d(r * std::cos(around), r * std::sin(around), rng.uniform(-0.4, 0.9)) +
           0.1 * X.R.col(2);

@@ -5,26 +5,23 @@
 #include <limits>
 
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/path/curve_make_internal.hpp"
 
 namespace mjarm {
-namespace {
 
-/// True where the tool passes from one piece to the next without a jump in its velocity.
-bool smooth_joint(const CurvePiece& before, const CurvePiece& after) {
+bool detail::smooth_joint(const CurvePiece& before, const CurvePiece& after) {
   constexpr double kTangent = 1e-7, kRate = 1e-6;
-  if (before.round || after.round) return true;  // the halves of an arc
   if (before.length == 0 || after.length == 0) return false;
-  return (before.u - after.u).norm() < kTangent &&
-         (before.w1 - after.w1).norm() <= kRate * (1 + before.rate);
+  return (before.direction(before.span) - after.direction(0)).norm() < kTangent &&
+         (before.turn_rate(before.span) - after.turn_rate(0)).norm() <= kRate * (1 + before.rate);
 }
 
-}  // namespace
-
-Curve::Curve(std::vector<CurvePiece> pieces) : pieces_(std::move(pieces)) {
+Curve::Curve(std::vector<CurvePiece> pieces, std::vector<CurveBlend> blends)
+    : pieces_(std::move(pieces)), blends_(std::move(blends)) {
   double s = 0;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     pieces_[i].start = s;
-    if (i == 0 || !smooth_joint(pieces_[i - 1], pieces_[i])) corners_.push_back(s);
+    if (i == 0 || !detail::smooth_joint(pieces_[i - 1], pieces_[i])) corners_.push_back(s);
     s += pieces_[i].span;
   }
   corners_.push_back(s);
@@ -59,6 +56,8 @@ Pose Curve::at(double s) const {
 
 const std::vector<double>& Curve::corners() const noexcept { return corners_; }
 
+const std::vector<CurveBlend>& Curve::blends() const noexcept { return blends_; }
+
 std::vector<double> Curve::stations(double step, double angle) const {
   std::vector<double> s{0.0};
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -74,7 +73,9 @@ std::vector<double> Curve::stations(double step, double angle) const {
 Curve::Nearest Curve::nearest(const Eigen::Vector3d& p) const {
   Nearest best{0, std::numeric_limits<double>::infinity()};
   for (const CurvePiece& piece : pieces_) {
-    const double x = piece.nearest(p);
+    // No point of a piece is farther from its first one than its length.
+    if ((piece.p0 - p).norm() - piece.length > best.distance) continue;
+    const double x = piece.nearest(p, best.distance);
     const double distance = (piece.at(x).p - p).norm();
     if (distance < best.distance) best = {piece.start + x, distance};
   }

@@ -39,6 +39,12 @@ std::vector<Curve> random_curves(Rng& rng) {
   curves.push_back(*Curve::arc(random_pose(rng), random_pose(rng), random_pose(rng)));
   curves.push_back(*Curve::polyline(
       std::vector<Pose>{random_pose(rng), random_pose(rng), random_pose(rng), random_pose(rng)}));
+  curves.push_back(*Curve::circle(random_pose(rng), random_pose(rng), random_pose(rng)));
+  curves.push_back(*Curve::polyline(
+      std::vector<Pose>{random_pose(rng), random_pose(rng), random_pose(rng), random_pose(rng)},
+      rng.uniform(0.01, 1)));
+  curves.push_back(*Curve::spline(
+      std::vector<Pose>{random_pose(rng), random_pose(rng), random_pose(rng), random_pose(rng)}));
   curves.push_back(*Curve::ellipse({random_vec(rng, 1), rng.uniform(0.01, 1), rng.uniform(0.01, 1),
                                     random_vec(rng, 1), from_euler(random_vec(rng, 3))}));
   return curves;
@@ -129,6 +135,40 @@ TEST(Curve, ArcTurnsWithoutJumpsOfItsRate) {
     EXPECT_NEAR(arc.turn(), angle_between(from.R, via.R) + angle_between(via.R, to.R), 1e-9);
     EXPECT_THAT(arc.corners(), testing::SizeIs(2));
   }
+}
+
+TEST(Curve, CircleIsAWholeRoundTrip) {
+  Rng rng(9);
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 100; ++i) {
+    const Pose poses[] = {random_pose(rng), random_pose(rng), random_pose(rng)};
+    const Curve circle = *Curve::circle(poses[0], poses[1], poses[2]);
+    const Curve arc = *Curve::arc(poses[0], poses[1], poses[2]);
+    EXPECT_TRUE(circle.closed());
+    EXPECT_THAT(circle.corners(), testing::SizeIs(2));
+    // The centre lies opposite to every point, half a lap away.
+    const Vec center = 0.5 * (circle.at(0).p + circle.at(0.5 * circle.end()).p);
+    const double radius = (poses[0].p - center).norm();
+    EXPECT_NEAR(circle.length(), 2 * kPi * radius, 1e-9 * radius);
+    double last = -1;
+    for (const Pose& X : poses) {
+      const Curve::Nearest nearest = circle.nearest(X.p);
+      EXPECT_LT(angle_between(circle.at(nearest.s).R, X.R), 1e-6);
+      EXPECT_LT(nearest.distance, 1e-9);
+      EXPECT_NEAR((X.p - center).norm(), radius, 1e-9 * radius);
+      EXPECT_GT(nearest.s, last);
+      last = nearest.s;
+    }
+    EXPECT_LT((circle.at(0.3 * arc.end()).p - arc.at(0.3 * arc.end()).p).norm(), 1e-12);
+    const auto rate = [&](double s) -> Vec {
+      return rotation_log(circle.at(s).R.transpose() * circle.at(s + kStep).R) / kStep;
+    };
+    EXPECT_LT((rate(0) - rate(circle.end() - kStep)).norm(), 1e-3 * (1 + rate(0).norm()));
+  }
+  const Curve round = *Curve::circle(Vec(1, 2, 3), Vec::UnitZ(), 0.5, from_euler({1, 0, 0}));
+  EXPECT_LT((round.at(0).p - Vec(1.5, 2, 3)).norm(), 1e-15);
+  EXPECT_LT((round.at(0.25 * round.end()).p - Vec(1, 2.5, 3)).norm(), 1e-12);
+  EXPECT_LT(angle_between(round.at(1).R, from_euler({1, 0, 0})), 1e-12);
 }
 
 TEST(Curve, StationsAreNearEachOther) {
@@ -222,8 +262,7 @@ TEST(Curve, RefusesWhatIsNoCurve) {
   EXPECT_THAT(complaint(Curve::line(zero, at_point(kNaN, 0, 0))), HasSubstr("pose 1"));
   EXPECT_THAT(complaint(Curve::line({Vec::Zero(), 2 * Eigen::Matrix3d::Identity()}, one)),
               HasSubstr("pose 0"));
-  EXPECT_THAT(complaint(Curve::line(at_point(-1e308, 0, 0), at_point(1e308, 0, 0))),
-              HasSubstr("finite"));
+  EXPECT_THAT(complaint(Curve::line(zero, at_point(1e308, 0, 0))), HasSubstr("pose 1"));
   EXPECT_THAT(complaint(Curve::polyline({})), HasSubstr("at least 2"));
   EXPECT_THAT(complaint(Curve::polyline(std::vector<Pose>{zero})), HasSubstr("1"));
   EXPECT_THAT(complaint(Curve::polyline(std::vector<Pose>{zero, one, one, two})),
@@ -232,6 +271,13 @@ TEST(Curve, RefusesWhatIsNoCurve) {
   EXPECT_THAT(complaint(Curve::arc(zero, two, one)), HasSubstr("one line"));
   EXPECT_THAT(complaint(Curve::arc(zero, at_point(1, 1, 0), zero)), HasSubstr("0 and 2"));
   EXPECT_THAT(complaint(Curve::arc(zero, zero, one)), HasSubstr("0 and 1"));
+  EXPECT_THAT(complaint(Curve::circle(zero, one, two)), HasSubstr("one line"));
+  EXPECT_THAT(complaint(Curve::circle(zero, at_point(0, kNaN, 0), two)), HasSubstr("pose 1"));
+  const Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  EXPECT_THAT(complaint(Curve::circle(zero.p, one.p, 0, R)), HasSubstr("radius is 0"));
+  EXPECT_THAT(complaint(Curve::circle(zero.p, one.p, kNaN, R)), HasSubstr("radius is nan"));
+  EXPECT_THAT(complaint(Curve::circle(zero.p, zero.p, 1, R)), HasSubstr("normal"));
+  EXPECT_THAT(complaint(Curve::ellipse({.a = 1e300})), HasSubstr("semi-axis a"));
   EXPECT_THAT(complaint(Curve::ellipse({.a = 0})), HasSubstr("semi-axis a is 0"));
   EXPECT_THAT(complaint(Curve::ellipse({.b = -1})), HasSubstr("semi-axis b is -1"));
   EXPECT_THAT(complaint(Curve::ellipse({.a = kNaN})), HasSubstr("semi-axis a"));

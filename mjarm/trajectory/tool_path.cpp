@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
@@ -60,16 +62,18 @@ Result<Trajectory> time_tool_path(const JointPath& path, std::span<const double>
   const detail::PathBounds tool{options.tool_speed, options.tool_accel,
                                 options.tool_accel / options.tool_ramp};
   const JointVec zero = JointVec::Zero(path.q[0].size());
-  Result<Trajectory> motion = Trajectory::through({0.0}, {{path.q[0], zero, zero}});
-  for (std::size_t i = 0; motion && i + 1 < rests->size(); ++i) {
+  const Result<Trajectory> rest = Trajectory::through({0.0}, {{path.q[0], zero, zero}});
+  if (!rest) return fail(rest.error());
+  std::vector<Trajectory> parts{*rest};
+  for (std::size_t i = 0; i + 1 < rests->size(); ++i) {
     const std::size_t first = (*rests)[i], count = (*rests)[i + 1] - first + 1;
     const CubicSpline spline(std::span(path.s).subspan(first, count),
                              std::span(path.q).subspan(first, count));
-    const Result<Trajectory> part = detail::time_smoothly(spline, *bounds, tool);
-    if (!part) return fail(part.error());
-    motion->append(*part);
+    Result<Trajectory> part = detail::time_smoothly(spline, *bounds, tool);
+    if (!part) return fail(std::move(part.error()));
+    parts.push_back(std::move(*part));
   }
-  return motion;
+  return Trajectory::chain(parts);
 }
 
 }  // namespace mjarm

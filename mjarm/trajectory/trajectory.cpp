@@ -9,6 +9,8 @@
 namespace mjarm {
 namespace {
 
+constexpr double kJoined = 1e-9;  // [rad or m] between the end of a leg and the start of the next
+
 bool sound(const JointState& state, Eigen::Index dof) {
   return dof > 0 && state.q.size() == dof && state.v.size() == dof && state.a.size() == dof &&
          state.q.allFinite() && state.v.allFinite() && state.a.allFinite();
@@ -112,6 +114,22 @@ Result<Trajectory> Trajectory::from_jerks(const JointState& start,
   return trajectory;
 }
 
+Result<Trajectory> Trajectory::chain(std::span<const Trajectory> legs) {
+  if (legs.empty()) return fail(Errc::bad_input, text(msg::trajectory_bad_chain));
+  Trajectory whole = legs[0];
+  for (const Trajectory& leg : legs.subspan(1)) {
+    if (leg.dof() != whole.dof() ||
+        (leg.first_.q - whole.last_.q).lpNorm<Eigen::Infinity>() > kJoined) {
+      return fail(Errc::bad_input, text(msg::trajectory_bad_chain));
+    }
+    for (const double start : leg.starts_) whole.starts_.push_back(whole.duration_ + start);
+    whole.c_.insert(whole.c_.end(), leg.c_.begin(), leg.c_.end());
+    whole.last_ = leg.last_;
+    whole.duration_ += leg.duration_;
+  }
+  return whole;
+}
+
 double Trajectory::duration() const noexcept { return duration_; }
 
 int Trajectory::dof() const noexcept { return static_cast<int>(last_.q.size()); }
@@ -122,13 +140,6 @@ Trajectory::Piece Trajectory::piece(std::size_t i) const {
   return {starts_[i],
           end - starts_[i],
           {c_.data() + static_cast<Eigen::Index>(i) * size, last_.q.size(), 6}};
-}
-
-void Trajectory::append(const Trajectory& next) {
-  for (const double start : next.starts_) starts_.push_back(duration_ + start);
-  c_.insert(c_.end(), next.c_.begin(), next.c_.end());
-  duration_ += next.duration_;
-  last_ = next.last_;
 }
 
 Trajectory Trajectory::stretched(double factor) const {
