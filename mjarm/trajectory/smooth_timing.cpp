@@ -10,8 +10,12 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kSpeedCells = 800;  // of the path for the reference
-constexpr double kTimeCells = 400;   // of the time law at least
+/// Cells of the time law: many between two waypoints, as far as there are not too many of those.
+double time_cells(const CubicSpline& spline) {
+  constexpr double kFewest = 400, kEach = 40, kMost = 1500;
+  const auto pieces = static_cast<double>(spline.knots().size() - 1);
+  return std::max(std::clamp(kEach * pieces, kFewest, kMost), pieces);
+}
 
 /// A reference motion along the path, sampled where the time law has its knots.
 struct Reference {
@@ -36,10 +40,10 @@ double time_of(const SmoothProfile& smooth, double s, double from, double to) {
 }
 
 Reference reference_along(const CubicSpline& spline, const SmoothProfile& smooth,
-                          const SpeedProfile& profile, double window) {
+                          const SpeedProfile& profile, double window, double cells) {
   const std::vector<double>& knots = spline.knots();
-  const double longest = smooth.duration() / kTimeCells;
-  const double fewest = static_cast<double>(knots.size()) > 0.5 * kTimeCells ? 1 : 2;
+  const double longest = smooth.duration() / cells;
+  const double fewest = 2 * static_cast<double>(knots.size()) > cells ? 1 : 2;
   Reference reference;
   double from = 0;
   std::size_t cell = 0;
@@ -122,15 +126,18 @@ double excess(const Reference& reference, const TimeLaw& law, const PathBounds& 
 
 Result<Trajectory> time_smoothly(const CubicSpline& spline, const Bounds& bounds,
                                  const PathBounds& path_bounds) {
-  const SpeedProfile profile =
-      fastest_profile(spline, static_cast<std::size_t>(kSpeedCells), bounds, path_bounds);
-  // Long enough for jerks of the size allowed, and for the time law to follow.
+  constexpr std::size_t kSpeedCells = 800;  // of the path for the reference
+  constexpr double kWindow = 120;           // cells of the time law
+  const SpeedProfile profile = fastest_profile(spline, kSpeedCells, bounds, path_bounds);
+  // So long that the reference is smooth compared with the cells, as the time law has to be; and
+  // that its jerks are of the size allowed.
   const double ramp = std::max(bounds.a.cwiseQuotient(bounds.j).maxCoeff(),
                                path_bounds.acceleration / path_bounds.jerk);
+  const double cells = time_cells(spline);
   const double window =
-      std::clamp(2 * ramp, 4 * profile.duration() / kTimeCells, 0.5 * profile.duration());
+      std::min(std::max(2 * ramp, kWindow * profile.duration() / cells), 0.5 * profile.duration());
   const SmoothProfile smooth(profile, window);
-  const Reference reference = reference_along(spline, smooth, profile, window);
+  const Reference reference = reference_along(spline, smooth, profile, window, cells);
   const TimeLaw law = retime(problem_of(spline, reference, bounds, path_bounds));
 
   std::vector<JointState> knots;
