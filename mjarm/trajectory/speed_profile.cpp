@@ -14,49 +14,48 @@ struct Bound {
 
 /// A path at one of its grid points.
 struct GridPoint {
-  JointVec d;  // dq/ds
-  JointVec e;  // d2q/ds2
+  const double* d;  // dq/ds of each joint
+  const double* e;  // d2q/ds2
 };
 
 /// Bounds on the path acceleration a for a given u at one place: at least -at + by u, at most at +
 /// by u for each of some rows, and u at most u_max. Upper bounds together are concave in u, lower
-/// ones convex.
-template <int kRows>
+/// ones convex. The rows lie in memory of the caller.
 class AccelBounds {
  public:
-  /// Bounds at a grid point.
-  AccelBounds(const GridPoint& p, const Bounds& bounds, const PathBounds& path_bounds) {
+  AccelBounds(double* at, double* by) : at_(at), by_(by) {}
+  /// Adds the bounds at a grid point.
+  void add_point(const GridPoint& p, const Bounds& bounds, const PathBounds& path_bounds) {
     u_max_ = path_bounds.speed * path_bounds.speed;
     add(1, 0, path_bounds.acceleration);
-    for (Eigen::Index j = 0; j < p.d.size(); ++j) {
+    for (Eigen::Index j = 0; j < bounds.v.size(); ++j) {
       const double v = bounds.v[j] / std::abs(p.d[j]);
       u_max_ = std::min(u_max_, v * v);
       add(p.d[j], p.e[j], bounds.a[j]);
     }
     close_u();
   }
-  /// Room for more rows.
-  template <int kOther>
-  explicit AccelBounds(const AccelBounds<kOther>& other)
-      : count_(other.count_), u_max_(other.u_max_), scale_(other.scale_) {
-    std::copy_n(other.at_, count_, at_);
-    std::copy_n(other.by_, count_, by_);
-  }
-  /// Adds the bounds at the end `p` of a cell of length `h` through which a stays constant.
-  void add_end(const GridPoint& p, const Bounds& bounds, double h, double u_end) {
-    for (Eigen::Index j = 0; j < p.d.size(); ++j)
-      add(p.d[j] + 2 * h * p.e[j], p.e[j], scale_ * bounds.a[j]);
-    // 0 <= u + 2 h a <= u_end.
-    add(2 * h, 1, u_end);
+  /// Adds `start` and the bounds at the end `p` of a cell of length `h` through which a stays
+  /// constant.
+  void add_cell(const AccelBounds& start, const GridPoint& p, const Bounds& bounds, double h,
+                double u_end) {
+    std::copy_n(start.at_, start.count_, at_);
+    std::copy_n(start.by_, start.count_, by_);
+    count_ = start.count_;
+    u_max_ = start.u_max_;
+    for (Eigen::Index j = 0; j < bounds.v.size(); ++j) {
+      add(p.d[j] + 2 * h * p.e[j], p.e[j], start.scale_ * bounds.a[j]);
+    }
+    add(2 * h, 1, u_end);  // 0 <= u + 2 h a <= u_end
     close_u();
   }
-
   /// Multiplies all limits: of accelerations, and of u as the square of speeds.
   void scale(double factor) {
     for (int k = 0; k < count_; ++k) at_[k] *= factor;
     u_max_ *= factor;
     scale_ *= factor;
   }
+
   /// Largest u that leaves some acceleration between the bounds.
   [[nodiscard]] double u_max() const { return u_max_; }
   [[nodiscard]] Bound highest(double u) const {
@@ -77,8 +76,6 @@ class AccelBounds {
   }
 
  private:
-  template <int>
-  friend class AccelBounds;
   /// |d a + e u| <= limit
   void add(double d, double e, double limit) {
     constexpr double kStill = 1e-10;  // less motion per unit of path does not count
@@ -98,13 +95,17 @@ class AccelBounds {
     }
   }
 
-  double at_[kRows], by_[kRows];
+  double *at_, *by_;
   int count_ = 0;
   double u_max_ = 0;
   double scale_ = 1;
 };
-using PointBounds = AccelBounds<kMaxDof + 1>;
-using CellBounds = AccelBounds<2 * kMaxDof + 2>;
+
+/// The same with rows of its own, enough for both ends of a cell.
+struct CellBounds {
+  double at[2 * kMaxDof + 2], by[2 * kMaxDof + 2];
+  AccelBounds bounds{at, by};
+};
 
 /// Largest u in [0, `from`] with u + h * bound(u).a <= most, for a convex left side that is below
 /// `most` at 0; Newton's method from the right.
@@ -126,24 +127,25 @@ class Grid {
   Grid(const CubicSpline& spline, std::size_t cells, const Bounds& bounds,
        const PathBounds& path_bounds)
       : spline_(spline), bounds_(bounds) {
-    const std::vector<double>& knots = spline.knots();
-    const double largest = (spline.end() - spline.start()) / static_cast<double>(cells);
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-      const double length = knots[i + 1] - knots[i];
-      const auto count = static_cast<std::size_t>(std::max(2.0, std::ceil(length / largest)));
-      for (std::size_t k = 0; k < count; ++k) {
-        const bool starts = i == 0 && k == 0, ends = i + 2 == knots.size() && k + 1 == count;
-        for (int part = 0; part < (starts || ends ? kParts : 1); ++part) {
-          const double share = static_cast<double>(part) / kParts;
-          const double within = starts ? share * share : share * (2 - share);
-          add(knots[i] + length * ((static_cast<double>(k) + within) / static_cast<double>(count)),
-              i, path_bounds);
-        }
-      }
+    place_points(cells);
+    const auto dof = static_cast<std::size_t>(spline.dof());
+    const std::size_t n = s_.size(), rows = dof + 1;
+    d_.resize(n * dof);
+    e_.resize(n * dof);
+    at_.resize(n * rows);
+    by_.resize(n * rows);
+    limits_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const SplinePoint p = spline.at(s_[i], piece_[i]);
+      std::copy_n(p.d.data(), dof, &d_[i * dof]);
+      std::copy_n(p.e.data(), dof, &e_[i * dof]);
+      limits_.emplace_back(&at_[i * rows], &by_[i * rows]);
+      limits_.back().add_point(point(i), bounds, path_bounds);
     }
-    add(knots.back(), knots.size() - 2, path_bounds);
-    for (std::size_t i = 0; i + 1 < s_.size(); ++i) constant_.push_back(turns_in(i));
+    for (std::size_t i = 0; i + 1 < n; ++i) constant_.push_back(turns_in(i));
   }
+  Grid(const Grid&) = delete;
+  Grid& operator=(const Grid&) = delete;
 
   [[nodiscard]] SpeedProfile fastest() const {
     const std::size_t n = s_.size();
@@ -160,15 +162,13 @@ class Grid {
   /// Lowers the limits where `profile` is beyond them in the middle of a cell.
   void tighten(const SpeedProfile& profile) {
     std::vector<double> factors(s_.size(), 1.0);
-    std::size_t piece = 0;
     for (std::size_t i = 0; i + 1 < s_.size(); ++i) {
-      while (spline_.knots()[piece + 1] <= s_[i]) ++piece;
       const double x = 0.5 * (profile.t[i + 1] - profile.t[i]);
       const double jump = 0.5 * (profile.a_before[i + 1] - profile.a_after[i]);
       const double a = profile.a_after[i] + jump;
       const double v = profile.v[i] + x * (profile.a_after[i] + 0.5 * jump);
       const double s = s_[i] + x * (profile.v[i] + x * (0.5 * profile.a_after[i] + jump / 6));
-      const SplinePoint p = spline_.at(s, piece);
+      const SplinePoint p = spline_.at(s, piece_[i]);
       const double over =
           std::max(v * v * p.d.cwiseAbs2().cwiseQuotient(bounds_.v.cwiseAbs2()).maxCoeff(),
                    (a * p.d + v * v * p.e).cwiseAbs().cwiseQuotient(bounds_.a).maxCoeff());
@@ -180,11 +180,30 @@ class Grid {
  private:
   static constexpr int kParts = 8;  // of the cells at rest, so that time does not leap there
 
-  void add(double s, std::size_t piece, const PathBounds& path_bounds) {
-    SplinePoint p = spline_.at(s, piece);
-    s_.push_back(s);
-    points_.push_back({std::move(p.d), std::move(p.e)});
-    limits_.emplace_back(points_.back(), bounds_, path_bounds);
+  /// Cells of about one size, all waypoints among their ends.
+  void place_points(std::size_t cells) {
+    const std::vector<double>& knots = spline_.knots();
+    const double largest = (spline_.end() - spline_.start()) / static_cast<double>(cells);
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+      const double length = knots[i + 1] - knots[i];
+      const auto count = static_cast<std::size_t>(std::max(2.0, std::ceil(length / largest)));
+      for (std::size_t k = 0; k < count; ++k) {
+        const bool starts = i == 0 && k == 0, ends = i + 2 == knots.size() && k + 1 == count;
+        for (int part = 0; part < (starts || ends ? kParts : 1); ++part) {
+          const double share = static_cast<double>(part) / kParts;
+          const double within = starts ? share * share : share * (2 - share);
+          s_.push_back(knots[i] +
+                       length * ((static_cast<double>(k) + within) / static_cast<double>(count)));
+          piece_.push_back(i);
+        }
+      }
+    }
+    s_.push_back(knots.back());
+    piece_.push_back(knots.size() - 2);
+  }
+  [[nodiscard]] GridPoint point(std::size_t i) const {
+    const std::size_t at = i * static_cast<std::size_t>(spline_.dof());
+    return {&d_[at], &e_[at]};
   }
 
   /// True where a joint turns round at about cell `i` and its limit matters. It leaves the
@@ -192,10 +211,10 @@ class Grid {
   /// constant there.
   [[nodiscard]] bool turns_in(std::size_t i) const {
     constexpr double kNear = 2, kMatters = 0.3;
-    const GridPoint &p = points_[i], &end = points_[i + 1];
+    const GridPoint p = point(i), end = point(i + 1);
     const double h = s_[i + 1] - s_[i];
     const double u = std::max(limits_[i].u_max(), limits_[i + 1].u_max());
-    for (Eigen::Index j = 0; j < p.d.size(); ++j) {
+    for (Eigen::Index j = 0; j < bounds_.a.size(); ++j) {
       const double e = std::max(std::abs(p.e[j]), std::abs(end.e[j]));
       const double d = std::min(std::abs(p.d[j]), std::abs(end.d[j]));
       if (d < kNear * h * e && e * u > kMatters * bounds_.a[j]) return true;
@@ -203,15 +222,17 @@ class Grid {
     return false;
   }
 
-  [[nodiscard]] CellBounds through(std::size_t i, double u_end) const {
-    CellBounds both(limits_[i]);
-    both.add_end(points_[i + 1], bounds_, s_[i + 1] - s_[i], u_end);
-    return both;
+  void fill(CellBounds& cell, std::size_t i, double u_end) const {
+    cell.bounds.add_cell(limits_[i], point(i + 1), bounds_, s_[i + 1] - s_[i], u_end);
   }
 
   /// Largest u at the start of cell `i` that leads to at most `u_end` at its end.
   [[nodiscard]] double backward(std::size_t i, double u_end) const {
-    if (constant_[i]) return through(i, u_end).u_max();
+    if (constant_[i]) {
+      CellBounds cell;
+      fill(cell, i, u_end);
+      return cell.bounds.u_max();
+    }
     const double h = s_[i + 1] - s_[i];
     const double middle = u_end - h * limits_[i + 1].lowest(u_end).a;
     return largest_below([&](double u) { return limits_[i].lowest(u); }, h, limits_[i].u_max(),
@@ -222,7 +243,9 @@ class Grid {
   [[nodiscard]] double forward(std::size_t i, double u, double u_end) const {
     const double h = s_[i + 1] - s_[i];
     if (constant_[i]) {
-      return std::clamp(u + 2 * h * through(i, u_end).highest(u).a, 0.0, u_end);
+      CellBounds cell;
+      fill(cell, i, u_end);
+      return std::clamp(u + 2 * h * cell.bounds.highest(u).a, 0.0, u_end);
     }
     const auto falling = [&](double x) {
       const Bound high = limits_[i + 1].highest(x);
@@ -260,8 +283,9 @@ class Grid {
   const CubicSpline& spline_;
   const Bounds& bounds_;
   std::vector<double> s_;
-  std::vector<GridPoint> points_;
-  std::vector<PointBounds> limits_;
+  std::vector<std::size_t> piece_;       // of the spline, after each grid point
+  std::vector<double> d_, e_, at_, by_;  // what points and limits refer to
+  std::vector<AccelBounds> limits_;
   std::vector<bool> constant_;  // cells
 };
 

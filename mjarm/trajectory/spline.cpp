@@ -55,14 +55,19 @@ SplinePoint CubicSpline::at(double s, std::size_t i) const {
   const double h = s_[i + 1] - s_[i];
   const double x = std::clamp(s - s_[i], 0.0, h), y = h - x;
   // Written about both ends, so that the waypoints are met exactly.
-  SplinePoint point;
-  point.q = (y / h) * q_[i] + (x / h) * q_[i + 1] -
-            x * y / (6 * h) * ((h + y) * e_[i] + (h + x) * e_[i + 1]);
-  point.d = (q_[i + 1] - q_[i]) / h +
-            ((h * h - 3 * y * y) * e_[i] + (3 * x * x - h * h) * e_[i + 1]) / (6 * h);
-  point.e = (y / h) * e_[i] + (x / h) * e_[i + 1];
-  point.f = (e_[i + 1] - e_[i]) / h;
-  return point;
+  const double inverse = 1 / h, left = y / h, right = x / h, sixth = inverse / 6;
+  const double q_left = x * y * sixth * (h + y), q_right = x * y * sixth * (h + x);
+  const double d_left = (h * h - 3 * y * y) * sixth, d_right = (3 * x * x - h * h) * sixth;
+  const Eigen::Index dof = q_[i].size();
+  SplinePoint p{JointVec(dof), JointVec(dof), JointVec(dof), JointVec(dof)};
+  for (Eigen::Index j = 0; j < dof; ++j) {
+    const double q0 = q_[i][j], q1 = q_[i + 1][j], e0 = e_[i][j], e1 = e_[i + 1][j];
+    p.q[j] = left * q0 + right * q1 - (q_left * e0 + q_right * e1);
+    p.d[j] = (q1 - q0) * inverse + d_left * e0 + d_right * e1;
+    p.e[j] = left * e0 + right * e1;
+    p.f[j] = (e1 - e0) * inverse;
+  }
+  return p;
 }
 
 }  // namespace mjarm::detail

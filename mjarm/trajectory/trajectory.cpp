@@ -152,9 +152,9 @@ Trajectory Trajectory::stretched(double factor) const {
   }
   const auto dof = static_cast<std::size_t>(last_.q.size());
   for (std::size_t i = 0; i < c_.size();) {
-    double power = 1;
-    for (int k = 0; k < 6; ++k, power *= factor) {
-      for (std::size_t j = 0; j < dof; ++j) slow.c_[i++] /= power;
+    double share = 1;
+    for (int k = 0; k < 6; ++k, share /= factor) {
+      for (std::size_t j = 0; j < dof; ++j) slow.c_[i++] *= share;
     }
   }
   return slow;
