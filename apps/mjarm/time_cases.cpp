@@ -45,11 +45,11 @@ Result<JointLimits> limits_of(const json& file) {
   }
   std::array<JointVec, 3> values;
   for (std::size_t k = 0; k < 3; ++k) {
-    Result<JointVec> list =
-        joints_of(*limits, std::string(1, "vaj"[k]), static_cast<Eigen::Index>(dof));
+    const std::string key(1, "vaj"[k]);
+    Result<JointVec> list = joints_of(*limits, key, static_cast<Eigen::Index>(dof));
     if (!list) return fail(list.error().code, "limits: " + list.error().what);
     if (!(list->minCoeff() > 0)) {
-      return fail(Errc::bad_input, text(msg::app_time_bad_limit, "vaj"[k]));
+      return fail(Errc::bad_input, text(msg::app_time_bad_limit, key));
     }
     values[k] = *list;
   }
