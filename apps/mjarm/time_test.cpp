@@ -83,22 +83,22 @@ TEST(Time, EveryProblemKeepsItsLimits) {
 }
 
 TEST(Time, AnswersOneRequestAndLeavesOutTimes) {
-  const std::vector<std::string> arguments = {"time",
-                                              "--problem",
-                                              "path_vaj",
-                                              "--robot",
-                                              "ur5e",
-                                              "--points",
-                                              "0,-90deg,90deg,0,0,0;0.5,-1,1,0,0,0;1,-1,1,1,0,0",
-                                              "--no-timing"};
-  const auto first = mjarm(arguments);
+  const std::vector<std::string> request = {"time",
+                                            "--problem",
+                                            "path_vaj",
+                                            "--robot",
+                                            "ur5e",
+                                            "--points",
+                                            "0,-90deg,90deg,0,0,0;0.5,-1,1,0,0,0;1,-1,1,1,0,0",
+                                            "--no-timing"};
+  const auto first = mjarm(request);
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const json answer = json::parse(first.out);
   EXPECT_EQ(answer.at("ok"), true);
   EXPECT_GT(answer.at("duration").get<double>(), 0.5);
   EXPECT_FALSE(answer.contains("us"));
   EXPECT_FALSE(answer.contains("samples"));
-  EXPECT_EQ(mjarm(arguments).out, first.out);
+  EXPECT_EQ(mjarm(request).out, first.out);
 }
 
 TEST(Time, ACaseThatCannotBeDoneIsToldApart) {
