@@ -62,7 +62,7 @@ function(mjarm_tests target)
   target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing MuJoCo::mujoco
                                           GTest::gtest_main GTest::gmock)
   gtest_discover_tests(${target} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
-                       DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+                       DISCOVERY_TIMEOUT 60)
 endfunction()
 
 # Sets the flags of the kernels for wider registers, and drops them where the machine has none.

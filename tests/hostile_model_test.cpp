@@ -11,6 +11,7 @@
 #include "mjarm/model/model.hpp"
 #include "tests/hostile_files.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace mjarm {
 namespace hostile {
@@ -23,13 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using hostile::HostileFile;
+using support::kSanitized;
 using ::testing::HasSubstr;
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // they take many times the memory and the time
-#else
-constexpr bool kSanitized = false;
-#endif
 
 /// All that MuJoCo knows about a model.
 std::string bytes_of(const Model& model) {

@@ -61,12 +61,14 @@ start_display() {
   fi
 }
 
-# run_ctest PRESET: runs every test and adds to the counts.
+# run_ctest PRESET [OPTION...]: runs every test, or those that options of ctest name, and adds to the
+# counts.
 run_ctest() {
   local folder=$root/build/$1 results=$root/build/$1/results.xml counts
+  shift
   rm -f "$results"
   start_display
-  ctest --test-dir "$folder" -j "$(jobs_at_once)" --output-junit "$results" \
+  ctest --test-dir "$folder" -j "$(jobs_at_once)" --timeout 300 "$@" --output-junit "$results" \
     --output-on-failure --no-tests=error >&2 || true
   [[ -e $results ]] || {
     check "ctest" false
@@ -96,6 +98,13 @@ run_tests() {
     check "headers stand alone" check_headers "$1"
     run_ctest "$1"
   fi
+  finish
+}
+
+# Tests with random cases, a hundred times as many as usual.
+run_long() {
+  check "build" build_counted dev kinematics_test
+  ((failed)) || MJARM_LONG_TESTS=1 run_ctest dev --tests-regex '^kinematics\.' --timeout 7200
   finish
 }
 

@@ -16,6 +16,7 @@
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
+#include "mjarm/kinematics/self_motion.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -25,13 +26,14 @@ constexpr std::uint64_t kMostThreads = 1024;
 struct Options {
   RobotOptions robot;
   BatchOptions batch;
-  std::string pos, euler, quat, seed_q, seed = "1", threads = "1";
+  std::string pos, euler, quat, seed_q, task = "pose", prefer, seed = "1", threads = "1";
   bool all = false, windings = false, no_timing = false;
 };
 
 /// What stays the same for all requests.
 struct Job {
   IkSolver solver;
+  std::optional<PostureGoal> prefer;
   bool all, windings, timing;
 };
 
@@ -40,10 +42,19 @@ struct Request {
   std::vector<double> q_seed;
 };
 
-Result<Request> read_request(std::string_view line, const Arm& arm) {
+/// As pose_of(), but a position may stand alone where that is all that must be met.
+Result<Pose> goal_of(const nlohmann::json& object, IkTask task) {
+  if (task != IkTask::position || object.contains("quat")) return pose_of(object);
+  const Result<std::vector<double>> pos = number_list(object, "pos", 3);
+  if (!pos) return fail(pos.error());
+  return Pose{{(*pos)[0], (*pos)[1], (*pos)[2]}, Eigen::Matrix3d::Identity()};
+}
+
+Result<Request> read_request(std::string_view line, const IkSolver& ik) {
+  const Arm& arm = ik.arm();
   const Result<nlohmann::json> object = parse_json_object(line);
   if (!object) return fail(object.error());
-  const Result<Pose> X_WT = pose_of(*object);
+  const Result<Pose> X_WT = goal_of(*object, ik.options().task);
   if (!X_WT) return fail(X_WT.error());
   if (!object->contains("seed")) {
     return Request{*X_WT, {arm.home.begin(), arm.home.end()}};
@@ -54,10 +65,13 @@ Result<Request> read_request(std::string_view line, const Arm& arm) {
   return Request{*X_WT, std::move(*q_seed)};
 }
 
-Result<Request> read_request(const Options& options, const Arm& arm) {
+Result<Request> read_request(const Options& options, const IkSolver& ik) {
+  const Arm& arm = ik.arm();
   const auto pos = parse_list("--pos", options.pos, Quantity::length, 3);
   if (!pos) return fail(pos.error());
-  const Result<Eigen::Matrix3d> R = parse_rotation(options.euler, options.quat);
+  const bool any = ik.options().task == IkTask::position && (options.euler + options.quat).empty();
+  const Result<Eigen::Matrix3d> R = any ? Result<Eigen::Matrix3d>(Eigen::Matrix3d::Identity())
+                                        : parse_rotation(options.euler, options.quat);
   if (!R) return fail(R.error());
   Request request{{{(*pos)[0], (*pos)[1], (*pos)[2]}, *R}, {arm.home.begin(), arm.home.end()}};
   if (options.seed_q.empty()) return request;
@@ -105,7 +119,11 @@ void append_failure(std::string& out, const IkFailure& failure, const std::strin
 std::optional<std::string> answer(const Job& job, const Request& request, std::string& out) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  const Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
+  Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
+  if (job.prefer && solution) {
+    const SelfMotionOptions self_motion{.goal = *job.prefer, .posture = joint_vec(request.q_seed)};
+    solution = settle(job.solver, request.X_WT, view(solution->q), self_motion).value_or(*solution);
+  }
   std::vector<IkSolution> branches;
   if (job.all && solution) {
     const IkAllOptions all{.windings = job.windings};
@@ -126,7 +144,7 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
 }
 
 Result<int> answer_one(const Job& job, const Options& options) {
-  const Result<Request> request = read_request(options, job.solver.arm());
+  const Result<Request> request = read_request(options, job.solver);
   if (!request) return fail(request.error());
   std::string line;
   const std::optional<std::string> why = answer(job, *request, line);
@@ -141,7 +159,7 @@ Result<int> answer_one(const Job& job, const Options& options) {
 Result<int> answer_all(const Job& job, const Options& options) {
   const auto answer_line = [&](std::string_view line,
                                std::string& out) -> Result<std::optional<std::string>> {
-    const Result<Request> request = read_request(line, job.solver.arm());
+    const Result<Request> request = read_request(line, job.solver);
     if (!request) return fail(request.error());
     return answer(job, *request, out);
   };
@@ -151,6 +169,29 @@ Result<int> answer_all(const Job& job, const Options& options) {
   log_error(text(msg::app_ik_some_failed, done->first_failure, done->first_why, done->failed,
                  done->requests));
   return 1;
+}
+
+Result<IkTask> read_task(const std::string& word) {
+  constexpr IkTask kTasks[] = {IkTask::pose, IkTask::position, IkTask::axis};
+  const auto choice =
+      parse_choice("--task", word, std::vector<std::string>{"pose", "position", "axis"});
+  if (!choice) return fail(choice.error());
+  return kTasks[*choice];
+}
+
+/// Where to go with joints to spare; nowhere where nothing is asked for.
+Result<std::optional<PostureGoal>> read_prefer(const Options& options) {
+  constexpr PostureGoal kGoals[] = {PostureGoal::near_posture, PostureGoal::away_from_limits,
+                                    PostureGoal::manipulability};
+  if (options.prefer.empty()) return std::nullopt;
+  if (options.all || options.windings) {
+    const char* const all = options.all ? "--all" : "--windings";
+    return fail(Errc::usage, text(msg::app_exclusive_options, "--prefer", all));
+  }
+  const auto choice = parse_choice("--prefer", options.prefer,
+                                   std::vector<std::string>{"posture", "middle", "manipulability"});
+  if (!choice) return fail(choice.error());
+  return kGoals[*choice];
 }
 
 Result<int> run(Options options) {
@@ -165,12 +206,14 @@ Result<int> run(Options options) {
     return fail(Errc::usage, text(msg::app_bad_threads, *threads, kMostThreads));
   }
   options.batch.threads = static_cast<int>(*threads);
+  const Result<IkTask> task = read_task(options.task);
+  if (!task) return fail(task.error());
+  const auto prefer = read_prefer(options);
+  if (!prefer) return fail(prefer.error());
   Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(std::move(robot.error()));
-  IkOptions ik;
-  ik.rng_seed = *seed;
-  const Job job{IkSolver(robot->arm, ik), options.all || options.windings, options.windings,
-                !options.no_timing};
+  const Job job{IkSolver(robot->arm, {.rng_seed = *seed, .task = *task}), *prefer,
+                options.all || options.windings, options.windings, !options.no_timing};
   return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
 }
 
@@ -181,6 +224,8 @@ Run setup(CLI::App& app) {
   app.add_option("--euler", options->euler, text(msg::app_option_euler))->type_name("A,B,C");
   app.add_option("--quat", options->quat, text(msg::app_option_quat))->type_name("W,X,Y,Z");
   app.add_option("--seed-q", options->seed_q, text(msg::app_option_seed_q))->type_name("Q1,Q2,...");
+  app.add_option("--task", options->task, text(msg::app_option_task))->type_name("TASK");
+  app.add_option("--prefer", options->prefer, text(msg::app_option_prefer))->type_name("GOAL");
   add_batch_options(app, options->batch);
   app.add_option("--seed", options->seed, text(msg::app_option_seed))->type_name("N");
   app.add_flag("--all", options->all, text(msg::app_option_all));

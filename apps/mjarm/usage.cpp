@@ -1,5 +1,6 @@
 #include "apps/mjarm/usage.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <vector>
 
@@ -80,6 +81,16 @@ Result<std::uint64_t> parse_whole(const std::string& option, const std::string& 
     return fail(Errc::usage, text(msg::app_not_whole, option, value));
   }
   return number;
+}
+
+Result<std::size_t> parse_choice(const std::string& option, const std::string& value,
+                                 std::span<const std::string> words) {
+  const auto word = std::find(words.begin(), words.end(), value);
+  if (word != words.end()) return static_cast<std::size_t>(word - words.begin());
+  std::string list;
+  for (const std::string& known : words) list += (list.empty() ? "" : ", ") + known;
+  return fail(Errc::usage,
+              text(msg::app_unknown_choice, option, value, did_you_mean(value, words), list));
 }
 
 Result<std::vector<double>> parse_list(const std::string& option, const std::string& value,

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,11 @@ namespace mjarm::app {
 /// Reads a whole number >= 0, as `--seed 7`. @return an error that names `option`.
 [[nodiscard]] Result<std::uint64_t> parse_whole(const std::string& option,
                                                 const std::string& value);
+
+/// Reads one of some words, as `--task axis`.
+/// @return its place in `words`, or an error that names `option` and all of them.
+[[nodiscard]] Result<std::size_t> parse_choice(const std::string& option, const std::string& value,
+                                               std::span<const std::string> words);
 
 /// Reads the value of an option that is a list of `size` numbers, e.g. `--pos 1,2,3`.
 /// @return an error that names `option`; a usage error where `value` is empty.

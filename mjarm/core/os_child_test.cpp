@@ -10,16 +10,13 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/sanitized.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
+using support::kSanitized;
 
 TEST(Child, SaysAnything) {
   const std::string words = std::string(3'000'000, 'x') + '\0' + "\x04 end";

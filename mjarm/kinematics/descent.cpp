@@ -1,4 +1,5 @@
 #include <cmath>
+#include <span>
 
 #include "mjarm/kinematics/descent_internal.hpp"
 
@@ -7,6 +8,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 /// Rotation vector that turns `R` into `R_goal`, in the world's axes; exact near 0 and near pi.
 Vector3d rotation_error(const Matrix3d& R, const Matrix3d& R_goal) noexcept {
@@ -23,6 +25,30 @@ Vector3d rotation_error(const Matrix3d& R, const Matrix3d& R_goal) noexcept {
   Vector3d axis = 0.5 * (E.col(k) + E.row(k).transpose());
   axis[k] += 1;
   return axis.normalized() * std::atan2(s, c);
+}
+
+/// Rotation vector that turns the unit vector `z` into `z_goal` the shortest way.
+Vector3d direction_error(const Vector3d& z, const Vector3d& z_goal) noexcept {
+  const Vector3d v = z.cross(z_goal);
+  const double c = z.dot(z_goal);
+  const double s = v.norm();
+  if (s > 1e-6) return v * (std::atan2(s, c) / s);
+  if (c > 0) return v;
+  Eigen::Index k = 0;  // half a turn, about any axis across
+  z.cwiseAbs().minCoeff(&k);
+  return z.cross(Vector3d::Unit(k)).normalized() * std::atan2(s, c);
+}
+
+/// Takes out of the Jacobian's columns `J` and the error `e` what the task leaves free.
+void free_rotation(IkTask task, const Matrix3d& R, const Matrix3d& R_goal, std::span<Vector6> J,
+                   Vector6& e) noexcept {
+  const bool axis = task == IkTask::axis;
+  const Vector3d z = R.col(2);
+  for (Vector6& column : J) {
+    auto turn = column.tail<3>();
+    turn -= axis ? Vector3d(turn.dot(z) * z) : Vector3d(turn);
+  }
+  e.tail<3>() = axis ? direction_error(z, R_goal.col(2)) : Vector3d(Vector3d::Zero());
 }
 
 /// The loop of one descent for N joints; N = 0: for any number. Fixed sizes let the compiler
@@ -69,6 +95,7 @@ class Walker {
   static constexpr int kPatience = 8;       // ... within so many steps, or the start is given up
 
   int n() const noexcept { return N > 0 ? N : n_; }
+  std::size_t size() const noexcept { return static_cast<std::size_t>(n()); }
 
   /// Forward pass at q_: fills the Jacobian (position rows weighted) and the error vector.
   double evaluate() noexcept {
@@ -106,10 +133,7 @@ class Walker {
     }
     e_.template head<3>() = w * (goal_.p - p);
     e_.template tail<3>() = rotation_error(R, goal_.R);
-    if (options_.task == IkTask::position) {
-      for (int i = 0; i < n(); ++i) J_[i].template tail<3>().setZero();
-      e_.template tail<3>().setZero();
-    }
+    if (options_.task != IkTask::pose) free_rotation(options_.task, R, goal_.R, {J_, size()}, e_);
     error_ = e_.squaredNorm();
     return error_;
   }
@@ -182,7 +206,6 @@ class Walker {
   double lower(int i) const noexcept { return chain_.lower[static_cast<std::size_t>(i)]; }
   double upper(int i) const noexcept { return chain_.upper[static_cast<std::size_t>(i)]; }
 
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
   const Chain& chain_;
   const Pose& goal_;
   const DescentOptions& options_;

@@ -76,22 +76,29 @@ class LaneDescent {
       for (int k = 3; k < 6; ++k) e_[k] = splat(0);
       return;
     }
-    Lanes trace = splat(0);
     for (int k = 3; k < 6; ++k) e_[k] = splat(0);
-    for (int j = 0; j < 3; ++j) {
-      const Lanes x = R_[3 * j], y = R_[3 * j + 1], z = R_[3 * j + 2];
-      const double a = goal_.R(0, j), b = goal_.R(1, j), c = goal_.R(2, j);
-      trace += a * x + b * y + c * z;
-      e_[3] += c * y - b * z;
-      e_[4] += a * z - c * x;
-      e_[5] += b * x - a * y;
+    const bool axis = options_.task == IkTask::axis;
+    Lanes cosine = compare_axis(2);
+    if (!axis) {
+      cosine += compare_axis(0);
+      cosine += compare_axis(1);
+      cosine = 0.5 * (cosine - 1.0);
     }
-    const Lanes cosine = 0.5 * (trace - 1.0);
-    const Lanes f = 0.5 * square_root(2.0 / larger(1.0 + cosine, splat(1e-12)));
+    const Lanes f = (axis ? 1.0 : 0.5) * square_root(2.0 / larger(1.0 + cosine, splat(1e-12)));
     for (int k = 3; k < 6; ++k) e_[k] *= f;
     const Lanes turn = e_[3] * e_[3] + e_[4] * e_[4] + e_[5] * e_[5];
     // Half a turn is the farthest, though its axis cannot be read from the difference.
     error_ += select(cosine < 0.0, 2.0 - 2.0 * cosine, turn);
+  }
+
+  /// Adds axis `j` of the tool cross that of the goal to the error; returns their cosine.
+  Lanes compare_axis(int j) {
+    const Lanes x = R_[3 * j], y = R_[3 * j + 1], z = R_[3 * j + 2];
+    const double a = goal_.R(0, j), b = goal_.R(1, j), c = goal_.R(2, j);
+    e_[3] += c * y - b * z;
+    e_[4] += a * z - c * x;
+    e_[5] += b * x - a * y;
+    return a * x + b * y + c * z;
   }
 
   void set_jacobian() {
@@ -114,6 +121,17 @@ class LaneDescent {
       J[1] = a[2] * x - a[0] * z;
       J[2] = a[0] * y - a[1] * x;
       for (int k = 0; k < 3; ++k) J[3 + k] = turns * a[k];
+    }
+    if (options_.task == IkTask::axis) free_turn();
+  }
+
+  /// Takes the turns about the tool's z axis out of the Jacobian.
+  void free_turn() {
+    const Lanes* z = R_ + 6;
+    for (int i = 0; i < chain_.dof; ++i) {
+      Lanes* turn = J_[i] + 3;
+      const Lanes about = turn[0] * z[0] + turn[1] * z[1] + turn[2] * z[2];
+      for (int k = 0; k < 3; ++k) turn[k] -= about * z[k];
     }
   }
 

@@ -85,9 +85,8 @@ Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,
   }
   if (six_) return solve_six(*this, goal);
   if (seven_) return solve_seven(*this, goal);
-  // The proofs of reach are about a tool whose orientation is given.
-  const auto breach = options_.task == IkTask::pose ? reach_.check(goal.X_WT) : std::nullopt;
-  if (breach) {
+  const bool pose = options_.task == IkTask::pose;
+  if (const auto breach = pose ? reach_.check(goal.X_WT) : reach_.check_position(goal.X_WT.p)) {
     return fail(failure_of(*breach, detail::nearest_from_seed(chain_, options_, length_, goal)));
   }
   return detail::search_numeric(chain_, options_, length_, goal);

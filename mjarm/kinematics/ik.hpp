@@ -37,14 +37,15 @@ enum class IkErrc {
 enum class IkTask {
   pose,      ///< position and orientation
   position,  ///< position alone, as for an arm of fewer than six joints; any orientation will do
+  axis,      ///< position and direction of the tool's z axis; the turn about it is free
 };
 
 /// How hard to try, and when to call it solved. Every default is usable as is.
 struct IkOptions {
   double pos_tol = 1e-7;       ///< [m]   |p_goal - p|, > 0
-  double rot_tol = 1e-7;       ///< [rad] angle of R^T R_goal, > 0
+  double rot_tol = 1e-7;       ///< [rad] angle of R^T R_goal, or between the z axes, > 0
   int max_iterations = 100;    ///< steps a start, > 0
-  int restarts = 50;           ///< random seeds tried after q_seed, >= 0
+  int restarts = 100;          ///< random seeds tried after q_seed, >= 0
   std::uint64_t rng_seed = 1;  ///< same inputs and seed, same answer
   bool closed_form = true;     ///< false: by the numeric search even where a closed form is known
   IkTask task = IkTask::pose;  ///< with `position`, rot_tol plays no part
@@ -58,7 +59,7 @@ struct IkOptions {
 struct IkSolution {
   JointVec q;          ///< [rad or m] within the limits
   double pos_err = 0;  ///< [m]
-  double rot_err = 0;  ///< [rad] 0 where the task leaves the orientation free
+  double rot_err = 0;  ///< [rad] with `axis` that between the z axes, with `position` 0
   int iterations = 0;  ///< steps taken in all
   int restarts = 0;    ///< random starts used; 0 = solved from the seed
 };

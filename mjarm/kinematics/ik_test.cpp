@@ -163,26 +163,6 @@ TEST(Ik, JointsWithoutStopsAreSolved) {
   EXPECT_LT((answer->q - seed).cwiseAbs().maxCoeff(), std::numbers::pi + 1e-9);
 }
 
-TEST(Ik, PositionAloneLeavesTheOrientationFree) {
-  Rng rng(40);
-  int solved = 0, turned = 0;
-  for (int round = 0; round < 300; ++round) {
-    const Arm arm = random_arm(3 + round % 5, rng);
-    const IkSolver ik(arm, {.task = IkTask::position});
-    const Pose X_goal{fk(arm, view(random_q(arm, rng))).p, Eigen::Matrix3d::Identity()};
-    const auto answer = ik.solve(X_goal, view(random_q(arm, rng)));
-    if (!answer) continue;
-    ++solved;
-    const Pose X = fk(arm, view(answer->q));
-    EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
-    EXPECT_EQ(answer->rot_err, 0);
-    EXPECT_TRUE(within_limits(arm, view(answer->q)));
-    if (angle_between(X.R, X_goal.R) > 0.1) ++turned;
-  }
-  EXPECT_GE(solved, 297);
-  EXPECT_GT(turned, 250);
-}
-
 TEST(IkFailure, JointLimitIsNamed) {
   const auto arm_with = [](double limit) {
     return testing::make_arm("two",

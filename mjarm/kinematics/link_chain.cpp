@@ -24,8 +24,13 @@ const FkPasses& fk_passes() noexcept {
 
 namespace {
 
+constexpr double kUpright = 1e-12;  // sine of an angle between z axes that is none
+
 /// Which of the passes is made for this number of joints.
-int kind_of(const LinkChain& chain) noexcept { return chain.dof == 6 ? 1 : chain.dof == 7 ? 2 : 0; }
+int kind_of(const LinkChain& chain) noexcept {
+  if (!chain.hinges) return 0;
+  return chain.dof == 6 ? 1 : chain.dof == 7 ? 2 : 0;
+}
 
 /// Runs a pass; angles that it cannot take lose their whole turns first, which
 /// changes nothing.
@@ -47,14 +52,12 @@ void run(detail::FkPass pass, const LinkChain& chain, const double* q, double* J
 }  // namespace
 
 LinkChain::LinkChain(const Chain& chain) : dof(chain.dof) {
-  Eigen::Map<Eigen::Vector3d>(tool, 3) = chain.X_JT.p;
-  Eigen::Map<Eigen::Matrix3d>(tool + 3, 3, 3) = chain.X_JT.R;
   double turn_before = 0;
   for (int i = 0; i < dof; ++i) {
     const Pose& X = chain.X_PJ[static_cast<std::size_t>(i)];
     // R = Rz(a) Rx(tilt) Rz(b); the turn by a belongs to the joint before.
     const double tilt_sin = std::hypot(X.R(0, 2), X.R(1, 2));
-    const bool upright = tilt_sin < 1e-12;
+    const bool upright = tilt_sin < kUpright;
     const double a = upright ? 0.0 : std::atan2(X.R(0, 2), -X.R(1, 2));
     const double b =
         upright ? std::atan2(X.R(2, 2) * X.R(1, 0), X.R(0, 0)) : std::atan2(X.R(2, 0), X.R(2, 1));
@@ -67,6 +70,7 @@ LinkChain::LinkChain(const Chain& chain) : dof(chain.dof) {
     link.tilt_cos = X.R(2, 2);
     link.tilt_sin = upright ? 0.0 : tilt_sin;
     link.slide = chain.slide[static_cast<std::size_t>(i)];
+    hinges = hinges && !link.slide;
     link.offset = b;
     if (i == 0) {
       base_cos = c;
@@ -76,6 +80,14 @@ LinkChain::LinkChain(const Chain& chain) : dof(chain.dof) {
     }
     turn_before = b;
   }
+  Pose X_JT = chain.X_JT;
+  if (dof > 0 && X_JT.R(2, 2) > 0 && std::hypot(X_JT.R(0, 2), X_JT.R(1, 2)) < kUpright) {
+    links[dof - 1].offset += std::atan2(X_JT.R(1, 0), X_JT.R(0, 0));
+    X_JT = {X_JT.R.transpose() * X_JT.p, Eigen::Matrix3d::Identity()};
+    tool_turns = false;
+  }
+  Eigen::Map<Eigen::Vector3d>(tool, 3) = X_JT.p;
+  Eigen::Map<Eigen::Matrix3d>(tool + 3, 3, 3) = X_JT.R;
 }
 
 FkJacobian fk_jacobian(const LinkChain& chain, std::span<const double> q) noexcept {

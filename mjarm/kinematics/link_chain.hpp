@@ -28,7 +28,9 @@ struct LinkChain {
   Link links[kMaxDof];
   double base_cos = 1;  ///< a turn about z before the first link
   double base_sin = 0;
-  double tool[12] = {};  ///< X_JT: position, then the columns of the rotation
+  bool hinges = true;      ///< no slide among the links
+  double tool[12] = {};    ///< X_JT: position, then the columns of the rotation
+  bool tool_turns = true;  ///< false: that rotation is none, a turn about z being in the last link
 };
 
 /// fk() and fk_jacobian() of an arm, several times as fast: q shape (dof,) [rad or m].

@@ -34,6 +34,19 @@ TEST(LinkChain, MatchesTheArm) {
   }
 }
 
+/// A tool that is only moved and turned about the last axis.
+TEST(LinkChain, ToolsThatStandStraight) {
+  Rng rng(99);
+  for (int i = 0; i < 300; ++i) {
+    Arm arm = testing::random_arm(1 + i % 8, rng);
+    const Eigen::Vector3d axis = arm.joints.back().axis;
+    arm.X_JT.R = rotation_exp(rng.uniform(-3, 3) * axis) *
+                 Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis);
+    EXPECT_FALSE(LinkChain(Chain(arm)).tool_turns);
+    expect_same(arm, testing::random_q(arm, rng), 1e-12);
+  }
+}
+
 TEST(LinkChain, AnglesOfManyTurnsAreTaken) {
   expect_same(testing::ur5e(), JointVec::Constant(6, 1234.5), 1e-11);
   expect_same(testing::ur5e(), JointVec::Constant(6, -3e6), 1e-8);

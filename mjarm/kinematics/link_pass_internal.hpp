@@ -15,7 +15,7 @@ namespace mjarm::detail {
 using FkPass = void (*)(const LinkChain& chain, const double* q, double* p, double* R,
                         double* J) noexcept;
 
-/// One for any number of joints, one for six, one for seven.
+/// One for any joints, one for six hinges, one for seven.
 struct FkPasses {
   FkPass both[3];
   FkPass pose[3];  ///< the pose alone: J is left alone
@@ -34,8 +34,7 @@ struct PassFrame {
 };
 
 /// Carries the frame over one link and turns it by the joint.
-static inline void pass_link(const Link& link, double s, double c, double slide,
-                             PassFrame& f) noexcept {
+static inline void pass_link(const Link& link, double s, double c, PassFrame& f) noexcept {
   alignas(32) double x[4], y[4], z[4], y2[4];
   for (int k = 0; k < 4; ++k) {
     f.p[k] += f.x[k] * link.t[0] + f.y[k] * link.t[1] + f.z[k] * link.t[2];
@@ -50,12 +49,11 @@ static inline void pass_link(const Link& link, double s, double c, double slide,
     f.x[k] = x[k];
     f.y[k] = y2[k];
     f.z[k] = z[k];
-    f.p[k] += slide * z[k];
   }
 }
 
 /// Carries a frame through all links to the tool; with the origins and axes of
-/// the joints on the way where `kAxes`.
+/// the joints on the way where `kAxes`. N = 0: any joints; else so many hinges.
 template <int N, bool kAxes>
 static inline void pass_chain(const LinkChain& chain, const double* q, double* p, double* R,
                               double (*origin)[4], double (*axis)[4]) noexcept {
@@ -63,7 +61,9 @@ static inline void pass_chain(const LinkChain& chain, const double* q, double* p
   const int n = N > 0 ? N : chain.dof;
   const Link* links = &chain.links[0];
   double angle[kSize] = {}, s[kSize], c[kSize];
-  for (int i = 0; i < n; ++i) angle[i] = links[i].offset + (links[i].slide ? 0 : q[i]);
+  for (int i = 0; i < n; ++i) {
+    angle[i] = links[i].offset + (N == 0 && links[i].slide ? 0 : q[i]);
+  }
   const int sines = N > 0 ? kSize : n;
   for (int i = 0; i < sines; ++i) sin_cos_inside(angle[i], s[i], c[i]);
   PassFrame f{{chain.base_cos, chain.base_sin, 0, 0},
@@ -71,7 +71,10 @@ static inline void pass_chain(const LinkChain& chain, const double* q, double* p
               {0, 0, 1, 0},
               {0, 0, 0, 0}};
   for (int i = 0; i < n; ++i) {
-    pass_link(links[i], s[i], c[i], links[i].slide ? q[i] : 0, f);
+    pass_link(links[i], s[i], c[i], f);
+    if (N == 0 && links[i].slide) {
+      for (int k = 0; k < 4; ++k) f.p[k] += q[i] * f.z[k];
+    }
     if (!kAxes) continue;
     for (int k = 0; k < 4; ++k) {
       origin[i][k] = f.p[k];
@@ -79,15 +82,16 @@ static inline void pass_chain(const LinkChain& chain, const double* q, double* p
     }
   }
   const double* t = chain.tool;
-  alignas(32) double out[4][4];
-  for (int j = 0; j < 4; ++j) {
-    for (int k = 0; k < 4; ++k) {
-      out[j][k] = f.x[k] * t[3 * j] + f.y[k] * t[3 * j + 1] + f.z[k] * t[3 * j + 2];
-    }
-  }
   for (int k = 0; k < 3; ++k) {
-    p[k] = out[0][k] + f.p[k];
-    for (int j = 0; j < 3; ++j) R[3 * j + k] = out[j + 1][k];
+    p[k] = f.p[k] + f.x[k] * t[0] + f.y[k] * t[1] + f.z[k] * t[2];
+    R[k] = f.x[k];
+    R[3 + k] = f.y[k];
+    R[6 + k] = f.z[k];
+  }
+  if (!chain.tool_turns) return;
+  for (int j = 0; j < 3; ++j) {
+    t += 3;
+    for (int k = 0; k < 3; ++k) R[3 * j + k] = f.x[k] * t[0] + f.y[k] * t[1] + f.z[k] * t[2];
   }
 }
 
@@ -101,12 +105,16 @@ static void fk_pass_of(const LinkChain& chain, const double* q, double* p, doubl
   for (int i = 0; i < n; ++i) {
     const double* a = axis[i];
     const double d[3] = {p[0] - origin[i][0], p[1] - origin[i][1], p[2] - origin[i][2]};
-    const bool slide = chain.links[i].slide;
     double* column = J + 6 * i;
-    column[0] = slide ? a[0] : a[1] * d[2] - a[2] * d[1];
-    column[1] = slide ? a[1] : a[2] * d[0] - a[0] * d[2];
-    column[2] = slide ? a[2] : a[0] * d[1] - a[1] * d[0];
-    for (int k = 0; k < 3; ++k) column[3 + k] = slide ? 0 : a[k];
+    column[0] = a[1] * d[2] - a[2] * d[1];
+    column[1] = a[2] * d[0] - a[0] * d[2];
+    column[2] = a[0] * d[1] - a[1] * d[0];
+    for (int k = 0; k < 3; ++k) column[3 + k] = a[k];
+    if (N > 0 || !chain.links[i].slide) continue;
+    for (int k = 0; k < 3; ++k) {
+      column[k] = a[k];
+      column[3 + k] = 0;
+    }
   }
 }
 

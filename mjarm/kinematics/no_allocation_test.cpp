@@ -6,6 +6,7 @@
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/kinematics/self_motion.hpp"
 
 // Counts every allocation of this program: operator new and Eigen both end in malloc. Sanitizers
 // have a malloc of their own, and other C libraries no second name for theirs.
@@ -48,6 +49,8 @@ TEST(NoAllocation, FkAndIkNeverAllocate) {
       sum += clamp_to_limits(arm, view(q)).sum() + (within_limits(arm, view(q)) ? 1 : 0);
       const auto answer = ik.solve(both.X_WT, view(arm.home));
       sum += answer ? answer->pos_err : answer.error().amount;
+      const auto settled = settle(ik, both.X_WT, view(q), {.goal = PostureGoal::manipulability});
+      sum += settled ? settled->pos_err : settled.error().amount;
       Pose far = both.X_WT;
       far.p.x() += i;
       const auto none = ik.solve(far, view(arm.home));

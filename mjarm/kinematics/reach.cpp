@@ -125,11 +125,23 @@ void Reach::set_cylinder(const AxisChain& chain) {
 }
 
 std::optional<ReachBreach> Reach::check(const Pose& X_WT) const noexcept {
-  const double distance = (X_WT * p_TB_ - p_WA_).norm();
-  if (distance > outer_) return ReachBreach{ReachShape::outer_sphere, distance - outer_, outer_};
-  const double from_axis = (X_WT * p_TC_ - p_WC_).cross(axis_W_).norm();
-  ReachBreach inner{ReachShape::inner_sphere, inner_ - distance, inner_};
-  const ReachBreach round{ReachShape::cylinder, cylinder_ - from_axis, cylinder_};
+  return check_points(X_WT * p_TB_, 0, X_WT * p_TC_, 0);
+}
+
+std::optional<ReachBreach> Reach::check_position(const Eigen::Vector3d& p_WT) const noexcept {
+  return check_points(p_WT, p_TB_.norm(), p_WT, p_TC_.norm());
+}
+
+std::optional<ReachBreach> Reach::check_points(const Eigen::Vector3d& p_WB, double slack_B,
+                                               const Eigen::Vector3d& p_WC,
+                                               double slack_C) const noexcept {
+  const double distance = (p_WB - p_WA_).norm();
+  const double outer = outer_ + slack_B;
+  if (distance > outer) return ReachBreach{ReachShape::outer_sphere, distance - outer, outer};
+  const double from_axis = (p_WC - p_WC_).cross(axis_W_).norm();
+  ReachBreach inner{ReachShape::inner_sphere, inner_ - slack_B - distance, inner_ - slack_B};
+  const ReachBreach round{ReachShape::cylinder, cylinder_ - slack_C - from_axis,
+                          cylinder_ - slack_C};
   if (round.amount > inner.amount) inner = round;
   if (inner.amount > 0) return inner;
   return std::nullopt;

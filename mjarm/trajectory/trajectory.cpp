@@ -8,6 +8,8 @@
 namespace mjarm {
 namespace {
 
+constexpr double kJoined = 1e-9;  // [rad or m] between the end of a leg and the start of the next
+
 bool sound(const JointState& state, Eigen::Index dof) {
   return dof > 0 && state.q.size() == dof && state.v.size() == dof && state.a.size() == dof &&
          state.q.allFinite() && state.v.allFinite() && state.a.allFinite();
@@ -88,6 +90,24 @@ Result<Trajectory> Trajectory::from_jerks(const JointState& start,
   trajectory.first_ = start;
   trajectory.last_ = end;
   return trajectory;
+}
+
+Result<Trajectory> Trajectory::chain(std::span<const Trajectory> legs) {
+  if (legs.empty()) return fail(Errc::bad_input, text(msg::trajectory_bad_chain));
+  Trajectory whole = legs[0];
+  for (const Trajectory& leg : legs.subspan(1)) {
+    if (leg.dof() != whole.dof() ||
+        (leg.first_.q - whole.last_.q).lpNorm<Eigen::Infinity>() > kJoined) {
+      return fail(Errc::bad_input, text(msg::trajectory_bad_chain));
+    }
+    for (Piece piece : leg.pieces_) {
+      piece.start += whole.duration_;
+      whole.pieces_.push_back(std::move(piece));
+    }
+    whole.last_ = leg.last_;
+    whole.duration_ += leg.duration_;
+  }
+  return whole;
 }
 
 double Trajectory::duration() const noexcept { return duration_; }

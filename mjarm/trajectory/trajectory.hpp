@@ -28,6 +28,10 @@ class Trajectory {
                                                      std::span<const JointVec> jerks,
                                                      const JointState& end);
 
+  /// One after another.
+  /// @param legs  at least one; each starts, to 1e-9, where the one before ends, at rest.
+  [[nodiscard]] static Result<Trajectory> chain(std::span<const Trajectory> legs);
+
   [[nodiscard]] double duration() const noexcept;  ///< [s]
   [[nodiscard]] int dof() const noexcept;
   /// State at time `t` [s]; before 0 and after the duration the first and the last q, at rest.

@@ -55,7 +55,7 @@ double ratio_of(const IkResult& result, const IkRun& run) {
 }
 
 std::string rounded(double value) {
-  const int decimals = value >= 100 ? 0 : value >= 10 ? 1 : 2;
+  const int decimals = value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3;
   return fmt::format("{:.{}f}", value, decimals);
 }
 
@@ -153,7 +153,7 @@ void append_run(std::string& out, const IkResult& result, const IkRun& run, bool
            ",\"false_ok\":" + std::to_string(run.false_ok);
     append_misses(out, run);
   }
-  if (run.set == "path") out += ",\"max_step\":" + number(run.max_step);
+  if (run.set == "path" || run.set == "track") out += ",\"max_step\":" + number(run.max_step);
   if (timing) {
     const Times times = times_of(run);
     out += ",\"timed\":\"" + run.timed + "\",\"us\":{\"median\":" + number(times.median) +

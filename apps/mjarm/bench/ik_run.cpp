@@ -8,6 +8,8 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/kinematics/link_chain.hpp"
+#include "mjarm/kinematics/track.hpp"
 #include "mjarm/model/find_arm.hpp"
 
 namespace mjarm::app {
@@ -83,22 +85,55 @@ bool follow_paths(const IkSolver& ik, const IkProblem& problem, int rounds,
   return true;
 }
 
-/// All in one go, as a call takes less than the clock does.
+/// Every pose by two servoing steps from the answer to the one before, as a servo cycle is shorter
+/// than the way between poses; the time is that of one step. Near a singularity steps are damped
+/// and fall behind, and tell so: no answer.
+bool track_paths(const Arm& arm, const IkProblem& problem, int rounds,
+                 const std::function<bool()>& advance, IkRun& run) {
+  const Tracker tracker(arm, {.dt = 1});  // no bound on the speed: the poses have no time
+  for (int round = 0; round < rounds; ++round) {
+    std::size_t i = 0;
+    for (const std::vector<IkCase>& path : problem.paths) {
+      std::vector<double> q = path.front().seed;
+      for (const IkCase& entry : path) {
+        const auto start = Clock::now();
+        const TrackStep first = tracker.step(entry.X_WT, q);
+        const TrackStep step = tracker.step(entry.X_WT, view(first.q));
+        run.us[i] = std::min(run.us[i], 0.5 * microseconds_since(start));
+        for (std::size_t k = 0; k < q.size(); ++k) {
+          const double value = step.q[static_cast<Eigen::Index>(k)];
+          run.max_step = std::max(run.max_step, std::abs(value - q[k]));
+          q[k] = value;
+        }
+        const bool damped = step.damping > 0;
+        run.q[i] = damped ? std::vector<double>{} : q;
+        run.reasons[i] = damped ? "damped" : "";
+        ++i;
+      }
+    }
+    if (!advance()) return false;
+  }
+  return true;
+}
+
+/// One call after the other, as the loop of a controller makes them. All by one reading of the
+/// clock, which takes as long as a call; the call goes through a table of functions, so that no
+/// part of it is left out where its outputs are not all read.
 bool run_jacobians(const IkProblem& problem, int rounds, const std::function<bool()>& advance,
                    IkRun& run) {
-  const Arm& arm = problem.robot.arm;
+  const LinkChain chain{Chain(problem.robot.arm)};
   double sum = 0;
   for (int round = 0; round < rounds; ++round) {
     const auto start = Clock::now();
     for (const std::vector<double>& q : problem.q) {
-      const FkJacobian out = fk_jacobian(arm, q);
+      const FkJacobian out = fk_jacobian(chain, q);
       sum += out.X_WT.p[0] + out.J_W(0, 0);
     }
     const double us = microseconds_since(start) / static_cast<double>(problem.q.size());
     run.us.assign(1, std::min(run.us.front(), us));
     if (!advance()) return false;
   }
-  return std::isfinite(sum);  // also keeps the compiler from leaving the work out
+  return std::isfinite(sum);
 }
 
 /// The poses of a set in the order of its answers.
@@ -111,7 +146,7 @@ std::vector<const IkCase*> cases_of(const IkProblem& problem, const std::string&
     reachable = known.reachable;
     for (const IkCase& entry : known.cases) cases.push_back(&entry);
   }
-  if (set == "path") {
+  if (set == "path" || set == "track") {
     for (const std::vector<IkCase>& path : problem.paths) {
       for (const IkCase& entry : path) cases.push_back(&entry);
     }
@@ -136,7 +171,7 @@ Result<bool> reaches(const IkProblem& problem, const Pose& X_WT, const std::vect
 }  // namespace
 
 int ik_run_steps(const IkProblem& problem, int rounds) {
-  return rounds * (2 * static_cast<int>(problem.sets.size()) + 2);
+  return rounds * (2 * static_cast<int>(problem.sets.size()) + 3);
 }
 
 std::optional<std::vector<IkRun>> run_ik(const IkProblem& problem, int rounds,
@@ -156,6 +191,8 @@ std::optional<std::vector<IkRun>> run_ik(const IkProblem& problem, int rounds,
   for (const std::vector<IkCase>& path : problem.paths) poses += path.size();
   runs.push_back(empty_run("mjarm", "path", poses));
   if (!follow_paths(ik, problem, rounds, advance, runs.back())) return std::nullopt;
+  runs.push_back(empty_run("mjarm", "track", poses));
+  if (!track_paths(arm, problem, rounds, advance, runs.back())) return std::nullopt;
   runs.push_back({.who = "mjarm", .set = "fk_jacobian", .timed = "c++", .us = {kNever}});
   if (!run_jacobians(problem, rounds, advance, runs.back())) return std::nullopt;
   return runs;

@@ -13,7 +13,7 @@ namespace mjarm::app {
 struct IkRun {
   std::string who = {};      ///< "mjarm", "mjarm numeric", "EAIK", ...
   std::string version = {};  ///< of a peer; empty for ours
-  std::string set = {};      ///< "reachable", "unreachable", ..., "path", "fk_jacobian"
+  std::string set = {};      ///< "reachable", "unreachable", ..., "path", "track", "fk_jacobian"
   std::string timed = {};    ///< "c++" or "python": where the clock stands
   std::string error = {};    ///< why there is nothing else; empty where all went well
 
@@ -25,7 +25,7 @@ struct IkRun {
   int right = 0;                        ///< cases that were answered right
   std::vector<std::size_t> wrong = {};  ///< the others, from 0
   int false_ok = 0;                     ///< answers that do not reach their pose, or break a limit
-  double max_step = 0;                  ///< [rad or m] largest joint step, for "path"
+  double max_step = 0;                  ///< [rad or m] largest joint step, for "path" and "track"
 };
 
 /// Runs mjarm on every set of the problem: all of them `rounds` times over, one call at a time in

@@ -48,6 +48,11 @@ TEST(BenchIk, JudgesTheCasesOfAFolder) {
   EXPECT_EQ(reachable.at("misses").size(), 0u);
   EXPECT_GT(reachable.at("us").at("median").get<double>(), 0);
   EXPECT_EQ(run_of(bench, "mjarm", "unreachable").at("right"), 1);
+  const json& track = run_of(bench, "mjarm", "track");
+  EXPECT_EQ(track.at("cases"), run_of(bench, "mjarm", "path").at("cases"));
+  EXPECT_GT(track.at("right").get<int>(), track.at("cases").get<int>() / 2);
+  EXPECT_GT(track.at("max_step").get<double>(), 0);
+  EXPECT_GT(track.at("us").at("median").get<double>(), 0);
   EXPECT_GT(run_of(bench, "mjarm", "fk_jacobian").at("us").at("median").get<double>(), 0);
 }
 
