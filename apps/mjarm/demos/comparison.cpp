@@ -63,7 +63,7 @@ PlotRange common_range(const PlotPanel& a, const PlotPanel& b,
   }
   if (a.y_from_zero && values == &PlotLine::y) lower = 0;
   const double room = 0.05 * (upper - lower) + 1e-9;
-  return {lower == 0 ? 0 : lower - room, upper + room};
+  return {lower >= 0 && lower < room ? 0 : lower - room, upper + room};  // time begins at 0
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ Result<Report> run_flip(const DemoOptions& options) {
       naive->flip ? text(msg::demo_flip_note, 100 * naive->flip->fraction,
                          1e3 * largest_distance(*naive_run), 1e3 * largest_distance(runs.back()))
                   : std::string();
-  auto saved = stage.save_comparison(
-      comparison_plot(text(msg::demo_flip_title), stage.arm(), *naive_run, runs.back(), kCharts));
+  auto saved = stage.save_comparison(comparison_plot(
+      {text(msg::demo_flip_title), note}, stage.arm(), *naive_run, runs.back(), kCharts));
   if (!saved) return fail(std::move(saved.error()));
   return stage.finish(std::move(report));
 }

@@ -63,8 +63,8 @@ Result<Report> run_singularity(const DemoOptions& options) {
   const std::string note = text(msg::demo_singularity_note, joint, whip.speed, limit, 1e3 * off,
                                 calm.speed, 1e3 * largest_distance(ours));
   constexpr Chart kCharts[] = {Chart::joint_speeds, Chart::tool_speed, Chart::error};
-  auto saved = stage.save_comparison(
-      comparison_plot(text(msg::demo_singularity_title), stage.arm(), *naive_run, ours, kCharts));
+  auto saved = stage.save_comparison(comparison_plot({text(msg::demo_singularity_title), note},
+                                                     stage.arm(), *naive_run, ours, kCharts));
   if (!saved) return fail(std::move(saved.error()));
   return stage.finish(std::move(report));
 }
