@@ -166,6 +166,13 @@ TEST(DemoFlip, NearestAnswersChangeBranchAndTheWholePathBranchDoesNot) {
   EXPECT_NE(run.result.err.find("branch_flip"), std::string::npos) << run.result.err;
 }
 
+TEST(DemoFlip, StopsBeforeTheLineWhereAsked) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"flip", "--seconds", "0.1"});
+  EXPECT_EQ(run.result.exit_code, 1) << run.result.err;
+  EXPECT_EQ(run.report["reason"], "stopped");
+}
+
 TEST(DemoMovel, TutorialsFollowerSaysWhatItWaitsForInsteadOfHanging) {
   const TempFolder folder;
   const DemoRun run = run_demo(folder, {"movel", "--guide"});

@@ -67,10 +67,11 @@ Result<Report> run_flip(const DemoOptions& options) {
 
   Report report;
   report.max_joint_step = motion->path.max_step();
+  const std::vector<MeasuredRun> runs = stage.measured_runs();
+  if (runs.empty()) return stage.finish(std::move(report));  // stopped on the way to the line
   tell_naive(*naive, *naive_run, stage.arm(), report);
   log_info(text(msg::demo_flip_ours, report.max_joint_step));
   constexpr Chart kCharts[] = {Chart::joints, Chart::front, Chart::error};
-  const std::vector<MeasuredRun> runs = stage.measured_runs();
   const std::string note =
       naive->flip ? text(msg::demo_flip_note, 100 * naive->flip->fraction,
                          1e3 * largest_distance(*naive_run), 1e3 * largest_distance(runs.back()))
