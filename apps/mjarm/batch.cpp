@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mjarm/line_reader.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
@@ -87,7 +86,7 @@ Result<void> one_source(const std::string& in, const std::string& one, const std
 
 Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,
                               const AnswerLine& answer) {
-  Result<LineReader> reader = LineReader::open(options.in);
+  Result<LineReader> reader = LineReader::open(options.in, options.longest_line);
   if (!reader) return fail(std::move(reader.error()));
   Result<Output> output = Output::open(options.out);
   if (!output) return fail(std::move(output.error()));

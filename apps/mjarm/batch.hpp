@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "apps/mjarm/line_reader.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm::app {
@@ -16,6 +17,7 @@ struct BatchOptions {
   std::string in;   ///< file of JSON lines, `-` = standard input
   std::string out;  ///< file, `-` or empty = standard output
   int threads = 1;  ///< >= 1
+  std::size_t longest_line = LineReader::kLongestLine;  ///< [bytes]
 };
 
 /// Adds `--in FILE` and `--out FILE`, bound to `options`.

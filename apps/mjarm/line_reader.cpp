@@ -19,8 +19,9 @@ bool is_blank(std::string_view line) {
 
 }  // namespace
 
-Result<LineReader> LineReader::open(const std::string& path) {
+Result<LineReader> LineReader::open(const std::string& path, std::size_t longest) {
   LineReader reader;
+  reader.longest_ = longest;
   reader.path_ = path;
   reader.is_stream_ = path == "-";
   reader.name_ = reader.is_stream_ ? "stdin" : path;
@@ -49,9 +50,9 @@ Result<bool> LineReader::read_line() {
     const int c = std::getc(file_.get());
     if (c == EOF) break;
     if (c == '\n') return true;
-    if (current_.size() >= kLongestLine) {
+    if (current_.size() >= longest_) {
       ++line_;
-      return fail(Errc::bad_input, place() + ": " + text(msg::app_line_too_long, kLongestLine));
+      return fail(Errc::bad_input, place() + ": " + text(msg::app_line_too_long, longest_));
     }
     current_.push_back(static_cast<char>(c));
   }

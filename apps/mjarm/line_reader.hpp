@@ -13,10 +13,12 @@ namespace mjarm::app {
 /// Reads a text line by line; a line has a bounded length, so that no input can eat the memory.
 class LineReader {
  public:
-  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;  ///< [bytes]
+  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;  ///< [bytes] unless told
 
   /// Opens a file, or standard input for `-`.
-  [[nodiscard]] static Result<LineReader> open(const std::string& path);
+  /// @param longest  [bytes] of a line.
+  [[nodiscard]] static Result<LineReader> open(const std::string& path,
+                                               std::size_t longest = kLongestLine);
 
   /// The next line that is not blank, without its end (LF or CRLF); none at the end of the input.
   /// The view holds until the next call. @return an error at reading, at a line that is too long
@@ -47,6 +49,7 @@ class LineReader {
   std::unique_ptr<std::FILE, Closer> file_;
   bool is_stream_ = false;
   std::uint64_t line_ = 0;
+  std::size_t longest_ = kLongestLine;
   std::string current_;
 };
 

@@ -1,16 +1,11 @@
 #include "mjarm/program/motion.hpp"
 
-#include "mjarm/core/messages/program.hpp"
-
 namespace mjarm {
 
 std::string describe(const MotionFailure& failure, const Arm& arm) {
   if (failure.timing) return failure.timing->what;
   if (!failure.path) return {};
-  const PathFailure& path = *failure.path;
-  const double percent = 100 * path.fraction;
-  if (path.flip) return text(msg::program_path_flips, percent, path.at);
-  return text(msg::program_path_stops, percent, path.at, describe(path.ik, arm));
+  return describe(*failure.path, arm);
 }
 
 Result<ToolMotion, MotionFailure> plan_tool_motion(const IkSolver& ik, const Curve& curve,

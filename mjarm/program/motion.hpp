@@ -7,7 +7,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"
-#include "mjarm/path/joint_path.hpp"
+#include "mjarm/path/solve_path.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm {

@@ -9,6 +9,7 @@
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/curve.hpp"
+#include "mjarm/path/solve_path.hpp"
 #include "mjarm/trajectory/spline_internal.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 #include "tests/support/test_data.hpp"

@@ -5,7 +5,7 @@
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
-#include "mjarm/path/joint_path.hpp"
+#include "mjarm/path/path_fix.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -63,7 +63,7 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   const Result<JointPath, PathFailure> path = solve_path(stage.ik(), points, index, home);
   if (!path) return stage.refuse({.path = path.error(), .timing = {}});
   const Result<ToolMotion, MotionFailure> motion =
-      plan_tool_motion(stage.ik(), *curve, view(path->q.front()));
+      plan_tool_motion(stage.ik(), *curve, view(path->q.front()), {.path = {.keep_start = true}});
   if (!motion) return stage.refuse(motion.error());
   log_info(text(msg::demo_plan, curve->length(), motion->trajectory.duration(), path->max_step()));
 

@@ -3,7 +3,7 @@
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
-#include "mjarm/path/joint_path.hpp"
+#include "mjarm/path/solve_path.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -35,9 +35,11 @@ Result<Report> run_movel(const DemoOptions& options) {
     poses.push_back(line->at(s.back()));
   }
   stage.show().add_points(poses, 2);
-  const Result<JointPath, PathFailure> path = solve_path(stage.ik(), poses, s, seed);
+  const Result<JointPath, PathFailure> path =
+      solve_path(stage.ik(), poses, s, seed, {.keep_start = true});
   if (!path) return stage.refuse({.path = path.error(), .timing = {}});
-  const Result<ToolMotion, MotionFailure> motion = plan_tool_motion(stage.ik(), *line, seed);
+  const Result<ToolMotion, MotionFailure> motion =
+      plan_tool_motion(stage.ik(), *line, seed, {.path = {.keep_start = true}});
   if (!motion) return stage.refuse(motion.error());
 
   stage.start_at(seed);

@@ -285,9 +285,7 @@ Result<Report> Stage::refuse(std::string_view reason, const std::string& detail,
 }
 
 Result<Report> Stage::refuse(const MotionFailure& failure) {
-  const std::string_view reason = failure.path ? name(failure.path->code) : "timing";
-  return refuse(failure.path && failure.path->flip ? "branch_flip" : reason,
-                describe(failure, arm_));
+  return refuse(failure.path ? name(failure.path->code) : "timing", describe(failure, arm_));
 }
 
 }  // namespace mjarm::app

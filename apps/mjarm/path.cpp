@@ -1,0 +1,232 @@
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
+
+#include "apps/mjarm/batch.hpp"
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/orientation.hpp"
+#include "apps/mjarm/path_answer.hpp"
+#include "apps/mjarm/path_request.hpp"
+#include "apps/mjarm/robot.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/path_command.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/path/path_fix.hpp"
+#include "mjarm/path/path_measures.hpp"
+#include "mjarm/path/solve_curve.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  RobotOptions robot;
+  BatchOptions batch;
+  std::string from, via, to, euler, quat, request, start, max_step;
+  bool keep_start = false, collisions = false, partial = false, no_timing = false;
+};
+
+/// What stays the same for all requests.
+struct Job {
+  IkSolver ik;
+  PathOptions path;
+  bool partial, timing;
+};
+
+using Solved = Result<JointPath, PathFailure>;
+
+std::vector<double> counted(std::size_t n) {
+  std::vector<double> s(n);
+  std::iota(s.begin(), s.end(), 0.0);
+  return s;
+}
+
+/// A path, or why it stops and what mends it.
+struct Answer {
+  Solved path;
+  std::vector<PathFix> fixes;
+};
+
+Answer solve(const Job& job, const PathRequest& request) {
+  CurveOptions options;
+  options.path = job.path;
+  options.path.max_step = request.max_step.value_or(job.path.max_step);
+  // Without a start any will do: the track with most room is taken.
+  if (!request.q) options.path.comfort = 0;
+  const std::span<const double> q_start = request.q ? *request.q : view(job.ik.arm().home);
+  const auto fixes = [&](const auto& path, const auto& how, const PathFailure& failure) {
+    return find_fixes(job.ik, path, q_start, how, failure);
+  };
+  if (request.curve) {
+    Answer out{solve_curve(job.ik, *request.curve, q_start, options), {}};
+    if (!out.path) out.fixes = fixes(*request.curve, options, out.path.error());
+    return out;
+  }
+  const std::span<const Pose> poses = request.poses;
+  Answer out{solve_path(job.ik, poses, counted(poses.size()), q_start, options.path), {}};
+  if (!out.path) out.fixes = fixes(poses, options.path, out.path.error());
+  return out;
+}
+
+/// Solves one request and appends the answer. Where there is none, returns why.
+std::optional<std::string> answer(const Job& job, const PathRequest& request, std::string& out) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const Arm& arm = job.ik.arm();
+  const Answer solved = solve(job, request);
+  const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  const JointPath& had = solved.path ? *solved.path : solved.path.error().partial;
+  std::optional<PathMeasures> measures;
+  if (!had.q.empty()) measures = measure_path(arm, had.q, job.path.clearance);
+  std::optional<std::string> why;
+  if (solved.path) {
+    append_path(out, *solved.path, *measures);
+  } else {
+    why = describe(solved.path.error(), arm);
+    append_path_failure(out, solved.path.error(), solved.fixes, arm, measures, job.partial);
+    if (!solved.fixes.empty()) {
+      why = text(msg::path_command_mended, *why, describe(solved.fixes.front()));
+    }
+  }
+  if (job.timing) {
+    out += ",\"us\":";
+    append_number(out, std::round(us * 10) / 10);
+  }
+  out += '}';
+  return why;
+}
+
+Result<PathRequest> read_request(std::string_view line, const Arm& arm) {
+  const Result<nlohmann::json> object = parse_json_object(line);
+  if (!object) return fail(object.error());
+  return path_request_of(*object, arm);
+}
+
+Result<Pose> read_pose(const std::string& option, const std::string& value,
+                       const Eigen::Matrix3d& R) {
+  const auto p = parse_list(option, value, Quantity::length, 3);
+  if (!p) return fail(p.error());
+  return Pose{{(*p)[0], (*p)[1], (*p)[2]}, R};
+}
+
+/// `--from` and `--to`, maybe `--via`: a line or an arc with one orientation.
+Result<Curve> read_curve(const Options& options) {
+  const Result<Eigen::Matrix3d> R = parse_rotation(options.euler, options.quat);
+  if (!R) return fail(R.error());
+  const Result<Pose> from = read_pose("--from", options.from, *R);
+  if (!from) return fail(from.error());
+  const Result<Pose> to = read_pose("--to", options.to, *R);
+  if (!to) return fail(to.error());
+  if (options.via.empty()) return Curve::line(*from, *to);
+  const Result<Pose> via = read_pose("--via", options.via, *R);
+  if (!via) return fail(via.error());
+  return Curve::arc(*from, *via, *to);
+}
+
+Result<PathRequest> read_request(const Options& options, const Arm& arm) {
+  PathRequest request;
+  if (!options.request.empty()) {
+    Result<PathRequest> read = read_request(options.request, arm);
+    if (!read) return fail(in_option("--request", read.error()));
+    request = std::move(*read);
+  } else {
+    Result<Curve> curve = read_curve(options);
+    if (!curve) return fail(std::move(curve.error()));
+    request.curve = std::move(*curve);
+  }
+  if (options.start.empty()) return request;
+  auto q = parse_joints("--start", options.start, arm);
+  if (!q) return fail(std::move(q.error()));
+  request.q = std::move(*q);
+  return request;
+}
+
+Result<int> answer_one(const Job& job, const Options& options) {
+  const Result<PathRequest> request = read_request(options, job.ik.arm());
+  if (!request) return fail(request.error());
+  std::string line;
+  const std::optional<std::string> why = answer(job, *request, line);
+  if (Result<void> written = write_answer(options.batch.out, line); !written) {
+    return fail(std::move(written.error()));
+  }
+  if (!why) return 0;
+  log_error(text(msg::path_command_impossible, *why));
+  return 1;
+}
+
+Result<int> answer_all(const Job& job, const Options& options) {
+  const auto answer_line = [&](std::string_view line,
+                               std::string& out) -> Result<std::optional<std::string>> {
+    const Result<PathRequest> request = read_request(line, job.ik.arm());
+    if (!request) return fail(request.error());
+    return answer(job, *request, out);
+  };
+  const auto done = run_batch(options.batch, text(msg::path_command_progress), answer_line);
+  if (!done) return fail(done.error());
+  if (done->failed == 0) return 0;
+  log_error(text(msg::path_command_some_failed, done->first_failure, done->first_why, done->failed,
+                 done->requests));
+  return 1;
+}
+
+Result<PathOptions> path_options(const Options& options, const Robot& robot) {
+  PathOptions path;
+  path.keep_start = options.keep_start;
+  if (options.collisions) path.clearance = clearance_check({robot.model, robot.arm});
+  if (options.max_step.empty()) return path;
+  const Result<double> step = parse_quantity(options.max_step, Quantity::angle);
+  if (!step) return fail(in_option("--max-step", step.error()));
+  if (!(*step > 0)) return fail(Errc::bad_input, text(msg::path_command_max_step));
+  path.max_step = *step;
+  return path;
+}
+
+Result<int> run(Options options) {
+  const std::string& one = options.request.empty() ? options.from : options.request;
+  const std::string word = options.request.empty() ? "--from" : "--request";
+  if (Result<void> fine = one_source(options.batch.in, one, word); !fine) {
+    return fail(std::move(fine.error()));
+  }
+  options.batch.longest_line = std::size_t{1} << 26;  // some 300,000 poses
+  Result<Robot> robot = load_robot(options.robot);
+  if (!robot) return fail(std::move(robot.error()));
+  Result<PathOptions> path = path_options(options, *robot);
+  if (!path) return fail(std::move(path.error()));
+  const Job job{IkSolver(robot->arm), std::move(*path), options.partial, !options.no_timing};
+  return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_robot_options(app, options->robot);
+  const auto add = [&app](const char* name, std::string& value, Msg help, const char* type) {
+    app.add_option(name, value, text(help))->type_name(type);
+  };
+  add("--from", options->from, msg::path_command_from, "X,Y,Z");
+  add("--via", options->via, msg::path_command_via, "X,Y,Z");
+  add("--to", options->to, msg::path_command_to, "X,Y,Z");
+  add("--euler", options->euler, msg::app_option_euler, "A,B,C");
+  add("--quat", options->quat, msg::app_option_quat, "W,X,Y,Z");
+  add("--request", options->request, msg::path_command_request, "JSON");
+  add_batch_options(app, options->batch);
+  add("--start", options->start, msg::path_command_start, "Q1,Q2,...");
+  add("--max-step", options->max_step, msg::path_command_step, "STEP");
+  app.add_flag("--keep-start", options->keep_start, text(msg::path_command_keep_start));
+  app.add_flag("--collisions", options->collisions, text(msg::path_command_collisions));
+  app.add_flag("--partial", options->partial, text(msg::path_command_partial));
+  app.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command path_command() {
+  return {"path", msg::path_command_summary, msg::path_command_examples, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "mjarm/core/pose.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/arm.hpp"
+#include "mjarm/path/curve.hpp"
+
+namespace mjarm::app {
+
+/// A path to be solved: either given poses or a curve.
+struct PathRequest {
+  std::vector<Pose> poses;               ///< `poses`, `ellipse` with `points`
+  std::optional<Curve> curve;            ///< the other types
+  std::optional<std::vector<double>> q;  ///< [rad or m] `start`
+  std::optional<double> max_step;        ///< [rad or m] > 0
+};
+
+/// Reads one request as INTERFACES of `mjarm path` describe it: `type` and what belongs to it.
+/// @return what is wrong, without the place of the line.
+[[nodiscard]] Result<PathRequest> path_request_of(const nlohmann::json& object, const Arm& arm);
+
+}  // namespace mjarm::app

@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "mjarm/path/fix_search_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr double kGrid = 0.05;  // [m]
+constexpr int kProbed = 500;    // changes of one kind that pass the geometric test
+constexpr int kSolved = 50;     // changes of one kind solved as a whole
+
+/// Grid points within `reach`, shortest first; of equal length those along fewer axes first.
+std::vector<Eigen::Vector3i> grid_of(double reach) {
+  const int n = static_cast<int>(std::floor(reach / kGrid + 1e-9));
+  std::vector<Eigen::Vector3i> grid;
+  for (int x = -n; x <= n; ++x) {
+    for (int y = -n; y <= n; ++y) {
+      for (int z = -n; z <= n; ++z) {
+        if (x * x + y * y + z * z <= n * n) grid.emplace_back(x, y, z);
+      }
+    }
+  }
+  const auto axes = [](const Eigen::Vector3i& g) { return (g.array() != 0).count(); };
+  std::stable_sort(grid.begin(), grid.end(), [&](const auto& g, const auto& h) {
+    const int length_g = g.squaredNorm(), length_h = h.squaredNorm();
+    return length_g != length_h ? length_g < length_h : axes(g) < axes(h);
+  });
+  return grid;
+}
+
+std::vector<double> counted(std::size_t n) {
+  std::vector<double> s(n);
+  std::iota(s.begin(), s.end(), 0.0);
+  return s;
+}
+
+}  // namespace
+
+FixSearch::FixSearch(const IkSolver& ik, std::span<const Pose> poses, std::size_t at,
+                     std::span<const double> q_start, const PathOptions& options, Solve solve)
+    : ik_(ik),
+      poses_(poses),
+      at_(std::min(at, poses.size() - 1)),
+      q_start_(q_start),
+      options_(options),
+      solve_(std::move(solve)),
+      changed_(poses.size()) {}
+
+/// From cheap to dear: proofs of reach, a few poses spread over the path, the neighbourhood of the
+/// place where it stopped, the whole.
+bool FixSearch::mends(const PathChange& change) {
+  constexpr std::size_t kProbes = 8, kAround = 8;
+  std::transform(poses_.begin(), poses_.end(), changed_.begin(), change);
+  if (std::any_of(changed_.begin(), changed_.end(),
+                  [&](const Pose& X) { return ik_.reach().check(X).has_value(); })) {
+    return false;
+  }
+  if (++probed_ > kProbed || solved_ >= kSolved) return false;
+  const std::size_t stride = std::max<std::size_t>(1, changed_.size() / kProbes);
+  for (std::size_t i = 0; i < changed_.size(); i += stride) {
+    if (!ik_.solve(changed_[i], q_start_)) return false;
+  }
+  PathOptions any_start = options_;
+  any_start.keep_start = false;
+  const std::size_t from = at_ - std::min(at_, kAround);
+  const auto around =
+      std::span(changed_).subspan(from, std::min(2 * kAround, changed_.size() - from));
+  if (!solve_path(ik_, around, counted(around.size()), q_start_, any_start)) return false;
+  ++solved_;
+  return solve_(change, options_).has_value();
+}
+
+std::optional<PathFix> FixSearch::shift(double reach) {
+  probed_ = solved_ = 0;
+  for (const Eigen::Vector3i& g : grid_of(reach)) {
+    PathFix fix{FixKind::shift, {g.cast<double>() * kGrid, Eigen::Vector3d::Zero()}, {}, 0};
+    if (mends(fix.change)) return fix;
+    if (probed_ > kProbed || solved_ >= kSolved) break;
+  }
+  return std::nullopt;
+}
+
+std::optional<PathFix> FixSearch::tilt() {
+  constexpr double kDegree = std::numbers::pi / 180;
+  probed_ = solved_ = 0;
+  for (int degrees = 5; degrees <= 180; degrees += degrees < 60 ? 5 : 15) {
+    for (int axis = 2; axis >= (degrees > 60 ? 2 : 0); --axis) {
+      for (const int way : {1, -1}) {
+        PathFix fix;
+        fix.kind = FixKind::tilt;
+        fix.change.tilt[axis] = way * degrees * kDegree;
+        if (mends(fix.change)) return fix;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<PathFix> FixSearch::start() const {
+  if (!options_.keep_start) return std::nullopt;
+  PathOptions any_start = options_;
+  any_start.keep_start = false;
+  const auto q = solve_({}, any_start);
+  if (!q) return std::nullopt;
+  return PathFix{FixKind::start, {}, *q, 0};
+}
+
+std::optional<PathFix> FixSearch::longer_step(const PathFailure& failure) const {
+  constexpr double kMost = 1.6;  // [rad] beyond that the tool strays far between the poses
+  constexpr double kRound = 0.05;
+  if (failure.code != PathErrc::branch_flip && failure.code != PathErrc::singularity) {
+    return std::nullopt;
+  }
+  PathOptions longer = options_;
+  longer.max_step = kRound * std::ceil(failure.amount / kRound);
+  if (longer.max_step > kMost || longer.max_step <= options_.max_step) return std::nullopt;
+  if (!solve_({}, longer)) return std::nullopt;
+  return PathFix{FixKind::max_step, {}, {}, longer.max_step};
+}
+
+std::optional<PathFix> FixSearch::find(FixKind kind, const PathFailure& failure) {
+  switch (kind) {
+    case FixKind::start:
+      return start();
+    case FixKind::shift:
+      return shift(0.6);
+    case FixKind::tilt:
+      return tilt();
+    case FixKind::max_step:
+      return longer_step(failure);
+  }
+  return std::nullopt;
+}
+
+}  // namespace mjarm::detail

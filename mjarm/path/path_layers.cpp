@@ -1,0 +1,273 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <tuple>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/ik_all.hpp"
+#include "mjarm/path/path_layers_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSame = 1e-3;        // [rad or m] nearer answers are one
+constexpr double kSameOfMany = 0.02;  // [rad] likewise for samples of a redundant arm
+// What leaves enough room: at these a track is half tight.
+constexpr double kRoom = 0.1;  // [rad or m] to a limit, or kRoomShare of the joint's range
+constexpr double kRoomShare = 0.05;
+constexpr double kSingular = 0.02;   // smallest singular value
+constexpr double kClearance = 0.01;  // [m]
+
+double largest(const JointVec& d) { return d.cwiseAbs().maxCoeff(); }
+
+Arm without_limits(Arm arm) {
+  arm.limits.lower.setConstant(-kInfinity);
+  arm.limits.upper.setConstant(kInfinity);
+  return arm;
+}
+
+IkOptions without_predicate(IkOptions options) {
+  options.valid = {};
+  options.max_step = kInfinity;
+  return options;
+}
+
+IkOptions near_only(IkOptions options, double max_step) {
+  options.valid = {};
+  options.max_step = max_step;
+  options.restarts = 0;
+  return options;
+}
+
+/// `q` with every hinge in the winding within the limits that is nearest to `q_near`; none where a
+/// joint has no such winding, or none within `max_step`.
+std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const JointVec& q_near,
+                               double max_step) {
+  constexpr double kRounding = 1e-9;  // [rad or m]
+  std::array<double, kMaxDof> out;
+  for (int i = 0; i < chain.dof; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    double& value = out[k];
+    value = q[i];
+    if (!chain.slide[k]) {
+      value += kTurn * std::round((q_near[i] - value) / kTurn);
+      if (value > chain.upper[k] + kRounding) value -= kTurn;
+      if (value < chain.lower[k] - kRounding) value += kTurn;
+    }
+    if (!(value >= chain.lower[k] - kRounding && value <= chain.upper[k] + kRounding)) {
+      return std::nullopt;
+    }
+    value = std::clamp(value, chain.lower[k], chain.upper[k]);
+    if (std::abs(value - q_near[i]) > max_step) return std::nullopt;
+  }
+  return joint_vec({out.data(), static_cast<std::size_t>(chain.dof)});
+}
+
+void keep_best(Layer& layer) {
+  std::stable_sort(layer.begin(), layer.end(),
+                   [](const TrackNode& a, const TrackNode& b) { return a.rank < b.rank; });
+  if (layer.size() > PathLayers::kMostNodes) layer.resize(PathLayers::kMostNodes);
+}
+
+}  // namespace
+
+bool TrackRank::operator<(const TrackRank& other) const noexcept {
+  return std::tie(tightness, start, length) < std::tie(other.tightness, other.start, other.length);
+}
+
+PathLayers::PathLayers(const IkSolver& ik, const PathOptions& options)
+    : ik_(ik),
+      options_(options),
+      all_(ik.arm(), without_predicate(ik.options())),
+      near_(ik.arm(), near_only(ik.options(), options.max_step)),
+      boundless_(without_limits(ik.arm()), without_predicate(ik.options())),
+      chain_(ik.chain()) {}
+
+double PathLayers::smallest_singular_value(const JointVec& q) const {
+  return mjarm::smallest_singular_value(fk_jacobian(chain_, view(q)).J_W);
+}
+
+/// 0.5 at kRoom from the nearest limit, 1 on it.
+double PathLayers::limit_tightness(const JointVec& q) const {
+  double worst = 0;
+  const JointLimits& limits = ik_.arm().limits;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double range = limits.upper[i] - limits.lower[i];
+    if (!std::isfinite(range)) continue;
+    const double room = std::min(kRoom, kRoomShare * range);
+    const double margin = std::min(q[i] - limits.lower[i], limits.upper[i] - q[i]);
+    worst = std::max(worst, 1 - margin / (2 * room));
+  }
+  return worst;
+}
+
+/// That of the configuration, limits left aside; none where it is refused.
+std::optional<double> PathLayers::tightness(const JointVec& q) const {
+  if (ik_.options().valid && !ik_.options().valid(view(q))) return std::nullopt;
+  double worst = std::max(0.0, 1 - smallest_singular_value(q) / (2 * kSingular));
+  if (options_.clearance) {
+    const double distance = options_.clearance(view(q)).distance;
+    if (!(distance >= 0)) return std::nullopt;
+    worst = std::max(worst, 1 - distance / (2 * kClearance));
+  }
+  return worst;
+}
+
+double PathLayers::level(double tightness) const {
+  constexpr double kLevel = 0.02;
+  return std::max(options_.comfort, kLevel * std::ceil(tightness / kLevel));
+}
+
+TrackRank PathLayers::extended(const TrackNode& node, const JointVec& q, double tightness) const {
+  const JointVec step = q - node.q;
+  const double tight = std::max({tightness, limit_tightness(q), largest(step) / options_.max_step});
+  return {std::max(node.rank.tightness, level(tight)), node.rank.start,
+          node.rank.length + step.norm()};
+}
+
+/// The pose itself, and with a tolerance the tool turned by it in eight directions across its z
+/// axis, and both ways about that.
+std::vector<Pose> PathLayers::allowed(const Pose& X_WT) const {
+  std::vector<Pose> out{X_WT};
+  const double tol = options_.orientation_tol;
+  if (tol == 0) return out;
+  for (int k = 0; k < 8; ++k) {
+    const double way = k * kTurn / 8;
+    const Eigen::Vector3d tilt(tol * std::cos(way), tol * std::sin(way), 0);
+    out.push_back({X_WT.p, X_WT.R * rotation_exp(tilt)});
+  }
+  for (const double way : {tol, -tol}) {
+    out.push_back({X_WT.p, X_WT.R * rotation_exp(Eigen::Vector3d(0, 0, way))});
+  }
+  return out;
+}
+
+Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
+  Layer layer;
+  double nearest = kInfinity;
+  for (const Pose& X : allowed(X_WT)) {
+    const auto answers = solve_all(all_, X, view(q_start), {.windings = true});
+    if (!answers) continue;
+    for (const IkSolution& answer : *answers) {
+      const double start = largest(answer.q - q_start);
+      nearest = std::min(nearest, start);
+      const auto tight = tightness(answer.q);
+      if (!tight) continue;
+      layer.push_back(
+          {answer.q, -1, {level(std::max(*tight, limit_tightness(answer.q))), start, 0}});
+    }
+  }
+  if (options_.keep_start) {
+    std::erase_if(layer, [&](const TrackNode& node) { return node.rank.start > nearest + kSame; });
+  }
+  keep_best(layer);
+  return layer;
+}
+
+Layer PathLayers::next(const Pose& X_WT, const Layer& before) const {
+  Layer layer = ik_.six_axis() ? join(X_WT, before) : follow(X_WT, before);
+  keep_best(layer);
+  return layer;
+}
+
+/// Closed form of six axes: every branch from every answer before.
+Layer PathLayers::join(const Pose& X_WT, const Layer& before) const {
+  struct Branch {
+    JointVec q;
+    std::optional<double> tight;
+    bool looked_at = false;
+    std::vector<std::size_t> nodes;  // its windings in the new layer
+  };
+  Layer layer;
+  std::vector<Branch> branches;
+  for (const Pose& X : allowed(X_WT)) {
+    const auto answers = solve_all(boundless_, X, view(before.front().q));
+    if (!answers) continue;
+    for (const IkSolution& answer : *answers) branches.push_back({answer.q, {}, false, {}});
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    for (Branch& branch : branches) {
+      const auto q = placed(ik_.chain(), branch.q, before[i].q, options_.max_step);
+      if (!q) continue;
+      if (!branch.looked_at) branch.tight = tightness(*q);
+      branch.looked_at = true;
+      if (!branch.tight) continue;
+      const TrackRank rank = extended(before[i], *q, *branch.tight);
+      const auto known = std::find_if(branch.nodes.begin(), branch.nodes.end(), [&](std::size_t k) {
+        return largest(layer[k].q - *q) < kSame;
+      });
+      if (known == branch.nodes.end()) {
+        branch.nodes.push_back(layer.size());
+        layer.push_back({*q, static_cast<int>(i), rank});
+      } else if (rank < layer[*known].rank) {
+        layer[*known] = {*q, static_cast<int>(i), rank};
+      }
+    }
+  }
+  return layer;
+}
+
+/// Seeds beside `q` along the motions that leave the tool where it is.
+std::vector<JointVec> PathLayers::aside(const JointVec& q) const {
+  const double step = std::min(0.15, 0.25 * options_.max_step);  // [rad or m]
+  const bool position = ik_.options().task == IkTask::position;
+  const int rows = position ? 3 : 6;
+  std::vector<JointVec> out;
+  if (q.size() <= rows) return out;
+  const Eigen::MatrixXd J = fk_jacobian(chain_, view(q)).J_W.topRows(rows);
+  const Eigen::MatrixXd kernel = Eigen::FullPivLU<Eigen::MatrixXd>(J).kernel();
+  for (Eigen::Index k = 0; k < kernel.cols(); ++k) {
+    const double size = kernel.col(k).cwiseAbs().maxCoeff();
+    if (!(size > 0)) continue;
+    for (const double way : {step / size, -step / size}) {
+      out.push_back(clamp_to_limits(ik_.arm(), view(JointVec(q + way * kernel.col(k)))));
+    }
+  }
+  return out;
+}
+
+/// Any other arm: from every answer before on to the nearest one, and to either side where that is
+/// tight or missing.
+Layer PathLayers::follow(const Pose& X_WT, const Layer& before) const {
+  const double same = ik_.arm().dof() > 6 ? kSameOfMany : kSame;
+  Layer layer;
+  const auto add = [&](const Pose& X, std::size_t i, const JointVec& seed) {
+    const auto answer = near_.solve(X, view(seed));
+    if (!answer || largest(answer->q - before[i].q) > options_.max_step) return kInfinity;
+    const auto tight = tightness(answer->q);
+    if (!tight) return kInfinity;
+    const TrackRank rank = extended(before[i], answer->q, *tight);
+    const auto known = std::find_if(layer.begin(), layer.end(), [&](const TrackNode& node) {
+      return largest(node.q - answer->q) < same;
+    });
+    if (known == layer.end()) {
+      layer.push_back({answer->q, static_cast<int>(i), rank});
+    } else if (rank < known->rank) {
+      *known = {answer->q, static_cast<int>(i), rank};
+    }
+    return std::max(*tight, limit_tightness(answer->q));
+  };
+  constexpr double kTight = 0.5;
+  constexpr std::size_t kAside = 64;  // only the best of them look to the sides
+  const std::vector<Pose> poses = allowed(X_WT);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (add(X_WT, i, before[i].q) < kTight || i >= kAside) continue;
+    for (const JointVec& seed : aside(before[i].q)) add(X_WT, i, seed);
+    for (std::size_t k = 1; k < poses.size(); ++k) add(poses[k], i, before[i].q);
+  }
+  return layer;
+}
+
+std::optional<JointVec> PathLayers::onward(const Pose& X_WT, const JointVec& q) const {
+  const auto answer = boundless_.solve(X_WT, view(q));
+  if (!answer) return std::nullopt;
+  return answer->q;
+}
+
+}  // namespace mjarm::detail

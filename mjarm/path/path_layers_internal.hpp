@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mjarm/kinematics/ik.hpp"
+#include "mjarm/kinematics/link_chain.hpp"
+#include "mjarm/path/solve_path.hpp"
+
+namespace mjarm::detail {
+
+/// How good the best track to an answer is; smaller is better.
+struct TrackRank {
+  double tightness = 0;  ///< worst of the track, in [comfort, 1]
+  double start = 0;      ///< [rad or m] largest joint distance of its first answer from q_start
+  double length = 0;     ///< [rad or m] sum of the steps' norms
+  [[nodiscard]] bool operator<(const TrackRank& other) const noexcept;
+};
+
+/// One answer to one pose, and the best track that leads to it.
+struct TrackNode {
+  JointVec q;
+  int parent = -1;  ///< index in the layer before
+  TrackRank rank;
+};
+
+/// The answers to one pose that tracks lead to, best first.
+using Layer = std::vector<TrackNode>;
+
+/// Makes the answers to each pose out of those to the pose before.
+class PathLayers {
+ public:
+  static constexpr std::size_t kMostNodes = 512;  ///< a layer; the best are kept
+
+  /// Keeps references to both.
+  PathLayers(const IkSolver& ik, const PathOptions& options);
+
+  /// All answers to the first pose; empty where there is none.
+  [[nodiscard]] Layer first(const Pose& X_WT, const JointVec& q_start) const;
+  /// All that tracks lead to from `before`, which is not empty.
+  [[nodiscard]] Layer next(const Pose& X_WT, const Layer& before) const;
+
+  /// The answer to X_WT that goes on from `q`, limits and whatever may be touched left aside: the
+  /// nearest one. None where there is no answer.
+  [[nodiscard]] std::optional<JointVec> onward(const Pose& X_WT, const JointVec& q) const;
+  /// The solver that knows no limits.
+  [[nodiscard]] const IkSolver& boundless() const noexcept { return boundless_; }
+  [[nodiscard]] const IkSolver& ik() const noexcept { return ik_; }
+  [[nodiscard]] const PathOptions& options() const noexcept { return options_; }
+  [[nodiscard]] double smallest_singular_value(const JointVec& q) const;
+
+ private:
+  [[nodiscard]] std::vector<Pose> allowed(const Pose& X_WT) const;
+  [[nodiscard]] Layer join(const Pose& X_WT, const Layer& before) const;
+  [[nodiscard]] Layer follow(const Pose& X_WT, const Layer& before) const;
+  [[nodiscard]] std::vector<JointVec> aside(const JointVec& q) const;
+  [[nodiscard]] std::optional<double> tightness(const JointVec& q) const;
+  [[nodiscard]] double limit_tightness(const JointVec& q) const;
+  [[nodiscard]] TrackRank extended(const TrackNode& node, const JointVec& q,
+                                   double tightness) const;
+  [[nodiscard]] double level(double tightness) const;
+
+  const IkSolver& ik_;
+  const PathOptions& options_;
+  IkSolver all_;        // answers within the limits, whatever they touch
+  IkSolver near_;       // the same within max_step of the seed, no random starts
+  IkSolver boundless_;  // the same without limits
+  LinkChain chain_;
+};
+
+}  // namespace mjarm::detail

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/link_chain.hpp"
+#include "mjarm/path/refine_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr int kDeepest = 24;  // halvings of one stretch
+
+class Refiner {
+ public:
+  Refiner(const IkSolver& ik, const Curve& curve, const CurveOptions& options)
+      : ik_(ik.arm(), seeded(ik.options(), options.path.max_step)),
+        chain_(ik.chain()),
+        curve_(curve),
+        options_(options) {}
+
+  Refined run(const JointPath& path) {
+    append(path.s[0], path.q[0]);
+    for (std::size_t i = 1; i < path.q.size(); ++i) {
+      stretch(path.s[i - 1], path.q[i - 1], path.s[i], path.q[i], 0);
+      append(path.s[i], path.q[i]);
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// Answers near a seed only.
+  static IkOptions seeded(IkOptions options, double max_step) {
+    options.max_step = max_step;
+    options.restarts = 0;
+    return options;
+  }
+
+  void append(double s, const JointVec& q) {
+    out_.path.s.push_back(s);
+    out_.path.q.push_back(q);
+  }
+
+  /// What the tool does at a share `t` of the stretch against what it should.
+  [[nodiscard]] bool keeps(double s0, const JointVec& q0, double s1, const JointVec& q1,
+                           double t) const {
+    const Pose X = fk(chain_, view(JointVec((1 - t) * q0 + t * q1)));
+    const Pose X_goal = options_.change(curve_.at((1 - t) * s0 + t * s1));
+    return (X.p - X_goal.p).norm() <= options_.pos_tol &&
+           angle_between(X.R, X_goal.R) <= options_.rot_tol + options_.path.orientation_tol;
+  }
+
+  /// The pose within the tolerance of X_WT whose orientation is nearest to that of `q`.
+  [[nodiscard]] Pose allowed(const Pose& X_WT, const JointVec& q) const {
+    const double tol = options_.path.orientation_tol;
+    if (tol == 0) return X_WT;
+    const Eigen::Vector3d turn = rotation_log(X_WT.R.transpose() * fk(chain_, view(q)).R);
+    const double share = std::min(1.0, tol / std::max(turn.norm(), tol));
+    return {X_WT.p, X_WT.R * rotation_exp(share * turn)};
+  }
+
+  /// The answer between two others; none where the branch is lost.
+  [[nodiscard]] std::optional<JointVec> between(double s, const JointVec& q0,
+                                                const JointVec& q1) const {
+    const JointVec middle = 0.5 * (q0 + q1);
+    const auto answer = ik_.solve(allowed(options_.change(curve_.at(s)), middle), view(middle));
+    if (!answer) return std::nullopt;
+    const auto step = [&](const JointVec& q) { return (answer->q - q).cwiseAbs().maxCoeff(); };
+    if (step(q0) > options_.path.max_step || step(q1) > options_.path.max_step) return std::nullopt;
+    if (options_.path.clearance && !(options_.path.clearance(view(answer->q)).distance >= 0)) {
+      return std::nullopt;
+    }
+    return answer->q;
+  }
+
+  /// Appends the waypoints that are needed between two others. An error that changes its sign in
+  /// the middle shows at the quarters.
+  void stretch(double s0, const JointVec& q0, double s1, const JointVec& q1, int depth) {
+    if (keeps(s0, q0, s1, q1, 0.5) && keeps(s0, q0, s1, q1, 0.25) && keeps(s0, q0, s1, q1, 0.75)) {
+      return;
+    }
+    const double s = 0.5 * (s0 + s1);
+    const auto q = depth < kDeepest ? between(s, q0, q1) : std::nullopt;
+    if (!q) {
+      out_.lost.push_back(s);
+      return;
+    }
+    stretch(s0, q0, s, *q, depth + 1);
+    append(s, *q);
+    stretch(s, *q, s1, q1, depth + 1);
+  }
+
+  IkSolver ik_;
+  LinkChain chain_;
+  const Curve& curve_;
+  const CurveOptions& options_;
+  Refined out_;
+};
+
+}  // namespace
+
+Refined refine(const IkSolver& ik, const Curve& curve, const JointPath& path,
+               const CurveOptions& options) {
+  return Refiner(ik, curve, options).run(path);
+}
+
+}  // namespace mjarm::detail

@@ -1,0 +1,93 @@
+#include "mjarm/path/solve_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "mjarm/path/refine_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr int kRounds = 12;  // of adding stations where the curve is not had
+
+/// Seven more stations within (s0, s1).
+void split(std::vector<double>& stations, double s0, double s1) {
+  constexpr int kParts = 8;
+  for (int i = 1; i < kParts; ++i) stations.push_back(s0 + (s1 - s0) * i / kParts);
+}
+
+std::vector<double> first_stations(const Curve& curve, const CurveOptions& options) {
+  constexpr double kMost = 2e5;
+  const double step = std::max(options.step, curve.length() / kMost);
+  const double turn = std::max(options.turn, curve.turn() / kMost);
+  return curve.stations(step, turn);
+}
+
+std::vector<Pose> poses_at(const Curve& curve, const PathChange& change,
+                           std::span<const double> s) {
+  std::vector<Pose> poses;
+  poses.reserve(s.size());
+  for (const double x : s) poses.push_back(change(curve.at(x)));
+  return poses;
+}
+
+/// True where the place of a failure between two stations is still to be found.
+bool is_vague(const PathFailure& failure, double stretch) {
+  constexpr double kPlace = 1e-5, kRace = 1e-8;
+  const bool race = failure.code == PathErrc::singularity || failure.code == PathErrc::branch_flip;
+  return failure.at > 0 && failure.code != PathErrc::bad_input && stretch > (race ? kRace : kPlace);
+}
+
+PathFailure located(PathFailure failure, std::span<const double> stations, double end) {
+  const std::size_t last = failure.at > 0 ? failure.at - 1 : 0;
+  failure.s = stations.empty() ? 0 : stations[last];
+  failure.fraction = failure.at > 0 && end > 0 ? failure.s / end : 0;
+  return failure;
+}
+
+}  // namespace
+
+Result<JointPath, PathFailure> solve_curve(const IkSolver& ik, const Curve& curve,
+                                           std::span<const double> q_start,
+                                           const CurveOptions& options) {
+  if (!(options.pos_tol > 0 && options.rot_tol > 0 && options.step > 0 && options.turn > 0)) {
+    PathFailure failure;
+    failure.code = PathErrc::bad_input;
+    failure.ik.code = IkErrc::bad_input;
+    return fail(std::move(failure));
+  }
+  std::vector<double> stations = first_stations(curve, options);
+  PathFailure failure;
+  for (int round = 0; round < kRounds; ++round) {
+    auto path =
+        solve_path(ik, poses_at(curve, options.change, stations), stations, q_start, options.path);
+    if (path) {
+      detail::Refined refined = detail::refine(ik, curve, *path, options);
+      if (refined.lost.empty()) return std::move(refined.path);
+      failure = {};
+      failure.code = PathErrc::branch_flip;
+      for (const double s : refined.lost) {
+        const auto after = std::upper_bound(path->s.begin(), path->s.end(), s);
+        split(stations, *(after - 1), *after);
+        if (&s == &refined.lost.front()) {
+          failure.at = static_cast<std::size_t>(after - path->s.begin());
+        }
+      }
+      failure.partial.s.assign(path->s.begin(), path->s.begin() + static_cast<long>(failure.at));
+      failure.partial.q.assign(path->q.begin(), path->q.begin() + static_cast<long>(failure.at));
+      failure = located(std::move(failure), path->s, curve.end());
+    } else {
+      failure = located(std::move(path.error()), stations, curve.end());
+      const std::size_t at = failure.at;
+      if (at == 0 || !is_vague(failure, stations[at] - stations[at - 1])) break;
+      split(stations, stations[at - 1], stations[at]);
+    }
+    std::sort(stations.begin(), stations.end());
+    stations.erase(std::unique(stations.begin(), stations.end()), stations.end());
+  }
+  return fail(std::move(failure));
+}
+
+}  // namespace mjarm

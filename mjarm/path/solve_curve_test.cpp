@@ -1,0 +1,126 @@
+#include "mjarm/path/solve_curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/path/path_fix.hpp"
+
+namespace mjarm {
+namespace {
+
+const std::vector<double> kSeed{-1.57, -1.34, 2.65, -1.3, 1.55, 0};
+const Eigen::Matrix3d kDown = from_euler({std::numbers::pi, 0, 0});
+
+/// Largest distance of the tool from the curve, joints moving straight between waypoints; at 16
+/// places between any two.
+void expect_on_curve(const Arm& arm, const Curve& curve, const JointPath& path,
+                     const CurveOptions& options, const PathChange& change = {}) {
+  double pos = 0, rot = 0;
+  for (std::size_t i = 1; i < path.q.size(); ++i) {
+    EXPECT_LT(path.s[i - 1], path.s[i]);
+    for (int k = 0; k <= 16; ++k) {
+      const double t = k / 16.0;
+      const Pose X = fk(arm, view(JointVec((1 - t) * path.q[i - 1] + t * path.q[i])));
+      const Pose X_goal = change(curve.at((1 - t) * path.s[i - 1] + t * path.s[i]));
+      pos = std::max(pos, (X.p - X_goal.p).norm());
+      rot = std::max(rot, angle_between(X.R, X_goal.R));
+    }
+  }
+  EXPECT_LE(pos, 1.1 * options.pos_tol);
+  EXPECT_LE(rot, 1.1 * options.rot_tol);
+  EXPECT_EQ(path.s.front(), 0);
+  EXPECT_EQ(path.s.back(), curve.end());
+}
+
+TEST(SolveCurve, StaysOnTheCurveInAsFewWaypointsAsItTakes) {
+  const IkSolver ik(testing::ur5e());
+  const Curve line = *Curve::line({{0.4, -0.4, 0.3}, kDown}, {{-0.4, -0.4, 0.3}, kDown});
+  const auto path = solve_curve(ik, line, kSeed);
+  ASSERT_TRUE(path.has_value()) << describe(path.error(), ik.arm());
+  expect_on_curve(ik.arm(), line, *path, {});
+  CurveOptions coarse{.pos_tol = 0.01, .rot_tol = 0.1, .step = 0.5, .turn = 1};
+  const auto few = solve_curve(ik, line, kSeed, coarse);
+  ASSERT_TRUE(few.has_value());
+  expect_on_curve(ik.arm(), line, *few, coarse);
+  EXPECT_LT(few->q.size(), path->q.size() / 4);
+  CurveOptions fine{.pos_tol = 1e-6, .rot_tol = 1e-5};
+  const auto many = solve_curve(ik, line, kSeed, fine);
+  ASSERT_TRUE(many.has_value());
+  expect_on_curve(ik.arm(), line, *many, fine);
+  EXPECT_GT(many->q.size(), path->q.size());
+}
+
+TEST(SolveCurve, ArcsEllipsesAndTurns) {
+  const IkSolver ik(testing::ur5e());
+  const Pose from{{0.4, -0.4, 0.3}, kDown}, to{{-0.2, -0.5, 0.4}, kDown * from_euler({0, 0, 1})};
+  for (const Curve& curve :
+       {*Curve::arc(from, {{0.1, -0.6, 0.5}, kDown}, to),
+        *Curve::ellipse({{0, -0.5, 0.4}, 0.3, 0.1, Eigen::Vector3d::UnitZ(), kDown}),
+        *Curve::line(from, {from.p, kDown * from_euler({0.3, 0, 2})}),
+        *Curve::polyline(std::vector<Pose>{from, to, {{0.3, -0.3, 0.5}, kDown}})}) {
+    const auto path = solve_curve(ik, curve, kSeed);
+    ASSERT_TRUE(path.has_value()) << describe(path.error(), ik.arm());
+    expect_on_curve(ik.arm(), curve, *path, {});
+    EXPECT_LE(path->max_step(), 0.5);
+  }
+}
+
+TEST(SolveCurve, TheArmOfSevenJoints) {
+  const IkSolver ik(testing::panda());
+  const Curve line = *Curve::line({{0.4, -0.4, 0.3}, kDown}, {{0.4, 0.4, 0.5}, kDown});
+  const auto path = solve_curve(ik, line, view(ik.arm().home));
+  ASSERT_TRUE(path.has_value()) << describe(path.error(), ik.arm());
+  expect_on_curve(ik.arm(), line, *path, {});
+}
+
+TEST(SolveCurve, SaysWhereItStops) {
+  const IkSolver ik(testing::ur5e());
+  // With the tool down, the wrist cannot come nearer to the first axis than 0.134 m.
+  const Curve line = *Curve::line({{0, -0.6, 0.3}, kDown}, {{0, 0, 0.3}, kDown});
+  const auto path = solve_curve(ik, line, kSeed);
+  ASSERT_FALSE(path.has_value());
+  EXPECT_EQ(path.error().code, PathErrc::inner_void);
+  EXPECT_NEAR(path.error().s, 0.6 - 0.134, 1e-3);
+  EXPECT_NEAR(path.error().fraction, path.error().s / 0.6, 1e-12);
+  EXPECT_EQ(path.error().partial.s.back(), path.error().s);
+  const auto fixes = find_fixes(ik, line, kSeed, {}, path.error());
+  ASSERT_FALSE(fixes.empty());
+  for (const PathFix& fix : fixes) {
+    const CurveOptions changed{.change = fix.change};
+    const auto mended = solve_curve(ik, line, kSeed, changed);
+    ASSERT_TRUE(mended.has_value()) << describe(fix);
+    expect_on_curve(ik.arm(), line, *mended, {}, fix.change);
+  }
+}
+
+TEST(SolveCurve, ThroughAWristSingularity) {
+  // The last axis passes the direction of axis 4 exactly: the tool turns about axis 5.
+  const Arm arm = testing::ur5e();
+  const IkSolver ik(arm);
+  const Pose X = fk(arm, std::vector<double>{-1.0, -1.5, 1.6, -1.2, 0, 0.3});
+  std::vector<Pose> X_WJ(6);
+  fk_all(arm, std::vector<double>{-1.0, -1.5, 1.6, -1.2, 0, 0.3}, X_WJ);
+  const Eigen::Vector3d axis5 = X_WJ[4].R * arm.joints[4].axis;
+  const Curve turn =
+      *Curve::line({X.p, rotation_exp(-0.4 * axis5) * X.R}, {X.p, rotation_exp(0.4 * axis5) * X.R});
+  const auto path = solve_curve(ik, turn, kSeed);
+  ASSERT_TRUE(path.has_value()) << describe(path.error(), arm);
+  expect_on_curve(arm, turn, *path, {});
+}
+
+TEST(SolveCurve, BadOptionsAreRefused) {
+  const IkSolver ik(testing::ur5e());
+  const Curve line = *Curve::line({{0.4, -0.4, 0.3}, kDown}, {{-0.4, -0.4, 0.3}, kDown});
+  for (const CurveOptions& bad :
+       {CurveOptions{.pos_tol = 0}, CurveOptions{.rot_tol = -1}, CurveOptions{.step = 0},
+        CurveOptions{.turn = std::nan("")}, CurveOptions{.path = {.max_step = 0}}}) {
+    const auto path = solve_curve(ik, line, kSeed, bad);
+    ASSERT_FALSE(path.has_value());
+    EXPECT_EQ(path.error().code, PathErrc::bad_input);
+  }
+}
+
+}  // namespace
+}  // namespace mjarm

@@ -1,0 +1,72 @@
+#include "mjarm/path/solve_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "mjarm/path/path_cause_internal.hpp"
+#include "mjarm/path/track_search_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr double kMostTilt = std::numbers::pi / 2;  // [rad]
+
+bool all_finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+bool is_sound(const IkSolver& ik, std::span<const Pose> poses, std::span<const double> s,
+              std::span<const double> q_start, const PathOptions& options) {
+  return !poses.empty() && poses.size() == s.size() && all_finite(s) &&
+         std::is_sorted(s.begin(), s.end()) && all_finite(q_start) &&
+         q_start.size() == ik.arm().joints.size() && options.max_step > 0 &&
+         options.orientation_tol >= 0 && options.orientation_tol < kMostTilt &&
+         options.comfort >= 0 && options.comfort <= 1;
+}
+
+}  // namespace
+
+Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Pose> poses,
+                                          std::span<const double> s,
+                                          std::span<const double> q_start,
+                                          const PathOptions& options) {
+  if (!is_sound(ik, poses, s, q_start, options)) {
+    PathFailure failure;
+    failure.code = PathErrc::bad_input;
+    failure.ik.code = IkErrc::bad_input;
+    return fail(std::move(failure));
+  }
+  const JointVec q_from = clamp_to_limits(ik.arm(), q_start);
+  const detail::PathLayers layers(ik, options);
+  detail::Track track = detail::find_track(layers, poses, q_from);
+  const auto known = s.first(track.size());
+  JointPath path{{known.begin(), known.end()}, std::move(track.q)};
+  if (path.q.size() == poses.size()) return path;
+  track.q = path.q;
+  PathFailure failure = detail::find_cause(layers, poses, track, q_from);
+  if (!path.s.empty()) failure.s = path.s.back();
+  failure.partial = std::move(path);
+  return fail(std::move(failure));
+}
+
+std::vector<UnreachableRange> unreachable_ranges(const IkSolver& ik, std::span<const Pose> poses,
+                                                 std::span<const double> q_seed) {
+  std::vector<UnreachableRange> ranges;
+  JointVec seed = joint_vec(q_seed.first(std::min<std::size_t>(q_seed.size(), kMaxDof)));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const auto answer = ik.solve(poses[i], view(seed));
+    if (answer) {
+      seed = answer->q;
+    } else if (!ranges.empty() && ranges.back().last + 1 == i) {
+      ranges.back().last = i;
+      if (answer.error().amount > ranges.back().worst.amount) ranges.back().worst = answer.error();
+    } else {
+      ranges.push_back({i, i, answer.error()});
+    }
+  }
+  return ranges;
+}
+
+}  // namespace mjarm

@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <numeric>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/path/failing_paths_test.hpp"
+#include "mjarm/path/path_fix.hpp"
+#include "mjarm/path/solve_path.hpp"
+
+namespace mjarm {
+namespace {
+
+std::vector<double> counted(std::size_t n) {
+  std::vector<double> s(n);
+  std::iota(s.begin(), s.end(), 0.0);
+  return s;
+}
+
+/// Poses of a straight joint motion within the limits: a track that completes them is known.
+std::vector<Pose> known_path(const Arm& arm, int n, double size, Rng& rng) {
+  const JointVec q0 = testing::random_q(arm, rng);
+  JointVec q1 = q0;
+  for (int i = 0; i < arm.dof(); ++i) q1[i] += rng.uniform(-size, size);
+  q1 = clamp_to_limits(arm, view(q1));
+  std::vector<Pose> poses;
+  for (int i = 0; i < n; ++i) {
+    poses.push_back(fk(arm, view(JointVec(q0 + (q1 - q0) * i / (n - 1)))));
+  }
+  return poses;
+}
+
+void expect_on_poses(const Arm& arm, const JointPath& path, std::span<const Pose> poses,
+                     double rot_tol = 1e-6) {
+  ASSERT_EQ(path.q.size(), poses.size());
+  EXPECT_LE(path.max_step(), 0.5);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose X = fk(arm, view(path.q[i]));
+    EXPECT_LT((X.p - poses[i].p).norm(), 1e-6);
+    EXPECT_LT(angle_between(X.R, poses[i].R), rot_tol);
+    EXPECT_TRUE(within_limits(arm, view(path.q[i])));
+  }
+}
+
+/// Of `count` paths that are known to be possible, those that are solved.
+int solved(const IkSolver& ik, int count, std::uint64_t seed) {
+  Rng rng(seed);
+  int done = 0;
+  for (int i = 0; i < count; ++i) {
+    const std::vector<Pose> poses = known_path(ik.arm(), 60, 1.2, rng);
+    const auto path = solve_path(ik, poses, counted(poses.size()), view(ik.arm().home));
+    if (path) expect_on_poses(ik.arm(), *path, poses);
+    done += path.has_value();
+  }
+  return done;
+}
+
+TEST(SolvePathArms, WithAClosedFormOfSixAxesNoTrackIsMissed) {
+  EXPECT_EQ(solved(IkSolver(testing::ur5e()), 40, 1), 40);
+  EXPECT_EQ(solved(IkSolver(testing::industrial()), 40, 2), 40);
+}
+
+TEST(SolvePathArms, RedundantOnesAreFollowedFromManyPostures) {
+  EXPECT_GE(solved(IkSolver(testing::panda()), 20, 3), 19);
+}
+
+TEST(SolvePathArms, AnyOtherIsFollowedFromRandomStarts) {
+  EXPECT_GE(solved(IkSolver(testing::ur5e(), {.closed_form = false}), 10, 4), 9);
+}
+
+TEST(SolvePathArms, LongPathsAreKeptInPieces) {
+  const bool thorough = std::getenv("MJARM_LONG_TESTS") != nullptr;
+  const int n = thorough ? 100'000 : 1'500;
+  const Arm arm = testing::ur5e();
+  Rng rng(5);
+  const std::vector<Pose> poses = known_path(arm, n, 2, rng);
+  const auto path = solve_path(IkSolver(arm), poses, counted(poses.size()), view(arm.home));
+  ASSERT_TRUE(path.has_value());
+  expect_on_poses(arm, *path, poses);
+  EXPECT_LT(path->max_step(), 20.0 / n);
+}
+
+TEST(SolvePathArms, TheSameTwice) {
+  for (const Arm& arm : {testing::ur5e(), testing::panda()}) {
+    Rng rng(6);
+    const std::vector<Pose> poses = known_path(arm, 40, 0.6, rng);
+    const auto one = solve_path(IkSolver(arm), poses, counted(40), view(arm.home));
+    const auto two = solve_path(IkSolver(arm), poses, counted(40), view(arm.home));
+    ASSERT_EQ(one.has_value(), two.has_value());
+    if (one) {
+      EXPECT_EQ(one->q, two->q);
+    }
+  }
+}
+
+TEST(SolvePathArms, ATolerancePassesAWristSingularity) {
+  Rng rng(7);
+  const testing::FailingPath path = testing::singularity(rng, 0.01);
+  const IkSolver ik(path.arm);
+  const auto s = counted(path.poses.size());
+  const auto strict = solve_path(ik, path.poses, s, view(path.arm.home));
+  ASSERT_FALSE(strict.has_value());
+  EXPECT_EQ(strict.error().code, PathErrc::singularity);
+  EXPECT_EQ(strict.error().kind, SingularKind::wrist);
+  const auto loose = solve_path(ik, path.poses, s, view(path.arm.home), {.orientation_tol = 0.06});
+  ASSERT_TRUE(loose.has_value()) << describe(loose.error(), path.arm);
+  expect_on_poses(path.arm, *loose, path.poses, 0.06 + 1e-6);
+}
+
+TEST(SolvePathArms, AnotherStartMendsAPathFromAPostureThatCannotGoOn) {
+  // The last joint stands at its stop and the tool is to turn on.
+  const Arm arm = testing::ur5e();
+  const IkSolver ik(arm);
+  const std::vector<double> q{-1.57, -1.34, 2.2, -1.3, 1.55, 6.2};
+  const Pose X = fk(arm, q);
+  std::vector<Pose> poses;
+  for (int i = 0; i <= 20; ++i) poses.push_back({X.p, X.R * from_euler({0, 0, 0.05 * i})});
+  PathOptions options{.keep_start = true};
+  const auto kept = solve_path(ik, poses, counted(21), q, options);
+  ASSERT_FALSE(kept.has_value());
+  EXPECT_EQ(kept.error().code, PathErrc::joint_limit);
+  EXPECT_EQ(kept.error().joint, 5);
+  EXPECT_NEAR(kept.error().amount, 6.2 + 1 - 2 * std::numbers::pi, 1e-6);
+  const auto fixes = find_fixes(ik, poses, q, options, kept.error());
+  ASSERT_FALSE(fixes.empty());
+  EXPECT_EQ(fixes.front().kind, FixKind::start);
+  const auto mended = solve_path(ik, poses, counted(21), view(fixes.front().start), options);
+  ASSERT_TRUE(mended.has_value());
+  EXPECT_LT((mended->q.front() - fixes.front().start).norm(), 1e-6);
+  EXPECT_LE(fixes.size(), 3U);
+}
+
+}  // namespace
+}  // namespace mjarm

@@ -1,0 +1,189 @@
+#include "mjarm/path/solve_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/path/curve.hpp"
+#include "mjarm/path/path_fix.hpp"
+#include "tests/support/test_data.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = std::numbers::pi / 180;
+const std::vector<double> kSeed{-1.57, -1.34, 2.65, -1.3, 1.55, 0};
+
+std::vector<double> counted(std::size_t n) {
+  std::vector<double> s(n);
+  std::iota(s.begin(), s.end(), 0.0);
+  return s;
+}
+
+Ellipse tool_down(double y, double z = 0.5) {
+  return {{0, y, z}, 0.3, 0.15, Eigen::Vector3d::UnitZ(), from_euler({3.14, 0, 0})};
+}
+
+void expect_on_poses(const Arm& arm, const JointPath& path, std::span<const Pose> poses) {
+  ASSERT_EQ(path.q.size(), poses.size());
+  ASSERT_EQ(path.s.size(), poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose X = fk(arm, view(path.q[i]));
+    EXPECT_LT((X.p - poses[i].p).norm(), 1e-6);
+    EXPECT_LT(angle_between(X.R, poses[i].R), 1e-6);
+    EXPECT_TRUE(within_limits(arm, view(path.q[i])));
+  }
+}
+
+TEST(SolvePath, TheEllipseOfTheDemoIsSolved) {
+  const IkSolver ik(testing::ur5e());
+  const std::vector<Pose> poses = ellipse_points(tool_down(-0.3), 200);
+  const auto path = solve_path(ik, poses, counted(200), kSeed);
+  ASSERT_TRUE(path.has_value());
+  expect_on_poses(ik.arm(), *path, poses);
+  EXPECT_LT(path->max_step(), 5.2 * kDegree);
+  EXPECT_GT(path->max_step(), 0);
+  EXPECT_LT((path->q.front() - path->q.back()).norm(), 1e-5);
+}
+
+TEST(SolvePath, TheEllipseOfTheGuideIsRefusedAndMended) {
+  const IkSolver ik(testing::ur5e());
+  const std::vector<Pose> poses = ellipse_points(tool_down(-0.2), 200);
+  const auto path = solve_path(ik, poses, counted(200), kSeed);
+  ASSERT_FALSE(path.has_value());
+  EXPECT_EQ(path.error().at, 37U);
+  EXPECT_EQ(path.error().code, PathErrc::inner_void);
+  EXPECT_NEAR(path.error().fraction, 37 / 200.0, 1e-12);
+  EXPECT_EQ(path.error().partial.q.size(), 37U);
+
+  const std::vector<UnreachableRange> ranges = unreachable_ranges(ik, poses, kSeed);
+  ASSERT_EQ(ranges.size(), 1U);
+  EXPECT_EQ(ranges[0].first, 37U);
+  EXPECT_EQ(ranges[0].last, 62U);
+  EXPECT_EQ(ranges[0].worst.code, IkErrc::inner_void);
+  // The nearest point is 0.05 m from the axis.
+  EXPECT_NEAR(ranges[0].worst.amount, 0.134 - 0.05, 1e-3);
+
+  const auto shift = find_shift(ik, poses, kSeed);
+  ASSERT_TRUE(shift.has_value()) << shift.error().what;
+  EXPECT_TRUE(shift->isApprox(Eigen::Vector3d(0, -0.1, 0))) << shift->transpose();
+}
+
+TEST(SolvePath, ShiftIsZeroWhereNoneIsNeededAndFailsWhereNoneHelps) {
+  const IkSolver ik(testing::ur5e());
+  const auto none = find_shift(ik, ellipse_points(tool_down(-0.45, 0.4), 60), kSeed);
+  ASSERT_TRUE(none.has_value());
+  EXPECT_EQ(none->norm(), 0);
+  Ellipse huge = tool_down(0);
+  huge.a = 3;
+  const auto hopeless = find_shift(ik, ellipse_points(huge, 60), kSeed);
+  ASSERT_FALSE(hopeless.has_value());
+  EXPECT_EQ(hopeless.error().code, Errc::impossible);
+  EXPECT_NE(hopeless.error().what.find("0.40 m"), std::string::npos);
+}
+
+TEST(SolvePath, OtherBranchesAreTriedWhenTheNearestFails) {
+  // From a wrist turned to its stop the line needs another winding.
+  const Arm arm = testing::ur5e();
+  const IkSolver ik(arm);
+  const JointVec q0 = joint_vec(std::vector<double>{-1.57, -1.34, 2.2, -1.3, 1.55, 6.2});
+  const Pose from = fk(arm, view(q0));
+  const Curve turn = *Curve::line(from, {from.p, from.R * from_euler({0, 0, 1.0})});
+  const std::vector<double> s = turn.stations(0.001, 0.05);
+  std::vector<Pose> poses;
+  for (const double x : s) poses.push_back(turn.at(x));
+  const auto path = solve_path(ik, poses, s, view(q0));
+  ASSERT_TRUE(path.has_value());
+  expect_on_poses(arm, *path, poses);
+  EXPECT_LE(path->max_step(), 0.5);
+}
+
+TEST(SolvePath, AFlipIsNoAnswer) {
+  const IkSolver ik(testing::ur5e());
+  const Pose first = fk(ik.arm(), kSeed);
+  std::vector<double> far = kSeed;
+  far[0] += 1.5;
+  const std::vector<Pose> poses{first, fk(ik.arm(), far)};
+  const auto path = solve_path(ik, poses, counted(2), kSeed);
+  ASSERT_FALSE(path.has_value());
+  EXPECT_EQ(path.error().code, PathErrc::branch_flip);
+  EXPECT_EQ(path.error().at, 1U);
+  EXPECT_TRUE(solve_path(ik, poses, counted(2), kSeed, {.max_step = 2}).has_value());
+}
+
+TEST(SolvePath, BadInputIsRefused) {
+  const IkSolver ik(testing::ur5e());
+  const std::vector<Pose> poses = ellipse_points(tool_down(-0.3), 4);
+  const auto code = [&](std::span<const Pose> p, std::vector<double> s, std::vector<double> q,
+                        const PathOptions& options) {
+    const auto path = solve_path(ik, p, s, q, options);
+    return path ? PathErrc::no_convergence : path.error().code;
+  };
+  const std::vector<double> s = counted(4);
+  EXPECT_EQ(code({}, {}, kSeed, {}), PathErrc::bad_input);
+  EXPECT_EQ(code(poses, counted(3), kSeed, {}), PathErrc::bad_input);
+  EXPECT_EQ(code(poses, {0, 1, 3, 2}, kSeed, {}), PathErrc::bad_input);
+  EXPECT_EQ(code(poses, {0, 1, 2, kNaN}, kSeed, {}), PathErrc::bad_input);
+  EXPECT_EQ(code(poses, s, {0, 0}, {}), PathErrc::bad_input);
+  EXPECT_EQ(code(poses, s, kSeed, {.max_step = 0}), PathErrc::bad_input);
+  EXPECT_EQ(code(poses, s, kSeed, {.comfort = 2}), PathErrc::bad_input);
+  std::vector<Pose> broken = poses;
+  broken[2].p.x() = kNaN;
+  EXPECT_EQ(code(broken, s, kSeed, {.max_step = 10}), PathErrc::bad_input);
+  EXPECT_FALSE(find_shift(ik, {}, kSeed).has_value());
+  EXPECT_FALSE(find_shift(ik, poses, kSeed, {}, kNaN).has_value());
+}
+
+std::vector<Pose> poses_of(const nlohmann::json& entry) {
+  std::vector<Pose> poses;
+  for (const auto& pose : entry.at("poses")) {
+    const auto p = pose.at("pos").get<std::array<double, 3>>();
+    const auto q = pose.at("quat").get<std::array<double, 4>>();
+    poses.push_back({{p[0], p[1], p[2]}, to_matrix(Quat(q[0], q[1], q[2], q[3]))});
+  }
+  return poses;
+}
+
+TEST(SolvePathData, Ellipses) {
+  MJARM_TEST_FILE(near_file, "ik/ur5e_ellipse.jsonl");
+  MJARM_TEST_FILE(far_file, "ik/ur5e_ellipse_far.jsonl");
+  const IkSolver ik(testing::ur5e());
+  const std::vector<Pose> near = poses_of(support::load_json_lines(near_file).at(0));
+  const std::vector<UnreachableRange> ranges = unreachable_ranges(ik, near, kSeed);
+  ASSERT_EQ(ranges.size(), 1U);
+  EXPECT_EQ(ranges[0].first, 37U);
+  EXPECT_EQ(ranges[0].last, 62U);
+  EXPECT_EQ(ranges[0].worst.code, IkErrc::inner_void);
+  const std::vector<Pose> far = poses_of(support::load_json_lines(far_file).at(0));
+  const auto path = solve_path(ik, far, counted(far.size()), kSeed);
+  ASSERT_TRUE(path.has_value());
+  expect_on_poses(ik.arm(), *path, far);
+  EXPECT_LT(path->max_step(), 2 * kDegree);
+}
+
+TEST(SolvePathData, AllLinesAreSolved) {
+  MJARM_TEST_FILE(file, "ik/ur5e_lines.jsonl");
+  const IkSolver ik(testing::ur5e());
+  int line = 0;
+  for (const auto& entry : support::load_json_lines(file)) {
+    const std::vector<Pose> poses = poses_of(entry);
+    const auto path = solve_path(ik, poses, counted(poses.size()), view(ik.arm().home));
+    EXPECT_TRUE(path.has_value()) << "line " << line << " stops at " << path.error().at << ": "
+                                  << name(path.error().code);
+    if (path) {
+      expect_on_poses(ik.arm(), *path, poses);
+      EXPECT_LE(path->max_step(), 0.5);
+    }
+    ++line;
+  }
+  EXPECT_EQ(line, 20);
+}
+
+}  // namespace
+}  // namespace mjarm
