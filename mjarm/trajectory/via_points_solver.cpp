@@ -18,6 +18,7 @@ constexpr double kToWall = 0.99;       // share of the way to the nearest limit 
 constexpr double kDescent = 1e-4;      // share of the promised descent that a step must bring
 constexpr double kPenalty = 2;         // of a room missed, in multipliers
 constexpr int kHalvings = 12;          // of one step
+constexpr int kPatience = 10;          // steps at the end without a better motion
 constexpr double kBand = 1e4;          // multipliers stay within this factor of the central path
 
 /// A motion, the rooms taken for those of its rows, and its own rooms less those.
@@ -79,7 +80,7 @@ class Descent {
       for (int j = 0; j < step_.joints(); ++j) call(k, j, step_.index(k, j));
     }
   }
-  void keep_best();
+  [[nodiscard]] bool keep_best();
   [[nodiscard]] bool find_step(double mu, double curvature);
   [[nodiscard]] Reach measure_step(double mu);
   void advance(double share);
@@ -120,8 +121,7 @@ bool Descent::guess() {
   if (!sound || !newton_.solve(parts_, 0, step_)) return false;
   advance(1);
   now_.motion = trial_.motion;
-  keep_best();
-  if (!(best_duration_ < std::numeric_limits<double>::infinity())) return false;
+  if (!keep_best()) return false;
   trial_.motion = stretched(best_, 1 / kGuessUse);
   advance_rooms(0);
   std::swap(now_, trial_);
@@ -129,16 +129,19 @@ bool Descent::guess() {
 }
 
 /// Remembers the motion if none was shorter, each stretched to keep the limits.
-void Descent::keep_best() {
+/// @return whether it was clearly shorter.
+bool Descent::keep_best() {
   double factor = 0;
   for_all([&](int k, int j, std::size_t) {
     const double h = now_.motion.h[static_cast<std::size_t>(k)];
     factor = std::max(factor, time_factor(task(k, j), coefs_of(now_.motion, k, j), h));
   });
   const double duration = factor * now_.motion.duration();
-  if (!(duration < best_duration_)) return;
+  if (!(duration < best_duration_)) return false;
+  const bool clearly = duration < (1 - 0.1 * kLastBarrier) * best_duration_;
   best_duration_ = duration;
   best_ = stretched(now_.motion, factor);
+  return clearly;
 }
 
 bool Descent::find_step(double mu, double curvature) {
@@ -265,16 +268,20 @@ void Descent::improve(int iterations) {
       multipliers_[id].down[r] = mu / now_.rooms[id].down[r];
     }
   }
-  for (int i = 0; i < iterations; ++i) {
+  int patience = kPatience;
+  for (int i = 0; i < iterations && patience > 0; ++i) {
     // Without the curvature of the limits where that makes the system indefinite.
     if (!find_step(mu, 1) && !find_step(mu, 0)) return;
     const Reach reach = measure_step(mu);
     const double share = take_step(mu, reach);
-    if (share > 0) {
-      move_multipliers(mu, reach.multipliers);
-      keep_best();
+    if (share > 0) move_multipliers(mu, reach.multipliers);
+    const bool better = share > 0 && keep_best();
+    if (mu <= last) {
+      const double now = now_.motion.duration();
+      const bool within = best_duration_ < (1 + kLastBarrier) * now;
+      if (share == 0 || (within && -reach.slope < 0.1 * kLastBarrier * now)) return;
+      patience = better ? kPatience : patience - 1;
     }
-    if (mu <= last && (share == 0 || -reach.slope < 0.1 * kLastBarrier * start)) return;
     if (share == 0 || share > kGoodStep) mu = std::max(last, kShrink * mu);
   }
 }
