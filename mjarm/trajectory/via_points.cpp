@@ -7,6 +7,7 @@
 
 #include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
+#include "mjarm/trajectory/point_to_point.hpp"
 #include "mjarm/trajectory/via_points_solver_internal.hpp"
 
 namespace mjarm {
@@ -37,13 +38,15 @@ JointState rest_at(const JointVec& q) {
   return {q, JointVec::Zero(q.size()), JointVec::Zero(q.size())};
 }
 
-Result<ViaMotion> stopping_at_each(std::span<const JointVec> points, const JointLimits& limits,
-                                   const TimingOptions& options) {
+Result<ViaMotion> stopping_at_each(std::span<const JointVec> points, const detail::Bounds& bounds) {
+  JointLimits limits;
+  limits.velocity = bounds.v;
+  limits.acceleration = bounds.a;
+  limits.jerk = bounds.j;
   std::vector<Trajectory> moves;
   ViaMotion motion{{}, {0}};
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    Result<Trajectory> move =
-        time_joint_move(view(points[i]), view(points[i + 1]), limits, options);
+    Result<Trajectory> move = point_to_point(rest_at(points[i]), rest_at(points[i + 1]), limits);
     if (!move) return fail(std::move(move.error()));
     motion.times.push_back(motion.times.back() + move->duration());
     moves.push_back(*std::move(move));
@@ -126,10 +129,12 @@ Result<ViaMotion> time_via_points(std::span<const JointVec> waypoints, const Joi
   std::vector<double> times{0};
   for (std::size_t first = 0; first + 1 < points.size(); first += kLeg) {
     const auto leg = points.subspan(first, std::min(kLeg + 1, points.size() - first));
-    Result<ViaMotion> motion = stopping_at_each(leg, limits, {.joint_share = options.joint_share});
+    Result<ViaMotion> motion = stopping_at_each(leg, *bounds);
     if (!motion) return fail(std::move(motion.error()));
-    std::optional<ViaMotion> faster = optimised(leg, *bounds, options.iterations);
-    if (faster && faster->times.back() < motion->times.back()) motion = *std::move(faster);
+    if (leg.size() > 2) {
+      std::optional<ViaMotion> faster = optimised(leg, *bounds, options.iterations);
+      if (faster && faster->times.back() < motion->times.back()) motion = *std::move(faster);
+    }
     const double start = times.back();
     for (std::size_t i = 1; i < leg.size(); ++i) times.push_back(start + motion->times[i]);
     legs.push_back(std::move(motion->trajectory));

@@ -10,7 +10,7 @@ namespace mjarm {
 
 /// How hard to try. Every default is usable as is.
 struct ViaOptions {
-  int iterations = 100;      ///< most steps of the optimiser, >= 0; it mostly stops after 20 to 40
+  int iterations = 100;      ///< most steps of the optimiser, >= 0; it mostly stops after 10 to 20
   double joint_share = 1.0;  ///< share of the joints' velocity and acceleration limits, (0, 1]
 };
 
@@ -22,7 +22,7 @@ struct ViaMotion {
 
 /// The fastest motion through joint waypoints in their order, at rest at both ends, within
 /// velocity, acceleration and jerk limits; its shape between the waypoints is free. All joints pass
-/// a waypoint at one time, without stopping. The jerk is constant in each of 8 equal cells between
+/// a waypoint at one time, without stopping. The jerk is constant in each of 16 equal cells between
 /// waypoints, and the durations and the jerks are optimised together, so that the result is a local
 /// optimum of such motions; it is never slower than stopping at every waypoint. Takes time in
 /// proportion to the number of waypoints. Mind that joint positions are not bounded between

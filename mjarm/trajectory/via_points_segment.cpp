@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "mjarm/trajectory/via_points_segment_internal.hpp"
@@ -185,6 +186,14 @@ Rows row_fill(double v, double a, double j) {
   return b;
 }
 
+double time_factor(const SegmentTask& task, const Coefs& c, double h) {
+  double v = 0, a = 0, j = 0;
+  for (int i = 0; i < n; ++i) v = std::max(v, std::abs(c[i + 1]));
+  for (int i = 0; i <= n; ++i) a = std::max(a, std::abs(c[i + 1] - c[i]));
+  for (int i = 0; i < n; ++i) j = std::max(j, std::abs(c[i + 2] - 2 * c[i + 1] + c[i]));
+  return std::max({v / task.v, std::sqrt(a / (task.a * h)), std::cbrt(j / (task.j * h * h))});
+}
+
 SegmentModel smoothness_model(const Coefs& c, double weight) {
   SegmentModel model;
   for (int i = 0; i < n; ++i) {
@@ -194,7 +203,8 @@ SegmentModel smoothness_model(const Coefs& c, double weight) {
 }
 
 SegmentModel barrier_model(const SegmentTask& task, const Shared& y, double mu,
-                           const RowPairs& rooms, const RowPairs& multipliers, double curvature) {
+                           const RowPairs& rooms, const RowPairs& missed,
+                           const RowPairs& multipliers, double curvature) {
   SegmentModel model;
   // A row |g| <= b(h) with slope b' adds w g^2 / 2 + u g h + p g and terms in h alone.
   struct Terms {
@@ -204,8 +214,10 @@ SegmentModel barrier_model(const SegmentTask& task, const Shared& y, double mu,
     const double up = 1 / rooms.up[row], down = 1 / rooms.down[row];
     const double w_up = multipliers.up[row] * up, w_down = multipliers.down[row] * down;
     model.hh += (w_up + w_down) * slope * slope;
-    model.grad_h -= mu * (up + down) * slope;
-    return Terms{w_up + w_down, (w_down - w_up) * slope, mu * (up - down)};
+    const double p_up = mu * up - w_up * missed.up[row];
+    const double p_down = mu * down - w_down * missed.down[row];
+    model.grad_h -= (p_up + p_down) * slope;
+    return Terms{w_up + w_down, (w_down - w_up) * slope, p_up - p_down};
   };
   for (int i = 0; i < n; ++i) {
     const Terms t = terms(i, 0);

@@ -9,7 +9,7 @@ namespace mjarm::detail {
 // a_i = (c[i+1] - c[i]) / h, in the cells jerk_i = (c[i+2] - 2 c[i+1] + c[i]) / h^2; the velocity
 // stays in the hull of c[1..kCells]. C. de Boor, A Practical Guide to Splines (1978).
 
-inline constexpr int kCells = 8;           ///< cells of constant jerk a segment, >= 4
+inline constexpr int kCells = 16;          ///< cells of constant jerk a segment, >= 5
 inline constexpr int kCoefs = kCells + 2;  ///< coefficients of one segment
 inline constexpr int kInner = kCells - 2;  ///< those the ends leave free: c[2..kCells-1]
 /// Rows |g(c)| <= b(h): kCells velocities, kCells + 1 accelerations, kCells jerks.
@@ -44,6 +44,10 @@ struct RowPairs {
 /// Values of the rows. Linear in `c`.
 [[nodiscard]] Rows row_values(const Coefs& c);
 
+/// The least factor on time that keeps the limits: v goes with 1 / factor, a and j with its square
+/// and cube.
+[[nodiscard]] double time_factor(const SegmentTask& task, const Coefs& c, double h);
+
 /// One number for all velocity, acceleration and jerk rows each; the bounds are (v, a h, j h^2).
 [[nodiscard]] Rows row_fill(double v, double a, double j);
 
@@ -63,11 +67,12 @@ struct SegmentModel {
 /// The log barrier of the rows with its Newton model of a primal-dual interior point method
 /// (J. Nocedal and S. Wright, Numerical Optimization, 2nd ed., chapter 19).
 /// @param mu         weight of the barrier, > 0.
-/// @param rooms      all > 0.
+/// @param rooms      taken for those of the rows, all > 0.
+/// @param missed     the rows' own rooms less those taken for them.
 /// @param curvature  1: the whole second derivative of the Lagrangian; 0: its convex part.
 [[nodiscard]] SegmentModel barrier_model(const SegmentTask& task, const Shared& y, double mu,
-                                         const RowPairs& rooms, const RowPairs& multipliers,
-                                         double curvature);
+                                         const RowPairs& rooms, const RowPairs& missed,
+                                         const RowPairs& multipliers, double curvature);
 
 /// A model with the inner coefficients eliminated, which follow as the best ones on the way.
 struct Condensed {

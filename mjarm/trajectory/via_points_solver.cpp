@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,38 +13,62 @@ constexpr double kGuessUse = 0.95;     // share of the limits the first guess ta
 constexpr double kFirstBarrier = 0.3;  // weight of the whole barrier, as a share of the duration
 constexpr double kLastBarrier = 1e-3;  // the same at the end: about the duration left to gain
 constexpr double kShrink = 0.5;        // of the barrier's weight after a good step
+constexpr double kGoodStep = 0.3;      // share of a step from which on it is called good
 constexpr double kToWall = 0.99;       // share of the way to the nearest limit that a step may take
 constexpr double kDescent = 1e-4;      // share of the promised descent that a step must bring
+constexpr double kPenalty = 2;         // of a room missed, in multipliers
 constexpr int kHalvings = 12;          // of one step
+constexpr int kPatience = 10;          // steps at the end without a better motion
 constexpr double kBand = 1e4;          // multipliers stay within this factor of the central path
 
-/// Minimises duration - mu * sum of log(room) with mu going down, from one feasible motion to the
-/// next. J. Nocedal and S. Wright, Numerical Optimization, 2nd ed., chapter 19.
+/// A motion, the rooms taken for those of its rows, and its own rooms less those.
+struct State {
+  ViaSpline motion;
+  std::vector<RowPairs> rooms, missed;
+};
+
+ViaSpline stretched(ViaSpline motion, double factor) {
+  for (double& h : motion.h) h *= factor;
+  motion.v /= factor;
+  motion.a /= factor * factor;
+  for (Inner& inner : motion.inner) {
+    for (double& c : inner) c /= factor;
+  }
+  return motion;
+}
+
+/// Minimises duration - mu * (sum of log(room)) with mu going down: a primal-dual interior point
+/// method. The rooms are unknowns of their own, which meet those of the rows only in the end, so
+/// that bent limits do not shorten the steps; any motion on the way becomes one within the limits
+/// when time is stretched, and the shortest of these is kept. J. Nocedal and S. Wright, Numerical
+/// Optimization, 2nd ed., chapter 19.
 class Descent {
  public:
   Descent(std::span<const JointVec> steps, const Bounds& bounds)
       : steps_(steps),
         bounds_(bounds),
-        motion_(static_cast<int>(steps[0].size()), static_cast<int>(steps.size())),
-        trial_(motion_),
-        step_(motion_),
-        newton_(motion_.joints(), motion_.segments()),
-        parts_(motion_.inner.size()),
-        rooms_(parts_.size()),
-        trial_rooms_(rooms_),
-        multipliers_(rooms_),
-        multiplier_steps_(rooms_) {}
+        now_{ViaSpline(static_cast<int>(steps[0].size()), static_cast<int>(steps.size())), {}, {}},
+        trial_(now_),
+        step_(now_.motion),
+        best_(now_.motion),
+        newton_(step_.joints(), step_.segments()),
+        parts_(step_.inner.size()),
+        room_steps_(parts_.size()),
+        multipliers_(parts_.size()),
+        multiplier_steps_(parts_.size()) {
+    now_.rooms = now_.missed = room_steps_;
+    trial_ = now_;
+  }
 
+  /// Makes the motion to start from. @return false where numbers overflow.
   [[nodiscard]] bool guess();
   void improve(int iterations);
-  void scale_to_limits(double use);
-  [[nodiscard]] const ViaSpline& motion() const { return motion_; }
+  [[nodiscard]] const ViaSpline& best() const { return best_; }
 
  private:
-  /// What the first-order step does to the rooms and the multipliers.
+  /// How far the first-order step may go, <= 1, and the derivative of the merit along it.
   struct Reach {
-    double step, multipliers;  ///< share of the step that keeps all positive, <= 1
-    double slope;              ///< derivative of the merit along the step
+    double step, multipliers, slope;
   };
 
   [[nodiscard]] SegmentTask task(int k, int j) const {
@@ -51,116 +76,105 @@ class Descent {
   }
   template <class Call>
   void for_all(const Call& call) const {
-    for (int k = 0; k < motion_.segments(); ++k) {
-      for (int j = 0; j < motion_.joints(); ++j) call(k, j, motion_.index(k, j));
+    for (int k = 0; k < step_.segments(); ++k) {
+      for (int j = 0; j < step_.joints(); ++j) call(k, j, step_.index(k, j));
     }
   }
-  [[nodiscard]] double worst_use() const;
-  [[nodiscard]] bool find_step(double mu);
+  [[nodiscard]] bool keep_best();
   [[nodiscard]] bool find_step(double mu, double curvature);
   [[nodiscard]] Reach measure_step(double mu);
   void advance(double share);
-  [[nodiscard]] bool fill_rooms(const ViaSpline& motion, std::vector<RowPairs>& rooms) const;
-  [[nodiscard]] double merit(const ViaSpline& motion, const std::vector<RowPairs>& rooms,
-                             double mu) const;
+  void advance_rooms(double share);
+  [[nodiscard]] double merit(const State& state, double mu) const;
   [[nodiscard]] double take_step(double mu, const Reach& reach);
   void move_multipliers(double mu, double share);
 
   std::span<const JointVec> steps_;
   const Bounds& bounds_;
-  ViaSpline motion_, trial_, step_;
+  State now_, trial_;
+  ViaSpline step_, best_;
+  double best_duration_ = std::numeric_limits<double>::infinity();
   ViaNewton newton_;
   std::vector<Condensed> parts_;
-  std::vector<RowPairs> rooms_, trial_rooms_, multipliers_, multiplier_steps_;
+  std::vector<RowPairs> room_steps_, multipliers_, multiplier_steps_;
 };
-
-/// The least factor on time that keeps all limits: velocities go with 1 / k, accelerations with
-/// 1 / k^2, jerks with 1 / k^3.
-double Descent::worst_use() const {
-  double v = 0, a = 0, j = 0;
-  for_all([&](int k, int joint, std::size_t) {
-    const Rows g = row_values(coefs_of(motion_, k, joint));
-    const double h = motion_.h[static_cast<std::size_t>(k)];
-    const Rows per = row_fill(1 / bounds_.v[joint], 0, 0);
-    const Rows per_a = row_fill(0, 1 / (bounds_.a[joint] * h), 0);
-    const Rows per_j = row_fill(0, 0, 1 / (bounds_.j[joint] * h * h));
-    for (std::size_t r = 0; r < g.size(); ++r) {
-      v = std::max(v, std::abs(g[r]) * per[r]);
-      a = std::max(a, std::abs(g[r]) * per_a[r]);
-      j = std::max(j, std::abs(g[r]) * per_j[r]);
-    }
-  });
-  return std::max({v, std::sqrt(a), std::cbrt(j)});
-}
-
-void Descent::scale_to_limits(double use) {
-  const double slower = worst_use() / use;
-  for (double& h : motion_.h) h *= slower;
-  motion_.v /= slower;
-  motion_.a /= slower * slower;
-  for (Inner& inner : motion_.inner) {
-    for (double& c : inner) c /= slower;
-  }
-}
 
 /// The smoothest motion (least square jerk) at times in proportion to those the limits would need
 /// for each step alone, slowed down to keep the limits.
 bool Descent::guess() {
+  ViaSpline& motion = now_.motion;
   for_all([&](int k, int j, std::size_t) {
     const SegmentTask t = task(k, j);
     const double way = std::abs(t.step);
-    double& h = motion_.h[static_cast<std::size_t>(k)];
+    double& h = motion.h[static_cast<std::size_t>(k)];
     h = std::max({h, way / t.v / kCells, std::sqrt(2 * way / t.a) / kCells,
                   std::cbrt(8 * way / t.j) / kCells});
   });
   bool sound = true;
   for_all([&](int k, int j, std::size_t id) {
-    const double h = motion_.h[static_cast<std::size_t>(k)];
-    motion_.inner[id].fill(task(k, j).step / h / kInner);
+    const double h = motion.h[static_cast<std::size_t>(k)];
+    motion.inner[id].fill(task(k, j).step / h / kInner);
     const double weight = 1 / (h * h * h * bounds_.j[j] * bounds_.j[j]);
-    const SegmentModel model = smoothness_model(coefs_of(motion_, k, j), weight);
-    sound = condense(task(k, j), motion_.shared(k, j), model, parts_[id]) && sound;
+    const SegmentModel model = smoothness_model(coefs_of(motion, k, j), weight);
+    sound = condense(task(k, j), motion.shared(k, j), model, parts_[id]) && sound;
   });
   if (!sound || !newton_.solve(parts_, 0, step_)) return false;
   advance(1);
-  std::swap(motion_, trial_);
-  scale_to_limits(kGuessUse);
-  return fill_rooms(motion_, rooms_);
+  now_.motion = trial_.motion;
+  if (!keep_best()) return false;
+  trial_.motion = stretched(best_, 1 / kGuessUse);
+  advance_rooms(0);
+  std::swap(now_, trial_);
+  return true;
+}
+
+/// Remembers the motion if none was shorter, each stretched to keep the limits.
+/// @return whether it was clearly shorter.
+bool Descent::keep_best() {
+  double factor = 0;
+  for_all([&](int k, int j, std::size_t) {
+    const double h = now_.motion.h[static_cast<std::size_t>(k)];
+    factor = std::max(factor, time_factor(task(k, j), coefs_of(now_.motion, k, j), h));
+  });
+  const double duration = factor * now_.motion.duration();
+  if (!(duration < best_duration_)) return false;
+  const bool clearly = duration < (1 - 0.1 * kLastBarrier) * best_duration_;
+  best_duration_ = duration;
+  best_ = stretched(now_.motion, factor);
+  return clearly;
 }
 
 bool Descent::find_step(double mu, double curvature) {
   bool sound = true;
   for_all([&](int k, int j, std::size_t id) {
-    const Shared y = motion_.shared(k, j);
-    const SegmentModel model =
-        barrier_model(task(k, j), y, mu, rooms_[id], multipliers_[id], curvature);
+    const Shared y = now_.motion.shared(k, j);
+    const SegmentModel model = barrier_model(task(k, j), y, mu, now_.rooms[id], now_.missed[id],
+                                             multipliers_[id], curvature);
     sound = condense(task(k, j), y, model, parts_[id]) && sound;
   });
   return sound && newton_.solve(parts_, 1, step_);
 }
 
-bool Descent::find_step(double mu) { return find_step(mu, 1) || find_step(mu, 0); }
-
 Descent::Reach Descent::measure_step(double mu) {
   double shrink = 1, shrink_multipliers = 1, slope = step_.duration();
+  const auto one = [&](double change, double s, double miss, double z, double& ds, double& dz) {
+    ds = change + miss;
+    const double relative = ds / s;
+    dz = mu / s - z * (1 + relative);
+    slope -= mu * relative + kPenalty * z * std::abs(miss);
+    shrink = std::max(shrink, -relative / kToWall);
+    shrink_multipliers = std::max(shrink_multipliers, -dz / (z * kToWall));
+  };
   for_all([&](int k, int j, std::size_t id) {
-    const auto segment = static_cast<std::size_t>(k);
-    const double h = motion_.h[segment], dh = step_.h[segment];
-    const Rows dg =
-        row_values(coefs_step(motion_.shared(k, j), step_.shared(k, j), step_.inner[id]));
+    const Shared y = now_.motion.shared(k, j), dy = step_.shared(k, j);
+    const double h = y.back(), dh = dy.back();
+    const Rows dg = row_values(coefs_step(y, dy, step_.inner[id]));
     const Rows db = row_fill(0, bounds_.a[j] * dh, 2 * bounds_.j[j] * h * dh);
-    const RowPairs &room = rooms_[id], &z = multipliers_[id];
-    const auto one = [&](double change, double s, double m) {
-      const double relative = change / s;
-      slope -= mu * relative;
-      const double dm = mu / s - m * (1 + relative);
-      shrink = std::max(shrink, -relative / kToWall);
-      shrink_multipliers = std::max(shrink_multipliers, -dm / (m * kToWall));
-      return dm;
-    };
-    for (std::size_t r = 0; r < dg.size(); ++r) {
-      multiplier_steps_[id].up[r] = one(db[r] - dg[r], room.up[r], z.up[r]);
-      multiplier_steps_[id].down[r] = one(db[r] + dg[r], room.down[r], z.down[r]);
+    const RowPairs &s = now_.rooms[id], &miss = now_.missed[id], &z = multipliers_[id];
+    RowPairs &ds = room_steps_[id], &dz = multiplier_steps_[id];
+    for (std::size_t r = 0; r < kRows; ++r) {
+      one(db[r] - dg[r], s.up[r], miss.up[r], z.up[r], ds.up[r], dz.up[r]);
+      one(db[r] + dg[r], s.down[r], miss.down[r], z.down[r], ds.down[r], dz.down[r]);
     }
   });
   return {1 / shrink, 1 / shrink_multipliers, slope};
@@ -169,56 +183,62 @@ Descent::Reach Descent::measure_step(double mu) {
 /// The trial motion: `share` of the step, then all inner coefficients of a segment shifted alike to
 /// cover the way exactly.
 void Descent::advance(double share) {
-  trial_.v = motion_.v + share * step_.v;
-  trial_.a = motion_.a + share * step_.a;
-  for (std::size_t k = 0; k < trial_.h.size(); ++k) {
-    trial_.h[k] = motion_.h[k] + share * step_.h[k];
-  }
+  const ViaSpline& from = now_.motion;
+  ViaSpline& to = trial_.motion;
+  to.v = from.v + share * step_.v;
+  to.a = from.a + share * step_.a;
+  for (std::size_t k = 0; k < to.h.size(); ++k) to.h[k] = from.h[k] + share * step_.h[k];
   for_all([&](int k, int j, std::size_t id) {
-    double missing = inner_sum(task(k, j), trial_.shared(k, j));
+    double missing = inner_sum(task(k, j), to.shared(k, j));
     for (std::size_t i = 0; i < kInner; ++i) {
-      trial_.inner[id][i] = motion_.inner[id][i] + share * step_.inner[id][i];
-      missing -= trial_.inner[id][i];
+      to.inner[id][i] = from.inner[id][i] + share * step_.inner[id][i];
+      missing -= to.inner[id][i];
     }
-    for (double& c : trial_.inner[id]) c += missing / kInner;
+    for (double& c : to.inner[id]) c += missing / kInner;
   });
 }
 
-/// @return whether all rooms are positive.
-bool Descent::fill_rooms(const ViaSpline& motion, std::vector<RowPairs>& rooms) const {
-  bool inside = std::all_of(motion.h.begin(), motion.h.end(), [](double h) { return h > 0; });
+/// The rooms of the trial: `share` of their step on, or the rows' own where these are larger.
+void Descent::advance_rooms(double share) {
   for_all([&](int k, int j, std::size_t id) {
-    const double h = motion.h[static_cast<std::size_t>(k)];
-    const Rows g = row_values(coefs_of(motion, k, j));
+    const double h = trial_.motion.h[static_cast<std::size_t>(k)];
+    const Rows g = row_values(coefs_of(trial_.motion, k, j));
     const Rows b = row_fill(bounds_.v[j], bounds_.a[j] * h, bounds_.j[j] * h * h);
-    for (std::size_t r = 0; r < g.size(); ++r) {
-      rooms[id].up[r] = b[r] - g[r];
-      rooms[id].down[r] = b[r] + g[r];
-      inside = inside && rooms[id].up[r] > 0 && rooms[id].down[r] > 0;
+    const RowPairs &from = now_.rooms[id], &step = room_steps_[id];
+    RowPairs &to = trial_.rooms[id], &missed = trial_.missed[id];
+    for (std::size_t r = 0; r < kRows; ++r) {
+      to.up[r] = std::max(from.up[r] + share * step.up[r], b[r] - g[r]);
+      to.down[r] = std::max(from.down[r] + share * step.down[r], b[r] + g[r]);
+      missed.up[r] = b[r] - g[r] - to.up[r];
+      missed.down[r] = b[r] + g[r] - to.down[r];
     }
   });
-  return inside;
 }
 
-double Descent::merit(const ViaSpline& motion, const std::vector<RowPairs>& rooms,
-                      double mu) const {
-  double logs = 0;
-  for (const RowPairs& room : rooms) {
-    for (std::size_t r = 0; r < room.up.size(); ++r) logs += std::log(room.up[r] * room.down[r]);
+/// The rooms missed count with their price, the multipliers.
+double Descent::merit(const State& state, double mu) const {
+  double logs = 0, missed = 0;
+  for (std::size_t id = 0; id < parts_.size(); ++id) {
+    const RowPairs &s = state.rooms[id], &miss = state.missed[id], &z = multipliers_[id];
+    for (std::size_t r = 0; r < kRows; ++r) {
+      logs += std::log(s.up[r] * s.down[r]);
+      missed -= z.up[r] * miss.up[r] + z.down[r] * miss.down[r];
+    }
   }
-  return motion.duration() - mu * logs;
+  return state.motion.duration() - mu * logs + kPenalty * missed;
 }
 
 /// @return the share of the step taken, 0 for none.
 double Descent::take_step(double mu, const Reach& reach) {
-  const double before = merit(motion_, rooms_, mu);
+  const double before = merit(now_, mu);
   double share = reach.step;
   for (int i = 0; i < kHalvings; ++i, share *= 0.5) {
     advance(share);
-    if (!fill_rooms(trial_, trial_rooms_)) continue;
-    if (merit(trial_, trial_rooms_, mu) > before + kDescent * share * reach.slope) continue;
-    std::swap(motion_, trial_);
-    rooms_.swap(trial_rooms_);
+    const std::vector<double>& h = trial_.motion.h;
+    if (!std::all_of(h.begin(), h.end(), [](double cell) { return cell > 0; })) continue;
+    advance_rooms(share);
+    if (!(merit(trial_, mu) <= before + kDescent * share * reach.slope)) continue;
+    std::swap(now_, trial_);
     return share;
   }
   return 0;
@@ -228,32 +248,41 @@ void Descent::move_multipliers(double mu, double share) {
   const auto move = [&](double& z, double change, double room) {
     z = std::clamp(z + share * change, mu / room / kBand, mu / room * kBand);
   };
-  for (std::size_t id = 0; id < multipliers_.size(); ++id) {
+  for (std::size_t id = 0; id < parts_.size(); ++id) {
+    const RowPairs &s = now_.rooms[id], &dz = multiplier_steps_[id];
     for (std::size_t r = 0; r < kRows; ++r) {
-      move(multipliers_[id].up[r], multiplier_steps_[id].up[r], rooms_[id].up[r]);
-      move(multipliers_[id].down[r], multiplier_steps_[id].down[r], rooms_[id].down[r]);
+      move(multipliers_[id].up[r], dz.up[r], s.up[r]);
+      move(multipliers_[id].down[r], dz.down[r], s.down[r]);
     }
   }
 }
 
 void Descent::improve(int iterations) {
-  const double rows = 2.0 * kRows * static_cast<double>(rooms_.size());
-  const double last = kLastBarrier * motion_.duration() / rows;
-  double mu = kFirstBarrier * motion_.duration() / rows;
-  for (std::size_t id = 0; id < rooms_.size(); ++id) {
+  const double start = now_.motion.duration();
+  const double share_of_row = start / (2.0 * kRows * static_cast<double>(parts_.size()));
+  const double last = kLastBarrier * share_of_row;
+  double mu = kFirstBarrier * share_of_row;
+  for (std::size_t id = 0; id < parts_.size(); ++id) {
     for (std::size_t r = 0; r < kRows; ++r) {
-      multipliers_[id].up[r] = mu / rooms_[id].up[r];
-      multipliers_[id].down[r] = mu / rooms_[id].down[r];
+      multipliers_[id].up[r] = mu / now_.rooms[id].up[r];
+      multipliers_[id].down[r] = mu / now_.rooms[id].down[r];
     }
   }
-  for (int i = 0; i < iterations; ++i) {
-    if (!find_step(mu)) return;
+  int patience = kPatience;
+  for (int i = 0; i < iterations && patience > 0; ++i) {
+    // Without the curvature of the limits where that makes the system indefinite.
+    if (!find_step(mu, 1) && !find_step(mu, 0)) return;
     const Reach reach = measure_step(mu);
     const double share = take_step(mu, reach);
     if (share > 0) move_multipliers(mu, reach.multipliers);
-    if (mu <= last && (share == 0 || -reach.slope < 0.1 * kLastBarrier * motion_.duration()))
-      return;
-    if (share == 0 || share > 0.3) mu = std::max(last, kShrink * mu);
+    const bool better = share > 0 && keep_best();
+    if (mu <= last) {
+      const double now = now_.motion.duration();
+      const bool within = best_duration_ < (1 + kLastBarrier) * now;
+      if (share == 0 || (within && -reach.slope < 0.1 * kLastBarrier * now)) return;
+      patience = better ? kPatience : patience - 1;
+    }
+    if (share == 0 || share > kGoodStep) mu = std::max(last, kShrink * mu);
   }
 }
 
@@ -268,8 +297,7 @@ std::optional<ViaSpline> fastest_via(std::span<const JointVec> steps, const Boun
   Descent descent(steps, bounds);
   if (!descent.guess()) return std::nullopt;
   descent.improve(iterations);
-  descent.scale_to_limits(1);
-  return descent.motion();
+  return descent.best();
 }
 
 }  // namespace mjarm::detail
