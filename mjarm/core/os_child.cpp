@@ -34,6 +34,9 @@ constexpr double kSlowness = kSanitized ? 3 : 1;
 /// Once `work` is at its end the child says this; everything before is its answer.
 constexpr char kEnd = '\x04';
 
+/// [s] Computing time that is no progress.
+constexpr double kWakes = 1e-3;
+
 using Clock = std::chrono::steady_clock;
 
 /// Address space of this process [bytes]; 0 where unknown.
@@ -124,15 +127,16 @@ class Listener {
   }
 
   /// True once it has not computed for as long as it may. (On a busy machine a process that wants
-  /// to compute gets its turn much sooner.)
+  /// to compute gets its turn much sooner; one that only wakes up now and then does not compute.)
   bool is_idle() {
     clockid_t clock{};
     timespec used{};
     if (::clock_getcpuclockid(child_, &clock) != 0 || ::clock_gettime(clock, &used) != 0)
       return false;
-    const bool computes = used.tv_sec != used_.tv_sec || used.tv_nsec != used_.tv_nsec;
-    if (computes) {
-      used_ = used;
+    const double seconds =
+        static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+    if (seconds - used_ > kWakes) {
+      used_ = seconds;
       last_progress_ = Clock::now();
     }
     return Clock::now() - last_progress_ > std::chrono::duration<double>(limits_.idle_seconds);
@@ -164,7 +168,7 @@ class Listener {
   pid_t child_;
   int pipe_;
   ChildLimits limits_;
-  timespec used_{};  ///< computing time of the child when it was last looked at
+  double used_ = 0;  ///< [s] computing time of the child when it last went on
   Clock::time_point last_progress_ = Clock::now();
   ChildResult result_;
   bool closed_ = false;

@@ -24,6 +24,9 @@ Result<Bounds> bounds_of(const JointLimits& limits, const TimingOptions& options
   if (!positive(options.tool_accel)) {
     return fail(Errc::bad_input, text(msg::trajectory_bad_accel, options.tool_accel));
   }
+  if (!positive(options.tool_ramp)) {
+    return fail(Errc::bad_input, text(msg::trajectory_bad_ramp, options.tool_ramp));
+  }
   return Bounds{options.joint_share * limits.velocity, options.joint_share * limits.acceleration,
                 limits.jerk};
 }

@@ -9,6 +9,7 @@ struct PathState {
   double s;  ///< path parameter
   double v;  ///< ds/dt
   double a;  ///< d2s/dt2
+  double j;  ///< d3s/dt3
 };
 
 /// A speed profile averaged over a sliding window of time with a hat-shaped weight. So s is three
@@ -24,6 +25,7 @@ class SmoothProfile {
   [[nodiscard]] PathState at(double t) const;
 
  private:
+  [[nodiscard]] double speed_before(double t) const;
   void add_cell(PathState& sum, double from, double to, std::size_t cell, double end) const;
 
   const SpeedProfile* profile_;

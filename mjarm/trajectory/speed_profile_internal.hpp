@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "mjarm/trajectory/limits_internal.hpp"
@@ -7,36 +8,31 @@
 
 namespace mjarm::detail {
 
-/// A fine grid along a spline with what the joint limits need of it.
-struct PathGrid {
-  explicit PathGrid(const CubicSpline& spline);
-
-  std::vector<double> s;    ///< ascending, start and end included
-  std::vector<JointVec> d;  ///< dq/ds
-  std::vector<JointVec> e;  ///< d2q/ds2
-};
-
-/// Bounds of the motion along the path itself.
+/// Bounds of the motion along the path itself; infinite where there are none.
 struct PathBounds {
   double speed;         ///< [m/s] > 0
   double acceleration;  ///< [m/s^2] > 0
+  double jerk;          ///< [m/s^3] > 0
 };
 
-/// A motion along a path from rest to rest: acceleration constant between neighbours.
+/// A motion along a path from rest to rest on a grid that has all waypoints in it. Between
+/// neighbours the acceleration is linear in time; it may jump at the grid points.
 struct SpeedProfile {
-  std::vector<double> t;  ///< [s] strictly ascending from 0
-  std::vector<double> s;  ///< path parameter
-  std::vector<double> v;  ///< ds/dt >= 0
+  std::vector<double> t;         ///< [s] strictly ascending from 0
+  std::vector<double> s;         ///< path parameter
+  std::vector<double> v;         ///< ds/dt >= 0
+  std::vector<double> a_before;  ///< d2s/dt2 at the end of the cell before each grid point
+  std::vector<double> a_after;   ///< and at the start of the one after it
   [[nodiscard]] double duration() const { return t.back(); }
 };
 
-/// The fastest motion along the grid with |dq/dt| and |d2q/dt2| within `bounds` at its points, by
-/// one pass backward (from where each speed can still stop in time) and one forward (H. Pham and
-/// Q.-C. Pham, IEEE T-RO 34 (2018) 645).
-/// @param slow  factor in (0, 1] on the speeds at each grid point; accelerations go with its
-/// square.
-[[nodiscard]] SpeedProfile fastest_profile(const PathGrid& grid, const Bounds& bounds,
-                                           const PathBounds& path_bounds,
-                                           const std::vector<double>& slow);
+/// The fastest motion along `spline` with |dq/dt| and |d2q/dt2| within `bounds`, by one pass
+/// backward (from where each speed can still stop in time) and one forward (H. Pham and Q.-C. Pham,
+/// IEEE T-RO 34 (2018) 645). Unlike there the acceleration may change within a cell, so that the
+/// error falls with the square of the cells' size. Bounds hold at the grid points, and in between
+/// to about one part in a thousand or better.
+/// @param cells  at least so many, and two between waypoints.
+[[nodiscard]] SpeedProfile fastest_profile(const CubicSpline& spline, std::size_t cells,
+                                           const Bounds& bounds, const PathBounds& path_bounds);
 
 }  // namespace mjarm::detail

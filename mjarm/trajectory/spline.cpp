@@ -4,30 +4,35 @@
 
 namespace mjarm::detail {
 
-CubicSpline::CubicSpline(std::span<const double> s, std::span<const JointVec> q)
+CubicSpline::CubicSpline(std::span<const double> s, std::span<const JointVec> q, SplineEnds ends)
     : s_(s.begin(), s.end()), q_(q.begin(), q.end()), e_(s.size(), JointVec::Zero(q[0].size())) {
   const std::size_t n = s_.size();
+  if (n == 2) return;
   const auto h = [&](std::size_t i) { return s_[i + 1] - s_[i]; };
   const auto slope = [&](std::size_t i) -> JointVec { return (q_[i + 1] - q_[i]) / h(i); };
-  if (n == 2) return;
-  if (n == 3) {
+  const bool natural = ends == SplineEnds::natural;
+  if (n == 3 && !natural) {
     const JointVec e = 2 * (slope(1) - slope(0)) / (h(0) + h(1));
     e_.assign(3, e);
     return;
   }
-  // Rows 1 to n-2 of the usual tridiagonal system; the end values are put in by the not-a-knot
-  // conditions. Thomas' algorithm; the rows are diagonally dominant or bidiagonal at the ends.
+  // Rows 1 to n-2 of the usual tridiagonal system; the end values are put in by the conditions at
+  // the ends. Thomas' algorithm; the rows are diagonally dominant or bidiagonal at the ends.
   std::vector<double> above(n, 0.0);  // of the eliminated system
   for (std::size_t i = 1; i + 1 < n; ++i) {
     double lower = h(i - 1), diagonal = 2 * (h(i - 1) + h(i)), upper = h(i);
     if (i == 1) {
-      diagonal += h(0) * (1 + h(0) / h(1));
-      upper -= h(0) * h(0) / h(1);
+      if (!natural) {
+        diagonal += h(0) * (1 + h(0) / h(1));
+        upper -= h(0) * h(0) / h(1);
+      }
       lower = 0;
     }
     if (i == n - 2) {
-      diagonal += h(i) * (1 + h(i) / h(i - 1));
-      lower -= h(i) * h(i) / h(i - 1);
+      if (!natural) {
+        diagonal += h(i) * (1 + h(i) / h(i - 1));
+        lower -= h(i) * h(i) / h(i - 1);
+      }
       upper = 0;
     }
     const double pivot = diagonal - lower * above[i - 1];
@@ -36,24 +41,33 @@ CubicSpline::CubicSpline(std::span<const double> s, std::span<const JointVec> q)
     e_[i] = right / pivot;
   }
   for (std::size_t i = n - 2; i-- > 1;) e_[i] -= above[i] * e_[i + 1];
+  if (natural) return;
   e_[0] = e_[1] + (e_[1] - e_[2]) * (h(0) / h(1));
   e_[n - 1] = e_[n - 2] + (e_[n - 2] - e_[n - 3]) * (h(n - 2) / h(n - 3));
 }
 
-SplinePoint CubicSpline::at(double s) const {
+std::size_t CubicSpline::piece(double s) const {
   const auto after = std::upper_bound(s_.begin() + 1, s_.end() - 1, s);
-  const auto i = static_cast<std::size_t>(after - s_.begin()) - 1;
-  if (s >= s_.back()) s = s_.back();
+  return static_cast<std::size_t>(after - s_.begin()) - 1;
+}
+
+SplinePoint CubicSpline::at(double s, std::size_t i) const {
   const double h = s_[i + 1] - s_[i];
-  const double x = std::max(s - s_[i], 0.0), y = h - x;
+  const double x = std::clamp(s - s_[i], 0.0, h), y = h - x;
   // Written about both ends, so that the waypoints are met exactly.
-  const JointVec bend = x * y / (6 * h) * ((h + y) * e_[i] + (h + x) * e_[i + 1]);
-  const JointVec slope = (q_[i + 1] - q_[i]) / h;
-  SplinePoint point;
-  point.q = (y / h) * q_[i] + (x / h) * q_[i + 1] - bend;
-  point.d = slope + ((h * h - 3 * y * y) * e_[i] + (3 * x * x - h * h) * e_[i + 1]) / (6 * h);
-  point.e = (y / h) * e_[i] + (x / h) * e_[i + 1];
-  return point;
+  const double inverse = 1 / h, left = y / h, right = x / h, sixth = inverse / 6;
+  const double q_left = x * y * sixth * (h + y), q_right = x * y * sixth * (h + x);
+  const double d_left = (h * h - 3 * y * y) * sixth, d_right = (3 * x * x - h * h) * sixth;
+  const Eigen::Index dof = q_[i].size();
+  SplinePoint p{JointVec(dof), JointVec(dof), JointVec(dof), JointVec(dof)};
+  for (Eigen::Index j = 0; j < dof; ++j) {
+    const double q0 = q_[i][j], q1 = q_[i + 1][j], e0 = e_[i][j], e1 = e_[i + 1][j];
+    p.q[j] = left * q0 + right * q1 - (q_left * e0 + q_right * e1);
+    p.d[j] = (q1 - q0) * inverse + d_left * e0 + d_right * e1;
+    p.e[j] = left * e0 + right * e1;
+    p.f[j] = (e1 - e0) * inverse;
+  }
+  return p;
 }
 
 }  // namespace mjarm::detail

@@ -52,7 +52,9 @@ Trajectory checked(const JointPath& path, std::span<const double> stops, const J
     EXPECT_EQ(timed->at(t).v.norm(), 0);
     EXPECT_EQ(timed->at(t).a.norm(), 0);
   }
-  EXPECT_LE(check_limits(*timed, limits, T / 7001).worst(), 1.001 * options.joint_share);
+  const LimitUse use = check_limits(*timed, limits, T / 7001);
+  EXPECT_LE(use.worst(), (1 + 1e-6) * options.joint_share);
+  EXPECT_LE(use.jerk.maxCoeff(), 1 + 1e-6);
   EXPECT_GE(T, (path.s.back() - path.s.front()) / options.tool_speed);
   return *timed;
 }
@@ -100,10 +102,10 @@ TEST(ToolPath, AnEllipseIsDrawnAtItsSpeedOnItsCurve) {
   expect_smooth(timed, 200);
   EXPECT_LE(check_limits(timed, arm.limits).jerk.maxCoeff(), 1);
   // Speed up, cruise, slow down, and 0.1 s for the changes of acceleration.
-  EXPECT_NEAR(timed.duration(), curve.length() / 0.25 + 0.25 + 0.1, 1e-3);
+  EXPECT_NEAR(timed.duration(), curve.length() / 0.25 + 0.25 + 0.1, 5e-3);
   const Drawn d = drawn(arm, curve, timed);
-  EXPECT_NEAR(d.fastest, 0.25, 1e-6);
-  EXPECT_NEAR(d.slowest, 0.25, 1e-6);
+  EXPECT_NEAR(d.fastest, 0.25, 5e-5);
+  EXPECT_NEAR(d.slowest, 0.25, 5e-5);
   EXPECT_LT(d.deviation, 1e-8);
 }
 
@@ -115,7 +117,7 @@ TEST(ToolPath, TheEllipseOfTheDemoSlowsDownNearTheBaseAxis) {
   EXPECT_LE(check_limits(timed, arm.limits).jerk.maxCoeff(), 1);
   EXPECT_LT(timed.duration(), curve.length() / 0.25 + 0.25 + 0.3);
   const Drawn d = drawn(arm, curve, timed);
-  EXPECT_NEAR(d.fastest, 0.25, 1e-6);
+  EXPECT_NEAR(d.fastest, 0.25, 5e-5);
   EXPECT_LT(d.slowest, 0.249);
   EXPECT_LT(d.deviation, 1e-8);
   RecordProperty("slowest", std::to_string(d.slowest));
@@ -246,6 +248,7 @@ TEST(ToolPath, RefusesBadInput) {
   EXPECT_NE(what(good, {2}), "none");
   EXPECT_NE(what(good, {}, {.tool_speed = 0}).find("speed is 0"), std::string::npos);
   EXPECT_NE(what(good, {}, {.tool_accel = -1}).find("acceleration is -1"), std::string::npos);
+  EXPECT_NE(what(good, {}, {.tool_ramp = 0}).find("ramp is 0"), std::string::npos);
   EXPECT_NE(what({{0, 1}, {JointVec::Ones(2), JointVec::Ones(2)}}).find("2 joints"),
             std::string::npos);
 }
@@ -287,11 +290,11 @@ TEST(ToolPathData, TheFastEllipseIsNearTheOptimum) {
     path.s.push_back(path.s.empty() ? 0 : path.s.back() + step);
   }
   const Arm arm = timed_ur5e();
-  const TimingOptions unbounded{.tool_speed = 1e3, .tool_accel = 1e4};
+  const TimingOptions unbounded{.tool_speed = 1e3, .tool_accel = 1e4, .tool_ramp = 1e-3};
   const Trajectory timed = checked(path, {}, arm.limits, unbounded);
-  // The optimum may jump in acceleration, ours takes 0.1 s for the change.
+  // The optimum may jump in acceleration, ours not.
   EXPECT_GT(timed.duration(), best * 0.999);
-  EXPECT_LT(timed.duration(), 1.1 * best + 0.1);
+  EXPECT_LT(timed.duration(), 1.04 * best);
   RecordProperty("over_best", std::to_string(timed.duration() / best));
 }
 

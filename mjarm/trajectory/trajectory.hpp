@@ -10,8 +10,9 @@
 
 namespace mjarm {
 
-/// A motion in time: q(t), v(t), a(t) for t in [0, duration], q twice continuously differentiable;
-/// at rest at both ends unless made otherwise. A plain value; an empty one has no joints.
+/// A motion in time: q(t), v(t), a(t) for t in [0, duration]; q is twice continuously
+/// differentiable and at rest at both ends unless made otherwise. A plain value; an empty one has
+/// no joints.
 class Trajectory {
  public:
   /// Piecewise quintic through knots; one knot alone is a rest of no duration.
@@ -19,6 +20,11 @@ class Trajectory {
   /// @param knots  as many states of equal size, all finite.
   [[nodiscard]] static Result<Trajectory> through(const std::vector<double>& times,
                                                   const std::vector<JointState>& knots);
+  /// The same where accelerations jump at knots: `a_after[i]` is that behind knot i, of which the
+  /// last is not used.
+  [[nodiscard]] static Result<Trajectory> through(const std::vector<double>& times,
+                                                  const std::vector<JointState>& knots,
+                                                  const std::vector<JointVec>& a_after);
   /// Phases of constant jerk from `start`, exact however short they are.
   /// @param durations  [s] >= 0; phases of no duration are left out.
   /// @param jerks      [rad/s^3 or m/s^3] one vector a phase.
@@ -37,13 +43,21 @@ class Trajectory {
   /// State at time `t` [s]; before 0 and after the duration the first and the last q, at rest.
   [[nodiscard]] JointState at(double t) const;
 
- private:
-  /// q(t) = sum of c[k] (t - start)^k.
+  /// The same way in `factor` (> 0, finite) times the time.
+  [[nodiscard]] Trajectory stretched(double factor) const;
+
+  /// One polynomial of the motion: q(t) = sum over k of c.col(k) (t - start)^k.
   struct Piece {
-    double start;  // [s]
-    JointVec c[6];
+    double start;                                                  ///< [s]
+    double duration;                                               ///< [s] > 0
+    Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6>> c;  ///< shape (dof, 6)
   };
-  std::vector<Piece> pieces_;
+  [[nodiscard]] std::size_t pieces() const noexcept { return starts_.size(); }
+  [[nodiscard]] Piece piece(std::size_t i) const;
+
+ private:
+  std::vector<double> starts_;  // of the pieces [s]
+  std::vector<double> c_;       // of all pieces, dof * 6 each
   JointState first_;
   JointState last_;
   double duration_ = 0;
@@ -54,6 +68,7 @@ struct TimingOptions {
   double tool_speed = 0.25;  ///< [m/s] along a tool path ([rad/s] for turns on the spot), > 0
   double joint_share = 1.0;  ///< share of the joints' velocity and acceleration limits, (0, 1]
   double tool_accel = 1.0;   ///< [m/s^2] along a tool path ([rad/s^2] for turns), > 0
+  double tool_ramp = 0.1;    ///< [s] in which the tool's acceleration builds up at least, > 0
 };
 
 /// Point to point on the straight line in joint space, at rest at both ends, within velocity,
@@ -68,8 +83,8 @@ struct TimingOptions {
 
 /// A joint path whose parameter is the tool's arc length, walked at `tool_speed` where the joint
 /// limits allow, slower elsewhere; at rest at both ends and at `stops`. Between stops the joints
-/// follow the cubic spline through the waypoints exactly, and accelerate without jumps, within a
-/// time that keeps the jerk limits when the tool starts and stops.
+/// follow the cubic spline through the waypoints exactly; velocities, accelerations and jerks keep
+/// their limits at every moment.
 /// @param path   s strictly ascending (parameters of turns on the spot are angles [rad]).
 /// @param stops  parameters of waypoints where the tool must rest: the corners of the curve.
 /// @return an error for bad sizes or numbers, or a stop that is no waypoint.

@@ -235,7 +235,7 @@ TEST(ViaPoints, RefusesWhatMakesNoSense) {
     return motion ? std::string("no error") : motion.error().what;
   };
   EXPECT_EQ(why({}, limits),
-            "via points: expected at least one waypoint, all finite and of one number of joints; "
+            "waypoints: expected at least one, all finite and of one number of joints; "
             "waypoint 0 (from 0) is not so");
   EXPECT_NE(why({zero, JointVec::Ones(3)}, limits).find("waypoint 1 "), std::string::npos);
   EXPECT_NE(why({zero, one, one * kNaN}, limits).find("waypoint 2 "), std::string::npos);

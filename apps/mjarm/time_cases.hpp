@@ -1,0 +1,49 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/joint_state.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/arm.hpp"
+#include "mjarm/trajectory/trajectory.hpp"
+
+namespace mjarm::app {
+
+/// What `mjarm time` can be asked for.
+enum class TimeProblem {
+  p2p,       ///< from one state to another: v, a and jerk limits
+  path_va,   ///< along one given path: v and a limits
+  path_vaj,  ///< the same with jerk limits
+  via_vaj,   ///< through waypoints, the shape free: v, a and jerk limits
+};
+
+/// The problem of this name. @return a usage error with the nearest name.
+[[nodiscard]] Result<TimeProblem> parse_time_problem(const std::string& name);
+
+/// One motion to be found.
+struct TimeCase {
+  std::string id;                   ///< as a JSON key; empty for a request of the command line
+  JointState start, end;            ///< p2p
+  std::vector<JointVec> waypoints;  ///< the others
+};
+
+/// Cases with the limits that go for all of them.
+struct TimeCases {
+  JointLimits limits;  ///< position limits infinite
+  std::vector<TimeCase> cases;
+};
+
+/// Reads `content`, the text of a file of cases. @return an error that names the case and the
+/// entry.
+[[nodiscard]] Result<TimeCases> read_time_cases(const std::string& content, TimeProblem problem);
+
+/// Limits without an end of the joints' range.
+[[nodiscard]] JointLimits unbounded(const JointVec& v, const JointVec& a, const JointVec& j);
+
+/// Finds the motion.
+[[nodiscard]] Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits,
+                                           TimeProblem problem);
+
+}  // namespace mjarm::app
