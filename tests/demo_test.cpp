@@ -64,7 +64,7 @@ TEST_P(EveryDemo, EndsWellAndLeavesWholeFiles) {
 
 INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo,
                          testing::Values("car", "ur5e", "ur5e_vision", "point", "movej", "movel",
-                                         "ellipse", "letters"),
+                                         "ellipse", "letters", "singularity", "flip"),
                          [](const auto& demo) { return std::string(demo.param); });
 
 TEST(DemoEllipse, WholeCurveWithinHalfAMillimetre) {
@@ -133,6 +133,44 @@ TEST(DemoPoint, ComputedTorqueBeatsTheServoByFar) {
   EXPECT_GT(errors["servo"]["position"].get<double>(), 5e-3);
   EXPECT_LT(errors["servo_gravity"]["position"].get<double>(), 1e-3);
   EXPECT_LT(errors["computed_torque"]["position"].get<double>(), 1e-4);
+}
+
+TEST(DemoSingularity, NaiveWhipsAndOursKeepsTheLimits) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"singularity"});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  constexpr double kLimit = 3.1416;  // [rad/s] of every joint of the UR5e
+  EXPECT_GT(run.report["naive_peak_joint_speed"].get<double>(), 3 * kLimit);
+  EXPECT_LT(run.report["peak_joint_speed"].get<double>(), 1.01 * kLimit);
+  EXPECT_NE(run.report["naive_peak_joint"].get<std::string>().find("wrist"), std::string::npos);
+  EXPECT_GT(run.report["naive_path_error_max"].get<double>(),
+            10 * run.report["path_error_max"].get<double>());
+  EXPECT_LT(run.report["path_error_max"].get<double>(), 5e-4);
+  for (const char* file : {"out/comparison.svg", "out/comparison.png"}) {
+    EXPECT_TRUE(folder.exists(file)) << file;
+  }
+}
+
+TEST(DemoFlip, NearestAnswersChangeBranchAndTheWholePathBranchDoesNot) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"flip"});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  EXPECT_EQ(run.report["naive_reason"], "branch_flip");
+  EXPECT_GT(run.report["naive_fraction"].get<double>(), 0.5);
+  EXPECT_LT(run.report["naive_fraction"].get<double>(), 0.95);
+  EXPECT_GT(run.report["naive_joint_step"].get<double>(), 1);
+  EXPECT_GT(run.report["naive_path_error_max"].get<double>(), 0.05);
+  EXPECT_LT(run.report["max_joint_step"].get<double>(), 0.05);
+  EXPECT_LT(run.report["path_error_max"].get<double>(), 5e-4);
+  EXPECT_TRUE(folder.exists("out/comparison.png"));
+  EXPECT_NE(run.result.err.find("branch_flip"), std::string::npos) << run.result.err;
+}
+
+TEST(DemoFlip, StopsBeforeTheLineWhereAsked) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"flip", "--seconds", "0.1"});
+  EXPECT_EQ(run.result.exit_code, 1) << run.result.err;
+  EXPECT_EQ(run.report["reason"], "stopped");
 }
 
 TEST(DemoMovel, TutorialsFollowerSaysWhatItWaitsForInsteadOfHanging) {

@@ -126,6 +126,8 @@ std::span<const Demo> demos() {
       {"movel", msg::demo_about_movel, run_movel},
       {"ellipse", msg::demo_about_ellipse, run_ellipse},
       {"letters", msg::demo_about_letters, run_letters},
+      {"singularity", msg::demo_about_singularity, run_singularity},
+      {"flip", msg::demo_about_flip, run_flip},
       {"square", msg::demo_about_square, run_square},
   };
   return kDemos;

@@ -27,7 +27,7 @@ namespace {
 struct Options {
   RobotOptions robot;
   BatchOptions batch;
-  std::string from, via, to, euler, quat, request, start, max_step;
+  std::string from, via, to, euler, quat, request, start, max_step, tilt;
   bool keep_start = false, collisions = false, partial = false, no_timing = false;
 };
 
@@ -56,6 +56,7 @@ Answer solve(const Job& job, const PathRequest& request) {
   CurveOptions options;
   options.path = job.path;
   options.path.max_step = request.max_step.value_or(job.path.max_step);
+  options.path.orientation_tol = request.tilt.value_or(job.path.orientation_tol);
   // Without a start any will do: the track with most room is taken.
   if (!request.q) options.path.comfort = 0;
   const std::span<const double> q_start = request.q ? *request.q : view(job.ik.arm().home);
@@ -89,6 +90,9 @@ std::optional<std::string> answer(const Job& job, const PathRequest& request, st
   } else {
     why = describe(solved.path.error(), arm);
     append_path_failure(out, solved.path.error(), solved.fixes, arm, measures, job.partial);
+    if (!request.curve) {
+      append_unreachable(out, unreachable_ranges(job.ik, request.poses, view(arm.home)));
+    }
     if (!solved.fixes.empty()) {
       why = text(msg::path_command_mended, *why, describe(solved.fixes.front()));
     }
@@ -178,6 +182,12 @@ Result<PathOptions> path_options(const Options& options, const Robot& robot) {
   PathOptions path;
   path.keep_start = options.keep_start;
   if (options.collisions) path.clearance = clearance_check({robot.model, robot.arm});
+  if (!options.tilt.empty()) {
+    const Result<double> tilt = parse_quantity(options.tilt, Quantity::angle);
+    if (!tilt) return fail(in_option("--orientation-tol", tilt.error()));
+    if (Result<void> fine = check_tilt(*tilt); !fine) return fail(std::move(fine.error()));
+    path.orientation_tol = *tilt;
+  }
   if (options.max_step.empty()) return path;
   const Result<double> step = parse_quantity(options.max_step, Quantity::angle);
   if (!step) return fail(in_option("--max-step", step.error()));
@@ -216,6 +226,7 @@ Run setup(CLI::App& app) {
   add_batch_options(app, options->batch);
   add("--start", options->start, msg::path_command_start, "Q1,Q2,...");
   add("--max-step", options->max_step, msg::path_command_step, "STEP");
+  add("--orientation-tol", options->tilt, msg::path_command_tilt, "ANGLE");
   app.add_flag("--keep-start", options->keep_start, text(msg::path_command_keep_start));
   app.add_flag("--collisions", options->collisions, text(msg::path_command_collisions));
   app.add_flag("--partial", options->partial, text(msg::path_command_partial));

@@ -111,4 +111,12 @@ void append_path_failure(std::string& out, const PathFailure& failure,
   if (partial) append_rows(out, "partial", failure.partial.q);
 }
 
+void append_unreachable(std::string& out, std::span<const UnreachableRange> ranges) {
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    out += i == 0 ? ",\"unreachable\":[" : ",";
+    out += "[" + std::to_string(ranges[i].first) + "," + std::to_string(ranges[i].last) + "]";
+  }
+  if (!ranges.empty()) out += ']';
+}
+
 }  // namespace mjarm::app

@@ -18,4 +18,7 @@ void append_path_failure(std::string& out, const PathFailure& failure,
                          std::span<const PathFix> fixes, const Arm& arm,
                          const std::optional<PathMeasures>& measures, bool partial);
 
+/// Appends the runs of given poses that have no answer at all, as `"unreachable":[[first,last]]`.
+void append_unreachable(std::string& out, std::span<const UnreachableRange> ranges);
+
 }  // namespace mjarm::app

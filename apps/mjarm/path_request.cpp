@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -156,6 +157,11 @@ Result<const Type*> type_of(const json& object) {
 
 }  // namespace
 
+Result<void> check_tilt(double tilt) {
+  if (tilt >= 0 && tilt < std::numbers::pi / 2) return {};
+  return fail(Errc::bad_input, text(msg::path_command_bad_tilt));
+}
+
 Result<PathRequest> path_request_of(const json& object, const Arm& arm) {
   const Result<const Type*> type = type_of(object);
   if (!type) return fail(type.error());
@@ -171,6 +177,12 @@ Result<PathRequest> path_request_of(const json& object, const Arm& arm) {
     if (!max_step) return fail(max_step.error());
     if (!(*max_step > 0)) return fail(Errc::bad_input, text(msg::path_command_max_step));
     out.max_step = *max_step;
+  }
+  if (object.contains("orientation_tol")) {
+    const Result<double> tilt = number_of(object, "orientation_tol");
+    if (!tilt) return fail(tilt.error());
+    if (Result<void> fine = check_tilt(*tilt); !fine) return fail(std::move(fine.error()));
+    out.tilt = *tilt;
   }
   return out;
 }

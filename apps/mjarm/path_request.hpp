@@ -17,10 +17,14 @@ struct PathRequest {
   std::optional<Curve> curve;            ///< the other types
   std::optional<std::vector<double>> q;  ///< [rad or m] `start`
   std::optional<double> max_step;        ///< [rad or m] > 0
+  std::optional<double> tilt;            ///< [rad] `orientation_tol`, in [0, pi/2)
 };
 
 /// Reads one request as INTERFACES of `mjarm path` describe it: `type` and what belongs to it.
 /// @return what is wrong, without the place of the line.
 [[nodiscard]] Result<PathRequest> path_request_of(const nlohmann::json& object, const Arm& arm);
+
+/// Checks that a tolerance of orientation [rad] is in [0, pi/2).
+[[nodiscard]] Result<void> check_tilt(double tilt);
 
 }  // namespace mjarm::app

@@ -108,6 +108,7 @@ TEST(Path, APathThatStopsSaysWhyAndWhatMendsIt) {
   EXPECT_DOUBLE_EQ(answer.at("fraction").get<double>(), 37 / 200.0);
   EXPECT_TRUE(answer.at("q").empty());
   EXPECT_EQ(answer.at("partial").size(), 37u);
+  EXPECT_EQ(answer.at("unreachable"), json::array({{37, 62}}));
   const auto shift = answer.at("fix").at("shift").get<Row>();
   json mended = json::parse(kTooNear);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -170,6 +171,8 @@ TEST(Path, BadRequests) {
       {R"({"type":"poses","poses":[{"pos":[0,0,1],"quat":[1,0,0,0]}],"start":[1,2]})", "\"start\""},
       {R"({"type":"poses","poses":[{"pos":[0,0,1],"quat":[1,0,0,0]}],"max_step":0})",
        "\"max_step\" must be above 0"},
+      {R"({"type":"poses","poses":[{"pos":[0,0,1],"quat":[1,0,0,0]}],"orientation_tol":2})",
+       "\"orientation_tol\" must be"},
   };
   for (const auto& [request, says] : bad) {
     SCOPED_TRACE(request);

@@ -9,9 +9,8 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kGrid = 0.05;  // [m]
-constexpr int kProbed = 500;    // changes of one kind that pass the geometric test
-constexpr int kSolved = 50;     // changes of one kind solved as a whole
+constexpr double kGrid = 0.05;                 // [m]
+constexpr std::size_t kPosesSolved = 100'000;  // of all changes of one kind
 
 /// Grid points within `reach`, shortest first; of equal length those along fewer axes first.
 std::vector<Eigen::Vector3i> grid_of(double reach) {
@@ -48,18 +47,23 @@ FixSearch::FixSearch(const IkSolver& ik, std::span<const Pose> poses, std::size_
       q_start_(q_start),
       options_(options),
       solve_(std::move(solve)),
-      changed_(poses.size()) {}
+      changed_(poses.size()) {
+  const bool fast = ik.six_axis() || ik.seven_axis();
+  const auto most = static_cast<int>(std::min<std::size_t>(kPosesSolved / poses.size(), 50));
+  most_probed_ = fast ? 500 : 40;
+  most_solved_ = std::max(fast ? most : most / 8, 2);
+}
 
 /// From cheap to dear: proofs of reach, a few poses spread over the path, the neighbourhood of the
 /// place where it stopped, the whole.
 bool FixSearch::mends(const PathChange& change) {
-  constexpr std::size_t kProbes = 8, kAround = 8;
-  std::transform(poses_.begin(), poses_.end(), changed_.begin(), change);
-  if (std::any_of(changed_.begin(), changed_.end(),
-                  [&](const Pose& X) { return ik_.reach().check(X).has_value(); })) {
-    return false;
+  constexpr std::size_t kProofs = 400, kProbes = 8, kAround = 8;
+  const std::size_t proofs = std::max<std::size_t>(1, poses_.size() / kProofs);
+  for (std::size_t i = 0; i < poses_.size(); i += proofs) {
+    if (ik_.reach().check(change(poses_[i]))) return false;
   }
-  if (++probed_ > kProbed || solved_ >= kSolved) return false;
+  std::transform(poses_.begin(), poses_.end(), changed_.begin(), change);
+  if (++probed_ > most_probed_ || solved_ >= most_solved_) return false;
   const std::size_t stride = std::max<std::size_t>(1, changed_.size() / kProbes);
   for (std::size_t i = 0; i < changed_.size(); i += stride) {
     if (!ik_.solve(changed_[i], q_start_)) return false;
@@ -79,7 +83,7 @@ std::optional<PathFix> FixSearch::shift(double reach) {
   for (const Eigen::Vector3i& g : grid_of(reach)) {
     PathFix fix{FixKind::shift, {g.cast<double>() * kGrid, Eigen::Vector3d::Zero()}, {}, 0};
     if (mends(fix.change)) return fix;
-    if (probed_ > kProbed || solved_ >= kSolved) break;
+    if (probed_ > most_probed_ || solved_ >= most_solved_) break;
   }
   return std::nullopt;
 }

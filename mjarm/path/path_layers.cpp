@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -17,7 +19,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSame = 1e-3;        // [rad or m] nearer answers are one
-constexpr double kSameOfMany = 0.02;  // [rad] likewise for samples of a redundant arm
+constexpr double kSameOfMany = 0.05;  // [rad] likewise for samples of a redundant arm
 // What leaves enough room: at these a track is half tight.
 constexpr double kRoom = 0.1;  // [rad or m] to a limit, or kRoomShare of the joint's range
 constexpr double kRoomShare = 0.05;
@@ -69,10 +71,28 @@ std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const Join
   return joint_vec({out.data(), static_cast<std::size_t>(chain.dof)});
 }
 
-void keep_best(Layer& layer) {
-  std::stable_sort(layer.begin(), layer.end(),
-                   [](const TrackNode& a, const TrackNode& b) { return a.rank < b.rank; });
-  if (layer.size() > PathLayers::kMostNodes) layer.resize(PathLayers::kMostNodes);
+/// True where two answers differ by whole turns of hinges only.
+bool same_place(const Chain& chain, const JointVec& a, const JointVec& b) {
+  constexpr double kRounding = 1e-6;  // [rad or m]
+  for (int i = 0; i < chain.dof; ++i) {
+    const double d = a[i] - b[i];
+    const bool slide = chain.slide[static_cast<std::size_t>(i)];
+    if (std::abs(slide ? d : std::remainder(d, kTurn)) > kRounding) return false;
+  }
+  return true;
+}
+
+/// Sorts `layer` and keeps the best `most`.
+void keep_best(Layer& layer, std::size_t most) {
+  std::vector<std::size_t> order(layer.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return layer[a].rank < layer[b].rank; });
+  if (order.size() > most) order.resize(most);
+  Layer sorted;
+  sorted.reserve(order.size());
+  for (const std::size_t k : order) sorted.push_back(layer[k]);
+  layer = std::move(sorted);
 }
 
 }  // namespace
@@ -149,6 +169,11 @@ std::vector<Pose> PathLayers::allowed(const Pose& X_WT) const {
 }
 
 Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
+  struct Seen {
+    JointVec q;
+    std::optional<double> tight;
+  };
+  std::vector<Seen> seen;  // the windings of a branch are one place
   Layer layer;
   double nearest = kInfinity;
   for (const Pose& X : allowed(X_WT)) {
@@ -157,7 +182,11 @@ Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
     for (const IkSolution& answer : *answers) {
       const double start = largest(answer.q - q_start);
       nearest = std::min(nearest, start);
-      const auto tight = tightness(answer.q);
+      const auto known = std::find_if(seen.begin(), seen.end(), [&](const Seen& other) {
+        return same_place(ik_.chain(), other.q, answer.q);
+      });
+      const auto tight = known != seen.end() ? known->tight : tightness(answer.q);
+      if (known == seen.end()) seen.push_back({answer.q, tight});
       if (!tight) continue;
       layer.push_back(
           {answer.q, -1, {level(std::max(*tight, limit_tightness(answer.q))), start, 0}});
@@ -166,13 +195,13 @@ Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
   if (options_.keep_start) {
     std::erase_if(layer, [&](const TrackNode& node) { return node.rank.start > nearest + kSame; });
   }
-  keep_best(layer);
+  keep_best(layer, ik_.six_axis() ? kMostNodes : kMostFollowed);
   return layer;
 }
 
 Layer PathLayers::next(const Pose& X_WT, const Layer& before) const {
   Layer layer = ik_.six_axis() ? join(X_WT, before) : follow(X_WT, before);
-  keep_best(layer);
+  keep_best(layer, ik_.six_axis() ? kMostNodes : kMostFollowed);
   return layer;
 }
 
@@ -254,7 +283,7 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before) const {
     return std::max(*tight, limit_tightness(answer->q));
   };
   constexpr double kTight = 0.5;
-  constexpr std::size_t kAside = 64;  // only the best of them look to the sides
+  constexpr std::size_t kAside = 16;  // only the best of them look to the sides
   const std::vector<Pose> poses = allowed(X_WT);
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (add(X_WT, i, before[i].q) < kTight || i >= kAside) continue;

@@ -11,6 +11,7 @@ namespace mjarm {
 namespace {
 
 constexpr int kRounds = 12;  // of adding stations where the curve is not had
+constexpr std::size_t kMostStations = 400'000;
 
 /// Seven more stations within (s0, s1).
 void split(std::vector<double>& stations, double s0, double s1) {
@@ -47,6 +48,19 @@ PathFailure located(PathFailure failure, std::span<const double> stations, doubl
   return failure;
 }
 
+/// The failure of a path whose branch is lost at `s` between two of its stations.
+PathFailure lost_after(JointPath path, double s, double end) {
+  PathFailure failure;
+  failure.code = PathErrc::branch_flip;
+  const auto after = std::upper_bound(path.s.begin(), path.s.end(), s);
+  failure.at = static_cast<std::size_t>(after - path.s.begin());
+  path.s.resize(failure.at);
+  path.q.resize(failure.at);
+  failure = located(std::move(failure), path.s, end);
+  failure.partial = std::move(path);
+  return failure;
+}
+
 }  // namespace
 
 Result<JointPath, PathFailure> solve_curve(const IkSolver& ik, const Curve& curve,
@@ -60,24 +74,17 @@ Result<JointPath, PathFailure> solve_curve(const IkSolver& ik, const Curve& curv
   }
   std::vector<double> stations = first_stations(curve, options);
   PathFailure failure;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kRounds && stations.size() < kMostStations; ++round) {
     auto path =
         solve_path(ik, poses_at(curve, options.change, stations), stations, q_start, options.path);
     if (path) {
       detail::Refined refined = detail::refine(ik, curve, *path, options);
       if (refined.lost.empty()) return std::move(refined.path);
-      failure = {};
-      failure.code = PathErrc::branch_flip;
-      for (const double s : refined.lost) {
-        const auto after = std::upper_bound(path->s.begin(), path->s.end(), s);
+      for (const double lost : refined.lost) {
+        const auto after = std::upper_bound(path->s.begin(), path->s.end(), lost);
         split(stations, *(after - 1), *after);
-        if (&s == &refined.lost.front()) {
-          failure.at = static_cast<std::size_t>(after - path->s.begin());
-        }
       }
-      failure.partial.s.assign(path->s.begin(), path->s.begin() + static_cast<long>(failure.at));
-      failure.partial.q.assign(path->q.begin(), path->q.begin() + static_cast<long>(failure.at));
-      failure = located(std::move(failure), path->s, curve.end());
+      failure = lost_after(std::move(*path), refined.lost.front(), curve.end());
     } else {
       failure = located(std::move(path.error()), stations, curve.end());
       const std::size_t at = failure.at;

@@ -47,6 +47,9 @@ std::string to_json(const Report& report) {
   out["first_contact"] = report.first_contact.empty() ? Json() : Json(report.first_contact);
   if (!report.unreachable.empty()) out["unreachable"] = report.unreachable;
   if (report.shift) out["fix"]["shift"] = {report.shift->x(), report.shift->y(), report.shift->z()};
+  for (const Fact& fact : report.facts) {
+    std::visit([&](const auto& value) { out[fact.name] = value; }, fact.value);
+  }
   if (report.rtf) out["rtf"] = *report.rtf;
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "mjarm/core/joint_vec.hpp"
@@ -15,6 +16,12 @@ namespace mjarm {
 struct StaticError {
   std::string control;  ///< "servo", "servo_gravity", "computed_torque"
   PoseError error;
+};
+
+/// A figure or a word that one demo alone has.
+struct Fact {
+  std::string name;  ///< its key in report.json
+  std::variant<double, std::string> value;
 };
 
 /// What a motion did; becomes `report.json`. Optional parts are left out where they make no sense.
@@ -39,6 +46,7 @@ struct Report {
   std::optional<double> tool_speed_max;  ///< [m/s] measured
   std::vector<std::size_t> unreachable;  ///< indices of the poses that cannot be reached
   std::optional<Eigen::Vector3d> shift;  ///< [m] shift of the path that was verified to mend it
+  std::vector<Fact> facts;               ///< what this demo alone has to tell
   std::optional<double> rtf;  ///< simulated seconds a wall-clock second, without rendering
 };
 

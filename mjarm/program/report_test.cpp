@@ -37,6 +37,14 @@ TEST(Report, NumbersKeepEveryBit) {
   EXPECT_EQ(json["duration"].get<double>(), 1.0 / 3.0);
 }
 
+TEST(Report, TellsTheFactsOfADemo) {
+  Report report = full_report();
+  report.facts = {{"peak_joint_speed", 3.1}, {"naive_peak_joint", "wrist_1_joint"}};
+  const auto json = nlohmann::json::parse(to_json(report));
+  EXPECT_EQ(json["peak_joint_speed"].get<double>(), 3.1);
+  EXPECT_EQ(json["naive_peak_joint"], "wrist_1_joint");
+}
+
 TEST(Report, WallClockOnlyInRtf) {
   Report report = full_report();
   report.rtf.reset();

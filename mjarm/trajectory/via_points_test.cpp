@@ -62,6 +62,21 @@ double stopping(const Waypoints& points, const JointLimits& limits) {
   return sum;
 }
 
+/// The exact peaks of the velocity, where the acceleration, linear within a phase, crosses zero.
+void expect_peaks_within(const Trajectory& x, const JointLimits& limits) {
+  const double h = x.duration() / 5000;
+  JointState from = x.at(0);
+  for (int i = 0; i < 5000; ++i) {
+    const JointState to = x.at((i + 1) * h);
+    for (int j = 0; j < x.dof(); ++j) {
+      if (from.a[j] * to.a[j] >= 0) continue;
+      const double t = (i + from.a[j] / (from.a[j] - to.a[j])) * h;
+      EXPECT_LE(std::abs(x.at(t).v[j]), limits.velocity[j] * (1 + 1e-6));
+    }
+    from = to;
+  }
+}
+
 /// Waypoints met to 1e-9, at ascending times; rest at both ends; q, v and a without jumps and of
 /// one motion; all limits kept. Independent of how the motion was made: looks at at(t) only.
 void expect_sound(const ViaMotion& motion, const Waypoints& points, const JointLimits& limits) {
@@ -86,6 +101,7 @@ void expect_sound(const ViaMotion& motion, const Waypoints& points, const JointL
   EXPECT_LE(use.velocity.maxCoeff(), 1 + 1e-6);
   EXPECT_LE(use.acceleration.maxCoeff(), 1 + 1e-6);
   EXPECT_LE(use.jerk.maxCoeff(), 1 + 1e-6);
+  expect_peaks_within(x, limits);
   // v and a are the derivatives of q: the error of Simpson's rule on one sample is at rounding
   // level but where a phase ends within it, and there bounded by the jump of the jerk.
   JointState from = x.at(0);

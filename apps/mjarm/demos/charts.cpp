@@ -66,6 +66,45 @@ PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
   return panel;
 }
 
+PlotPanel a_line_a_joint(const Arm& arm, const Rows& rows, PlotPanel panel,
+                         const std::function<double(const RecordRow& row, int joint)>& value) {
+  for (int j = 0; j < arm.dof(); ++j) {
+    panel.lines.push_back({.x = times(rows),
+                           .y = column(rows, [&](const RecordRow& row) { return value(row, j); }),
+                           .label = arm.joints[static_cast<std::size_t>(j)].name});
+  }
+  return panel;
+}
+
+PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
+  PlotPanel panel = over_time(title, text(msg::demo_plot_share));
+  panel.y_from_zero = true;
+  panel.lines.push_back({.x = times(rows), .y = column(rows, share)});
+  return panel;
+}
+
+}  // namespace
+
+PlotPanel front_panel(std::span<const MeasuredRun> runs) {
+  return side_view(msg::demo_plot_front, rows_to_draw(runs), 0, 2);
+}
+
+PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs) {
+  const Rows rows = rows_to_draw(runs);
+  PlotPanel panel = over_time(msg::demo_plot_speed, "m/s");
+  panel.y_from_zero = true;
+  PlotLine line;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool gap = rows[i] == nullptr || rows[i - 1] == nullptr;
+    const double dt = gap ? 0 : rows[i]->time - rows[i - 1]->time;
+    line.x.push_back(gap ? std::numeric_limits<double>::quiet_NaN() : rows[i]->time);
+    line.y.push_back(dt > 0 ? (rows[i]->X_WT.p - rows[i - 1]->X_WT.p).norm() / dt
+                            : std::numeric_limits<double>::quiet_NaN());
+  }
+  panel.lines.push_back(std::move(line));
+  return panel;
+}
+
 PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
   const bool ideal = !runs.empty() && runs.front().curve != nullptr;
   PlotPanel panel = over_time(ideal ? msg::demo_plot_error : msg::demo_plot_tracking, "mm");
@@ -91,39 +130,18 @@ PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
   return panel;
 }
 
-PlotPanel joint_panel(const Arm& arm, const Rows& rows) {
-  PlotPanel panel = over_time(msg::demo_plot_joints, "rad");
-  for (int j = 0; j < arm.dof(); ++j) {
-    panel.lines.push_back({.x = times(rows),
-                           .y = column(rows, [j](const RecordRow& row) { return row.q[j]; }),
-                           .label = arm.joints[static_cast<std::size_t>(j)].name});
-  }
-  return panel;
+PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
+  return a_line_a_joint(arm, rows_to_draw(runs), over_time(msg::demo_plot_joints, "rad"),
+                        [](const RecordRow& row, int j) { return row.q[j]; });
 }
 
-PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
-  PlotPanel panel = over_time(title, text(msg::demo_plot_share));
-  panel.y_from_zero = true;
-  panel.lines.push_back({.x = times(rows), .y = column(rows, share)});
-  return panel;
+PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
+  PlotPanel panel = over_time(msg::demo_plot_joint_speeds, "rad/s");
+  const double limit = arm.limits.velocity.maxCoeff();
+  panel.bands.push_back({-limit, limit, text(msg::demo_plot_limit)});
+  return a_line_a_joint(arm, rows_to_draw(runs), std::move(panel),
+                        [](const RecordRow& row, int j) { return row.v[j]; });
 }
-
-PlotPanel speed_panel(const Rows& rows) {
-  PlotPanel panel = over_time(msg::demo_plot_speed, "m/s");
-  panel.y_from_zero = true;
-  PlotLine line;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const bool gap = rows[i] == nullptr || rows[i - 1] == nullptr;
-    const double dt = gap ? 0 : rows[i]->time - rows[i - 1]->time;
-    line.x.push_back(gap ? std::numeric_limits<double>::quiet_NaN() : rows[i]->time);
-    line.y.push_back(dt > 0 ? (rows[i]->X_WT.p - rows[i - 1]->X_WT.p).norm() / dt
-                            : std::numeric_limits<double>::quiet_NaN());
-  }
-  panel.lines.push_back(std::move(line));
-  return panel;
-}
-
-}  // namespace
 
 Plot motion_plot(const std::string& title, const Arm& arm, std::span<const MeasuredRun> runs,
                  double tolerance) {
@@ -135,9 +153,9 @@ Plot motion_plot(const std::string& title, const Arm& arm, std::span<const Measu
   plot.panels = {side_view(msg::demo_plot_top, rows, 0, 1),
                  side_view(msg::demo_plot_front, rows, 0, 2),
                  side_view(msg::demo_plot_side, rows, 1, 2),
-                 speed_panel(rows),
+                 tool_speed_panel(runs),
                  error_panel(runs, tolerance),
-                 joint_panel(arm, rows),
+                 joint_panel(arm, runs),
                  share_panel(msg::demo_plot_velocity, rows,
                              [&](const RecordRow& row) {
                                return 100 *

@@ -158,7 +158,31 @@ Result<void> Stage::wait_through(std::span<const JointVec> waypoints,
   });
 }
 
-/// The measured parts of the record.
+Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mode,
+                                    const Curve& curve) {
+  Result<Controller> controller = Controller::make(model_, arm_, mode);
+  if (!controller) return fail(std::move(controller.error()));
+  Sim sim(model_);
+  sim.place(arm_, view(trajectory.at(0).q));
+  Recorder recorder(model_, arm_);
+  const auto outcome = follow_time({.sim = sim,
+                                    .controller = *controller,
+                                    .arm = arm_,
+                                    .recorder = &recorder,
+                                    .after_step = setup(*controller, false).after_step},
+                                   trajectory, {.settle = 0.3});
+  if (!outcome && outcome.error().error) return fail(*outcome.error().error);
+  MeasuredRun run{.rows = {}, .curve = &curve};
+  for (std::size_t i = 0; i < recorder.size(); ++i) run.rows.push_back(recorder.row(i));
+  return run;
+}
+
+Result<void> Stage::save_comparison(const Plot& page) const {
+  const std::filesystem::path stem = options_.out / "comparison";
+  log_info(text(msg::demo_compared, stem.string() + ".png"));
+  return save_plot(page, stem);
+}
+
 std::vector<MeasuredRun> Stage::measured_runs() const {
   std::vector<MeasuredRun> runs;
   for (const Measured& part : measured_) {

@@ -58,6 +58,15 @@ class Stage {
                                           std::span<const Eigen::Vector3d> points, ControlMode mode,
                                           const Curve* curve = nullptr);
 
+  /// Runs `trajectory` in a world apart, from its own beginning, to compare with; nothing of it
+  /// enters the report or the log.
+  [[nodiscard]] Result<MeasuredRun> rehearse(const Trajectory& trajectory, ControlMode mode,
+                                             const Curve& curve);
+  /// What was run and measured so far.
+  [[nodiscard]] std::vector<MeasuredRun> measured_runs() const;
+  /// Writes the page of a comparison into the folder, as comparison.png and .svg.
+  [[nodiscard]] Result<void> save_comparison(const Plot& page) const;
+
   /// Waypoints and trajectories that were reached so far.
   [[nodiscard]] std::size_t reached() const { return total_.reached; }
   /// Something ended the motion early: the user, or a waypoint that was never reached.
@@ -86,7 +95,6 @@ class Stage {
   [[nodiscard]] Result<void> follow(ControlMode mode, bool measured, const Curve* curve,
                                     const Follower& follower);
   void add(const FollowOutcome& outcome);
-  [[nodiscard]] std::vector<MeasuredRun> measured_runs() const;
   void measure(std::span<const MeasuredRun> runs, Report& report) const;
   [[nodiscard]] Result<Report> write(Report report, Plot plot);
 

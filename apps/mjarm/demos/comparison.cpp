@@ -1,0 +1,109 @@
+#include "apps/mjarm/demos/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mjarm/core/messages/demo.hpp"
+
+namespace mjarm::app {
+namespace {
+
+MeasuredRun from_zero(MeasuredRun run) {
+  const double start = run.rows.empty() ? 0 : run.rows.front().time;
+  for (RecordRow& row : run.rows) row.time -= start;
+  return run;
+}
+
+/// The curve itself: a run that leaves it must not count as planned so.
+PlotLine front_line(const Curve& curve) {
+  std::vector<double> x, z;
+  for (const double s : curve.stations(0.01, std::numeric_limits<double>::infinity())) {
+    const Pose X = curve.at(s);
+    x.push_back(X.p.x());
+    z.push_back(X.p.z());
+  }
+  return planned_line(std::move(x), std::move(z));
+}
+
+PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) {
+  const std::span<const MeasuredRun> runs(&run, 1);
+  switch (chart) {
+    case Chart::joint_speeds:
+      return joint_speed_panel(arm, runs);
+    case Chart::joints:
+      return joint_panel(arm, runs);
+    case Chart::front: {
+      PlotPanel panel = front_panel(runs);
+      panel.lines.back() = front_line(*run.curve);
+      return panel;
+    }
+    case Chart::tool_speed:
+      return tool_speed_panel(runs);
+    case Chart::error:
+      break;
+  }
+  PlotPanel panel = error_panel(runs, 0);
+  panel.bands.clear();
+  return panel;
+}
+
+/// The range of one coordinate over all lines of both panels, with a little room.
+PlotRange common_range(const PlotPanel& a, const PlotPanel& b,
+                       std::vector<double> PlotLine::* values) {
+  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+  for (const PlotPanel* panel : {&a, &b}) {
+    for (const PlotLine& line : panel->lines) {
+      for (const double x : line.*values) {
+        if (std::isnan(x)) continue;
+        lower = std::min(lower, x);
+        upper = std::max(upper, x);
+      }
+    }
+  }
+  if (a.y_from_zero && values == &PlotLine::y) lower = 0;
+  const double room = 0.05 * (upper - lower) + 1e-9;
+  return {lower >= 0 && lower < room ? 0 : lower - room, upper + room};  // time begins at 0
+}
+
+}  // namespace
+
+PeakSpeed peak_speed(const MeasuredRun& run) {
+  PeakSpeed peak;
+  for (const RecordRow& row : run.rows) {
+    int joint = 0;
+    const double speed = row.v.cwiseAbs().maxCoeff(&joint);
+    if (speed > peak.speed) peak = {speed, joint};
+  }
+  return peak;
+}
+
+double largest_distance(const MeasuredRun& run) {
+  double largest = 0;
+  for (const RecordRow& row : run.rows) {
+    largest = std::max(largest, run.curve->nearest(row.X_WT.p).distance);
+  }
+  return largest;
+}
+
+Plot comparison_plot(const ComparisonText& about, const Arm& arm, const MeasuredRun& naive,
+                     const MeasuredRun& ours, std::span<const Chart> rows) {
+  const MeasuredRun sides[] = {from_zero(naive), from_zero(ours)};
+  Plot page;
+  page.title = about.title;
+  page.note = about.note;
+  page.columns = 2;
+  page.panel_width = 330;
+  for (const Chart chart : rows) {
+    PlotPanel left = panel_of(chart, arm, sides[0]), right = panel_of(chart, arm, sides[1]);
+    left.x_range = right.x_range = common_range(left, right, &PlotLine::x);
+    left.y_range = right.y_range = common_range(left, right, &PlotLine::y);
+    left.title = text(msg::demo_side_title, text(msg::demo_naive), left.title);
+    right.title = text(msg::demo_side_title, text(msg::demo_ours), right.title);
+    page.panels.push_back(std::move(left));
+    page.panels.push_back(std::move(right));
+  }
+  return page;
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "apps/mjarm/demos/charts.hpp"
+#include "mjarm/model/arm.hpp"
+#include "mjarm/render/plot.hpp"
+
+namespace mjarm::app {
+
+/// The fastest joint of a run.
+struct PeakSpeed {
+  double speed = 0;  ///< [rad/s or m/s] measured
+  int joint = 0;     ///< index in the arm
+};
+[[nodiscard]] PeakSpeed peak_speed(const MeasuredRun& run);
+
+/// Largest distance [m] of the tool from the run's curve, which must be set.
+[[nodiscard]] double largest_distance(const MeasuredRun& run);
+
+/// What a page of two runs shows, one row each.
+enum class Chart { joint_speeds, joints, front, tool_speed, error };
+
+struct ComparisonText {
+  std::string title;
+  std::string note;  ///< what came out, at the foot of the page
+};
+
+/// Two runs side by side, in axes of the same scale, time counted from the beginning of each: the
+/// naive one at the left, ours at the right.
+[[nodiscard]] Plot comparison_plot(const ComparisonText& about, const Arm& arm,
+                                   const MeasuredRun& naive, const MeasuredRun& ours,
+                                   std::span<const Chart> rows);
+
+}  // namespace mjarm::app

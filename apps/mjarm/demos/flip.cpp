@@ -1,0 +1,85 @@
+#include <numbers>
+
+#include "apps/mjarm/demos/comparison.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/naive.hpp"
+#include "apps/mjarm/demos/stage.hpp"
+#include "apps/mjarm/demos/tutorial.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kSpeed = 0.25;    // [m/s]
+constexpr double kFlipStep = 0.5;  // [rad] between poses 2 mm apart
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+Pose pose_at(double x) { return {{x, -0.4, 0.5}, tool_down()}; }
+
+/// What the naive choice does to the line, for people and for the report.
+void tell_naive(const NaiveMotion& naive, const MeasuredRun& run, const Arm& arm, Report& report) {
+  const double off = largest_distance(run);
+  if (naive.flip) {
+    const std::string& joint = arm.joints[static_cast<std::size_t>(naive.flip->joint)].name;
+    report.facts = {{"naive_reason", "branch_flip"},
+                    {"naive_fraction", naive.flip->fraction},
+                    {"naive_joint", joint},
+                    {"naive_joint_step", naive.flip->jump},
+                    {"naive_path_error_max", off}};
+    log_info(text(msg::demo_flip_naive, 100 * naive.flip->fraction, joint,
+                  kDegrees * naive.flip->jump, 1e3 * off));
+  } else if (naive.fraction < 1) {
+    report.facts = {{"naive_reason", "stops"}, {"naive_fraction", naive.fraction}};
+    log_info(text(msg::demo_flip_stops, 100 * naive.fraction));
+  } else {
+    log_info(text(msg::demo_flip_no_flip));
+  }
+}
+
+}  // namespace
+
+Result<Report> run_flip(const DemoOptions& options) {
+  Result<std::unique_ptr<Stage>> opened = Stage::open("flip", options, 6);
+  if (!opened) return fail(std::move(opened.error()));
+  Stage& stage = **opened;
+  const Result<Curve> line = Curve::line(pose_at(-0.1), pose_at(0.6));
+  if (!line) return fail(line.error());
+  stage.show().add_line(std::vector<Pose>{line->at(0), line->at(line->end())});
+  const JointVec home = stage.arm().home;
+  const Result<NaiveMotion> naive =
+      naive_motion(stage.ik(), *line, view(home), kSpeed, 0.008, kFlipStep);
+  if (!naive) return fail(naive.error());
+  const Result<ToolMotion, MotionFailure> motion =
+      plan_tool_motion(stage.ik(), *line, view(home), {.timing = {.tool_speed = kSpeed}});
+  if (!motion) return stage.refuse(motion.error());
+
+  const ControlMode mode = stage.control(ControlMode::computed_torque);
+  const Result<MeasuredRun> naive_run = stage.rehearse(naive->trajectory, mode, *line);
+  if (!naive_run) return fail(naive_run.error());
+  stage.start_at(view(home));
+  if (auto done = stage.approach(view(motion->path.q.front()), mode); !done) {
+    return fail(std::move(done.error()));
+  }
+  if (auto done = stage.run(motion->trajectory, mode, 0.3, &*line); !done) {
+    return fail(std::move(done.error()));
+  }
+
+  Report report;
+  report.max_joint_step = motion->path.max_step();
+  const std::vector<MeasuredRun> runs = stage.measured_runs();
+  if (runs.empty()) return stage.finish(std::move(report));  // stopped on the way to the line
+  tell_naive(*naive, *naive_run, stage.arm(), report);
+  log_info(text(msg::demo_flip_ours, report.max_joint_step));
+  constexpr Chart kCharts[] = {Chart::joints, Chart::front, Chart::error};
+  const std::string note =
+      naive->flip ? text(msg::demo_flip_note, 100 * naive->flip->fraction,
+                         1e3 * largest_distance(*naive_run), 1e3 * largest_distance(runs.back()))
+                  : std::string();
+  auto saved = stage.save_comparison(comparison_plot(
+      {text(msg::demo_flip_title), note}, stage.arm(), *naive_run, runs.back(), kCharts));
+  if (!saved) return fail(std::move(saved.error()));
+  return stage.finish(std::move(report));
+}
+
+}  // namespace mjarm::app
