@@ -170,7 +170,7 @@ class PandaSweep {
     for (int k = 1; k < kSteps; ++k) {
       least = std::min(least, value[k]);
       if (value[k] > value[k - 1] || value[k] > value[k + 1]) continue;
-      const auto [from, to] = std::minmax(at(k - 1), at(k + 1));
+      const auto [from, to] = std::minmax({at(k - 1), at(k + 1)});
       least = std::min(least, narrow(X_WT, branch, from, to));
     }
     return least;
