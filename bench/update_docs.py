@@ -1,25 +1,50 @@
 """Brings the tables of docs/benchmarks.md up to date.
 
-Usage: update_docs.py MJARM [ARGUMENTS of `mjarm bench ik`...], e.g.
-update_docs.py build/release/bin/mjarm --data cases --peers .venv
+Usage: update_docs.py [ik|path|time] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
+update_docs.py ik build/release/bin/mjarm --data cases --peers .venv
+Without a suite all of them run with the same arguments, where --data SUITE=DIR names a folder for one suite.
 """
 
 import pathlib
 import subprocess
 import sys
 
-BEGIN, END = "<!-- ik: begin -->\n", "<!-- ik: end -->\n"
+SUITES = ("ik", "path", "time")
 
 
-def main(program, arguments):
+def arguments_of(suite, arguments):
+    """Leaves out the folders that are for other suites."""
+    out = []
+    for word in arguments:
+        name, _, folder = word.partition("=")
+        if name not in SUITES or not folder:
+            out.append(word)
+        elif name == suite:
+            out.append(folder)
+        else:
+            out.pop()  # the --data before it
+    return out
+
+
+def update(suite, program, arguments):
+    begin, end = f"<!-- {suite}: begin -->\n", f"<!-- {suite}: end -->\n"
     page = pathlib.Path(__file__).resolve().parent.parent / "docs" / "benchmarks.md"
-    done = subprocess.run([program, "--lang", "en", "bench", "ik", *arguments], stdout=subprocess.PIPE, text=True)
+    command = [program, "--lang", "en", "bench", suite, *arguments_of(suite, arguments)]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(done.returncode)
-    before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-    after = rest.split(END)[1]
-    page.write_text(before + BEGIN + "\n" + done.stdout.rstrip("\n") + "\n\n" + END + after, encoding="utf-8")
+    before, rest = page.read_text(encoding="utf-8").split(begin)
+    after = rest.split(end)[1]
+    page.write_text(before + begin + "\n" + done.stdout.rstrip("\n") + "\n\n" + end + after, encoding="utf-8")
+
+
+def main(words):
+    suites = SUITES
+    if words and words[0] in SUITES:
+        suites, words = words[:1], words[1:]
+    for suite in suites:
+        update(suite, words[0], words[1:])
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2:])
+    main(sys.argv[1:])

@@ -37,6 +37,9 @@ function(mjarm_room room)
   set_target_properties(${lib} PROPERTIES INTERFACE_HEADER_SETS_TO_VERIFY HEADERS)
   target_link_libraries(${lib} PUBLIC ${arg_DEPENDS} ${arg_PUBLIC}
                                PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:mjarm_options>)
+  if(MJARM_PRECOMPILE)
+    target_precompile_headers(${lib} REUSE_FROM mjarm_precompiled)
+  endif()
   set_property(GLOBAL APPEND PROPERTY mjarm_rooms ${room})
 
   if(MJARM_TESTS AND tests)
@@ -74,9 +77,12 @@ function(mjarm_simd_flags list_name)
   list(FILTER avx2 INCLUDE REGEX "_avx2\\.cpp$")
   list(FILTER avx512 INCLUDE REGEX "_avx512\\.cpp$")
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-    set_source_files_properties(${avx2} PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma")
+    # What was precompiled for the baseline is of no use to them.
+    set_source_files_properties(${avx2} PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma"
+                                                   SKIP_PRECOMPILE_HEADERS ON)
     set_source_files_properties(${avx512} PROPERTIES
-                                COMPILE_OPTIONS "-mavx2;-mfma;-mavx512f;-mavx512dq;-mavx512vl")
+                                COMPILE_OPTIONS "-mavx2;-mfma;-mavx512f;-mavx512dq;-mavx512vl"
+                                SKIP_PRECOMPILE_HEADERS ON)
   elseif(avx2 OR avx512)
     list(REMOVE_ITEM files ${avx2} ${avx512})
   endif()

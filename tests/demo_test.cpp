@@ -141,7 +141,15 @@ TEST(DemoSingularity, NaiveWhipsAndOursKeepsTheLimits) {
   ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
   constexpr double kLimit = 3.1416;  // [rad/s] of every joint of the UR5e
   EXPECT_GT(run.report["naive_peak_joint_speed"].get<double>(), 3 * kLimit);
-  EXPECT_LT(run.report["peak_joint_speed"].get<double>(), 1.01 * kLimit);
+  EXPECT_LT(run.report["peak_joint_speed"].get<double>(), 0.92 * kLimit);
+  EXPECT_EQ(run.report["asked_reason"], "joint_speed");
+  EXPECT_LT(run.report["slower"].get<double>(), 0.25);
+  EXPECT_GT(run.report["tilt"].get<double>(), 0);
+  EXPECT_LT(run.report["tilted_peak_joint_speed"].get<double>(), 0.92 * kLimit);
+  const auto& dips = run.report["speed_dips"];
+  ASSERT_EQ(dips.size(), 1U);
+  EXPECT_EQ(dips[0]["singularity"], "wrist");
+  EXPECT_LT(dips[0]["least"].get<double>(), 0.1);
   EXPECT_NE(run.report["naive_peak_joint"].get<std::string>().find("wrist"), std::string::npos);
   EXPECT_GT(run.report["naive_path_error_max"].get<double>(),
             10 * run.report["path_error_max"].get<double>());

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
@@ -75,8 +77,8 @@ void answer_block(const AnswerLine& answer, int threads, std::vector<Line>& line
 }  // namespace
 
 void add_batch_options(CLI::App& app, BatchOptions& options) {
-  app.add_option("--in", options.in, text(msg::app_option_in))->type_name("FILE");
-  app.add_option("--out", options.out, text(msg::app_option_out))->type_name("FILE");
+  add_option(app, "--in", options.in, msg::app_option_in, "FILE");
+  add_option(app, "--out", options.out, msg::app_option_out, "FILE");
 }
 
 Result<void> one_source(const std::string& in, const std::string& one, const std::string& option) {
@@ -123,6 +125,23 @@ Result<void> write_answer(const std::string& out, const std::string& answer) {
   if (!output) return fail(std::move(output.error()));
   if (Result<void> written = output->write(answer + "\n", true); !written) return written;
   return output->finish();
+}
+
+Result<int> finish_one(const std::string& out, const std::string& answer,
+                       const std::optional<std::string>& why, Msg impossible) {
+  if (Result<void> written = write_answer(out, answer); !written) {
+    return fail(std::move(written.error()));
+  }
+  if (!why) return 0;
+  log_error(text(impossible, *why));
+  return 1;
+}
+
+int finish_all(const BatchResult& result, Msg some_failed) {
+  if (result.failed == 0) return 0;
+  log_error(
+      text(some_failed, result.first_failure, result.first_why, result.failed, result.requests));
+  return 1;
 }
 
 }  // namespace mjarm::app

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -8,6 +7,8 @@
 #include <string_view>
 
 #include "apps/mjarm/line_reader.hpp"
+#include "apps/mjarm/options.hpp"
+#include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm::app {
@@ -51,5 +52,15 @@ struct BatchResult {
 
 /// Writes the answer to a single request, one line, to `out` (a file, `-` or empty).
 [[nodiscard]] Result<void> write_answer(const std::string& out, const std::string& answer);
+
+/// Writes the answer to a single request. Where it could not be done, for `why`, the text
+/// `impossible` (why) is logged.
+/// @return the exit code.
+[[nodiscard]] Result<int> finish_one(const std::string& out, const std::string& answer,
+                                     const std::optional<std::string>& why, Msg impossible);
+
+/// Logs the text `some_failed` (place, why, failed, requests) where requests could not be done.
+/// @return the exit code.
+[[nodiscard]] int finish_all(const BatchResult& result, Msg some_failed);
 
 }  // namespace mjarm::app

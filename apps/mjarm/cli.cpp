@@ -1,5 +1,6 @@
 #include "apps/mjarm/cli.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <span>
 #include <string>
 
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
 
@@ -30,8 +30,5 @@ struct Command {
 
 /// All subcommands, in the order of the help.
 [[nodiscard]] std::span<const Command> commands();
-
-/// Adds a subcommand with its help to `parent` (a command may have some of its own).
-CLI::App& add_subcommand(CLI::App& parent, const std::string& name, Msg summary, Msg examples);
 
 }  // namespace mjarm::app

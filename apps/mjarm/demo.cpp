@@ -1,6 +1,5 @@
 #include "mjarm/core/messages/demo.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <numbers>
@@ -8,6 +7,7 @@
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/install.hpp"
@@ -100,17 +100,16 @@ Result<int> run_demo(const DemoArguments& arguments) {
 
 Run setup(CLI::App& app) {
   auto arguments = std::make_shared<DemoArguments>();
-  app.add_option("name", arguments->name, text(msg::demo_option_name))->type_name("NAME");
-  app.add_option("--out", arguments->out, text(msg::demo_option_out))->type_name("DIR");
-  app.add_flag("--headless", arguments->headless, text(msg::demo_option_headless));
-  app.add_flag("--meshes", arguments->meshes, text(msg::install_option_meshes));
-  app.add_flag("--guide", arguments->guide, text(msg::demo_option_guide));
-  app.add_option("--seconds", arguments->seconds, text(msg::demo_option_seconds))->type_name("S");
-  app.add_option("--text", arguments->text, text(msg::demo_option_text))->type_name("TEXT");
-  app.add_option("--control", arguments->control, text(msg::demo_option_control))
-      ->type_name("MODE");
+  add_option(app, "name", arguments->name, msg::demo_option_name, "NAME");
+  add_option(app, "--out", arguments->out, msg::demo_option_out, "DIR");
+  add_flag(app, "--headless", arguments->headless, msg::demo_option_headless);
+  add_flag(app, "--meshes", arguments->meshes, msg::install_option_meshes);
+  add_flag(app, "--guide", arguments->guide, msg::demo_option_guide);
+  add_option(app, "--seconds", arguments->seconds, msg::demo_option_seconds, "S");
+  add_option(app, "--text", arguments->text, msg::demo_option_text, "TEXT");
+  add_option(app, "--control", arguments->control, msg::demo_option_control, "MODE");
   add_robot_options(app, arguments->robot);
-  app.add_flag("--no-timing", arguments->no_timing, text(msg::demo_option_no_timing));
+  add_flag(app, "--no-timing", arguments->no_timing, msg::demo_option_no_timing);
   return [arguments] { return run_demo(*arguments); };
 }
 

@@ -6,6 +6,7 @@
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -139,7 +140,7 @@ Result<int> run(bool json) {
 
 Run setup(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
-  app.add_flag("--json", *json, text(msg::app_option_json));
+  add_flag(app, "--json", *json, msg::app_option_json);
   return [json] { return run(*json); };
 }
 

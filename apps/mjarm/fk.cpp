@@ -6,6 +6,7 @@
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/options.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -69,7 +70,7 @@ Result<int> run(const FkOptions& options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<FkOptions>();
   add_robot_options(app, options->robot);
-  app.add_option("--q", options->q, text(msg::app_option_q))->type_name("Q1,Q2,...");
+  add_option(app, "--q", options->q, msg::app_option_q, "Q1,Q2,...");
   add_batch_options(app, options->batch);
   return [options] { return run(*options); };
 }

@@ -11,17 +11,6 @@ using nlohmann::json;
 const std::string kUr5eScene = model_file("universal_robots_ur5e/scene.xml");
 const std::string kGoodLine = "{\"q\":[0.1,-1.2,1.3,-1.4,-1.5,0.6]}\n";
 
-Pose pose_of(const json& object) {
-  const auto p = object.at("pos").get<std::vector<double>>();
-  const auto q = object.at("quat").get<std::vector<double>>();
-  EXPECT_EQ(p.size(), 3u);
-  EXPECT_EQ(q.size(), 4u);
-  EXPECT_NEAR(Quat(q[0], q[1], q[2], q[3]).norm(), 1, 1e-14);
-  return {{p[0], p[1], p[2]}, to_matrix(Quat(q[0], q[1], q[2], q[3]))};
-}
-
-std::vector<double> numbers(const json& list) { return list.get<std::vector<double>>(); }
-
 TEST(Fk, OneRequestWithUnits) {
   const auto radians = mjarm({"fk", "--robot", "ur5e", "--q",
                               "-1.5707963267948966,-1.5707963267948966,"

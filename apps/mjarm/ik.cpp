@@ -5,13 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include "apps/mjarm/answer_json.hpp"
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/options.hpp"
 #include "apps/mjarm/orientation.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
-#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -81,30 +82,17 @@ Result<Request> read_request(const Options& options, const IkSolver& ik) {
   return request;
 }
 
-void append_list(std::string& out, const char* key, const JointVec& values) {
-  out += std::string(",\"") + key + "\":";
-  append_numbers(out, view(values));
-}
-
-void append_number(std::string& out, const char* key, double value) {
-  out += std::string(",\"") + key + "\":";
-  mjarm::append_number(out, value);
-}
-
 void append_branches(std::string& out, const std::vector<IkSolution>& branches) {
-  out += ",\"branches\":[";
-  for (std::size_t i = 0; i < branches.size(); ++i) {
-    if (i > 0) out += ',';
-    append_numbers(out, view(branches[i].q));
-  }
-  out += ']';
+  std::vector<JointVec> rows;
+  for (const IkSolution& branch : branches) rows.push_back(branch.q);
+  append_rows(out, "branches", rows);
 }
 
 void append_solution(std::string& out, const IkSolution& solution) {
   out += "{\"ok\":true";
-  append_list(out, "q", solution.q);
-  append_number(out, "pos_err", solution.pos_err);
-  append_number(out, "rot_err", solution.rot_err);
+  append_value(out, "q", solution.q);
+  append_value(out, "pos_err", solution.pos_err);
+  append_value(out, "rot_err", solution.rot_err);
 }
 
 void append_failure(std::string& out, const IkFailure& failure, const std::string& why) {
@@ -112,7 +100,7 @@ void append_failure(std::string& out, const IkFailure& failure, const std::strin
   append_json_string(out, name(failure.code));
   out += ",\"detail\":";
   append_json_string(out, why);
-  append_list(out, "best", failure.best.q);
+  append_value(out, "best", failure.best.q);
 }
 
 /// Solves one request and appends the answer. Where there is none, returns why.
@@ -138,7 +126,7 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
     append_failure(out, solution.error(), *why);
   }
   if (job.all) append_branches(out, branches);
-  if (job.timing) append_number(out, "us", std::round(us * 10) / 10);
+  if (job.timing) append_us(out, us);
   out += '}';
   return why;
 }
@@ -148,12 +136,7 @@ Result<int> answer_one(const Job& job, const Options& options) {
   if (!request) return fail(request.error());
   std::string line;
   const std::optional<std::string> why = answer(job, *request, line);
-  if (Result<void> written = write_answer(options.batch.out, line); !written) {
-    return fail(std::move(written.error()));
-  }
-  if (!why) return 0;
-  log_error(text(msg::app_ik_no_answer, *why));
-  return 1;
+  return finish_one(options.batch.out, line, why, msg::app_ik_no_answer);
 }
 
 Result<int> answer_all(const Job& job, const Options& options) {
@@ -165,10 +148,7 @@ Result<int> answer_all(const Job& job, const Options& options) {
   };
   const auto done = run_batch(options.batch, text(msg::app_ik_progress), answer_line);
   if (!done) return fail(done.error());
-  if (done->failed == 0) return 0;
-  log_error(text(msg::app_ik_some_failed, done->first_failure, done->first_why, done->failed,
-                 done->requests));
-  return 1;
+  return finish_all(*done, msg::app_ik_some_failed);
 }
 
 Result<IkTask> read_task(const std::string& word) {
@@ -220,18 +200,18 @@ Result<int> run(Options options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_robot_options(app, options->robot);
-  app.add_option("--pos", options->pos, text(msg::app_option_pos))->type_name("X,Y,Z");
-  app.add_option("--euler", options->euler, text(msg::app_option_euler))->type_name("A,B,C");
-  app.add_option("--quat", options->quat, text(msg::app_option_quat))->type_name("W,X,Y,Z");
-  app.add_option("--seed-q", options->seed_q, text(msg::app_option_seed_q))->type_name("Q1,Q2,...");
-  app.add_option("--task", options->task, text(msg::app_option_task))->type_name("TASK");
-  app.add_option("--prefer", options->prefer, text(msg::app_option_prefer))->type_name("GOAL");
+  add_option(app, "--pos", options->pos, msg::app_option_pos, "X,Y,Z");
+  add_option(app, "--euler", options->euler, msg::app_option_euler, "A,B,C");
+  add_option(app, "--quat", options->quat, msg::app_option_quat, "W,X,Y,Z");
+  add_option(app, "--seed-q", options->seed_q, msg::app_option_seed_q, "Q1,Q2,...");
+  add_option(app, "--task", options->task, msg::app_option_task, "TASK");
+  add_option(app, "--prefer", options->prefer, msg::app_option_prefer, "GOAL");
   add_batch_options(app, options->batch);
-  app.add_option("--seed", options->seed, text(msg::app_option_seed))->type_name("N");
-  app.add_flag("--all", options->all, text(msg::app_option_all));
-  app.add_flag("--windings", options->windings, text(msg::app_option_windings));
-  app.add_option("--threads", options->threads, text(msg::app_option_threads))->type_name("N");
-  app.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
+  add_option(app, "--seed", options->seed, msg::app_option_seed, "N");
+  add_flag(app, "--all", options->all, msg::app_option_all);
+  add_flag(app, "--windings", options->windings, msg::app_option_windings);
+  add_option(app, "--threads", options->threads, msg::app_option_threads, "N");
+  add_flag(app, "--no-timing", options->no_timing, msg::app_option_no_timing);
   return [options] { return run(*options); };
 }
 

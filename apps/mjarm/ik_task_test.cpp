@@ -14,16 +14,6 @@ using nlohmann::json;
 const std::string kPandaScene = model_file("franka_emika_panda/scene.xml");
 const std::vector<std::string> kPanda = {"--robot", "panda", "--no-timing"};
 
-support::ProgramResult ik(std::vector<std::string> arguments,
-                          const std::vector<std::string>& more = {},
-                          const support::RunOptions& options = {}) {
-  arguments.insert(arguments.begin(), "ik");
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return mjarm(arguments, options);
-}
-
-std::vector<double> numbers(const json& list) { return list.get<std::vector<double>>(); }
-
 /// Poses that the Panda reaches, each with a seed, made by MuJoCo from random joint values near
 /// home.
 std::string panda_poses(int count) {
@@ -77,12 +67,10 @@ TEST(IkTask, AxisMeetsPositionAndDirection) {
   ASSERT_EQ(answers.size(), 40U);
   int turned = 0;
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    const auto p = numbers(goals[i].at("pos")), r = numbers(goals[i].at("quat"));
-    const Eigen::Matrix3d R = to_matrix(Quat(r[0], r[1], r[2], r[3]));
-    const Pose X = oracle.fk(numbers(answers[i].at("q")));
-    EXPECT_LT((X.p - Eigen::Vector3d(p[0], p[1], p[2])).norm(), 1e-6);
-    EXPECT_LT((X.R.col(2) - R.col(2)).norm(), 1e-6);
-    turned += angle_between(X.R, R) > 0.1 ? 1 : 0;
+    const Pose goal = pose_of(goals[i]), X = oracle.fk(numbers(answers[i].at("q")));
+    EXPECT_LT((X.p - goal.p).norm(), 1e-6);
+    EXPECT_LT((X.R.col(2) - goal.R.col(2)).norm(), 1e-6);
+    turned += angle_between(X.R, goal.R) > 0.1 ? 1 : 0;
   }
   EXPECT_GT(turned, 20);
 }
@@ -115,10 +103,9 @@ TEST(IkPrefer, ComesNearerToTheWishWithTheToolAtRest) {
     int moved = 0;
     for (std::size_t i = 0; i < answers.size(); ++i) {
       const auto q = numbers(answers[i].at("q")), before = numbers(plain[i].at("q"));
-      const auto p = numbers(goals[i].at("pos")), r = numbers(goals[i].at("quat"));
-      const Pose X = oracle.fk(q);
-      EXPECT_LT((X.p - Eigen::Vector3d(p[0], p[1], p[2])).norm(), 1e-6);
-      EXPECT_LT(angle_between(X.R, to_matrix(Quat(r[0], r[1], r[2], r[3]))), 1e-6);
+      const Pose goal = pose_of(goals[i]), X = oracle.fk(q);
+      EXPECT_LT((X.p - goal.p).norm(), 1e-6);
+      EXPECT_LT(angle_between(X.R, goal.R), 1e-6);
       EXPECT_TRUE(oracle.within_limits(q));
       moved += q != before ? 1 : 0;
       if (wish == "manipulability") continue;

@@ -15,21 +15,6 @@ using nlohmann::json;
 const std::string kUr5eScene = model_file("universal_robots_ur5e/scene.xml");
 const std::vector<std::string> kTutorialPose = {"--pos", "-0.13,0.6,0.1", "--euler", "3.14,0,1.57"};
 
-std::vector<double> numbers(const json& list) { return list.get<std::vector<double>>(); }
-
-Pose pose_of(const json& object) {
-  const auto p = numbers(object.at("pos")), q = numbers(object.at("quat"));
-  return {{p[0], p[1], p[2]}, to_matrix(Quat(q[0], q[1], q[2], q[3]))};
-}
-
-support::ProgramResult ik(std::vector<std::string> arguments,
-                          const std::vector<std::string>& more = {},
-                          const support::RunOptions& options = {}) {
-  arguments.insert(arguments.begin(), "ik");
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return mjarm(arguments, options);
-}
-
 /// Poses that the arm can reach, each made by MuJoCo from random joint values.
 std::string reachable_poses(int count) {
   Oracle oracle(kUr5eScene, "attachment_site");

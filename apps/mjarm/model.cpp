@@ -6,6 +6,7 @@
 #include "apps/mjarm/model_check.hpp"
 #include "apps/mjarm/model_export.hpp"
 #include "apps/mjarm/model_report.hpp"
+#include "apps/mjarm/options.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -22,13 +23,13 @@ struct Options {
 };
 
 void add_file_options(CLI::App& app, Options& options) {
-  app.add_option("file", options.file, text(msg::app_model_file))->type_name("FILE");
+  add_option(app, "file", options.file, msg::app_model_file, "FILE");
   add_package_path_option(app, options.package_paths);
 }
 
 void add_options(CLI::App& app, Options& options) {
   add_file_options(app, options);
-  app.add_flag("--json", options.json, text(msg::app_option_json));
+  add_flag(app, "--json", options.json, msg::app_option_json);
   add_outside_option(app, options.allow_outside);
 }
 
@@ -85,24 +86,24 @@ Run setup(CLI::App& app) {
   CLI::App& info =
       add_subcommand(app, "info", msg::app_model_info_summary, msg::app_model_info_examples);
   add_options(info, *options);
-  info.add_option("--tip", options->tip, text(msg::app_option_tip))->type_name("FRAME");
+  add_option(info, "--tip", options->tip, msg::app_option_tip, "FRAME");
   CLI::App& tree =
       add_subcommand(app, "tree", msg::app_model_tree_summary, msg::app_model_tree_examples);
   add_options(tree, *options);
   CLI::App& check =
       add_subcommand(app, "check", msg::app_model_check_summary, msg::app_model_check_examples);
   add_options(check, *options);
-  check.add_option("--tip", options->tip, text(msg::app_option_tip))->type_name("FRAME");
-  check.add_option("--against", options->against, text(msg::app_model_against))->type_name("FILE");
+  add_option(check, "--tip", options->tip, msg::app_option_tip, "FRAME");
+  add_option(check, "--against", options->against, msg::app_model_against, "FILE");
   CLI::App& export_to =
       add_subcommand(app, "export", msg::app_model_export_summary, msg::app_model_export_examples);
   add_file_options(export_to, *options);
   add_export_options(export_to, options->export_to);
   return [options, &info, &tree, &check, &export_to]() -> Result<int> {
-    if (info.parsed()) return run_info(*options);
-    if (tree.parsed()) return run_tree(*options);
-    if (check.parsed()) return run_check(*options);
-    if (export_to.parsed()) {
+    if (is_called(info)) return run_info(*options);
+    if (is_called(tree)) return run_tree(*options);
+    if (is_called(check)) return run_check(*options);
+    if (is_called(export_to)) {
       const Result<Model> model = load(*options);
       return model ? run_export(*model, options->export_to) : fail(model.error());
     }

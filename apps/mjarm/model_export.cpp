@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -26,8 +27,8 @@ Result<ExportFormat> format_of(const ExportOptions& options, const fs::path& out
 }  // namespace
 
 void add_export_options(CLI::App& app, ExportOptions& options) {
-  app.add_option("--to", options.to, text(msg::app_option_to))->type_name("FORMAT");
-  app.add_option("--out", options.out, text(msg::app_option_export_out))->type_name("FILE");
+  add_option(app, "--to", options.to, msg::app_option_to, "FORMAT");
+  add_option(app, "--out", options.out, msg::app_option_export_out, "FILE");
 }
 
 Result<int> run_export(const Model& model, const ExportOptions& options) {

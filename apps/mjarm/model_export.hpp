@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/model.hpp"
 

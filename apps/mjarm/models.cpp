@@ -6,6 +6,7 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/install/install.hpp"
 #include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
@@ -157,15 +158,13 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App& install =
       add_subcommand(app, "install", msg::install_install_summary, msg::install_install_examples);
-  install.add_option("names", options->names, text(msg::install_option_names))
-      ->type_name("[NAME...]");
-  install.add_flag("--list", options->list, text(msg::install_option_list));
-  install.add_flag("--remove", options->remove, text(msg::install_option_remove));
-  install.add_option("--from", options->from, text(msg::install_option_from))
-      ->type_name("DIR_OR_URL");
-  install.add_flag("--json", options->json, text(msg::app_option_json));
+  add_option(install, "names", options->names, msg::install_option_names, "[NAME...]");
+  add_flag(install, "--list", options->list, msg::install_option_list);
+  add_flag(install, "--remove", options->remove, msg::install_option_remove);
+  add_option(install, "--from", options->from, msg::install_option_from, "DIR_OR_URL");
+  add_flag(install, "--json", options->json, msg::app_option_json);
   return [options, &install]() -> Result<int> {
-    if (install.parsed()) return run(*options);
+    if (is_called(install)) return run(*options);
     return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm models", "install"));
   };
 }

@@ -1,19 +1,19 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 
+#include "apps/mjarm/answer_json.hpp"
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/options.hpp"
 #include "apps/mjarm/orientation.hpp"
 #include "apps/mjarm/path_answer.hpp"
 #include "apps/mjarm/path_request.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/collision/exact.hpp"
-#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/path_command.hpp"
 #include "mjarm/core/number.hpp"
@@ -40,12 +40,6 @@ struct Job {
 
 using Solved = Result<JointPath, PathFailure>;
 
-std::vector<double> counted(std::size_t n) {
-  std::vector<double> s(n);
-  std::iota(s.begin(), s.end(), 0.0);
-  return s;
-}
-
 /// A path, or why it stops and what mends it.
 struct Answer {
   Solved path;
@@ -57,6 +51,7 @@ Answer solve(const Job& job, const PathRequest& request) {
   options.path = job.path;
   options.path.max_step = request.max_step.value_or(job.path.max_step);
   options.path.orientation_tol = request.tilt.value_or(job.path.orientation_tol);
+  options.path.tool_speed = request.speed.value_or(0);
   // Without a start any will do: the track with most room is taken.
   if (!request.q) options.path.comfort = 0;
   const std::span<const double> q_start = request.q ? *request.q : view(job.ik.arm().home);
@@ -69,7 +64,7 @@ Answer solve(const Job& job, const PathRequest& request) {
     return out;
   }
   const std::span<const Pose> poses = request.poses;
-  Answer out{solve_path(job.ik, poses, counted(poses.size()), q_start, options.path), {}};
+  Answer out{solve_path(job.ik, poses, q_start, options.path), {}};
   if (!out.path) out.fixes = fixes(poses, options.path, out.path.error());
   return out;
 }
@@ -97,10 +92,7 @@ std::optional<std::string> answer(const Job& job, const PathRequest& request, st
       why = text(msg::path_command_mended, *why, describe(solved.fixes.front()));
     }
   }
-  if (job.timing) {
-    out += ",\"us\":";
-    append_number(out, std::round(us * 10) / 10);
-  }
+  if (job.timing) append_us(out, us);
   out += '}';
   return why;
 }
@@ -155,12 +147,7 @@ Result<int> answer_one(const Job& job, const Options& options) {
   if (!request) return fail(request.error());
   std::string line;
   const std::optional<std::string> why = answer(job, *request, line);
-  if (Result<void> written = write_answer(options.batch.out, line); !written) {
-    return fail(std::move(written.error()));
-  }
-  if (!why) return 0;
-  log_error(text(msg::path_command_impossible, *why));
-  return 1;
+  return finish_one(options.batch.out, line, why, msg::path_command_impossible);
 }
 
 Result<int> answer_all(const Job& job, const Options& options) {
@@ -172,10 +159,7 @@ Result<int> answer_all(const Job& job, const Options& options) {
   };
   const auto done = run_batch(options.batch, text(msg::path_command_progress), answer_line);
   if (!done) return fail(done.error());
-  if (done->failed == 0) return 0;
-  log_error(text(msg::path_command_some_failed, done->first_failure, done->first_why, done->failed,
-                 done->requests));
-  return 1;
+  return finish_all(*done, msg::path_command_some_failed);
 }
 
 Result<PathOptions> path_options(const Options& options, const Robot& robot) {
@@ -215,7 +199,7 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_robot_options(app, options->robot);
   const auto add = [&app](const char* name, std::string& value, Msg help, const char* type) {
-    app.add_option(name, value, text(help))->type_name(type);
+    add_option(app, name, value, help, type);
   };
   add("--from", options->from, msg::path_command_from, "X,Y,Z");
   add("--via", options->via, msg::path_command_via, "X,Y,Z");
@@ -227,10 +211,10 @@ Run setup(CLI::App& app) {
   add("--start", options->start, msg::path_command_start, "Q1,Q2,...");
   add("--max-step", options->max_step, msg::path_command_step, "STEP");
   add("--orientation-tol", options->tilt, msg::path_command_tilt, "ANGLE");
-  app.add_flag("--keep-start", options->keep_start, text(msg::path_command_keep_start));
-  app.add_flag("--collisions", options->collisions, text(msg::path_command_collisions));
-  app.add_flag("--partial", options->partial, text(msg::path_command_partial));
-  app.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
+  add_flag(app, "--keep-start", options->keep_start, msg::path_command_keep_start);
+  add_flag(app, "--collisions", options->collisions, msg::path_command_collisions);
+  add_flag(app, "--partial", options->partial, msg::path_command_partial);
+  add_flag(app, "--no-timing", options->no_timing, msg::app_option_no_timing);
   return [options] { return run(*options); };
 }
 

@@ -2,27 +2,11 @@
 
 #include <cmath>
 
+#include "apps/mjarm/answer_json.hpp"
 #include "mjarm/core/number.hpp"
 
 namespace mjarm::app {
 namespace {
-
-void append_key(std::string& out, const char* key) { out += std::string(",\"") + key + "\":"; }
-
-void append_value(std::string& out, const char* key, double value) {
-  append_key(out, key);
-  append_number(out, value);
-}
-
-void append_rows(std::string& out, const char* key, std::span<const JointVec> rows) {
-  append_key(out, key);
-  out += '[';
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i > 0) out += ',';
-    append_numbers(out, view(rows[i]));
-  }
-  out += ']';
-}
 
 void append_least(std::string& out, const char* key, const LeastAlong& least) {
   append_value(out, (std::string("min_") + key).c_str(), least.value);
@@ -53,6 +37,9 @@ void append_fix(std::string& out, const PathFix& fix) {
       break;
     case FixKind::max_step:
       append_number(out, fix.max_step);
+      break;
+    case FixKind::slower:
+      append_number(out, fix.tool_speed);
       break;
   }
   out += '}';

@@ -178,6 +178,12 @@ Result<PathRequest> path_request_of(const json& object, const Arm& arm) {
     if (!(*max_step > 0)) return fail(Errc::bad_input, text(msg::path_command_max_step));
     out.max_step = *max_step;
   }
+  if (object.contains("speed")) {
+    const Result<double> speed = number_of(object, "speed");
+    if (!speed) return fail(speed.error());
+    if (!(*speed > 0)) return fail(Errc::bad_input, text(msg::path_command_bad_speed));
+    out.speed = *speed;
+  }
   if (object.contains("orientation_tol")) {
     const Result<double> tilt = number_of(object, "orientation_tol");
     if (!tilt) return fail(tilt.error());

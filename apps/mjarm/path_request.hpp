@@ -17,6 +17,7 @@ struct PathRequest {
   std::optional<Curve> curve;            ///< the other types
   std::optional<std::vector<double>> q;  ///< [rad or m] `start`
   std::optional<double> max_step;        ///< [rad or m] > 0
+  std::optional<double> speed;           ///< [m/s] the tool is to keep, > 0
   std::optional<double> tilt;            ///< [rad] `orientation_tol`, in [0, pi/2)
 };
 

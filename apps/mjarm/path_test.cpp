@@ -149,6 +149,21 @@ TEST(Path, StartAndKeepStart) {
   EXPECT_EQ(strict.exit_code, 1);
 }
 
+TEST(Path, ASpeedThatAJointCannotKeep) {
+  const std::string line = R"({"type":"line","from":{"pos":[0.4,-0.2,0.4],"quat":[0,1,0,0]},)"
+                           R"("to":{"pos":[-0.4,-0.2,0.4],"quat":[0,1,0,0]},"speed":)";
+  EXPECT_EQ(solve(line + "0.25}").exit_code, 0);
+  const auto fast = solve(line + "1.5}");
+  EXPECT_EQ(fast.exit_code, 1);
+  const json answer = json::parse(fast.out);
+  EXPECT_EQ(answer.at("reason"), "joint_speed");
+  EXPECT_GT(answer.at("amount").get<double>(), 0);
+  const double slower = answer.at("fix").at("slower").get<double>();
+  EXPECT_LT(slower, 1.5);
+  EXPECT_EQ(solve(line + std::to_string(slower) + "}").exit_code, 0);
+  EXPECT_NE(only_line(fast).find("m/s"), std::string::npos) << fast.err;
+}
+
 TEST(Path, BadRequests) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"", "--from"},
@@ -175,6 +190,8 @@ TEST(Path, BadRequests) {
        "\"max_step\" must be above 0"},
       {R"({"type":"poses","poses":[{"pos":[0,0,1],"quat":[1,0,0,0]}],"orientation_tol":2})",
        "\"orientation_tol\" must be"},
+      {R"({"type":"poses","poses":[{"pos":[0,0,1],"quat":[1,0,0,0]}],"speed":0})",
+       "\"speed\" must be above 0"},
   };
   for (const auto& [request, says] : bad) {
     SCOPED_TRACE(request);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/core/pose.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 #include "tests/support/test_data.hpp"
@@ -16,6 +18,15 @@ namespace mjarm::app {
 inline support::ProgramResult mjarm(const std::vector<std::string>& arguments,
                                     const support::RunOptions& options = {}) {
   return support::run_program(MJARM_PROGRAM, arguments, options);
+}
+
+/// Runs `mjarm ik`.
+inline support::ProgramResult ik(std::vector<std::string> arguments,
+                                 const std::vector<std::string>& more = {},
+                                 const support::RunOptions& options = {}) {
+  arguments.insert(arguments.begin(), "ik");
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return mjarm(arguments, options);
 }
 
 /// Path of a file of the shipped models.
@@ -39,6 +50,19 @@ inline std::vector<nlohmann::json> json_lines(const std::string& text) {
     objects.push_back(std::move(object));
   }
   return objects;
+}
+
+inline std::vector<double> numbers(const nlohmann::json& list) {
+  return list.get<std::vector<double>>();
+}
+
+/// Pose written as `pos` and `quat`.
+inline Pose pose_of(const nlohmann::json& object) {
+  const auto p = numbers(object.at("pos")), q = numbers(object.at("quat"));
+  EXPECT_EQ(p.size(), 3u);
+  EXPECT_EQ(q.size(), 4u);
+  EXPECT_NEAR(Quat(q[0], q[1], q[2], q[3]).norm(), 1, 1e-14);
+  return {{p[0], p[1], p[2]}, to_matrix(Quat(q[0], q[1], q[2], q[3]))};
 }
 
 }  // namespace mjarm::app

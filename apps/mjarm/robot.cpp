@@ -2,26 +2,25 @@
 
 #include <utility>
 
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 
 namespace mjarm::app {
 
 void add_outside_option(CLI::App& app, bool& allowed) {
-  app.add_flag("--allow-outside", allowed, text(msg::app_option_outside));
+  add_flag(app, "--allow-outside", allowed, msg::app_option_outside);
 }
 
 void add_robot_options(CLI::App& app, RobotOptions& options) {
-  app.add_option("--robot", options.robot, text(msg::app_option_robot))->type_name("ROBOT");
-  app.add_option("--tip", options.tip, text(msg::app_option_tip))->type_name("FRAME");
+  add_option(app, "--robot", options.robot, msg::app_option_robot, "ROBOT");
+  add_option(app, "--tip", options.tip, msg::app_option_tip, "FRAME");
   add_package_path_option(app, options.package_paths);
   add_outside_option(app, options.allow_outside);
 }
 
 void add_package_path_option(CLI::App& app, std::vector<std::string>& folders) {
-  app.add_option("--package-path", folders, text(msg::app_option_package_path))
-      ->type_name("DIR")
-      ->take_all();
+  add_option(app, "--package-path", folders, msg::app_option_package_path, "DIR");
 }
 
 Result<Robot> load_robot(const RobotOptions& options) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/model.hpp"

@@ -6,30 +6,33 @@
 #include <string>
 #include <utility>
 
+#include "apps/mjarm/answer_json.hpp"
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/options.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/time_cases.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/model/arm_dynamics.hpp"
 
 namespace mjarm::app {
 namespace {
 
 constexpr double kMostSamples = 1e7;       // of one motion
 constexpr double kRounding = 1e-6;         // a limit may be passed by this share of it
+constexpr double kTorqueRounding = 1e-3;   // the same for torques
 constexpr std::size_t kLargest = 1 << 28;  // [bytes] of a file
 
 struct Options {
   RobotOptions robot{.robot = "ur5e", .tip = {}};
   BatchOptions batch;
-  std::string problem, points, dt;
+  std::string problem, points, dt, torque;
   bool check = false, no_timing = false;
 };
 
@@ -39,6 +42,7 @@ struct Job {
   JointLimits limits;
   double dt = 0;  ///< [s] between samples; 0 = none
   bool check, timing;
+  PathTimingOptions torque = {};
 };
 
 void append_sample(std::string& out, const Trajectory& motion, double t) {
@@ -76,15 +80,19 @@ std::optional<std::string> append_check(std::string& out, const Trajectory& moti
   const LimitUse use = check_limits(motion, job.limits, dt);
   std::optional<std::string> broken;
   out += ",\"use\":{";
-  const auto add = [&](const char* name, const JointVec& shares) {
+  const auto add = [&](const char* name, const JointVec& shares, double slack = kRounding) {
     const double worst = shares.maxCoeff();
     if (out.back() != '{') out += ',';
     out += '"' + std::string(name) + "\":" + number(worst);
-    if (worst > 1 + kRounding && !broken) broken = text(msg::app_time_limit_broken, name, worst);
+    if (worst > 1 + slack && !broken) broken = text(msg::app_time_limit_broken, name, worst);
   };
   add("velocity", use.velocity);
   add("acceleration", use.acceleration);
   if (job.problem != TimeProblem::path_va) add("jerk", use.jerk);
+  if (job.torque.dynamics) {
+    const JointVec torque = job.torque.torque_share * job.limits.torque;
+    add("torque", check_torque(motion, job.torque.dynamics, torque, dt), kTorqueRounding);
+  }
   out += '}';
   return broken;
 }
@@ -93,7 +101,7 @@ std::optional<std::string> append_check(std::string& out, const Trajectory& moti
 std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::string& out) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  const Result<Trajectory> motion = time_case(entry, job.limits, job.problem);
+  const Result<Trajectory> motion = time_case(entry, job.limits, job.problem, job.torque);
   const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   std::optional<std::string> why;
   std::string body;
@@ -111,7 +119,7 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
   out += why ? "{\"ok\":false,\"reason\":" : "{\"ok\":true";
   if (why) append_json_string(out, *why);
   out += body;
-  if (job.timing) out += ",\"us\":" + number(std::round(us * 10) / 10);
+  if (job.timing) append_us(out, us);
   out += '}';
   return why;
 }
@@ -119,12 +127,7 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
 Result<int> answer_one(const Job& job, const TimeCase& entry, const std::string& out) {
   std::string line;
   const std::optional<std::string> why = answer(job, entry, line);
-  if (Result<void> written = write_answer(out, line); !written) {
-    return fail(std::move(written.error()));
-  }
-  if (!why) return 0;
-  log_error(text(msg::app_time_no_answer, *why));
-  return 1;
+  return finish_one(out, line, why, msg::app_time_no_answer);
 }
 
 Result<int> answer_all(Job job, const Options& options) {
@@ -132,26 +135,51 @@ Result<int> answer_all(Job job, const Options& options) {
   if (!content) return fail(content.error());
   Result<TimeCases> cases = read_time_cases(*content, job.problem);
   if (!cases) return fail(cases.error().code, options.batch.in + ": " + cases.error().what);
+  if (job.torque.dynamics && job.limits.torque.size() != cases->limits.velocity.size()) {
+    return fail(Errc::usage, text(msg::app_time_torque_joints, job.limits.torque.size(),
+                                  options.batch.in, cases->limits.velocity.size()));
+  }
+  cases->limits.torque = job.limits.torque;
   job.limits = std::move(cases->limits);
   Progress progress(text(msg::app_time_progress), cases->cases.size());
-  std::string out = "{", first;
-  std::size_t failed = 0;
+  std::string out = "{";
+  BatchResult result;
   for (const TimeCase& entry : cases->cases) {
     if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
     if (out.size() > 1) out += ",\n ";
     append_json_string(out, entry.id);
     out += ':';
     const std::optional<std::string> why = answer(job, entry, out);
-    if (why && failed++ == 0) first = text(msg::app_time_case_failed, entry.id, *why);
+    ++result.requests;
+    if (why && result.failed++ == 0) {
+      result.first_failure = options.batch.in;
+      result.first_why = text(msg::app_time_case_failed, entry.id, *why);
+    }
     progress.advance();
   }
   out += '}';
   if (Result<void> written = write_answer(options.batch.out, out); !written) {
     return fail(std::move(written.error()));
   }
-  if (failed == 0) return 0;
-  log_error(text(msg::app_time_some_failed, options.batch.in, first, failed, cases->cases.size()));
-  return 1;
+  return finish_all(result, msg::app_time_some_failed);
+}
+
+/// Makes torques matter where `--torque` is given: those of the robot, as they come from its model.
+Result<void> set_torque(const Options& options, const Robot& robot, Job& job) {
+  if (job.problem != TimeProblem::path_va && job.problem != TimeProblem::path_vaj) {
+    return fail(Errc::usage, text(msg::app_time_torque_paths, options.problem));
+  }
+  const Result<double> share = parse_quantity(options.torque, Quantity::number);
+  if (!share) return fail(in_option("--torque", share.error()));
+  if (!(*share > 0 && *share <= 1)) {
+    return fail(Errc::usage, text(msg::app_time_bad_torque, options.torque));
+  }
+  const auto arm = std::make_shared<ArmDynamics>(robot.model, robot.arm);
+  job.torque.torque_share = *share;
+  job.torque.dynamics = [arm](const JointVec& q, const JointVec& v, const JointVec& a) {
+    return arm->inverse(q, v, a);
+  };
+  return {};
 }
 
 /// Waypoints of the command line: `q1,q2,...;q1,q2,...`.
@@ -168,9 +196,8 @@ Result<TimeCase> read_points(const Options& options, TimeProblem problem, const 
   if (entry.waypoints.size() != 2) {
     return fail(Errc::usage, text(msg::app_time_two_points, entry.waypoints.size()));
   }
-  const JointVec zero = JointVec::Zero(arm.dof());
-  entry.start = {entry.waypoints[0], zero, zero};
-  entry.end = {entry.waypoints[1], zero, zero};
+  entry.start = JointState::at_rest(entry.waypoints[0]);
+  entry.end = JointState::at_rest(entry.waypoints[1]);
   return entry;
 }
 
@@ -187,10 +214,15 @@ Result<int> run(const Options& options) {
     if (!(*dt > 0)) return fail(Errc::usage, text(msg::app_time_bad_dt, options.dt));
     job.dt = *dt;
   }
-  if (!options.batch.in.empty()) return answer_all(std::move(job), options);
+  const bool with_file = !options.batch.in.empty(), with_torque = !options.torque.empty();
+  if (with_file && !with_torque) return answer_all(std::move(job), options);
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
   job.limits = robot->arm.limits;
+  if (with_torque) {
+    if (Result<void> set = set_torque(options, *robot, job); !set) return fail(set.error());
+  }
+  if (with_file) return answer_all(std::move(job), options);
   const Result<TimeCase> entry = read_points(options, *problem, robot->arm);
   if (!entry) return fail(entry.error());
   return answer_one(job, *entry, options.batch.out);
@@ -198,16 +230,15 @@ Result<int> run(const Options& options) {
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("--problem", options->problem, text(msg::app_time_option_problem))
-      ->type_name("NAME");
-  app.add_option("--in", options->batch.in, text(msg::app_time_option_in))->type_name("FILE");
-  app.add_option("--out", options->batch.out, text(msg::app_option_out))->type_name("FILE");
-  app.add_option("--points", options->points, text(msg::app_time_option_points))
-      ->type_name("Q1,Q2,...;...");
+  add_option(app, "--problem", options->problem, msg::app_time_option_problem, "NAME");
+  add_option(app, "--in", options->batch.in, msg::app_time_option_in, "FILE");
+  add_option(app, "--out", options->batch.out, msg::app_option_out, "FILE");
+  add_option(app, "--points", options->points, msg::app_time_option_points, "Q1,Q2,...;...");
   add_robot_options(app, options->robot);
-  app.add_option("--dt", options->dt, text(msg::app_time_option_dt))->type_name("S");
-  app.add_flag("--check", options->check, text(msg::app_time_option_check));
-  app.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
+  add_option(app, "--torque", options->torque, msg::app_time_option_torque, "SHARE", "1");
+  add_option(app, "--dt", options->dt, msg::app_time_option_dt, "S");
+  add_flag(app, "--check", options->check, msg::app_time_option_check);
+  add_flag(app, "--no-timing", options->no_timing, msg::app_option_no_timing);
   return [options] { return run(*options); };
 }
 

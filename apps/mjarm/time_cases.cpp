@@ -11,7 +11,6 @@
 #include "apps/mjarm/json_line.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
-#include "mjarm/trajectory/path_timing.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 #include "mjarm/trajectory/via_points.hpp"
 
@@ -161,16 +160,16 @@ Result<TimeCases> read_time_cases(const std::string& content, TimeProblem proble
   return cases;
 }
 
-Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits,
-                             TimeProblem problem) {
+Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits, TimeProblem problem,
+                             PathTimingOptions torque) {
   if (problem == TimeProblem::p2p) return point_to_point(entry.start, entry.end, limits);
   if (problem == TimeProblem::via_vaj) {
     Result<ViaMotion> motion = time_via_points(entry.waypoints, limits);
     if (!motion) return fail(std::move(motion.error()));
     return std::move(motion->trajectory);
   }
-  return time_waypoint_path(entry.waypoints, limits,
-                            {.jerk_limits = problem == TimeProblem::path_vaj});
+  torque.jerk_limits = problem == TimeProblem::path_vaj;
+  return time_waypoint_path(entry.waypoints, limits, torque);
 }
 
 }  // namespace mjarm::app

@@ -7,6 +7,7 @@
 #include "mjarm/core/joint_state.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
+#include "mjarm/trajectory/path_timing.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm::app {
@@ -43,7 +44,8 @@ struct TimeCases {
 [[nodiscard]] JointLimits unbounded(const JointVec& v, const JointVec& a, const JointVec& j);
 
 /// Finds the motion.
+/// @param torque  torque limits for paths; its jerk limits follow from the problem.
 [[nodiscard]] Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits,
-                                           TimeProblem problem);
+                                           TimeProblem problem, PathTimingOptions torque = {});
 
 }  // namespace mjarm::app

@@ -101,6 +101,47 @@ TEST(Time, AnswersOneRequestAndLeavesOutTimes) {
   EXPECT_EQ(mjarm(request).out, first.out);
 }
 
+/// A path of the UR5e that needs more torque than a third of it.
+const std::vector<std::string> kStretched = {
+    "time",
+    "--problem",
+    "path_va",
+    "--robot",
+    "ur5e",
+    "--points",
+    "0,-90deg,90deg,0,0,0;0.5,-0.6,0.6,0,0,0;1,-1.6,0.5,1,0,0",
+    "--check",
+    "--no-timing"};
+
+TEST(Time, TorqueLimitsAreKeptWhereTheyAreAskedFor) {
+  const auto answer = [](const std::vector<std::string>& more) {
+    std::vector<std::string> all = kStretched;
+    all.insert(all.end(), more.begin(), more.end());
+    const auto result = mjarm(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return json::parse(result.out);
+  };
+  const json free = answer({}), whole = answer({"--torque"}), part = answer({"--torque", "0.37"});
+  EXPECT_FALSE(free.at("use").contains("torque"));
+  EXPECT_LE(whole.at("use").at("torque").get<double>(), 0.9);
+  EXPECT_NEAR(whole.at("duration").get<double>(), free.at("duration").get<double>(), 1e-3);
+  EXPECT_NEAR(part.at("use").at("torque").get<double>(), 1, 1e-2);
+  EXPECT_GE(part.at("duration").get<double>(), 1.002 * free.at("duration").get<double>());
+}
+
+TEST(Time, TorqueLimitsThatCannotBeKeptAreRefused) {
+  std::vector<std::string> weak = kStretched;
+  weak.insert(weak.end(), {"--torque", "0.1"});
+  const auto result = mjarm(weak);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(only_line(result).find("joint 2"), std::string::npos) << result.err;
+  const support::TempFolder folder;
+  const std::string file = folder.write("paths.json", two_paths().dump()).string();
+  const auto joints = mjarm(arguments("path_va", file, {"--torque"}));
+  EXPECT_EQ(joints.exit_code, 2);
+  EXPECT_NE(only_line(joints).find("6 joints"), std::string::npos) << joints.err;
+}
+
 TEST(Time, ACaseThatCannotBeDoneIsToldApart) {
   const support::TempFolder folder;
   json cases = two_moves();
@@ -176,6 +217,9 @@ TEST(Time, UsageErrorsNameTheOption) {
   says({"--problem", "path_va", "--points", q, "--dt", "0"}, "--dt");
   says({"--problem", "path_va", "--points", q, "--dt", "-1ms"}, "--dt");
   says({"--problem", "path_va", "--in", "/no/such/file.json"}, "/no/such/file.json");
+  says({"--problem", "path_va", "--points", q, "--torque", "1.5"}, "--torque");
+  says({"--problem", "path_va", "--points", q, "--torque", "much"}, "--torque");
+  says({"--problem", "via_vaj", "--points", q, "--torque"}, "via_vaj");
 }
 
 TEST(Time, TinyStepsAreRefusedInsteadOfFillingTheDisk) {

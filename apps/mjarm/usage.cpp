@@ -1,5 +1,6 @@
 #include "apps/mjarm/usage.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <vector>

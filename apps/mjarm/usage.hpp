@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,6 +9,11 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/model/arm.hpp"
+
+namespace CLI {
+class App;
+class ParseError;
+}  // namespace CLI
 
 namespace mjarm::app {
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/options.hpp"
 #include "apps/mjarm/orientation.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
@@ -101,17 +102,15 @@ Result<int> run(const Options& options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_robot_options(app, options->robot);
-  app.add_option("--slice", options->slice, text(msg::workspace_option_slice))->type_name("z=0.4");
-  app.add_option("--step", options->step, text(msg::workspace_option_step))->type_name("LENGTH");
-  app.add_flag("--tool-down", options->tool_down, text(msg::workspace_option_tool_down));
-  app.add_option("--euler", options->euler, text(msg::app_option_euler))->type_name("A,B,C");
-  app.add_option("--quat", options->quat, text(msg::app_option_quat))->type_name("W,X,Y,Z");
-  app.add_flag("--position-only", options->position_only, text(msg::workspace_option_position));
-  app.add_option("--out", options->out, text(msg::workspace_option_out))
-      ->type_name("F.png|svg|csv|json");
-  app.add_option("--threads", options->threads, text(msg::workspace_option_threads))
-      ->type_name("N");
-  app.add_flag("--json", options->json, text(msg::app_option_json));
+  add_option(app, "--slice", options->slice, msg::workspace_option_slice, "z=0.4");
+  add_option(app, "--step", options->step, msg::workspace_option_step, "LENGTH");
+  add_flag(app, "--tool-down", options->tool_down, msg::workspace_option_tool_down);
+  add_option(app, "--euler", options->euler, msg::app_option_euler, "A,B,C");
+  add_option(app, "--quat", options->quat, msg::app_option_quat, "W,X,Y,Z");
+  add_flag(app, "--position-only", options->position_only, msg::workspace_option_position);
+  add_option(app, "--out", options->out, msg::workspace_option_out, "F.png|svg|csv|json");
+  add_option(app, "--threads", options->threads, msg::workspace_option_threads, "N");
+  add_flag(app, "--json", options->json, msg::app_option_json);
   return [options] { return run(*options); };
 }
 

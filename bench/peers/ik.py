@@ -6,17 +6,13 @@ targets are converted before, answers are unpacked after. Whether an answer is r
 mjarm, with MuJoCo's forward kinematics.
 """
 
-import importlib.metadata
-import json
 import os
 import subprocess
 import sys
 import time
-import warnings
 import xml.etree.ElementTree
 
-SECONDS = 20  # a set gets no more than that: slow peers do fewer rounds, or only its first cases
-LIMIT = 300  # [s] for one peer
+import driver
 
 
 def matrix(pose):
@@ -37,6 +33,25 @@ def root_link(urdf):
     robot = xml.etree.ElementTree.parse(urdf).getroot()
     children = {joint.find("child").get("link") for joint in robot.iter("joint") if joint.find("child") is not None}
     return next(link.get("name") for link in robot.findall("link") if link.get("name") not in children)
+
+
+def chain_only(job):
+    """Path of a URDF with nothing but the way from the root to the tip."""
+    tree = xml.etree.ElementTree.parse(job["urdf"])
+    robot = tree.getroot()
+    above = {j.find("child").get("link"): j for j in robot.findall("joint") if j.find("child") is not None}
+    links, joints = {job["tip"]}, []
+    link = job["tip"]
+    while link in above:
+        joints.append(above[link])
+        link = above[link].find("parent").get("link")
+        links.add(link)
+    for element in list(robot):
+        if element not in joints and not (element.tag == "link" and element.get("name") in links):
+            robot.remove(element)
+    path = os.path.join(job["folder"], "chain.urdf")
+    tree.write(path)
+    return path
 
 
 def within(q, job):
@@ -114,7 +129,8 @@ def ikpy(job):
     import numpy as np
     from ikpy.chain import Chain
 
-    chain = Chain.from_urdf_file(job["urdf"], base_elements=[root_link(job["urdf"])])
+    # It follows the first child of every link, which need not lead to the tip.
+    chain = Chain.from_urdf_file(chain_only(job), base_elements=[root_link(job["urdf"])])
     names = [link.name for link in chain.links]
     at = [names.index(joint) for joint in job["joints"]]
     chain.active_links_mask[:] = [i in at for i in range(len(names))]
@@ -160,30 +176,6 @@ PEERS = {
 }
 
 
-def run_set(cases, rounds, prepare, call, pick):
-    """Best time of each case [us], and its answer."""
-    arguments = [prepare(case) for case in cases]
-    for words in arguments[:5]:
-        call(*words)  # caches and lazy imports
-    best, answers = [], []
-    end = time.monotonic() + SECONDS
-    for words in arguments:
-        if time.monotonic() > end:
-            break
-        start = time.perf_counter_ns()
-        answer = call(*words)
-        best.append((time.perf_counter_ns() - start) / 1000)
-        answers.append(pick(answer))
-    for _ in range(1, rounds):
-        if time.monotonic() > end:
-            break
-        for i, words in enumerate(arguments[: len(best)]):
-            start = time.perf_counter_ns()
-            call(*words)
-            best[i] = min(best[i], (time.perf_counter_ns() - start) / 1000)
-    return best, [None if q is None else [float(v) for v in q] for q in answers]
-
-
 def run_mean(cases, rounds, prepare, call):
     """Best mean time of all [us]: one call is too short for the clock."""
     arguments = [prepare(case) for case in cases]
@@ -196,58 +188,17 @@ def run_mean(cases, rounds, prepare, call):
     return [best]
 
 
-def run_peer(job, name):
-    maker, package = PEERS[name]
-    row = {"who": name, "version": importlib.metadata.version(package), "timed": "python"}
+def run_peer(job, name, maker, row):
     prepare, call, pick = maker(job)
     if name == "pinocchio":
         return [row | {"set": "fk_jacobian", "us": run_mean(job["fk"], job["rounds"], prepare, call)}]
     rows = []
     for group in job["sets"]:
-        us, q = run_set(group["cases"], job["rounds"], prepare, call, pick)
+        us, answers = driver.best_times([prepare(case) for case in group["cases"]], job["rounds"], call, pick)
+        q = [None if values is None else [float(v) for v in values] for values in answers]
         rows.append(row | {"set": group["name"], "us": us, "q": q})
     return rows
 
 
-def child(job_file, name):
-    """The answers of one peer, one a line on standard output."""
-    warnings.simplefilter("ignore")
-    out = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # what libraries print is no answer
-    with open(job_file, encoding="utf-8") as file:
-        job = json.load(file)
-    try:
-        rows = run_peer(job, name)
-    except Exception as error:  # whatever a peer cannot do is its result
-        line = str(error).splitlines() or [type(error).__name__]
-        version = "?"
-        try:
-            version = importlib.metadata.version(PEERS[name][1])
-        except importlib.metadata.PackageNotFoundError:
-            line = ["not installed"]
-        rows = [{"who": name, "version": version, "error": line[0][:80]}]
-    for row in rows:
-        print(json.dumps(row), file=out)
-    out.close()
-
-
-def main(job_file, answer_file):
-    environment = os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
-    with open(answer_file, "w", encoding="utf-8") as file:
-        for name in PEERS:
-            command = [sys.executable, os.path.abspath(__file__), "--peer", name, job_file]
-            try:
-                done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=LIMIT)
-                rows = done.stdout
-                if done.returncode != 0:
-                    rows = json.dumps({"who": name, "version": "?", "error": f"ended with {done.returncode}"}) + "\n"
-            except subprocess.TimeoutExpired:
-                rows = json.dumps({"who": name, "version": "?", "error": f"more than {LIMIT} s"}) + "\n"
-            file.write(rows)
-
-
 if __name__ == "__main__":
-    if sys.argv[1] == "--peer":
-        child(sys.argv[3], sys.argv[2])
-    else:
-        main(sys.argv[1], sys.argv[2])
+    driver.start(PEERS, run_peer)

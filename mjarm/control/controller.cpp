@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mjarm/control/actuation.hpp"
 #include "mjarm/control/step_inverse.hpp"
@@ -15,8 +16,15 @@
 namespace mjarm {
 namespace {
 
-constexpr std::array kModes = {ControlMode::servo, ControlMode::servo_gravity,
-                               ControlMode::computed_torque};
+constexpr std::array<std::string_view, 6> kNames = {"servo",           "servo_gravity",
+                                                    "feed_forward",    "computed_torque",
+                                                    "joint_impedance", "tool_impedance"};
+
+/// True where the position gains of the actuators do the feedback.
+bool by_servos(ControlMode mode) {
+  return mode == ControlMode::servo || mode == ControlMode::servo_gravity ||
+         mode == ControlMode::feed_forward;
+}
 
 Result<void> check_joint(const Arm& arm, const ArmJoint& joint, ControlMode mode) {
   if (!joint.actuator) {
@@ -26,44 +34,77 @@ Result<void> check_joint(const Arm& arm, const ArmJoint& joint, ControlMode mode
   if (actuator.gain == 0 || actuator.gear == 0) {
     return fail(Errc::impossible, text(msg::control_no_gain, arm.name, actuator.name, joint.name));
   }
-  if (mode != ControlMode::computed_torque && !(servo_stiffness(actuator) > 0)) {
+  if (by_servos(mode) && !(servo_stiffness(actuator) > 0)) {
     return fail(Errc::impossible,
                 text(msg::control_no_servo, arm.name, actuator.name, joint.name, name(mode)));
   }
   return {};
 }
 
-/// The discrete loop e_v+ = e_v - h (Kd e_v + Kp e), e+ = e + h e_v+ has its poles inside the unit
-/// circle exactly then (Jury's criterion on z^2 - (2 - h Kd - h^2 Kp) z + 1 - h Kd).
-Result<void> check_feedback(const ControlOptions& options, double h) {
-  const bool stable = options.stiffness > 0 && options.damping > 0 &&
-                      2 * h * options.damping + h * h * options.stiffness < 4;
-  if (stable) return {};
-  return fail(Errc::bad_input,
-              text(msg::control_bad_feedback, options.stiffness, options.damping, h));
+/// The loop e_v+ = e_v - h (Kd e_v + Kp e + Ki s), e+ = e + h e_v+, s+ = s + h e has its poles
+/// inside the unit circle exactly where Jury's criterion holds for
+/// z^3 + (a + b - 3) z^2 + (3 - 2 a - b + c) z + a - 1 with a = h Kd, b = h^2 Kp, c = h^3 Ki;
+/// without Ki for z^2 + (a + b - 2) z + 1 - a.
+bool is_stable(const ControlOptions& options, double h) {
+  const double a = h * options.damping, b = h * h * options.stiffness,
+               c = h * h * h * options.integral;
+  if (!(a > 0 && b > 0 && c >= 0)) return false;
+  if (c == 0) return 2 * a + b < 4;
+  const double z2 = a + b - 3, z1 = 3 - 2 * a - b + c, z0 = a - 1;
+  return 8 - 4 * a - 2 * b + c > 0 && std::abs(z0) < 1 && 1 - z0 * z0 > std::abs(z0 * z2 - z1);
 }
+
+Result<void> check_feedback(const ControlOptions& options, double h) {
+  if (is_stable(options, h)) return {};
+  return fail(Errc::bad_input, text(msg::control_bad_feedback, options.stiffness, options.damping,
+                                    options.integral, h));
+}
+
+Result<void> check_impedance(const Impedance& impedance) {
+  const std::pair<const char*, double> springs[] = {
+      {"joint_stiffness", impedance.joint_stiffness},
+      {"tool_stiffness", impedance.tool_stiffness},
+      {"tool_turn_stiffness", impedance.tool_turn_stiffness}};
+  for (const auto& [what, value] : springs) {
+    if (!(value > 0 && std::isfinite(value))) {
+      return fail(Errc::bad_input, text(msg::control_bad_spring, what, value));
+    }
+  }
+  const std::pair<const char*, double> others[] = {
+      {"posture_stiffness", impedance.posture_stiffness},
+      {"damping_ratio", impedance.damping_ratio}};
+  for (const auto& [what, value] : others) {
+    if (!(value >= 0 && std::isfinite(value))) {
+      return fail(Errc::bad_input, text(msg::control_bad_spring, what, value));
+    }
+  }
+  return {};
+}
+
+Result<void> check_options(const ControlOptions& options, ControlMode mode, double h) {
+  if (mode == ControlMode::computed_torque) return check_feedback(options, h);
+  return check_impedance(options.impedance);
+}
+
+/// The torque that the actuators shall give were the joints at `q`, moving at `v`, all (dof,).
+struct Demand {
+  JointVec torque, q, v;
+};
 
 }  // namespace
 
-std::string_view name(ControlMode mode) noexcept {
-  switch (mode) {
-    case ControlMode::servo:
-      return "servo";
-    case ControlMode::servo_gravity:
-      return "servo_gravity";
-    case ControlMode::computed_torque:
-      return "computed_torque";
-  }
-  return "";
-}
+std::span<const std::string_view> control_mode_names() noexcept { return kNames; }
+
+std::string_view name(ControlMode mode) noexcept { return kNames[static_cast<std::size_t>(mode)]; }
 
 Result<ControlMode> control_mode(std::string_view word) {
-  std::vector<std::string> words;
-  for (const ControlMode mode : kModes) {
-    if (name(mode) == word) return mode;
-    words.emplace_back(name(mode));
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i] == word) return static_cast<ControlMode>(i);
   }
-  return fail(Errc::usage, text(msg::control_unknown_mode, word) + did_you_mean(word, words));
+  const std::vector<std::string> words(kNames.begin(), kNames.end());
+  std::string list;
+  for (const std::string& known : words) list += (list.empty() ? "" : ", ") + known;
+  return fail(Errc::usage, text(msg::control_unknown_mode, word, list) + did_you_mean(word, words));
 }
 
 struct Controller::Impl {
@@ -71,18 +112,54 @@ struct Controller::Impl {
   ControlMode mode;
   ControlOptions options;
   StepInverse inverse;
+  LinkChain links;
+  JointVec sum;  // [rad s or m s] of the errors
 
-  JointVec desired_acceleration(std::span<const double> qpos, std::span<const double> qvel,
-                                const StepReference& reference) const {
-    const double h = inverse.timestep();
-    JointVec q(arm.dof());
-    JointVec v(arm.dof());
-    for (int i = 0; i < arm.dof(); ++i) {
-      q[i] = qpos[arm.joints[i].qpos];
-      v[i] = qvel[arm.joints[i].dof];
+  using State = std::span<const double>;
+
+  Demand demand(State qpos, State qvel, const StepReference& reference) {
+    const JointVec zero = JointVec::Zero(arm.dof());
+    switch (mode) {
+      case ControlMode::servo:
+        return {zero, reference.next, zero};
+      case ControlMode::servo_gravity:
+        // At the goal and at rest; the servo's own gains do the rest.
+        return {inverse.holding_torque(qpos), reference.next, zero};
+      case ControlMode::feed_forward:
+        return on_reference(qpos, qvel, reference);
+      default:
+        break;
     }
-    return reference.acceleration(h) + options.damping * (reference.velocity(h) - v) +
-           options.stiffness * (reference.now - q);
+    const double h = inverse.timestep();
+    ImpedanceState x{JointVec(arm.dof()), JointVec(arm.dof()), reference.now,
+                     reference.velocity(h)};
+    for (int i = 0; i < arm.dof(); ++i) {
+      x.q[i] = qpos[arm.joints[i].qpos];
+      x.v[i] = qvel[arm.joints[i].dof];
+    }
+    JointVec a = reference.acceleration(h);
+    if (mode == ControlMode::computed_torque) {
+      a += options.damping * (x.v_ref - x.v) + options.stiffness * (x.q_ref - x.q) +
+           options.integral * sum;
+      return {inverse.torque(qpos, qvel, a), x.q, x.v};
+    }
+    const Eigen::MatrixXd mass = inverse.mass_matrix(qpos);
+    const JointVec spring = mode == ControlMode::joint_impedance
+                                ? joint_spring(options.impedance, x, mass)
+                                : tool_spring(options.impedance, x, mass, links);
+    return {inverse.torque(qpos, qvel, a) + spring, x.q, x.v};
+  }
+
+  /// The torque of the reference itself: the servos see how far the arm is off it.
+  Demand on_reference(State qpos, State qvel, const StepReference& reference) {
+    const double h = inverse.timestep();
+    const JointVec v = reference.velocity(h);
+    std::vector<double> q_all(qpos.begin(), qpos.end()), v_all(qvel.begin(), qvel.end());
+    for (int i = 0; i < arm.dof(); ++i) {
+      q_all[static_cast<std::size_t>(arm.joints[i].qpos)] = reference.now[i];
+      v_all[static_cast<std::size_t>(arm.joints[i].dof)] = v[i];
+    }
+    return {inverse.torque(q_all, v_all, reference.acceleration(h)), reference.now, v};
   }
 };
 
@@ -96,11 +173,11 @@ Result<Controller> Controller::make(const Model& model, const Arm& arm, ControlM
   for (const ArmJoint& joint : arm.joints) {
     if (const auto usable = check_joint(arm, joint, mode); !usable) return fail(usable.error());
   }
-  if (mode == ControlMode::computed_torque) {
-    const auto usable = check_feedback(options, model.timestep());
-    if (!usable) return fail(usable.error());
-  }
-  return Controller(std::unique_ptr<Impl>(new Impl{arm, mode, options, StepInverse(model, arm)}));
+  const auto usable = check_options(options, mode, model.timestep());
+  if (!usable) return fail(usable.error());
+  return Controller(
+      std::unique_ptr<Impl>(new Impl{arm, mode, options, StepInverse(model, arm),
+                                     LinkChain(Chain(arm)), JointVec::Zero(arm.dof())}));
 }
 
 ControlMode Controller::mode() const noexcept { return impl_->mode; }
@@ -109,22 +186,15 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
                          const StepReference& reference, std::span<double> ctrl) {
   const Arm& arm = impl_->arm;
   assert(reference.next.size() == arm.dof());
-  JointVec torque = JointVec::Zero(arm.dof());
-  if (impl_->mode == ControlMode::computed_torque) {
-    torque = impl_->inverse.torque(qpos, qvel, impl_->desired_acceleration(qpos, qvel, reference));
-  } else if (impl_->mode == ControlMode::servo_gravity) {
-    torque = impl_->inverse.holding_torque(qpos);
-  }
-
+  const Demand demand = impl_->demand(qpos, qvel, reference);
   bool limited = false;
+  JointVec error(arm.dof());
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmActuator& actuator = *arm.joints[i].actuator;
     const double q = qpos[arm.joints[i].qpos];
     const double v = qvel[arm.joints[i].dof];
-    const bool servo = impl_->mode != ControlMode::computed_torque;
-    // A servo is asked for the torque at its goal and at rest; its own gains do the rest.
-    const double wanted = servo ? ctrl_for_torque(actuator, torque[i], reference.next[i], 0)
-                                : ctrl_for_torque(actuator, torque[i], q, v);
+    error[i] = reference.now[i] - q;
+    const double wanted = ctrl_for_torque(actuator, demand.torque[i], demand.q[i], demand.v[i]);
     const double given = std::clamp(wanted, actuator.ctrl_lower, actuator.ctrl_upper);
     // The force is left to the simulation to cut, as a drive would: cut here, it would sit on its
     // limit up to rounding, and the integrator would count it as cut in one step and not in the
@@ -134,7 +204,11 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
         limited || given != wanted || force < actuator.force_lower || force > actuator.force_upper;
     ctrl[actuator.id] = given;
   }
+  // Behind a limit the error is no sign of a load, and a sum of it would overshoot.
+  if (!limited) impl_->sum += impl_->inverse.timestep() * error;
   return limited;
 }
+
+void Controller::restart() { impl_->sum.setZero(); }
 
 }  // namespace mjarm

@@ -2,14 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <memory>
 #include <vector>
 
 #include "mjarm/control/robots_test.hpp"
 #include "mjarm/control/sag.hpp"
+#include "mjarm/control/world_test.hpp"
 
 namespace mjarm {
 namespace {
@@ -20,45 +19,8 @@ using testing::load_shipped;
 using testing::load_text;
 using testing::Loaded;
 using testing::odd_arm;
-
-struct DeleteData {
-  void operator()(mjData* d) const { mj_deleteData(d); }
-};
-
-/// MuJoCo with the arm at `q`, at rest.
-class World {
- public:
-  World(const Loaded& robot, const JointVec& q)
-      : robot_(robot), d_(mj_makeData(robot.model.raw())), ctrl_(robot.model.nu(), 0.0) {
-    for (int i = 0; i < robot.arm.dof(); ++i) d_->qpos[robot.arm.joints[i].qpos] = q[i];
-  }
-  bool step(Controller& controller, const StepReference& reference) {
-    const Model& model = robot_.model;
-    const bool limited = controller.command({d_->qpos, std::size_t(model.nq())},
-                                            {d_->qvel, std::size_t(model.nv())}, reference, ctrl_);
-    mju_copy(d_->ctrl, ctrl_.data(), model.nu());
-    mj_step(model.raw(), d_.get());
-    return limited;
-  }
-  [[nodiscard]] JointVec q() const {
-    JointVec q(robot_.arm.dof());
-    for (int i = 0; i < q.size(); ++i) q[i] = d_->qpos[robot_.arm.joints[i].qpos];
-    return q;
-  }
-  [[nodiscard]] mjData& d() { return *d_; }
-  [[nodiscard]] const std::vector<double>& ctrl() const { return ctrl_; }
-
- private:
-  const Loaded& robot_;
-  std::unique_ptr<mjData, DeleteData> d_;
-  std::vector<double> ctrl_;
-};
-
-/// Smooth swing about `home`, at rest at t = 0.
-JointVec swing(const Arm& arm, double t, double size = 0.3) {
-  const double s = 1 - std::cos(2 * std::max(t, 0.0));
-  return arm.home.array() + size * s;
-}
+using testing::swing;
+using testing::World;
 
 double worst_tracking_error(const Loaded& robot, ControlMode mode) {
   Controller controller = controller_of(robot, mode);
@@ -209,10 +171,11 @@ TEST(Controller, RefusesFeedbackThatIsUnstableAtTheTimeStep) {
 }
 
 TEST(Controller, ModesHaveNames) {
-  for (const ControlMode mode :
-       {ControlMode::servo, ControlMode::servo_gravity, ControlMode::computed_torque}) {
-    EXPECT_EQ(control_mode(name(mode)).value(), mode);
+  ASSERT_EQ(control_mode_names().size(), 6U);
+  for (const std::string_view word : control_mode_names()) {
+    EXPECT_EQ(name(control_mode(word).value()), word);
   }
+  EXPECT_EQ(name(ControlMode::tool_impedance), "tool_impedance");
   const auto unknown = control_mode("computed_torqe");
   ASSERT_FALSE(unknown);
   EXPECT_THAT(unknown.error().what, HasSubstr("did you mean \"computed_torque\""));

@@ -60,9 +60,7 @@ JointVec StepInverse::friction(std::span<const double> qpos, const JointVec& v, 
   const auto is_dry = [&](int dof) { return rule_.friction[dof].most > 0; };
   if (std::none_of(dof_.begin(), dof_.end(), is_dry)) return torque;
   // Constraints are solved before the integrator takes its implicit part.
-  const Eigen::MatrixXd& whole = dynamics_.mass_matrix(qpos);
-  const Eigen::MatrixXd mass = whole(dof_, dof_);
-  const JointVec before = a + JointVec(mass.ldlt().solve(Eigen::VectorXd(implicit)));
+  const JointVec before = a + JointVec(mass_matrix(qpos).ldlt().solve(Eigen::VectorXd(implicit)));
   for (Eigen::Index i = 0; i < a.size(); ++i) {
     const DryFriction& dry = rule_.friction[dof_[i]];
     torque[i] = std::clamp(dry.mass * (before[i] + dry.damping * v[i]), -dry.most, dry.most);
@@ -73,6 +71,10 @@ JointVec StepInverse::friction(std::span<const double> qpos, const JointVec& v, 
 JointVec StepInverse::holding_torque(std::span<const double> qpos) {
   const JointVec gravity = rows(dynamics_.gravity(qpos));
   return gravity - rows(dynamics_.passive(qpos, rest_));
+}
+
+Eigen::MatrixXd StepInverse::mass_matrix(std::span<const double> qpos) {
+  return dynamics_.mass_matrix(qpos)(dof_, dof_);
 }
 
 JointVec StepInverse::coriolis_change(std::span<const double> qpos, std::span<const double> qvel,

@@ -35,6 +35,9 @@ class StepInverse {
   /// Joint torque that keeps the arm still at `qpos` against gravity and springs, (dof,).
   [[nodiscard]] JointVec holding_torque(std::span<const double> qpos);
 
+  /// The arm's part of the mass matrix, (dof, dof) [kg m^2].
+  [[nodiscard]] Eigen::MatrixXd mass_matrix(std::span<const double> qpos);
+
   [[nodiscard]] double timestep() const noexcept { return rule_.timestep; }
 
  private:

@@ -10,6 +10,11 @@ struct JointState {
   JointVec q;  ///< [rad or m]
   JointVec v;  ///< [rad/s or m/s]
   JointVec a;  ///< [rad/s^2 or m/s^2]
+
+  /// Standing still at `q`.
+  [[nodiscard]] static JointState at_rest(const JointVec& q) {
+    return {q, JointVec::Zero(q.size()), JointVec::Zero(q.size())};
+  }
 };
 
 }  // namespace mjarm

@@ -26,6 +26,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/model.inc"
 #include "mjarm/core/messages/path.inc"
 #include "mjarm/core/messages/path_command.inc"
+#include "mjarm/core/messages/program.inc"
 #include "mjarm/core/messages/render.inc"
 #include "mjarm/core/messages/run.inc"
 #include "mjarm/core/messages/sim.inc"

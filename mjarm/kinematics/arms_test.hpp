@@ -91,6 +91,18 @@ inline JointVec random_q(const Arm& arm, Rng& rng) {
   return q;
 }
 
+/// About half of the joints within 1e-8 to 0.1 rad of a limit.
+inline JointVec random_q_near_limits(const Arm& arm, Rng& rng) {
+  JointVec q = random_q(arm, rng);
+  for (int i = 0; i < arm.dof(); ++i) {
+    const double inside = std::pow(10, rng.uniform(-8, -1));
+    const double side = rng.uniform();
+    if (side < 0.25) q[i] = arm.limits.lower[i] + inside;
+    if (side > 0.75) q[i] = arm.limits.upper[i] - inside;
+  }
+  return q;
+}
+
 /// An arm of `dof` joints with random frames, axes and limits; every fifth joint or so is a slide.
 inline Arm random_arm(int dof, Rng& rng) {
   const auto vec = [&](double size) {

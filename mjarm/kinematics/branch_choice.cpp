@@ -49,7 +49,7 @@ Nearness nearness(const double* q, const double* q_near, int dof) noexcept {
   return out;
 }
 
-BranchChoice::Placed BranchChoice::place(const double* row) const noexcept {
+BranchChoice::Placed BranchChoice::place(const double* row, double bound) const noexcept {
   Placed out;
   for (int i = 0; i < chain_.dof; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -60,6 +60,13 @@ BranchChoice::Placed BranchChoice::place(const double* row) const noexcept {
       out.joint = i;
     }
     out.q[i] = beyond > 0 ? std::min(std::max(q, chain_.lower[k]), chain_.upper[k]) : q;
+    const double distance = std::abs(out.q[i] - goal_.seed[i]);
+    out.near.largest = std::max(out.near.largest, distance);
+    out.near.sum += distance;
+    if (distance > bound) {
+      out.whole = false;
+      break;
+    }
   }
   return out;
 }
@@ -67,7 +74,7 @@ BranchChoice::Placed BranchChoice::place(const double* row) const noexcept {
 IkSolution BranchChoice::measure(const double* q) const noexcept {
   IkSolution out;
   out.q = Eigen::Map<const Eigen::VectorXd>(q, chain_.dof);
-  const Pose X_WT = chain_.fk(q);
+  const Pose X_WT = fk(ik_.links(), view(out.q));
   out.pos_err = (X_WT.p - goal_.X_WT.p).norm();
   out.rot_err = angle_between_frames(X_WT.R, goal_.X_WT.R);
   return out;
@@ -78,7 +85,8 @@ std::optional<IkSolution> BranchChoice::confirm(const double* row) const noexcep
   if (placed.beyond > kAtLimit) return std::nullopt;
   IkSolution met = measure(placed.q);
   if (met.pos_err <= kExact && met.rot_err <= kExact) return met;
-  const Descent polished = descend(chain_, goal_.X_WT, met.q, descent_options(options_, length_));
+  const Descent polished =
+      descend(chain_, goal_.X_WT, met.q, descent_options(options_, ik_.length()));
   if (!polished.converged) return std::nullopt;
   return IkSolution{unwind(chain_, polished.q, goal_.seed), polished.pos_err, polished.rot_err,
                     polished.iterations, 0};
@@ -86,18 +94,26 @@ std::optional<IkSolution> BranchChoice::confirm(const double* row) const noexcep
 
 std::optional<IkSolution> BranchChoice::nearest(const Branches& branches) noexcept {
   Nearness keys[Branches::kCapacity];
-  bool open[Branches::kCapacity];
-  for (int i = 0; i < branches.count; ++i) {
-    const Placed placed = place(branches.q[i]);
-    open[i] = placed.beyond <= kAtLimit;
-    if (open[i]) keys[i] = nearness(placed.q, goal_.seed.data(), chain_.dof);
-  }
+  bool open[Branches::kCapacity], whole[Branches::kCapacity];
+  double best = kNoBound;
+  const auto rank = [&](int i, double bound) {
+    const Placed placed = place(branches.q[i], bound);
+    keys[i] = placed.near;
+    whole[i] = placed.whole;
+    open[i] = !placed.whole || placed.beyond <= kAtLimit;
+    if (open[i]) best = std::min(best, placed.near.largest);
+  };
+  for (int i = 0; i < branches.count; ++i) rank(i, best);
   for (;;) {
     int next = -1;
     for (int i = 0; i < branches.count; ++i) {
       if (open[i] && (next < 0 || keys[i] < keys[next])) next = i;
     }
     if (next < 0) return std::nullopt;
+    if (!whole[next]) {
+      rank(next, kNoBound);
+      continue;
+    }
     open[next] = false;
     std::optional<IkSolution> solution = confirm(branches.q[next]);
     if (!solution) continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "mjarm/kinematics/branches_internal.hpp"
@@ -24,9 +25,8 @@ struct Nearness {
 /// than 1e-10 (m or rad), and shown to the predicate. Never allocates.
 class BranchChoice {
  public:
-  BranchChoice(const Chain& chain, const IkOptions& options, double length,
-               const IkGoal& goal) noexcept
-      : chain_(chain), options_(options), length_(length), goal_(goal) {}
+  BranchChoice(const IkSolver& ik, const IkGoal& goal) noexcept
+      : ik_(ik), chain_(ik.chain()), options_(ik.options()), goal_(goal) {}
 
   /// The nearest branch that holds; none where failure() has the reason.
   std::optional<IkSolution> nearest(const Branches& branches) noexcept;
@@ -47,13 +47,18 @@ class BranchChoice {
   [[nodiscard]] IkFailure failure(const Branches& branches) noexcept;
 
  private:
+  static constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
   /// A branch in the winding nearest to the seed and how far it is beyond the limits.
   struct Placed {
     double q[Branches::kMaxJoints];
     double beyond = 0;  // [rad] of the joint that is farthest beyond its limit, 0 where none is
     int joint = -1;
+    Nearness near;      // to the seed
+    bool whole = true;  // false: given up, `near` is a lower bound, the rest is not worked out
   };
-  [[nodiscard]] Placed place(const double* row) const noexcept;
+  /// Gives up at a joint farther from the seed than `bound` [rad or m].
+  [[nodiscard]] Placed place(const double* row, double bound = kNoBound) const noexcept;
   [[nodiscard]] std::optional<IkSolution> confirm(const double* row) const noexcept;
   [[nodiscard]] IkSolution measure(const double* q) const noexcept;
   [[nodiscard]] bool is_near(const IkSolution& solution) const noexcept {
@@ -63,9 +68,9 @@ class BranchChoice {
     return !options_.valid || options_.valid(view(q));
   }
 
+  const IkSolver& ik_;
   const Chain& chain_;
   const IkOptions& options_;
-  const double length_;
   const IkGoal& goal_;
   std::optional<IkSolution> refused_;  // the nearest answer that the predicate refused
   std::optional<IkSolution> too_far_;  // the nearest answer beyond max_step

@@ -157,7 +157,7 @@ class ScrewWalk {
 
   /// The smallest move of joint `i` on the link before it that brings its screw onto `to`.
   void place(int i, const ZeroPose& now, const Screw& from, const Screw& to) {
-    const Matrix3d R = Eigen::Quaterniond::FromTwoVectors(from.w, to.w).toRotationMatrix();
+    const Matrix3d R = rotation_between(from.w, to.w);
     const Matrix3d R_WP =
         i == 0 ? Matrix3d::Identity() : now.X_WJ[static_cast<std::size_t>(i - 1)].R;
     const Vector3d shift = R_WP.transpose() * gap(from, to);

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/compare_internal.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "tests/robots.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -294,6 +297,22 @@ TEST(CompareFigures, MassesAndLimitsThatDiffer) {
   const auto torque = compare_figures(first, first_arm, weak, testing::arm_of(weak));
   ASSERT_EQ(torque.size(), 1u);
   EXPECT_EQ(torque[0].what, "torque");
+}
+
+TEST(RotationBetween, TurnsOneDirectionToTheOtherByTheSmallestAngle) {
+  Rng rng(9);
+  for (int i = 0; i < 1000; ++i) {
+    Eigen::Vector3d from(rng.normal(), rng.normal(), rng.normal()), to = -from;
+    if (i % 4 == 0) to = from;
+    if (i % 4 > 1) to += std::pow(10, rng.uniform(-15, 1)) * Eigen::Vector3d::Unit(i % 3);
+    from.normalize();
+    to.normalize();
+    const Eigen::Matrix3d R = rotation_between(from, to);
+    ASSERT_LT((R * from - to).norm(), 1e-11) << i;
+    ASSERT_TRUE((R.transpose() * R).isIdentity(1e-12)) << i;
+    const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+    ASSERT_NEAR(rotation_log(R).norm(), angle, 1e-11) << i;
+  }
 }
 
 }  // namespace

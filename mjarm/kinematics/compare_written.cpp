@@ -21,8 +21,7 @@ std::vector<Cause> explain_as_written(const Arm& first, const Arm& second,
     Eigen::Vector3d axis = b.axis;
     const bool reversed = (a.axis + b.axis).norm() < (a.axis - b.axis).norm();
     if (reversed) axis = -axis;
-    const Eigen::Matrix3d R_axis =
-        Eigen::Quaterniond::FromTwoVectors(a.axis, axis).toRotationMatrix();
+    const Eigen::Matrix3d R_axis = rotation_between(a.axis, axis);
     const Eigen::Matrix3d R_B = b.X_PJ.R * R_axis;
     Cause link{.code = i == 0 ? CauseCode::base : CauseCode::link, .joint = i == 0 ? -1 : i};
     link.turn = rotation_log(R_B * a.X_PJ.R.transpose());

@@ -29,7 +29,7 @@ Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) 
   Branches branches;
   const BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
   ik.six_axis()->branches(query, branches);
-  BranchChoice choice(ik.chain(), options, ik.length(), goal);
+  BranchChoice choice(ik, goal);
   if (const auto solution = choice.nearest(branches)) return *solution;
   if (branches.complete && branches.count > 0) return fail(choice.failure(branches));
   if (const auto breach = ik.reach().check(goal.X_WT)) {
@@ -43,7 +43,7 @@ Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) 
 /// one of those met along the whole range of the last joint.
 Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal) noexcept {
   const IkOptions& options = ik.options();
-  BranchChoice choice(ik.chain(), options, ik.length(), goal);
+  BranchChoice choice(ik, goal);
   BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
   Branches branches;
   ik.seven_axis()->branches(query, branches);
@@ -67,6 +67,7 @@ IkSolver::IkSolver(const Arm& arm, IkOptions options)
     : arm_(arm),
       options_(std::move(options)),
       chain_(arm),
+      links_(chain_),
       reach_(arm),
       length_(detail::characteristic_length(chain_)) {
   if (!options_.closed_form || options_.task != IkTask::pose) return;

@@ -12,6 +12,7 @@
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/chain.hpp"
+#include "mjarm/kinematics/link_chain.hpp"
 #include "mjarm/kinematics/reach.hpp"
 #include "mjarm/kinematics/seven_axis.hpp"
 #include "mjarm/kinematics/six_axis.hpp"
@@ -101,6 +102,8 @@ class IkSolver {
   /// What the arm can never reach.
   [[nodiscard]] const Reach& reach() const noexcept { return reach_; }
   [[nodiscard]] const Chain& chain() const noexcept { return chain_; }
+  /// The same, made for fast forward kinematics.
+  [[nodiscard]] const LinkChain& links() const noexcept { return links_; }
   /// The closed form in use, if any.
   [[nodiscard]] const std::optional<SixAxis>& six_axis() const noexcept { return six_; }
   /// The same of seven axes.
@@ -112,6 +115,7 @@ class IkSolver {
   Arm arm_;
   IkOptions options_;
   Chain chain_;
+  LinkChain links_;
   Reach reach_;
   std::optional<SixAxis> six_;
   std::optional<SevenAxis> seven_;

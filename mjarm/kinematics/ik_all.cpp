@@ -43,8 +43,8 @@ void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answ
   detail::BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
   query.all = true;
   form.branches(query, branches);
-  detail::BranchChoice(ik.chain(), options, ik.length(), goal)
-      .each(branches, [&](const IkSolution& solution) { answers.add(solution); });
+  detail::BranchChoice(ik, goal).each(branches,
+                                      [&](const IkSolution& solution) { answers.add(solution); });
 }
 
 void add_samples(const IkSolver& ik, const IkGoal& goal, int starts, Answers& answers) {

@@ -67,13 +67,7 @@ TEST(PandaSweep, FindsWhatCanBeReached) {
   const PandaSweep sweep(arm);
   Rng rng(110);
   for (int i = 0; i < testing::rounds(400, 5000); ++i) {
-    JointVec q = random_q(arm, rng);
-    for (int k = 0; k < 7; ++k) {
-      const double inside = std::pow(10, rng.uniform(-8, -1));
-      const double side = rng.uniform();
-      if (side < 0.25) q[k] = arm.limits.lower[k] + inside;
-      if (side > 0.75) q[k] = arm.limits.upper[k] - inside;
-    }
+    const JointVec q = testing::random_q_near_limits(arm, rng);
     EXPECT_LT(sweep.least_breach(fk(arm, view(q))), kDoubt) << i << ' ' << q.transpose();
   }
 }

@@ -114,13 +114,7 @@ TEST(SevenAxis, FindsPosesAtTheEdgeOfTheLimits) {
   Rng rng(4);
   Asked asked;
   for (int i = 0; i < rounds(3000); ++i) {
-    JointVec q = random_q(arm, rng);
-    for (int k = 0; k < 7; ++k) {
-      const double inside = std::pow(10, rng.uniform(-8, -1));
-      const double side = rng.uniform();
-      if (side < 0.25) q[k] = arm.limits.lower[k] + inside;
-      if (side > 0.75) q[k] = arm.limits.upper[k] - inside;
-    }
+    const JointVec q = testing::random_q_near_limits(arm, rng);
     const Pose X_goal = fk(arm, view(q));
     ask(*form, arm, X_goal, random_q(arm, rng), asked);
     // What is missed is handed on to the numeric search, never called impossible.

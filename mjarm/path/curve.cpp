@@ -54,6 +54,13 @@ Pose Curve::at(double s) const {
   return piece.at(std::clamp(s - piece.start, 0.0, piece.span));
 }
 
+std::vector<Pose> Curve::poses(std::span<const double> s) const {
+  std::vector<Pose> poses;
+  poses.reserve(s.size());
+  for (const double x : s) poses.push_back(at(x));
+  return poses;
+}
+
 const std::vector<double>& Curve::corners() const noexcept { return corners_; }
 
 const std::vector<CurveBlend>& Curve::blends() const noexcept { return blends_; }

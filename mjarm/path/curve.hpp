@@ -62,6 +62,8 @@ class Curve {
   [[nodiscard]] bool closed() const noexcept;
   /// Pose at parameter `s`, clamped to [0, end()].
   [[nodiscard]] Pose at(double s) const;
+  /// Pose at each of `s`.
+  [[nodiscard]] std::vector<Pose> poses(std::span<const double> s) const;
   /// Parameters where the direction or the rate of turn breaks, ends included, ascending.
   [[nodiscard]] const std::vector<double>& corners() const noexcept;
   /// What became of the corners of a polyline with blends, ascending; empty for all other curves.

@@ -16,8 +16,9 @@ struct FailingPath {
   Arm arm = {};
   std::vector<Pose> poses = {};
   PathErrc cause = PathErrc::no_convergence;
-  int joint = -1;     ///< joint_limit: which
-  double amount = 0;  ///< joint_limit, collision: how far beyond, at most
+  int joint = -1;     ///< joint_limit, joint_speed: which
+  double amount = 0;  ///< joint_limit, collision, joint_speed: how far beyond, at most
+  double tool_speed = 0;
   ClearanceCheck clearance = {};
 };
 
@@ -170,6 +171,27 @@ inline FailingPath far_apart(Rng& rng, double depth) {
   return out;
 }
 
+/// A straight joint motion at a tool speed for which one joint would have to be faster than its
+/// limit by the share `depth`, on an arm whose limits leave it just that branch.
+inline FailingPath joint_speed(Rng& rng, double depth) {
+  FailingPath out = joint_limit(rng, 0);
+  out.cause = PathErrc::joint_speed;
+  out.arm.limits.lower.array() -= 0.1;
+  out.arm.limits.upper.array() += 0.1;
+  out.tool_speed = rng.uniform(0.1, 0.5);
+  double shortest = 1e9;
+  for (std::size_t i = 1; i < out.poses.size(); ++i) {
+    shortest = std::min(shortest, (out.poses[i].p - out.poses[i - 1].p).norm());
+  }
+  const auto n = static_cast<double>(out.poses.size() - 1);
+  JointVec step = (out.arm.limits.upper - out.arm.limits.lower);  // to be faster than any joint
+  out.arm.limits.velocity = 2 * step / n / shortest * out.tool_speed;
+  const double needed = 0.3 / n / shortest * out.tool_speed;
+  out.arm.limits.velocity[out.joint] = needed / (1 + depth);
+  out.amount = needed - out.arm.limits.velocity[out.joint];
+  return out;
+}
+
 /// The classes and how deep each goes.
 struct FailureClass {
   const char* name;
@@ -184,6 +206,7 @@ inline constexpr FailureClass kFailureClasses[] = {
     {"singularity", singularity, {0.005, 0.02, 0.04}},
     {"branch_flip", branch_flip, {0.02, 0.06, 0.1}},
     {"far_apart", far_apart, {0.05, 0.4, 0.9}},
+    {"joint_speed", joint_speed, {0.03, 0.3, 2}},
 };
 
 }  // namespace mjarm::testing

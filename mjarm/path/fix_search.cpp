@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "mjarm/path/fix_search_internal.hpp"
@@ -31,10 +30,10 @@ std::vector<Eigen::Vector3i> grid_of(double reach) {
   return grid;
 }
 
-std::vector<double> counted(std::size_t n) {
-  std::vector<double> s(n);
-  std::iota(s.begin(), s.end(), 0.0);
-  return s;
+/// To three digits.
+double rounded_down(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 2);
+  return unit * std::floor(x / unit);
 }
 
 }  // namespace
@@ -73,7 +72,7 @@ bool FixSearch::mends(const PathChange& change) {
   const std::size_t from = at_ - std::min(at_, kAround);
   const auto around =
       std::span(changed_).subspan(from, std::min(2 * kAround, changed_.size() - from));
-  if (!solve_path(ik_, around, counted(around.size()), q_start_, any_start)) return false;
+  if (!solve_path(ik_, around, q_start_, any_start)) return false;
   ++solved_;
   return solve_(change, options_).has_value();
 }
@@ -81,7 +80,7 @@ bool FixSearch::mends(const PathChange& change) {
 std::optional<PathFix> FixSearch::shift(double reach) {
   probed_ = solved_ = 0;
   for (const Eigen::Vector3i& g : grid_of(reach)) {
-    PathFix fix{FixKind::shift, {g.cast<double>() * kGrid, Eigen::Vector3d::Zero()}, {}, 0};
+    const PathFix fix{.kind = FixKind::shift, .change = {.shift = g.cast<double>() * kGrid}};
     if (mends(fix.change)) return fix;
     if (probed_ > most_probed_ || solved_ >= most_solved_) break;
   }
@@ -110,7 +109,7 @@ std::optional<PathFix> FixSearch::start() const {
   any_start.keep_start = false;
   const auto q = solve_({}, any_start);
   if (!q) return std::nullopt;
-  return PathFix{FixKind::start, {}, *q, 0};
+  return PathFix{.kind = FixKind::start, .start = *q};
 }
 
 std::optional<PathFix> FixSearch::longer_step(const PathFailure& failure) const {
@@ -123,7 +122,23 @@ std::optional<PathFix> FixSearch::longer_step(const PathFailure& failure) const 
   longer.max_step = kRound * std::ceil(failure.amount / kRound);
   if (longer.max_step > kMost || longer.max_step <= options_.max_step) return std::nullopt;
   if (!solve_({}, longer)) return std::nullopt;
-  return PathFix{FixKind::max_step, {}, {}, longer.max_step};
+  return PathFix{.kind = FixKind::max_step, .max_step = longer.max_step};
+}
+
+/// The speed at which the joint named just keeps its limit, and lower ones where others do not.
+std::optional<PathFix> FixSearch::slower(const PathFailure& failure) const {
+  constexpr double kRoom = 0.98, kLess = 0.7;
+  constexpr int kTries = 8;
+  if (failure.code != PathErrc::joint_speed) return std::nullopt;
+  const double limit = ik_.arm().limits.velocity[failure.joint];
+  PathOptions options = options_;
+  options.tool_speed *= kRoom * limit / (limit + failure.amount);
+  for (int k = 0; k < kTries; ++k, options.tool_speed *= kLess) {
+    options.tool_speed = rounded_down(options.tool_speed);
+    if (solve_({}, options))
+      return PathFix{.kind = FixKind::slower, .tool_speed = options.tool_speed};
+  }
+  return std::nullopt;
 }
 
 std::optional<PathFix> FixSearch::find(FixKind kind, const PathFailure& failure) {
@@ -136,6 +151,8 @@ std::optional<PathFix> FixSearch::find(FixKind kind, const PathFailure& failure)
       return tilt();
     case FixKind::max_step:
       return longer_step(failure);
+    case FixKind::slower:
+      return slower(failure);
   }
   return std::nullopt;
 }

@@ -29,6 +29,7 @@ class FixSearch {
   [[nodiscard]] std::optional<PathFix> tilt();
   [[nodiscard]] std::optional<PathFix> start() const;
   [[nodiscard]] std::optional<PathFix> longer_step(const PathFailure& failure) const;
+  [[nodiscard]] std::optional<PathFix> slower(const PathFailure& failure) const;
 
   const IkSolver& ik_;
   std::span<const Pose> poses_;

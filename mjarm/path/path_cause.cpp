@@ -6,6 +6,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/path_cause_internal.hpp"
+#include "mjarm/path/path_speed_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
@@ -33,7 +34,14 @@ Beyond beyond_limits(const JointLimits& limits, const JointVec& q) {
   return out;
 }
 
-Onward step_on(const PathLayers& layers, const Pose& X_WT, const JointVec& q_from) {
+/// The joint too fast for the speed asked for, if one is.
+Overspeed too_fast(const PathLayers& layers, const Pose& X0, const Pose& X1, const JointVec& step) {
+  const double speed = layers.options().tool_speed;
+  if (speed == 0) return {};
+  return overspeed(layers.ik().arm(), step, time_at_speed(X0, X1, speed));
+}
+
+Onward step_on(const PathLayers& layers, const Pose& X0, const Pose& X_WT, const JointVec& q_from) {
   Onward out;
   const auto q = layers.onward(X_WT, q_from);
   if (!q) return out;
@@ -43,10 +51,16 @@ Onward step_on(const PathLayers& layers, const Pose& X_WT, const JointVec& q_fro
   out.joint = static_cast<int>(joint);
   if (out.amount > layers.options().max_step) return out;
   const Beyond beyond = beyond_limits(layers.ik().arm().limits, *q);
-  out.code = beyond.joint >= 0 ? PathErrc::joint_limit : PathErrc::collision;
+  const Overspeed fast = too_fast(layers, X0, X_WT, *q - q_from);
+  out.code = PathErrc::collision;
   if (beyond.joint >= 0) {
+    out.code = PathErrc::joint_limit;
     out.joint = beyond.joint;
     out.amount = beyond.amount;
+  } else if (fast.joint >= 0) {
+    out.code = PathErrc::joint_speed;
+    out.joint = fast.joint;
+    out.amount = fast.amount;
   }
   return out;
 }
@@ -64,6 +78,26 @@ double farthest_beyond(const PathLayers& layers, std::span<const Pose> rest, Joi
     worst = std::max({worst, limits.lower[joint] - q[joint], q[joint] - limits.upper[joint]});
   }
   return worst;
+}
+
+/// How far above its speed limit that joint would get on the way to the end.
+void tell_speed(const PathLayers& layers, std::span<const Pose> poses, const Onward& onward,
+                PathFailure& out) {
+  constexpr std::size_t kMost = 10000;  // poses
+  out.joint = onward.joint;
+  out.amount = onward.amount;
+  JointVec q = onward.q;
+  const std::size_t end = std::min(poses.size(), out.at + kMost);
+  for (std::size_t i = out.at + 1; i < end; ++i) {
+    const auto next = layers.onward(poses[i], q);
+    if (!next || (*next - q).cwiseAbs().maxCoeff() > layers.options().max_step) break;
+    const double step = std::abs((*next - q)[out.joint]);
+    const double time = time_at_speed(poses[i - 1], poses[i], layers.options().tool_speed);
+    if (time > 0) {
+      out.amount = std::max(out.amount, step / time - layers.ik().arm().limits.velocity[out.joint]);
+    }
+    q = *next;
+  }
 }
 
 /// The least singular value on the way from one pose to the next, without limits.
@@ -186,7 +220,7 @@ PathFailure find_cause(const PathLayers& layers, std::span<const Pose> poses, co
   std::optional<Onward> best;
   const std::size_t count = std::min(track.last.size(), kMostTracks);
   for (std::size_t i = 0; i < count; ++i) {
-    const Onward onward = step_on(layers, X_WT, track.last[i].q);
+    const Onward onward = step_on(layers, poses[out.at - 1], X_WT, track.last[i].q);
     if (!best || (best->code == PathErrc::branch_flip && onward.code != best->code)) best = onward;
   }
   out.code = best->code;
@@ -198,6 +232,9 @@ PathFailure find_cause(const PathLayers& layers, std::span<const Pose> poses, co
       break;
     case PathErrc::collision:
       tell_collision(layers, best->q, out);
+      break;
+    case PathErrc::joint_speed:
+      tell_speed(layers, poses, *best, out);
       break;
     default:
       tell_step(layers, poses, track, *best, out);

@@ -11,6 +11,7 @@ namespace mjarm {
 struct PathChange {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< [m] world
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();   ///< [rad] rotation vector in the tool frame
+  [[nodiscard]] bool is_none() const { return shift.isZero(0) && tilt.isZero(0); }
   [[nodiscard]] Pose operator()(const Pose& X_WT) const {
     return {X_WT.p + shift, X_WT.R * rotation_exp(tilt)};
   }

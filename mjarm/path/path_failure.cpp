@@ -16,6 +16,12 @@ JointWords words(const Arm& arm, int joint) {
   return {it.name, it.type == JointType::slide ? "m" : "rad"};
 }
 
+/// [rad/s or m/s] what the joint would have to do.
+double speed_of(const PathFailure& failure, const Arm& arm) {
+  const bool known = failure.joint >= 0 && failure.joint < arm.dof();
+  return failure.amount + (known ? arm.limits.velocity[failure.joint] : 0);
+}
+
 std::string describe_cause(const PathFailure& failure, const Arm& arm) {
   const JointWords joint = words(arm, failure.joint);
   switch (failure.code) {
@@ -31,7 +37,8 @@ std::string describe_cause(const PathFailure& failure, const Arm& arm) {
     case PathErrc::branch_flip:
       return text(msg::path_flips, joint.name, failure.amount, joint.unit);
     case PathErrc::joint_speed:
-      return text(msg::path_joint_speed, joint.name);
+      return text(msg::path_joint_speed, joint.name, speed_of(failure, arm), joint.unit,
+                  failure.amount);
     case PathErrc::out_of_reach:
     case PathErrc::inner_void:
     case PathErrc::no_convergence:

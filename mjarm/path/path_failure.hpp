@@ -19,7 +19,8 @@ enum class PathErrc {
   singularity,     ///< it goes on, but `joint` would have to race (`amount` rad or m in one step)
   collision,       ///< it goes on, but `pair` would overlap by `amount` m
   branch_flip,     ///< only other answers go on, `amount` rad or m away in `joint`
-  joint_speed,     ///< it goes on, but not within the speed limit of `joint`
+  joint_speed,     ///< it goes on, but at the speed asked for `joint` would have to be faster than
+                   ///< its limit by `amount` rad/s or m/s
   no_convergence,  ///< no answer was found; not a proof
   bad_input,       ///< NaN, a matrix that is no rotation, sizes that do not fit
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "mjarm/core/messages/path.hpp"
 #include "mjarm/path/fix_search_internal.hpp"
@@ -12,14 +11,16 @@
 namespace mjarm {
 namespace {
 
-std::array<FixKind, 4> order_for(PathErrc cause) {
+std::array<FixKind, 5> order_for(PathErrc cause) {
   using enum FixKind;
   switch (cause) {
     case PathErrc::joint_limit:
     case PathErrc::singularity:
-      return {start, tilt, shift, max_step};
+      return {start, tilt, shift, max_step, slower};
+    case PathErrc::joint_speed:
+      return {slower, tilt, start, shift, max_step};
     default:
-      return {start, shift, tilt, max_step};
+      return {start, shift, tilt, max_step, slower};
   }
 }
 
@@ -33,20 +34,14 @@ std::vector<PathFix> find_all(detail::FixSearch search, const PathFailure& failu
   return fixes;
 }
 
-std::vector<double> counted(std::size_t n) {
-  std::vector<double> s(n);
-  std::iota(s.begin(), s.end(), 0.0);
-  return s;
-}
-
 /// Solves poses, each changed.
 detail::FixSearch::Solve solver(const IkSolver& ik, std::span<const Pose> poses,
                                 std::span<const double> q_start) {
-  return [&ik, poses, q_start, s = counted(poses.size())](
-             const PathChange& change, const PathOptions& options) -> std::optional<JointVec> {
+  return [&ik, poses, q_start](const PathChange& change,
+                               const PathOptions& options) -> std::optional<JointVec> {
     std::vector<Pose> changed(poses.size());
     std::transform(poses.begin(), poses.end(), changed.begin(), change);
-    auto path = solve_path(ik, changed, s, q_start, options);
+    auto path = solve_path(ik, changed, q_start, options);
     if (!path) return std::nullopt;
     return path->q.front();
   };
@@ -62,6 +57,8 @@ std::string_view name(FixKind kind) noexcept {
       return "shift";
     case FixKind::tilt:
       return "tilt";
+    case FixKind::slower:
+      return "slower";
     case FixKind::max_step:
       break;
   }
@@ -82,6 +79,8 @@ std::string describe(const PathFix& fix) {
       return text(msg::path_fix_tilt, fix.change.tilt[axis] * 180 / std::numbers::pi,
                   std::string_view("xyz").substr(static_cast<std::size_t>(axis), 1));
     }
+    case FixKind::slower:
+      return text(msg::path_fix_slower, fix.tool_speed);
     case FixKind::max_step:
       break;
   }
@@ -103,14 +102,13 @@ std::vector<PathFix> find_fixes(const IkSolver& ik, const Curve& curve,
   constexpr double kSamples = 100;
   const std::vector<double> s = curve.stations(std::max(options.step, curve.length() / kSamples),
                                                std::max(options.turn, curve.turn() / kSamples));
-  std::vector<Pose> poses;
-  for (const double x : s) poses.push_back(curve.at(x));
+  const std::vector<Pose> poses = curve.poses(s);
   const auto at = std::lower_bound(s.begin(), s.end(), failure.s) - s.begin();
   const auto solve_samples = solver(ik, poses, q_start);
   const auto solve = [&](const PathChange& change,
                          const PathOptions& path) -> std::optional<JointVec> {
-    // Samples of the curve tell most failures in a fraction of the time.
-    if (!solve_samples(change, path)) return std::nullopt;
+    // Samples of the curve elsewhere tell most failures in a fraction of the time.
+    if (!change.is_none() && !solve_samples(change, path)) return std::nullopt;
     CurveOptions changed = options;
     changed.path = path;
     changed.change = change;

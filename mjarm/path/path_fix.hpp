@@ -18,17 +18,19 @@ enum class FixKind {
   shift,     ///< the whole path elsewhere
   tilt,      ///< the tool turned, all along
   max_step,  ///< a longer joint step allowed
+  slower,    ///< a lower speed of the tool
 };
 
-/// The word used in files: "start", "shift", "tilt", "max_step".
+/// The word used in files: "start", "shift", "tilt", "max_step", "slower".
 [[nodiscard]] std::string_view name(FixKind kind) noexcept;
 
 /// A change with which the path was solved from end to end.
 struct PathFix {
   FixKind kind = FixKind::shift;
-  PathChange change;    ///< shift, tilt
-  JointVec start;       ///< [rad or m] start
-  double max_step = 0;  ///< [rad or m] max_step
+  PathChange change = {};  ///< shift, tilt
+  JointVec start = {};     ///< [rad or m] start
+  double max_step = 0;     ///< [rad or m] max_step
+  double tool_speed = 0;   ///< [m/s] slower
 };
 
 /// One line for people.

@@ -12,6 +12,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/path_layers_internal.hpp"
+#include "mjarm/path/path_speed_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
@@ -48,9 +49,9 @@ IkOptions near_only(IkOptions options, double max_step) {
 }
 
 /// `q` with every hinge in the winding within the limits that is nearest to `q_near`; none where a
-/// joint has no such winding, or none within `max_step`.
+/// joint has no such winding, or none within its `longest` step.
 std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const JointVec& q_near,
-                               double max_step) {
+                               const JointVec& longest) {
   constexpr double kRounding = 1e-9;  // [rad or m]
   std::array<double, kMaxDof> out;
   for (int i = 0; i < chain.dof; ++i) {
@@ -66,7 +67,7 @@ std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const Join
       return std::nullopt;
     }
     value = std::clamp(value, chain.lower[k], chain.upper[k]);
-    if (std::abs(value - q_near[i]) > max_step) return std::nullopt;
+    if (std::abs(value - q_near[i]) > longest[i]) return std::nullopt;
   }
   return joint_vec({out.data(), static_cast<std::size_t>(chain.dof)});
 }
@@ -144,9 +145,17 @@ double PathLayers::level(double tightness) const {
   return std::max(options_.comfort, kLevel * std::ceil(tightness / kLevel));
 }
 
-TrackRank PathLayers::extended(const TrackNode& node, const JointVec& q, double tightness) const {
+JointVec PathLayers::longest_step(const Pose& X_before, const Pose& X_WT) const {
+  const JointVec any = JointVec::Constant(ik_.arm().dof(), options_.max_step);
+  if (options_.tool_speed == 0) return any;
+  return any.cwiseMin(longest_at_speed(ik_.arm(), X_before, X_WT, options_.tool_speed));
+}
+
+TrackRank PathLayers::extended(const TrackNode& node, const JointVec& q, double tightness,
+                               const JointVec& longest) const {
   const JointVec step = q - node.q;
-  const double tight = std::max({tightness, limit_tightness(q), largest(step) / options_.max_step});
+  const double tight =
+      std::max({tightness, limit_tightness(q), largest(step.cwiseQuotient(longest))});
   return {std::max(node.rank.tightness, level(tight)), node.rank.start,
           node.rank.length + step.norm()};
 }
@@ -199,14 +208,15 @@ Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
   return layer;
 }
 
-Layer PathLayers::next(const Pose& X_WT, const Layer& before) const {
-  Layer layer = ik_.six_axis() ? join(X_WT, before) : follow(X_WT, before);
+Layer PathLayers::next(const Pose& X_before, const Pose& X_WT, const Layer& before) const {
+  const JointVec longest = longest_step(X_before, X_WT);
+  Layer layer = ik_.six_axis() ? join(X_WT, before, longest) : follow(X_WT, before, longest);
   keep_best(layer, ik_.six_axis() ? kMostNodes : kMostFollowed);
   return layer;
 }
 
 /// Closed form of six axes: every branch from every answer before.
-Layer PathLayers::join(const Pose& X_WT, const Layer& before) const {
+Layer PathLayers::join(const Pose& X_WT, const Layer& before, const JointVec& longest) const {
   struct Branch {
     JointVec q;
     std::optional<double> tight;
@@ -222,12 +232,12 @@ Layer PathLayers::join(const Pose& X_WT, const Layer& before) const {
   }
   for (std::size_t i = 0; i < before.size(); ++i) {
     for (Branch& branch : branches) {
-      const auto q = placed(ik_.chain(), branch.q, before[i].q, options_.max_step);
+      const auto q = placed(ik_.chain(), branch.q, before[i].q, longest);
       if (!q) continue;
       if (!branch.looked_at) branch.tight = tightness(*q);
       branch.looked_at = true;
       if (!branch.tight) continue;
-      const TrackRank rank = extended(before[i], *q, *branch.tight);
+      const TrackRank rank = extended(before[i], *q, *branch.tight, longest);
       const auto known = std::find_if(branch.nodes.begin(), branch.nodes.end(), [&](std::size_t k) {
         return largest(layer[k].q - *q) < kSame;
       });
@@ -263,15 +273,16 @@ std::vector<JointVec> PathLayers::aside(const JointVec& q) const {
 
 /// Any other arm: from every answer before on to the nearest one, and to either side where that is
 /// tight or missing.
-Layer PathLayers::follow(const Pose& X_WT, const Layer& before) const {
+Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& longest) const {
   const double same = ik_.arm().dof() > 6 ? kSameOfMany : kSame;
   Layer layer;
   const auto add = [&](const Pose& X, std::size_t i, const JointVec& seed) {
     const auto answer = near_.solve(X, view(seed));
-    if (!answer || largest(answer->q - before[i].q) > options_.max_step) return kInfinity;
+    if (!answer) return kInfinity;
+    if (largest((answer->q - before[i].q).cwiseQuotient(longest)) > 1) return kInfinity;
     const auto tight = tightness(answer->q);
     if (!tight) return kInfinity;
-    const TrackRank rank = extended(before[i], answer->q, *tight);
+    const TrackRank rank = extended(before[i], answer->q, *tight, longest);
     const auto known = std::find_if(layer.begin(), layer.end(), [&](const TrackNode& node) {
       return largest(node.q - answer->q) < same;
     });

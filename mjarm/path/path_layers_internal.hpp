@@ -39,8 +39,8 @@ class PathLayers {
 
   /// All answers to the first pose; empty where there is none.
   [[nodiscard]] Layer first(const Pose& X_WT, const JointVec& q_start) const;
-  /// All that tracks lead to from `before`, which is not empty.
-  [[nodiscard]] Layer next(const Pose& X_WT, const Layer& before) const;
+  /// All that tracks lead to at X_WT from `before`, which is not empty, at the pose X_before.
+  [[nodiscard]] Layer next(const Pose& X_before, const Pose& X_WT, const Layer& before) const;
 
   /// The answer to X_WT that goes on from `q`, limits and whatever may be touched left aside: the
   /// nearest one. None where there is no answer.
@@ -49,17 +49,19 @@ class PathLayers {
   [[nodiscard]] const IkSolver& boundless() const noexcept { return boundless_; }
   [[nodiscard]] const IkSolver& ik() const noexcept { return ik_; }
   [[nodiscard]] const PathOptions& options() const noexcept { return options_; }
+  /// Longest step of each joint from pose to pose.
+  [[nodiscard]] JointVec longest_step(const Pose& X_before, const Pose& X_WT) const;
   [[nodiscard]] double smallest_singular_value(const JointVec& q) const;
 
  private:
   [[nodiscard]] std::vector<Pose> allowed(const Pose& X_WT) const;
-  [[nodiscard]] Layer join(const Pose& X_WT, const Layer& before) const;
-  [[nodiscard]] Layer follow(const Pose& X_WT, const Layer& before) const;
+  [[nodiscard]] Layer join(const Pose& X_WT, const Layer& before, const JointVec& longest) const;
+  [[nodiscard]] Layer follow(const Pose& X_WT, const Layer& before, const JointVec& longest) const;
   [[nodiscard]] std::vector<JointVec> aside(const JointVec& q) const;
   [[nodiscard]] std::optional<double> tightness(const JointVec& q) const;
   [[nodiscard]] double limit_tightness(const JointVec& q) const;
-  [[nodiscard]] TrackRank extended(const TrackNode& node, const JointVec& q,
-                                   double tightness) const;
+  [[nodiscard]] TrackRank extended(const TrackNode& node, const JointVec& q, double tightness,
+                                   const JointVec& longest) const;
   [[nodiscard]] double level(double tightness) const;
 
   const IkSolver& ik_;

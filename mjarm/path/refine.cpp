@@ -1,15 +1,19 @@
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/link_chain.hpp"
+#include "mjarm/path/path_speed_internal.hpp"
 #include "mjarm/path/refine_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
 
 constexpr int kDeepest = 24;  // halvings of one stretch
+// [rad or m] Joints moving straight by less stray less than the answers themselves.
+constexpr double kShortest = 1e-5;
 
 class Refiner {
  public:
@@ -47,7 +51,22 @@ class Refiner {
     const Pose X = fk(chain_, view(JointVec((1 - t) * q0 + t * q1)));
     const Pose X_goal = options_.change(curve_.at((1 - t) * s0 + t * s1));
     return (X.p - X_goal.p).norm() <= options_.pos_tol &&
-           angle_between(X.R, X_goal.R) <= options_.rot_tol + options_.path.orientation_tol;
+           turned(X, X_goal) <= options_.rot_tol + options_.path.orientation_tol;
+  }
+
+  /// The angle between two poses, as far as the task is about it.
+  [[nodiscard]] double turned(const Pose& X, const Pose& X_goal) const {
+    switch (ik_.options().task) {
+      case IkTask::position:
+        return 0;
+      case IkTask::axis: {
+        const Eigen::Vector3d z = X.R.col(2), z_goal = X_goal.R.col(2);
+        return std::atan2(z.cross(z_goal).norm(), z.dot(z_goal));
+      }
+      case IkTask::pose:
+        break;
+    }
+    return angle_between(X.R, X_goal.R);
   }
 
   /// The pose within the tolerance of X_WT whose orientation is nearest to that of `q`.
@@ -73,16 +92,27 @@ class Refiner {
     return answer->q;
   }
 
+  void check_speed(double s0, const JointVec& q0, double s1, const JointVec& q1) {
+    constexpr double kFine = 1e-3;  // so much faster is taken for the error of the stretches
+    const double speed = options_.path.tool_speed;
+    if (speed == 0) return;
+    const Overspeed fast = overspeed(ik_.arm(), q1 - q0, (1 + kFine) * (s1 - s0) / speed);
+    if (fast.joint >= 0) out_.lost.push_back({0.5 * (s0 + s1), fast.joint, fast.amount});
+  }
+
   /// Appends the waypoints that are needed between two others. An error that changes its sign in
   /// the middle shows at the quarters.
   void stretch(double s0, const JointVec& q0, double s1, const JointVec& q1, int depth) {
-    if (keeps(s0, q0, s1, q1, 0.5) && keeps(s0, q0, s1, q1, 0.25) && keeps(s0, q0, s1, q1, 0.75)) {
+    const bool shortest = (q1 - q0).cwiseAbs().maxCoeff() < kShortest;
+    if (shortest || (keeps(s0, q0, s1, q1, 0.5) && keeps(s0, q0, s1, q1, 0.25) &&
+                     keeps(s0, q0, s1, q1, 0.75))) {
+      check_speed(s0, q0, s1, q1);
       return;
     }
     const double s = 0.5 * (s0 + s1);
     const auto q = depth < kDeepest ? between(s, q0, q1) : std::nullopt;
     if (!q) {
-      out_.lost.push_back(s);
+      out_.lost.push_back({s});
       return;
     }
     stretch(s0, q0, s, *q, depth + 1);

@@ -26,14 +26,6 @@ std::vector<double> first_stations(const Curve& curve, const CurveOptions& optio
   return curve.stations(step, turn);
 }
 
-std::vector<Pose> poses_at(const Curve& curve, const PathChange& change,
-                           std::span<const double> s) {
-  std::vector<Pose> poses;
-  poses.reserve(s.size());
-  for (const double x : s) poses.push_back(change(curve.at(x)));
-  return poses;
-}
-
 /// True where the place of a failure between two stations is still to be found.
 bool is_vague(const PathFailure& failure, double stretch) {
   constexpr double kPlace = 1e-5, kRace = 1e-8;
@@ -48,11 +40,13 @@ PathFailure located(PathFailure failure, std::span<const double> stations, doubl
   return failure;
 }
 
-/// The failure of a path whose branch is lost at `s` between two of its stations.
-PathFailure lost_after(JointPath path, double s, double end) {
+/// The failure of a path that is lost between two of its stations.
+PathFailure lost_after(JointPath path, const detail::Lost& lost, double end) {
   PathFailure failure;
-  failure.code = PathErrc::branch_flip;
-  const auto after = std::upper_bound(path.s.begin(), path.s.end(), s);
+  failure.code = lost.joint >= 0 ? PathErrc::joint_speed : PathErrc::branch_flip;
+  failure.joint = lost.joint;
+  failure.amount = lost.amount;
+  const auto after = std::upper_bound(path.s.begin(), path.s.end(), lost.s);
   failure.at = static_cast<std::size_t>(after - path.s.begin());
   path.s.resize(failure.at);
   path.q.resize(failure.at);
@@ -75,13 +69,14 @@ Result<JointPath, PathFailure> solve_curve(const IkSolver& ik, const Curve& curv
   std::vector<double> stations = first_stations(curve, options);
   PathFailure failure;
   for (int round = 0; round < kRounds && stations.size() < kMostStations; ++round) {
-    auto path =
-        solve_path(ik, poses_at(curve, options.change, stations), stations, q_start, options.path);
+    std::vector<Pose> poses = curve.poses(stations);
+    std::transform(poses.begin(), poses.end(), poses.begin(), options.change);
+    auto path = solve_path(ik, poses, stations, q_start, options.path);
     if (path) {
       detail::Refined refined = detail::refine(ik, curve, *path, options);
       if (refined.lost.empty()) return std::move(refined.path);
-      for (const double lost : refined.lost) {
-        const auto after = std::upper_bound(path->s.begin(), path->s.end(), lost);
+      for (const detail::Lost& lost : refined.lost) {
+        const auto after = std::upper_bound(path->s.begin(), path->s.end(), lost.s);
         split(stations, *(after - 1), *after);
       }
       failure = lost_after(std::move(*path), refined.lost.front(), curve.end());

@@ -15,6 +15,7 @@ namespace mjarm {
 struct CurveOptions {
   PathOptions path = {};
   /// Between waypoints the joints move straight; so far the tool may leave the curve there.
+  /// Stretches in which no joint moves by 1e-5 rad or m are not halved, whatever the tolerance.
   double pos_tol = 1e-4;                     ///< [m]   > 0
   double rot_tol = std::numbers::pi / 1800;  ///< [rad] > 0
   /// Waypoints are at most so far apart, whatever the tolerance; limits, singularities and

@@ -110,6 +110,43 @@ TEST(SolveCurve, ThroughAWristSingularity) {
   expect_on_curve(arm, turn, *path, {});
 }
 
+/// Largest share of a velocity limit that the joints use at a tool speed, by differences.
+double speed_use(const Arm& arm, const JointPath& path, double tool_speed) {
+  double most = 0;
+  for (std::size_t i = 1; i < path.q.size(); ++i) {
+    const double time = (path.s[i] - path.s[i - 1]) / tool_speed;
+    const JointVec speed = (path.q[i] - path.q[i - 1]).cwiseAbs() / time;
+    most = std::max(most, speed.cwiseQuotient(arm.limits.velocity).maxCoeff());
+  }
+  return most;
+}
+
+TEST(SolveCurve, ASpeedTooHighPastAWristSingularityAndOneThatIsNot) {
+  const Arm arm = testing::ur5e(true);
+  const IkSolver ik(arm);
+  const Eigen::Matrix3d R = rotation_exp({0, std::numbers::pi / 2 + 0.035, 0});
+  const Curve line = *Curve::line({{-0.25, -0.45, 0.45}, R}, {{0.35, -0.45, 0.45}, R});
+  const CurveOptions asked{.path = {.tool_speed = 0.25}};
+  const auto slow = solve_curve(ik, line, kSeed);
+  ASSERT_TRUE(slow.has_value()) << describe(slow.error(), arm);
+  EXPECT_GT(speed_use(arm, *slow, 0.25), 2);
+  const auto fast = solve_curve(ik, line, kSeed, asked);
+  ASSERT_FALSE(fast.has_value());
+  EXPECT_EQ(fast.error().code, PathErrc::joint_speed) << describe(fast.error(), arm);
+  EXPECT_GT(fast.error().amount, 0);
+  const auto fixes = find_fixes(ik, line, kSeed, asked, fast.error(), 2);
+  ASSERT_FALSE(fixes.empty());
+  EXPECT_EQ(fixes[0].kind, FixKind::slower);
+  for (const PathFix& fix : fixes) {
+    CurveOptions mended = asked;
+    mended.change = fix.change;
+    if (fix.kind == FixKind::slower) mended.path.tool_speed = fix.tool_speed;
+    const auto path = solve_curve(ik, line, kSeed, mended);
+    ASSERT_TRUE(path.has_value()) << describe(fix);
+    EXPECT_LE(speed_use(arm, *path, mended.path.tool_speed), 1.002) << describe(fix);
+  }
+}
+
 TEST(SolveCurve, BadOptionsAreRefused) {
   const IkSolver ik(testing::ur5e());
   const Curve line = *Curve::line({{0.4, -0.4, 0.3}, kDown}, {{-0.4, -0.4, 0.3}, kDown});

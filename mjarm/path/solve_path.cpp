@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "mjarm/path/path_cause_internal.hpp"
@@ -23,7 +24,8 @@ bool is_sound(const IkSolver& ik, std::span<const Pose> poses, std::span<const d
          std::is_sorted(s.begin(), s.end()) && all_finite(q_start) &&
          q_start.size() == ik.arm().joints.size() && options.max_step > 0 &&
          options.orientation_tol >= 0 && options.orientation_tol < kMostTilt &&
-         options.comfort >= 0 && options.comfort <= 1;
+         options.comfort >= 0 && options.comfort <= 1 && options.tool_speed >= 0 &&
+         std::isfinite(options.tool_speed);
 }
 
 }  // namespace
@@ -49,6 +51,14 @@ Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Po
   if (!path.s.empty()) failure.s = path.s.back();
   failure.partial = std::move(path);
   return fail(std::move(failure));
+}
+
+Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Pose> poses,
+                                          std::span<const double> q_start,
+                                          const PathOptions& options) {
+  std::vector<double> s(poses.size());
+  std::iota(s.begin(), s.end(), 0.0);
+  return solve_path(ik, poses, s, q_start, options);
 }
 
 std::vector<UnreachableRange> unreachable_ranges(const IkSolver& ik, std::span<const Pose> poses,

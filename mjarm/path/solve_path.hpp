@@ -24,18 +24,22 @@ struct PathOptions {
   /// [rad] The tool may stand so much aside of the given orientations, >= 0 and < pi/2: lets it
   /// pass a wrist singularity. Answers turned about the tool's x, y and z axes are tried besides.
   double orientation_tol = 0;
+  /// [m/s] The tool is to keep this speed, without regard to accelerations (turns on the spot:
+  /// [rad/s]), >= 0: no joint may be faster than its limit for it. 0: it may go as slowly as need
+  /// be.
+  double tool_speed = 0;
   ClearanceCheck clearance = {};  ///< refuses overlap, prefers distance; empty: looks at neither
 };
 
 /// Joint values along `poses`, chosen for the whole path at once: all answers to pose 0 (every
 /// branch in every winding; samples of a redundant arm) are carried along, each pose's answers
-/// joined to those of the pose before by steps of at most `max_step`, and of all tracks that reach
-/// the last pose the least tight is taken. Tightness is the worst of the largest joint step (as a
-/// share of max_step), the nearness to limits, the smallest singular value and the clearance, in
-/// levels of 0.02; of equally tight tracks that which starts nearest to q_start is taken, then the
-/// shortest. Answers that `ik.options().valid` refuses are left out. An arm of six axes in closed
-/// form misses no track; any other is followed from the answers found for pose 0, a redundant one
-/// moving aside within itself where it gets tight. Same input, same answer.
+/// joined to those of the pose before by steps of at most `max_step` (and as `tool_speed` allows),
+/// and of all tracks that reach the last pose the least tight is taken. Tightness is the worst of
+/// the largest joint step (as a share of max_step), the nearness to limits, the smallest singular
+/// value and the clearance, in levels of 0.02; of equally tight tracks that which starts nearest to
+/// q_start is taken, then the shortest. Answers that `ik.options().valid` refuses are left out. An
+/// arm of six axes in closed form misses no track; any other is followed from the answers found for
+/// pose 0, a redundant one moving aside within itself where it gets tight. Same input, same answer.
 ///
 /// Memory: 512 answers a pose at most, kept for 512 poses at a time, so that any number of poses
 /// needs under 100 MB besides its own input and output.
@@ -45,6 +49,12 @@ struct PathOptions {
 [[nodiscard]] Result<JointPath, PathFailure> solve_path(const IkSolver& ik,
                                                         std::span<const Pose> poses,
                                                         std::span<const double> s,
+                                                        std::span<const double> q_start,
+                                                        const PathOptions& options = {});
+
+/// The same where poses have no parameter but their number: s = 0, 1, 2, ...
+[[nodiscard]] Result<JointPath, PathFailure> solve_path(const IkSolver& ik,
+                                                        std::span<const Pose> poses,
                                                         std::span<const double> q_start,
                                                         const PathOptions& options = {});
 

@@ -34,8 +34,8 @@ Track find_track(const PathLayers& layers, std::span<const Pose> poses, const Jo
   std::vector<Layer> segment;
   std::size_t at = 0;
   for (; at < poses.size(); ++at) {
-    Layer layer =
-        at == 0 ? layers.first(poses[0], q_start) : layers.next(poses[at], segment.back());
+    Layer layer = at == 0 ? layers.first(poses[0], q_start)
+                          : layers.next(poses[at - 1], poses[at], segment.back());
     if (layer.empty()) break;
     if (segment.size() == kSegment) {
       checkpoints.push_back({at - kSegment, std::move(segment.front())});
@@ -51,7 +51,8 @@ Track find_track(const PathLayers& layers, std::span<const Pose> poses, const Jo
     segment.assign(1, std::move(checkpoints.back().layer));
     const std::size_t from = checkpoints.back().at;
     while (segment.size() < kSegment) {
-      segment.push_back(layers.next(poses[from + segment.size()], segment.back()));
+      const std::size_t next = from + segment.size();
+      segment.push_back(layers.next(poses[next - 1], poses[next], segment.back()));
     }
     index = walk_back(segment, from, index, track.q);
   }

@@ -3,11 +3,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/path/solve_path.hpp"
+#include "mjarm/program/tool_speed.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm {
@@ -16,8 +18,14 @@ namespace mjarm {
 struct MotionOptions {
   PathOptions path = {};
   TimingOptions timing = {};
-  double station_step = 0.001;  ///< [m]   IK every so far along the curve, > 0
-  double station_angle = 0.01;  ///< [rad] and every so much turn, > 0
+  /// So far would the tool leave the curve if the joints moved straight between the waypoints. They
+  /// follow a spline through them, whose error falls with the square of this: at 2e-7 m the tool
+  /// stays within 1e-8 m of the curve, far below what any controller makes of it.
+  double pos_tol = 2e-7;  ///< [m]   > 0
+  double rot_tol = 2e-6;  ///< [rad] > 0
+  /// True: a motion on which the tool cannot keep `timing.tool_speed` is a failure; the branch is
+  /// chosen so that it can. False: it slows down where it must, and `dips` tells where.
+  bool keep_speed = false;
 };
 
 /// A curve, the joint values along it, and when each is met.
@@ -25,10 +33,11 @@ struct ToolMotion {
   Curve curve;
   JointPath path;
   Trajectory trajectory;
+  std::vector<SpeedDip> dips;  ///< where the tool is slower than asked
 };
 
-/// Why a motion has no answer: `path` where the geometry fails, `timing` where only the timing
-/// does.
+/// Why a motion has no answer: `path` where the geometry fails (`joint_speed` where the tool
+/// cannot keep its speed), `timing` where only the timing does.
 struct MotionFailure {
   std::optional<PathFailure> path;
   std::optional<Error> timing;
@@ -43,5 +52,11 @@ struct MotionFailure {
                                                                  const Curve& curve,
                                                                  std::span<const double> q_start,
                                                                  const MotionOptions& options = {});
+
+/// A lower tool speed [m/s] at which the motion, planned and timed with `keep_speed`, has no dips;
+/// none where a few tries find none.
+[[nodiscard]] std::optional<double> find_kept_speed(const IkSolver& ik, const Curve& curve,
+                                                    std::span<const double> q_start,
+                                                    const MotionOptions& options);
 
 }  // namespace mjarm

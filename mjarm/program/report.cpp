@@ -1,6 +1,9 @@
 #include "mjarm/program/report.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "mjarm/path/path_measures.hpp"
 
 namespace mjarm {
 namespace {
@@ -23,7 +26,35 @@ void put_errors(const Report& report, Json& out) {
   }
 }
 
+Json to_json(const ReportedDip& entry) {
+  const SpeedDip& dip = entry.dip;
+  Json out{{"s", {dip.s_from, dip.s_to}}, {"t", {dip.t_from, dip.t_to}},
+           {"least", dip.least},          {"least_s", dip.s_least},
+           {"joint", entry.joint},        {"limit", name(dip.limit)}};
+  if (dip.kind != SingularKind::none) out["singularity"] = name(dip.kind);
+  return out;
+}
+
+void put_planned(const Report& report, Json& out) {
+  for (const ReportedDip& entry : report.speed_dips) out["speed_dips"].push_back(to_json(entry));
+  if (report.min_manipulability) out["min_manipulability"] = *report.min_manipulability;
+  if (report.min_singular_value) out["min_singular_value"] = *report.min_singular_value;
+}
+
 }  // namespace
+
+void add_motion(const ToolMotion& motion, const Arm& arm, Report& report) {
+  const PathMeasures measures = measure_path(arm, motion.path.q);
+  const auto least = [](std::optional<double>& known, double value) {
+    known = std::min(known.value_or(value), value);
+  };
+  least(report.min_manipulability, measures.manipulability.value);
+  least(report.min_singular_value, measures.singular_value.value);
+  report.max_joint_step = std::max(report.max_joint_step, motion.path.max_step());
+  for (const SpeedDip& dip : motion.dips) {
+    report.speed_dips.push_back({dip, arm.joints[static_cast<std::size_t>(dip.joint)].name});
+  }
+}
 
 std::string to_json(const Report& report) {
   Json out;
@@ -41,6 +72,7 @@ std::string to_json(const Report& report) {
   out["coverage"] = report.coverage;
   out["max_joint_step"] = report.max_joint_step;
   if (report.tool_speed_max) out["tool_speed_max"] = *report.tool_speed_max;
+  put_planned(report, out);
   out["limits_used"] = {{"velocity", report.velocity_use},
                         {"torque", report.torque_use},
                         {"saturated_steps", report.saturated_steps}};

@@ -9,6 +9,7 @@
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/program/metrics.hpp"
+#include "mjarm/program/motion.hpp"
 
 namespace mjarm {
 
@@ -16,6 +17,12 @@ namespace mjarm {
 struct StaticError {
   std::string control;  ///< "servo", "servo_gravity", "computed_torque"
   PoseError error;
+};
+
+/// A stretch on which the tool is slower than asked, and the name of the joint that holds it back.
+struct ReportedDip {
+  SpeedDip dip;
+  std::string joint;
 };
 
 /// A figure or a word that one demo alone has.
@@ -44,11 +51,18 @@ struct Report {
   long saturated_steps = 0;              ///< steps in which a ctrl or force limit cut the command
   std::string first_contact;             ///< "geom a - geom b at t s"; empty where nothing touched
   std::optional<double> tool_speed_max;  ///< [m/s] measured
-  std::vector<std::size_t> unreachable;  ///< indices of the poses that cannot be reached
-  std::optional<Eigen::Vector3d> shift;  ///< [m] shift of the path that was verified to mend it
-  std::vector<Fact> facts;               ///< what this demo alone has to tell
+  std::vector<ReportedDip> speed_dips;   ///< of the planned tool motions, in order
+  std::optional<double> min_manipulability;  ///< along them, see manipulability() [mixed units]
+  std::optional<double> min_singular_value;  ///< along them [mixed units]
+  std::vector<std::size_t> unreachable;      ///< indices of the poses that cannot be reached
+  std::optional<Eigen::Vector3d> shift;      ///< [m] shift of the path that was verified to mend it
+  std::vector<Fact> facts;                   ///< what this demo alone has to tell
   std::optional<double> rtf;  ///< simulated seconds a wall-clock second, without rendering
 };
+
+/// Adds what was planned: dips of the tool speed, how near it comes to singularities, the largest
+/// joint step where that is larger than the one known.
+void add_motion(const ToolMotion& motion, const Arm& arm, Report& report);
 
 /// `report` as one JSON document, keys in fixed order, full double precision, newline at the end.
 [[nodiscard]] std::string to_json(const Report& report);

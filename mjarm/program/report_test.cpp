@@ -32,6 +32,32 @@ TEST(Report, HoldsWhatTheFileFormatPromises) {
   EXPECT_TRUE(json["first_contact"].is_null());
 }
 
+TEST(Report, TellsWhereTheToolIsSlowerThanAsked) {
+  Report report = full_report();
+  EXPECT_FALSE(nlohmann::json::parse(to_json(report)).contains("speed_dips"));
+  report.speed_dips.push_back({{.s_from = 0.1,
+                                .s_to = 0.2,
+                                .t_from = 1,
+                                .t_to = 2,
+                                .least = 0.05,
+                                .s_least = 0.15,
+                                .joint = 5,
+                                .limit = SpeedLimit::jerk,
+                                .kind = SingularKind::wrist},
+                               "wrist_3_joint"});
+  report.min_singular_value = 0.01;
+  const auto json = nlohmann::json::parse(to_json(report));
+  ASSERT_EQ(json["speed_dips"].size(), 1U);
+  const auto& dip = json["speed_dips"][0];
+  EXPECT_EQ(dip["s"], nlohmann::json({0.1, 0.2}));
+  EXPECT_EQ(dip["t"], nlohmann::json({1.0, 2.0}));
+  EXPECT_EQ(dip["least"], 0.05);
+  EXPECT_EQ(dip["joint"], "wrist_3_joint");
+  EXPECT_EQ(dip["limit"], "jerk");
+  EXPECT_EQ(dip["singularity"], "wrist");
+  EXPECT_EQ(json["min_singular_value"], 0.01);
+}
+
 TEST(Report, NumbersKeepEveryBit) {
   const auto json = nlohmann::json::parse(to_json(full_report()));
   EXPECT_EQ(json["duration"].get<double>(), 1.0 / 3.0);

@@ -18,8 +18,8 @@ using testing::Loaded;
 using testing::small_world;
 
 Trajectory move(const JointVec& from, const JointVec& to, double seconds) {
-  const JointVec zero = JointVec::Zero(from.size());
-  auto trajectory = Trajectory::through({0, seconds}, {{from, zero, zero}, {to, zero, zero}});
+  auto trajectory =
+      Trajectory::through({0, seconds}, {JointState::at_rest(from), JointState::at_rest(to)});
   if (!trajectory) throw std::runtime_error(trajectory.error().what);
   return std::move(*trajectory);
 }

@@ -15,11 +15,11 @@ Result<Trajectory> time_joint_move(std::span<const double> q0, std::span<const d
     return fail(Errc::bad_input, text(msg::trajectory_bad_ends));
   }
   const JointVec from = joint_vec(q0), to = joint_vec(q1);
-  const JointVec way = to - from, zero = JointVec::Zero(from.size());
+  const JointVec way = to - from;
   if (!way.allFinite()) return fail(Errc::bad_input, text(msg::trajectory_bad_ends));
   const Result<detail::Bounds> bounds = detail::bounds_of(limits, options, from.size());
   if (!bounds) return fail(bounds.error());
-  const JointState start{from, zero, zero}, end{to, zero, zero};
+  const JointState start = JointState::at_rest(from), end = JointState::at_rest(to);
   if (way.isZero(0)) return Trajectory::from_jerks(start, {}, {}, end);
 
   const JointVec distance = way.cwiseAbs();

@@ -4,24 +4,16 @@
 #include <limits>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/trajectory/limits_test.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using testing::limits_of;
 
-JointLimits limits_of(const JointVec& v, const JointVec& a, const JointVec& j) {
-  const JointVec far = JointVec::Constant(v.size(), 10);
-  return {.lower = -far,
-          .upper = far,
-          .velocity = v,
-          .acceleration = a,
-          .jerk = j,
-          .torque = far,
-          .sources = {}};
-}
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 JointLimits one_joint(double v, double a, double j) {
   return limits_of(JointVec::Constant(1, v), JointVec::Constant(1, a), JointVec::Constant(1, j));

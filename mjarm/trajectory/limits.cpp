@@ -59,4 +59,16 @@ LimitUse check_limits(const Trajectory& trajectory, const JointLimits& limits, d
   return use;
 }
 
+JointVec check_torque(const Trajectory& trajectory, const InverseDynamics& dynamics,
+                      const JointVec& torque, double dt) {
+  JointVec use = JointVec::Zero(trajectory.dof());
+  const auto samples = static_cast<long>(std::ceil(trajectory.duration() / dt));
+  for (long i = 0; i <= samples; ++i) {
+    const double t = std::min(static_cast<double>(i) * dt, trajectory.duration());
+    const JointState x = trajectory.at(t);
+    use = use.cwiseMax(dynamics(x.q, x.v, x.a).cwiseAbs().cwiseQuotient(torque));
+  }
+  return use;
+}
+
 }  // namespace mjarm

@@ -7,24 +7,17 @@
 #include <limits>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/trajectory/limits_test.hpp"
 #include "mjarm/trajectory/spline_internal.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
+using testing::limits_of;
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-JointLimits limits_of(const JointVec& v, const JointVec& a, const JointVec& j) {
-  JointLimits limits;
-  limits.velocity = v;
-  limits.acceleration = a;
-  limits.jerk = j;
-  limits.lower = JointVec::Constant(v.size(), -1e9);
-  limits.upper = -limits.lower;
-  return limits;
-}
 
 /// Limits of `dof` joints like those of a UR5e.
 JointLimits plain_limits(Eigen::Index dof) {

@@ -4,16 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "mjarm/trajectory/limits_test.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 
 namespace mjarm::testing {
 
 inline constexpr double kInf = std::numeric_limits<double>::infinity();
-
-inline JointLimits limits_of(const JointVec& v, const JointVec& a, const JointVec& j) {
-  const JointVec far = JointVec::Constant(v.size(), kInf);
-  return {-far, far, v, a, j, {}, {}};
-}
 
 /// The worst over a motion, from the exact extremes of its pieces.
 struct Worst {

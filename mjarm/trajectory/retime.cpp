@@ -69,7 +69,10 @@ class Solver {
   /// An even u that is well within all bounds.
   [[nodiscard]] double even_start() const {
     double least = *std::min_element(p_.u_max.begin(), p_.u_max.end());
-    for (const double a : p_.a_a) least = std::min(least, 1 / std::abs(a));
+    for (std::size_t r = 0; r < p_.a_a.size(); ++r) {
+      const double left = 1 - std::abs(p_.still[r]), by_root = 0.5 * left / p_.root_a[r];
+      least = std::min({least, left / std::abs(p_.a_a[r]), by_root * by_root});
+    }
     for (const double j : p_.j_j) least = std::min(least, std::pow(std::abs(j), -2. / 3));
     return 0.5 * least;
   }
@@ -81,14 +84,15 @@ class Solver {
       const double at = u(c, knots_[i], i), slope = du(c, knots_[i], i);
       double slack = 1 - at / p_.u_max[i];
       if (!(at > 0) || !(slack > 0)) return kInfinite;
-      const std::size_t row = i * p_.rows;
-      for (std::size_t r = row; r < row + p_.rows; ++r) {
-        const double a = p_.a_a[r] * at + 0.5 * p_.v_a[r] * slope;
+      const double root = std::sqrt(at);
+      const std::size_t row = i * p_.a_rows;
+      for (std::size_t r = row; r < row + p_.a_rows; ++r) {
+        const double a =
+            p_.a_a[r] * at + 0.5 * p_.v_a[r] * slope + p_.root_a[r] * root + p_.still[r];
         const double left = 1 - a * a;
         if (!(left > 0)) return kInfinite;
         slack *= left;
       }
-      const double root = std::sqrt(at);
       for (const bool after : {false, true}) {
         if (after ? i == cells_ : i == 0) continue;
         const double bend = curvature(c, after ? i : i - 1);
@@ -158,10 +162,11 @@ class Solver {
                 {0.5 * inner / root + root * p_.j_j[r], root * by_slope, root * by_bend});
     }
     if (!all) return local;
-    for (std::size_t r = i * p_.rows; r < (i + 1) * p_.rows; ++r) {
-      const double x = p_.a_a[r] * at + 0.5 * p_.v_a[r] * slope, left = 1 / (1 - x * x);
+    for (std::size_t r = i * p_.a_rows; r < (i + 1) * p_.a_rows; ++r) {
+      const double x = p_.a_a[r] * at + 0.5 * p_.v_a[r] * slope + p_.root_a[r] * root + p_.still[r];
+      const double left = 1 / (1 - x * x);
       local.add(weight * 2 * x * left, weight * 2 * (1 + x * x) * left * left,
-                {p_.a_a[r], 0.5 * p_.v_a[r], 0});
+                {p_.a_a[r] + 0.5 * p_.root_a[r] / root, 0.5 * p_.v_a[r], 0});
     }
     const double free = 1 / (p_.u_max[i] - at), time = time_weight(i) / root;
     local.add(weight * free - 0.5 * time / at, weight * free * free + 0.75 * time / (at * at),

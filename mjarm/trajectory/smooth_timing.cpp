@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "mjarm/trajectory/path_torque_internal.hpp"
 #include "mjarm/trajectory/peaks_internal.hpp"
 #include "mjarm/trajectory/retime_internal.hpp"
 #include "mjarm/trajectory/smooth_profile_internal.hpp"
@@ -85,10 +87,23 @@ void append(std::vector<double>& rows, const JointVec& joints, const JointVec& b
   rows.push_back(path / path_bound);
 }
 
+/// Appends the rows of torques.
+void append_torques(RetimeProblem& problem, const TorqueTerms& terms, const PathState& x,
+                    const JointVec& limit) {
+  for (Eigen::Index r = 0; r < limit.size(); ++r) {
+    problem.a_a.push_back((terms.by_a[r] * x.a + terms.by_u[r] * x.v * x.v) / limit[r]);
+    problem.v_a.push_back(terms.by_a[r] * x.v / limit[r]);
+    problem.root_a.push_back(terms.viscous[r] * x.v / limit[r]);
+    problem.still.push_back((terms.still[r] + terms.dry[r]) / limit[r]);
+  }
+}
+
 RetimeProblem problem_of(const CubicSpline& spline, const Reference& reference,
                          const Bounds& bounds, const PathBounds& path) {
   RetimeProblem problem;
-  problem.rows = static_cast<std::size_t>(spline.dof()) + 1;
+  const auto dof = static_cast<std::size_t>(spline.dof());
+  problem.rows = dof + 1;
+  problem.a_rows = problem.rows + (bounds.dynamics ? dof : 0);
   problem.tau = reference.tau;
   const std::size_t n = reference.tau.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -98,11 +113,17 @@ RetimeProblem problem_of(const CubicSpline& spline, const Reference& reference,
       append(problem.a_j, d.a, bounds.j, x.a, path.jerk);
       append(problem.v_j, d.v, bounds.j, x.v, path.jerk);
     };
-    const Derivatives d = derivatives(spline.at(x.s, reference.piece[i]), x);
+    const SplinePoint p = spline.at(x.s, reference.piece[i]);
+    const Derivatives d = derivatives(p, x);
     if (i > 0) add_jerks(derivatives(spline.at(x.s, reference.piece[i - 1]), x));
     if (i + 1 < n) add_jerks(d);
     append(problem.a_a, d.a, bounds.a, x.a, path.acceleration);
     append(problem.v_a, d.v, bounds.a, x.v, path.acceleration);
+    problem.root_a.resize(problem.a_a.size(), 0.0);
+    problem.still.resize(problem.a_a.size(), 0.0);
+    if (bounds.dynamics) {
+      append_torques(problem, torque_terms(bounds.dynamics, p), x, bounds.torque);
+    }
     const double use =
         std::max(d.v.cwiseAbs().cwiseQuotient(bounds.v).maxCoeff(), x.v / path.speed);
     problem.u_max.push_back(1 / (use * use));
@@ -128,14 +149,20 @@ Result<Trajectory> time_smoothly(const CubicSpline& spline, const Bounds& bounds
                                  const PathBounds& path_bounds) {
   constexpr std::size_t kSpeedCells = 800;  // of the path for the reference
   constexpr double kWindow = 120;           // cells of the time law
-  const SpeedProfile profile = fastest_profile(spline, kSpeedCells, bounds, path_bounds);
+  constexpr double kMostWork = 3e7;         // cells of the reference in all windows at waypoints
+  const Result<SpeedProfile> fastest = fastest_profile(spline, kSpeedCells, bounds, path_bounds);
+  if (!fastest) return fail(fastest.error());
+  const SpeedProfile& profile = *fastest;
   // So long that the reference is smooth compared with the cells, as the time law has to be; and
   // that its jerks are of the size allowed.
   const double ramp = std::max(bounds.a.cwiseQuotient(bounds.j).maxCoeff(),
                                path_bounds.acceleration / path_bounds.jerk);
   const double cells = time_cells(spline);
-  const double window =
-      std::min(std::max(2 * ramp, kWindow * profile.duration() / cells), 0.5 * profile.duration());
+  // And no longer than can be averaged over at every waypoint in a few seconds.
+  const double affordable = kMostWork / (static_cast<double>(profile.s.size()) *
+                                         static_cast<double>(spline.knots().size()));
+  const double window = std::min(std::max(2 * ramp, kWindow * profile.duration() / cells),
+                                 std::min(0.5, affordable) * profile.duration());
   const SmoothProfile smooth(profile, window);
   const Reference reference = reference_along(spline, smooth, profile, window, cells);
   const TimeLaw law = retime(problem_of(spline, reference, bounds, path_bounds));
@@ -149,10 +176,11 @@ Result<Trajectory> time_smoothly(const CubicSpline& spline, const Bounds& bounds
   }
   const JointVec zero = JointVec::Zero(spline.dof());
   for (JointState* end : {&knots.front(), &knots.back()}) end->v = end->a = zero;
-  const Result<Trajectory> motion = Trajectory::through(law.t, knots);
+  Result<Trajectory> motion = Trajectory::through(law.t, knots);
   if (!motion) return fail(motion.error());
-  return motion->stretched(
-      std::max(peaks_of(*motion, bounds).stretch(true), excess(reference, law, path_bounds)));
+  const double factor = std::max(peaks_of(*motion, bounds, true).stretch(bounds),
+                                 excess(reference, law, path_bounds));
+  return std::move(*motion).stretched(factor);
 }
 
 }  // namespace mjarm::detail

@@ -1,180 +1,106 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "mjarm/trajectory/accel_bounds_internal.hpp"
+#include "mjarm/trajectory/path_torque_internal.hpp"
 #include "mjarm/trajectory/speed_profile_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
-
-/// A bound on the path acceleration and how it changes with u = (ds/dt)^2.
-struct Bound {
-  double a;
-  double by_u;
-};
-
-/// A path at one of its grid points.
-struct GridPoint {
-  const double* d;  // dq/ds of each joint
-  const double* e;  // d2q/ds2
-};
-
-/// Bounds on the path acceleration a for a given u at one place: at least -at + by u, at most at +
-/// by u for each of some rows, and u at most u_max. Upper bounds together are concave in u, lower
-/// ones convex. The rows lie in memory of the caller.
-class AccelBounds {
- public:
-  AccelBounds(double* at, double* by) : at_(at), by_(by) {}
-  /// Adds the bounds at a grid point.
-  void add_point(const GridPoint& p, const Bounds& bounds, const PathBounds& path_bounds) {
-    u_max_ = path_bounds.speed * path_bounds.speed;
-    add(1, 0, path_bounds.acceleration);
-    for (Eigen::Index j = 0; j < bounds.v.size(); ++j) {
-      const double v = bounds.v[j] / std::abs(p.d[j]);
-      u_max_ = std::min(u_max_, v * v);
-      add(p.d[j], p.e[j], bounds.a[j]);
-    }
-    close_u();
-  }
-  /// Adds `start` and the bounds at the end `p` of a cell of length `h` through which a stays
-  /// constant.
-  void add_cell(const AccelBounds& start, const GridPoint& p, const Bounds& bounds, double h,
-                double u_end) {
-    std::copy_n(start.at_, start.count_, at_);
-    std::copy_n(start.by_, start.count_, by_);
-    count_ = start.count_;
-    u_max_ = start.u_max_;
-    for (Eigen::Index j = 0; j < bounds.v.size(); ++j) {
-      add(p.d[j] + 2 * h * p.e[j], p.e[j], start.scale_ * bounds.a[j]);
-    }
-    add(2 * h, 1, u_end);  // 0 <= u + 2 h a <= u_end
-    close_u();
-  }
-  /// Multiplies all limits: of accelerations, and of u as the square of speeds.
-  void scale(double factor) {
-    for (int k = 0; k < count_; ++k) at_[k] *= factor;
-    u_max_ *= factor;
-    scale_ *= factor;
-  }
-
-  /// Largest u that leaves some acceleration between the bounds.
-  [[nodiscard]] double u_max() const { return u_max_; }
-  [[nodiscard]] Bound highest(double u) const {
-    Bound best{at_[0] + by_[0] * u, by_[0]};
-    for (int k = 1; k < count_; ++k) {
-      const double a = at_[k] + by_[k] * u;
-      if (a < best.a) best = {a, by_[k]};
-    }
-    return best;
-  }
-  [[nodiscard]] Bound lowest(double u) const {
-    Bound best{by_[0] * u - at_[0], by_[0]};
-    for (int k = 1; k < count_; ++k) {
-      const double a = by_[k] * u - at_[k];
-      if (a > best.a) best = {a, by_[k]};
-    }
-    return best;
-  }
-
- private:
-  /// |d a + e u| <= limit
-  void add(double d, double e, double limit) {
-    constexpr double kStill = 1e-10;  // less motion per unit of path does not count
-    if (std::abs(d) > kStill) {
-      at_[count_] = limit / std::abs(d);
-      by_[count_++] = -e / d;
-    } else if (e != 0) {
-      u_max_ = std::min(u_max_, limit / std::abs(e));
-    }
-  }
-  /// Lowers u_max to where the bounds meet; Newton's method, from above and never below.
-  void close_u() {
-    for (int k = 0; k <= 2 * count_; ++k) {
-      const Bound high = highest(u_max_), low = lowest(u_max_);
-      if (low.a <= high.a || low.by_u <= high.by_u) return;
-      u_max_ = std::max(u_max_ - (low.a - high.a) / (low.by_u - high.by_u), 0.0);
-    }
-  }
-
-  double *at_, *by_;
-  int count_ = 0;
-  double u_max_ = 0;
-  double scale_ = 1;
-};
-
-/// The same with rows of its own, enough for both ends of a cell.
-struct CellBounds {
-  double at[2 * kMaxDof + 2], by[2 * kMaxDof + 2];
-  AccelBounds bounds{at, by};
-};
-
-/// Largest u in [0, `from`] with u + h * bound(u).a <= most, for a convex left side that is below
-/// `most` at 0; Newton's method from the right.
-template <class Function>
-double largest_below(Function bound, double h, double from, double most) {
-  double u = from;
-  for (int k = 0; k <= 2 * kMaxDof; ++k) {
-    const Bound b = bound(u);
-    const double over = u + h * b.a - most, slope = 1 + h * b.by_u;
-    if (over <= 0 || slope <= 0) break;
-    u -= over / slope;
-  }
-  return std::clamp(u, 0.0, from);
-}
 
 /// A grid along a path, and one cell of it after the other in the two passes.
 class Grid {
  public:
   Grid(const CubicSpline& spline, std::size_t cells, const Bounds& bounds,
        const PathBounds& path_bounds)
-      : spline_(spline), bounds_(bounds) {
+      : spline_(spline), bounds_(bounds), path_bounds_(path_bounds), dof_(spline.dof()) {
     place_points(cells);
-    const auto dof = static_cast<std::size_t>(spline.dof());
-    const std::size_t n = s_.size(), rows = dof + 1;
-    d_.resize(n * dof);
-    e_.resize(n * dof);
-    at_.resize(n * rows);
-    by_.resize(n * rows);
+    rows_ = static_cast<std::size_t>(bounds.dynamics ? 2 * dof_ : dof_);
+    const std::size_t n = s_.size(), bound_rows = rows_ + 1,
+                      interval_rows = bounds.dynamics ? n * rows_ : rows_;
+    d_.resize(n * rows_);
+    e_.resize(n * rows_);
+    low_.resize(interval_rows);
+    high_.resize(interval_rows);
+    bound_low_.resize(n * bound_rows);
+    bound_high_.resize(n * bound_rows);
+    bound_by_.resize(n * bound_rows);
+    reach_.resize(n);
+    u_.resize(n);
+    touched_.resize(n);
     limits_.reserve(n);
     for (std::size_t i = 0; i < n; ++i) {
       const SplinePoint p = spline.at(s_[i], piece_[i]);
-      std::copy_n(p.d.data(), dof, &d_[i * dof]);
-      std::copy_n(p.e.data(), dof, &e_[i * dof]);
-      limits_.emplace_back(&at_[i * rows], &by_[i * rows]);
-      limits_.back().add_point(point(i), bounds, path_bounds);
+      set_rows(i, 0, p.d, p.e, -bounds.a, bounds.a);
+      if (bounds.dynamics && !add_torques(i, p)) return;
+      const std::size_t at = i * bound_rows;
+      limits_.emplace_back(&bound_low_[at], &bound_high_[at], &bound_by_[at]);
     }
-    for (std::size_t i = 0; i + 1 < n; ++i) constant_.push_back(turns_in(i));
+    set_limits();
   }
   Grid(const Grid&) = delete;
   Grid& operator=(const Grid&) = delete;
 
-  [[nodiscard]] SpeedProfile fastest() const {
+  /// Fails where the arm cannot be held still; then there is no motion.
+  [[nodiscard]] const Result<void>& held() const { return held_; }
+
+  /// Takes viscous friction as it is at the speeds of `profile`, by a chord of its curve over u.
+  void take_friction(const SpeedProfile& profile) {
+    constexpr double kLeast = 1e-3;  // of the largest speed; where it rests it does not matter
+    const double least = kLeast * *std::max_element(profile.v.begin(), profile.v.end());
+    for (std::size_t i = 0; i < s_.size(); ++i) set_friction(i, std::max(profile.v[i], least));
+    set_limits();
+  }
+
+  /// The fastest motion, found anew only as far as limits have changed since the last time.
+  [[nodiscard]] SpeedProfile fastest() {
     const std::size_t n = s_.size();
-    std::vector<double> u(n, 0.0);  // first the largest from which the end can be reached at rest
-    for (std::size_t i = n - 1; i-- > 1;) u[i] = backward(i, u[i + 1]);
-    for (std::size_t i = 0; i + 1 < n; ++i) u[i + 1] = forward(i, u[i], u[i + 1]);
+    const auto update = [](double& value, double now) { return std::exchange(value, now) != now; };
+    for (std::size_t i = n - 1; i-- > 1;) {
+      if (!touched_[i] && !touched_[i + 1]) continue;
+      if (update(reach_[i], backward(i, reach_[i + 1]))) touched_[i] = 1;
+    }
+    bool moved = false;
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      if (!moved && !touched_[i] && !touched_[i + 1]) continue;
+      moved = update(u_[i + 1], forward(i, u_[i], reach_[i + 1]));
+    }
+    std::fill(touched_.begin(), touched_.end(), 0);
     SpeedProfile profile{std::vector<double>(n), s_, std::vector<double>(n), std::vector<double>(n),
                          std::vector<double>(n)};
-    for (std::size_t i = 0; i < n; ++i) profile.v[i] = std::sqrt(u[i]);
-    for (std::size_t i = 0; i + 1 < n; ++i) fill_cell(i, u[i], u[i + 1], profile);
+    for (std::size_t i = 0; i < n; ++i) profile.v[i] = std::sqrt(u_[i]);
+    for (std::size_t i = 0; i + 1 < n; ++i) fill_cell(i, u_[i], u_[i + 1], profile);
     return profile;
   }
 
   /// Lowers the limits where `profile` is beyond them in the middle of a cell.
   void tighten(const SpeedProfile& profile) {
+    constexpr double kSlack = 5e-5;  // what is left is for a stretch of the whole
+    const JointVec by_v = bounds_.v.cwiseInverse(), by_a = bounds_.a.cwiseInverse();
     std::vector<double> factors(s_.size(), 1.0);
     for (std::size_t i = 0; i + 1 < s_.size(); ++i) {
       const double x = 0.5 * (profile.t[i + 1] - profile.t[i]);
       const double jump = 0.5 * (profile.a_before[i + 1] - profile.a_after[i]);
       const double a = profile.a_after[i] + jump;
       const double v = profile.v[i] + x * (profile.a_after[i] + 0.5 * jump);
-      const double s = s_[i] + x * (profile.v[i] + x * (0.5 * profile.a_after[i] + jump / 6));
-      const SplinePoint p = spline_.at(s, piece_[i]);
-      const double over =
-          std::max(v * v * p.d.cwiseAbs2().cwiseQuotient(bounds_.v.cwiseAbs2()).maxCoeff(),
-                   (a * p.d + v * v * p.e).cwiseAbs().cwiseQuotient(bounds_.a).maxCoeff());
+      const double s = x * (profile.v[i] + x * (0.5 * profile.a_after[i] + jump / 6));
+      const GridPoint p = point(i), end = point(i + 1);
+      const double share = s / (s_[i + 1] - s_[i]);
+      double over = torque_use(i, a, v * v);
+      for (int j = 0; j < dof_; ++j) {
+        const double bend = share * (end.e[j] - p.e[j]);
+        const double d = p.d[j] + s * (p.e[j] + 0.5 * bend), v_use = v * d * by_v[j];
+        over = std::max({over, v_use * v_use, std::abs(a * d + v * v * (p.e[j] + bend)) * by_a[j]});
+      }
+      if (over <= 1 + kSlack) continue;
       for (const std::size_t k : {i, i + 1}) factors[k] = std::min(factors[k], 1 / over);
     }
-    for (std::size_t i = 0; i < s_.size(); ++i) limits_[i].scale(factors[i]);
+    for (std::size_t i = 0; i < s_.size(); ++i) {
+      if (factors[i] == 1) continue;
+      limits_[i].scale(factors[i]);
+      touched_[i] = 1;
+    }
   }
 
  private:
@@ -201,9 +127,89 @@ class Grid {
     s_.push_back(knots.back());
     piece_.push_back(knots.size() - 2);
   }
+  /// Where the intervals of a point lie: one for all without torques, as they are the same then.
+  [[nodiscard]] std::size_t interval(std::size_t i) const {
+    return bounds_.dynamics ? i * rows_ : 0;
+  }
   [[nodiscard]] GridPoint point(std::size_t i) const {
-    const std::size_t at = i * static_cast<std::size_t>(spline_.dof());
-    return {&d_[at], &e_[at]};
+    return {&d_[i * rows_], &e_[i * rows_], &low_[interval(i)], &high_[interval(i)], rows_};
+  }
+
+  /// Fills the rows of the joints at point `i` from row `first` on.
+  void set_rows(std::size_t i, int first, const JointVec& d, const JointVec& e, const JointVec& low,
+                const JointVec& high) {
+    const auto at = static_cast<std::size_t>(first);
+    std::copy_n(d.data(), dof_, &d_[i * rows_ + at]);
+    std::copy_n(e.data(), dof_, &e_[i * rows_ + at]);
+    std::copy_n(low.data(), dof_, &low_[interval(i) + at]);
+    std::copy_n(high.data(), dof_, &high_[interval(i) + at]);
+  }
+
+  /// Adds the rows of torques; false where nothing is left of a limit.
+  bool add_torques(std::size_t i, const SplinePoint& p) {
+    terms_.push_back(torque_terms(bounds_.dynamics, p));
+    const TorqueTerms& terms = terms_.back();
+    const JointVec creeping = terms.still + terms.dry;
+    const double share = (s_[i] - s_.front()) / (s_.back() - s_.front());
+    for (const JointVec* torque : {&terms.still, &creeping}) {
+      held_ = check_still(*torque, bounds_.torque, share);
+      if (!held_) return false;
+    }
+    set_rows(i, dof_, terms.by_a, terms.by_u, -bounds_.torque - creeping,
+             bounds_.torque - creeping);
+    for (int j = 0; j < dof_; ++j) {
+      const double now = terms.dry[j], before = i > 0 ? terms_[i - 1].dry[j] : now;
+      if (before != now && before * now <= 0) {
+        const double most = std::max(std::abs(before), std::abs(now));
+        free_friction(i - 1, j, most);
+        free_friction(i, j, most);
+      } else if (i == 0 || i + 1 == s_.size()) {
+        free_friction(i, j, std::abs(now));
+      }
+    }
+    inverse_speed_.push_back(0);
+    double speed = path_bounds_.speed;
+    for (int j = 0; j < dof_; ++j) speed = std::min(speed, bounds_.v[j] / std::abs(p.d[j]));
+    set_friction(i, speed);
+    return true;
+  }
+  /// Leaves room for dry friction of either sign, up to `most`, at point `i`: where joint `j` turns
+  /// round nearby or stands.
+  void free_friction(std::size_t i, int j, double most) {
+    constexpr double kLeft = 1e-4;  // of the limit, so that there is always a motion
+    const std::size_t row = interval(i) + static_cast<std::size_t>(dof_ + j);
+    const double still = terms_[i].still[j], least = kLeft * bounds_.torque[j];
+    low_[row] = std::min(most - bounds_.torque[j] - still, -least);
+    high_[row] = std::max(bounds_.torque[j] - most - still, least);
+  }
+  /// Viscous friction, which grows with the root of u, as if it grew with u, right at this speed.
+  void set_friction(std::size_t i, double speed) {
+    const double inverse = 1 / speed;
+    for (int j = 0; j < dof_; ++j) {
+      e_[i * rows_ + static_cast<std::size_t>(dof_ + j)] +=
+          (inverse - inverse_speed_[i]) * terms_[i].viscous[j];
+    }
+    inverse_speed_[i] = inverse;
+  }
+  void set_limits() {
+    for (std::size_t i = 0; i < s_.size(); ++i) {
+      limits_[i].set_point(point(i), bounds_, path_bounds_);
+    }
+    std::fill(touched_.begin(), touched_.end(), 1);
+    constant_.clear();
+    for (std::size_t i = 0; i + 1 < s_.size(); ++i) constant_.push_back(turns_in(i));
+  }
+
+  /// Largest use of a torque limit in the middle of cell `i`, where all terms are about the means
+  /// of those at its ends.
+  [[nodiscard]] double torque_use(std::size_t i, double a, double u) const {
+    const GridPoint p = point(i), q = point(i + 1);
+    double most = 0;
+    for (auto r = static_cast<std::size_t>(dof_); r < rows_; ++r) {
+      const double torque = (p.d[r] + q.d[r]) * a + (p.e[r] + q.e[r]) * u;
+      most = std::max(most, torque / (torque > 0 ? p.high[r] + q.high[r] : p.low[r] + q.low[r]));
+    }
+    return most;
   }
 
   /// True where a joint turns round at about cell `i` and its limit matters. It leaves the
@@ -214,16 +220,16 @@ class Grid {
     const GridPoint p = point(i), end = point(i + 1);
     const double h = s_[i + 1] - s_[i];
     const double u = std::max(limits_[i].u_max(), limits_[i + 1].u_max());
-    for (Eigen::Index j = 0; j < bounds_.a.size(); ++j) {
-      const double e = std::max(std::abs(p.e[j]), std::abs(end.e[j]));
-      const double d = std::min(std::abs(p.d[j]), std::abs(end.d[j]));
-      if (d < kNear * h * e && e * u > kMatters * bounds_.a[j]) return true;
+    for (std::size_t r = 0; r < rows_; ++r) {
+      const double e = std::max(std::abs(p.e[r]), std::abs(end.e[r]));
+      const double d = std::min(std::abs(p.d[r]), std::abs(end.d[r]));
+      if (d < kNear * h * e && e * u > kMatters * std::min(p.high[r], -p.low[r])) return true;
     }
     return false;
   }
 
   void fill(CellBounds& cell, std::size_t i, double u_end) const {
-    cell.bounds.add_cell(limits_[i], point(i + 1), bounds_, s_[i + 1] - s_[i], u_end);
+    cell.bounds.add_cell(limits_[i], point(i + 1), s_[i + 1] - s_[i], u_end);
   }
 
   /// Largest u at the start of cell `i` that leads to at most `u_end` at its end.
@@ -282,19 +288,36 @@ class Grid {
 
   const CubicSpline& spline_;
   const Bounds& bounds_;
+  const PathBounds& path_bounds_;
+  int dof_;
+  std::size_t rows_ = 0;  // of each point
   std::vector<double> s_;
-  std::vector<std::size_t> piece_;       // of the spline, after each grid point
-  std::vector<double> d_, e_, at_, by_;  // what points and limits refer to
+  std::vector<std::size_t> piece_;                         // of the spline, after each grid point
+  std::vector<double> d_, e_, low_, high_;                 // what points refer to
+  std::vector<double> bound_low_, bound_high_, bound_by_;  // and limits
   std::vector<AccelBounds> limits_;
-  std::vector<bool> constant_;  // cells
+  std::vector<double> reach_;          // largest u from which the end can be reached at rest
+  std::vector<double> u_;              // from rest at the start as well
+  std::vector<char> touched_;          // whether limits or `reach_` of a point have changed
+  std::vector<bool> constant_;         // cells
+  std::vector<TorqueTerms> terms_;     // of each point
+  std::vector<double> inverse_speed_;  // for which viscous friction is in `e_`
+  Result<void> held_;
 };
 
 }  // namespace
 
-SpeedProfile fastest_profile(const CubicSpline& spline, std::size_t cells, const Bounds& bounds,
-                             const PathBounds& path_bounds) {
+Result<SpeedProfile> fastest_profile(const CubicSpline& spline, std::size_t cells,
+                                     const Bounds& bounds, const PathBounds& path_bounds) {
+  constexpr int kFrictionRounds = 4;
   Grid grid(spline, cells, bounds, path_bounds);
-  grid.tighten(grid.fastest());
+  if (!grid.held()) return fail(grid.held().error());
+  SpeedProfile profile = grid.fastest();
+  for (int k = 0; bounds.dynamics && k < kFrictionRounds; ++k) {
+    grid.take_friction(profile);
+    profile = grid.fastest();
+  }
+  grid.tighten(profile);
   return grid.fastest();
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "mjarm/core/result.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
 #include "mjarm/trajectory/spline_internal.hpp"
 
@@ -26,13 +27,15 @@ struct SpeedProfile {
   [[nodiscard]] double duration() const { return t.back(); }
 };
 
-/// The fastest motion along `spline` with |dq/dt| and |d2q/dt2| within `bounds`, by one pass
-/// backward (from where each speed can still stop in time) and one forward (H. Pham and Q.-C. Pham,
-/// IEEE T-RO 34 (2018) 645). Unlike there the acceleration may change within a cell, so that the
-/// error falls with the square of the cells' size. Bounds hold at the grid points, and in between
-/// to about one part in a thousand or better.
+/// The fastest motion along `spline` with |dq/dt|, |d2q/dt2| and torques within `bounds`, by one
+/// pass backward (from where each speed can still stop in time) and one forward (H. Pham and Q.-C.
+/// Pham, IEEE T-RO 34 (2018) 645). Unlike there the acceleration may change within a cell, so that
+/// the error falls with the square of the cells' size. Bounds hold at the grid points, and in
+/// between to about one part in a thousand or better.
 /// @param cells  at least so many, and two between waypoints.
-[[nodiscard]] SpeedProfile fastest_profile(const CubicSpline& spline, std::size_t cells,
-                                           const Bounds& bounds, const PathBounds& path_bounds);
+/// @return an error where torque limits leave nothing to move with; else always a motion.
+[[nodiscard]] Result<SpeedProfile> fastest_profile(const CubicSpline& spline, std::size_t cells,
+                                                   const Bounds& bounds,
+                                                   const PathBounds& path_bounds);
 
 }  // namespace mjarm::detail

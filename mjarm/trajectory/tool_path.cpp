@@ -61,8 +61,7 @@ Result<Trajectory> time_tool_path(const JointPath& path, std::span<const double>
 
   const detail::PathBounds tool{options.tool_speed, options.tool_accel,
                                 options.tool_accel / options.tool_ramp};
-  const JointVec zero = JointVec::Zero(path.q[0].size());
-  const Result<Trajectory> rest = Trajectory::through({0.0}, {{path.q[0], zero, zero}});
+  const Result<Trajectory> rest = Trajectory::through({0.0}, {JointState::at_rest(path.q[0])});
   if (!rest) return fail(rest.error());
   std::vector<Trajectory> parts{*rest};
   for (std::size_t i = 0; i + 1 < rests->size(); ++i) {

@@ -31,9 +31,7 @@ Arm timed_ur5e() {
 JointPath path_along(const Arm& arm, const Curve& curve, double step = 0.001) {
   const std::vector<double> seed{-1.57, -1.34, 2.65, -1.3, 1.55, 0};
   const std::vector<double> s = curve.stations(step, 0.02);
-  std::vector<Pose> poses;
-  for (const double x : s) poses.push_back(curve.at(x));
-  auto path = solve_path(IkSolver(arm), poses, s, seed);
+  auto path = solve_path(IkSolver(arm), curve.poses(s), s, seed);
   EXPECT_TRUE(path.has_value());
   return path.value_or(JointPath{});
 }

@@ -16,12 +16,12 @@ bool sound(const JointState& state, Eigen::Index dof) {
          state.q.allFinite() && state.v.allFinite() && state.a.allFinite();
 }
 
-JointState rest_at(const JointVec& q) {
-  return {q, JointVec::Zero(q.size()), JointVec::Zero(q.size())};
+bool sound(const Trajectory::Knot& knot, Eigen::Index dof) {
+  return sound(knot.state, dof) && knot.a_after.size() == dof && knot.a_after.allFinite();
 }
 
-/// Writes the coefficients of the quintic from `from`, with acceleration `a` there, to `to` in `h`
-/// seconds.
+/// Writes the coefficients of the quintic from `from`, with acceleration `a`
+/// there, to `to` in `h` seconds.
 void fit_quintic(const JointState& from, const JointVec& a, const JointState& to, double h,
                  double* c) {
   const Eigen::Index dof = a.size();
@@ -51,36 +51,30 @@ JointState advanced(const JointState& x, const JointVec& jerk, double h) {
 
 Result<Trajectory> Trajectory::through(const std::vector<double>& times,
                                        const std::vector<JointState>& knots) {
-  std::vector<JointVec> a_after;
-  a_after.reserve(knots.size());
-  for (const JointState& knot : knots) a_after.push_back(knot.a);
-  return through(times, knots, a_after);
+  if (times.size() != knots.size()) return fail(Errc::bad_input, text(msg::trajectory_bad_knots));
+  return from_knots(times, [&](std::size_t i) { return Knot{knots[i], knots[i].a}; });
 }
 
-Result<Trajectory> Trajectory::through(const std::vector<double>& times,
-                                       const std::vector<JointState>& knots,
-                                       const std::vector<JointVec>& a_after) {
-  if (times.empty() || times.size() != knots.size() || knots.size() != a_after.size() ||
-      times[0] != 0) {
-    return fail(Errc::bad_input, text(msg::trajectory_bad_knots));
-  }
-  const Eigen::Index dof = knots[0].q.size();
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (!sound(knots[i], dof) || a_after[i].size() != dof || !a_after[i].allFinite() ||
-        !std::isfinite(times[i]) || (i > 0 && !(times[i] > times[i - 1]))) {
-      return fail(Errc::bad_input, text(msg::trajectory_bad_knots));
-    }
-  }
+Result<Trajectory> Trajectory::from_knots(const std::vector<double>& times,
+                                          const std::function<Knot(std::size_t)>& knot) {
+  const auto bad = [] { return fail(Errc::bad_input, text(msg::trajectory_bad_knots)); };
+  if (times.empty() || times[0] != 0) return bad();
   Trajectory trajectory;
-  trajectory.starts_.assign(times.begin(), times.end() - 1);
+  Knot from = knot(0);
+  const Eigen::Index dof = from.state.q.size();
+  if (!sound(from, dof)) return bad();
   const auto stride = static_cast<std::size_t>(6 * dof);
+  trajectory.starts_.assign(times.begin(), times.end() - 1);
   trajectory.c_.resize(trajectory.starts_.size() * stride);
-  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-    fit_quintic(knots[i], a_after[i], knots[i + 1], times[i + 1] - times[i],
-                &trajectory.c_[i * stride]);
+  trajectory.first_ = from.state;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double h = times[i] - times[i - 1];
+    Knot to = knot(i);
+    if (!sound(to, dof) || !std::isfinite(times[i]) || !(h > 0)) return bad();
+    fit_quintic(from.state, from.a_after, to.state, h, &trajectory.c_[(i - 1) * stride]);
+    from = std::move(to);
   }
-  trajectory.first_ = knots.front();
-  trajectory.last_ = knots.back();
+  trajectory.last_ = from.state;
   trajectory.duration_ = times.back();
   return trajectory;
 }
@@ -142,11 +136,10 @@ Trajectory::Piece Trajectory::piece(std::size_t i) const {
           {c_.data() + static_cast<Eigen::Index>(i) * size, last_.q.size(), 6}};
 }
 
-Trajectory Trajectory::stretched(double factor) const {
-  Trajectory slow = *this;
-  slow.duration_ *= factor;
-  for (double& start : slow.starts_) start *= factor;
-  for (JointState* state : {&slow.first_, &slow.last_}) {
+Trajectory Trajectory::stretched(double factor) && {
+  duration_ *= factor;
+  for (double& start : starts_) start *= factor;
+  for (JointState* state : {&first_, &last_}) {
     state->v /= factor;
     state->a /= factor * factor;
   }
@@ -154,15 +147,15 @@ Trajectory Trajectory::stretched(double factor) const {
   for (std::size_t i = 0; i < c_.size();) {
     double share = 1;
     for (int k = 0; k < 6; ++k, share /= factor) {
-      for (std::size_t j = 0; j < dof; ++j) slow.c_[i++] *= share;
+      for (std::size_t j = 0; j < dof; ++j) c_[i++] *= share;
     }
   }
-  return slow;
+  return std::move(*this);
 }
 
 JointState Trajectory::at(double t) const {
-  if (t < 0) return rest_at(first_.q);
-  if (t > duration_) return rest_at(last_.q);
+  if (t < 0) return JointState::at_rest(first_.q);
+  if (t > duration_) return JointState::at_rest(last_.q);
   if (t == duration_ || starts_.empty()) return last_;
   const auto after = std::upper_bound(starts_.begin() + 1, starts_.end(), t);
   const Piece p = piece(static_cast<std::size_t>(after - starts_.begin()) - 1);

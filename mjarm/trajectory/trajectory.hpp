@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -20,11 +21,14 @@ class Trajectory {
   /// @param knots  as many states of equal size, all finite.
   [[nodiscard]] static Result<Trajectory> through(const std::vector<double>& times,
                                                   const std::vector<JointState>& knots);
-  /// The same where accelerations jump at knots: `a_after[i]` is that behind knot i, of which the
-  /// last is not used.
-  [[nodiscard]] static Result<Trajectory> through(const std::vector<double>& times,
-                                                  const std::vector<JointState>& knots,
-                                                  const std::vector<JointVec>& a_after);
+  /// A knot where the acceleration may jump.
+  struct Knot {
+    JointState state;  ///< with the acceleration before it
+    JointVec a_after;  ///< [rad/s^2 or m/s^2]
+  };
+  /// The same by a function that gives each knot in turn, asked once for each.
+  [[nodiscard]] static Result<Trajectory> from_knots(const std::vector<double>& times,
+                                                     const std::function<Knot(std::size_t)>& knot);
   /// Phases of constant jerk from `start`, exact however short they are.
   /// @param durations  [s] >= 0; phases of no duration are left out.
   /// @param jerks      [rad/s^3 or m/s^3] one vector a phase.
@@ -44,7 +48,10 @@ class Trajectory {
   [[nodiscard]] JointState at(double t) const;
 
   /// The same way in `factor` (> 0, finite) times the time.
-  [[nodiscard]] Trajectory stretched(double factor) const;
+  [[nodiscard]] Trajectory stretched(double factor) const& {
+    return Trajectory(*this).stretched(factor);
+  }
+  [[nodiscard]] Trajectory stretched(double factor) &&;
 
   /// One polynomial of the motion: q(t) = sum over k of c.col(k) (t - start)^k.
   struct Piece {

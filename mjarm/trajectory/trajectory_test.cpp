@@ -19,9 +19,7 @@ JointVec random_vec(Rng& rng, Eigen::Index dof, double size) {
   return v;
 }
 
-JointState rest(double q) {
-  return {JointVec::Constant(1, q), JointVec::Zero(1), JointVec::Zero(1)};
-}
+JointState rest(double q) { return JointState::at_rest(JointVec::Constant(1, q)); }
 
 TEST(Trajectory, ReproducesQuintics) {
   Rng rng(1);

@@ -34,10 +34,6 @@ Distinct without_repetitions(std::span<const JointVec> waypoints) {
   return distinct;
 }
 
-JointState rest_at(const JointVec& q) {
-  return {q, JointVec::Zero(q.size()), JointVec::Zero(q.size())};
-}
-
 Result<ViaMotion> stopping_at_each(std::span<const JointVec> points, const detail::Bounds& bounds) {
   JointLimits limits;
   limits.velocity = bounds.v;
@@ -46,7 +42,8 @@ Result<ViaMotion> stopping_at_each(std::span<const JointVec> points, const detai
   std::vector<Trajectory> moves;
   ViaMotion motion{{}, {0}};
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    Result<Trajectory> move = point_to_point(rest_at(points[i]), rest_at(points[i + 1]), limits);
+    Result<Trajectory> move =
+        point_to_point(JointState::at_rest(points[i]), JointState::at_rest(points[i + 1]), limits);
     if (!move) return fail(std::move(move.error()));
     motion.times.push_back(motion.times.back() + move->duration());
     moves.push_back(*std::move(move));
@@ -73,7 +70,8 @@ Result<Trajectory> trajectory_of(const detail::ViaSpline& spline,
     durations.insert(durations.end(), cells.size(), h);
     jerks.insert(jerks.end(), cells.begin(), cells.end());
   }
-  return Trajectory::from_jerks(rest_at(points.front()), durations, jerks, rest_at(points.back()));
+  return Trajectory::from_jerks(JointState::at_rest(points.front()), durations, jerks,
+                                JointState::at_rest(points.back()));
 }
 
 /// None where the optimiser fails, or rounding makes the motion miss a waypoint.
@@ -120,7 +118,7 @@ Result<ViaMotion> time_via_points(std::span<const JointVec> waypoints, const Joi
   const Distinct distinct = without_repetitions(waypoints);
   const std::span<const JointVec> points = distinct.points;
   if (points.size() == 1) {
-    const JointState rest = rest_at(points[0]);
+    const JointState rest = JointState::at_rest(points[0]);
     Result<Trajectory> still = Trajectory::from_jerks(rest, {}, {}, rest);
     if (!still) return fail(std::move(still.error()));
     return ViaMotion{*std::move(still), std::vector<double>(waypoints.size(), 0)};

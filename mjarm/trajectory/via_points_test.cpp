@@ -7,25 +7,17 @@
 #include <limits>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/trajectory/limits_test.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
+using testing::limits_of;
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using Waypoints = std::vector<JointVec>;
-
-JointLimits limits_of(const JointVec& v, const JointVec& a, const JointVec& j) {
-  const JointVec far = JointVec::Constant(v.size(), 1e9);
-  return {.lower = -far,
-          .upper = far,
-          .velocity = v,
-          .acceleration = a,
-          .jerk = j,
-          .torque = far,
-          .sources = {}};
-}
 
 JointLimits alike(Eigen::Index dof, double v, double a, double j) {
   return limits_of(JointVec::Constant(dof, v), JointVec::Constant(dof, a),
@@ -48,14 +40,11 @@ double duration_of(const Waypoints& points, const JointLimits& limits) {
   return motion ? motion->trajectory.duration() : kNaN;
 }
 
-JointState resting(const JointVec& q) {
-  return {q, JointVec::Zero(q.size()), JointVec::Zero(q.size())};
-}
-
 double stopping(const Waypoints& points, const JointLimits& limits) {
   double sum = 0;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const auto move = point_to_point(resting(points[i]), resting(points[i + 1]), limits);
+    const auto move =
+        point_to_point(JointState::at_rest(points[i]), JointState::at_rest(points[i + 1]), limits);
     EXPECT_TRUE(move.has_value());
     sum += move ? move->duration() : 0;
   }

@@ -121,9 +121,12 @@ void HttpServer::send_body(int client, const Served& served, const std::string& 
   const std::size_t end = std::min(body.size(), served.cut_after);
   for (std::size_t at = 0; at < end && !stopping_;) {
     const std::size_t size = std::min(served.piece, end - at);
-    if (send(client, body.data() + at, size, MSG_NOSIGNAL) != static_cast<ssize_t>(size)) return;
+    sent_ += size;  // before, so that whoever has the bytes sees them counted
+    if (send(client, body.data() + at, size, MSG_NOSIGNAL) != static_cast<ssize_t>(size)) {
+      sent_ -= size;
+      return;
+    }
     at += size;
-    sent_ += size;
     {
       const std::lock_guard lock(mutex_);
       if (on_sent_) on_sent_(sent_);

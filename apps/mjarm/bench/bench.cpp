@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "apps/mjarm/bench/suites.hpp"
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/sim.hpp"
 
@@ -12,12 +13,14 @@ namespace {
 Run setup(CLI::App& app) {
   auto suites = std::make_shared<std::vector<BenchSuite>>();
   suites->push_back(add_bench_ik(app));
+  suites->push_back(add_bench_path(app));
+  suites->push_back(add_bench_time(app));
   suites->push_back(add_bench_sim(app));
   return [suites]() -> Result<int> {
     std::string names;
     for (const BenchSuite& suite : *suites) {
-      if (suite.app->parsed()) return suite.run();
-      names += (names.empty() ? "" : ", ") + suite.app->get_name();
+      if (is_called(*suite.app)) return suite.run();
+      names += (names.empty() ? "" : ", ") + name_of(*suite.app);
     }
     return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm bench", names));
   };

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "apps/mjarm/bench/robots.hpp"
 #include "apps/mjarm/json_line.hpp"
 #include "apps/mjarm/line_reader.hpp"
 #include "mjarm/core/messages/bench.hpp"
@@ -24,19 +24,6 @@ constexpr int kPaths = 20;
 constexpr int kPathPoses = 100;
 constexpr double kPathStep = 0.01;  // [rad or m] largest joint step from pose to pose
 
-/// Uniform within the limits; a joint without stops turns once, or slides a metre.
-JointVec random_q(const Arm& arm, Rng& rng) {
-  JointVec q(arm.dof());
-  for (int i = 0; i < arm.dof(); ++i) {
-    const double lower = arm.limits.lower[i];
-    const double upper = arm.limits.upper[i];
-    const double half =
-        arm.joints[static_cast<std::size_t>(i)].type == JointType::hinge ? std::numbers::pi : 0.5;
-    q[i] = std::isfinite(upper - lower) ? rng.uniform(lower, upper) : rng.uniform(-half, half);
-  }
-  return q;
-}
-
 std::vector<double> list(const JointVec& q) { return {q.begin(), q.end()}; }
 
 IkCaseSet make_reachable(const Arm& arm) {
@@ -51,14 +38,7 @@ IkCaseSet make_reachable(const Arm& arm) {
 
 /// Farther from the first joint than all links together are long.
 IkCaseSet make_unreachable(const Arm& arm) {
-  double stretch = arm.X_JT.p.norm();
-  for (std::size_t i = 0; i < arm.joints.size(); ++i) {
-    if (i > 0) stretch += arm.joints[i].X_PJ.p.norm();
-    if (arm.joints[i].type == JointType::slide) {
-      const auto k = static_cast<Eigen::Index>(i);
-      stretch += std::max(std::abs(arm.limits.lower[k]), std::abs(arm.limits.upper[k]));
-    }
-  }
+  const double stretch = stretch_of(arm);
   IkCaseSet set{"unreachable", false, {}};
   if (!std::isfinite(stretch)) return set;
   Rng rng(kSeed, 1);
@@ -112,7 +92,7 @@ Result<IkCaseSet> read_set(const fs::path& file, IkCaseSet set, const Arm& arm) 
     }
     set.cases.push_back(std::move(entry));
   }
-  if (set.cases.empty()) return fail(Errc::bad_input, text(msg::bench_ik_no_cases, file.string()));
+  if (set.cases.empty()) return fail(Errc::bad_input, text(msg::bench_no_cases, file.string()));
   return set;
 }
 
@@ -131,21 +111,10 @@ Result<std::vector<IkCaseSet>> read_sets(const fs::path& folder, const std::stri
   return sets;
 }
 
-/// The file of a robot by name: peers read URDF, so that is taken where there is one.
-std::string file_of(const std::string& robot, const fs::path& folder) {
-  if (!folder.empty()) return (folder / (robot + ".urdf")).string();
-  if (robot == "ur5e") return "universal_robots_ur5e/ur5e.urdf";
-  if (robot == "panda") return "franka_emika_panda/panda.urdf";
-  return robot;
-}
-
 }  // namespace
 
 Result<IkProblem> load_ik_problem(const RobotOptions& options, const fs::path& folder) {
-  const std::string file = file_of(options.robot, folder);
-  // The bare flange of the Panda, as in its own URDF: every peer finds that frame.
-  const bool bare = options.tip.empty() && folder.empty() && options.robot == "panda";
-  Result<Robot> robot = load_robot({.robot = file, .tip = bare ? "panda_link8" : options.tip});
+  Result<Robot> robot = load_bench_robot(options, folder);
   if (!robot) return fail(std::move(robot.error()));
   IkProblem problem{fs::path(options.robot).stem().string(), std::move(*robot), {}, {}, {}};
   const Arm& arm = problem.robot.arm;

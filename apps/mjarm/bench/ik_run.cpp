@@ -5,21 +5,17 @@
 #include <cmath>
 #include <limits>
 
-#include "mjarm/core/rotation.hpp"
+#include "apps/mjarm/bench/robots.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/kinematics/link_chain.hpp"
 #include "mjarm/kinematics/track.hpp"
-#include "mjarm/model/find_arm.hpp"
 
 namespace mjarm::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kPosTol = 1e-4;  // [m]
-constexpr double kRotTol = 1e-3;  // [rad]
-constexpr double kBeyond = 1e-9;  // [rad or m] peers may round at a limit
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 double microseconds_since(Clock::time_point start) {
@@ -39,7 +35,7 @@ void keep(IkRun& run, std::size_t i, double us, const Result<IkSolution, IkFailu
 }
 
 IkRun empty_run(std::string who, std::string set, std::size_t count) {
-  IkRun run{.who = std::move(who), .set = std::move(set), .timed = "c++"};
+  IkRun run{{.who = std::move(who), .set = std::move(set), .timed = "c++"}};
   run.us.assign(count, kNever);
   run.q.resize(count);
   run.reasons.resize(count);
@@ -59,24 +55,28 @@ bool solve_set(const IkSolver& ik, const IkCaseSet& set, int rounds,
   return true;
 }
 
-/// Every pose from the answer to the one before.
-bool follow_paths(const IkSolver& ik, const IkProblem& problem, int rounds,
-                  const std::function<bool()>& advance, IkRun& run) {
+/// What one pose of a path came to.
+struct Followed {
+  double us;                ///< [us] of the call
+  JointVec q;               ///< where the arm stands then
+  std::string reason = {};  ///< why it does not count as an answer
+};
+
+/// Every pose from the answer to the one before, by `follow(X_WT, q)`.
+template <class Follow>
+bool follow_paths(const IkProblem& problem, int rounds, const std::function<bool()>& advance,
+                  IkRun& run, const Follow& follow) {
   for (int round = 0; round < rounds; ++round) {
     std::size_t i = 0;
     for (const std::vector<IkCase>& path : problem.paths) {
       std::vector<double> q = path.front().seed;
       for (const IkCase& entry : path) {
-        const auto start = Clock::now();
-        const auto answer = ik.solve(entry.X_WT, q);
-        keep(run, i, microseconds_since(start), answer);
-        if (answer) {
-          for (std::size_t k = 0; k < q.size(); ++k) {
-            const double value = answer->q[static_cast<Eigen::Index>(k)];
-            run.max_step = std::max(run.max_step, std::abs(value - q[k]));
-            q[k] = value;
-          }
-        }
+        const Followed next = follow(entry.X_WT, q);
+        run.max_step = std::max(run.max_step, (next.q - joint_vec(q)).cwiseAbs().maxCoeff());
+        q.assign(next.q.begin(), next.q.end());
+        run.us[i] = std::min(run.us[i], next.us);
+        run.q[i] = next.reason.empty() ? q : std::vector<double>{};
+        run.reasons[i] = next.reason;
         ++i;
       }
     }
@@ -85,35 +85,31 @@ bool follow_paths(const IkSolver& ik, const IkProblem& problem, int rounds,
   return true;
 }
 
-/// Every pose by two servoing steps from the answer to the one before, as a servo cycle is shorter
-/// than the way between poses; the time is that of one step. Near a singularity steps are damped
-/// and fall behind, and tell so: no answer.
+/// By solving each pose.
+bool solve_paths(const IkSolver& ik, const IkProblem& problem, int rounds,
+                 const std::function<bool()>& advance, IkRun& run) {
+  return follow_paths(problem, rounds, advance, run, [&](const Pose& X_WT, std::span<double> q) {
+    const auto start = Clock::now();
+    const auto answer = ik.solve(X_WT, q);
+    const double us = microseconds_since(start);
+    if (answer) return Followed{us, answer->q};
+    return Followed{us, joint_vec(q), std::string(name(answer.error().code))};
+  });
+}
+
+/// By two servoing steps a pose, as a servo cycle is shorter than the way between poses; the time
+/// is that of one step. Near a singularity steps are damped and fall behind, and tell so: no
+/// answer.
 bool track_paths(const Arm& arm, const IkProblem& problem, int rounds,
                  const std::function<bool()>& advance, IkRun& run) {
   const Tracker tracker(arm, {.dt = 1});  // no bound on the speed: the poses have no time
-  for (int round = 0; round < rounds; ++round) {
-    std::size_t i = 0;
-    for (const std::vector<IkCase>& path : problem.paths) {
-      std::vector<double> q = path.front().seed;
-      for (const IkCase& entry : path) {
-        const auto start = Clock::now();
-        const TrackStep first = tracker.step(entry.X_WT, q);
-        const TrackStep step = tracker.step(entry.X_WT, view(first.q));
-        run.us[i] = std::min(run.us[i], 0.5 * microseconds_since(start));
-        for (std::size_t k = 0; k < q.size(); ++k) {
-          const double value = step.q[static_cast<Eigen::Index>(k)];
-          run.max_step = std::max(run.max_step, std::abs(value - q[k]));
-          q[k] = value;
-        }
-        const bool damped = step.damping > 0;
-        run.q[i] = damped ? std::vector<double>{} : q;
-        run.reasons[i] = damped ? "damped" : "";
-        ++i;
-      }
-    }
-    if (!advance()) return false;
-  }
-  return true;
+  return follow_paths(problem, rounds, advance, run, [&](const Pose& X_WT, std::span<double> q) {
+    const auto start = Clock::now();
+    const TrackStep first = tracker.step(X_WT, q);
+    const TrackStep step = tracker.step(X_WT, view(first.q));
+    const double us = 0.5 * microseconds_since(start);
+    return Followed{us, step.q, step.damping > 0 ? "damped" : ""};
+  });
 }
 
 /// One call after the other, as the loop of a controller makes them. All by one reading of the
@@ -154,20 +150,6 @@ std::vector<const IkCase*> cases_of(const IkProblem& problem, const std::string&
   return cases;
 }
 
-Result<bool> reaches(const IkProblem& problem, const Pose& X_WT, const std::vector<double>& q) {
-  const Arm& arm = problem.robot.arm;
-  if (q.size() != static_cast<std::size_t>(arm.dof())) return false;
-  if (!within_limits(arm, q, -kBeyond)) return false;
-  const std::span<const double> qpos0 = problem.robot.model.qpos0();
-  std::vector<double> qpos(qpos0.begin(), qpos0.end());
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    qpos[static_cast<std::size_t>(arm.joints[i].qpos)] = q[i];
-  }
-  const Result<Pose> X = frame_pose(problem.robot.model, arm.tip, qpos);
-  if (!X) return fail(X.error());
-  return (X->p - X_WT.p).norm() <= kPosTol && angle_between(X->R, X_WT.R) <= kRotTol;
-}
-
 }  // namespace
 
 int ik_run_steps(const IkProblem& problem, int rounds) {
@@ -190,10 +172,10 @@ std::optional<std::vector<IkRun>> run_ik(const IkProblem& problem, int rounds,
   std::size_t poses = 0;
   for (const std::vector<IkCase>& path : problem.paths) poses += path.size();
   runs.push_back(empty_run("mjarm", "path", poses));
-  if (!follow_paths(ik, problem, rounds, advance, runs.back())) return std::nullopt;
+  if (!solve_paths(ik, problem, rounds, advance, runs.back())) return std::nullopt;
   runs.push_back(empty_run("mjarm", "track", poses));
   if (!track_paths(arm, problem, rounds, advance, runs.back())) return std::nullopt;
-  runs.push_back({.who = "mjarm", .set = "fk_jacobian", .timed = "c++", .us = {kNever}});
+  runs.push_back({{.who = "mjarm", .set = "fk_jacobian", .timed = "c++", .us = {kNever}}});
   if (!run_jacobians(problem, rounds, advance, runs.back())) return std::nullopt;
   return runs;
 }
@@ -207,7 +189,7 @@ Result<void> judge(const IkProblem& problem, IkRun& run) {
     bool right = run.q[i].empty() && !reachable;
     if (!run.q[i].empty()) {
       // Whoever meets a pose that was thought out of reach is right: then the set is wrong.
-      const Result<bool> fine = reaches(problem, cases[i]->X_WT, run.q[i]);
+      const Result<bool> fine = reaches(problem.robot, cases[i]->X_WT, run.q[i]);
       if (!fine) return fail(fine.error());
       right = *fine;
       run.false_ok += right ? 0 : 1;
@@ -219,13 +201,6 @@ Result<void> judge(const IkProblem& problem, IkRun& run) {
     }
   }
   return {};
-}
-
-Times times_of(const IkRun& run) {
-  if (run.us.empty()) return {};
-  std::vector<double> us = run.us;
-  std::sort(us.begin(), us.end());
-  return {us[us.size() / 2], us[us.size() * 99 / 100]};
 }
 
 }  // namespace mjarm::app

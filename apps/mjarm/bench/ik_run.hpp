@@ -6,18 +6,13 @@
 #include <vector>
 
 #include "apps/mjarm/bench/ik_cases.hpp"
+#include "apps/mjarm/bench/report.hpp"
 
 namespace mjarm::app {
 
-/// What one contestant did on one set of cases.
-struct IkRun {
-  std::string who = {};      ///< "mjarm", "mjarm numeric", "EAIK", ...
-  std::string version = {};  ///< of a peer; empty for ours
-  std::string set = {};      ///< "reachable", "unreachable", ..., "path", "track", "fk_jacobian"
-  std::string timed = {};    ///< "c++" or "python": where the clock stands
-  std::string error = {};    ///< why there is nothing else; empty where all went well
-
-  std::vector<double> us = {};              ///< [us] of each call; the best round
+/// What one contestant did on one set of cases: "reachable", "unreachable", ..., "path", "track",
+/// "fk_jacobian".
+struct IkRun : BenchEntry {
   std::vector<std::vector<double>> q = {};  ///< answer to each case; empty = "no"
   std::vector<std::string> reasons = {};    ///< why not, one a case; empty where not known
 
@@ -41,12 +36,5 @@ struct IkRun {
 /// Counts what is right in `run`, by MuJoCo's own forward kinematics of the loaded file: an answer
 /// within 1e-4 m, 1e-3 rad and the limits for a pose that can be reached, "no" for any other.
 [[nodiscard]] Result<void> judge(const IkProblem& problem, IkRun& run);
-
-/// Median and 99th percentile of times; 0 where there are none.
-struct Times {
-  double median = 0;
-  double p99 = 0;
-};
-[[nodiscard]] Times times_of(const IkRun& run);
 
 }  // namespace mjarm::app

@@ -1,29 +1,15 @@
 #include <cmath>
 
-#include "apps/mjarm/program_test.hpp"
+#include "apps/mjarm/bench/runs_test.hpp"
 
 namespace mjarm::app {
 namespace {
 
 using nlohmann::json;
 
-const json& run_of(const json& bench, const std::string& who, const std::string& set) {
-  for (const json& run : bench.at("robots").at(0).at("runs")) {
-    if (run.value("who", "") == who && run.value("set", "") == set) return run;
-  }
-  throw std::runtime_error("no run of " + who + " on " + set);
-}
-
-/// Two poses of an arm of two hinges and a slide, and one that is out of reach.
+/// Two poses of an arm, and one that is out of reach.
 std::string write_data(const support::TempFolder& folder) {
-  folder.write("arm.urdf", R"(<robot name="arm"><link name="base"/><link name="a"/><link name="b"/>
-<link name="tool"/>
-<joint name="j1" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
-<limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
-<joint name="j2" type="revolute"><origin xyz="1 0 0"/><parent link="a"/><child link="b"/>
-<axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
-<joint name="tip" type="fixed"><origin xyz="1 0 0"/><parent link="b"/><child link="tool"/></joint>
-</robot>)");
+  write_planar_arm(folder);
   const double h = std::sqrt(0.5);
   const json turned = {{"pos", {1, 1, 0}}, {"quat", {h, 0, 0, h}}, {"seed", {0.1, 1.4}}};
   const json bent = {{"pos", {2 * std::cos(0.5), 0, 0}},  // q = -0.5, 1
@@ -89,18 +75,13 @@ TEST(BenchIk, RunsPeersAndJudgesThemToo) {
   const support::TempFolder folder;
   const std::string data = write_data(folder);
   // A peer that answers the first pose rightly, the second one wrongly, and one that fails.
-  const std::filesystem::path python = folder.write("venv/bin/python", R"(#!/bin/sh
-grep -q '"tip":"tool"' "$2" || exit 9
-cat > "$3" <<'END'
+  const std::string venv = write_peers(folder, R"(
 {"who":"good","version":"1","set":"reachable","timed":"python","us":[5,7],"q":[[0,1.5707963],[1,1]]}
 {"who":"bad","version":"2","error":"no such arm"}
-END
-)");
-  std::filesystem::permissions(python, std::filesystem::perms::owner_all);
-  const std::vector<std::string> arguments = {
-      "bench",    "ik",    "--robot", "arm",     "--data",
-      data,       "--tip", "tool",    "--peers", (folder.path() / "venv").string(),
-      "--rounds", "1"};
+)",
+                                       R"(grep -q '"tip":"tool"' "$2" || exit 9)");
+  const std::vector<std::string> arguments = {"bench", "ik",   "--robot", "arm", "--data",   data,
+                                              "--tip", "tool", "--peers", venv,  "--rounds", "1"};
   const auto table = mjarm(arguments);
   ASSERT_EQ(table.exit_code, 0) << table.err;
   EXPECT_NE(table.out.find("good 1"), std::string::npos) << table.out;

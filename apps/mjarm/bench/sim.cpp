@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/mjarm/bench/suites.hpp"
+#include "apps/mjarm/options.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -84,10 +85,10 @@ BenchSuite add_bench_sim(CLI::App& bench) {
   auto options = std::make_shared<Options>();
   CLI::App& sim = add_subcommand(bench, "sim", msg::sim_bench_summary, msg::sim_bench_examples);
   add_robot_options(sim, options->robot);
-  sim.add_option("--steps", options->steps, text(msg::sim_bench_steps))->type_name("N");
-  sim.add_option("--rounds", options->rounds, text(msg::sim_bench_rounds))->type_name("N");
-  sim.add_flag("--json", options->json, text(msg::app_option_json));
-  sim.add_flag("--no-timing", options->no_timing, text(msg::app_option_no_timing));
+  add_option(sim, "--steps", options->steps, msg::sim_bench_steps, "N");
+  add_option(sim, "--rounds", options->rounds, msg::sim_bench_rounds, "N");
+  add_flag(sim, "--json", options->json, msg::app_option_json);
+  add_flag(sim, "--no-timing", options->no_timing, msg::app_option_no_timing);
   return {&sim, [options] { return run_sim(*options); }};
 }
 

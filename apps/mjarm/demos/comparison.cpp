@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "mjarm/core/messages/demo.hpp"
 
@@ -48,12 +50,11 @@ PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) {
   return panel;
 }
 
-/// The range of one coordinate over all lines of both panels, with a little room.
-PlotRange common_range(const PlotPanel& a, const PlotPanel& b,
-                       std::vector<double> PlotLine::* values) {
+/// The range of one coordinate over all lines of the panels, with a little room.
+PlotRange common_range(std::span<const PlotPanel> panels, std::vector<double> PlotLine::* values) {
   double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-  for (const PlotPanel* panel : {&a, &b}) {
-    for (const PlotLine& line : panel->lines) {
+  for (const PlotPanel& panel : panels) {
+    for (const PlotLine& line : panel.lines) {
       for (const double x : line.*values) {
         if (std::isnan(x)) continue;
         lower = std::min(lower, x);
@@ -61,7 +62,7 @@ PlotRange common_range(const PlotPanel& a, const PlotPanel& b,
       }
     }
   }
-  if (a.y_from_zero && values == &PlotLine::y) lower = 0;
+  if (panels.front().y_from_zero && values == &PlotLine::y) lower = 0;
   const double room = 0.05 * (upper - lower) + 1e-9;
   return {lower >= 0 && lower < room ? 0 : lower - room, upper + room};  // time begins at 0
 }
@@ -86,22 +87,26 @@ double largest_distance(const MeasuredRun& run) {
   return largest;
 }
 
-Plot comparison_plot(const ComparisonText& about, const Arm& arm, const MeasuredRun& naive,
-                     const MeasuredRun& ours, std::span<const Chart> rows) {
-  const MeasuredRun sides[] = {from_zero(naive), from_zero(ours)};
+Plot comparison_plot(const ComparisonText& about, const Arm& arm, std::span<const ComparedRun> runs,
+                     std::span<const Chart> rows) {
   Plot page;
   page.title = about.title;
   page.note = about.note;
-  page.columns = 2;
+  page.columns = static_cast<int>(runs.size());
   page.panel_width = 330;
   for (const Chart chart : rows) {
-    PlotPanel left = panel_of(chart, arm, sides[0]), right = panel_of(chart, arm, sides[1]);
-    left.x_range = right.x_range = common_range(left, right, &PlotLine::x);
-    left.y_range = right.y_range = common_range(left, right, &PlotLine::y);
-    left.title = text(msg::demo_side_title, text(msg::demo_naive), left.title);
-    right.title = text(msg::demo_side_title, text(msg::demo_ours), right.title);
-    page.panels.push_back(std::move(left));
-    page.panels.push_back(std::move(right));
+    std::vector<PlotPanel> row;
+    for (const ComparedRun& side : runs) {
+      PlotPanel panel = panel_of(chart, arm, from_zero(side.run));
+      panel.title = text(msg::demo_side_title, side.title, panel.title);
+      row.push_back(std::move(panel));
+    }
+    const PlotRange x = common_range(row, &PlotLine::x), y = common_range(row, &PlotLine::y);
+    for (PlotPanel& panel : row) {
+      panel.x_range = x;
+      panel.y_range = y;
+      page.panels.push_back(std::move(panel));
+    }
   }
   return page;
 }

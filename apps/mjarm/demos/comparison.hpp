@@ -19,7 +19,7 @@ struct PeakSpeed {
 /// Largest distance [m] of the tool from the run's curve, which must be set.
 [[nodiscard]] double largest_distance(const MeasuredRun& run);
 
-/// What a page of two runs shows, one row each.
+/// What a page of runs shows, one row each.
 enum class Chart { joint_speeds, joints, front, tool_speed, error };
 
 struct ComparisonText {
@@ -27,10 +27,14 @@ struct ComparisonText {
   std::string note;  ///< what came out, at the foot of the page
 };
 
-/// Two runs side by side, in axes of the same scale, time counted from the beginning of each: the
-/// naive one at the left, ours at the right.
+/// One way to do it.
+struct ComparedRun {
+  std::string title;
+  MeasuredRun run;
+};
+
+/// Runs side by side, in axes of the same scale, time counted from the beginning of each.
 [[nodiscard]] Plot comparison_plot(const ComparisonText& about, const Arm& arm,
-                                   const MeasuredRun& naive, const MeasuredRun& ours,
-                                   std::span<const Chart> rows);
+                                   std::span<const ComparedRun> runs, std::span<const Chart> rows);
 
 }  // namespace mjarm::app

@@ -58,9 +58,7 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   const std::vector<UnreachableRange> ranges = unreachable_ranges(stage.reach(), points, home);
   if (!ranges.empty()) return refuse(stage, points, ranges);
 
-  std::vector<double> index;
-  for (int i = 0; i < kPoints; ++i) index.push_back(i);
-  const Result<JointPath, PathFailure> path = solve_path(stage.ik(), points, index, home);
+  const Result<JointPath, PathFailure> path = solve_path(stage.ik(), points, home);
   if (!path) return stage.refuse({.path = path.error(), .timing = {}});
   const Result<ToolMotion, MotionFailure> motion =
       plan_tool_motion(stage.ik(), *curve, view(path->q.front()), {.path = {.keep_start = true}});
@@ -69,6 +67,7 @@ Result<Report> run_ellipse(const DemoOptions& options) {
 
   Report report;
   report.max_joint_step = path->max_step();
+  stage.tell(*motion, report);
   const ControlMode mode = stage.control(ControlMode::computed_torque);
   if (auto done = stage.approach(view(motion->path.q.front()), mode); !done) {
     return fail(std::move(done.error()));

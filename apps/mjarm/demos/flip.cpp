@@ -66,7 +66,7 @@ Result<Report> run_flip(const DemoOptions& options) {
   }
 
   Report report;
-  report.max_joint_step = motion->path.max_step();
+  stage.tell(*motion, report);
   const std::vector<MeasuredRun> runs = stage.measured_runs();
   if (runs.empty()) return stage.finish(std::move(report));  // stopped on the way to the line
   tell_naive(*naive, *naive_run, stage.arm(), report);
@@ -76,8 +76,10 @@ Result<Report> run_flip(const DemoOptions& options) {
       naive->flip ? text(msg::demo_flip_note, 100 * naive->flip->fraction,
                          1e3 * largest_distance(*naive_run), 1e3 * largest_distance(runs.back()))
                   : std::string();
-  auto saved = stage.save_comparison(comparison_plot(
-      {text(msg::demo_flip_title), note}, stage.arm(), *naive_run, runs.back(), kCharts));
+  const ComparedRun compared[] = {{text(msg::demo_naive), *naive_run},
+                                  {text(msg::demo_ours), runs.back()}};
+  auto saved = stage.save_comparison(
+      comparison_plot({text(msg::demo_flip_title), note}, stage.arm(), compared, kCharts));
   if (!saved) return fail(std::move(saved.error()));
   return stage.finish(std::move(report));
 }

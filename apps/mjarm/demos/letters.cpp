@@ -72,7 +72,7 @@ Result<Report> run_letters(const DemoOptions& options) {
     Result<ToolMotion, MotionFailure> motion = plan_tool_motion(stage.ik(), *curve, view(q));
     if (!motion) return stage.refuse(motion.error());
     q = motion->path.q.back();
-    report.max_joint_step = std::max(report.max_joint_step, motion->path.max_step());
+    stage.tell(*motion, report);
     motions.push_back(std::move(*motion));
   }
   for (const ToolMotion& motion : motions) {

@@ -45,6 +45,7 @@ Result<Report> run_movel(const DemoOptions& options) {
   stage.start_at(seed);
   Report report;
   report.max_joint_step = path->max_step();
+  stage.tell(*motion, report);
   auto done = options.guide ? follow_as_tutorial(stage, *path, poses, *line)
                             : stage.run(motion->trajectory,
                                         stage.control(ControlMode::computed_torque), 0.3, &*line);

@@ -98,7 +98,7 @@ Result<Report> run_square(const DemoOptions& options) {
   stage.show().add_line(choice->corners);
   stage.start_at(view(choice->start.q));
   Report report;
-  report.max_joint_step = motion.path.max_step();
+  stage.tell(motion, report);
   const ControlMode mode = stage.control(ControlMode::computed_torque);
   if (auto done = stage.approach(view(motion.path.q.front()), mode); !done) {
     return fail(std::move(done.error()));

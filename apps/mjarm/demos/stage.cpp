@@ -142,9 +142,8 @@ Result<void> Stage::run(const Trajectory& trajectory, ControlMode mode, double s
 }
 
 Result<void> Stage::jump(const JointVec& q, ControlMode mode, double seconds) {
-  const JointVec rest = JointVec::Zero(q.size());
-  const JointState state{q, rest, rest};
-  const Result<Trajectory> stay = Trajectory::through({0, seconds}, {state, state});
+  const JointState rest = JointState::at_rest(q);
+  const Result<Trajectory> stay = Trajectory::through({0, seconds}, {rest, rest});
   if (!stay) return fail(stay.error());
   return run(*stay, mode, 0);
 }
@@ -175,6 +174,11 @@ Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mo
   MeasuredRun run{.rows = {}, .curve = &curve};
   for (std::size_t i = 0; i < recorder.size(); ++i) run.rows.push_back(recorder.row(i));
   return run;
+}
+
+void Stage::tell(const ToolMotion& motion, Report& report) const {
+  add_motion(motion, arm_, report);
+  for (const SpeedDip& dip : motion.dips) log_info(describe(dip, arm_));
 }
 
 Result<void> Stage::save_comparison(const Plot& page) const {

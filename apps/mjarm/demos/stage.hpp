@@ -67,6 +67,9 @@ class Stage {
   /// Writes the page of a comparison into the folder, as comparison.png and .svg.
   [[nodiscard]] Result<void> save_comparison(const Plot& page) const;
 
+  /// Adds a planned motion to the report and tells where its tool is slower than asked.
+  void tell(const ToolMotion& motion, Report& report) const;
+
   /// Waypoints and trajectories that were reached so far.
   [[nodiscard]] std::size_t reached() const { return total_.reached; }
   /// Something ended the motion early: the user, or a waypoint that was never reached.

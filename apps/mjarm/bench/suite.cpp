@@ -1,0 +1,55 @@
+#include "apps/mjarm/bench/suite.hpp"
+
+#include <utility>
+
+#include "apps/mjarm/batch.hpp"
+#include "apps/mjarm/options.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/bench.hpp"
+
+namespace mjarm::app {
+
+void add_bench_options(CLI::App& app, BenchOptions& options, Msg data_help) {
+  const auto add = [&app](const char* name, std::string& value, Msg help, const char* type) {
+    add_option(app, name, value, help, type);
+  };
+  add("--robot", options.robot, msg::bench_option_robot, "ROBOT");
+  add("--data", options.data, data_help, "DIR");
+  add("--peers", options.peers, msg::bench_option_peers, "VENV");
+  add("--rounds", options.rounds, msg::bench_option_rounds, "N");
+  add("--out", options.out, msg::bench_option_out, "FILE");
+  add_flag(app, "--json", options.json, msg::app_option_json);
+  add_flag(app, "--no-timing", options.no_timing, msg::app_option_no_timing);
+}
+
+Result<int> run_suite(const BenchOptions& options, const std::vector<std::string>& robots,
+                      const std::vector<Msg>& columns, const BenchRobot& measure) {
+  constexpr std::uint64_t kMostRounds = 10'000;
+  const Result<std::uint64_t> rounds = parse_whole("--rounds", options.rounds);
+  if (!rounds) return fail(rounds.error());
+  if (*rounds < 1 || *rounds > kMostRounds) {
+    return fail(Errc::usage, text(msg::bench_count, "--rounds", 1, kMostRounds, *rounds));
+  }
+  std::vector<std::string> asked{options.robot};
+  if (options.robot.empty()) asked = robots;
+  std::vector<BenchResult> results;
+  for (const std::string& robot : asked) {
+    Result<BenchResult> result = measure(robot, static_cast<int>(*rounds));
+    if (!result) return fail(std::move(result.error()));
+    results.push_back(std::move(*result));
+  }
+  const bool timing = !options.no_timing;
+  std::string out =
+      options.json ? bench_json(results, timing) : bench_table(results, columns, timing);
+  out.pop_back();  // the line break that is added now
+  if (Result<void> written = write_answer(options.out, out); !written) {
+    return fail(std::move(written.error()));
+  }
+  for (const BenchResult& result : results) {
+    if (!result.wrong.empty()) return fail(Errc::impossible, result.wrong);
+  }
+  return 0;
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,11 @@
+# The headers that most files of the rooms begin with, compiled once: a first build takes much less
+# time. Off where developers build, as ccache cannot see into them, and as a file that forgets an
+# #include must not compile. The macros here must be those that every room has.
+set(MJARM_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <functional> <optional>
+                      <string> <tl/expected.hpp> <vector>)
+file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cpp" CONTENT "")
+add_library(mjarm_precompiled OBJECT "${PROJECT_BINARY_DIR}/precompiled.cpp")
+target_compile_features(mjarm_precompiled PUBLIC cxx_std_20)
+target_compile_definitions(mjarm_precompiled PRIVATE EIGEN_MAX_STATIC_ALIGN_BYTES=32)
+target_link_libraries(mjarm_precompiled PRIVATE Eigen3::Eigen tl::expected mjarm_options)
+target_precompile_headers(mjarm_precompiled PRIVATE ${MJARM_PRECOMPILED})

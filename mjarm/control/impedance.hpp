@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+
+#include "mjarm/control/reference.hpp"
+#include "mjarm/core/joint_vec.hpp"
+#include "mjarm/kinematics/link_chain.hpp"
+#include "mjarm/model/arm.hpp"
+
+namespace mjarm {
+
+/// Springs and dampers of the impedance modes.
+struct Impedance {
+  double joint_stiffness = 200;     ///< [N m/rad or N/m] of each joint, > 0
+  double tool_stiffness = 1000;     ///< [N/m] of the tool, > 0
+  double tool_turn_stiffness = 50;  ///< [N m/rad] of the tool, > 0
+  /// [N m/rad or N/m] >= 0, of joints to spare: pulls the arm to the reference without moving the
+  /// tool.
+  double posture_stiffness = 20;
+  double damping_ratio = 1;  ///< of all springs, >= 0; 1 = critical
+};
+
+/// Where the arm is and shall be, all shape (dof,).
+struct ImpedanceState {
+  JointVec q, v;          ///< [rad or m], [rad/s or m/s]
+  JointVec q_ref, v_ref;  ///< likewise
+};
+
+/// Torque of a spring and a damper at each joint, (dof,) [N m or N]. Each damper is made for the
+/// inertia of its joint alone, the diagonal of the mass matrix.
+/// @param mass  (dof, dof) [kg m^2], the arm's part of the mass matrix at q.
+[[nodiscard]] JointVec joint_spring(const Impedance& impedance, const ImpedanceState& state,
+                                    const Eigen::MatrixXd& mass);
+
+/// Joint torque (dof,) of a spring and a damper between the tool at `q` and where `q_ref` puts it
+/// (O. Khatib, IEEE J. Robotics and Automation 3 (1987) 43). The damping matrix is made by double
+/// diagonalisation of the stiffness and the inertia that the tool feels (A. Albu-Schaeffer et al.,
+/// IEEE/RSJ IROS 2003); near singularities, where that inertia has no bound, it is kept finite.
+/// Joints to spare are held by posture_stiffness through the null space of the transposed
+/// Jacobian's dynamically consistent inverse.
+[[nodiscard]] JointVec tool_spring(const Impedance& impedance, const ImpedanceState& state,
+                                   const Eigen::MatrixXd& mass, const LinkChain& links);
+
+}  // namespace mjarm
