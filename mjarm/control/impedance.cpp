@@ -1,8 +1,6 @@
 #include "mjarm/control/impedance.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/rotation.hpp"
 
 namespace mjarm {
@@ -10,20 +8,31 @@ namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+using PerForce = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxDof, 6>;
 
 /// Added to the mobility of the tool [1/kg], so that its inertia has a bound at singularities. So
 /// little that a posture's pull on the tool stays below what can be measured.
 constexpr double kLeastMobility = 1e-9;
 
-/// D with D = 2 ratio L sqrt(S) L^T for inertia = L L^T and K = L S L^T in the eigenbasis: every
-/// mode of (inertia, K) gets the damping ratio.
-Matrix6 damping_matrix(const Matrix6& inertia, const Vector6& stiffness, double ratio) {
-  const Matrix6 K = stiffness.asDiagonal();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> modes(K, inertia);
-  // With V^T inertia V = 1 and V^T K V = S: inertia = W W^T and K = W S W^T, where W = inertia V.
-  const Matrix6 W = inertia * modes.eigenvectors();
-  const Vector6 roots = modes.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return 2 * ratio * W * roots.asDiagonal() * W.transpose();
+/// What the tool feels like to a hand: its inertia, and how its spring's modes are damped.
+struct ToolModes {
+  Matrix6 inertia;
+  Matrix6 damping;
+};
+
+/// Every mode of (inertia, K) gets the damping ratio: D = 2 ratio W sqrt(S) W^T, where inertia =
+/// mobility^-1 = W W^T and K = W S W^T.
+ToolModes tool_modes(const Matrix6& mobility, const Vector6& stiffness, double ratio) {
+  const SymmetricEigen at = symmetric_eigen(mobility);
+  const Vector6 roots = at.values.cwiseMax(kLeastMobility).cwiseSqrt();
+  const Matrix6 E = at.vectors;
+  const Matrix6 root = E * roots.cwiseInverse().asDiagonal() * E.transpose();  // inertia^(1/2)
+  const Matrix6 back = E * roots.asDiagonal() * E.transpose();                 // its inverse
+  const Matrix6 K = back * stiffness.asDiagonal() * back;
+  const SymmetricEigen modes = symmetric_eigen(K);
+  const Matrix6 W = root * modes.vectors;
+  const Vector6 rates = modes.values.cwiseMax(0.0).cwiseSqrt();
+  return {root * root, 2 * ratio * W * rates.asDiagonal() * W.transpose()};
 }
 
 }  // namespace
@@ -39,21 +48,17 @@ JointVec tool_spring(const Impedance& impedance, const ImpedanceState& state,
                      const Eigen::MatrixXd& mass, const LinkChain& links) {
   const FkJacobian at = fk_jacobian(links, view(state.q));
   const Pose wanted = fk(links, view(state.q_ref));
-  const Eigen::MatrixXd J = at.J_W;
-  const Eigen::LDLT<Eigen::MatrixXd> inverse(mass);
-  const Eigen::MatrixXd per_force = inverse.solve(J.transpose());  // M^-1 J^T
+  const Jacobian& J = at.J_W;
+  const PerForce per_force = solve_symmetric(mass, J.transpose());  // M^-1 J^T
   const Matrix6 mobility = J * per_force + kLeastMobility * Matrix6::Identity();
-  const Matrix6 inertia = mobility.ldlt().solve(Matrix6::Identity());
 
   Vector6 stiffness, error;
   stiffness << Eigen::Vector3d::Constant(impedance.tool_stiffness),
       Eigen::Vector3d::Constant(impedance.tool_turn_stiffness);
   error << wanted.p - at.X_WT.p, rotation_log(wanted.R * at.X_WT.R.transpose());
+  const ToolModes modes = tool_modes(mobility, stiffness, impedance.damping_ratio);
   const JointVec v_error = state.v_ref - state.v;
-  const Vector6 force =
-      stiffness.cwiseProduct(error) +
-      damping_matrix(0.5 * (inertia + inertia.transpose()), stiffness, impedance.damping_ratio) *
-          (J * v_error);
+  const Vector6 force = stiffness.cwiseProduct(error) + modes.damping * (J * v_error);
   const JointVec torque = J.transpose() * force;
   if (state.q.size() <= 6) return torque;
 
@@ -61,7 +66,7 @@ JointVec tool_spring(const Impedance& impedance, const ImpedanceState& state,
   const JointVec damping = 2 * impedance.damping_ratio * (k * mass.diagonal()).cwiseSqrt();
   const JointVec posture = k * (state.q_ref - state.q) + damping.cwiseProduct(v_error);
   // (1 - J^T J#^T) posture with J# = M^-1 J^T inertia: no acceleration of the tool comes of it.
-  const Vector6 at_tool = inertia * (per_force.transpose() * posture);
+  const Vector6 at_tool = modes.inertia * (per_force.transpose() * posture);
   return torque + posture - JointVec(J.transpose() * at_tool);
 }
 

@@ -1,9 +1,9 @@
 #include "mjarm/control/step_inverse.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "mjarm/control/actuation.hpp"
+#include "mjarm/core/linear_algebra.hpp"
 
 namespace mjarm {
 
@@ -60,7 +60,7 @@ JointVec StepInverse::friction(std::span<const double> qpos, const JointVec& v, 
   const auto is_dry = [&](int dof) { return rule_.friction[dof].most > 0; };
   if (std::none_of(dof_.begin(), dof_.end(), is_dry)) return torque;
   // Constraints are solved before the integrator takes its implicit part.
-  const JointVec before = a + JointVec(mass_matrix(qpos).ldlt().solve(Eigen::VectorXd(implicit)));
+  const JointVec before = a + JointVec(solve_symmetric(mass_matrix(qpos), implicit));
   for (Eigen::Index i = 0; i < a.size(); ++i) {
     const DryFriction& dry = rule_.friction[dof_[i]];
     torque[i] = std::clamp(dry.mass * (before[i] + dry.damping * v[i]), -dry.most, dry.most);

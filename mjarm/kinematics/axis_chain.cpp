@@ -1,10 +1,10 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/kinematics/axis_chain_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
@@ -70,7 +70,7 @@ class SmoothLength {
       g.segment<2>(i) += pull;
       H.block<2, 2>(i, i) += (D.transpose() * D - pull * pull.transpose()) / r;
     }
-    const JointVec step = -H.ldlt().solve(g);
+    const JointVec step = -solve_symmetric(H, g);
     return {step, -g.dot(step)};
   }
 

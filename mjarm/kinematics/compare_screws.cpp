@@ -1,8 +1,8 @@
-#include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/compare_internal.hpp"
@@ -212,11 +212,10 @@ Pose fitted_base(const Arm& first, const Arm& second) {
     const Vector3d b = rotation_log(B[0].R.transpose() * B[k].R);
     if (std::max(a.norm(), b.norm()) < 3) H += a * b.transpose();
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3d R_Y = svd.matrixU() * svd.matrixV().transpose();
-  if (R_Y.determinant() < 0) {
-    R_Y = svd.matrixU() * Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
-  }
+  const SingularValues svd = singular_values(H);
+  const Matrix3d U = svd.U, V = svd.V;
+  const double hand = (U * V.transpose()).determinant() < 0 ? -1 : 1;
+  const Matrix3d R_Y = U * Vector3d(1, 1, hand).asDiagonal() * V.transpose();
   Pose X;
   X.R = B[0].R * (A[0].R * R_Y).transpose();
   Eigen::MatrixXd M(3 * kPoses, 6);
@@ -226,7 +225,7 @@ Pose fitted_base(const Arm& first, const Arm& second) {
     M.block<3, 3>(3 * k, 3).setIdentity();
     rest.segment<3>(3 * k) = B[k].p - X.R * A[k].p;
   }
-  X.p = M.completeOrthogonalDecomposition().solve(rest).tail<3>();
+  X.p = least_squares(M, rest).tail<3>();
   return X;
 }
 

@@ -1,11 +1,11 @@
 #include "mjarm/kinematics/self_motion.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_search_internal.hpp"
 
@@ -118,12 +118,8 @@ class SelfMotion {
       J.col(i).setZero();
     }
     // Directions that move the tool by less than a millionth of what others do count as free.
-    Eigen::ColPivHouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxDof, 6>> qr;
-    qr.setThreshold(1e-6);
-    qr.compute(J.transpose());
-    JointVec parts = qr.householderQ().adjoint() * direction;
-    parts.head(qr.rank()).setZero();
-    return qr.householderQ() * parts;
+    const Eigen::MatrixXd free = null_space(J, 1e-6);
+    return free.lazyProduct(free.transpose().lazyProduct(direction));
   }
 
   [[nodiscard]] bool accepts(const JointVec& q) const noexcept {

@@ -1,6 +1,6 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/messages/check.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/check_internal.hpp"
@@ -48,9 +48,7 @@ void check_mjcf_body(const CheckContext& context, const SourceNode& body) {
 
 }  // namespace
 
-Eigen::Vector3d principal_moments(const Eigen::Matrix3d& I) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(I, Eigen::EigenvaluesOnly).eigenvalues();
-}
+Eigen::Vector3d principal_moments(const Eigen::Matrix3d& I) { return symmetric_eigen(I).values; }
 
 void check_moments(const CheckContext& context, const Place& place,
                    const Eigen::Vector3d& principal) {

@@ -1,8 +1,8 @@
 #include <mujoco/mujoco.h>
 
-#include <Eigen/Eigenvalues>
 #include <map>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
@@ -50,8 +50,7 @@ void mend_inertia(const fs::path& file, XMLElement& robot, std::vector<std::stri
     I << entry("ixx"), entry("ixy"), entry("ixz"),  //
         entry("ixy"), entry("iyy"), entry("iyz"),   //
         entry("ixz"), entry("iyz"), entry("izz");
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(I, Eigen::EigenvaluesOnly);
-    if (solver.eigenvalues()[0] > 0) continue;
+    if (symmetric_eigen(I).values[0] > 0) continue;
     for (const char* name : {"ixy", "ixz", "iyz"}) given->SetAttribute(name, "0");
     mended += (mended.empty() ? "" : ", ") + std::string(link->Attribute("name"));
   }

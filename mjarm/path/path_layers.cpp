@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
@@ -259,8 +259,7 @@ std::vector<JointVec> PathLayers::aside(const JointVec& q) const {
   const int rows = position ? 3 : 6;
   std::vector<JointVec> out;
   if (q.size() <= rows) return out;
-  const Eigen::MatrixXd J = fk_jacobian(chain_, view(q)).J_W.topRows(rows);
-  const Eigen::MatrixXd kernel = Eigen::FullPivLU<Eigen::MatrixXd>(J).kernel();
+  const Eigen::MatrixXd kernel = null_space(fk_jacobian(chain_, view(q)).J_W.topRows(rows));
   for (Eigen::Index k = 0; k < kernel.cols(); ++k) {
     const double size = kernel.col(k).cwiseAbs().maxCoeff();
     if (!(size > 0)) continue;

@@ -1,10 +1,10 @@
 #include "mjarm/program/start_posture.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
@@ -68,7 +68,7 @@ double dexterity(const Arm& arm, std::span<const double> q) {
   J.topRows<3>() /= reach_of(arm);
   if (arm.dof() >= 6) return smallest_singular_value(J);
   const Eigen::Matrix3d gram = J.topRows<3>() * J.topRows<3>().transpose();
-  return std::sqrt(Eigen::JacobiSVD<Eigen::Matrix3d>(gram).singularValues()[2]);
+  return std::sqrt(std::max(0.0, symmetric_eigen(gram).values[0]));
 }
 
 std::vector<StartPosture> start_postures(
