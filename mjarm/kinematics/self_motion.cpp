@@ -5,7 +5,6 @@
 #include <limits>
 #include <optional>
 
-#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_search_internal.hpp"
 
@@ -13,6 +12,25 @@ namespace mjarm {
 namespace {
 
 using detail::Descent;
+
+/// Takes the parts along the rows of J out of `direction`: pivoted Gram-Schmidt, each step twice,
+/// without memory of the heap. What moves the tool by less than a millionth of what other
+/// directions do counts as free.
+void remove_rows(Jacobian& J, JointVec& direction) noexcept {
+  double longest = 0;
+  for (int k = 0; k < 6; ++k) {
+    int pivot = 0;
+    const double length = J.rowwise().norm().maxCoeff(&pivot);
+    longest = std::max(longest, length);
+    if (!(length > 1e-6 * longest)) return;
+    const JointVec row = J.row(pivot).transpose() / length;
+    for (int twice = 0; twice < 2; ++twice) {
+      direction -= row.dot(direction) * row;
+      for (int i = 0; i < 6; ++i) J.row(i) -= J.row(i).dot(row) * row.transpose();
+    }
+    J.row(pivot).setZero();
+  }
+}
 using detail::DescentOptions;
 using detail::IkGoal;
 
@@ -117,9 +135,8 @@ class SelfMotion {
       direction[i] = 0;
       J.col(i).setZero();
     }
-    // Directions that move the tool by less than a millionth of what others do count as free.
-    const Eigen::MatrixXd free = null_space(J, 1e-6);
-    return free.lazyProduct(free.transpose().lazyProduct(direction));
+    remove_rows(J, direction);
+    return direction;
   }
 
   [[nodiscard]] bool accepts(const JointVec& q) const noexcept {
