@@ -64,6 +64,9 @@ function(mjarm_tests target)
   endif()
   target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing MuJoCo::mujoco
                                           GTest::gtest_main GTest::gmock)
+  if(MJARM_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM mjarm_precompiled_tests)
+  endif()
   gtest_discover_tests(${target} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
                        DISCOVERY_TIMEOUT 60)
 endfunction()
