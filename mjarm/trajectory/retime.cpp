@@ -29,12 +29,10 @@ struct Local {
 class Solver {
  public:
   explicit Solver(const RetimeProblem& problem)
-      : p_(problem), cells_(problem.tau.size() - 1), c_(cells_ + 2) {
-    const std::vector<double>& tau = p_.tau;
+      : p_(problem), cells_(problem.knots.size() - 1), c_(cells_ + 2) {
     knots_.resize(cells_ + 1);
     for (std::size_t i = 0; i <= cells_; ++i) {
-      const double before = i > 0 ? tau[i] - tau[i - 1] : 0;
-      const double after = i < cells_ ? tau[i + 1] - tau[i] : 0;
+      const double before = i > 0 ? h(i - 1) : 0, after = i < cells_ ? h(i) : 0;
       knots_[i] = {after / (before + after), before / (before + after), 2 / (before + after),
                    0.5 * (before + after)};
     }
@@ -58,7 +56,9 @@ class Solver {
     double weight;  // [s] of time it stands for
   };
 
-  [[nodiscard]] double h(std::size_t cell) const { return p_.tau[cell + 1] - p_.tau[cell]; }
+  [[nodiscard]] double h(std::size_t cell) const {
+    return p_.tau[p_.knots[cell + 1]] - p_.tau[p_.knots[cell]];
+  }
   static double u(const std::vector<double>& c, const Knot& k, std::size_t i) {
     return k.first * c[i] + k.second * c[i + 1];
   }
@@ -250,20 +250,25 @@ class Solver {
                                   -0.9061798459386640};
     constexpr double kWeights[5] = {0.5688888888888889, 0.4786286704993665, 0.4786286704993665,
                                     0.2369268850561891, 0.2369268850561891};
-    TimeLaw law;
-    law.t.assign(cells_ + 1, 0.0);
-    for (std::size_t i = 0; i <= cells_; ++i) {
-      law.u.push_back(u(c_, knots_[i], i));
-      law.du.push_back(du(c_, knots_[i], i));
-      if (i == 0) continue;
-      const std::size_t k = i - 1;
-      const double half = 0.5 * h(k), bend = curvature(c_, k);
-      double time = 0;
-      for (std::size_t m = 0; m < 5; ++m) {
-        const double x = half * (1 + kNodes[m]);
-        time += half * kWeights[m] / std::sqrt(law.u[k] + x * (law.du[k] + 0.5 * bend * x));
+    TimeLaw law{{0}, {u(c_, knots_[0], 0)}, {du(c_, knots_[0], 0)}};
+    for (std::size_t k = 0; k < cells_; ++k) {
+      const std::size_t first = p_.knots[k], last = p_.knots[k + 1];
+      const double at = law.u[first], slope = law.du[first], bend = curvature(c_, k);
+      double from = 0;
+      for (std::size_t i = first + 1; i <= last; ++i) {
+        const double to = p_.tau[i] - p_.tau[first], half = 0.5 * (to - from);
+        double time = 0;
+        for (std::size_t m = 0; m < 5; ++m) {
+          const double x = from + half * (1 + kNodes[m]);
+          time += half * kWeights[m] / std::sqrt(at + x * (slope + 0.5 * bend * x));
+        }
+        law.t.push_back(law.t.back() + time);
+        law.u.push_back(at + to * (slope + 0.5 * bend * to));
+        law.du.push_back(slope + bend * to);
+        from = to;
       }
-      law.t[i] = law.t[k] + time;
+      law.u.back() = u(c_, knots_[k + 1], k + 1);
+      law.du.back() = du(c_, knots_[k + 1], k + 1);
     }
     return law;
   }

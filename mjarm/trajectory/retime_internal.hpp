@@ -12,8 +12,9 @@ namespace mjarm::detail {
 /// 1].
 struct RetimeProblem {
   std::size_t rows = 0;
-  std::size_t a_rows = 0;             ///< of `a_a` and the like at one knot
-  std::vector<double> tau;            ///< [s] strictly ascending, at least 2: knots of the time law
+  std::size_t a_rows = 0;   ///< of `a_a` and the like at one knot
+  std::vector<double> tau;  ///< [s] strictly ascending, at least 2: where the law is asked for
+  std::vector<std::size_t> knots;     ///< indices of those where it has knots; first and last too
   std::vector<double> u_max;          ///< per knot: largest (dtau/dt)^2 > 0 the speeds allow
   std::vector<double> a_a, v_a;       ///< per knot and row: x'' / A, x' / A
   std::vector<double> root_a, still;  ///< the same: by the rate itself, and at rest
@@ -21,8 +22,8 @@ struct RetimeProblem {
                                       ///< side after knot k is 2 k, that before it 2 k - 1
 };
 
-/// How the reference is walked: u = (dtau/dt)^2 at each knot, quadratic and once continuously
-/// differentiable in between.
+/// How the reference is walked: u = (dtau/dt)^2 at each `tau`, between knots quadratic and once
+/// continuously differentiable everywhere.
 struct TimeLaw {
   std::vector<double> t;   ///< [s] strictly ascending from 0
   std::vector<double> u;   ///< > 0

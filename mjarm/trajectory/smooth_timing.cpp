@@ -5,71 +5,12 @@
 
 #include "mjarm/trajectory/path_torque_internal.hpp"
 #include "mjarm/trajectory/peaks_internal.hpp"
+#include "mjarm/trajectory/reference_internal.hpp"
 #include "mjarm/trajectory/retime_internal.hpp"
-#include "mjarm/trajectory/smooth_profile_internal.hpp"
 #include "mjarm/trajectory/smooth_timing_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
-
-/// Cells of the time law: many between two waypoints, as far as there are not too many of those.
-double time_cells(const CubicSpline& spline) {
-  constexpr double kFewest = 400, kEach = 40, kMost = 1500;
-  const auto pieces = static_cast<double>(spline.knots().size() - 1);
-  return std::max(std::clamp(kEach * pieces, kFewest, kMost), pieces);
-}
-
-/// A reference motion along the path, sampled where the time law has its knots.
-struct Reference {
-  std::vector<double> tau;         // [s]
-  std::vector<PathState> states;   // there
-  std::vector<std::size_t> piece;  // of the spline, after each knot (the last: before it)
-};
-
-/// Time at which `smooth` meets `s`, within [from, to]: Newton's method kept between bounds.
-double time_of(const SmoothProfile& smooth, double s, double from, double to) {
-  double t = 0.5 * (from + to);
-  for (int k = 0; k < 60 && to - from > 1e-14 * to; ++k) {
-    const PathState x = smooth.at(t);
-    if (x.s == s) return t;
-    (x.s < s ? from : to) = t;
-    const double next = t - (x.s - s) / x.v;
-    const bool inside = next > from && next < to;
-    if (inside && std::abs(next - t) < 1e-15 * to) return next;
-    t = inside ? next : 0.5 * (from + to);
-  }
-  return t;
-}
-
-Reference reference_along(const CubicSpline& spline, const SmoothProfile& smooth,
-                          const SpeedProfile& profile, double window, double cells) {
-  const std::vector<double>& knots = spline.knots();
-  const double longest = smooth.duration() / cells;
-  const double fewest = 2 * static_cast<double>(knots.size()) > cells ? 1 : 2;
-  Reference reference;
-  double from = 0;
-  std::size_t cell = 0;
-  for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-    double to = smooth.duration();
-    if (i + 2 < knots.size()) {
-      // The profile meets it there, the smoothed one at most a window later.
-      while (profile.s[cell] < knots[i + 1]) ++cell;
-      to = time_of(smooth, knots[i + 1], std::max(from, profile.t[cell]), profile.t[cell] + window);
-    }
-    const double count = std::max(fewest, std::ceil((to - from) / longest));
-    for (int k = 0; k < count; ++k) {
-      reference.tau.push_back(from + (to - from) * k / count);
-      reference.states.push_back(smooth.at(reference.tau.back()));
-      if (k == 0) reference.states.back().s = knots[i];
-      reference.piece.push_back(i);
-    }
-    from = to;
-  }
-  reference.tau.push_back(from);
-  reference.states.push_back({spline.end(), 0, 0, smooth.at(from).j});
-  reference.piece.push_back(knots.size() - 2);
-  return reference;
-}
 
 /// x', x'' and x''' of all joints where the reference is, by the cubic of one piece.
 struct Derivatives {
@@ -80,56 +21,143 @@ Derivatives derivatives(const SplinePoint& p, const PathState& x) {
           p.d * x.j + p.e * (3 * x.v * x.a) + p.f * (x.v * x.v * x.v)};
 }
 
-/// Appends one row a joint and one for the path.
-void append(std::vector<double>& rows, const JointVec& joints, const JointVec& bounds, double path,
-            double path_bound) {
-  for (Eigen::Index r = 0; r < joints.size(); ++r) rows.push_back(joints[r] / bounds[r]);
-  rows.push_back(path / path_bound);
+using RowVec = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxDof + 1, 1>;
+
+/// Derivatives over the bound they are for, one row a joint and one for the path.
+RowVec over(const JointVec& joints, const JointVec& bounds, double path, double path_bound) {
+  RowVec all(joints.size() + 1);
+  all << joints.cwiseQuotient(bounds), path / path_bound;
+  return all;
 }
 
-/// Appends the rows of torques.
-void append_torques(RetimeProblem& problem, const TorqueTerms& terms, const PathState& x,
-                    const JointVec& limit) {
-  for (Eigen::Index r = 0; r < limit.size(); ++r) {
-    problem.a_a.push_back((terms.by_a[r] * x.a + terms.by_u[r] * x.v * x.v) / limit[r]);
-    problem.v_a.push_back(terms.by_a[r] * x.v / limit[r]);
-    problem.root_a.push_back(terms.viscous[r] * x.v / limit[r]);
-    problem.still.push_back((terms.still[r] + terms.dry[r]) / limit[r]);
-  }
+void append(std::vector<double>& all, const RowVec& rows) {
+  all.insert(all.end(), rows.begin(), rows.end());
 }
 
-RetimeProblem problem_of(const CubicSpline& spline, const Reference& reference,
-                         const Bounds& bounds, const PathBounds& path) {
-  RetimeProblem problem;
-  const auto dof = static_cast<std::size_t>(spline.dof());
-  problem.rows = dof + 1;
-  problem.a_rows = problem.rows + (bounds.dynamics ? dof : 0);
-  problem.tau = reference.tau;
-  const std::size_t n = reference.tau.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const PathState& x = reference.states[i];
-    const auto add_jerks = [&](const Derivatives& d) {
-      append(problem.j_j, d.j, bounds.j, x.j, path.jerk);
-      append(problem.a_j, d.a, bounds.j, x.a, path.jerk);
-      append(problem.v_j, d.v, bounds.j, x.v, path.jerk);
-    };
-    const SplinePoint p = spline.at(x.s, reference.piece[i]);
-    const Derivatives d = derivatives(p, x);
-    if (i > 0) add_jerks(derivatives(spline.at(x.s, reference.piece[i - 1]), x));
-    if (i + 1 < n) add_jerks(d);
-    append(problem.a_a, d.a, bounds.a, x.a, path.acceleration);
-    append(problem.v_a, d.v, bounds.a, x.v, path.acceleration);
-    problem.root_a.resize(problem.a_a.size(), 0.0);
-    problem.still.resize(problem.a_a.size(), 0.0);
-    if (bounds.dynamics) {
-      append_torques(problem, torque_terms(bounds.dynamics, p), x, bounds.torque);
+/// Rows of jerks (x''', x'' and x') or of accelerations (x'' and x'), all over one bound.
+struct Rows {
+  RowVec lead, next, last;
+
+  /// Takes over the rows of `other` with a larger lead, or by sign -1 a smaller one.
+  void take(const Rows& other, double sign) {
+    for (Eigen::Index r = 0; r < lead.size(); ++r) {
+      if (sign * other.lead[r] <= sign * lead[r]) continue;
+      lead[r] = other.lead[r];
+      next[r] = other.next[r];
+      if (last.size() > 0) last[r] = other.last[r];
     }
-    const double use =
-        std::max(d.v.cwiseAbs().cwiseQuotient(bounds.v).maxCoeff(), x.v / path.speed);
-    problem.u_max.push_back(1 / (use * use));
   }
-  return problem;
-}
+};
+
+/// Writes the problem of walking a reference in another time. A cell of the time law that spans
+/// several samples has the extreme rows of them all.
+class ProblemWriter {
+ public:
+  ProblemWriter(const CubicSpline& spline, const Reference& reference, const Bounds& bounds,
+                const PathBounds& path)
+      : spline_(spline), reference_(reference), bounds_(bounds), path_(path) {}
+
+  RetimeProblem write() {
+    const auto dof = static_cast<std::size_t>(spline_.dof());
+    const std::vector<std::size_t>& law = reference_.law;
+    spans_ = law.size() < reference_.tau.size();
+    problem_.tau = reference_.tau;
+    problem_.knots = law;
+    problem_.rows = (spans_ ? 2 : 1) * (dof + 1);
+    problem_.a_rows = problem_.rows + (bounds_.dynamics ? dof : 0);
+    for (std::size_t k = 0; k < law.size(); ++k) {
+      const std::size_t end = law[std::min(k + 1, law.size() - 1)];
+      if (end > law[k]) add_jerks(law[k], end);
+      add_knot(law[k], spans_ ? end : law[k]);
+    }
+    return std::move(problem_);
+  }
+
+ private:
+  [[nodiscard]] Rows jerks(std::size_t i, std::size_t piece) const {
+    const PathState& x = reference_.states[i];
+    const Derivatives d = derivatives(spline_.at(x.s, piece), x);
+    return {over(d.j, bounds_.j, x.j, path_.jerk), over(d.a, bounds_.j, x.a, path_.jerk),
+            over(d.v, bounds_.j, x.v, path_.jerk)};
+  }
+
+  /// Rows of jerks at both ends of the cell between two samples.
+  void add_jerks(std::size_t from, std::size_t to) {
+    const Rows first = jerks(from, reference_.piece[from]);
+    if (!spans_) {
+      append_jerks(first);
+      append_jerks(jerks(to, reference_.piece[from]));
+      return;
+    }
+    Rows high = first, low = first;
+    for (std::size_t i = from; i < to; ++i) {
+      for (const std::size_t end : {i, i + 1}) {
+        const Rows rows = jerks(end, reference_.piece[i]);
+        high.take(rows, 1);
+        low.take(rows, -1);
+      }
+    }
+    for (const Rows* rows : {&high, &low, &high, &low}) append_jerks(*rows);
+  }
+  void append_jerks(const Rows& rows) {
+    append(problem_.j_j, rows.lead);
+    append(problem_.a_j, rows.next);
+    append(problem_.v_j, rows.last);
+  }
+
+  /// What else holds at the samples [from, to], as rows of the first.
+  void add_knot(std::size_t from, std::size_t to) {
+    Rows high, low;
+    double u_max = 0;
+    for (std::size_t i = from; i <= to; ++i) {
+      const PathState& x = reference_.states[i];
+      const SplinePoint p = spline_.at(x.s, reference_.piece[i]);
+      const Derivatives d = derivatives(p, x);
+      const Rows rows{over(d.a, bounds_.a, x.a, path_.acceleration),
+                      over(d.v, bounds_.a, x.v, path_.acceleration),
+                      {}};
+      const double use =
+          std::max(d.v.cwiseAbs().cwiseQuotient(bounds_.v).maxCoeff(), x.v / path_.speed);
+      const double u = 1 / (use * use);
+      if (i == from) {
+        high = low = rows;
+        u_max = u;
+      }
+      high.take(rows, 1);
+      low.take(rows, -1);
+      u_max = std::min(u_max, u);
+    }
+    append(problem_.a_a, high.lead);
+    append(problem_.v_a, high.next);
+    if (spans_) {
+      append(problem_.a_a, low.lead);
+      append(problem_.v_a, low.next);
+    }
+    problem_.root_a.resize(problem_.a_a.size(), 0.0);
+    problem_.still.resize(problem_.a_a.size(), 0.0);
+    if (bounds_.dynamics) add_torques(from);
+    problem_.u_max.push_back(u_max);
+  }
+
+  void add_torques(std::size_t i) {
+    const PathState& x = reference_.states[i];
+    const TorqueTerms terms = torque_terms(bounds_.dynamics, spline_.at(x.s, reference_.piece[i]));
+    const JointVec& limit = bounds_.torque;
+    for (Eigen::Index r = 0; r < limit.size(); ++r) {
+      problem_.a_a.push_back((terms.by_a[r] * x.a + terms.by_u[r] * x.v * x.v) / limit[r]);
+      problem_.v_a.push_back(terms.by_a[r] * x.v / limit[r]);
+      problem_.root_a.push_back(terms.viscous[r] * x.v / limit[r]);
+      problem_.still.push_back((terms.still[r] + terms.dry[r]) / limit[r]);
+    }
+  }
+
+  const CubicSpline& spline_;
+  const Reference& reference_;
+  const Bounds& bounds_;
+  const PathBounds& path_;
+  bool spans_ = false;  // whether cells span several samples
+  RetimeProblem problem_;
+};
 
 /// By which factor the way along the path is too fast; <= 1 where it keeps its bounds.
 double excess(const Reference& reference, const TimeLaw& law, const PathBounds& bounds) {
@@ -143,30 +171,9 @@ double excess(const Reference& reference, const TimeLaw& law, const PathBounds& 
   return most;
 }
 
-}  // namespace
-
-Result<Trajectory> time_smoothly(const CubicSpline& spline, const Bounds& bounds,
-                                 const PathBounds& path_bounds) {
-  constexpr std::size_t kSpeedCells = 800;  // of the path for the reference
-  constexpr double kWindow = 120;           // cells of the time law
-  constexpr double kMostWork = 3e7;         // cells of the reference in all windows at waypoints
-  const Result<SpeedProfile> fastest = fastest_profile(spline, kSpeedCells, bounds, path_bounds);
-  if (!fastest) return fail(fastest.error());
-  const SpeedProfile& profile = *fastest;
-  // So long that the reference is smooth compared with the cells, as the time law has to be; and
-  // that its jerks are of the size allowed.
-  const double ramp = std::max(bounds.a.cwiseQuotient(bounds.j).maxCoeff(),
-                               path_bounds.acceleration / path_bounds.jerk);
-  const double cells = time_cells(spline);
-  // And no longer than can be averaged over at every waypoint in a few seconds.
-  const double affordable = kMostWork / (static_cast<double>(profile.s.size()) *
-                                         static_cast<double>(spline.knots().size()));
-  const double window = std::min(std::max(2 * ramp, kWindow * profile.duration() / cells),
-                                 std::min(0.5, affordable) * profile.duration());
-  const SmoothProfile smooth(profile, window);
-  const Reference reference = reference_along(spline, smooth, profile, window, cells);
-  const TimeLaw law = retime(problem_of(spline, reference, bounds, path_bounds));
-
+/// The reference walked by a time law.
+Result<Trajectory> walked(const CubicSpline& spline, const Reference& reference,
+                          const TimeLaw& law) {
   std::vector<JointState> knots;
   knots.reserve(law.t.size());
   for (std::size_t i = 0; i < law.t.size(); ++i) {
@@ -176,7 +183,29 @@ Result<Trajectory> time_smoothly(const CubicSpline& spline, const Bounds& bounds
   }
   const JointVec zero = JointVec::Zero(spline.dof());
   for (JointState* end : {&knots.front(), &knots.back()}) end->v = end->a = zero;
-  Result<Trajectory> motion = Trajectory::through(law.t, knots);
+  return Trajectory::through(law.t, knots);
+}
+
+}  // namespace
+
+Result<Trajectory> time_smoothly(const CubicSpline& spline, const Bounds& bounds,
+                                 const PathBounds& path_bounds) {
+  constexpr std::size_t kSpeedCells = 800;  // of the path for the reference
+  constexpr double kWindow = 120;           // cells of the time law
+  const Result<SpeedProfile> fastest = fastest_profile(spline, kSpeedCells, bounds, path_bounds);
+  if (!fastest) return fail(fastest.error());
+  const SpeedProfile& profile = *fastest;
+  // So long that the reference is smooth compared with the cells, as the time law has to be; and
+  // that its jerks are of the size allowed.
+  const double ramp = std::max(bounds.a.cwiseQuotient(bounds.j).maxCoeff(),
+                               path_bounds.acceleration / path_bounds.jerk);
+  const double cells = law_cells(spline);
+  const double window =
+      std::min(std::max(2 * ramp, kWindow * profile.duration() / cells), 0.5 * profile.duration());
+  const SmoothProfile smooth(profile, window);
+  const Reference reference = reference_along(spline, smooth, profile, window, cells);
+  const TimeLaw law = retime(ProblemWriter(spline, reference, bounds, path_bounds).write());
+  Result<Trajectory> motion = walked(spline, reference, law);
   if (!motion) return fail(motion.error());
   const double factor = std::max(peaks_of(*motion, bounds, true).stretch(bounds),
                                  excess(reference, law, path_bounds));

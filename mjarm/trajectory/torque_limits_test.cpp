@@ -231,6 +231,47 @@ TEST(TorqueLimits, APathThatCannotBeHeldIsRefusedByJointAndPlace) {
   EXPECT_NEAR(std::stod(text.substr(text.find("at ") + 3)), 100 * share, 2) << text;
 }
 
+TEST(TorqueLimits, APathThatCannotBeHeldOnlyInTheMiddleIsRefusedToo) {
+  const Robot robot = heavy();
+  const auto at = [](double b) { return JointVec(Eigen::Vector3d(0, b, 0)); };
+  // From upright to hanging: both ends take no torque, level half way takes most of it.
+  const std::vector<JointVec> over{at(-1.57), at(0), at(1.57)};
+  for (const bool jerk : {false, true}) {
+    PathTimingOptions options{
+        .jerk_limits = jerk, .dynamics = dynamics_of(robot), .torque_share = 0.5};
+    for (const double end : {-1.57, 1.57}) {
+      EXPECT_TRUE(time_waypoint_path(std::vector{at(end)}, robot.arm.limits, options).has_value());
+    }
+    const auto motion = time_waypoint_path(over, robot.arm.limits, options);
+    ASSERT_FALSE(motion.has_value());
+    EXPECT_EQ(motion.error().code, Errc::impossible);
+    const std::string text = motion.error().what;
+    EXPECT_NE(text.find("joint 2 "), std::string::npos) << text;
+    const double place = std::stod(text.substr(text.find("at ") + 3));
+    EXPECT_GT(place, 5);
+    EXPECT_LT(place, 50);
+  }
+}
+
+TEST(TorqueLimits, NoWayIsARestWhereTheArmCanBeHeld) {
+  const Robot robot = heavy();
+  const auto at = [](double b) { return JointVec(Eigen::Vector3d(0, b, 0)); };
+  const PathTimingOptions options{.dynamics = dynamics_of(robot), .torque_share = 0.5};
+  for (const std::size_t n : {1u, 2u, 5u}) {
+    const auto held =
+        time_waypoint_path(std::vector<JointVec>(n, at(-1.57)), robot.arm.limits, options);
+    ASSERT_TRUE(held.has_value()) << held.error().what;
+    EXPECT_EQ(held->duration(), 0);
+    EXPECT_EQ(held->at(0).q, at(-1.57));
+    const auto falls =
+        time_waypoint_path(std::vector<JointVec>(n, at(0)), robot.arm.limits, options);
+    ASSERT_FALSE(falls.has_value());
+    EXPECT_EQ(falls.error().code, Errc::impossible);
+    EXPECT_NE(falls.error().what.find("joint 2 "), std::string::npos) << falls.error().what;
+    EXPECT_NE(falls.error().what.find("at 0 %"), std::string::npos) << falls.error().what;
+  }
+}
+
 TEST(TorqueLimits, RefusesLimitsThatMakeNoSense) {
   const Robot robot = heavy();
   const std::vector<JointVec> path{JointVec::Zero(3), JointVec::Ones(3)};
