@@ -1,15 +1,12 @@
 #include "apps/mjarm/cli.hpp"
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <memory>
 #include <optional>
+#include <utility>
 
 #include "apps/mjarm/command.hpp"
-#include "apps/mjarm/help.hpp"
-#include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/options.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
@@ -59,11 +56,10 @@ std::vector<std::string> with_plain_numbers(std::vector<std::string> arguments) 
 }
 
 void add_global_options(CLI::App& app, GlobalOptions& options) {
-  app.set_help_flag("-h,--help", text(msg::app_option_help));
-  app.add_option("--lang", options.language, text(msg::app_option_lang))->type_name("en|zh-CN");
-  app.add_flag("-v,--verbose", options.verbose, text(msg::app_option_verbose));
-  app.add_flag("--quiet", options.quiet, text(msg::app_option_quiet));
-  app.add_flag("--version", options.version, text(msg::app_option_version));
+  add_option(app, "--lang", options.language, msg::app_option_lang, "en|zh-CN");
+  add_flag(app, "-v,--verbose", options.verbose, msg::app_option_verbose);
+  add_flag(app, "--quiet", options.quiet, msg::app_option_quiet);
+  add_flag(app, "--version", options.version, msg::app_option_version);
 }
 
 int report(const Error& error) {
@@ -77,7 +73,7 @@ int finish(int code) {
   return report({Errc::system, text(msg::core_cannot_write, "stdout", system_message(errno))});
 }
 
-int run_parsed(CLI::App& app, const GlobalOptions& global,
+int run_parsed(const CLI::App& app, const GlobalOptions& global,
                const std::vector<std::pair<const CLI::App*, Run>>& runs) {
   if (global.quiet && global.verbose) {
     return report({Errc::usage, text(msg::app_exclusive_options, "--quiet", "--verbose")});
@@ -89,11 +85,11 @@ int run_parsed(CLI::App& app, const GlobalOptions& global,
     return finish(0);
   }
   for (const auto& [command, run] : runs) {
-    if (!app.got_subcommand(command)) continue;
+    if (!is_called(*command)) continue;
     const Result<int> code = run();
     return code ? finish(*code) : report(code.error());
   }
-  std::fputs(app.help().c_str(), stdout);
+  std::fputs(help_of(app).c_str(), stdout);
   return report({Errc::usage, text(msg::app_no_command)});
 }
 
@@ -104,30 +100,19 @@ int run(const std::vector<std::string>& arguments) {
     return report(chosen.error());
   }
   catch_interrupts();
-  CLI::App app(text(msg::app_summary), "mjarm");
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.footer(text(msg::app_examples));
-  app.allow_extras();
-  app.require_subcommand(0, 1);
+  const AppPtr app = make_program("mjarm", msg::app_summary, msg::app_examples);
   GlobalOptions global;
-  add_global_options(app, global);
+  add_global_options(*app, global);
   std::vector<std::pair<const CLI::App*, Run>> runs;
   for (const Command& command : commands()) {
-    CLI::App& sub = add_subcommand(app, command.name, command.summary, command.examples);
+    CLI::App& sub = add_subcommand(*app, command.name, command.summary, command.examples);
     runs.emplace_back(&sub, command.setup(sub));
   }
-  std::vector<std::string> reversed = with_plain_numbers(arguments);
-  std::reverse(reversed.begin(), reversed.end());
-  try {
-    app.parse(std::move(reversed));
-  } catch (const CLI::CallForHelp&) {
-    std::fputs(app.help().c_str(), stdout);
-    return finish(0);
-  } catch (const CLI::ParseError& error) {
-    return report(usage_error(error));
-  }
-  if (const std::optional<Error> error = unknown_words(app)) return report(*error);
-  return run_parsed(app, global, runs);
+  const Result<bool> parsed = parse(*app, with_plain_numbers(arguments));
+  if (!parsed) return report(parsed.error());
+  if (*parsed) return run_parsed(*app, global, runs);
+  std::fputs(help_of(*app).c_str(), stdout);
+  return finish(0);
 }
 
 }  // namespace mjarm::app

@@ -2,10 +2,10 @@
 
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/json_doc.hpp"
 #include "apps/mjarm/options.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/log.hpp"
@@ -20,17 +20,15 @@
 namespace mjarm::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Findings {
-  Json facts = Json::object();        ///< for `--json`
+  JsonDoc facts;                      ///< for `--json`
   std::string lines;                  ///< for people
   std::vector<std::string> problems;  ///< what is needed and missing, one line each
 };
 
-void add(Findings& findings, const char* key, const std::string& label, const Json& value,
+void add(Findings& findings, const char* key, const std::string& label, JsonDoc value,
          const std::string& shown) {
-  findings.facts[key] = value;
+  findings.facts.set(key, std::move(value));
   findings.lines += padded(label, 14) + shown + "\n";
 }
 
@@ -46,7 +44,7 @@ void look_at_mujoco(Findings& findings) {
   const MujocoLibrary library = mujoco_library();
   add(findings, "mujoco", "MuJoCo", library.version,
       library.version + "  " + library.file.string());
-  findings.facts["mujoco_library"] = library.file.string();
+  findings.facts.set("mujoco_library", library.file.string());
   if (library.version != library.built_against) {
     findings.problems.push_back(text(msg::app_doctor_other_mujoco, library.built_against,
                                      library.version, library.file.string()));
@@ -65,7 +63,7 @@ void look_at_machine(Findings& findings) {
 
 /// Pictures are part of every demo: one way to draw must work, two are better.
 void look_at_graphics(Findings& findings) {
-  Json ways = Json::array();
+  std::vector<JsonDoc> ways;
   bool any = false;
   for (const GlBackend& way : probe_gl_backends()) {
     ways.push_back({{"name", way.name},
@@ -76,12 +74,12 @@ void look_at_graphics(Findings& findings) {
     findings.lines += padded(way.name, 14) + (way.works ? way.renderer : way.reason) + "\n";
     any |= way.works;
   }
-  findings.facts["gl"] = ways;
+  findings.facts.set("gl", std::move(ways));
   if (!any) findings.problems.push_back(text(msg::app_doctor_no_gl));
 }
 
 void look_at_models(Findings& findings) {
-  Json found = Json::array();
+  std::vector<JsonDoc> found;
   std::string names;
   for (const ShippedModel& shipped : shipped_models()) {
     const Result<Model> model = Model::load(shipped.file);
@@ -94,13 +92,13 @@ void look_at_models(Findings& findings) {
     names += (names.empty() ? "" : ", ") + shipped.name;
   }
   if (found.empty()) findings.problems.push_back(text(msg::app_doctor_no_models));
-  add(findings, "models", text(msg::app_doctor_models), found,
+  add(findings, "models", text(msg::app_doctor_models), std::move(found),
       names.empty() ? text(msg::app_info_none) : names);
 }
 
 /// Meshes are a choice: without them robots are drawn with simple shapes.
 void look_at_meshes(Findings& findings) {
-  Json found = Json::array();
+  std::vector<JsonDoc> found;
   std::string shown, known;
   for (const MeshSet& set : mesh_sets()) {
     known += (known.empty() ? "" : ", ") + set.robot;
@@ -112,7 +110,7 @@ void look_at_meshes(Findings& findings) {
     shown += (shown.empty() ? "" : ", ") +
              (whole ? set.robot : text(msg::install_mend, state.problem, set.robot));
   }
-  add(findings, "meshes", text(msg::install_doctor), found,
+  add(findings, "meshes", text(msg::install_doctor), std::move(found),
       shown.empty() ? text(msg::install_doctor_none, known) : shown);
 }
 
@@ -126,10 +124,9 @@ Result<int> run(bool json) {
   look_at_meshes(findings);
   const bool fine = findings.problems.empty();
   if (json) {
-    findings.facts["problems"] = findings.problems;
-    findings.facts["ok"] = fine;
-    std::fputs((findings.facts.dump(2, ' ', false, Json::error_handler_t::replace) + "\n").c_str(),
-               stdout);
+    findings.facts.set("problems", findings.problems);
+    findings.facts.set("ok", fine);
+    std::fputs(findings.facts.document().c_str(), stdout);
   } else {
     std::fputs(findings.lines.c_str(), stdout);
     if (fine) std::fputs((text(msg::app_doctor_fine) + "\n").c_str(), stdout);

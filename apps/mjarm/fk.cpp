@@ -54,10 +54,10 @@ Result<int> run(const FkOptions& options) {
   if (options.batch.in.empty()) return answer_one(arm, options);
   const auto answer = [&arm](std::string_view request,
                              std::string& out) -> Result<std::optional<std::string>> {
-    const Result<nlohmann::json> object = parse_json_object(request);
+    const Result<JsonObject> object = parse_json_object(request);
     if (!object) return fail(object.error());
     const Result<std::vector<double>> q =
-        number_list(*object, "q", static_cast<std::size_t>(arm.dof()));
+        number_list(**object, "q", static_cast<std::size_t>(arm.dof()));
     if (!q) return fail(q.error());
     append_pose(out, fk(arm, *q));
     return std::nullopt;

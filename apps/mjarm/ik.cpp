@@ -1,6 +1,5 @@
 #include "mjarm/kinematics/ik.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/kinematics/self_motion.hpp"
 
@@ -45,7 +45,7 @@ struct Request {
 
 /// As pose_of(), but a position may stand alone where that is all that must be met.
 Result<Pose> goal_of(const nlohmann::json& object, IkTask task) {
-  if (task != IkTask::position || object.contains("quat")) return pose_of(object);
+  if (task != IkTask::position || has_member(object, "quat")) return pose_of(object);
   const Result<std::vector<double>> pos = number_list(object, "pos", 3);
   if (!pos) return fail(pos.error());
   return Pose{{(*pos)[0], (*pos)[1], (*pos)[2]}, Eigen::Matrix3d::Identity()};
@@ -53,15 +53,15 @@ Result<Pose> goal_of(const nlohmann::json& object, IkTask task) {
 
 Result<Request> read_request(std::string_view line, const IkSolver& ik) {
   const Arm& arm = ik.arm();
-  const Result<nlohmann::json> object = parse_json_object(line);
+  const Result<JsonObject> object = parse_json_object(line);
   if (!object) return fail(object.error());
-  const Result<Pose> X_WT = goal_of(*object, ik.options().task);
+  const Result<Pose> X_WT = goal_of(**object, ik.options().task);
   if (!X_WT) return fail(X_WT.error());
-  if (!object->contains("seed")) {
+  if (!has_member(**object, "seed")) {
     return Request{*X_WT, {arm.home.begin(), arm.home.end()}};
   }
   Result<std::vector<double>> q_seed =
-      number_list(*object, "seed", static_cast<std::size_t>(arm.dof()));
+      number_list(**object, "seed", static_cast<std::size_t>(arm.dof()));
   if (!q_seed) return fail(std::move(q_seed.error()));
   return Request{*X_WT, std::move(*q_seed)};
 }
@@ -105,8 +105,7 @@ void append_failure(std::string& out, const IkFailure& failure, const std::strin
 
 /// Solves one request and appends the answer. Where there is none, returns why.
 std::optional<std::string> answer(const Job& job, const Request& request, std::string& out) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
   if (job.prefer && solution) {
     const SelfMotionOptions self_motion{.goal = *job.prefer, .posture = joint_vec(request.q_seed)};
@@ -117,7 +116,7 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
     const IkAllOptions all{.windings = job.windings};
     branches = solve_all(job.solver, request.X_WT, request.q_seed, all).value_or(branches);
   }
-  const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  const double us = watch.us();
   std::optional<std::string> why;
   if (solution) {
     append_solution(out, *solution);

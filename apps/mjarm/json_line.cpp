@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
+#include "apps/mjarm/line_reader.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -44,7 +47,9 @@ std::vector<std::string> keys(const json& object) {
 
 }  // namespace
 
-Result<json> parse_json_object(std::string_view line) {
+void JsonDeleter::operator()(const json* json) const { delete json; }
+
+Result<JsonObject> parse_json_object(std::string_view line) {
   if (nesting(line) > kDeepest) return fail(Errc::bad_input, text(msg::app_json_too_deep));
   json value;
   try {
@@ -55,8 +60,24 @@ Result<json> parse_json_object(std::string_view line) {
     return fail(Errc::bad_input, text(msg::app_json_number_range));
   }
   if (!value.is_object()) return fail(Errc::bad_input, text(msg::app_json_no_object));
-  return value;
+  return JsonObject(new json(std::move(value)));
 }
+
+Result<void> read_json_lines(const std::filesystem::path& file, std::size_t longest_line,
+                             const std::function<Result<void>(const json& object)>& take) {
+  Result<LineReader> reader = LineReader::open(file.string(), longest_line);
+  if (!reader) return fail(std::move(reader.error()));
+  for (;;) {
+    const auto line = reader->next();
+    if (!line) return fail(line.error());
+    if (!*line) return {};
+    const auto taken =
+        parse_json_object(**line).and_then([&](const JsonObject& object) { return take(*object); });
+    if (!taken) return fail(taken.error().code, reader->place() + ": " + taken.error().what);
+  }
+}
+
+bool has_member(const json& object, const char* key) { return object.contains(key); }
 
 Result<std::vector<double>> number_list(const json& object, const std::string& key,
                                         std::size_t size) {
@@ -66,15 +87,20 @@ Result<std::vector<double>> number_list(const json& object, const std::string& k
     const std::string hint = near ? text(msg::app_json_found_instead, *near) : std::string();
     return fail(Errc::bad_input, text(msg::app_json_missing, key) + hint);
   }
-  if (!member->is_array()) return fail(Errc::bad_input, text(msg::app_json_no_list, key, size));
-  if (member->size() != size) {
-    return fail(Errc::bad_input, text(msg::app_json_wrong_size, key, size, member->size()));
+  return numbers_of(*member, key, size);
+}
+
+Result<std::vector<double>> numbers_of(const json& value, const std::string& name,
+                                       std::size_t size) {
+  if (!value.is_array()) return fail(Errc::bad_input, text(msg::app_json_no_list, name, size));
+  if (value.size() != size) {
+    return fail(Errc::bad_input, text(msg::app_json_wrong_size, name, size, value.size()));
   }
   std::vector<double> values;
-  for (const json& entry : *member) {
+  for (const json& entry : value) {
     // Only numbers: `true`, `null` and "0.1" are faults of the program that wrote the file.
     if (!entry.is_number()) {
-      return fail(Errc::bad_input, text(msg::app_json_no_number, key, values.size()));
+      return fail(Errc::bad_input, text(msg::app_json_no_number, name, values.size()));
     }
     values.push_back(entry.get<double>());
   }

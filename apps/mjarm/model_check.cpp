@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
+#include "apps/mjarm/json_doc.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
 namespace fs = std::filesystem;
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string grade_word(Grade grade) {
   switch (grade) {
@@ -67,23 +67,23 @@ std::string to_text(const CheckReport& report) {
 }
 
 std::string to_json(const CheckReport& report) {
-  Json findings = Json::array();
+  std::vector<JsonDoc> findings;
   for (const Finding& finding : report.findings) {
     findings.push_back({{"code", name(finding.code)},
                         {"grade", name(finding.grade)},
                         {"file", finding.file},
-                        {"line", finding.line > 0 ? Json(finding.line) : Json(nullptr)},
+                        {"line", finding.line > 0 ? JsonDoc(finding.line) : JsonDoc(nullptr)},
                         {"element", finding.element},
                         {"message", finding.what}});
   }
-  const Json json = {{"file", report.file},
+  const JsonDoc json{{"file", report.file},
                      {"ok", report.count(Grade::error) == 0},
                      {"loads", report.loads},
                      {"errors", report.count(Grade::error)},
                      {"warnings", report.count(Grade::warning)},
                      {"notes", report.count(Grade::note)},
                      {"findings", std::move(findings)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.document();
 }
 
 Result<int> check_file(const fs::path& file, const CheckOptions& options, bool json) {

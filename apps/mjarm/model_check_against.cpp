@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "apps/mjarm/json_doc.hpp"
 #include "apps/mjarm/model_check.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/text_width.hpp"
@@ -15,7 +15,6 @@ namespace mjarm::app {
 namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr double kDegrees = 180 / std::numbers::pi;
 /// Descriptions that agree this well are the same [m], [rad].
 constexpr double kSame = 1e-9;
@@ -156,11 +155,11 @@ std::string to_text(const Comparison& comparison, const std::vector<FigureDiffer
   return result;
 }
 
-Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+JsonDoc vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-Json cause_json(const Cause& cause, const Side& first, const Side& second) {
+JsonDoc cause_json(const Cause& cause, const Side& first, const Side& second) {
   const auto joint = [&](int i) {
-    return i < 0 ? Json(nullptr) : Json(first.arm.joints[static_cast<std::size_t>(i)].name);
+    return i < 0 ? JsonDoc(nullptr) : JsonDoc(first.arm.joints[static_cast<std::size_t>(i)].name);
   };
   return {{"cause", name(cause.code)},
           {"joint", joint(cause.joint)},
@@ -173,14 +172,14 @@ Json cause_json(const Cause& cause, const Side& first, const Side& second) {
 
 std::string to_json(const Comparison& comparison, const std::vector<FigureDifference>& figures,
                     const Side& first, const Side& second, int configurations) {
-  Json causes = Json::array();
+  std::vector<JsonDoc> causes;
   for (const Cause& cause : comparison.causes) causes.push_back(cause_json(cause, first, second));
-  Json others = Json::array();
+  std::vector<JsonDoc> others;
   for (const FigureDifference& f : figures) {
     others.push_back(
         {{"joint", f.joint}, {"what", f.what}, {"first", f.first}, {"second", f.second}});
   }
-  const Json json = {{"file", first.model.file().string()},
+  const JsonDoc json{{"file", first.model.file().string()},
                      {"against", second.model.file().string()},
                      {"tip", first.arm.tip},
                      {"against_tip", second.arm.tip},
@@ -189,12 +188,12 @@ std::string to_json(const Comparison& comparison, const std::vector<FigureDiffer
                      {"matched", comparison.by_name ? "name" : "order"},
                      {"position", comparison.position},
                      {"rotation", comparison.rotation},
-                     {"worst_q", std::vector<double>(comparison.q.begin(), comparison.q.end())},
+                     {"worst_q", comparison.q},
                      {"causes", std::move(causes)},
                      {"position_left", comparison.position_left},
                      {"rotation_left", comparison.rotation_left},
                      {"figures", std::move(others)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.document();
 }
 
 }  // namespace

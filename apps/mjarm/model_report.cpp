@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
 
+#include "apps/mjarm/json_doc.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Row = std::vector<std::string>;
 
 std::string join(const std::vector<std::string>& words, const char* between = ", ") {
@@ -114,17 +113,13 @@ std::string arm_text(const ModelReport& report) {
                             fmt::format("{:.5g}", gripper.ctrl_closed), join(gripper.joints)));
 }
 
-Json list(const JointVec& values) {
-  return Json(std::vector<double>(values.begin(), values.end()));
-}
-
-Json joint_json(const Arm& arm, int i) {
+JsonDoc joint_json(const Arm& arm, int i) {
   const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
   const LimitSources& source = arm.limits.sources[static_cast<std::size_t>(i)];
-  const Json sources = {{"velocity", name(source.velocity)},
-                        {"acceleration", name(source.acceleration)},
-                        {"jerk", name(source.jerk)},
-                        {"torque", name(source.torque)}};
+  JsonDoc sources = {{"velocity", name(source.velocity)},
+                     {"acceleration", name(source.acceleration)},
+                     {"jerk", name(source.jerk)},
+                     {"torque", name(source.torque)}};
   return {{"name", joint.name},
           {"type", joint.type == JointType::hinge ? "hinge" : "slide"},
           {"position", {arm.limits.lower[i], arm.limits.upper[i]}},
@@ -132,32 +127,33 @@ Json joint_json(const Arm& arm, int i) {
           {"acceleration", arm.limits.acceleration[i]},
           {"jerk", arm.limits.jerk[i]},
           {"torque", arm.limits.torque[i]},
-          {"sources", sources},
-          {"actuator", joint.actuator ? Json(joint.actuator->name) : Json(nullptr)}};
+          {"sources", std::move(sources)},
+          {"actuator", joint.actuator ? JsonDoc(joint.actuator->name) : JsonDoc(nullptr)}};
 }
 
-Json arm_json(const ModelReport& report) {
+JsonDoc arm_json(const ModelReport& report) {
   const Arm& arm = *report.arm;
-  Json result = {{"tip", arm.tip}, {"tips", report.tips}, {"home", list(arm.home)}};
-  Json& joints = result["joints"] = Json::array();
-  for (int i = 0; i < arm.dof(); ++i) {
-    joints.push_back(joint_json(arm, i));
-  }
-  result["gripper"] = nullptr;
+  std::vector<JsonDoc> joints;
+  for (int i = 0; i < arm.dof(); ++i) joints.push_back(joint_json(arm, i));
+  JsonDoc gripper;
   if (arm.gripper) {
-    result["gripper"] = {{"actuator", arm.gripper->actuator},
-                         {"ctrl_open", arm.gripper->ctrl_open},
-                         {"ctrl_closed", arm.gripper->ctrl_closed},
-                         {"joints", arm.gripper->joints}};
+    gripper = {{"actuator", arm.gripper->actuator},
+               {"ctrl_open", arm.gripper->ctrl_open},
+               {"ctrl_closed", arm.gripper->ctrl_closed},
+               {"joints", arm.gripper->joints}};
   }
-  return result;
+  return {{"tip", arm.tip},
+          {"tips", report.tips},
+          {"home", arm.home},
+          {"joints", std::move(joints)},
+          {"gripper", std::move(gripper)}};
 }
 
-Json range(bool limited, double lower, double upper) {
-  return limited ? Json({lower, upper}) : Json(nullptr);
+JsonDoc range(bool limited, double lower, double upper) {
+  return limited ? JsonDoc{lower, upper} : JsonDoc(nullptr);
 }
 
-Json actuator_json(const ActuatorInfo& actuator) {
+JsonDoc actuator_json(const ActuatorInfo& actuator) {
   return {{"name", actuator.name},
           {"drives", actuator.drives},
           {"target", actuator.target},
@@ -189,11 +185,6 @@ std::vector<std::string> keyframe_names(const ModelInfo& contents) {
   std::vector<std::string> names;
   for (const KeyframeInfo& keyframe : contents.keyframes) names.push_back(keyframe.name);
   return names;
-}
-
-/// Names come from files and may hold any bytes; numbers without a bound become null.
-std::string document(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -231,21 +222,27 @@ std::string to_text(const ModelReport& report) {
 std::string to_json(const ModelReport& report) {
   const ModelInfo& all = report.contents;
   const Counts counts = count(all);
-  Json json = {{"name", all.name},
+  std::vector<JsonDoc> actuators;
+  for (const ActuatorInfo& actuator : all.actuators) actuators.push_back(actuator_json(actuator));
+  JsonDoc json{{"name", all.name},
                {"file", report.file},
                {"format", report.format},
                {"timestep", all.timestep},
-               {"mass", all.mass}};
-  json["counts"] = {{"bodies", counts.bodies},       {"joints", counts.joints},
-                    {"actuators", counts.actuators}, {"geoms", counts.geoms},
-                    {"sites", counts.sites},         {"sensors", counts.sensors},
-                    {"cameras", counts.cameras},     {"meshes", counts.meshes}};
-  json["keyframes"] = keyframe_names(all);
-  Json& actuators = json["actuators"] = Json::array();
-  for (const ActuatorInfo& actuator : all.actuators) actuators.push_back(actuator_json(actuator));
-  json["arm"] = report.arm ? arm_json(report) : Json(nullptr);
-  if (!report.arm) json["no_arm"] = report.no_arm;
-  return document(json);
+               {"mass", all.mass},
+               {"counts",
+                {{"bodies", counts.bodies},
+                 {"joints", counts.joints},
+                 {"actuators", counts.actuators},
+                 {"geoms", counts.geoms},
+                 {"sites", counts.sites},
+                 {"sensors", counts.sensors},
+                 {"cameras", counts.cameras},
+                 {"meshes", counts.meshes}}},
+               {"keyframes", keyframe_names(all)},
+               {"actuators", std::move(actuators)},
+               {"arm", report.arm ? arm_json(report) : JsonDoc(nullptr)}};
+  if (!report.arm) json.set("no_arm", report.no_arm);
+  return json.document();
 }
 
 }  // namespace mjarm::app

@@ -1,15 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "apps/mjarm/json_doc.hpp"
 #include "apps/mjarm/model_report.hpp"
 #include "mjarm/core/messages/app.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 int count_colliding(const BodyInfo& body) {
   return static_cast<int>(std::count_if(body.geoms.begin(), body.geoms.end(),
@@ -31,20 +32,21 @@ std::string body_line(const BodyInfo& body) {
   return line + "\n";
 }
 
-Json body_json(const BodyInfo& body) {
-  Json json = {{"name", body.name},
-               {"mass", body.mass},
-               {"geoms", body.geoms.size()},
-               {"colliding", count_colliding(body)},
-               {"sites", body.sites}};
-  Json& joints = json["joints"] = Json::array();
+JsonDoc body_json(const BodyInfo& body, std::vector<JsonDoc> children) {
+  std::vector<JsonDoc> joints;
   for (const JointInfo& joint : body.joints) {
-    Json entry = {{"name", joint.name}, {"type", joint.type}};
-    entry["range"] = joint.limited ? Json({joint.lower, joint.upper}) : Json(nullptr);
-    joints.push_back(entry);
+    joints.push_back(
+        {{"name", joint.name},
+         {"type", joint.type},
+         {"range", joint.limited ? JsonDoc{joint.lower, joint.upper} : JsonDoc(nullptr)}});
   }
-  json["children"] = Json::array();
-  return json;
+  return {{"name", body.name},
+          {"mass", body.mass},
+          {"geoms", body.geoms.size()},
+          {"colliding", count_colliding(body)},
+          {"sites", body.sites},
+          {"joints", std::move(joints)},
+          {"children", std::move(children)}};
 }
 
 }  // namespace
@@ -56,14 +58,14 @@ std::string tree_text(const ModelInfo& contents) {
 }
 
 std::string tree_json(const ModelInfo& contents) {
-  std::vector<Json> nodes;
-  for (const BodyInfo& body : contents.bodies) nodes.push_back(body_json(body));
+  std::vector<std::vector<JsonDoc>> children(contents.bodies.size());
   // From the last to the first: every body is complete before it goes into its parent.
-  for (std::size_t i = nodes.size() - 1; i > 0; --i) {
-    Json& siblings = nodes[static_cast<std::size_t>(contents.bodies[i].parent)]["children"];
-    siblings.insert(siblings.begin(), std::move(nodes[i]));
+  for (std::size_t i = children.size() - 1; i > 0; --i) {
+    const BodyInfo& body = contents.bodies[i];
+    std::vector<JsonDoc>& siblings = children[static_cast<std::size_t>(body.parent)];
+    siblings.insert(siblings.begin(), body_json(body, std::move(children[i])));
   }
-  return nodes.front().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return body_json(contents.bodies.front(), std::move(children.front())).document();
 }
 
 }  // namespace mjarm::app

@@ -1,11 +1,11 @@
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/install/install.hpp"
 #include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/json_doc.hpp"
 #include "apps/mjarm/options.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -17,7 +17,6 @@ namespace mjarm::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::vector<std::string> names;
@@ -51,7 +50,7 @@ std::string words(MeshState::Kind kind) {
 }
 
 Result<int> run_list(const std::vector<const MeshSet*>& sets, bool json) {
-  Json entries = Json::array();
+  std::vector<JsonDoc> entries;
   std::string lines, worst;
   for (const MeshSet* set : sets) {
     const Result<Installed> found = look_up(*set);
@@ -68,9 +67,7 @@ Result<int> run_list(const std::vector<const MeshSet*>& sets, bool json) {
       worst = text(msg::install_mend, state.problem, set->robot);
     }
   }
-  std::fputs(json ? (entries.dump(2, ' ', false, Json::error_handler_t::replace) + "\n").c_str()
-                  : lines.c_str(),
-             stdout);
+  std::fputs((json ? JsonDoc(std::move(entries)).document() : lines).c_str(), stdout);
   if (worst.empty()) return 0;
   log_error(worst);
   return 1;

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "mjarm/core/messages.hpp"
+#include "mjarm/core/result.hpp"
 
 namespace CLI {
 class App;
 }  // namespace CLI
 
-/// Options of commands without the headers of CLI11, which take seconds to compile in every file.
+/// Commands and their options without the headers of CLI11, which take many seconds to compile:
+/// only options.cpp includes them.
 namespace mjarm::app {
 
 /// Adds an option with a value, or, where `name` has no dashes, an argument.
@@ -29,5 +32,20 @@ CLI::App& add_subcommand(CLI::App& parent, const std::string& name, Msg summary,
 /// True where this subcommand was called.
 [[nodiscard]] bool is_called(const CLI::App& app);
 [[nodiscard]] std::string name_of(const CLI::App& app);
+
+/// The program itself, which has `--help` and no other option or command yet.
+struct AppDeleter {
+  void operator()(CLI::App* app) const;
+};
+using AppPtr = std::unique_ptr<CLI::App, AppDeleter>;
+[[nodiscard]] AppPtr make_program(const std::string& name, Msg summary, Msg examples);
+
+/// Reads the command line.
+/// @return false where help was asked for, and a usage error, with the nearest right word, where
+/// something in it is unknown or out of place.
+[[nodiscard]] Result<bool> parse(CLI::App& program, std::vector<std::string> arguments);
+
+/// The help of the command that was called, or of the program.
+[[nodiscard]] std::string help_of(const CLI::App& program);
 
 }  // namespace mjarm::app

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/path_command.hpp"
 #include "mjarm/core/number.hpp"
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/path_measures.hpp"
 #include "mjarm/path/solve_curve.hpp"
@@ -71,11 +71,10 @@ Answer solve(const Job& job, const PathRequest& request) {
 
 /// Solves one request and appends the answer. Where there is none, returns why.
 std::optional<std::string> answer(const Job& job, const PathRequest& request, std::string& out) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   const Arm& arm = job.ik.arm();
   const Answer solved = solve(job, request);
-  const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  const double us = watch.us();
   const JointPath& had = solved.path ? *solved.path : solved.path.error().partial;
   std::optional<PathMeasures> measures;
   if (!had.q.empty()) measures = measure_path(arm, had.q, job.path.clearance);
@@ -98,9 +97,9 @@ std::optional<std::string> answer(const Job& job, const PathRequest& request, st
 }
 
 Result<PathRequest> read_request(std::string_view line, const Arm& arm) {
-  const Result<nlohmann::json> object = parse_json_object(line);
+  const Result<JsonObject> object = parse_json_object(line);
   if (!object) return fail(object.error());
-  return path_request_of(*object, arm);
+  return path_request_of(**object, arm);
 }
 
 Result<Pose> read_pose(const std::string& option, const std::string& value,

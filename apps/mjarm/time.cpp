@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/model/arm_dynamics.hpp"
 
@@ -99,10 +99,9 @@ std::optional<std::string> append_check(std::string& out, const Trajectory& moti
 
 /// Appends the answer to one case; returns why there is none, or what is wrong with it.
 std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::string& out) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   const Result<Trajectory> motion = time_case(entry, job.limits, job.problem, job.torque);
-  const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  const double us = watch.us();
   std::optional<std::string> why;
   std::string body;
   if (motion) {

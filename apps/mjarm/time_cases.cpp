@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string_view>
@@ -59,7 +60,8 @@ Result<std::string> id_of(const json& object) {
   const auto id = object.find("id");
   if (id == object.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "id"));
   if (id->is_string()) return id->get<std::string>();
-  if (id->is_number_integer()) return id->dump();
+  if (id->is_number_unsigned()) return std::to_string(id->get<std::uint64_t>());
+  if (id->is_number_integer()) return std::to_string(id->get<std::int64_t>());
   return fail(Errc::bad_input, text(msg::app_time_bad_id));
 }
 
@@ -92,9 +94,9 @@ Result<void> read_waypoints(const json& object, Eigen::Index dof, TimeCase& entr
   }
   for (std::size_t i = 0; i < list->size(); ++i) {
     const std::string key = "waypoints[" + std::to_string(i) + "]";
-    const Result<JointVec> q = joints_of(json{{key, (*list)[i]}}, key, dof);
+    const auto q = numbers_of((*list)[i], key, static_cast<std::size_t>(dof));
     if (!q) return fail(q.error());
-    entry.waypoints.push_back(*q);
+    entry.waypoints.push_back(joint_vec(*q));
   }
   return {};
 }
@@ -137,12 +139,13 @@ JointLimits unbounded(const JointVec& v, const JointVec& a, const JointVec& j) {
 }
 
 Result<TimeCases> read_time_cases(const std::string& content, TimeProblem problem) {
-  const Result<json> file = parse_json_object(content);
-  if (!file) return fail(file.error());
-  Result<JointLimits> limits = limits_of(*file);
+  const Result<JsonObject> object = parse_json_object(content);
+  if (!object) return fail(object.error());
+  const json& file = **object;
+  Result<JointLimits> limits = limits_of(file);
   if (!limits) return fail(std::move(limits.error()));
-  const auto list = file->find("cases");
-  if (list == file->end()) return fail(Errc::bad_input, text(msg::app_json_missing, "cases"));
+  const auto list = file.find("cases");
+  if (list == file.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "cases"));
   if (!list->is_array()) return fail(Errc::bad_input, text(msg::app_time_cases_no_list));
   TimeCases cases{std::move(*limits), {}};
   std::set<std::string> ids;

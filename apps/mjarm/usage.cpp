@@ -1,6 +1,5 @@
 #include "apps/mjarm/usage.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <vector>
@@ -9,71 +8,6 @@
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {
-namespace {
-
-/// The innermost subcommand that was called, else the program itself.
-const CLI::App& innermost(const CLI::App& app) {
-  const std::vector<CLI::App*> called = app.get_subcommands();
-  return called.empty() ? app : innermost(*called.back());
-}
-
-std::vector<std::string> subcommand_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(sub->get_name());
-  }
-  return names;
-}
-
-/// Names of the options of `app` and of everything above it, with their dashes.
-std::vector<std::string> option_names(const CLI::App* app) {
-  std::vector<std::string> names;
-  for (; app != nullptr; app = app->get_parent()) {
-    for (const CLI::Option* option : app->get_options()) {
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-      for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-    }
-  }
-  return names;
-}
-
-std::string full_name(const CLI::App& app) {
-  return app.get_parent() == nullptr ? app.get_name()
-                                     : full_name(*app.get_parent()) + " " + app.get_name();
-}
-
-}  // namespace
-
-Error usage_error(const CLI::ParseError& error) {
-  const std::string what = error.what();
-  if (error.get_name() == "ArgumentMismatch") {
-    const std::string option = what.substr(0, what.find(':'));
-    const bool repeated = what.find("received") != std::string::npos;
-    return {Errc::usage, repeated ? text(msg::app_option_once, option)
-                                  : text(msg::app_option_needs_value, option)};
-  }
-  return {Errc::usage, text(msg::app_bad_usage, what)};
-}
-
-std::optional<Error> unknown_words(const CLI::App& app) {
-  const std::vector<std::string> unknown = app.remaining(true);
-  if (unknown.empty()) return std::nullopt;
-  const CLI::App& called = innermost(app);
-  // An option explains more than the values that were meant for it.
-  for (const std::string& word : unknown) {
-    if (word.size() < 2 || word[0] != '-') continue;
-    const std::string name = word.substr(0, word.find('='));
-    return Error{Errc::usage,
-                 text(msg::app_unknown_option, name) + did_you_mean(name, option_names(&called))};
-  }
-  const std::string& word = unknown.front();
-  const std::vector<std::string> known = subcommand_names(called);
-  if (!known.empty()) {
-    return Error{Errc::usage, text(msg::app_unknown_command, word, full_name(called)) +
-                                  did_you_mean(word, known)};
-  }
-  return Error{Errc::usage, text(msg::app_unexpected_word, word, full_name(called))};
-}
 
 Result<std::uint64_t> parse_whole(const std::string& option, const std::string& value) {
   std::uint64_t number = 0;

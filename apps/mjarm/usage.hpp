@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,18 +9,7 @@
 #include "mjarm/core/units.hpp"
 #include "mjarm/model/arm.hpp"
 
-namespace CLI {
-class App;
-class ParseError;
-}  // namespace CLI
-
 namespace mjarm::app {
-
-/// What the command-line parser complains about, as one line of ours.
-[[nodiscard]] Error usage_error(const CLI::ParseError& error);
-
-/// The first word of the parsed command line that nothing knows, with the nearest right one.
-[[nodiscard]] std::optional<Error> unknown_words(const CLI::App& app);
 
 /// Reads a whole number >= 0, as `--seed 7`. @return an error that names `option`.
 [[nodiscard]] Result<std::uint64_t> parse_whole(const std::string& option,

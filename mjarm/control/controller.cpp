@@ -150,6 +150,13 @@ struct Controller::Impl {
     return {inverse.torque(qpos, qvel, a) + spring, x.q, x.v};
   }
 
+  /// Adds the errors of this step to the sum.
+  void gather(State qpos, const JointVec& q_ref) {
+    for (int i = 0; i < arm.dof(); ++i) {
+      sum[i] += inverse.timestep() * (q_ref[i] - qpos[arm.joints[i].qpos]);
+    }
+  }
+
   /// The torque of the reference itself: the servos see how far the arm is off it.
   Demand on_reference(State qpos, State qvel, const StepReference& reference) {
     const double h = inverse.timestep();
@@ -188,12 +195,10 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
   assert(reference.next.size() == arm.dof());
   const Demand demand = impl_->demand(qpos, qvel, reference);
   bool limited = false;
-  JointVec error(arm.dof());
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmActuator& actuator = *arm.joints[i].actuator;
     const double q = qpos[arm.joints[i].qpos];
     const double v = qvel[arm.joints[i].dof];
-    error[i] = reference.now[i] - q;
     const double wanted = ctrl_for_torque(actuator, demand.torque[i], demand.q[i], demand.v[i]);
     const double given = std::clamp(wanted, actuator.ctrl_lower, actuator.ctrl_upper);
     // The force is left to the simulation to cut, as a drive would: cut here, it would sit on its
@@ -205,7 +210,7 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
     ctrl[actuator.id] = given;
   }
   // Behind a limit the error is no sign of a load, and a sum of it would overshoot.
-  if (!limited) impl_->sum += impl_->inverse.timestep() * error;
+  if (impl_->options.integral > 0 && !limited) impl_->gather(qpos, reference.now);
   return limited;
 }
 

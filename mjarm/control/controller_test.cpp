@@ -19,7 +19,7 @@ using testing::load_shipped;
 using testing::load_text;
 using testing::Loaded;
 using testing::odd_arm;
-using testing::swing;
+using testing::swing_reference;
 using testing::World;
 
 double worst_tracking_error(const Loaded& robot, ControlMode mode) {
@@ -28,8 +28,7 @@ double worst_tracking_error(const Loaded& robot, ControlMode mode) {
   const double h = robot.model.timestep();
   double worst = 0;
   for (int i = 0; i < 1500; ++i) {
-    const StepReference reference{swing(robot.arm, (i - 1) * h), swing(robot.arm, i * h),
-                                  swing(robot.arm, (i + 1) * h)};
+    const StepReference reference = swing_reference(robot.arm, i, h);
     EXPECT_FALSE(world.step(controller, reference)) << "step " << i;
     worst = std::max(worst, (world.q() - reference.next).cwiseAbs().maxCoeff());
   }

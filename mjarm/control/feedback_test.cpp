@@ -16,19 +16,15 @@
 namespace mjarm {
 namespace {
 
+using testing::controller_of;
 using ::testing::HasSubstr;
 using testing::load_shipped;
 using testing::Loaded;
 using testing::swing;
+using testing::swing_reference;
 using testing::World;
 
 constexpr ControlOptions kWithIntegral{.stiffness = 4800, .damping = 120, .integral = 64000};
-
-Controller make(const Loaded& robot, ControlMode mode, const ControlOptions& options = {}) {
-  auto controller = Controller::make(robot.model, robot.arm, mode, options);
-  if (!controller) throw std::runtime_error(controller.error().what);
-  return std::move(*controller);
-}
 
 /// Hangs `mass` [kg] into the centre of the last link.
 void load(World& world, const Loaded& robot, double mass) {
@@ -44,14 +40,13 @@ void load(World& world, const Loaded& robot, double mass) {
 /// Largest joint error from 3 s on of a swing with a load of 1 kg.
 double loaded_error(const ControlOptions& options) {
   const Loaded robot = load_shipped("ur5e");
-  Controller controller = make(robot, ControlMode::computed_torque, options);
+  Controller controller = controller_of(robot, ControlMode::computed_torque, options);
   World world(robot, robot.arm.home);
   load(world, robot, 1);
   const double h = robot.model.timestep();
   double worst = 0;
   for (int i = 0; i < 3000; ++i) {
-    const StepReference reference{swing(robot.arm, (i - 1) * h), swing(robot.arm, i * h),
-                                  swing(robot.arm, (i + 1) * h)};
+    const StepReference reference = swing_reference(robot.arm, i, h);
     EXPECT_FALSE(world.step(controller, reference)) << "step " << i;
     const double error = (world.q() - reference.next).cwiseAbs().maxCoeff();
     if (i * h > 3) worst = std::max(worst, error);
@@ -68,7 +63,7 @@ TEST(Integral, TakesUpALoadThatTheModelDoesNotKnow) {
 
 TEST(Integral, LeavesNoErrorAtRestAndForgetsWhenAsked) {
   const Loaded robot = load_shipped("ur5e");
-  Controller controller = make(robot, ControlMode::computed_torque, kWithIntegral);
+  Controller controller = controller_of(robot, ControlMode::computed_torque, kWithIntegral);
   World world(robot, robot.arm.home);
   load(world, robot, 1);
   const StepReference home = hold(view(robot.arm.home));
@@ -85,7 +80,7 @@ double overshoot(double integral) {
   const Loaded robot = load_shipped("ur5e");
   ControlOptions options = kWithIntegral;
   options.integral = integral;
-  Controller controller = make(robot, ControlMode::computed_torque, options);
+  Controller controller = controller_of(robot, ControlMode::computed_torque, options);
   World world(robot, robot.arm.home);
   JointVec far = robot.arm.home;
   far[0] += 1.5;
@@ -134,12 +129,11 @@ TEST(Integral, LoopsAreRefusedExactlyWhereTheyAreUnstable) {
 
 TEST(FeedForward, FollowsToRoundingAndYieldsLikeTheServo) {
   const Loaded robot = load_shipped("ur5e");
-  Controller controller = make(robot, ControlMode::feed_forward);
+  Controller controller = controller_of(robot, ControlMode::feed_forward);
   World world(robot, robot.arm.home);
   const double h = robot.model.timestep();
   for (int i = 0; i < 1500; ++i) {
-    const StepReference reference{swing(robot.arm, (i - 1) * h), swing(robot.arm, i * h),
-                                  swing(robot.arm, (i + 1) * h)};
+    const StepReference reference = swing_reference(robot.arm, i, h);
     EXPECT_FALSE(world.step(controller, reference));
     EXPECT_LT((world.q() - reference.next).cwiseAbs().maxCoeff(), 1e-9) << "step " << i;
   }
@@ -154,7 +148,7 @@ TEST(FeedForward, FollowsToRoundingAndYieldsLikeTheServo) {
 TEST(JointImpedance, FollowsToRoundingAndYieldsLikeItsSprings) {
   const Loaded robot = load_shipped("panda");
   Controller controller =
-      make(robot, ControlMode::joint_impedance, {.impedance = {.joint_stiffness = 150}});
+      controller_of(robot, ControlMode::joint_impedance, {.impedance = {.joint_stiffness = 150}});
   World world(robot, robot.arm.home);
   const StepReference home = hold(view(robot.arm.home));
   for (int i = 0; i < 500; ++i) world.step(controller, home);
@@ -167,7 +161,8 @@ TEST(JointImpedance, FollowsToRoundingAndYieldsLikeItsSprings) {
 
 /// Pushes the tool with `force` [N] in x; by how much it has moved once it rests.
 Eigen::Vector3d yield_to(const Loaded& robot, double force, const Impedance& impedance) {
-  Controller controller = make(robot, ControlMode::tool_impedance, {.impedance = impedance});
+  Controller controller =
+      controller_of(robot, ControlMode::tool_impedance, {.impedance = impedance});
   World world(robot, robot.arm.home);
   const StepReference home = hold(view(robot.arm.home));
   const Eigen::Vector3d start = fk(robot.arm, view(robot.arm.home)).p;
@@ -203,7 +198,7 @@ TEST(ToolImpedance, MovesJointsToSpareWithTheToolAtRest) {
       settle(ik, X, view(robot.arm.home), {.goal = PostureGoal::near_posture, .posture = posture});
   ASSERT_TRUE(other.has_value());
   ASSERT_GT((other->q - robot.arm.home).norm(), 0.1);
-  Controller controller = make(robot, ControlMode::tool_impedance);
+  Controller controller = controller_of(robot, ControlMode::tool_impedance);
   World world(robot, robot.arm.home);
   double worst = 0;
   for (int i = 0; i < 6000; ++i) {

@@ -38,8 +38,9 @@ inline Loaded load_shipped(const std::string& name) {
   return load_file(*file);
 }
 
-inline Controller controller_of(const Loaded& robot, ControlMode mode) {
-  auto controller = Controller::make(robot.model, robot.arm, mode);
+inline Controller controller_of(const Loaded& robot, ControlMode mode,
+                                const ControlOptions& options = {}) {
+  auto controller = Controller::make(robot.model, robot.arm, mode, options);
   if (!controller) throw std::runtime_error(controller.error().what);
   return std::move(*controller);
 }

@@ -53,4 +53,9 @@ inline JointVec swing(const Arm& arm, double t, double size = 0.3) {
   return arm.home.array() + size * s;
 }
 
+/// What step `i` of that swing refers to, in steps of `h` [s].
+inline StepReference swing_reference(const Arm& arm, int i, double h) {
+  return {swing(arm, (i - 1) * h), swing(arm, i * h), swing(arm, (i + 1) * h)};
+}
+
 }  // namespace mjarm::testing

@@ -1,27 +1,21 @@
 #include "mjarm/sim/bench.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/sim/raw_internal.hpp"
 #include "mjarm/sim/stepper_internal.hpp"
 
 namespace mjarm {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kSwing = 0.2;   // [rad or m]
 constexpr double kPeriod = 2.0;  // [s]
-
-double microseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
 
 /// All joints swing by (1 - cos) / 2 away from `home`, so that the motion begins at rest.
 std::vector<JointVec> swing(const Arm& arm, double timestep, int steps) {
@@ -51,13 +45,13 @@ class Contestant {
                             .arm = arm_,
                             .recorder = recorder ? &*recorder : nullptr};
     Stepper stepper(setup);
-    const auto start = Clock::now();
+    const Stopwatch watch;
     for (std::size_t i = 1; i + 1 < positions.size(); ++i) {
       auto stepped = stepper.step({positions[i - 1], positions[i], positions[i + 1]});
       if (!stepped) return fail(std::move(stepped.error()));
       if (ctrl != nullptr) ctrl->insert(ctrl->end(), sim_.ctrl().begin(), sim_.ctrl().end());
     }
-    return microseconds_since(start);
+    return watch.us();
   }
   [[nodiscard]] const std::string& name() const { return name_; }
 
@@ -79,12 +73,12 @@ class Bare {
     mj_resetData(m, data_.get());
     for (int i = 0; i < arm_.dof(); ++i) data_->qpos[arm_.joints[i].qpos] = start_position[i];
     mj_forward(m, data_.get());
-    const auto start = Clock::now();
+    const Stopwatch watch;
     for (std::size_t at = 0; at < ctrl.size(); at += static_cast<std::size_t>(m->nu)) {
       std::copy_n(ctrl.data() + at, m->nu, data_->ctrl);
       mj_step(m, data_.get());
     }
-    return microseconds_since(start);
+    return watch.us();
   }
 
  private:

@@ -54,24 +54,28 @@ Result<ViaMotion> stopping_at_each(std::span<const JointVec> points, const detai
   return motion;
 }
 
+/// Each segment starts at its waypoint anew, so that rounding does not add up on the way.
 Result<Trajectory> trajectory_of(const detail::ViaSpline& spline,
                                  std::span<const JointVec> points) {
-  std::vector<double> durations;
-  std::vector<JointVec> jerks;
+  const auto state = [&](int k) {
+    return JointState{points[static_cast<std::size_t>(k)], spline.v.col(k), spline.a.col(k)};
+  };
+  std::vector<Trajectory> segments;
   for (int k = 0; k < spline.segments(); ++k) {
     const double h = spline.h[static_cast<std::size_t>(k)];
-    std::vector<JointVec> cells(detail::kCells, JointVec(spline.joints()));
+    std::vector<JointVec> jerks(detail::kCells, JointVec(spline.joints()));
     for (int j = 0; j < spline.joints(); ++j) {
       const detail::Coefs c = detail::coefs_of(spline, k, j);
-      for (std::size_t i = 0; i < cells.size(); ++i) {
-        cells[i][j] = (c[i + 2] - 2 * c[i + 1] + c[i]) / (h * h);
+      for (std::size_t i = 0; i < jerks.size(); ++i) {
+        jerks[i][j] = (c[i + 2] - 2 * c[i + 1] + c[i]) / (h * h);
       }
     }
-    durations.insert(durations.end(), cells.size(), h);
-    jerks.insert(jerks.end(), cells.begin(), cells.end());
+    Result<Trajectory> segment =
+        Trajectory::from_jerks(state(k), std::vector<double>(jerks.size(), h), jerks, state(k + 1));
+    if (!segment) return segment;
+    segments.push_back(*std::move(segment));
   }
-  return Trajectory::from_jerks(JointState::at_rest(points.front()), durations, jerks,
-                                JointState::at_rest(points.back()));
+  return Trajectory::chain(segments);
 }
 
 /// None where the optimiser fails, or rounding makes the motion miss a waypoint.

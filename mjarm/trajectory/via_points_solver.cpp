@@ -20,6 +20,9 @@ constexpr double kPenalty = 2;         // of a room missed, in multipliers
 constexpr int kHalvings = 12;          // of one step
 constexpr int kPatience = 10;          // steps at the end without a better motion
 constexpr double kBand = 1e4;          // multipliers stay within this factor of the central path
+constexpr double kTiny = 0.1;          // of both neighbours: a step so short may be made in passing
+constexpr double kShort = 0.2;         // of the mean cell: the barrier weighs less on shorter ones
+constexpr double kWorth = 0.9;         // of the other guess is left at most, where passing works
 
 /// A motion, the rooms taken for those of its rows, and its own rooms less those.
 struct State {
@@ -51,6 +54,7 @@ class Descent {
         trial_(now_),
         step_(now_.motion),
         best_(now_.motion),
+        shares_(step_.h.size(), 1.0),
         newton_(step_.joints(), step_.segments()),
         parts_(step_.inner.size()),
         room_steps_(parts_.size()),
@@ -61,9 +65,12 @@ class Descent {
   }
 
   /// Makes the motion to start from. @return false where numbers overflow.
-  [[nodiscard]] bool guess();
+  /// @param in_passing  tiny steps take the time they have at the speed of their neighbours; else
+  ///                    as long as from rest to rest.
+  [[nodiscard]] bool guess(bool in_passing);
   void improve(int iterations);
   [[nodiscard]] const ViaSpline& best() const { return best_; }
+  [[nodiscard]] double duration() const { return best_duration_; }
 
  private:
   /// How far the first-order step may go, <= 1, and the derivative of the merit along it.
@@ -74,12 +81,17 @@ class Descent {
   [[nodiscard]] SegmentTask task(int k, int j) const {
     return {steps_[static_cast<std::size_t>(k)][j], bounds_.v[j], bounds_.a[j], bounds_.j[j]};
   }
+  /// Of the barrier's weight: less for a segment far shorter than the others, which the same
+  /// weight would keep long.
+  [[nodiscard]] double share_of(int k) const { return shares_[static_cast<std::size_t>(k)]; }
   template <class Call>
   void for_all(const Call& call) const {
     for (int k = 0; k < step_.segments(); ++k) {
       for (int j = 0; j < step_.joints(); ++j) call(k, j, step_.index(k, j));
     }
   }
+  void time_alone();
+  void time_in_passing();
   [[nodiscard]] bool keep_best();
   [[nodiscard]] bool find_step(double mu, double curvature);
   [[nodiscard]] Reach measure_step(double mu);
@@ -94,22 +106,49 @@ class Descent {
   State now_, trial_;
   ViaSpline step_, best_;
   double best_duration_ = std::numeric_limits<double>::infinity();
+  std::vector<double> shares_;  // of each segment
   ViaNewton newton_;
   std::vector<Condensed> parts_;
   std::vector<RowPairs> room_steps_, multipliers_, multiplier_steps_;
 };
 
-/// The smoothest motion (least square jerk) at times in proportion to those the limits would need
-/// for each step alone, slowed down to keep the limits.
-bool Descent::guess() {
-  ViaSpline& motion = now_.motion;
+/// Whether step `k` is tiny beside both its neighbours.
+bool is_tiny(std::span<const JointVec> steps, std::size_t k) {
+  return k > 0 && k + 1 < steps.size() &&
+         steps[k].norm() < kTiny * std::min(steps[k - 1].norm(), steps[k + 1].norm());
+}
+
+/// Cell lengths in proportion to the times the limits would need for each step alone.
+void Descent::time_alone() {
   for_all([&](int k, int j, std::size_t) {
     const SegmentTask t = task(k, j);
     const double way = std::abs(t.step);
-    double& h = motion.h[static_cast<std::size_t>(k)];
+    double& h = now_.motion.h[static_cast<std::size_t>(k)];
     h = std::max({h, way / t.v / kCells, std::sqrt(2 * way / t.a) / kCells,
                   std::cbrt(8 * way / t.j) / kCells});
   });
+}
+
+/// Shortens the cells of tiny steps to what they take at the mean speed of their neighbours.
+void Descent::time_in_passing() {
+  std::vector<double>& h = now_.motion.h;
+  const std::vector<double> alone = h;
+  for (std::size_t k = 0; k < h.size(); ++k) {
+    if (!is_tiny(steps_, k)) continue;
+    const double before = alone[k - 1] / steps_[k - 1].norm();
+    const double after = alone[k + 1] / steps_[k + 1].norm();
+    h[k] = 0.5 * steps_[k].norm() * (before + after);
+  }
+  double mean = 0;
+  for (const double cell : h) mean += cell / static_cast<double>(h.size());
+  for (std::size_t k = 0; k < h.size(); ++k) shares_[k] = std::min(1.0, h[k] / (kShort * mean));
+}
+
+/// The smoothest motion (least square jerk) at some cell lengths, slowed down to keep the limits.
+bool Descent::guess(bool in_passing) {
+  ViaSpline& motion = now_.motion;
+  time_alone();
+  if (in_passing) time_in_passing();
   bool sound = true;
   for_all([&](int k, int j, std::size_t id) {
     const double h = motion.h[static_cast<std::size_t>(k)];
@@ -148,8 +187,8 @@ bool Descent::find_step(double mu, double curvature) {
   bool sound = true;
   for_all([&](int k, int j, std::size_t id) {
     const Shared y = now_.motion.shared(k, j);
-    const SegmentModel model = barrier_model(task(k, j), y, mu, now_.rooms[id], now_.missed[id],
-                                             multipliers_[id], curvature);
+    const SegmentModel model = barrier_model(task(k, j), y, mu * share_of(k), now_.rooms[id],
+                                             now_.missed[id], multipliers_[id], curvature);
     sound = condense(task(k, j), y, model, parts_[id]) && sound;
   });
   return sound && newton_.solve(parts_, 1, step_);
@@ -157,15 +196,16 @@ bool Descent::find_step(double mu, double curvature) {
 
 Descent::Reach Descent::measure_step(double mu) {
   double shrink = 1, shrink_multipliers = 1, slope = step_.duration();
-  const auto one = [&](double change, double s, double miss, double z, double& ds, double& dz) {
-    ds = change + miss;
-    const double relative = ds / s;
-    dz = mu / s - z * (1 + relative);
-    slope -= mu * relative + kPenalty * z * std::abs(miss);
-    shrink = std::max(shrink, -relative / kToWall);
-    shrink_multipliers = std::max(shrink_multipliers, -dz / (z * kToWall));
-  };
   for_all([&](int k, int j, std::size_t id) {
+    const double weight = mu * share_of(k);
+    const auto one = [&](double change, double s, double miss, double z, double& ds, double& dz) {
+      ds = change + miss;
+      const double relative = ds / s;
+      dz = weight / s - z * (1 + relative);
+      slope -= weight * relative + kPenalty * z * std::abs(miss);
+      shrink = std::max(shrink, -relative / kToWall);
+      shrink_multipliers = std::max(shrink_multipliers, -dz / (z * kToWall));
+    };
     const Shared y = now_.motion.shared(k, j), dy = step_.shared(k, j);
     const double h = y.back(), dh = dy.back();
     const Rows dg = row_values(coefs_step(y, dy, step_.inner[id]));
@@ -187,7 +227,12 @@ void Descent::advance(double share) {
   ViaSpline& to = trial_.motion;
   to.v = from.v + share * step_.v;
   to.a = from.a + share * step_.a;
-  for (std::size_t k = 0; k < to.h.size(); ++k) to.h[k] = from.h[k] + share * step_.h[k];
+  for (std::size_t k = 0; k < to.h.size(); ++k) {
+    const double change = share * step_.h[k];
+    // The way is speed times length, so that a step of both at once keeps it where the inverse
+    // length changes in proportion; over very short cells an error would be a great jerk.
+    to.h[k] = shares_[k] < 1 ? from.h[k] / (1 - change / from.h[k]) : from.h[k] + change;
+  }
   for_all([&](int k, int j, std::size_t id) {
     double missing = inner_sum(task(k, j), to.shared(k, j));
     for (std::size_t i = 0; i < kInner; ++i) {
@@ -218,13 +263,13 @@ void Descent::advance_rooms(double share) {
 /// The rooms missed count with their price, the multipliers.
 double Descent::merit(const State& state, double mu) const {
   double logs = 0, missed = 0;
-  for (std::size_t id = 0; id < parts_.size(); ++id) {
+  for_all([&](int k, int, std::size_t id) {
     const RowPairs &s = state.rooms[id], &miss = state.missed[id], &z = multipliers_[id];
     for (std::size_t r = 0; r < kRows; ++r) {
-      logs += std::log(s.up[r] * s.down[r]);
+      logs += share_of(k) * std::log(s.up[r] * s.down[r]);
       missed -= z.up[r] * miss.up[r] + z.down[r] * miss.down[r];
     }
-  }
+  });
   return state.motion.duration() - mu * logs + kPenalty * missed;
 }
 
@@ -245,16 +290,17 @@ double Descent::take_step(double mu, const Reach& reach) {
 }
 
 void Descent::move_multipliers(double mu, double share) {
-  const auto move = [&](double& z, double change, double room) {
-    z = std::clamp(z + share * change, mu / room / kBand, mu / room * kBand);
-  };
-  for (std::size_t id = 0; id < parts_.size(); ++id) {
+  for_all([&](int k, int, std::size_t id) {
+    const double weight = mu * share_of(k);
+    const auto move = [&](double& z, double change, double room) {
+      z = std::clamp(z + share * change, weight / room / kBand, weight / room * kBand);
+    };
     const RowPairs &s = now_.rooms[id], &dz = multiplier_steps_[id];
     for (std::size_t r = 0; r < kRows; ++r) {
       move(multipliers_[id].up[r], dz.up[r], s.up[r]);
       move(multipliers_[id].down[r], dz.down[r], s.down[r]);
     }
-  }
+  });
 }
 
 void Descent::improve(int iterations) {
@@ -262,12 +308,13 @@ void Descent::improve(int iterations) {
   const double share_of_row = start / (2.0 * kRows * static_cast<double>(parts_.size()));
   const double last = kLastBarrier * share_of_row;
   double mu = kFirstBarrier * share_of_row;
-  for (std::size_t id = 0; id < parts_.size(); ++id) {
+  for_all([&](int k, int, std::size_t id) {
+    const double weight = mu * share_of(k);
     for (std::size_t r = 0; r < kRows; ++r) {
-      multipliers_[id].up[r] = mu / now_.rooms[id].up[r];
-      multipliers_[id].down[r] = mu / now_.rooms[id].down[r];
+      multipliers_[id].up[r] = weight / now_.rooms[id].up[r];
+      multipliers_[id].down[r] = weight / now_.rooms[id].down[r];
     }
-  }
+  });
   int patience = kPatience;
   for (int i = 0; i < iterations && patience > 0; ++i) {
     // Without the curvature of the limits where that makes the system indefinite.
@@ -294,10 +341,18 @@ Coefs coefs_of(const ViaSpline& motion, int k, int j) {
 
 std::optional<ViaSpline> fastest_via(std::span<const JointVec> steps, const Bounds& bounds,
                                      int iterations) {
-  Descent descent(steps, bounds);
-  if (!descent.guess()) return std::nullopt;
-  descent.improve(iterations);
-  return descent.best();
+  Descent alone(steps, bounds);
+  if (!alone.guess(false)) return std::nullopt;
+  bool any_tiny = false;
+  for (std::size_t k = 0; k < steps.size(); ++k) any_tiny = any_tiny || is_tiny(steps, k);
+  if (any_tiny) {
+    // From rests at tiny steps the descent would hardly get away.
+    Descent passing(steps, bounds);
+    if (passing.guess(true)) passing.improve(iterations);
+    if (passing.duration() < kWorth * alone.duration()) return passing.best();
+  }
+  alone.improve(iterations);
+  return alone.best();
 }
 
 }  // namespace mjarm::detail

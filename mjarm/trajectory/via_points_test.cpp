@@ -202,6 +202,45 @@ TEST(ViaPoints, EqualNeighboursAreMetAtOneTime) {
   EXPECT_EQ(duration_of(Waypoints(5, single[1]), limits), 0);
 }
 
+TEST(ViaPoints, NearDuplicatesOnTheWayCostNeitherTimeNorIterations) {
+  Rng rng(7);
+  const JointLimits limits = alike(6, 3, 5, 100);
+  const Waypoints single = random_waypoints(rng, 30, 6, 0.5);
+  const auto plain = time_via_points(single, limits);
+  ASSERT_TRUE(plain.has_value());
+  for (const double gap : {1e-4, 1e-3, 1e-2}) {  // [rad] to the next waypoint, on the fastest way
+    SCOPED_TRACE(gap);
+    Waypoints pairs;
+    for (std::size_t i = 0; i < single.size(); ++i) {
+      pairs.push_back(single[i]);
+      if (i == 0 || i + 1 == single.size()) continue;
+      const double t = plain->times[i], speed = plain->trajectory.at(t).v.norm();
+      pairs.push_back(plain->trajectory.at(t + gap / speed).q);
+    }
+    const auto motion = time_via_points(pairs, limits, {.iterations = 40});
+    ASSERT_TRUE(motion.has_value());
+    expect_sound(*motion, pairs, limits);
+    EXPECT_LE(motion->trajectory.duration(), 1.005 * plain->trajectory.duration());
+  }
+}
+
+TEST(ViaPoints, NearDuplicatesOffTheWayAreNotStopsEither) {
+  // They demand a direction, which costs time, but less than to rest there.
+  Rng rng(8);
+  const JointLimits limits = alike(6, 3, 5, 100);
+  Waypoints pairs;
+  for (const JointVec& q : random_waypoints(rng, 20, 6, 0.5)) {
+    JointVec offset(6);
+    for (double& x : offset) x = rng.uniform(-1, 1);
+    pairs.push_back(q);
+    pairs.emplace_back(q + offset * (1e-3 / offset.norm()));
+  }
+  const auto motion = time_via_points(pairs, limits);
+  ASSERT_TRUE(motion.has_value());
+  expect_sound(*motion, pairs, limits);
+  EXPECT_LE(motion->trajectory.duration(), 0.9 * stopping(pairs, limits));
+}
+
 TEST(ViaPoints, AnyNumberOfIterationsGivesASoundMotion) {
   Rng rng(6);
   const Waypoints points = random_waypoints(rng, 10, 6, 1);

@@ -5,41 +5,27 @@
 #include "apps/mjarm/bench/ik_report.hpp"
 #include "apps/mjarm/bench/suite.hpp"
 #include "apps/mjarm/bench/suites.hpp"
-#include "apps/mjarm/options.hpp"
-#include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/bench.hpp"
-#include "mjarm/core/os.hpp"
-#include "mjarm/core/progress.hpp"
 
 namespace mjarm::app {
 namespace {
 
 Result<std::vector<IkRun>> run_ours(const IkProblem& problem, int rounds) {
-  Progress progress(text(msg::bench_ik_progress, problem.name),
-                    static_cast<std::uint64_t>(ik_run_steps(problem, rounds)));
-  auto runs = run_ik(problem, rounds, [&] {
-    progress.advance();
-    return !interrupted();
-  });
-  if (!runs) return fail(Errc::system, text(msg::app_interrupted));
+  const Advance advance = show_rounds(text(msg::bench_ik_progress, problem.name),
+                                      static_cast<std::uint64_t>(ik_run_steps(problem, rounds)));
+  auto runs = run_ik(problem, rounds, advance);
+  if (!runs) return fail(stopped());
   return std::move(*runs);
 }
 
-struct Options : BenchOptions {
-  std::string tip;
-};
-
-Result<BenchResult> measure(const Options& options, const std::string& robot, int rounds) {
+Result<BenchResult> measure(const ToolBenchOptions& options, const std::string& robot, int rounds) {
   const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
   if (!problem) return fail(problem.error());
   Result<std::vector<IkRun>> runs = run_ours(*problem, rounds);
   if (!runs) return fail(std::move(runs.error()));
-  if (!options.peers.empty()) {
-    log_info(text(msg::bench_running_peers, problem->name));
-    Result<std::vector<IkRun>> peers = run_ik_peers(*problem, options.peers, rounds);
-    if (!peers) return fail(std::move(peers.error()));
-    runs->insert(runs->end(), peers->begin(), peers->end());
+  const auto run_peers = [&] { return run_ik_peers(*problem, options.peers, rounds); };
+  if (auto added = add_peers(options, problem->name, *runs, run_peers); !added) {
+    return fail(std::move(added.error()));
   }
   BenchResult result{problem->name, problem->robot.model.file().filename().string(), {}};
   int wrong = 0;
@@ -55,10 +41,9 @@ Result<BenchResult> measure(const Options& options, const std::string& robot, in
 }  // namespace
 
 BenchSuite add_bench_ik(CLI::App& bench) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ToolBenchOptions>();
   CLI::App& app = add_subcommand(bench, "ik", msg::bench_ik_summary, msg::bench_ik_examples);
-  add_bench_options(app, *options, msg::bench_ik_option_data);
-  add_option(app, "--tip", options->tip, msg::app_option_tip, "FRAME");
+  add_tool_bench_options(app, *options, msg::bench_ik_option_data);
   return {&app, [options] {
             return run_suite(*options, {"ur5e", "panda"}, ik_columns(),
                              [&](const std::string& robot, int rounds) {

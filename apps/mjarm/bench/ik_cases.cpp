@@ -70,27 +70,21 @@ std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
 }
 
 Result<IkCaseSet> read_set(const fs::path& file, IkCaseSet set, const Arm& arm) {
-  Result<LineReader> reader = LineReader::open(file.string());
-  if (!reader) return fail(std::move(reader.error()));
   Rng rng(kSeed, 3);
-  for (;;) {
-    const auto line = reader->next();
-    if (!line) return fail(line.error());
-    if (!*line) break;
-    const auto in_line = [&](const Error& error) {
-      return fail(error.code, reader->place() + ": " + error.what);
-    };
-    const Result<nlohmann::json> object = parse_json_object(**line);
-    if (!object) return in_line(object.error());
-    const Result<Pose> X_WT = pose_of(*object);
-    if (!X_WT) return in_line(X_WT.error());
+  const auto take = [&](const nlohmann::json& object) -> Result<void> {
+    const Result<Pose> X_WT = pose_of(object);
+    if (!X_WT) return fail(X_WT.error());
     IkCase entry{*X_WT, list(random_q(arm, rng))};
-    if (object->contains("seed")) {
-      auto seed = number_list(*object, "seed", static_cast<std::size_t>(arm.dof()));
-      if (!seed) return in_line(seed.error());
+    if (has_member(object, "seed")) {
+      auto seed = number_list(object, "seed", static_cast<std::size_t>(arm.dof()));
+      if (!seed) return fail(seed.error());
       entry.seed = std::move(*seed);
     }
     set.cases.push_back(std::move(entry));
+    return {};
+  };
+  if (auto done = read_json_lines(file, LineReader::kLongestLine, take); !done) {
+    return fail(std::move(done.error()));
   }
   if (set.cases.empty()) return fail(Errc::bad_input, text(msg::bench_no_cases, file.string()));
   return set;

@@ -9,19 +9,21 @@ namespace mjarm::app {
 namespace {
 
 /// All that a peer has to know.
-Result<nlohmann::json> job_of(const IkProblem& problem, int rounds) {
-  Result<nlohmann::json> job = robot_job(problem.robot);
+Result<JsonDoc> job_of(const IkProblem& problem, int rounds) {
+  Result<JsonDoc> job = robot_job(problem.robot);
   if (!job) return job;
-  (*job)["rounds"] = rounds;
-  (*job)["fk"] = problem.q;
+  std::vector<JsonDoc> sets;
   for (const IkCaseSet& set : problem.sets) {
-    nlohmann::json cases = nlohmann::json::array();
+    std::vector<JsonDoc> cases;
     for (const IkCase& entry : set.cases) {
       cases.push_back(pose_json(entry.X_WT));
-      cases.back()["seed"] = entry.seed;
+      cases.back().set("seed", entry.seed);
     }
-    (*job)["sets"].push_back({{"name", set.name}, {"cases", std::move(cases)}});
+    sets.push_back({{"name", set.name}, {"cases", std::move(cases)}});
   }
+  job->set("rounds", rounds);
+  job->set("fk", problem.q);
+  job->set("sets", std::move(sets));
   return job;
 }
 
@@ -29,14 +31,12 @@ Result<nlohmann::json> job_of(const IkProblem& problem, int rounds) {
 
 Result<std::vector<IkRun>> run_ik_peers(const IkProblem& problem,
                                         const std::filesystem::path& environment, int rounds) {
-  Result<nlohmann::json> job = job_of(problem, rounds);
+  Result<JsonDoc> job = job_of(problem, rounds);
   if (!job) return fail(std::move(job.error()));
   std::vector<IkRun> runs;
   const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
     IkRun run{std::move(entry)};
-    for (const nlohmann::json& q : line.value("q", nlohmann::json::array())) {
-      run.q.push_back(q.is_null() ? std::vector<double>() : q.get<std::vector<double>>());
-    }
+    run.q = rows_in(line, "q");
     runs.push_back(std::move(run));
     return {};
   };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "mjarm/core/messages/bench.hpp"
 
 namespace mjarm::app {
@@ -25,15 +27,16 @@ BenchEntry ik_entry(const IkRun& run) {
   BenchEntry entry = run;
   entry.cells = {share_of(run)};
   if (!run.q.empty()) {
-    entry.details["cases"] = run.q.size();
-    entry.details["right"] = run.right;
-    entry.details["false_ok"] = run.false_ok;
-    nlohmann::ordered_json& misses = entry.details["misses"] = nlohmann::ordered_json::array();
+    std::vector<JsonDoc> misses;
     for (const std::size_t at : run.wrong) {
       misses.push_back({{"case", at}, {"reason", at < run.reasons.size() ? run.reasons[at] : ""}});
     }
+    entry.details = {{"cases", run.q.size()},
+                     {"right", run.right},
+                     {"false_ok", run.false_ok},
+                     {"misses", std::move(misses)}};
   }
-  if (run.set == "path" || run.set == "track") entry.details["max_step"] = run.max_step;
+  if (run.set == "path" || run.set == "track") entry.details.set("max_step", run.max_step);
   return entry;
 }
 

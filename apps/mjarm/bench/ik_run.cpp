@@ -1,11 +1,11 @@
 #include "apps/mjarm/bench/ik_run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "apps/mjarm/bench/robots.hpp"
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/kinematics/link_chain.hpp"
@@ -14,13 +14,7 @@
 namespace mjarm::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-double microseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
 
 /// Makes `run` the best of what it was and this call.
 void keep(IkRun& run, std::size_t i, double us, const Result<IkSolution, IkFailure>& answer) {
@@ -46,9 +40,9 @@ bool solve_set(const IkSolver& ik, const IkCaseSet& set, int rounds,
                const std::function<bool()>& advance, IkRun& run) {
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < set.cases.size(); ++i) {
-      const auto start = Clock::now();
+      const Stopwatch watch;
       const auto answer = ik.solve(set.cases[i].X_WT, set.cases[i].seed);
-      keep(run, i, microseconds_since(start), answer);
+      keep(run, i, watch.us(), answer);
     }
     if (!advance()) return false;
   }
@@ -89,9 +83,9 @@ bool follow_paths(const IkProblem& problem, int rounds, const std::function<bool
 bool solve_paths(const IkSolver& ik, const IkProblem& problem, int rounds,
                  const std::function<bool()>& advance, IkRun& run) {
   return follow_paths(problem, rounds, advance, run, [&](const Pose& X_WT, std::span<double> q) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     const auto answer = ik.solve(X_WT, q);
-    const double us = microseconds_since(start);
+    const double us = watch.us();
     if (answer) return Followed{us, answer->q};
     return Followed{us, joint_vec(q), std::string(name(answer.error().code))};
   });
@@ -104,10 +98,10 @@ bool track_paths(const Arm& arm, const IkProblem& problem, int rounds,
                  const std::function<bool()>& advance, IkRun& run) {
   const Tracker tracker(arm, {.dt = 1});  // no bound on the speed: the poses have no time
   return follow_paths(problem, rounds, advance, run, [&](const Pose& X_WT, std::span<double> q) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     const TrackStep first = tracker.step(X_WT, q);
     const TrackStep step = tracker.step(X_WT, view(first.q));
-    const double us = 0.5 * microseconds_since(start);
+    const double us = 0.5 * watch.us();
     return Followed{us, step.q, step.damping > 0 ? "damped" : ""};
   });
 }
@@ -120,12 +114,12 @@ bool run_jacobians(const IkProblem& problem, int rounds, const std::function<boo
   const LinkChain chain{Chain(problem.robot.arm)};
   double sum = 0;
   for (int round = 0; round < rounds; ++round) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     for (const std::vector<double>& q : problem.q) {
       const FkJacobian out = fk_jacobian(chain, q);
       sum += out.X_WT.p[0] + out.J_W(0, 0);
     }
-    const double us = microseconds_since(start) / static_cast<double>(problem.q.size());
+    const double us = watch.us() / static_cast<double>(problem.q.size());
     run.us.assign(1, std::min(run.us.front(), us));
     if (!advance()) return false;
   }

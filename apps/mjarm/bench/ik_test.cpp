@@ -24,10 +24,7 @@ std::string write_data(const support::TempFolder& folder) {
 TEST(BenchIk, JudgesTheCasesOfAFolder) {
   const support::TempFolder folder;
   const std::string data = write_data(folder);
-  const auto result = mjarm({"bench", "ik", "--robot", "arm", "--data", data, "--tip", "tool",
-                             "--rounds", "2", "--json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json bench = json::parse(result.out);
+  const json bench = bench_json(bench_arm("ik", data, {"--tip", "tool", "--rounds", "2"}));
   const json& reachable = run_of(bench, "mjarm", "reachable");
   EXPECT_EQ(reachable.at("cases"), 2);
   EXPECT_EQ(reachable.at("right"), 2);
@@ -47,11 +44,9 @@ TEST(BenchIk, AWrongSetShowsAsMissesWithTheReason) {
   const std::string data = write_data(folder);
   folder.write("arm_reachable.jsonl", R"({"pos":[3,0,0],"quat":[1,0,0,0],"seed":[0,0]})");
   folder.write("arm_unreachable.jsonl", R"({"pos":[4,0,0],"quat":[1,0,0,0]})");
-  const auto result = mjarm({"bench", "ik", "--robot", "arm", "--data", data, "--tip", "tool",
-                             "--rounds", "1", "--json", "--no-timing"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.out.find("\"us\""), std::string::npos);
-  const json bench = json::parse(result.out);
+  const json bench =
+      bench_json(bench_arm("ik", data, {"--tip", "tool", "--rounds", "1", "--no-timing"}));
+  EXPECT_EQ(bench.dump().find("\"us\""), std::string::npos);
   const json& reachable = run_of(bench, "mjarm", "reachable");
   EXPECT_EQ(reachable.at("right"), 0);
   ASSERT_EQ(reachable.at("misses").size(), 1u);
@@ -80,8 +75,8 @@ TEST(BenchIk, RunsPeersAndJudgesThemToo) {
 {"who":"bad","version":"2","error":"no such arm"}
 )",
                                        R"(grep -q '"tip":"tool"' "$2" || exit 9)");
-  const std::vector<std::string> arguments = {"bench", "ik",   "--robot", "arm", "--data",   data,
-                                              "--tip", "tool", "--peers", venv,  "--rounds", "1"};
+  const std::vector<std::string> arguments =
+      bench_arm("ik", data, {"--tip", "tool", "--peers", venv, "--rounds", "1"});
   const auto table = mjarm(arguments);
   ASSERT_EQ(table.exit_code, 0) << table.err;
   EXPECT_NE(table.out.find("good 1"), std::string::npos) << table.out;
@@ -118,8 +113,8 @@ TEST(BenchIk, SaysWhatIsWrong) {
   holds(error_of({"--robot", "arm", "--data", data, "--tip", "tool"}, 2), "unreachable.jsonl");
   folder.write("arm_unreachable.jsonl", R"({"pos":[3,0,0],"quat":[1,0,0,0]})");
   const auto with_peers = [&](const std::string& venv, int code) {
-    const auto result = mjarm({"bench", "ik", "--rounds", "1", "--robot", "arm", "--data", data,
-                               "--tip", "tool", "--peers", venv, "--quiet"});
+    const auto result = mjarm(
+        bench_arm("ik", data, {"--rounds", "1", "--tip", "tool", "--peers", venv, "--quiet"}));
     EXPECT_EQ(result.exit_code, code);
     return only_line(result);
   };
@@ -128,7 +123,7 @@ TEST(BenchIk, SaysWhatIsWrong) {
   std::filesystem::permissions(python, std::filesystem::perms::owner_all);
   holds(with_peers((folder.path() / "venv").string(), 1), "3");
   folder.write("venv/bin/python", "#!/bin/sh\necho '{\"who\":' > \"$3\"\n");
-  holds(with_peers((folder.path() / "venv").string(), 1), "parse");
+  holds(with_peers((folder.path() / "venv").string(), 1), "not valid JSON");
 }
 
 }  // namespace

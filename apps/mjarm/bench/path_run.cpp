@@ -1,7 +1,6 @@
 #include "apps/mjarm/bench/path_run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -9,13 +8,11 @@
 #include "apps/mjarm/bench/peers.hpp"
 #include "apps/mjarm/bench/robots.hpp"
 #include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/solve_path.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using nlohmann::json;
 
 constexpr double kFlip = 0.5;  // [rad or m] a longer step between given poses is a flip
 
@@ -52,12 +49,11 @@ std::optional<PathRun> run_path(const PathProblem& problem, const PathSet& set, 
   run.paths.resize(set.paths.size());
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < set.paths.size(); ++i) {
-      const auto start = Clock::now();
+      const Stopwatch watch;
       // As `mjarm path` without a start: of all tracks the one with most room.
       const auto answer =
           solve_path(ik, set.paths[i], view(problem.robot.arm.home), {.comfort = 0});
-      const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-      run.us[i] = std::min(run.us[i], us);
+      run.us[i] = std::min(run.us[i], watch.us());
       if (round == 0) run.paths[i] = followed(problem.robot.arm, answer);
     }
     if (!advance()) return std::nullopt;
@@ -67,25 +63,25 @@ std::optional<PathRun> run_path(const PathProblem& problem, const PathSet& set, 
 
 Result<std::vector<PathRun>> run_path_peers(const PathProblem& problem,
                                             const std::filesystem::path& environment, int rounds) {
-  Result<json> job = robot_job(problem.robot);
+  Result<JsonDoc> job = robot_job(problem.robot);
   if (!job) return fail(std::move(job.error()));
-  (*job)["rounds"] = rounds;
-  (*job)["seeds"] = problem.seeds;
+  std::vector<JsonDoc> sets;
   for (const PathSet& set : problem.sets) {
-    json paths = json::array();
+    std::vector<JsonDoc> paths;
     for (const std::vector<Pose>& path : set.paths) {
-      json poses = json::array();
+      std::vector<JsonDoc> poses;
       for (const Pose& X_WT : path) poses.push_back(pose_json(X_WT));
       paths.push_back(std::move(poses));
     }
-    (*job)["sets"].push_back({{"name", set.name}, {"paths", std::move(paths)}});
+    sets.push_back({{"name", set.name}, {"paths", std::move(paths)}});
   }
+  job->set("rounds", rounds);
+  job->set("seeds", problem.seeds);
+  job->set("sets", std::move(sets));
   std::vector<PathRun> runs;
-  const auto take = [&](BenchEntry entry, const json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
     PathRun run{std::move(entry)};
-    for (const json& q : line.value("q", json::array())) {
-      run.paths.push_back({.q = q.get<std::vector<std::vector<double>>>()});
-    }
+    for (auto& q : tables_in(line, "q")) run.paths.push_back({.q = std::move(q)});
     runs.push_back(std::move(run));
     return {};
   };
@@ -120,7 +116,7 @@ BenchEntry path_entry(const PathSet& set, const PathRun& run) {
   int complete = 0, off = 0, flips = 0;
   double max_step = 0;
   std::string cause;
-  auto stopped = nlohmann::ordered_json::array();
+  std::vector<JsonDoc> stopped;
   for (std::size_t i = 0; i < run.paths.size(); ++i) {
     const FollowedPath& path = run.paths[i];
     complete += path.complete ? 1 : 0;

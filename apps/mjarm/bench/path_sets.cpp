@@ -5,7 +5,6 @@
 
 #include "apps/mjarm/bench/robots.hpp"
 #include "apps/mjarm/json_line.hpp"
-#include "apps/mjarm/line_reader.hpp"
 #include "apps/mjarm/path_request.hpp"
 #include "mjarm/core/messages/bench.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -22,6 +21,7 @@ constexpr std::size_t kSeeds = 10;
 constexpr int kLines = 20;
 constexpr int kPoses = 100;
 constexpr int kTries = 2000;
+constexpr std::size_t kLongestLine = std::size_t{1} << 26;  // [bytes] of a file of paths
 constexpr double kSmooth = 0.1;  // [rad or m] largest step of a branch that counts as known
 
 std::vector<Pose> poses_along(const Curve& line, int n) {
@@ -74,23 +74,15 @@ PathSet make_beyond(const Arm& arm, const PathSet& lines) {
 }
 
 Result<PathSet> read_set(const fs::path& file, PathSet set, const Arm& arm) {
-  Result<LineReader> reader = LineReader::open(file.string(), std::size_t{1} << 26);
-  if (!reader) return fail(std::move(reader.error()));
-  for (;;) {
-    const auto line = reader->next();
-    if (!line) return fail(line.error());
-    if (!*line) break;
-    const auto in_line = [&](const Error& error) {
-      return fail(error.code, reader->place() + ": " + error.what);
-    };
-    const Result<nlohmann::json> object = parse_json_object(**line);
-    if (!object) return in_line(object.error());
-    Result<PathRequest> request = path_request_of(*object, arm);
-    if (!request) return in_line(request.error());
-    if (request->poses.empty()) {
-      return fail(Errc::bad_input, reader->place() + ": " + text(msg::bench_path_no_poses));
-    }
+  const auto take = [&](const nlohmann::json& object) -> Result<void> {
+    Result<PathRequest> request = path_request_of(object, arm);
+    if (!request) return fail(std::move(request.error()));
+    if (request->poses.empty()) return fail(Errc::bad_input, text(msg::bench_path_no_poses));
     set.paths.push_back(std::move(request->poses));
+    return {};
+  };
+  if (auto done = read_json_lines(file, kLongestLine, take); !done) {
+    return fail(std::move(done.error()));
   }
   if (set.paths.empty()) return fail(Errc::bad_input, text(msg::bench_no_cases, file.string()));
   return set;

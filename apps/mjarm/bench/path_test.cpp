@@ -34,10 +34,7 @@ std::string write_data(const support::TempFolder& folder) {
 TEST(BenchPath, JudgesThePathsOfAFolder) {
   const support::TempFolder folder;
   const std::string data = write_data(folder);
-  const auto result = mjarm({"bench", "path", "--robot", "arm", "--data", data, "--tip", "tool",
-                             "--rounds", "2", "--json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json bench = json::parse(result.out);
+  const json bench = bench_json(bench_arm("path", data, {"--tip", "tool", "--rounds", "2"}));
   const json& lines = run_of(bench, "mjarm", "lines");
   EXPECT_EQ(lines.at("cases"), 2);
   EXPECT_EQ(lines.at("complete"), 1);
@@ -62,10 +59,8 @@ TEST(BenchPath, RunsPeersAndJudgesThemToo) {
 {"who":"off","version":"2","set":"lines","timed":"python","us":[5],"q":[[[0,1],[0.1,1.2],[0.2,1.1]]]}
 {"who":"none","version":"?","error":"not installed"}
 )");
-  const auto result = mjarm({"bench", "path", "--robot", "arm", "--data", data, "--tip", "tool",
-                             "--rounds", "1", "--json", "--peers", venv});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json bench = json::parse(result.out);
+  const json bench =
+      bench_json(bench_arm("path", data, {"--tip", "tool", "--rounds", "1", "--peers", venv}));
   const json& flips = run_of(bench, "flips", "lines");
   EXPECT_EQ(flips.at("complete"), 1);
   EXPECT_EQ(flips.at("flips"), 1);
@@ -74,7 +69,7 @@ TEST(BenchPath, RunsPeersAndJudgesThemToo) {
   EXPECT_EQ(off.at("cases"), 1);  // it was too slow for the second
   EXPECT_EQ(off.at("complete"), 0);
   EXPECT_EQ(off.at("off"), 1);
-  EXPECT_NE(result.out.find("not installed"), std::string::npos);
+  EXPECT_NE(bench.dump().find("not installed"), std::string::npos);
 }
 
 TEST(BenchPath, MakesItsOwnPathsTheSameEveryTime) {
@@ -91,7 +86,7 @@ TEST(BenchPath, SaysWhatIsWrong) {
   const support::TempFolder folder;
   const std::string data = write_data(folder);
   const auto error = [&] {
-    const auto result = mjarm({"bench", "path", "--robot", "arm", "--data", data, "--tip", "tool"});
+    const auto result = mjarm(bench_arm("path", data, {"--tip", "tool"}));
     EXPECT_EQ(result.exit_code, 2) << result.out;
     return only_line(result);
   };

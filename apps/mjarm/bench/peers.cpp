@@ -1,7 +1,10 @@
 #include "apps/mjarm/bench/peers.hpp"
 
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/mjarm/json_line.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/bench.hpp"
 #include "mjarm/core/os.hpp"
@@ -12,6 +15,7 @@ namespace mjarm::app {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 /// A folder of its own that goes with this object.
 class ScratchFolder {
@@ -47,29 +51,69 @@ Result<fs::path> find_script(const std::string& suite) {
   return fail(Errc::not_available, text(msg::bench_no_script, script.string()));
 }
 
+/// A member that may be missing.
+std::string text_or_nothing(const json& line, const char* key) {
+  return line.contains(key) ? text_in(line, key) : std::string();
+}
+
+/// All entries of a list by `read`; none of null.
+template <class Read>
+auto list_of(const json& list, const Read& read) {
+  std::vector<decltype(read(list))> values;
+  if (list.is_null()) return values;
+  for (const json& entry : list.get_ref<const json::array_t&>()) values.push_back(read(entry));
+  return values;
+}
+
+double number_of(const json& value) { return value.get<double>(); }
+double number_or_nan(const json& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : number_of(value);
+}
+std::vector<double> row_of(const json& value) { return list_of(value, number_of); }
+std::vector<std::vector<double>> rows_of(const json& value) { return list_of(value, row_of); }
+
 Result<void> take_line(const std::string& line, const TakeAnswer& take) {
+  const Result<JsonObject> object = parse_json_object(line);
+  if (!object) return fail(Errc::system, text(msg::bench_bad_answer, object.error().what));
+  const json& answer = **object;
   try {
-    const nlohmann::json answer = nlohmann::json::parse(line);
-    BenchEntry entry{.who = answer.at("who"),
-                     .version = answer.value("version", ""),
-                     .set = answer.value("set", ""),
-                     .timed = answer.value("timed", ""),
-                     .error = answer.value("error", "")};
-    entry.us = answer.value("us", entry.us);
+    BenchEntry entry{.who = text_in(answer, "who"),
+                     .version = text_or_nothing(answer, "version"),
+                     .set = text_or_nothing(answer, "set"),
+                     .timed = text_or_nothing(answer, "timed"),
+                     .error = text_or_nothing(answer, "error")};
+    if (answer.contains("us")) entry.us = row_of(answer.at("us"));
     return take(std::move(entry), answer);
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const json::exception& error) {
     return fail(Errc::system, text(msg::bench_bad_answer, error.what()));
   }
 }
 
 }  // namespace
 
-nlohmann::json pose_json(const Pose& X) {
+JsonDoc pose_json(const Pose& X) {
   const Quat q = to_quat(X.R);
   return {{"pos", {X.p[0], X.p[1], X.p[2]}}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-Result<void> run_peers(const fs::path& environment, const std::string& suite, nlohmann::json job,
+std::vector<std::vector<double>> rows_in(const json& line, const char* key) {
+  return line.contains(key) ? rows_of(line.at(key)) : std::vector<std::vector<double>>();
+}
+
+std::vector<std::vector<std::vector<double>>> tables_in(const json& line, const char* key) {
+  if (!line.contains(key)) return {};
+  return list_of(line.at(key), rows_of);
+}
+
+std::vector<double> numbers_in(const json& line, const char* key) {
+  return list_of(line.at(key), number_or_nan);
+}
+
+std::string text_in(const json& line, const char* key) {
+  return line.at(key).get_ref<const std::string&>();
+}
+
+Result<void> run_peers(const fs::path& environment, const std::string& suite, JsonDoc job,
                        const TakeAnswer& take) {
   const fs::path python = environment / "bin" / "python";
   if (!is_there(python)) return fail(Errc::bad_input, text(msg::bench_no_python, python.string()));
@@ -78,8 +122,8 @@ Result<void> run_peers(const fs::path& environment, const std::string& suite, nl
   const ScratchFolder folder;
   const fs::path job_file = folder.path() / "job.json";
   const fs::path answer_file = folder.path() / "answer.jsonl";
-  job["folder"] = folder.path().string();
-  if (auto written = write_file(job_file, job.dump()); !written) return fail(written.error());
+  job.set("folder", folder.path().string());
+  if (auto written = write_file(job_file, job.line()); !written) return fail(written.error());
   const Result<int> code =
       run_program(python, {script->string(), job_file.string(), answer_file.string()});
   if (!code) return fail(code.error());

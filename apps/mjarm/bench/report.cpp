@@ -109,20 +109,20 @@ std::vector<std::size_t> order_of(const BenchResult& result) {
   return order;
 }
 
-nlohmann::ordered_json json_of(const BenchResult& result, const BenchEntry& entry, bool timing) {
-  nlohmann::ordered_json out{{"who", entry.who}};
-  if (!entry.version.empty()) out["version"] = entry.version;
-  if (!entry.set.empty()) out["set"] = entry.set;
+JsonDoc json_of(const BenchResult& result, const BenchEntry& entry, bool timing) {
+  JsonDoc out{{"who", entry.who}};
+  if (!entry.version.empty()) out.set("version", entry.version);
+  if (!entry.set.empty()) out.set("set", entry.set);
   if (!entry.error.empty()) {
-    out["error"] = entry.error;
+    out.set("error", entry.error);
     return out;
   }
-  out.update(entry.details);
+  out.set_all(entry.details);
   if (timing) {
     const Times times = times_of(entry.us);
-    out["timed"] = entry.timed;
-    out["us"] = {{"median", times.median}, {"p99", times.p99}};
-    out["ratio"] = ratio_of(result, entry);
+    out.set("timed", entry.timed);
+    out.set("us", {{"median", times.median}, {"p99", times.p99}});
+    out.set("ratio", ratio_of(result, entry));
   }
   return out;
 }
@@ -171,17 +171,18 @@ std::string bench_table(const std::vector<BenchResult>& results, const std::vect
 }
 
 std::string bench_json(const std::vector<BenchResult>& results, bool timing) {
-  nlohmann::ordered_json out = nlohmann::ordered_json::object();
-  if (timing) out["machine"] = bench_occasion();
-  out["robots"] = nlohmann::ordered_json::array();
+  std::vector<JsonDoc> robots;
   for (const BenchResult& result : results) {
-    nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+    std::vector<JsonDoc> runs;
     for (const std::size_t i : order_of(result)) {
       runs.push_back(json_of(result, result.entries[i], timing));
     }
-    out["robots"].push_back({{"robot", result.robot}, {"runs", std::move(runs)}});
+    robots.push_back({{"robot", result.robot}, {"runs", std::move(runs)}});
   }
-  return out.dump() + '\n';
+  JsonDoc out;
+  if (timing) out.set("machine", bench_occasion());
+  out.set("robots", std::move(robots));
+  return out.line() + '\n';
 }
 
 }  // namespace mjarm::app

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/json_doc.hpp"
 #include "mjarm/core/messages.hpp"
 
 namespace mjarm::app {
@@ -16,9 +16,9 @@ struct BenchEntry {
   std::string timed = {};    ///< "c++" or "python": where the clock stands
   std::string error = {};    ///< why there is nothing else; empty where all went well
 
-  std::vector<std::string> cells = {};                        ///< of the suite's own columns
-  nlohmann::ordered_json details = nlohmann::json::object();  ///< members of the JSON document
-  std::vector<double> us = {};                                ///< [us] of each call
+  std::vector<std::string> cells = {};  ///< of the suite's own columns
+  JsonDoc details = {};                 ///< members of the JSON document
+  std::vector<double> us = {};          ///< [us] of each call
 };
 
 /// A robot and what all contestants did on it.

@@ -75,19 +75,19 @@ Result<bool> reaches(const Robot& robot, const Pose& X_WT, const std::vector<dou
   return (X->p - X_WT.p).norm() <= kPosTol && angle_between(X->R, X_WT.R) <= kRotTol;
 }
 
-Result<nlohmann::json> robot_job(const Robot& robot) {
+Result<JsonDoc> robot_job(const Robot& robot) {
   if (robot.model.format() != ModelFormat::urdf) {
     return fail(Errc::usage, text(msg::bench_peers_urdf, robot.model.file().string()));
   }
   const Arm& arm = robot.arm;
-  nlohmann::json job = {
-      {"urdf", fs::absolute(robot.model.file()).string()},
-      {"tip", arm.tip},
-      {"lower", std::vector<double>(arm.limits.lower.begin(), arm.limits.lower.end())},
-      {"upper", std::vector<double>(arm.limits.upper.begin(), arm.limits.upper.end())},
-      {"zero", pose_json(fk(arm, view(JointVec(JointVec::Zero(arm.dof())))))}};
-  for (const ArmJoint& joint : arm.joints) job["joints"].push_back(joint.name);
-  return job;
+  std::vector<std::string> joints;
+  for (const ArmJoint& joint : arm.joints) joints.push_back(joint.name);
+  return JsonDoc{{"urdf", fs::absolute(robot.model.file()).string()},
+                 {"tip", arm.tip},
+                 {"lower", arm.limits.lower},
+                 {"upper", arm.limits.upper},
+                 {"zero", pose_json(fk(arm, view(JointVec(JointVec::Zero(arm.dof())))))},
+                 {"joints", joints}};
 }
 
 }  // namespace mjarm::app

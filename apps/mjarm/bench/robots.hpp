@@ -1,10 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/json_doc.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
@@ -30,6 +30,6 @@ namespace mjarm::app {
                                    const std::vector<double>& q);
 
 /// What a peer has to know of the robot; an error unless it comes from a URDF.
-[[nodiscard]] Result<nlohmann::json> robot_job(const Robot& robot);
+[[nodiscard]] Result<JsonDoc> robot_job(const Robot& robot);
 
 }  // namespace mjarm::app

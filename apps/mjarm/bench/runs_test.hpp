@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "apps/mjarm/program_test.hpp"
 
@@ -14,6 +15,22 @@ inline const nlohmann::json& run_of(const nlohmann::json& bench, const std::stri
     if (run.value("who", "") == who && run.value("set", "") == set) return run;
   }
   throw std::runtime_error("no run of " + who + " on " + set);
+}
+
+/// Arguments of `mjarm bench SUITE` for the robot `arm` of the folder `data`.
+inline std::vector<std::string> bench_arm(const std::string& suite, const std::string& data,
+                                          const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {"bench", suite, "--robot", "arm", "--data", data};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+/// The JSON document of a run of `mjarm bench` that has to end well.
+inline nlohmann::json bench_json(std::vector<std::string> arguments) {
+  arguments.emplace_back("--json");
+  const support::ProgramResult result = mjarm(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(result.out);
 }
 
 /// Writes `arm.urdf`: two hinges j1 and j2 about z, two links of 1 m, the frame `tool`.

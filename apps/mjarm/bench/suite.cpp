@@ -1,12 +1,16 @@
 #include "apps/mjarm/bench/suite.hpp"
 
+#include <memory>
 #include <utility>
 
 #include "apps/mjarm/batch.hpp"
 #include "apps/mjarm/options.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
 
 namespace mjarm::app {
 
@@ -21,6 +25,26 @@ void add_bench_options(CLI::App& app, BenchOptions& options, Msg data_help) {
   add("--out", options.out, msg::bench_option_out, "FILE");
   add_flag(app, "--json", options.json, msg::app_option_json);
   add_flag(app, "--no-timing", options.no_timing, msg::app_option_no_timing);
+}
+
+void add_tool_bench_options(CLI::App& app, ToolBenchOptions& options, Msg data_help) {
+  add_bench_options(app, options, data_help);
+  add_option(app, "--tip", options.tip, msg::app_option_tip, "FRAME");
+}
+
+Advance show_rounds(const std::string& label, std::uint64_t rounds) {
+  return [progress = std::make_shared<Progress>(label, rounds)] {
+    progress->advance();
+    return !interrupted();
+  };
+}
+
+Error stopped() { return {Errc::system, text(msg::app_interrupted)}; }
+
+bool wants_peers(const BenchOptions& options, const std::string& robot) {
+  if (options.peers.empty()) return false;
+  log_info(text(msg::bench_running_peers, robot));
+  return true;
 }
 
 Result<int> run_suite(const BenchOptions& options, const std::vector<std::string>& robots,

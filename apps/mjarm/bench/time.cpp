@@ -6,30 +6,10 @@
 #include "apps/mjarm/bench/suites.hpp"
 #include "apps/mjarm/bench/time_peers.hpp"
 #include "apps/mjarm/bench/time_report.hpp"
-#include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/bench.hpp"
-#include "mjarm/core/os.hpp"
-#include "mjarm/core/progress.hpp"
 
 namespace mjarm::app {
 namespace {
-
-Result<std::vector<TimeRun>> run_ours(const std::string& robot, const std::vector<TimeSet>& sets,
-                                      int rounds) {
-  Progress progress(text(msg::bench_time_progress, robot),
-                    sets.size() * static_cast<std::uint64_t>(rounds));
-  std::vector<TimeRun> runs;
-  for (const TimeSet& set : sets) {
-    std::optional<TimeRun> run = run_time(set, rounds, [&] {
-      progress.advance();
-      return !interrupted();
-    });
-    if (!run) return fail(Errc::system, text(msg::app_interrupted));
-    runs.push_back(std::move(*run));
-  }
-  return runs;
-}
 
 /// Where no shortest durations are known ours stand in for them: for path_vaj those without jerk
 /// limits, for the other sets its own.
@@ -48,14 +28,14 @@ Result<BenchResult> measure(const BenchOptions& options, const std::string& robo
   const Result<std::vector<TimeSet>> sets = load_time_sets(robot, options.data);
   if (!sets) return fail(sets.error());
   BenchResult result{std::filesystem::path(robot).stem().string(), {}, {}};
-  const auto ours = run_ours(result.robot, *sets, rounds);
+  const auto ours = run_sets<TimeRun>(
+      text(msg::bench_time_progress, result.robot), *sets, rounds,
+      [&](const TimeSet& set, const Advance& advance) { return run_time(set, rounds, advance); });
   if (!ours) return fail(ours.error());
   std::vector<TimeRun> runs = *ours;
-  if (!options.peers.empty()) {
-    log_info(text(msg::bench_running_peers, result.robot));
-    Result<std::vector<TimeRun>> peers = run_time_peers(*sets, options.peers, rounds);
-    if (!peers) return fail(std::move(peers.error()));
-    runs.insert(runs.end(), peers->begin(), peers->end());
+  const auto run_peers = [&] { return run_time_peers(*sets, options.peers, rounds); };
+  if (auto added = add_peers(options, result.robot, runs, run_peers); !added) {
+    return fail(std::move(added.error()));
   }
   int wrong = 0;
   for (const TimeRun& run : runs) {

@@ -1,6 +1,7 @@
 #include "apps/mjarm/bench/time_peers.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -11,19 +12,14 @@
 namespace mjarm::app {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kLargest = std::size_t{1} << 30;  // [bytes] of a file of states
 
-std::vector<double> list(const JointVec& values) { return {values.begin(), values.end()}; }
-
-json case_json(const TimeSet& set, const TimeCase& entry) {
+JsonDoc case_json(const TimeSet& set, const TimeCase& entry) {
   if (set.problem == TimeProblem::p2p) {
-    return {{"q0", list(entry.start.q)}, {"v0", list(entry.start.v)}, {"a0", list(entry.start.a)},
-            {"q1", list(entry.end.q)},   {"v1", list(entry.end.v)},   {"a1", list(entry.end.a)}};
+    return {{"q0", entry.start.q}, {"v0", entry.start.v}, {"a0", entry.start.a},
+            {"q1", entry.end.q},   {"v1", entry.end.v},   {"a1", entry.end.a}};
   }
-  json points = json::array();
-  for (const JointVec& q : entry.waypoints) points.push_back(list(q));
+  std::vector<JsonDoc> points(entry.waypoints.begin(), entry.waypoints.end());
   return {{"waypoints", std::move(points)}};
 }
 
@@ -41,21 +37,20 @@ const char* problem_name(TimeProblem problem) {
   return "";
 }
 
-json job_of(const std::vector<TimeSet>& sets, int rounds) {
-  json job = {{"rounds", rounds}, {"sets", json::array()}};
+JsonDoc job_of(const std::vector<TimeSet>& sets, int rounds) {
+  std::vector<JsonDoc> jobs;
   for (const TimeSet& set : sets) {
-    json cases = json::array();
+    std::vector<JsonDoc> cases;
     for (const TimeCase& entry : set.cases) cases.push_back(case_json(set, entry));
-    job["sets"].push_back({{"name", set.name},
-                           {"problem", problem_name(set.problem)},
-                           {"samples", samples_of(set.problem)},
-                           {"limits",
-                            {{"v", list(set.limits.velocity)},
-                             {"a", list(set.limits.acceleration)},
-                             {"j", list(set.limits.jerk)}}},
-                           {"cases", std::move(cases)}});
+    jobs.push_back(
+        {{"name", set.name},
+         {"problem", problem_name(set.problem)},
+         {"samples", samples_of(set.problem)},
+         {"limits",
+          {{"v", set.limits.velocity}, {"a", set.limits.acceleration}, {"j", set.limits.jerk}}},
+         {"cases", std::move(cases)}});
   }
-  return job;
+  return {{"rounds", rounds}, {"sets", std::move(jobs)}};
 }
 
 /// The states of one motion from raw doubles: of each state q, v and a.
@@ -71,8 +66,9 @@ std::vector<JointState> states_from(const double* values, int count, Eigen::Inde
 }
 
 /// Judges the motions of one answer; throws json's exceptions.
-Result<void> judge(const TimeSet& set, const json& line, TimeRun& run) {
-  const Result<std::string> content = read_file(line.at("states").get<std::string>(), kLargest);
+Result<void> judge(const TimeSet& set, const nlohmann::json& line, TimeRun& run) {
+  const std::string file = text_in(line, "states");
+  const Result<std::string> content = read_file(file, kLargest);
   if (!content) return fail(content.error());
   std::vector<double> values(content->size() / sizeof(double));
   std::memcpy(values.data(), content->data(), values.size() * sizeof(double));
@@ -80,18 +76,18 @@ Result<void> judge(const TimeSet& set, const json& line, TimeRun& run) {
   const int count = samples_of(set.problem) + 1;
   const std::size_t size = static_cast<std::size_t>(count * 3 * dof);
   std::size_t at = 0;
-  for (const json& duration : line.at("durations")) {
+  for (const double duration : numbers_in(line, "durations")) {
     if (run.motions.size() == set.cases.size()) break;
-    if (duration.is_null()) {
+    if (std::isnan(duration)) {
       run.motions.push_back({.reason = text(msg::bench_time_none)});
       continue;
     }
     if (values.size() - at < size) {
-      return fail(Errc::system, text(msg::bench_bad_answer, line.at("states").get<std::string>()));
+      return fail(Errc::system, text(msg::bench_bad_answer, file));
     }
     const TimeCase& entry = set.cases[run.motions.size()];
-    run.motions.push_back(judge_motion(set, entry, duration.get<double>(),
-                                       states_from(values.data() + at, count, dof)));
+    run.motions.push_back(
+        judge_motion(set, entry, duration, states_from(values.data() + at, count, dof)));
     at += size;
   }
   return {};
@@ -102,7 +98,7 @@ Result<void> judge(const TimeSet& set, const json& line, TimeRun& run) {
 Result<std::vector<TimeRun>> run_time_peers(const std::vector<TimeSet>& sets,
                                             const std::filesystem::path& environment, int rounds) {
   std::vector<TimeRun> runs;
-  const auto take = [&](BenchEntry entry, const json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
     runs.push_back({std::move(entry)});
     TimeRun& run = runs.back();
     if (!run.error.empty()) return {};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "mjarm/core/messages/bench.hpp"
 
@@ -47,7 +48,7 @@ BenchEntry time_entry(const TimeSet& set, const TimeRun& run, std::span<const do
   BenchEntry entry = run;
   int solved = 0, beyond = 0;
   double use = 0;
-  auto wrong = nlohmann::ordered_json::array();
+  std::vector<JsonDoc> wrong;
   for (std::size_t i = 0; i < run.motions.size(); ++i) {
     const TimedMotion& motion = run.motions[i];
     solved += motion.reason.empty() && motion.arrives ? 1 : 0;

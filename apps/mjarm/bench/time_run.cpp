@@ -1,22 +1,16 @@
 #include "apps/mjarm/bench/time_run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 
 namespace mjarm::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kEndTol = 1e-6;   // [rad, rad/s] at both ends
 constexpr double kPassTol = 1e-3;  // [rad or m] at waypoints
-
-double microseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
 
 /// Share of a limit that may be passed: path timers without jerk limits hold theirs on a grid.
 double allowed(TimeProblem problem) { return problem == TimeProblem::path_va ? 1e-3 : 1e-6; }
@@ -65,16 +59,16 @@ TimedMotion judged(const TimeSet& set, const TimeCase& entry, double duration, c
 
 /// One case. Point to point is what a control loop calls; it makes no trajectory of its own.
 TimedMotion solve(const TimeSet& set, const TimeCase& entry, bool judge, double& us) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   if (set.problem == TimeProblem::p2p) {
     const auto move = PointToPoint::solve(entry.start, entry.end, set.limits);
-    us = std::min(us, microseconds_since(start));
+    us = std::min(us, watch.us());
     if (!move) return {.reason = "bad_input"};
     if (!judge) return {};
     return judged(set, entry, move->duration(), [&](double t) { return move->at(t); });
   }
   const Result<Trajectory> motion = time_case(entry, set.limits, set.problem);
-  us = std::min(us, microseconds_since(start));
+  us = std::min(us, watch.us());
   if (!motion) return {.reason = motion.error().what};
   if (!judge) return {};
   return judged(set, entry, motion->duration(), [&](double t) { return motion->at(t); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
@@ -124,9 +125,9 @@ Result<json> read_best_known(const fs::path& folder) {
   if (!fs::exists(file, ignored)) return json::object();
   const Result<std::string> content = read_file(file, kLargest);
   if (!content) return fail(content.error());
-  Result<json> known = parse_json_object(*content);
+  const Result<JsonObject> known = parse_json_object(*content);
   if (!known) return fail(known.error().code, file.string() + ": " + known.error().what);
-  return known;
+  return **known;
 }
 
 bool rests(const TimeCase& entry) {

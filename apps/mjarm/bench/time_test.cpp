@@ -28,10 +28,7 @@ TEST(BenchTime, ComparesWithTheBestKnown) {
   const std::string data = write_data(folder);
   folder.write("best_known.json",
                json{{"arm_p2p", {{"p2p_vaj", {{"0", kFastest / 2}, {"1", 1.0}}}}}}.dump());
-  const auto result =
-      mjarm({"bench", "time", "--robot", "arm", "--data", data, "--rounds", "2", "--json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json bench = json::parse(result.out);
+  const json bench = bench_json(bench_arm("time", data, {"--rounds", "2"}));
   const json& rest = run_of(bench, "mjarm", "rest");
   EXPECT_EQ(rest.at("cases"), 1);
   EXPECT_EQ(rest.at("solved"), 1);
@@ -71,10 +68,7 @@ TEST(BenchTime, RunsPeersAndJudgesThemToo) {
                               "\n"
                               R"({"who":"gone","version":"?","error":"not installed"})"
                               "\n");
-  const auto result = mjarm({"bench", "time", "--robot", "arm", "--data", data, "--rounds", "1",
-                             "--json", "--peers", venv});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json bench = json::parse(result.out);
+  const json bench = bench_json(bench_arm("time", data, {"--rounds", "1", "--peers", venv}));
   EXPECT_EQ(run_of(bench, "fast", "rest").at("solved"), 1);
   EXPECT_EQ(run_of(bench, "fast", "rest").at("beyond"), 1);
   EXPECT_GE(run_of(bench, "fast", "rest").at("use").get<double>(), 2 - 1e-9);
@@ -83,10 +77,9 @@ TEST(BenchTime, RunsPeersAndJudgesThemToo) {
   EXPECT_EQ(run_of(bench, "half", "rest").at("solved"), 0);
   EXPECT_EQ(run_of(bench, "half", "rest").at("wrong")[0].at("reason"), "misses");
   EXPECT_EQ(run_of(bench, "none", "rest").at("solved"), 0);
-  EXPECT_NE(result.out.find("not installed"), std::string::npos);
+  EXPECT_NE(bench.dump().find("not installed"), std::string::npos);
   folder.write("fast.f64", "too short");
-  const auto broken = mjarm({"bench", "time", "--robot", "arm", "--data", data, "--rounds", "1",
-                             "--quiet", "--peers", venv});
+  const auto broken = mjarm(bench_arm("time", data, {"--rounds", "1", "--quiet", "--peers", venv}));
   EXPECT_EQ(broken.exit_code, 1);
   EXPECT_NE(only_line(broken).find("fast.f64"), std::string::npos);
 }
