@@ -39,6 +39,7 @@ function(mjarm_room room)
                                PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:mjarm_options>)
   if(MJARM_PRECOMPILE)
     target_precompile_headers(${lib} REUSE_FROM mjarm_precompiled)
+    set_target_properties(${lib} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
   set_property(GLOBAL APPEND PROPERTY mjarm_rooms ${room})
 
@@ -81,11 +82,12 @@ function(mjarm_simd_flags list_name)
   list(FILTER avx512 INCLUDE REGEX "_avx512\\.cpp$")
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
     # What was precompiled for the baseline is of no use to them.
-    set_source_files_properties(${avx2} PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma"
-                                                   SKIP_PRECOMPILE_HEADERS ON)
+    set_source_files_properties(${avx2} PROPERTIES
+                                COMPILE_OPTIONS "-mavx2;-mfma"
+                                SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
     set_source_files_properties(${avx512} PROPERTIES
                                 COMPILE_OPTIONS "-mavx2;-mfma;-mavx512f;-mavx512dq;-mavx512vl"
-                                SKIP_PRECOMPILE_HEADERS ON)
+                                SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   elseif(avx2 OR avx512)
     list(REMOVE_ITEM files ${avx2} ${avx512})
   endif()

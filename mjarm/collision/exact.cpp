@@ -48,7 +48,7 @@ Eigen::Vector3d vector(const mjtNum* v) { return {v[0], v[1], v[2]}; }
 }  // namespace
 
 struct ExactChecker::Impl {
-  Impl(const Model& model_in, const Arm& arm, const CheckOptions& options_in)
+  Impl(const Model& model_in, const Arm& arm, const ExactOptions& options_in)
       : model(model_in), options(options_in), m(*model.raw()), m_wide(*model.raw()) {
     // The arrays are those of the shared model; only the options of these two heads differ.
     for (mjModel* head : {&m, &m_wide}) {
@@ -215,7 +215,7 @@ struct ExactChecker::Impl {
   }
 
   Model model;  // keeps the arrays alive
-  CheckOptions options;
+  ExactOptions options;
   mjModel m;       // head of the model for contacts
   mjModel m_wide;  // the same with `margin` round every geom
   std::vector<double> q_rest;
@@ -226,7 +226,7 @@ struct ExactChecker::Impl {
   std::unique_ptr<mjData, DeleteData> d;
 };
 
-ExactChecker::ExactChecker(const Model& model, const Arm& arm, const CheckOptions& options)
+ExactChecker::ExactChecker(const Model& model, const Arm& arm, const ExactOptions& options)
     : impl_(std::make_unique<Impl>(model, arm, options)) {}
 ExactChecker::~ExactChecker() = default;
 ExactChecker::ExactChecker(const ExactChecker& other)

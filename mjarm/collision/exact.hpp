@@ -15,7 +15,7 @@
 namespace mjarm {
 
 /// How a configuration is checked. Every default is usable as is.
-struct CheckOptions {
+struct ExactOptions {
   double margin = 0.1;     ///< [m] up to where check() looks for the nearest pair, >= 0; 0 = never
   double allow_depth = 0;  ///< [m] overlap that still counts as free, >= 0
 };
@@ -45,9 +45,9 @@ struct NearestPair {
 
 /// What a check found.
 struct CollisionReport {
-  bool free = true;                    ///< no overlap deeper than CheckOptions::allow_depth
+  bool free = true;                    ///< no overlap deeper than ExactOptions::allow_depth
   std::vector<ContactPoint> contacts;  ///< one a pair of geoms that overlap, deepest first
-  std::optional<NearestPair> nearest;  ///< none where nothing is nearer than CheckOptions::margin
+  std::optional<NearestPair> nearest;  ///< none where nothing is nearer than ExactOptions::margin
 };
 
 /// One line for people: the deepest contact, or that the configuration is free and by how much.
@@ -63,7 +63,7 @@ struct CollisionReport {
 class ExactChecker {
  public:
   /// `arm` must come from `model`; else every check answers with an error.
-  ExactChecker(const Model& model, const Arm& arm, const CheckOptions& options = {});
+  ExactChecker(const Model& model, const Arm& arm, const ExactOptions& options = {});
   ~ExactChecker();
   ExactChecker(const ExactChecker& other);
   ExactChecker& operator=(const ExactChecker& other);

@@ -9,7 +9,7 @@ namespace {
 
 /// Calls `look(checker, q)` at random configurations of a shipped robot (6: UR5e, 7: Panda).
 template <class Look>
-void over_random_q(benchmark::State& state, const CheckOptions& options, Look look) {
+void over_random_q(benchmark::State& state, const ExactOptions& options, Look look) {
   const char* const name = state.range(0) == 6 ? "ur5e" : "panda";
   const Model model = Model::load(find_model_file(name).value()).value();
   const Arm arm = find_arm(model).value();

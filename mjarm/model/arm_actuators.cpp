@@ -6,8 +6,6 @@
 namespace mjarm {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
 bool has_joint_transmission(const mjModel* m, int actuator) {
   const int type = m->actuator_trntype[actuator];
   return type == mjTRN_JOINT || type == mjTRN_JOINTINPARENT;

@@ -8,8 +8,6 @@
 namespace mjarm {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
 /// Largest torque that the file lets act on a joint in both directions; inf where it sets no bound.
 double file_torque(const Model& model, int joint_id, const ArmJoint& joint) {
   const mjModel* m = model.raw();

@@ -2,15 +2,24 @@
 
 #include <mujoco/mujoco.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/find_arm.hpp"
 
 /// The steps of find_arm.
 namespace mjarm {
+
+inline constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// Pose of a position (3,) [m] and a quaternion (4,) [w, x, y, z] in MuJoCo's tables.
+[[nodiscard]] inline Pose pose_of(const mjtNum* pos, const mjtNum* quat) {
+  return {Eigen::Vector3d(pos), to_matrix(Quat(quat[0], quat[1], quat[2], quat[3]))};
+}
 
 /// A tool frame T, fixed to a body.
 struct TipFrame {

@@ -23,10 +23,6 @@ constexpr double kLargeMesh = 5;     ///< [m] radius
 constexpr double kSmallMesh = 5e-4;  ///< [m] radius
 constexpr double kLongLink = 10;     ///< [m] from joint to joint
 
-Pose pose_of(const mjtNum* pos, const mjtNum* quat) {
-  return {Eigen::Vector3d(pos), to_matrix(Quat(quat[0], quat[1], quat[2], quat[3]))};
-}
-
 /// What can be measured of the shapes that move with a body.
 struct Shapes {
   Eigen::AlignedBox3d box;  ///< in the axes of the body

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdlib>
 #include <regex>
 
 #include "mjarm/core/messages/model.hpp"
@@ -41,6 +43,37 @@ constexpr Phrase kPhrases[] = {
 };
 
 }  // namespace
+
+Complaint take_apart(std::string_view words) {
+  static const std::regex kPlace(R"(\s*Element (name )?'([^']*)'(, id -?\d+)?(, line (-?\d+))?)");
+  static const std::regex kQuoted("'([^']+)'");
+  Complaint result;
+  result.what = std::string(words);
+  std::smatch match;
+  const std::string all = result.what;
+  if (std::regex_search(all, match, kPlace)) {
+    result.what = match.prefix().str() + match.suffix().str();
+    (match[1].matched ? result.name : result.kind) = match[2].str();
+    if (match[5].matched) result.line = std::max(0, std::atoi(match[5].str().c_str()));
+  }
+  constexpr std::string_view kPrefixes[] = {
+      "XML Error: ", "Error: ", "Schema violation: ", "engine error: "};
+  for (bool again = true; again;) {
+    again = false;
+    for (const std::string_view prefix : kPrefixes) {
+      if (!result.what.starts_with(prefix)) continue;
+      result.what.erase(0, prefix.size());
+      again = true;
+    }
+  }
+  for (char& c : result.what) {
+    if (c == '\n' || c == '\r' || c == '\t') c = ' ';
+  }
+  while (!result.what.empty() && result.what.back() == ' ') result.what.pop_back();
+  const std::string what = result.what;
+  if (std::regex_search(what, match, kQuoted)) result.word = match[1].str();
+  return result;
+}
 
 std::string in_users_words(const Complaint& complaint, const std::string& hint) {
   std::smatch match;

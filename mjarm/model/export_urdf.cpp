@@ -28,10 +28,6 @@ std::string numbers(std::initializer_list<double> values) {
 }
 std::string numbers(const Eigen::Vector3d& v) { return numbers({v.x(), v.y(), v.z()}); }
 
-Pose pose_of(const mjtNum* pos, const mjtNum* quat) {
-  return {Eigen::Vector3d(pos), to_matrix(Quat(quat[0], quat[1], quat[2], quat[3]))};
-}
-
 bool is_identity(const Pose& X) { return X.p.isZero(0) && X.R.isIdentity(0); }
 
 std::string join(const std::vector<std::string>& words) {

@@ -12,10 +12,6 @@
 namespace mjarm {
 namespace {
 
-Pose pose_of(const mjtNum* pos, const mjtNum* quat) {
-  return {Eigen::Vector3d(pos), to_matrix(Quat(quat[0], quat[1], quat[2], quat[3]))};
-}
-
 /// Home of the arm's joints: of the keyframe, else the middle of the limits, else 0.
 JointVec home_of(const mjModel* m, const Arm& arm) {
   const double* key = home_keyframe(m);

@@ -10,7 +10,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 tl::unexpected<Error> bad(std::string what) { return fail(Errc::bad_input, std::move(what)); }
 
@@ -62,9 +62,9 @@ Result<std::vector<CurvePiece>> circle_pieces(std::span<const Pose> poses, bool 
   const Eigen::Vector3d u = -to_center / radius, v = w.cross(u);
   const auto angle_of = [&](const Eigen::Vector3d& d) {
     const double angle = std::atan2(v.dot(d), u.dot(d) + radius);
-    return angle < 0 ? angle + 2 * kPi : angle;
+    return angle < 0 ? angle + 2 * pi : angle;
   };
-  const double angles[] = {0, angle_of(d1), angle_of(d2), 2 * kPi};
+  const double angles[] = {0, angle_of(d1), angle_of(d2), 2 * pi};
   if (!std::isfinite(radius) || angles[1] >= angles[2]) return bad(text(msg::path_arc_is_straight));
 
   std::vector<CurvePiece> pieces;
@@ -158,7 +158,7 @@ Result<Curve> Curve::ellipse(const Ellipse& ellipse) {
   piece.a = ellipse.a;
   piece.b = ellipse.b;
   piece.R_ref = pose->front().R;
-  piece.length = piece.span = ellipse_arc_length(ellipse.a, ellipse.b, 2 * kPi);
+  piece.length = piece.span = ellipse_arc_length(ellipse.a, ellipse.b, 2 * pi);
   return Curve({piece});
 }
 

@@ -10,7 +10,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Angle theta in [0, 2 pi) of the point of the ellipse (a cos, b sin) nearest to (x, y).
 /// The nearest point lies in the quadrant of (x, y), and there the derivative of the squared
@@ -18,7 +18,7 @@ constexpr double kPi = std::numbers::pi;
 /// and (x, y) that meets the ellipse once in each quadrant it enters with this branch.
 double nearest_on_ellipse(double a, double b, double x, double y) {
   const double ax = a * std::abs(x), by = b * std::abs(y), c = (b - a) * (b + a);
-  double lower = 0, upper = kPi / 2;
+  double lower = 0, upper = pi / 2;
   while (true) {
     const double middle = 0.5 * (lower + upper);
     if (middle <= lower || middle >= upper) break;
@@ -26,9 +26,9 @@ double nearest_on_ellipse(double a, double b, double x, double y) {
     (c * s * k + ax * s - by * k < 0 ? lower : upper) = middle;
   }
   double theta = upper;
-  if (x < 0) theta = kPi - theta;
+  if (x < 0) theta = pi - theta;
   if (y < 0) theta = -theta;
-  return theta < 0 ? theta + 2 * kPi : theta;
+  return theta < 0 ? theta + 2 * pi : theta;
 }
 
 /// Jr(w) v: the rate of R = exp(w), axes of R, where w changes at the rate v.
@@ -105,7 +105,7 @@ double CurvePiece::nearest(const Eigen::Vector3d& p, double within) const {
   if (a != b)
     return std::clamp(ellipse_arc_length(a, b, nearest_on_ellipse(a, b, x, y)), 0.0, span);
   const double theta = std::atan2(y, x);
-  const double length_there = a * (theta < 0 ? theta + 2 * kPi : theta);
+  const double length_there = a * (theta < 0 ? theta + 2 * pi : theta);
   if (length_there <= span) return length_there;
   const double to_start = (p - at(0).p).squaredNorm(), to_end = (p - at(span).p).squaredNorm();
   return to_end < to_start ? span : 0.0;

@@ -7,7 +7,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Carlson's R_F and R_D of the same three arguments, by duplication.
 struct CarlsonIntegrals {
@@ -73,7 +73,7 @@ std::vector<Pose> ellipse_points(const Ellipse& ellipse, int n, bool endpoint) {
   const EllipseAxes axes = ellipse_axes(ellipse.normal);
   std::vector<Pose> points;
   points.reserve(static_cast<std::size_t>(std::max(n, 0)));
-  const double step = 2 * kPi / std::max(1, endpoint ? n - 1 : n);
+  const double step = 2 * pi / std::max(1, endpoint ? n - 1 : n);
   for (int i = 0; i < n; ++i) {
     const double theta = endpoint && i == n - 1 && n > 1 ? 0.0 : i * step;
     points.push_back({ellipse.center + ellipse.a * std::cos(theta) * axes.u +
@@ -84,18 +84,18 @@ std::vector<Pose> ellipse_points(const Ellipse& ellipse, int n, bool endpoint) {
 }
 
 double ellipse_arc_length(double a, double b, double theta) {
-  const double turns = std::round(theta / kPi);
-  const double half = 2 * quarter_arc(a, b, kPi / 2);
-  return turns * half + quarter_arc(a, b, theta - turns * kPi);
+  const double turns = std::round(theta / pi);
+  const double half = 2 * quarter_arc(a, b, pi / 2);
+  return turns * half + quarter_arc(a, b, theta - turns * pi);
 }
 
 double ellipse_angle(double a, double b, double length) {
-  const double half = 2 * quarter_arc(a, b, kPi / 2);
+  const double half = 2 * quarter_arc(a, b, pi / 2);
   const double turns = std::round(length / half);
   const double rest = length - turns * half;
   // Newton's method from the proportional guess, kept inside the bracket by bisection.
-  double lower = -kPi / 2, upper = kPi / 2;
-  double theta = rest / half * kPi;
+  double lower = -pi / 2, upper = pi / 2;
+  double theta = rest / half * pi;
   for (int i = 0; i < 100; ++i) {
     const double error = quarter_arc(a, b, theta) - rest;
     if (error == 0) break;
@@ -106,7 +106,7 @@ double ellipse_angle(double a, double b, double length) {
     if (std::abs(next - theta) <= 1e-16) break;
     theta = next;
   }
-  return turns * kPi + theta;
+  return turns * pi + theta;
 }
 
 }  // namespace mjarm
