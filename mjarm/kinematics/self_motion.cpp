@@ -12,6 +12,8 @@ namespace mjarm {
 namespace {
 
 using detail::Descent;
+using detail::DescentOptions;
+using detail::IkGoal;
 
 /// Takes the parts along the rows of J out of `direction`: pivoted Gram-Schmidt, each step twice,
 /// without memory of the heap. What moves the tool by less than a millionth of what other
@@ -31,8 +33,6 @@ void remove_rows(Jacobian& J, JointVec& direction) noexcept {
     J.row(pivot).setZero();
   }
 }
-using detail::DescentOptions;
-using detail::IkGoal;
 
 /// One self-motion: the goal, where it stands and how it gets on.
 class SelfMotion {
