@@ -21,6 +21,11 @@ target_compile_options(mjarm_options INTERFACE "-fmacro-prefix-map=${PROJECT_SOU
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(mjarm_options INTERFACE -Wno-restrict)  # false alarms in std::string
 endif()
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # A source that is joined with others is taken for a header, whose types should have a name that
+  # other files can see.
+  target_compile_options(mjarm_options INTERFACE -Wno-subobject-linkage)
+endif()
 if(MJARM_WARNINGS_AS_ERRORS)
   target_compile_options(mjarm_options INTERFACE -Werror)
 endif()

@@ -39,10 +39,6 @@ function(mjarm_room room)
                                PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:mjarm_options>)
   if(MJARM_PRECOMPILE)
     target_precompile_headers(${lib} REUSE_FROM mjarm_precompiled)
-    # Eight sources at a time. GCC takes each for a header then, whose types it wants to have a name
-    # that other files can see.
-    set_target_properties(${lib} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-    target_compile_options(${lib} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
   set_property(GLOBAL APPEND PROPERTY mjarm_rooms ${room})
 

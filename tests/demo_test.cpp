@@ -42,7 +42,7 @@ void expect_report_fields(const nlohmann::json& report) {
   EXPECT_FALSE(report.contains("rtf"));
 }
 
-class EveryDemo : public testing::TestWithParam<const char*> {};
+class EveryDemo : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(EveryDemo, EndsWellAndLeavesWholeFiles) {
   const TempFolder folder;
@@ -63,8 +63,8 @@ TEST_P(EveryDemo, EndsWellAndLeavesWholeFiles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo,
-                         testing::Values("car", "ur5e", "ur5e_vision", "point", "movej", "movel",
-                                         "ellipse", "letters", "singularity", "flip"),
+                         ::testing::Values("car", "ur5e", "ur5e_vision", "point", "movej", "movel",
+                                           "ellipse", "letters", "singularity", "flip"),
                          [](const auto& demo) { return std::string(demo.param); });
 
 TEST(DemoEllipse, WholeCurveWithinHalfAMillimetre) {

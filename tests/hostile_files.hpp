@@ -30,6 +30,8 @@ void PrintTo(const HostileFile& hostile, std::ostream* out);
 
 /// A well-formed MJCF with `inside` in its <worldbody>, which begins at line 3.
 [[nodiscard]] std::string mjcf(const std::string& inside, const std::string& before = "");
+/// One with a sphere and `asset` among its assets.
+[[nodiscard]] std::string with_asset(const std::string& asset);
 /// `words` `times` times.
 [[nodiscard]] std::string repeat(const std::string& words, std::size_t times);
 

@@ -8,10 +8,6 @@ std::string with_option(const std::string& timestep) {
   return mjcf("<geom size=\"1\"/>", "<option timestep=\"" + timestep + "\"/>");
 }
 
-std::string with_asset(const std::string& asset) {
-  return mjcf("<geom size=\"1\"/>", "<asset>" + asset + "</asset>");
-}
-
 std::string with_size(const std::string& size) {
   return mjcf("<body><joint/><geom size=\"1\"/></body>", "<size " + size + "/>");
 }

@@ -34,7 +34,7 @@ std::string bytes_of(const Model& model) {
   return bytes;
 }
 
-class HostileModel : public testing::TestWithParam<HostileFile> {};
+class HostileModel : public ::testing::TestWithParam<HostileFile> {};
 
 std::set<fs::path> files_in(const fs::path& folder) {
   std::set<fs::path> files;
@@ -68,14 +68,14 @@ TEST_P(HostileModel, IsRefusedInOneLine) {
   EXPECT_THAT(result.err, HasSubstr(model.error().what));
 }
 
-const auto kLabel = [](const testing::TestParamInfo<HostileFile>& test) {
+const auto kLabel = [](const ::testing::TestParamInfo<HostileFile>& test) {
   return test.param.label;
 };
-INSTANTIATE_TEST_SUITE_P(Text, HostileModel, testing::ValuesIn(hostile::hostile_texts()), kLabel);
-INSTANTIATE_TEST_SUITE_P(Mjcf, HostileModel, testing::ValuesIn(hostile::hostile_mjcf()), kLabel);
-INSTANTIATE_TEST_SUITE_P(Reference, HostileModel, testing::ValuesIn(hostile::hostile_references()),
-                         kLabel);
-INSTANTIATE_TEST_SUITE_P(Urdf, HostileModel, testing::ValuesIn(hostile::hostile_urdf()), kLabel);
+INSTANTIATE_TEST_SUITE_P(Text, HostileModel, ::testing::ValuesIn(hostile::hostile_texts()), kLabel);
+INSTANTIATE_TEST_SUITE_P(Mjcf, HostileModel, ::testing::ValuesIn(hostile::hostile_mjcf()), kLabel);
+INSTANTIATE_TEST_SUITE_P(Reference, HostileModel,
+                         ::testing::ValuesIn(hostile::hostile_references()), kLabel);
+INSTANTIATE_TEST_SUITE_P(Urdf, HostileModel, ::testing::ValuesIn(hostile::hostile_urdf()), kLabel);
 
 /// The same good model without a fault, so that the faults above are what is refused.
 TEST(HostileModelCounterpart, IsLoaded) {

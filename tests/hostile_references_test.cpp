@@ -18,10 +18,6 @@ std::string with_mesh(const std::string& file, const std::string& before = "") {
               before + "<asset><mesh name=\"m\" file=\"" + file + "\"/></asset>");
 }
 
-std::string with_asset(const std::string& asset) {
-  return mjcf("<geom size=\"1\"/>", "<asset>" + asset + "</asset>");
-}
-
 std::string including(const std::string& file) {
   return "<mujoco>\n<include file=\"" + file + "\"/></mujoco>";
 }

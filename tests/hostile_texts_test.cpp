@@ -32,6 +32,10 @@ std::string mjcf(const std::string& inside, const std::string& before) {
   return "<mujoco>\n" + before + "<worldbody>\n" + inside + "\n</worldbody></mujoco>";
 }
 
+std::string with_asset(const std::string& asset) {
+  return mjcf("<geom size=\"1\"/>", "<asset>" + asset + "</asset>");
+}
+
 std::string repeat(const std::string& words, std::size_t times) {
   std::string all;
   all.reserve(words.size() * times);

@@ -5,19 +5,19 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <ostream>
 
 #include "tests/robots.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {
 namespace {
 
+using support::kPi;
 using testing::load;
 using testing::models_folder;
 
-constexpr double kPi = std::numbers::pi;
 constexpr const char* kUr5e = "universal_robots_ur5e/ur5e.xml";
 constexpr const char* kUr5eUrdf = "universal_robots_ur5e/ur5e.urdf";
 constexpr const char* kPanda = "franka_emika_panda/panda.xml";

@@ -78,7 +78,7 @@ struct PublicArm {
   const char* tip;
 };
 
-class TwelveArms : public testing::TestWithParam<PublicArm> {};
+class TwelveArms : public ::testing::TestWithParam<PublicArm> {};
 
 TEST_P(TwelveArms, DrawASquare) {
   const char* data = std::getenv("MJARM_ARMS_DATA");
@@ -92,7 +92,7 @@ TEST_P(TwelveArms, DrawASquare) {
 
 INSTANTIATE_TEST_SUITE_P(
     Public, TwelveArms,
-    testing::Values(
+    ::testing::Values(
         PublicArm{"Ur5", "example-robot-data/robots/ur_description/urdf/ur5_robot.urdf", ""},
         PublicArm{"Panda", "example-robot-data/robots/panda_description/urdf/panda.urdf", ""},
         PublicArm{"Iiwa", "rtb-data/kuka_description/kuka_lbr_iiwa/urdf/lbr_iiwa_14_r820.urdf", ""},

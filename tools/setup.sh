@@ -188,17 +188,24 @@ set_up_machine() {
   fi
 }
 
-# build PRESET TARGET...: configures where that was not done, and builds.
-build() {
+# configure PRESET: where that was not done.
+configure() {
   local preset=$1 folder=$root/build/$1
-  shift
   if [[ ! -e $folder/build.ninja ]] ||
     { [[ -n ${MUJOCO_ROOT:-} ]] && ! uses_mujoco_root "$preset"; }; then
     step "Configuring $preset" quiet cmake -S "$root" --preset "$preset" \
       -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" ||
       die "cmake could not configure the preset $preset"
   fi
-  step "Building $preset" compile "$folder" "$@" || die "the build of the preset $preset failed"
+}
+
+# build PRESET TARGET...
+build() {
+  local preset=$1
+  shift
+  configure "$preset"
+  step "Building $preset" compile "$root/build/$preset" "$@" ||
+    die "the build of the preset $preset failed"
 }
 
 # Ninja's own lines go to stderr, so that stdout holds only results; off a terminal it is quiet.

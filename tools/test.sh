@@ -42,9 +42,9 @@ format_sources() {
 tidy_sources() {
   local tool
   tool=$(clang_tool clang-tidy) || exit
-  build dev all
+  configure tidy
   { if (($#)); then realpath "$@"; else sources | grep '\.cpp$'; fi; } |
-    xargs -P "$(nproc)" -n 1 "$tool" -p "$root/build/dev" --quiet \
+    xargs -P "$(nproc)" -n 1 "$tool" -p "$root/build/tidy" --quiet \
       --extra-arg=-Wno-unknown-warning-option 2> >(grep -v 'warnings.* generated' >&2)
 }
 

@@ -8,7 +8,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kUr5eScene = model_file("universal_robots_ur5e/scene.xml");
 const std::string kGoodLine = "{\"q\":[0.1,-1.2,1.3,-1.4,-1.5,0.6]}\n";
 
 TEST(Fk, OneRequestWithUnits) {

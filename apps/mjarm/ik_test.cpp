@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kUr5eScene = model_file("universal_robots_ur5e/scene.xml");
 const std::vector<std::string> kTutorialPose = {"--pos", "-0.13,0.6,0.1", "--euler", "3.14,0,1.57"};
 
 /// Poses that the arm can reach, each made by MuJoCo from random joint values.

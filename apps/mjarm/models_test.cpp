@@ -38,8 +38,8 @@ TEST_F(Models, ListsWhatIsNotThere) {
   EXPECT_NE(list.out.find("ur5e"), std::string::npos);
   EXPECT_NE(list.out.find("panda"), std::string::npos);
   EXPECT_NE(list.out.find("not installed"), std::string::npos);
-  const auto json = models({"--list", "--json", "panda"});
-  const auto entries = nlohmann::json::parse(json.out);
+  const auto scene = models({"--list", "--json", "panda"});
+  const auto entries = nlohmann::json::parse(scene.out);
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_EQ(entries[0]["state"], "absent");
   EXPECT_EQ(entries[0]["meshes"], 67);

@@ -12,7 +12,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kDegree = std::numbers::pi / 180;
-const std::string kUr5eScene = model_file("universal_robots_ur5e/scene.xml");
 const char* const kLine =
     R"({"type":"line","from":{"pos":[0.3,-0.4,0.4],"quat":[0,1,0,0]},"to":{"pos":[-0.3,-0.4,0.4],"quat":[0,1,0,0]}})";
 const char* const kEllipse =

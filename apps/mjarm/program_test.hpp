@@ -34,6 +34,8 @@ inline std::string model_file(const std::string& name) {
   return std::string(MJARM_MODELS) + "/" + name;
 }
 
+inline const std::string kUr5eScene = model_file("universal_robots_ur5e/scene.xml");
+
 /// The one line on standard error that goes with an exit code other than 0; checks that it is one.
 inline std::string only_line(const support::ProgramResult& result) {
   const std::vector<std::string> lines = support::lines_of(result.err);

@@ -2,15 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "mjarm/core/rng.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using support::kPi;
 
 double entry_of(const nlohmann::json& list, int i) {
   return list.at(static_cast<std::size_t>(i)).get<double>();

@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 
 #include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/compare_test.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
@@ -21,19 +22,13 @@ std::vector<double> numbers(const nlohmann::json& list, std::size_t count) {
   return values;
 }
 
-Pose pose_of(const nlohmann::json& entry) {
-  const auto p = numbers(entry.at("pos"), 3);
-  const auto q = numbers(entry.at("quat"), 4);
-  return {Eigen::Vector3d(p[0], p[1], p[2]), to_matrix(Quat(q[0], q[1], q[2], q[3]))};
-}
-
 /// FK and Jacobian against the cases of another program; returns how many there were.
 void compare_with_ground_truth(const Arm& arm, const std::filesystem::path& file) {
   const nlohmann::json data = support::load_json(file);
   ASSERT_GE(data.at("cases").size(), 100U);
   for (const auto& entry : data.at("cases")) {
     const std::vector<double> q = numbers(entry.at("q"), arm.joints.size());
-    const Pose X_expected = pose_of(entry);
+    const Pose X_expected = testing::pose_of(entry);
     const FkJacobian got = fk_jacobian(arm, q);
     EXPECT_LT((got.X_WT.p - X_expected.p).norm(), 1e-9);
     EXPECT_LT(angle_between(got.X_WT.R, X_expected.R), 1e-9);

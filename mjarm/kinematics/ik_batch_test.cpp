@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/compare_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
@@ -30,16 +29,11 @@ Cases cases(const Arm& arm, int n) {
   return out;
 }
 
-bool same_bits(const JointVec& a, const JointVec& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
-}
-
 void expect_same(const Answer& a, const Answer& b) {
   ASSERT_EQ(a.has_value(), b.has_value());
   const IkSolution& x = a ? *a : a.error().best;
   const IkSolution& y = b ? *b : b.error().best;
-  EXPECT_TRUE(same_bits(x.q, y.q));
+  EXPECT_TRUE(testing::same_bits(x.q, y.q));
   EXPECT_EQ(x.pos_err, y.pos_err);
   EXPECT_EQ(x.iterations, y.iterations);
   if (!a) {

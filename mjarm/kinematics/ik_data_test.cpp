@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/compare_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "tests/support/test_data.hpp"
@@ -8,16 +9,10 @@
 namespace mjarm {
 namespace {
 
-Pose pose_of(const nlohmann::json& entry) {
-  const auto p = entry.at("pos").get<std::array<double, 3>>();
-  const auto q = entry.at("quat").get<std::array<double, 4>>();
-  return {Eigen::Vector3d(p[0], p[1], p[2]), to_matrix(Quat(q[0], q[1], q[2], q[3]))};
-}
-
 void expect_all_solved(const Arm& arm, const std::filesystem::path& file) {
   const IkSolver ik(arm);
   for (const auto& entry : support::load_json_lines(file)) {
-    const Pose X_goal = pose_of(entry);
+    const Pose X_goal = testing::pose_of(entry);
     const auto answer = ik.solve(X_goal, entry.at("seed").get<std::vector<double>>());
     ASSERT_TRUE(answer.has_value()) << describe(answer.error(), arm);
     const Pose X = fk(arm, view(answer->q));
@@ -30,7 +25,7 @@ void expect_all_solved(const Arm& arm, const std::filesystem::path& file) {
 void expect_none_reachable(const Arm& arm, const std::filesystem::path& file) {
   const IkSolver ik(arm);
   for (const auto& entry : support::load_json_lines(file)) {
-    const auto answer = ik.solve(pose_of(entry), view(arm.home));
+    const auto answer = ik.solve(testing::pose_of(entry), view(arm.home));
     ASSERT_FALSE(answer.has_value());
     EXPECT_EQ(answer.error().code, IkErrc::out_of_reach);
     EXPECT_GT(answer.error().amount, 0);
@@ -63,7 +58,7 @@ TEST(IkData, TheEllipseCrossesTheCylinderAtPoints37To62) {
   const nlohmann::json poses = support::load_json_lines(file).at(0).at("poses");
   ASSERT_EQ(poses.size(), 200U);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto answer = ik.solve(pose_of(poses[i]), view(seed));
+    const auto answer = ik.solve(testing::pose_of(poses[i]), view(seed));
     const bool inside = i >= 37 && i <= 62;
     ASSERT_EQ(answer.has_value(), !inside) << i;
     if (answer) {
@@ -83,7 +78,7 @@ TEST(IkData, TheEllipseFartherOutIsReachable) {
   JointVec seed = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
   const nlohmann::json poses = support::load_json_lines(file).at(0).at("poses");
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto answer = ik.solve(pose_of(poses[i]), view(seed));
+    const auto answer = ik.solve(testing::pose_of(poses[i]), view(seed));
     ASSERT_TRUE(answer.has_value()) << i;
     if (i > 0) {
       EXPECT_LT((answer->q - seed).cwiseAbs().maxCoeff(), 0.2) << i;

@@ -1,9 +1,9 @@
 // What must hold for every answer, over many poses of both arms and both ways of solving.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <tuple>
 
+#include "mjarm/kinematics/compare_test.hpp"
 #include "mjarm/kinematics/count_solved_test.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/kinematics/ik_batch.hpp"
@@ -15,11 +15,8 @@ namespace {
 using Answer = Result<IkSolution, IkFailure>;
 
 bool same_bits(const Answer& a, const Answer& b) {
-  if (a.has_value() != b.has_value()) return false;
-  const JointVec& x = a ? a->q : a.error().best.q;
-  const JointVec& y = b ? b->q : b.error().best.q;
-  return x.size() == y.size() &&
-         std::memcmp(x.data(), y.data(), sizeof(double) * static_cast<std::size_t>(x.size())) == 0;
+  return a.has_value() == b.has_value() &&
+         testing::same_bits(a ? a->q : a.error().best.q, b ? b->q : b.error().best.q);
 }
 
 /// Whether the arm has six joints, and whether the closed form may be used.

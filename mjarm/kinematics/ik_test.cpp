@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <numbers>
 
 #include "mjarm/core/messages.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/compare_test.hpp"
 #include "mjarm/kinematics/count_solved_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
@@ -24,11 +24,6 @@ constexpr int kRounds = 20000;
 #else
 constexpr int kRounds = 2000;
 #endif
-
-bool same_bits(const JointVec& a, const JointVec& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
-}
 
 TEST(Ik, SolvesRandomPosesOfTheUr5e) {
   Rng rng(31);
@@ -100,7 +95,8 @@ TEST(Ik, SameSeedSameBits) {
     const auto c = copy.solve(X_goal, view(seed));
     const auto d = IkSolver(panda()).solve(X_goal, view(seed));
     ASSERT_TRUE(a && b && c && d);
-    EXPECT_TRUE(same_bits(a->q, b->q) && same_bits(a->q, c->q) && same_bits(a->q, d->q));
+    EXPECT_TRUE(testing::same_bits(a->q, b->q) && testing::same_bits(a->q, c->q) &&
+                testing::same_bits(a->q, d->q));
     EXPECT_EQ(a->iterations, b->iterations);
   }
 }
@@ -116,7 +112,7 @@ TEST(Ik, OtherRngSeedOtherRestarts) {
     const auto a = ik.solve(X_goal, view(seed));
     const auto b = other.solve(X_goal, view(seed));
     ASSERT_TRUE(a && b);
-    if (a->restarts > 0 && !same_bits(a->q, b->q)) ++differ;
+    if (a->restarts > 0 && !testing::same_bits(a->q, b->q)) ++differ;
   }
   EXPECT_GT(differ, 20);
 }

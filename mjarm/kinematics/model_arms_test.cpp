@@ -6,6 +6,8 @@
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/compare_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/find_arm.hpp"
@@ -28,14 +30,6 @@ Loaded load(const std::filesystem::path& file) {
   return {model.value(), arm.value()};
 }
 
-JointVec random_q(const Arm& arm, Rng& rng) {
-  JointVec q(arm.dof());
-  for (int i = 0; i < arm.dof(); ++i) {
-    q[i] = rng.uniform(arm.limits.lower[i], arm.limits.upper[i]);
-  }
-  return q;
-}
-
 /// Pose and Jacobian of a site by MuJoCo, row-major as MuJoCo has them.
 void compare_with_mujoco(const Loaded& robot, Rng& rng) {
   const mjModel& m = *robot.model.raw();
@@ -46,7 +40,7 @@ void compare_with_mujoco(const Loaded& robot, Rng& rng) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Rows linear(3, m.nv), angular(3, m.nv);
   for (int round = 0; round < 1000; ++round) {
-    const JointVec q = random_q(arm, rng);
+    const JointVec q = testing::random_q(arm, rng);
     for (int i = 0; i < arm.dof(); ++i) {
       d->qpos[arm.joints[static_cast<std::size_t>(i)].qpos] = q[i];
     }
@@ -88,8 +82,8 @@ TEST(ModelArms, IkFindsRandomPosesOfTheShippedArms) {
     const Loaded robot = load(find_model_file(name).value());
     const IkSolver ik(robot.arm);
     for (int i = 0; i < 1000; ++i) {
-      const Pose X_goal = fk(robot.arm, view(random_q(robot.arm, rng)));
-      const auto answer = ik.solve(X_goal, view(random_q(robot.arm, rng)));
+      const Pose X_goal = fk(robot.arm, view(testing::random_q(robot.arm, rng)));
+      const auto answer = ik.solve(X_goal, view(testing::random_q(robot.arm, rng)));
       ASSERT_TRUE(answer.has_value()) << describe(answer.error(), robot.arm);
       const Pose X = fk(robot.arm, view(answer->q));
       EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
@@ -97,12 +91,6 @@ TEST(ModelArms, IkFindsRandomPosesOfTheShippedArms) {
       EXPECT_TRUE(within_limits(robot.arm, view(answer->q)));
     }
   }
-}
-
-Pose pose_of(const nlohmann::json& entry) {
-  const auto p = entry.at("pos").get<std::array<double, 3>>();
-  const auto q = entry.at("quat").get<std::array<double, 4>>();
-  return {Eigen::Vector3d(p[0], p[1], p[2]), to_matrix(Quat(q[0], q[1], q[2], q[3]))};
 }
 
 TEST(ModelArms, IkSolvesTheCasesOfTheUrdfs) {
@@ -113,11 +101,12 @@ TEST(ModelArms, IkSolvesTheCasesOfTheUrdfs) {
     const Loaded robot = load(urdf);
     const IkSolver ik(robot.arm);
     for (const auto& entry : support::load_json_lines(reachable)) {
-      const auto answer = ik.solve(pose_of(entry), entry.at("seed").get<std::vector<double>>());
+      const auto answer =
+          ik.solve(testing::pose_of(entry), entry.at("seed").get<std::vector<double>>());
       ASSERT_TRUE(answer.has_value()) << describe(answer.error(), robot.arm);
     }
     for (const auto& entry : support::load_json_lines(unreachable)) {
-      const auto answer = ik.solve(pose_of(entry), view(robot.arm.home));
+      const auto answer = ik.solve(testing::pose_of(entry), view(robot.arm.home));
       ASSERT_FALSE(answer.has_value());
       EXPECT_EQ(answer.error().code, IkErrc::out_of_reach);
     }

@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "mjarm/kinematics/arms_test.hpp"
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using support::kPi;
 
 TEST(Singularity, KindsOfTheUr5e) {
   const IkSolver ik(testing::ur5e());

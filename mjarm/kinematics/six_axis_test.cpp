@@ -4,12 +4,12 @@
 
 #include <functional>
 #include <iostream>
-#include <numbers>
 
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
@@ -18,7 +18,7 @@ using testing::make_arm;
 using testing::random_q;
 using testing::ur5e;
 
-constexpr double kPi = std::numbers::pi;
+using support::kPi;
 
 /// Poses an arm.
 int rounds() {

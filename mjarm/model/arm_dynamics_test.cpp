@@ -12,7 +12,7 @@
 namespace mjarm {
 namespace {
 
-JointVec draw(Rng& rng, int dof, double size) {
+JointVec draw_joints(Rng& rng, int dof, double size) {
   JointVec values(dof);
   for (double& value : values) value = rng.uniform(-size, size);
   return values;
@@ -28,8 +28,8 @@ void expect_as_mujoco(const Model& model, double tolerance) {
   ArmDynamics dynamics(model, arm);
   Rng rng(8);
   for (int n = 0; n < 50; ++n) {
-    const JointVec q = draw(rng, arm.dof(), 2), a = draw(rng, arm.dof(), 5);
-    JointVec v = draw(rng, arm.dof(), 2);
+    const JointVec q = draw_joints(rng, arm.dof(), 2), a = draw_joints(rng, arm.dof(), 5);
+    JointVec v = draw_joints(rng, arm.dof(), 2);
     for (double& x : v) x += std::copysign(0.2, x);  // soft friction does not slip at once
     for (int i = 0; i < arm.dof(); ++i) {
       const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];

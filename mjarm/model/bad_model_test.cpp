@@ -25,7 +25,7 @@ struct BadFile {
 
 void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.label; }
 
-class BadModel : public testing::TestWithParam<BadFile> {};
+class BadModel : public ::testing::TestWithParam<BadFile> {};
 
 TEST_P(BadModel, IsRefusedInOneLine) {
   const BadFile& bad = GetParam();
@@ -60,7 +60,7 @@ constexpr const char* kArm =
 
 INSTANTIATE_TEST_SUITE_P(
     Mjcf, BadModel,
-    testing::Values(
+    ::testing::Values(
         BadFile{"Empty", "a.xml", "", "a.xml", {"is empty"}},
         BadFile{"OnlyAComment", "a.xml", "<!-- nothing -->", "a.xml", {"is empty"}},
         BadFile{"NotXml", "a.xml", "\nsolid cube", "a.xml:", {"XML"}},
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Urdf, BadModel,
-    testing::Values(
+    ::testing::Values(
         BadFile{"NoLinks", "a.urdf", "<robot name=\"r\"/>", "a.urdf:1: <robot \"r\">", {"<link>"}},
         BadFile{"LinkWithoutName",
                 "a.urdf",

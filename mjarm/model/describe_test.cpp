@@ -36,11 +36,11 @@ TEST(Describe, Panda) {
   ASSERT_NE(hand, info.bodies.end());
   EXPECT_THAT(hand->sites, Contains("hand_tcp"));
   EXPECT_THAT(hand->geoms, Contains(Field(&GeomInfo::collides, true)));
-  EXPECT_THAT(info.frames, Contains(testing::AllOf(Field(&FrameInfo::name, "hand_tcp"),
-                                                   Field(&FrameInfo::is_site, true),
-                                                   Field(&FrameInfo::body, "hand"))));
-  EXPECT_THAT(info.frames, Contains(testing::AllOf(Field(&FrameInfo::name, "link3"),
-                                                   Field(&FrameInfo::is_site, false))));
+  EXPECT_THAT(info.frames, Contains(::testing::AllOf(Field(&FrameInfo::name, "hand_tcp"),
+                                                     Field(&FrameInfo::is_site, true),
+                                                     Field(&FrameInfo::body, "hand"))));
+  EXPECT_THAT(info.frames, Contains(::testing::AllOf(Field(&FrameInfo::name, "link3"),
+                                                     Field(&FrameInfo::is_site, false))));
   ASSERT_EQ(info.actuators.size(), 8U);
   EXPECT_EQ(info.actuators[0].drives, "joint");
   EXPECT_EQ(info.actuators[0].target, "joint1");

@@ -6,12 +6,11 @@
 #include <Eigen/Cholesky>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/model/shipped_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {
 namespace {
-
-Model shipped(std::string_view name) { return Model::load(find_model_file(name).value()).value(); }
 
 std::vector<double> draw(Rng& rng, int count, double size) {
   std::vector<double> values(static_cast<std::size_t>(count));
@@ -19,12 +18,12 @@ std::vector<double> draw(Rng& rng, int count, double size) {
   return values;
 }
 
-class ShippedDynamics : public testing::TestWithParam<const char*> {};
+class ShippedDynamics : public ::testing::TestWithParam<const char*> {};
 
 // What a forward simulation of MuJoCo does with a torque, inverse() must give back: qacc of
 // mj_forward without contact, constraint and actuation solves M qacc + bias = passive + applied.
 TEST_P(ShippedDynamics, InverseUndoesMujocosForward) {
-  const Model model = shipped(GetParam());
+  const Model model = testing::shipped(GetParam());
   const int nv = model.nv();
   mjModel* free_model = mj_copyModel(nullptr, model.raw());
   free_model->opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_ACTUATION;
@@ -51,7 +50,7 @@ TEST_P(ShippedDynamics, InverseUndoesMujocosForward) {
 }
 
 TEST_P(ShippedDynamics, MassMatrixIsSymmetricAndPositive) {
-  const Model model = shipped(GetParam());
+  const Model model = testing::shipped(GetParam());
   Dynamics dynamics(model);
   Rng rng(6);
   for (int n = 0; n < 50; ++n) {
@@ -64,7 +63,7 @@ TEST_P(ShippedDynamics, MassMatrixIsSymmetricAndPositive) {
 
 // Gravity torque is the gradient of potential energy.
 TEST_P(ShippedDynamics, GravityIsTheGradientOfEnergy) {
-  const Model model = shipped(GetParam());
+  const Model model = testing::shipped(GetParam());
   mjData* data = mj_makeData(model.raw());
   const auto energy = [&](const std::vector<double>& q) {
     std::copy(q.begin(), q.end(), data->qpos);
@@ -95,11 +94,11 @@ TEST_P(ShippedDynamics, GravityIsTheGradientOfEnergy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, ShippedDynamics,
-                         testing::Values("ur5e", "panda", "universal_robots_ur5e/ur5e.urdf",
-                                         "franka_emika_panda/panda.urdf"));
+                         ::testing::Values("ur5e", "panda", "universal_robots_ur5e/ur5e.urdf",
+                                           "franka_emika_panda/panda.urdf"));
 
 TEST(Dynamics, BiasIsGravityWhereNothingMoves) {
-  const Model model = shipped("panda");
+  const Model model = testing::shipped("panda");
   Dynamics dynamics(model);
   Rng rng(9);
   const auto q = draw(rng, model.nq(), 2);
@@ -125,7 +124,7 @@ TEST(Dynamics, PassiveHoldsDampingAndBiasDoesNot) {
 
 TEST(Dynamics, MovesAndOutlivesTheModelItWasMadeFrom) {
   Dynamics dynamics = [] {
-    const Model model = shipped("ur5e");
+    const Model model = testing::shipped("ur5e");
     Dynamics made(model);
     return made;
   }();

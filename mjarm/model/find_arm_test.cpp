@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/model/shipped_test.hpp"
 #include "mjarm/model/test_chain_internal.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -15,14 +16,6 @@ namespace mjarm {
 namespace {
 
 using ::testing::HasSubstr;
-
-Model shipped(std::string_view name) {
-  const auto file = find_model_file(name);
-  EXPECT_TRUE(file) << (file ? "" : file.error().what);
-  auto model = Model::load(*file);
-  EXPECT_TRUE(model) << (model ? "" : model.error().what);
-  return *model;
-}
 
 Model from_text(std::string_view xml) {
   const support::TempFolder folder;
@@ -53,7 +46,7 @@ std::string world(const std::string& inside, const std::string& rest = "") {
 }
 
 TEST(FindArm, Ur5e) {
-  const Model model = shipped("ur5e");
+  const Model model = testing::shipped("ur5e");
   const auto arm = find_arm(model);
   ASSERT_TRUE(arm) << arm.error().what;
   EXPECT_EQ(arm->dof(), 6);
@@ -81,7 +74,7 @@ TEST(FindArm, Ur5e) {
 }
 
 TEST(FindArm, Panda) {
-  const Model model = shipped("panda");
+  const Model model = testing::shipped("panda");
   const auto arm = find_arm(model);
   ASSERT_TRUE(arm) << arm.error().what;
   EXPECT_EQ(arm->dof(), 7);
@@ -213,16 +206,16 @@ TEST(FindArm, WithoutSitesTheLastBodyIsTheTip) {
 }
 
 TEST(FindArm, UnknownTipNamesTheNearest) {
-  const auto arm = find_arm(shipped("ur5e"), {.tip = "atachment_site"});
+  const auto arm = find_arm(testing::shipped("ur5e"), {.tip = "atachment_site"});
   ASSERT_FALSE(arm);
   EXPECT_THAT(arm.error().what, HasSubstr("did you mean \"attachment_site\""));
 }
 
 TEST(FindArm, FixedTipAndEmptyModelAreErrors) {
-  const auto fixed = find_arm(shipped("ur5e"), {.tip = "base"});
+  const auto fixed = find_arm(testing::shipped("ur5e"), {.tip = "base"});
   ASSERT_FALSE(fixed);
   EXPECT_THAT(fixed.error().what, HasSubstr("no joint moves \"base\""));
-  const auto none = find_arm(shipped("hello"));
+  const auto none = find_arm(testing::shipped("hello"));
   ASSERT_FALSE(none);
   EXPECT_THAT(none.error().what, HasSubstr("there is no arm"));
 }
@@ -321,7 +314,7 @@ TEST(FindArm, HomeIsTheKeyframeOrTheMiddle) {
 }
 
 TEST(FramePose, ChecksItsInput) {
-  const Model model = shipped("ur5e");
+  const Model model = testing::shipped("ur5e");
   const std::vector<double> q(6, 0.0);
   EXPECT_TRUE(frame_pose(model, "wrist_3_link", q));
   EXPECT_FALSE(frame_pose(model, "wrist_3_lnk", q));

@@ -286,7 +286,7 @@ TEST(Model, UrdfWithImpossibleInertiaIsEvenedOutWithAWarning) {
   const auto model = Model::load(folder.write("a.urdf", text));
   ASSERT_TRUE(model) << model.error().what;
   EXPECT_THAT(model->warnings(),
-              testing::Contains(testing::AllOf(HasSubstr("\"arm\""), HasSubstr("evened out"))));
+              ::testing::Contains(::testing::AllOf(HasSubstr("\"arm\""), HasSubstr("evened out"))));
 }
 
 TEST(Model, PathsMayHoldSpacesAndChinese) {

@@ -78,7 +78,7 @@ TEST(MujocoGuardDeathTest, ErrorOutsideOfAnyCallIsOneLine) {
         install_mujoco_handler();
         mju_error("nobody listens");
       },
-      testing::ExitedWithCode(1), "MuJoCo.*nobody listens");
+      ::testing::ExitedWithCode(1), "MuJoCo.*nobody listens");
 }
 
 }  // namespace

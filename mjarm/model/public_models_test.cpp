@@ -67,7 +67,7 @@ struct PublicModel {
   const char* truth;
 };
 
-class Menagerie : public testing::TestWithParam<PublicModel> {};
+class Menagerie : public ::testing::TestWithParam<PublicModel> {};
 
 TEST_P(Menagerie, MatchesItsGroundTruth) {
   MJARM_TEST_FILE(archive, GetParam().archive);
@@ -81,7 +81,7 @@ TEST_P(Menagerie, MatchesItsGroundTruth) {
 
 INSTANTIATE_TEST_SUITE_P(
     Files, Menagerie,
-    testing::Values(
+    ::testing::Values(
         PublicModel{"menagerie/universal_robots_ur5e.tar.xz", "universal_robots_ur5e/ur5e.xml",
                     "ground_truth/ur5e_menagerie.json.gz"},
         PublicModel{"menagerie/franka_emika_panda.tar.xz", "franka_emika_panda/panda.xml",
@@ -126,7 +126,7 @@ TEST(MenagerieScenes, ArmsAreFoundWithoutHelp) {
   }
 }
 
-class PinocchioUrdf : public testing::TestWithParam<const char*> {};
+class PinocchioUrdf : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PinocchioUrdf, MatchesItsGroundTruth) {
   MJARM_TEST_FILE(file, std::string("ground_truth/") + GetParam() + ".json.gz");
@@ -140,7 +140,7 @@ TEST_P(PinocchioUrdf, MatchesItsGroundTruth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, PinocchioUrdf,
-                         testing::Values("ur5e_official_urdf", "ur5e_legacy_urdf", "panda_urdf"));
+                         ::testing::Values("ur5e_official_urdf", "ur5e_legacy_urdf", "panda_urdf"));
 
 }  // namespace
 }  // namespace mjarm

@@ -8,15 +8,15 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/curve.hpp"
+#include "mjarm/path/poses_test.hpp"
 
 namespace mjarm {
 namespace {
 
+using testing::at_point;
+using testing::random_vec;
 using Vec = Eigen::Vector3d;
 
-Vec random_vec(Rng& rng, double size) {
-  return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
-}
 std::vector<Pose> random_poses(Rng& rng, int n, double size = 1) {
   std::vector<Pose> poses;
   for (int i = 0; i < n; ++i)
@@ -36,8 +36,6 @@ std::vector<Pose> gentle_poses(Rng& rng, int n, double size = 1) {
     if (gentle) return poses;
   }
 }
-Pose at_point(double x, double y, double z) { return {Vec(x, y, z), Eigen::Matrix3d::Identity()}; }
-
 /// Largest change of the tool's direction and of its rate of turn between neighbours of `n` samples
 /// with spacing `h`, from `s0` on.
 struct Change {
@@ -130,7 +128,7 @@ TEST(BlendedPolyline, TurnsPositionAndRotationWithoutJumps) {
         std::min((points[1].p - points[0].p).norm(), (points[2].p - points[1].p).norm());
     const double blend = leg * rng.uniform(0.1, 1.5);
     const Curve curve = *Curve::polyline(points, blend);
-    EXPECT_THAT(curve.corners(), testing::SizeIs(2));
+    EXPECT_THAT(curve.corners(), ::testing::SizeIs(2));
     // Over the whole bend and a little of the legs: a quarter of the spacing, a quarter of the
     // changes.
     const double radius = curve.blends().at(0).radius;
@@ -154,21 +152,21 @@ TEST(BlendedPolyline, TurnsPositionAndRotationWithoutJumps) {
 TEST(BlendedPolyline, KeepsCornersThatCannotBeRounded) {
   const Pose zero = at_point(0, 0, 0), one = at_point(1, 0, 0);
   const Curve there_and_back = *Curve::polyline(std::vector<Pose>{zero, one, zero}, 0.1);
-  EXPECT_THAT(there_and_back.corners(), testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT(there_and_back.corners(), ::testing::ElementsAre(0, 1, 2));
   EXPECT_EQ(there_and_back.blends().at(0).radius, 0);
   EXPECT_EQ(there_and_back.blends().at(0).distance, 0);
   const Pose turned{Vec(1, 0, 0), from_euler({0, 0, 0.5})};
   const Curve spot = *Curve::polyline(std::vector<Pose>{zero, one, turned, at_point(1, 1, 0)}, 0.1);
-  EXPECT_THAT(spot.corners(), testing::SizeIs(4));
+  EXPECT_THAT(spot.corners(), ::testing::SizeIs(4));
   EXPECT_EQ(spot.blends().size(), 2U);
   // No corner, nothing to round.
   const Curve straight = *Curve::polyline(std::vector<Pose>{zero, one, at_point(3, 0, 0)}, 0.1);
-  EXPECT_THAT(straight.blends(), testing::IsEmpty());
+  EXPECT_THAT(straight.blends(), ::testing::IsEmpty());
   EXPECT_EQ(straight.length(), 3);
   // A straight way on which the tool begins to turn.
   const Curve twist =
       *Curve::polyline(std::vector<Pose>{zero, one, {Vec(2, 0, 0), from_euler({0.3, 0, 0})}}, 0.1);
-  EXPECT_THAT(twist.corners(), testing::SizeIs(2));
+  EXPECT_THAT(twist.corners(), ::testing::SizeIs(2));
   EXPECT_NEAR(twist.length(), 2, 1e-14);
 }
 
@@ -189,8 +187,8 @@ TEST(BlendedPolyline, WithoutRadiusIsSharp) {
   Rng rng(4);
   const std::vector<Pose> points = random_poses(rng, 6);
   const Curve curve = *Curve::polyline(points, 0);
-  EXPECT_THAT(curve.blends(), testing::IsEmpty());
-  EXPECT_THAT(curve.corners(), testing::SizeIs(6));
+  EXPECT_THAT(curve.blends(), ::testing::IsEmpty());
+  EXPECT_THAT(curve.corners(), ::testing::SizeIs(6));
 }
 
 TEST(BlendedPolyline, RefusesARadiusThatIsNone) {
@@ -199,7 +197,7 @@ TEST(BlendedPolyline, RefusesARadiusThatIsNone) {
        {-0.01, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const Result<Curve> curve = Curve::polyline(points, blend);
     ASSERT_FALSE(curve);
-    EXPECT_THAT(curve.error().what, testing::HasSubstr("blend"));
+    EXPECT_THAT(curve.error().what, ::testing::HasSubstr("blend"));
   }
 }
 

@@ -33,7 +33,7 @@ TEST(Spline, GoesThroughEveryPoseInOrder) {
     const double scale = std::pow(10, rng.uniform(-5, 4));
     const std::vector<Pose> poses = wander(rng, 2 + i % 12, scale);
     const Curve curve = Curve::spline(poses).value();
-    EXPECT_THAT(curve.corners(), testing::SizeIs(2));
+    EXPECT_THAT(curve.corners(), ::testing::SizeIs(2));
     double last = -1;
     for (const Pose& X : poses) {
       const Curve::Nearest nearest = curve.nearest(X.p);
@@ -110,7 +110,7 @@ TEST(Spline, NearsASmoothCurveByTheFourthPowerOfTheSpacing) {
 }
 
 TEST(Spline, RefusesWhatHasNoSmoothCurve) {
-  using testing::HasSubstr;
+  using ::testing::HasSubstr;
   const auto complaint = [](const std::vector<Pose>& poses) {
     const Result<Curve> curve = Curve::spline(poses);
     return curve ? std::string("none") : curve.error().what;

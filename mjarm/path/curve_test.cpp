@@ -4,25 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/path/poses_test.hpp"
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kNaN;
+using support::kPi;
+using testing::at_point;
+using testing::random_vec;
 using Vec = Eigen::Vector3d;
 
-Vec random_vec(Rng& rng, double size) {
-  return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
-}
 Pose random_pose(Rng& rng) { return {random_vec(rng, 1), from_euler(random_vec(rng, 3))}; }
-
-Pose at_point(double x, double y, double z) { return {Vec(x, y, z), Eigen::Matrix3d::Identity()}; }
 
 /// Length of a polyline of `n` chords through the curve.
 double chord_length(const Curve& curve, double s0, double s1, int n) {
@@ -133,7 +130,7 @@ TEST(Curve, ArcTurnsWithoutJumpsOfItsRate) {
     const Vec after = rotation_log(arc.at(s).R.transpose() * arc.at(s + kStep).R) / kStep;
     EXPECT_LT((before - after).norm(), 1e-3 * (1 + before.norm()));
     EXPECT_NEAR(arc.turn(), angle_between(from.R, via.R) + angle_between(via.R, to.R), 1e-9);
-    EXPECT_THAT(arc.corners(), testing::SizeIs(2));
+    EXPECT_THAT(arc.corners(), ::testing::SizeIs(2));
   }
 }
 
@@ -145,7 +142,7 @@ TEST(Curve, CircleIsAWholeRoundTrip) {
     const Curve circle = *Curve::circle(poses[0], poses[1], poses[2]);
     const Curve arc = *Curve::arc(poses[0], poses[1], poses[2]);
     EXPECT_TRUE(circle.closed());
-    EXPECT_THAT(circle.corners(), testing::SizeIs(2));
+    EXPECT_THAT(circle.corners(), ::testing::SizeIs(2));
     // The centre lies opposite to every point, half a lap away.
     const Vec center = 0.5 * (circle.at(0).p + circle.at(0.5 * circle.end()).p);
     const double radius = (poses[0].p - center).norm();
@@ -179,7 +176,7 @@ TEST(Curve, StationsAreNearEachOther) {
       const std::vector<double> s = curve.stations(step, angle);
       EXPECT_EQ(s.front(), 0);
       EXPECT_EQ(s.back(), curve.end());
-      for (const double corner : curve.corners()) EXPECT_THAT(s, testing::Contains(corner));
+      for (const double corner : curve.corners()) EXPECT_THAT(s, ::testing::Contains(corner));
       for (std::size_t k = 1; k < s.size(); ++k) {
         ASSERT_GT(s[k], s[k - 1]);
         ASSERT_LE(s[k] - s[k - 1], step * (1 + 1e-9));
@@ -228,7 +225,7 @@ TEST(Curve, CornersAreWhereTheDirectionBreaks) {
   const Curve square =
       *Curve::polyline(std::vector<Pose>{at_point(0, 0, 0), at_point(0.5, 0, 0), at_point(1, 0, 0),
                                          at_point(1, 1, 0), at_point(0, 1, 0), at_point(0, 0, 0)});
-  EXPECT_THAT(square.corners(), testing::Pointwise(testing::DoubleEq(), {0., 1., 2., 3., 4.}));
+  EXPECT_THAT(square.corners(), ::testing::Pointwise(::testing::DoubleEq(), {0., 1., 2., 3., 4.}));
   EXPECT_TRUE(square.closed());
   EXPECT_TRUE(Curve::ellipse({})->closed());
   EXPECT_FALSE(Curve::line(at_point(0, 0, 0), at_point(1, 0, 0))->closed());
@@ -236,7 +233,7 @@ TEST(Curve, CornersAreWhereTheDirectionBreaks) {
   const Pose turned{Vec(1, 0, 0), from_euler({0.3, 0, 0})};
   EXPECT_THAT(
       Curve::polyline(std::vector<Pose>{at_point(0, 0, 0), at_point(0.5, 0, 0), turned})->corners(),
-      testing::SizeIs(3));
+      ::testing::SizeIs(3));
 }
 
 TEST(Curve, TurnsOnTheSpotCountTheirAngle) {
@@ -249,14 +246,14 @@ TEST(Curve, TurnsOnTheSpotCountTheirAngle) {
   EXPECT_EQ(spot.stations(0.001, 0.1).size(), 6U);
   const Curve both =
       *Curve::polyline(std::vector<Pose>{at_point(0, 0, 0), at_point(1, 0, 0), turned});
-  EXPECT_THAT(both.corners(), testing::Pointwise(testing::DoubleNear(1e-12), {0., 1., 1.5}));
+  EXPECT_THAT(both.corners(), ::testing::Pointwise(::testing::DoubleNear(1e-12), {0., 1., 1.5}));
   EXPECT_NEAR(both.length(), 1, 1e-12);
 }
 
 std::string complaint(const Result<Curve>& curve) { return curve ? "none" : curve.error().what; }
 
 TEST(Curve, RefusesWhatIsNoCurve) {
-  using testing::HasSubstr;
+  using ::testing::HasSubstr;
   const Pose zero = at_point(0, 0, 0), one = at_point(1, 0, 0), two = at_point(2, 0, 0);
   EXPECT_THAT(complaint(Curve::line(zero, zero)), HasSubstr("0 and 1"));
   EXPECT_THAT(complaint(Curve::line(zero, at_point(kNaN, 0, 0))), HasSubstr("pose 1"));

@@ -3,15 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "mjarm/core/rng.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using support::kPi;
 
 /// Arc length by Simpson's rule with many cells.
 double simpson(double a, double b, double theta) {

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kNaN;
 
 TEST(JointLine, GoesStraightFromEndToEnd) {
   const std::vector<double> q0{0.1, -2, 3}, q1{1.1, 0, 1};

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mjarm/core/rng.hpp"
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
@@ -36,7 +37,7 @@ TEST(JointPolyline, SharpOnesMeetEveryWaypoint) {
     double length = 0;
     for (std::size_t i = 0; i < waypoints.size(); ++i) {
       if (i > 0) length += (waypoints[i] - waypoints[i - 1]).norm();
-      EXPECT_THAT(line.path.q, testing::Contains(waypoints[i]));
+      EXPECT_THAT(line.path.q, ::testing::Contains(waypoints[i]));
     }
     EXPECT_NEAR(line.path.s.back(), length, 1e-12);
     EXPECT_EQ(line.radii, std::vector<double>(waypoints.size() - 2, 0.0));
@@ -56,7 +57,7 @@ TEST(JointPolyline, IsWalkedByItsLengthAndStaysWithinTheBlend) {
     const JointPath& path = line.path;
     EXPECT_EQ(path.q.front(), waypoints.front());
     EXPECT_EQ(path.q.back(), waypoints.back());
-    EXPECT_THAT(line.corners, testing::ElementsAre(0, path.s.back()));
+    EXPECT_THAT(line.corners, ::testing::ElementsAre(0, path.s.back()));
     double away = 0;
     for (std::size_t k = 1; k < path.s.size(); ++k) {
       const double chord = (path.q[k] - path.q[k - 1]).norm(), arc = path.s[k] - path.s[k - 1];
@@ -102,21 +103,21 @@ TEST(JointPolyline, KeepsWhatCannotOrNeedNotBeRounded) {
   const auto q = [](double a, double b) { return joint_vec(std::vector{a, b}); };
   const JointPolyline back =
       *joint_polyline(std::vector{q(0, 0), q(1, 0), q(0, 0)}, {.blend = 0.1});
-  EXPECT_THAT(back.corners, testing::ElementsAre(0, 1, 2));
-  EXPECT_THAT(back.radii, testing::ElementsAre(0));
+  EXPECT_THAT(back.corners, ::testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT(back.radii, ::testing::ElementsAre(0));
   const JointPolyline straight =
       *joint_polyline(std::vector{q(0, 0), q(1, 0), q(3, 0)}, {.blend = 0.1});
-  EXPECT_THAT(straight.corners, testing::ElementsAre(0, 3));
+  EXPECT_THAT(straight.corners, ::testing::ElementsAre(0, 3));
 }
 
 TEST(JointPolyline, RefusesWhatIsNoPolyline) {
-  using testing::HasSubstr;
+  using ::testing::HasSubstr;
   const auto complaint = [](const std::vector<JointVec>& waypoints,
                             const JointPolylineOptions& options = {}) {
     const auto line = joint_polyline(waypoints, options);
     return line ? std::string("none") : line.error().what;
   };
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  using support::kNaN;
   const JointVec a = joint_vec(std::vector{0.0, 1.0}), b = joint_vec(std::vector{1.0, 1.0});
   EXPECT_THAT(complaint({}), HasSubstr("at least 2"));
   EXPECT_THAT(complaint({a}), HasSubstr("at least 2"));

@@ -38,12 +38,12 @@ TEST(Letters, LGoesDownThenRightAndZHasThreeStrokes) {
   const auto l = letter_strokes("L", 0.9);
   ASSERT_TRUE(l.has_value());
   ASSERT_EQ(l->size(), 1U);
-  EXPECT_THAT(l->front(), testing::SizeIs(3));
+  EXPECT_THAT(l->front(), ::testing::SizeIs(3));
   EXPECT_LT(l->front()[1].y(), l->front()[0].y());
   EXPECT_GT(l->front()[2].x(), l->front()[1].x());
   const auto z = letter_strokes("z", 0.9);
   ASSERT_TRUE(z.has_value());
-  EXPECT_THAT(z->front(), testing::SizeIs(4));
+  EXPECT_THAT(z->front(), ::testing::SizeIs(4));
 }
 
 TEST(Letters, StandSideBySide) {
@@ -58,13 +58,13 @@ TEST(Letters, StandSideBySide) {
 
 TEST(Letters, UnknownOnesAreNamed) {
   const auto what = [](const Result<std::vector<Stroke>>& r) { return r ? "" : r.error().what; };
-  EXPECT_THAT(what(letter_strokes("A?", 0.1)), testing::HasSubstr("\"?\""));
-  EXPECT_THAT(what(letter_strokes("A\xE4\xB8\xAD", 0.1)), testing::HasSubstr("\"\xE4\xB8\xAD\""));
-  EXPECT_THAT(what(letter_strokes("  ", 0.1)), testing::HasSubstr("no letter"));
-  EXPECT_THAT(what(letter_strokes("", 0.1)), testing::HasSubstr("no letter"));
-  EXPECT_THAT(what(letter_strokes("A", 0)), testing::HasSubstr("height"));
+  EXPECT_THAT(what(letter_strokes("A?", 0.1)), ::testing::HasSubstr("\"?\""));
+  EXPECT_THAT(what(letter_strokes("A\xE4\xB8\xAD", 0.1)), ::testing::HasSubstr("\"\xE4\xB8\xAD\""));
+  EXPECT_THAT(what(letter_strokes("  ", 0.1)), ::testing::HasSubstr("no letter"));
+  EXPECT_THAT(what(letter_strokes("", 0.1)), ::testing::HasSubstr("no letter"));
+  EXPECT_THAT(what(letter_strokes("A", 0)), ::testing::HasSubstr("height"));
   EXPECT_THAT(what(letter_strokes("A", std::numeric_limits<double>::quiet_NaN())),
-              testing::HasSubstr("height"));
+              ::testing::HasSubstr("height"));
 }
 
 }  // namespace

@@ -6,11 +6,12 @@
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/path_fix.hpp"
+#include "mjarm/path/poses_test.hpp"
 
 namespace mjarm {
 namespace {
 
-const std::vector<double> kSeed{-1.57, -1.34, 2.65, -1.3, 1.55, 0};
+using testing::kSeed;
 const Eigen::Matrix3d kDown = from_euler({std::numbers::pi, 0, 0});
 
 /// Largest distance of the tool from the curve, joints moving straight between waypoints; at 16

@@ -6,6 +6,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/failing_paths_test.hpp"
 #include "mjarm/path/path_fix.hpp"
+#include "mjarm/path/poses_test.hpp"
 #include "mjarm/path/solve_path.hpp"
 
 namespace mjarm {
@@ -24,18 +25,6 @@ std::vector<Pose> known_path(const Arm& arm, int n, double size, Rng& rng) {
   return poses;
 }
 
-void expect_on_poses(const Arm& arm, const JointPath& path, std::span<const Pose> poses,
-                     double rot_tol = 1e-6) {
-  ASSERT_EQ(path.q.size(), poses.size());
-  EXPECT_LE(path.max_step(), 0.5);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Pose X = fk(arm, view(path.q[i]));
-    EXPECT_LT((X.p - poses[i].p).norm(), 1e-6);
-    EXPECT_LT(angle_between(X.R, poses[i].R), rot_tol);
-    EXPECT_TRUE(within_limits(arm, view(path.q[i])));
-  }
-}
-
 /// Of `count` paths that are known to be possible, those that are solved.
 int solved(const IkSolver& ik, int count, std::uint64_t seed) {
   Rng rng(seed);
@@ -43,7 +32,7 @@ int solved(const IkSolver& ik, int count, std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     const std::vector<Pose> poses = known_path(ik.arm(), 60, 1.2, rng);
     const auto path = solve_path(ik, poses, view(ik.arm().home));
-    if (path) expect_on_poses(ik.arm(), *path, poses);
+    if (path) testing::expect_on_poses(ik.arm(), *path, poses);
     done += path.has_value();
   }
   return done;
@@ -70,7 +59,7 @@ TEST(SolvePathArms, LongPathsAreKeptInPieces) {
   const std::vector<Pose> poses = known_path(arm, n, 2, rng);
   const auto path = solve_path(IkSolver(arm), poses, view(arm.home));
   ASSERT_TRUE(path.has_value());
-  expect_on_poses(arm, *path, poses);
+  testing::expect_on_poses(arm, *path, poses);
   EXPECT_LT(path->max_step(), 20.0 / n);
 }
 
@@ -97,7 +86,7 @@ TEST(SolvePathArms, ATolerancePassesAWristSingularity) {
   EXPECT_EQ(strict.error().kind, SingularKind::wrist);
   const auto loose = solve_path(ik, path.poses, view(path.arm.home), {.orientation_tol = 0.06});
   ASSERT_TRUE(loose.has_value()) << describe(loose.error(), path.arm);
-  expect_on_poses(path.arm, *loose, path.poses, 0.06 + 1e-6);
+  testing::expect_on_poses(path.arm, *loose, path.poses, 0.06 + 1e-6);
 }
 
 TEST(SolvePathArms, AnotherStartMendsAPathFromAPostureThatCannotGoOn) {

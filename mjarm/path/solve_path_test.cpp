@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <numbers>
 
 #include "mjarm/core/rotation.hpp"
@@ -10,28 +9,19 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/path/path_fix.hpp"
+#include "mjarm/path/poses_test.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kNaN;
+using testing::kSeed;
 constexpr double kDegree = std::numbers::pi / 180;
-const std::vector<double> kSeed{-1.57, -1.34, 2.65, -1.3, 1.55, 0};
 
 Ellipse tool_down(double y, double z = 0.5) {
   return {{0, y, z}, 0.3, 0.15, Eigen::Vector3d::UnitZ(), from_euler({3.14, 0, 0})};
-}
-
-void expect_on_poses(const Arm& arm, const JointPath& path, std::span<const Pose> poses) {
-  ASSERT_EQ(path.q.size(), poses.size());
-  ASSERT_EQ(path.s.size(), poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Pose X = fk(arm, view(path.q[i]));
-    EXPECT_LT((X.p - poses[i].p).norm(), 1e-6);
-    EXPECT_LT(angle_between(X.R, poses[i].R), 1e-6);
-    EXPECT_TRUE(within_limits(arm, view(path.q[i])));
-  }
 }
 
 TEST(SolvePath, TheEllipseOfTheDemoIsSolved) {
@@ -39,7 +29,7 @@ TEST(SolvePath, TheEllipseOfTheDemoIsSolved) {
   const std::vector<Pose> poses = ellipse_points(tool_down(-0.3), 200);
   const auto path = solve_path(ik, poses, kSeed);
   ASSERT_TRUE(path.has_value());
-  expect_on_poses(ik.arm(), *path, poses);
+  testing::expect_on_poses(ik.arm(), *path, poses);
   EXPECT_LT(path->max_step(), 5.2 * kDegree);
   EXPECT_GT(path->max_step(), 0);
   EXPECT_LT((path->q.front() - path->q.back()).norm(), 1e-5);
@@ -93,7 +83,7 @@ TEST(SolvePath, OtherBranchesAreTriedWhenTheNearestFails) {
   for (const double x : s) poses.push_back(turn.at(x));
   const auto path = solve_path(ik, poses, s, view(q0));
   ASSERT_TRUE(path.has_value());
-  expect_on_poses(arm, *path, poses);
+  testing::expect_on_poses(arm, *path, poses);
   EXPECT_LE(path->max_step(), 0.5);
 }
 
@@ -156,7 +146,7 @@ TEST(SolvePathData, Ellipses) {
   const std::vector<Pose> far = poses_of(support::load_json_lines(far_file).at(0));
   const auto path = solve_path(ik, far, kSeed);
   ASSERT_TRUE(path.has_value());
-  expect_on_poses(ik.arm(), *path, far);
+  testing::expect_on_poses(ik.arm(), *path, far);
   EXPECT_LT(path->max_step(), 2 * kDegree);
 }
 
@@ -170,7 +160,7 @@ TEST(SolvePathData, AllLinesAreSolved) {
     EXPECT_TRUE(path.has_value()) << "line " << line << " stops at " << path.error().at << ": "
                                   << name(path.error().code);
     if (path) {
-      expect_on_poses(ik.arm(), *path, poses);
+      testing::expect_on_poses(ik.arm(), *path, poses);
       EXPECT_LE(path->max_step(), 0.5);
     }
     ++line;

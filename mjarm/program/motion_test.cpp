@@ -2,17 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/program/tool_down_test.hpp"
 
 namespace mjarm {
 namespace {
 
-const Eigen::Matrix3d kDown = from_euler({std::numbers::pi, 0, 0});
-const std::vector<double> kSeed{-1.57, -1.34, 2.65, -1.3, 1.55, 0};
+using testing::kDown;
+using testing::kSeed;
 
 Curve the_ellipse() {
   return *Curve::ellipse({{0, -0.5, 0.4}, 0.3, 0.15, Eigen::Vector3d::UnitZ(), kDown});

@@ -3,18 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/program/motion.hpp"
+#include "mjarm/program/tool_down_test.hpp"
 
 namespace mjarm {
 namespace {
 
-const Eigen::Matrix3d kDown = from_euler({std::numbers::pi, 0, 0});
-const std::vector<double> kSeed{-1.57, -1.34, 2.65, -1.3, 1.55, 0};
+using testing::kDown;
+using testing::kSeed;
 
 Arm slow_arm(double velocity, double acceleration = 50, double jerk = 5000) {
   Arm arm = testing::ur5e();

@@ -24,7 +24,7 @@ constexpr const char* kScene = R"(
   </worldbody>
 </mujoco>)";
 
-class Cameras : public testing::Test {
+class Cameras : public ::testing::Test {
  protected:
   support::TempFolder folder_;
   Model model_ = Model::load(folder_.write("scene.xml", kScene)).value();

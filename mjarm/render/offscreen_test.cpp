@@ -50,7 +50,7 @@ Color color_at(const Image& image, int x, int y) {
 int column_of(double x) { return kWidth / 2 + static_cast<int>(x * kHeight / 3); }
 int row_of(double z) { return kHeight / 2 - static_cast<int>(z * kHeight / 3); }
 
-class Offscreen : public testing::TestWithParam<GlChoice> {
+class Offscreen : public ::testing::TestWithParam<GlChoice> {
  protected:
   void SetUp() override {
     unsetenv("MUJOCO_GL");
@@ -214,10 +214,10 @@ TEST_P(Offscreen, SaysWhatDraws) {
   EXPECT_TRUE(!osmesa || renderer_->gl().is_software());
 }
 
-std::string name_of(const testing::TestParamInfo<GlChoice>& info) {
+std::string name_of(const ::testing::TestParamInfo<GlChoice>& info) {
   return info.param == GlChoice::egl ? "egl" : "osmesa";
 }
-INSTANTIATE_TEST_SUITE_P(Kinds, Offscreen, testing::Values(GlChoice::egl, GlChoice::osmesa),
+INSTANTIATE_TEST_SUITE_P(Kinds, Offscreen, ::testing::Values(GlChoice::egl, GlChoice::osmesa),
                          name_of);
 
 TEST(OffscreenOptions, RefusesSizesThatCannotBeDrawn) {

@@ -15,8 +15,8 @@
 namespace mjarm {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::vector<double> steps(int count, double (*value)(double)) {
   std::vector<double> values;

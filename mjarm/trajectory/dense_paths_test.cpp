@@ -14,6 +14,8 @@ namespace mjarm {
 namespace {
 
 using testing::limits_of;
+using testing::plain_limits;
+using testing::timed;
 
 /// A smooth closed way of four joints, with noise of the size given.
 std::vector<JointVec> dense_path(int count, double noise) {
@@ -27,11 +29,6 @@ std::vector<JointVec> dense_path(int count, double noise) {
     points.push_back(q);
   }
   return points;
-}
-
-JointLimits plain_limits() {
-  const JointVec one = JointVec::Ones(4);
-  return limits_of(3 * one, 5 * one, 100 * one);
 }
 
 /// Limits kept by samples of `motion`, and every waypoint met where some piece of it starts.
@@ -49,15 +46,9 @@ void expect_sound(const Trajectory& motion, const std::vector<JointVec>& points,
   EXPECT_EQ(motion.at(motion.duration()).q, points.back());
 }
 
-Trajectory timed(const std::vector<JointVec>& points, const JointLimits& limits, bool jerk) {
-  const auto motion = time_waypoint_path(points, limits, {.jerk_limits = jerk});
-  EXPECT_TRUE(motion.has_value()) << motion.error().what;
-  return motion.value_or(Trajectory{});
-}
-
 TEST(DensePaths, TakeAsLongAsTheSamePathWithFewerWaypoints) {
   const int count = testing::rounds(20000, 100000);
-  const JointLimits limits = plain_limits();
+  const JointLimits limits = plain_limits(4);
   const std::vector<JointVec> points = dense_path(count, 0);
   const Trajectory dense = timed(points, limits, true);
   expect_sound(dense, points, limits);
@@ -68,7 +59,7 @@ TEST(DensePaths, TakeAsLongAsTheSamePathWithFewerWaypoints) {
 
 TEST(DensePaths, WithNoiseKeepTheirLimitsAndTheirWaypoints) {
   constexpr double kOneCellAPiece = 13.470;  // [s] that a time law with a cell a piece takes
-  const JointLimits limits = plain_limits();
+  const JointLimits limits = plain_limits(4);
   const std::vector<JointVec> points = dense_path(12000, 1e-8);
   const Trajectory motion = timed(points, limits, true);
   expect_sound(motion, points, limits);
@@ -76,7 +67,7 @@ TEST(DensePaths, WithNoiseKeepTheirLimitsAndTheirWaypoints) {
 }
 
 TEST(DensePaths, KeepTorquesToo) {
-  JointLimits limits = plain_limits();
+  JointLimits limits = plain_limits(4);
   limits.torque = JointVec::Constant(4, 8);
   const InverseDynamics dynamics = [](const JointVec& q, const JointVec& v, const JointVec& a) {
     return JointVec(2 * a + v + 2 * q.array().cos().matrix());

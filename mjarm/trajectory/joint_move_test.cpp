@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/trajectory/limits_test.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
@@ -13,7 +13,7 @@ namespace {
 
 using testing::limits_of;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kNaN;
 
 JointLimits one_joint(double v, double a, double j) {
   return limits_of(JointVec::Constant(1, v), JointVec::Constant(1, a), JointVec::Constant(1, j));

@@ -4,26 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/trajectory/limits_test.hpp"
 #include "mjarm/trajectory/spline_internal.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
 using testing::limits_of;
+using testing::plain_limits;
+using testing::timed;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-/// Limits of `dof` joints like those of a UR5e.
-JointLimits plain_limits(Eigen::Index dof) {
-  const JointVec one = JointVec::Ones(dof);
-  return limits_of(3 * one, 5 * one, 100 * one);
-}
+using support::kInf;
+using support::kNaN;
 
 std::vector<JointVec> random_waypoints(Rng& rng, Eigen::Index dof, std::size_t n) {
   std::vector<JointVec> waypoints{JointVec::Zero(dof)};
@@ -96,12 +92,6 @@ double deviation(const Trajectory& motion, const std::vector<JointVec>& waypoint
     worst = std::max(worst, (q - spline.at(s).q).norm());
   }
   return worst;
-}
-
-Trajectory timed(const std::vector<JointVec>& waypoints, const JointLimits& limits, bool jerk) {
-  const auto motion = time_waypoint_path(waypoints, limits, {.jerk_limits = jerk});
-  EXPECT_TRUE(motion.has_value()) << motion.error().what;
-  return motion.value_or(Trajectory{});
 }
 
 TEST(PathTiming, AStraightLineIsBangBang) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,8 +10,6 @@
 #include "mjarm/trajectory/point_to_point.hpp"
 
 namespace mjarm::testing {
-
-inline constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// The worst over a motion, from the exact extremes of its pieces.
 struct Worst {
@@ -54,6 +54,13 @@ inline Worst worst_of(const PointToPoint& motion, const JointState& end, const J
     }
   }
   return worst;
+}
+
+/// How long the fastest motion takes [s].
+inline double duration(const JointState& start, const JointState& end, const JointLimits& limits) {
+  const auto motion = PointToPoint::solve(start, end, limits);
+  EXPECT_TRUE(motion.has_value());
+  return motion ? motion->duration() : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace mjarm::testing

@@ -30,13 +30,13 @@ double slowest(const JointVec& way, const JointLimits& limits) {
   return worst;
 }
 
-struct Case {
+struct DataCase {
   JointState start, end;
   bool rest;
   double best;  // [s] rounded to 9 digits after the point
 };
 
-Case case_of(const nlohmann::json& entry, const nlohmann::json& best) {
+DataCase case_of(const nlohmann::json& entry, const nlohmann::json& best) {
   const auto key = std::to_string(entry.at("id").get<int>());
   return {{vec(entry.at("q0")), vec(entry.at("v0")), vec(entry.at("a0"))},
           {vec(entry.at("q1")), vec(entry.at("v1")), vec(entry.at("a1"))},
@@ -44,7 +44,7 @@ Case case_of(const nlohmann::json& entry, const nlohmann::json& best) {
           best.at(key).get<double>()};
 }
 
-void expect_fastest(const Case& c, const JointLimits& limits) {
+void expect_fastest(const DataCase& c, const JointLimits& limits) {
   constexpr double kRounded = 5.01e-10;
   const auto motion = PointToPoint::solve(c.start, c.end, limits);
   ASSERT_TRUE(motion.has_value());
@@ -70,7 +70,7 @@ void expect_fastest(const std::string& name) {
   const JointLimits limits = testing::limits_of(vec(l.at("v")), vec(l.at("a")), vec(l.at("j")));
   int count = 0, checked = 0;
   for (const auto& entry : data.at("cases")) {
-    const Case c = case_of(entry, best);
+    const DataCase c = case_of(entry, best);
     expect_fastest(c, limits);
     if (++count % 20 != 0) continue;  // sampling takes its time
     const auto trajectory = point_to_point(c.start, c.end, limits);

@@ -7,10 +7,12 @@
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/trajectory/point_to_point_checks_test.hpp"
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
 
+using testing::duration;
 using testing::limits_of;
 
 struct Problem {
@@ -65,12 +67,6 @@ Problem random_problem(Rng& rng, int dof, double decades, bool start_beyond = fa
     }
   }
   return {start, end, limits_of(v, a, j)};
-}
-
-double duration(const JointState& start, const JointState& end, const JointLimits& limits) {
-  const auto motion = PointToPoint::solve(start, end, limits);
-  EXPECT_TRUE(motion.has_value());
-  return motion ? motion->duration() : testing::kInf;
 }
 
 TEST(PointToPointRandom, KeepsTheLimitsAndArrives) {
@@ -279,7 +275,7 @@ std::pair<int, int> later_than_brute_force(Rng& rng, double jerk) {
             rng.uniform(0, 1) > 50 / static_cast<double>(reached[n].size()))
           continue;
         const auto motion = PointToPoint::solve(state_of(start), state_of(end), bounds);
-        const double t = motion ? motion->duration() : testing::kInf;
+        const double t = motion ? motion->duration() : support::kInf;
         later += t > static_cast<double>(n) + kTangent;
         ++count;
       }

@@ -6,25 +6,21 @@
 #include <vector>
 
 #include "mjarm/trajectory/point_to_point_checks_test.hpp"
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
 
-using testing::kInf;
+using testing::duration;
 using testing::limits_of;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kInf;
+using support::kNaN;
 
 JointVec one(double x) { return JointVec::Constant(1, x); }
 JointVec two(double x, double y) { return Eigen::Vector2d(x, y); }
 JointState state(double q, double v = 0, double a = 0) { return {one(q), one(v), one(a)}; }
 JointLimits limits(double v, double a, double j) { return limits_of(one(v), one(a), one(j)); }
-
-double duration(const JointState& start, const JointState& end, const JointLimits& bounds) {
-  const auto motion = PointToPoint::solve(start, end, bounds);
-  EXPECT_TRUE(motion.has_value());
-  return motion ? motion->duration() : -1;
-}
 
 TEST(PointToPoint, FromRestToRestByTheFormulasOfTheBooks) {
   // All limits met; no cruise; jerk alone.

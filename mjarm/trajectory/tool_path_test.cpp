@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -12,12 +11,13 @@
 #include "mjarm/path/solve_path.hpp"
 #include "mjarm/trajectory/spline_internal.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kNaN;
 
 /// UR5e with the limits of its data sheet and driver.
 Arm timed_ur5e() {

@@ -4,14 +4,14 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "mjarm/core/rng.hpp"
+#include "tests/support/constants.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kNaN;
 
 JointVec random_vec(Rng& rng, Eigen::Index dof, double size) {
   JointVec v(dof);

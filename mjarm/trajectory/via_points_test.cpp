@@ -9,6 +9,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/trajectory/limits_test.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
+#include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace mjarm {
@@ -16,7 +17,7 @@ namespace {
 
 using testing::limits_of;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using support::kNaN;
 using Waypoints = std::vector<JointVec>;
 
 JointLimits alike(Eigen::Index dof, double v, double a, double j) {

@@ -10,7 +10,7 @@
 namespace mjarm {
 namespace {
 
-class Figures : public testing::Test {
+class Figures : public ::testing::Test {
  protected:
   /// Figures are too large for the stack.
   const mjvFigure& fill(const LivePlot& plot) {

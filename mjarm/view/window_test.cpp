@@ -53,7 +53,7 @@ class Turn {
 };
 
 /// A window that a stand-in for the user drives.
-class RealWindow : public testing::Test {
+class RealWindow : public ::testing::Test {
  protected:
   void SetUp() override {
     if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "DISPLAY is not set";
@@ -211,7 +211,7 @@ TEST_F(RealWindow, RefusesASnapshotOfAnotherModel) {
 }
 
 /// In a process of its own each: the connection to a display belongs to the process.
-class WindowDeathTest : public testing::Test {
+class WindowDeathTest : public ::testing::Test {
  protected:
   void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 };
@@ -232,7 +232,7 @@ TEST_F(WindowDeathTest, WithoutADisplaySaysWhatToDo) {
     unsetenv("WAYLAND_DISPLAY");
     expect_refusal(load_scene(), {}, "no display: use --headless");
   };
-  EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(run(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST_F(WindowDeathTest, ADisplayThatIsNotThereIsAnError) {
@@ -241,13 +241,13 @@ TEST_F(WindowDeathTest, ADisplayThatIsNotThereIsAnError) {
     unsetenv("WAYLAND_DISPLAY");
     expect_refusal(load_scene(), {}, "--headless");
   };
-  EXPECT_EXIT(run(), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(run(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST_F(WindowDeathTest, AnUnknownCameraIsAnErrorBeforeAnythingOpens) {
   EXPECT_EXIT(expect_refusal(load_scene(), {.camera = {.name = "nose"}}, "front"),
-              testing::ExitedWithCode(0), "");
-  EXPECT_EXIT(expect_refusal(load_scene(), {.width = 0}, "0 x 800"), testing::ExitedWithCode(0),
+              ::testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(expect_refusal(load_scene(), {.width = 0}, "0 x 800"), ::testing::ExitedWithCode(0),
               "");
 }
 
@@ -298,7 +298,7 @@ OwnDisplay start_display() {
 
 TEST_F(WindowDeathTest, LosingTheDisplayIsAnErrorAndNoCrash) {
   if (std::system("command -v Xvfb >/dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
-  EXPECT_EXIT(lose_display(), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(lose_display(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 using nlohmann::json;
 
 /// Two poses of an arm, and one that is out of reach.
-std::string write_data(const support::TempFolder& folder) {
+std::string write_ik_data(const support::TempFolder& folder) {
   write_planar_arm(folder);
   const double h = std::sqrt(0.5);
   const json turned = {{"pos", {1, 1, 0}}, {"quat", {h, 0, 0, h}}, {"seed", {0.1, 1.4}}};
@@ -23,7 +23,7 @@ std::string write_data(const support::TempFolder& folder) {
 
 TEST(BenchIk, JudgesTheCasesOfAFolder) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_ik_data(folder);
   const json bench = bench_json(bench_arm("ik", data, {"--tip", "tool", "--rounds", "2"}));
   const json& reachable = run_of(bench, "mjarm", "reachable");
   EXPECT_EQ(reachable.at("cases"), 2);
@@ -41,7 +41,7 @@ TEST(BenchIk, JudgesTheCasesOfAFolder) {
 
 TEST(BenchIk, AWrongSetShowsAsMissesWithTheReason) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_ik_data(folder);
   folder.write("arm_reachable.jsonl", R"({"pos":[3,0,0],"quat":[1,0,0,0],"seed":[0,0]})");
   folder.write("arm_unreachable.jsonl", R"({"pos":[4,0,0],"quat":[1,0,0,0]})");
   const json bench =
@@ -56,7 +56,7 @@ TEST(BenchIk, AWrongSetShowsAsMissesWithTheReason) {
 
 TEST(BenchIk, MakesItsOwnCasesTheSameEveryTime) {
   const support::TempFolder folder;
-  write_data(folder);
+  write_ik_data(folder);
   const std::vector<std::string> arguments = {
       "bench",    "ik", "--robot",    (folder.path() / "arm.urdf").string(), "--tip", "tool",
       "--rounds", "1",  "--no-timing"};
@@ -68,7 +68,7 @@ TEST(BenchIk, MakesItsOwnCasesTheSameEveryTime) {
 
 TEST(BenchIk, RunsPeersAndJudgesThemToo) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_ik_data(folder);
   // A peer that answers the first pose rightly, the second one wrongly, and one that fails.
   const std::string venv = write_peers(folder, R"(
 {"who":"good","version":"1","set":"reachable","timed":"python","us":[5,7],"q":[[0,1.5707963],[1,1]]}
@@ -94,7 +94,7 @@ TEST(BenchIk, RunsPeersAndJudgesThemToo) {
 
 TEST(BenchIk, SaysWhatIsWrong) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_ik_data(folder);
   const auto error_of = [&](std::vector<std::string> more, int code) {
     std::vector<std::string> arguments = {"bench", "ik", "--rounds", "1"};
     arguments.insert(arguments.end(), more.begin(), more.end());

@@ -21,7 +21,7 @@ std::string path_line(const std::vector<json>& poses) {
 
 /// A path that can be followed, one whose way is too long for a step, and one that leaves the
 /// reach.
-std::string write_data(const support::TempFolder& folder) {
+std::string write_path_data(const support::TempFolder& folder) {
   write_planar_arm(folder);
   folder.write("arm_lines.jsonl", path_line({pose_at(0, 1), pose_at(0.1, 1), pose_at(0.2, 1.1)}) +
                                       path_line({pose_at(0, 1), pose_at(1, 1)}));
@@ -33,7 +33,7 @@ std::string write_data(const support::TempFolder& folder) {
 
 TEST(BenchPath, JudgesThePathsOfAFolder) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_path_data(folder);
   const json bench = bench_json(bench_arm("path", data, {"--tip", "tool", "--rounds", "2"}));
   const json& lines = run_of(bench, "mjarm", "lines");
   EXPECT_EQ(lines.at("cases"), 2);
@@ -52,7 +52,7 @@ TEST(BenchPath, JudgesThePathsOfAFolder) {
 
 TEST(BenchPath, RunsPeersAndJudgesThemToo) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_path_data(folder);
   // One peer completes the first path and flips on the second; the other is off its pose.
   const std::string venv = write_peers(folder, R"(
 {"who":"flips","version":"1","set":"lines","timed":"python","us":[5,7],"q":[[[0,1],[0.1,1],[0.2,1.1]],[[0,1],[1,1]]]}
@@ -84,7 +84,7 @@ TEST(BenchPath, MakesItsOwnPathsTheSameEveryTime) {
 
 TEST(BenchPath, SaysWhatIsWrong) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_path_data(folder);
   const auto error = [&] {
     const auto result = mjarm(bench_arm("path", data, {"--tip", "tool"}));
     EXPECT_EQ(result.exit_code, 2) << result.out;

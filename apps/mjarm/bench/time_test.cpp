@@ -10,7 +10,7 @@ using nlohmann::json;
 
 /// One joint: a move from rest of 1 rad, whose fastest motion follows in closed form, one from a
 /// moving start, and a path of three waypoints.
-std::string write_data(const support::TempFolder& folder) {
+std::string write_time_data(const support::TempFolder& folder) {
   const json limits = {{"v", {10}}, {"a", {10}}, {"j", {4}}};
   const json rest = {{"id", 0}, {"q0", {0}}, {"q1", {1}}};
   const json state = {{"id", 1}, {"q0", {0}}, {"q1", {1}}, {"v0", {0.5}}};
@@ -25,7 +25,7 @@ const double kFastest = 4 * std::cbrt(1 / (2 * 4.0));
 
 TEST(BenchTime, ComparesWithTheBestKnown) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_time_data(folder);
   folder.write("best_known.json",
                json{{"arm_p2p", {{"p2p_vaj", {{"0", kFastest / 2}, {"1", 1.0}}}}}}.dump());
   const json bench = bench_json(bench_arm("time", data, {"--rounds", "2"}));
@@ -54,7 +54,7 @@ std::string jumpy_states(double way, double duration) {
 
 TEST(BenchTime, RunsPeersAndJudgesThemToo) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_time_data(folder);
   // At 20 rad/s, over the limit of 10; and one that stops half way.
   const std::string fast = folder.write("fast.f64", jumpy_states(1, 0.05)).string();
   const std::string half = folder.write("half.f64", jumpy_states(0.5, 1)).string();
@@ -97,7 +97,7 @@ TEST(BenchTime, MakesItsOwnCasesTheSameEveryTime) {
 
 TEST(BenchTime, SaysWhatIsWrong) {
   const support::TempFolder folder;
-  const std::string data = write_data(folder);
+  const std::string data = write_time_data(folder);
   const auto error_of = [&](std::vector<std::string> more) {
     std::vector<std::string> arguments = {"bench", "time", "--rounds", "1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
