@@ -2,13 +2,12 @@
 
 #include <cstdio>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/outcome.hpp"
 #include "apps/mjarm/options.hpp"
-#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
@@ -65,24 +64,6 @@ Result<DemoOptions> read_options(const DemoArguments& arguments) {
   return options;
 }
 
-/// Says what came of it; the exit code.
-int conclude(const Report& report, const DemoOptions& options) {
-  if (!report.ok) {
-    log_error(text(msg::demo_not_ok, report.name, report.reason, report.detail));
-  } else if (report.path_error) {
-    log_info(text(msg::demo_ok_path, report.name, 1e3 * report.path_error->max,
-                  1e3 * report.path_error->rms, 100 * report.coverage));
-  } else if (report.static_error) {
-    log_info(text(msg::demo_ok_static, report.name, 1e3 * report.static_error->position,
-                  report.static_error->rotation * 180 / std::numbers::pi));
-  } else {
-    log_info(text(msg::demo_ok, report.name));
-  }
-  if (report.rtf) log_info(text(msg::demo_rtf, report.duration, *report.rtf));
-  std::printf("%s\n", text(msg::demo_folder, options.out.string()).c_str());
-  return report.ok ? 0 : 1;
-}
-
 Result<int> run_demo(const DemoArguments& arguments) {
   if (arguments.name.empty()) {
     list_demos();
@@ -95,7 +76,7 @@ Result<int> run_demo(const DemoArguments& arguments) {
   catch_interrupts();
   const Result<Report> report = (*demo)->run(*options);
   if (!report) return fail(report.error());
-  return conclude(*report, *options);
+  return conclude(*report, options->out);
 }
 
 Run setup(CLI::App& app) {

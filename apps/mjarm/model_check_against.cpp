@@ -179,21 +179,21 @@ std::string to_json(const Comparison& comparison, const std::vector<FigureDiffer
     others.push_back(
         {{"joint", f.joint}, {"what", f.what}, {"first", f.first}, {"second", f.second}});
   }
-  const JsonDoc json{{"file", first.model.file().string()},
-                     {"against", second.model.file().string()},
-                     {"tip", first.arm.tip},
-                     {"against_tip", second.arm.tip},
-                     {"ok", std::max(comparison.position, comparison.rotation) <= kSame},
-                     {"configurations", configurations},
-                     {"matched", comparison.by_name ? "name" : "order"},
-                     {"position", comparison.position},
-                     {"rotation", comparison.rotation},
-                     {"worst_q", comparison.q},
-                     {"causes", std::move(causes)},
-                     {"position_left", comparison.position_left},
-                     {"rotation_left", comparison.rotation_left},
-                     {"figures", std::move(others)}};
-  return json.document();
+  const JsonDoc doc{{"file", first.model.file().string()},
+                    {"against", second.model.file().string()},
+                    {"tip", first.arm.tip},
+                    {"against_tip", second.arm.tip},
+                    {"ok", std::max(comparison.position, comparison.rotation) <= kSame},
+                    {"configurations", configurations},
+                    {"matched", comparison.by_name ? "name" : "order"},
+                    {"position", comparison.position},
+                    {"rotation", comparison.rotation},
+                    {"worst_q", comparison.q},
+                    {"causes", std::move(causes)},
+                    {"position_left", comparison.position_left},
+                    {"rotation_left", comparison.rotation_left},
+                    {"figures", std::move(others)}};
+  return doc.document();
 }
 
 }  // namespace

@@ -7,13 +7,12 @@
 #include <set>
 
 #include "apps/mjarm/json_doc.hpp"
+#include "apps/mjarm/table.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using Row = std::vector<std::string>;
 
 std::string join(const std::vector<std::string>& words, const char* between = ", ") {
   std::string result;
@@ -54,30 +53,12 @@ std::string limit(double value, LimitSource source) {
   return fmt::format("{:.5g}{}", value, mark);
 }
 
-/// Rows with their columns aligned.
-std::string table(const std::vector<Row>& rows) {
-  std::vector<int> widths(rows.front().size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], text_width(row[i]));
-    }
-  }
-  std::string result;
-  for (const Row& row : rows) {
-    std::string line = " ";
-    for (std::size_t i = 0; i < row.size(); ++i) line += " " + padded(row[i], widths[i] + 1);
-    line.erase(line.find_last_not_of(' ') + 1);
-    result += line + "\n";
-  }
-  return result;
-}
-
 std::string joint_table(const ModelReport& report) {
   const Arm& arm = *report.arm;
-  std::vector<Row> rows = {{text(msg::app_info_joint), text(msg::app_info_type),
-                            text(msg::app_info_position), text(msg::app_info_velocity),
-                            text(msg::app_info_acceleration), text(msg::app_info_jerk),
-                            text(msg::app_info_torque), text(msg::app_info_actuator)}};
+  std::vector<std::vector<std::string>> rows = {
+      {text(msg::app_info_joint), text(msg::app_info_type), text(msg::app_info_position),
+       text(msg::app_info_velocity), text(msg::app_info_acceleration), text(msg::app_info_jerk),
+       text(msg::app_info_torque), text(msg::app_info_actuator)}};
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
     const JointLimits& limits = arm.limits;
@@ -89,7 +70,7 @@ std::string joint_table(const ModelReport& report) {
                     limit(limits.jerk[i], source.jerk), limit(limits.torque[i], source.torque),
                     joint.actuator ? joint.actuator->name : text(msg::app_info_none)});
   }
-  return table(rows) + "  " + text(msg::app_info_units) + "\n";
+  return aligned(rows) + "  " + text(msg::app_info_units) + "\n";
 }
 
 std::string arm_text(const ModelReport& report) {

@@ -1,13 +1,16 @@
 #include "mjarm/model/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/utf8.hpp"
+#include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/model/point_mass_internal.hpp"
 #include "mjarm/model/preflight_internal.hpp"
 
 namespace mjarm {
@@ -77,6 +80,23 @@ Result<Model> Model::load_guarded(const fs::path& file, LoadOptions options) {
   } catch (const std::exception& problem) {
     return fail(Errc::bad_input, text(msg::model_unexpected, file.string(), problem.what()));
   }
+}
+
+Result<Model> Model::with_point_mass(std::string_view frame, double mass) const {
+  if (!(mass > 0) || !std::isfinite(mass)) {
+    return fail(Errc::bad_input, text(msg::model_bad_mass, mass));
+  }
+  const Result<TipFrame> found = find_frame(*this, frame);
+  if (!found) return fail(found.error());
+  if (found->body == 0) return fail(Errc::bad_input, text(msg::model_mass_on_world, frame));
+  auto impl = std::make_shared<Impl>();
+  impl->file = impl_->file;
+  impl->format = impl_->format;
+  const LoadedModel& own = impl_->loaded;
+  impl->loaded = {MjModelPtr(mj_copyModel(nullptr, raw())), own.velocity_limits, own.effort_limits,
+                  own.warnings, own.urdf_text};
+  detail::add_point_mass(*impl->loaded.model, found->body, found->X_BT.p, mass);
+  return Model(std::move(impl));
 }
 
 const fs::path& Model::file() const noexcept { return impl_->file; }

@@ -40,6 +40,12 @@ class Model {
   [[nodiscard]] static Result<Model> load(const std::filesystem::path& file,
                                           const LoadOptions& options = {});
 
+  /// The same robot with a point mass at the origin of a frame (site or body): a load that the
+  /// unchanged model does not know.
+  /// @param mass  [kg] > 0
+  /// @return an error for a frame that is none, with the nearest name, or is the world's.
+  [[nodiscard]] Result<Model> with_point_mass(std::string_view frame, double mass) const;
+
   [[nodiscard]] const std::filesystem::path& file() const noexcept;
   [[nodiscard]] ModelFormat format() const noexcept;
   [[nodiscard]] std::string_view name() const noexcept;          ///< model name inside the file

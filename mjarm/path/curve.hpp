@@ -30,10 +30,13 @@ class Curve {
   /// Straight pieces through all `points` (at least 2), each with its slerp. Corners are sharp
   /// where `blend` is 0, else rounded: the tool leaves its straight legs only within `blend` [m] of
   /// the corner, with continuous curvature and rate of turn, so it is never farther than that from
-  /// them. Two corners share the leg between them by halves; where that leaves less than `blend`,
-  /// blends() says how much. Corners that turn back (by over 179 degrees) and turns on the spot
-  /// stay sharp.
+  /// them. Two corners for whom the leg between them is too short share it in proportion to what
+  /// they want; blends() says how much that is. Corners that turn back (by over 179 degrees) and
+  /// turns on the spot stay sharp.
   [[nodiscard]] static Result<Curve> polyline(std::span<const Pose> points, double blend = 0);
+  /// The same with a blend of its own for each inner point.
+  [[nodiscard]] static Result<Curve> polyline(std::span<const Pose> points,
+                                              std::span<const double> blends);
   /// Circular arc from `from` through `via` to `to`; fails where the three are on one line. The
   /// rotation goes through that of `via` too, at a rate without jumps (and constant where it can
   /// be).

@@ -65,11 +65,24 @@ std::optional<CurvePiece> detail::straight_piece(const Pose& from, const Pose& t
 }
 
 Result<Curve> Curve::polyline(std::span<const Pose> points, double blend) {
+  if (!(blend >= 0) || !std::isfinite(blend)) {
+    return fail(Errc::bad_input, text(msg::path_blend_radius, blend));
+  }
+  const std::vector<double> blends(points.size() > 2 ? points.size() - 2 : 0, blend);
+  return polyline(points, blends);
+}
+
+Result<Curve> Curve::polyline(std::span<const Pose> points, std::span<const double> blend) {
   if (points.size() < 2) {
     return fail(Errc::bad_input, text(msg::path_too_few_points, points.size()));
   }
-  if (!(blend >= 0) || !std::isfinite(blend)) {
-    return fail(Errc::bad_input, text(msg::path_blend_radius, blend));
+  if (blend.size() + 2 != points.size()) {
+    return fail(Errc::bad_input, text(msg::path_blend_count, blend.size(), points.size()));
+  }
+  for (const double radius : blend) {
+    if (!(radius >= 0) || !std::isfinite(radius)) {
+      return fail(Errc::bad_input, text(msg::path_blend_radius, radius));
+    }
   }
   const Result<std::vector<Pose>> poses = detail::checked_poses(points);
   if (!poses) return fail(poses.error());
@@ -79,10 +92,16 @@ Result<Curve> Curve::polyline(std::span<const Pose> points, double blend) {
     if (!leg) return fail(Errc::bad_input, text(msg::path_same_poses, i, i + 1));
     legs.push_back(*leg);
   }
-  if (blend == 0) return Curve(std::move(legs));
-
-  const auto share = [&](std::size_t leg) {
-    return leg == 0 || leg + 1 == legs.size() ? legs[leg].length : 0.5 * legs[leg].length;
+  if (std::ranges::all_of(blend, [](double radius) { return radius == 0; })) {
+    return Curve(std::move(legs));
+  }
+  // What of a leg the corner may take that wants `own` of it and whose neighbour wants `other`.
+  const auto share = [&](std::size_t leg, double own, double other) {
+    const double length = legs[leg].length;
+    return own + other > length ? length * own / (own + other) : length;
+  };
+  const auto wanted = [&](std::size_t point) {  // by the corner at a point; none at the ends
+    return point == 0 || point > blend.size() ? 0 : blend[point - 1];
   };
   std::vector<CurvePiece> pieces;
   std::vector<CurveBlend> blends;
@@ -91,7 +110,9 @@ Result<Curve> Curve::polyline(std::span<const Pose> points, double blend) {
     double back = 0;
     std::optional<CurvePiece> corner;
     if (i + 1 < legs.size() && !detail::smooth_joint(legs[i], legs[i + 1])) {
-      const double radius = std::min({blend, share(i), share(i + 1)});
+      const double own = wanted(i + 1);
+      const double radius =
+          std::min({own, share(i, own, wanted(i)), share(i + 1, own, wanted(i + 2))});
       std::optional<CurvePolynomial> bend;
       if (radius > detail::kSamePoint) bend = detail::corner_bend(legs[i].u, legs[i + 1].u, radius);
       if (bend) {

@@ -35,6 +35,16 @@ Json to_json(const ReportedDip& entry) {
   return out;
 }
 
+Json to_json(const ReportedMove& move) {
+  Json out{{"line", move.line}, {"instruction", move.word}, {"duration", move.duration}};
+  if (move.path_error) {
+    out["path_error_max"] = move.path_error->max;
+    out["path_error_rms"] = move.path_error->rms;
+    out["coverage"] = move.path_error->coverage;
+  }
+  return out;
+}
+
 void put_planned(const Report& report, Json& out) {
   for (const ReportedDip& entry : report.speed_dips) out["speed_dips"].push_back(to_json(entry));
   if (report.min_manipulability) out["min_manipulability"] = *report.min_manipulability;
@@ -82,6 +92,7 @@ std::string to_json(const Report& report) {
   for (const Fact& fact : report.facts) {
     std::visit([&](const auto& value) { out[fact.name] = value; }, fact.value);
   }
+  for (const ReportedMove& move : report.moves) out["moves"].push_back(to_json(move));
   if (report.rtf) out["rtf"] = *report.rtf;
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -31,6 +31,14 @@ struct Fact {
   std::variant<double, std::string> value;
 };
 
+/// One motion of a program.
+struct ReportedMove {
+  int line = 0;  ///< of the program
+  std::string word;
+  double duration = 0;                  ///< [s] as planned
+  std::optional<PathError> path_error;  ///< against its curve, where it has one
+};
+
 /// What a motion did; becomes `report.json`. Optional parts are left out where they make no sense.
 struct Report {
   std::string name;           ///< of the demo or program
@@ -56,6 +64,7 @@ struct Report {
   std::optional<double> min_singular_value;  ///< along them [mixed units]
   std::vector<std::size_t> unreachable;      ///< indices of the poses that cannot be reached
   std::optional<Eigen::Vector3d> shift;      ///< [m] shift of the path that was verified to mend it
+  std::vector<ReportedMove> moves;           ///< of a program, in order
   std::vector<Fact> facts;                   ///< what this demo alone has to tell
   std::optional<double> rtf;  ///< simulated seconds a wall-clock second, without rendering
 };

@@ -62,6 +62,12 @@ std::vector<Sample> samples_of(const IkSolver& ik, const Curve& curve,
   return samples;
 }
 
+double fastest(const TimingOptions& options) {
+  double speed = options.tool_speed;
+  for (const SpeedFrom& from : options.tool_speeds) speed = std::max(speed, from.speed);
+  return speed;
+}
+
 /// How fast a tool is that speeds up from rest as gently as it should, by the way it has come.
 class Ramp {
  public:
@@ -70,7 +76,7 @@ class Ramp {
     const JointVec one = JointVec::Ones(1);
     const JointLimits limits{-one,
                              one,
-                             options.tool_speed * one,
+                             fastest(options) * one,
                              options.tool_accel * one,
                              options.tool_accel / options.tool_ramp * one,
                              one,
@@ -82,6 +88,12 @@ class Ramp {
       way_.push_back(x.q[0]);
       speed_.push_back(x.v[0]);
     }
+  }
+  /// The way after which it is that fast.
+  [[nodiscard]] double way_to(double speed) const {
+    const auto above = std::upper_bound(speed_.begin(), speed_.end(), speed);
+    if (above == speed_.end()) return way_.empty() ? 0 : way_.back();
+    return way_[static_cast<std::size_t>(above - speed_.begin())];
   }
   [[nodiscard]] double at(double way) const {
     const auto above = std::upper_bound(way_.begin(), way_.end(), way);
@@ -101,13 +113,25 @@ std::vector<double> asked_speeds(const Curve& curve, const std::vector<Sample>& 
   std::vector<double> out;
   std::size_t leg = 0;
   Ramp ramp(options, corners[1] - corners[0]);
+  // Where the speed changes it does so as gently as from a stop.
+  const auto zone_speed = [&](double s) {
+    double speed = options.speed_at(s);
+    double before = options.tool_speed;
+    for (const SpeedFrom& from : options.tool_speeds) {
+      const double slower = s < from.s ? from.speed : before;
+      before = from.speed;
+      if (slower >= speed) continue;
+      speed = std::min(speed, ramp.at(ramp.way_to(slower) + std::abs(s - from.s) / kRoom));
+    }
+    return speed;
+  };
   for (const Sample& at : samples) {
     while (leg + 2 < corners.size() && at.s > corners[leg + 1]) {
       ++leg;
       ramp = Ramp(options, corners[leg + 1] - corners[leg]);
     }
     const double way = std::min(at.s - corners[leg], corners[leg + 1] - at.s);
-    out.push_back(ramp.at(way / kRoom));
+    out.push_back(std::min(ramp.at(way / kRoom), zone_speed(at.s)));
   }
   return out;
 }
@@ -203,7 +227,7 @@ std::vector<SpeedDip> find_speed_dips(const IkSolver& ik, const Curve& curve,
   };
   std::vector<Range> ranges;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!(samples[i].rate < asked[i] - kSlower * options.tool_speed)) continue;
+    if (!(samples[i].rate < asked[i] - kSlower * options.speed_at(samples[i].s))) continue;
     if (ranges.empty() || samples[i].t > samples[ranges.back().last].t + kOneDip) {
       ranges.push_back({i, i});
     }

@@ -30,11 +30,12 @@ class AccelBounds {
  public:
   AccelBounds(double* low, double* high, double* by) : low_(low), high_(high), by_(by) {}
   /// The bounds at a grid point.
-  void set_point(const GridPoint& p, const Bounds& bounds, const PathBounds& path_bounds) {
+  void set_point(const GridPoint& p, const Bounds& bounds, double path_acceleration,
+                 double path_speed) {
     count_ = 0;
     scale_ = 1;
-    u_max_ = path_bounds.speed * path_bounds.speed;
-    add(1, 0, -path_bounds.acceleration, path_bounds.acceleration);
+    u_max_ = path_speed * path_speed;
+    add(1, 0, -path_acceleration, path_acceleration);
     for (Eigen::Index j = 0; j < bounds.v.size(); ++j) {
       const double v = bounds.v[j] / std::abs(p.d[j]);
       u_max_ = std::min(u_max_, v * v);

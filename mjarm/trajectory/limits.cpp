@@ -21,6 +21,13 @@ Result<Bounds> bounds_of(const JointLimits& limits, const TimingOptions& options
   if (!positive(options.tool_speed)) {
     return fail(Errc::bad_input, text(msg::trajectory_bad_speed, options.tool_speed));
   }
+  for (std::size_t i = 0; i < options.tool_speeds.size(); ++i) {
+    const SpeedFrom& from = options.tool_speeds[i];
+    const bool ascends = i == 0 || from.s >= options.tool_speeds[i - 1].s;
+    if (!std::isfinite(from.s) || !ascends || !positive(from.speed)) {
+      return fail(Errc::bad_input, text(msg::trajectory_bad_speeds, i));
+    }
+  }
   if (!positive(options.tool_accel)) {
     return fail(Errc::bad_input, text(msg::trajectory_bad_accel, options.tool_accel));
   }

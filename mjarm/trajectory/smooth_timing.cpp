@@ -117,7 +117,7 @@ class ProblemWriter {
                       over(d.v, bounds_.a, x.v, path_.acceleration),
                       {}};
       const double use =
-          std::max(d.v.cwiseAbs().cwiseQuotient(bounds_.v).maxCoeff(), x.v / path_.speed);
+          std::max(d.v.cwiseAbs().cwiseQuotient(bounds_.v).maxCoeff(), x.v / path_.speed_at(x.s));
       const double u = 1 / (use * use);
       if (i == from) {
         high = low = rows;
@@ -165,7 +165,7 @@ double excess(const Reference& reference, const TimeLaw& law, const PathBounds& 
   for (std::size_t i = 0; i < law.t.size(); ++i) {
     const PathState& x = reference.states[i];
     most = std::max(
-        {most, x.v * std::sqrt(law.u[i]) / bounds.speed,
+        {most, x.v * std::sqrt(law.u[i]) / bounds.speed_at(x.s),
          std::sqrt(std::abs(x.a * law.u[i] + 0.5 * x.v * law.du[i]) / bounds.acceleration)});
   }
   return most;

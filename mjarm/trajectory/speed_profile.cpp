@@ -168,7 +168,7 @@ class Grid {
       }
     }
     inverse_speed_.push_back(0);
-    double speed = path_bounds_.speed;
+    double speed = path_bounds_.speed_at(s_[i]);
     for (int j = 0; j < dof_; ++j) speed = std::min(speed, bounds_.v[j] / std::abs(p.d[j]));
     set_friction(i, speed);
     return true;
@@ -193,7 +193,8 @@ class Grid {
   }
   void set_limits() {
     for (std::size_t i = 0; i < s_.size(); ++i) {
-      limits_[i].set_point(point(i), bounds_, path_bounds_);
+      limits_[i].set_point(point(i), bounds_, path_bounds_.acceleration,
+                           path_bounds_.speed_at(s_[i]));
     }
     std::fill(touched_.begin(), touched_.end(), 1);
     constant_.clear();

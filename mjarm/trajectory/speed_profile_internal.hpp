@@ -11,9 +11,14 @@ namespace mjarm::detail {
 
 /// Bounds of the motion along the path itself; infinite where there are none.
 struct PathBounds {
-  double speed;         ///< [m/s] > 0
-  double acceleration;  ///< [m/s^2] > 0
-  double jerk;          ///< [m/s^3] > 0
+  double speed;                          ///< [m/s] > 0
+  double acceleration;                   ///< [m/s^2] > 0
+  double jerk;                           ///< [m/s^3] > 0
+  const TimingOptions* asked = nullptr;  ///< given: the speed is what it says for the place
+
+  [[nodiscard]] double speed_at(double s) const {
+    return asked == nullptr ? speed : asked->speed_at(s);
+  }
 };
 
 /// A motion along a path from rest to rest on a grid that has all waypoints in it. Between

@@ -59,8 +59,9 @@ Result<Trajectory> time_tool_path(const JointPath& path, std::span<const double>
   const Result<std::vector<std::size_t>> rests = rests_of(path, stops);
   if (!rests) return fail(rests.error());
 
-  const detail::PathBounds tool{options.tool_speed, options.tool_accel,
-                                options.tool_accel / options.tool_ramp};
+  detail::PathBounds tool{options.tool_speed, options.tool_accel,
+                          options.tool_accel / options.tool_ramp};
+  if (!options.tool_speeds.empty()) tool.asked = &options;
   const Result<Trajectory> rest = Trajectory::through({0.0}, {JointState::at_rest(path.q[0])});
   if (!rest) return fail(rest.error());
   std::vector<Trajectory> parts{*rest};

@@ -3,10 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "mjarm/core/messages/trajectory.hpp"
 
 namespace mjarm {
+
+double TimingOptions::speed_at(double s) const noexcept {
+  const auto above =
+      std::upper_bound(tool_speeds.begin(), tool_speeds.end(), s,
+                       [](double value, const SpeedFrom& from) { return value < from.s; });
+  return above == tool_speeds.begin() ? tool_speed : std::prev(above)->speed;
+}
+
 namespace {
 
 constexpr double kJoined = 1e-9;  // [rad or m] between the end of a leg and the start of the next

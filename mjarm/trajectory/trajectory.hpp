@@ -70,12 +70,23 @@ class Trajectory {
   double duration_ = 0;
 };
 
+/// A tool speed that holds from a place of the path on.
+struct SpeedFrom {
+  double s = 0;      ///< parameter of the path
+  double speed = 0;  ///< [m/s] > 0
+};
+
 /// Speeds asked for. Joint limits always hold and lower them where needed.
 struct TimingOptions {
   double tool_speed = 0.25;  ///< [m/s] along a tool path ([rad/s] for turns on the spot), > 0
   double joint_share = 1.0;  ///< share of the joints' velocity and acceleration limits, (0, 1]
   double tool_accel = 1.0;   ///< [m/s^2] along a tool path ([rad/s^2] for turns), > 0
   double tool_ramp = 0.1;    ///< [s] in which the tool's acceleration builds up at least, > 0
+  /// Other speeds than `tool_speed` from these places on, ascending.
+  std::vector<SpeedFrom> tool_speeds = {};
+
+  /// The tool speed that is asked for at parameter `s`.
+  [[nodiscard]] double speed_at(double s) const noexcept;
 };
 
 /// Point to point on the straight line in joint space, at rest at both ends, within velocity,

@@ -15,6 +15,7 @@ Run setup(CLI::App& app) {
   suites->push_back(add_bench_ik(app));
   suites->push_back(add_bench_path(app));
   suites->push_back(add_bench_time(app));
+  suites->push_back(add_bench_control(app));
   suites->push_back(add_bench_sim(app));
   return [suites]() -> Result<int> {
     std::string names;

@@ -10,6 +10,7 @@ struct BenchSuite {
   Run run;
 };
 [[nodiscard]] BenchSuite add_bench_ik(CLI::App& bench);
+[[nodiscard]] BenchSuite add_bench_control(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_sim(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_path(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_time(CLI::App& bench);

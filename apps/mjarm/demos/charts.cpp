@@ -106,7 +106,8 @@ PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs) {
 }
 
 PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
-  const bool ideal = !runs.empty() && runs.front().curve != nullptr;
+  const bool ideal =
+      std::ranges::any_of(runs, [](const MeasuredRun& run) { return run.curve != nullptr; });
   PlotPanel panel = over_time(ideal ? msg::demo_plot_error : msg::demo_plot_tracking, "mm");
   panel.y_from_zero = true;
   PlotLine line;

@@ -50,19 +50,25 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOp
     if (!scene) return fail(scene.error());
     chosen.robot = scene->string();
   }
-  Result<Robot> robot = load_robot(chosen);
-  if (!robot) return fail(std::move(robot.error()));
-  for (const std::string& warning : robot->model.warnings()) log_info(warning);
+  const Result<Robot> robot = load_robot(chosen);
+  if (!robot) return fail(robot.error());
   const int joints = robot->arm.dof();
   if (dof != 0 && joints != dof) {
     return fail(Errc::usage, text(msg::demo_other_joints, demo, dof, joints));
   }
-  if (task_of(robot->arm) == IkTask::position) log_info(text(msg::demo_position_only, joints));
+  return open(demo, options, *robot);
+}
+
+Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
+                                           const Robot& robot) {
+  for (const std::string& warning : robot.model.warnings()) log_info(warning);
+  if (task_of(robot.arm) == IkTask::position) {
+    log_info(text(msg::demo_position_only, robot.arm.dof()));
+  }
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
-  Result<Show> show = Show::open(robot->model, "mjarm " + demo, options.headless);
+  Result<Show> show = Show::open(robot.model, "mjarm " + demo, options.headless);
   if (!show) return fail(std::move(show.error()));
-  return std::unique_ptr<Stage>(
-      new Stage(demo, options, robot->model, std::move(robot->arm), std::move(*show)));
+  return std::unique_ptr<Stage>(new Stage(demo, options, robot.model, robot.arm, std::move(*show)));
 }
 
 ControlMode Stage::control(ControlMode fallback) {
@@ -84,6 +90,7 @@ FollowSetup Stage::setup(Controller& controller, bool measured) {
           .recorder = &recorder_,
           .after_step = [this](const Sim& sim, const JointVec&) {
             if (options_.seconds > 0 && sim.time() >= options_.seconds) return false;
+            if (tick_) tick_();
             return show_.step(sim, sim.tool(arm_).p);
           }};
 }
@@ -119,7 +126,7 @@ Result<void> Stage::follow(ControlMode mode, bool measured, const Curve* curve,
   }
   if (measured) {
     measured_.push_back(
-        {curve != nullptr ? std::optional(*curve) : std::nullopt, from, sim_.time()});
+        {curve != nullptr ? std::optional(*curve) : std::nullopt, from, sim_.time(), {}});
   }
   return {};
 }
@@ -134,11 +141,14 @@ Result<void> Stage::approach(std::span<const double> q, ControlMode mode) {
 }
 
 Result<void> Stage::run(const Trajectory& trajectory, ControlMode mode, double settle,
-                        const Curve* curve) {
+                        const Curve* curve, const Pose& X_TU) {
   q_command_ = trajectory.at(trajectory.duration()).q;
-  return follow(mode, true, curve, [&](const FollowSetup& setup) {
+  const std::size_t before = measured_.size();
+  Result<void> done = follow(mode, true, curve, [&](const FollowSetup& setup) {
     return follow_time(setup, trajectory, {.settle = settle});
   });
+  if (measured_.size() > before) measured_.back().X_TU = X_TU;
+  return done;
 }
 
 Result<void> Stage::jump(const JointVec& q, ControlMode mode, double seconds) {
@@ -192,10 +202,15 @@ std::vector<MeasuredRun> Stage::measured_runs() const {
   for (const Measured& part : measured_) {
     runs.push_back({.rows = {}, .curve = part.curve ? &*part.curve : nullptr});
   }
+  // Runs follow each other; a row at the border of two belongs to both.
+  std::size_t first = 0;
   for (std::size_t i = 0; i < recorder_.size(); ++i) {
     const RecordRow row = recorder_.row(i);
-    for (std::size_t k = 0; k < runs.size(); ++k) {
-      if (row.time >= measured_[k].from && row.time <= measured_[k].to) runs[k].rows.push_back(row);
+    while (first < runs.size() && measured_[first].to < row.time) ++first;
+    for (std::size_t k = first; k < runs.size() && measured_[k].from <= row.time; ++k) {
+      RecordRow& kept = runs[k].rows.emplace_back(row);
+      kept.X_ref = kept.X_ref * measured_[k].X_TU;
+      kept.X_WT = kept.X_WT * measured_[k].X_TU;
     }
   }
   return runs;

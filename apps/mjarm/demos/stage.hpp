@@ -10,6 +10,7 @@
 #include "apps/mjarm/demos/charts.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/show.hpp"
+#include "apps/mjarm/robot.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"
@@ -28,6 +29,10 @@ class Stage {
   /// @param dof  number of joints the demo's postures are for; 0 = any.
   [[nodiscard]] static Result<std::unique_ptr<Stage>> open(const std::string& demo,
                                                            const DemoOptions& options, int dof = 0);
+  /// The same with a robot that is loaded already.
+  [[nodiscard]] static Result<std::unique_ptr<Stage>> open(const std::string& demo,
+                                                           const DemoOptions& options,
+                                                           const Robot& robot);
 
   [[nodiscard]] const Arm& arm() const { return arm_; }
   [[nodiscard]] Sim& sim() { return sim_; }
@@ -42,14 +47,18 @@ class Stage {
   /// Camera of the picture at the end, where the model has it (default: `overview`).
   void set_camera(const std::string& name) { camera_ = name; }
 
+  /// `tick` is called after every step of the simulation.
+  void set_tick(std::function<void()> tick) { tick_ = std::move(tick); }
+
   /// Puts the arm at `q`, at rest.
   void start_at(std::span<const double> q);
   /// Joint move from where the arm is commanded to `q`; not part of what is measured.
   [[nodiscard]] Result<void> approach(std::span<const double> q, ControlMode mode);
   /// Runs `trajectory` and stays `settle` [s] at its end. With `curve`, the executed tool positions
   /// are measured against it.
+  /// @param X_TU  the frame that is to be on the curve, in the arm's tool frame.
   [[nodiscard]] Result<void> run(const Trajectory& trajectory, ControlMode mode, double settle,
-                                 const Curve* curve = nullptr);
+                                 const Curve* curve = nullptr, const Pose& X_TU = {});
   /// The reference jumps to `q` and stays there for `seconds`.
   [[nodiscard]] Result<void> jump(const JointVec& q, ControlMode mode, double seconds);
   /// The tutorial's followers: each waypoint is waited for. With `points` [m] the tool is waited
@@ -89,6 +98,7 @@ class Stage {
     std::optional<Curve> curve;
     double from = 0;  ///< [s]
     double to = 0;    ///< [s]
+    Pose X_TU = {};   ///< what is measured, in the tool frame
   };
 
   Stage(std::string demo, const DemoOptions& options, Model model, Arm arm, Show show);
@@ -116,6 +126,7 @@ class Stage {
   std::string end_reason_, end_detail_;
   std::string control_;
   std::string camera_ = "overview";
+  std::function<void()> tick_;
   double wall_seconds_ = 0;
 };
 

@@ -1,0 +1,119 @@
+// mjarm check and mjarm run, as a user calls them.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "apps/mjarm/program_test.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* kProgram = R"(robot: ur5e
+program:
+  - movej: {pos: [0.1, -0.45, 0.4], euler: [180deg, 0, 0]}
+  - movel: {pos: [-0.1, -0.45, 0.4], euler: [180deg, 0, 0], speed: 0.2, blend: 10mm}
+  - movel: {pos: [-0.1, -0.45, 0.3], euler: [180deg, 0, 0]}
+  - wait: 100ms
+)";
+
+std::string shipped(const std::string& name) {
+  return std::string(MJARM_MODELS) + "/../examples/programs/" + name + ".yaml";
+}
+
+TEST(Check, ListsTheMotions) {
+  const support::TempFolder folder;
+  const auto file = folder.write("cell.yaml", kProgram).string();
+  const auto result = mjarm({"check", file});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("movel x2"));
+  EXPECT_THAT(result.out, HasSubstr("cycle time"));
+  const auto plan = nlohmann::json::parse(mjarm({"check", file, "--json"}).out);
+  EXPECT_EQ(plan.at("ok"), true);
+  ASSERT_EQ(plan.at("moves").size(), 3U);
+  EXPECT_EQ(plan.at("moves")[1].at("line"), 4);
+  EXPECT_GT(plan.at("moves")[1].at("min_singular_value"), 0.1);
+}
+
+TEST(Check, FaultsGoToOutputAndTheFirstIntoOneLine) {
+  const support::TempFolder folder;
+  const auto file = folder
+                        .write("cell.yaml", R"(robot: ur5e
+program:
+  - movej: {pos: [0.1, -1.45, 0.4], euler: [180deg, 0, 0]}
+  - movej: {joints: [0, 0, 9, 0, 0, 0]}
+)")
+                        .string();
+  const auto result = mjarm({"check", file});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("cell.yaml:3:5: movej: "));
+  EXPECT_THAT(result.out, HasSubstr("cell.yaml:4:5: movej: "));
+  EXPECT_THAT(only_line(result), ::testing::AllOf(HasSubstr("cell.yaml:3:5"), HasSubstr("1 more")));
+  const auto wrong = mjarm({"check", folder.write("wrong.yaml", "robot: ur5e\n").string()});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(only_line(wrong), HasSubstr("wrong.yaml:1:1"));
+  EXPECT_EQ(mjarm({"check", "none.yaml"}).exit_code, 2);
+  EXPECT_EQ(mjarm({"check"}).exit_code, 2);
+}
+
+TEST(Run, DoesWhatItPlannedAndWritesItDown) {
+  const support::TempFolder folder;
+  const auto file = folder.write("cell.yaml", kProgram).string();
+  const auto out = folder.path() / "out";
+  const auto result = mjarm({"run", file, "--headless", "--out", out.string(), "--no-timing"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = support::load_json(out / "report.json");
+  EXPECT_EQ(report.at("ok"), true);
+  EXPECT_LT(report.at("path_error_max"), 1e-6);
+  EXPECT_EQ(report.at("coverage"), 1.0);
+  EXPECT_LT(report.at("static_error").at("position"), 1e-6);
+  EXPECT_GT(report.at("cycle_time"), 1.0);
+  EXPECT_EQ(report.at("moves").size(), 3U);
+  EXPECT_FALSE(report.contains("rtf"));
+  for (const char* name : {"log.csv", "plot.png", "plot.svg"}) {
+    EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
+  }
+}
+
+TEST(Run, TheShippedProgramsReachWhatTheDemosReach) {
+  const support::TempFolder folder;
+  for (const std::string name :
+       {"ellipse", "movel", "point", "movej", "letters", "table", "ur5e"}) {
+    const auto out = folder.path() / name;
+    const auto result = mjarm({"run", shipped(name), "--headless", "--out", out.string()});
+    ASSERT_EQ(result.exit_code, 0) << name << ": " << result.err;
+    const auto report = support::load_json(out / "report.json");
+    EXPECT_EQ(report.at("ok"), true) << name;
+    EXPECT_LT(report.at("static_error").at("position"), 1e-6) << name;
+    if (report.contains("path_error_max")) {
+      EXPECT_LT(report.at("path_error_max"), 1e-6) << name;
+      EXPECT_GT(report.at("coverage"), 0.999) << name;
+    }
+  }
+}
+
+TEST(Run, RefusesAProgramWithFaultsBeforeItMakesAFolder) {
+  const support::TempFolder folder;
+  const auto file = folder.write("cell.yaml", "robot: ur5e\nprogram:\n  - movej: {joints: [9]}\n");
+  const auto result =
+      mjarm({"run", file.string(), "--out", (folder.path() / "out").string(), "--headless"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(only_line(result), HasSubstr("cell.yaml:3:5"));
+  EXPECT_FALSE(folder.exists("out"));
+}
+
+TEST(Run, SaysWhenTheControlCannotFollow) {
+  const support::TempFolder folder;
+  const auto file = folder.write("cell.yaml", kProgram).string();
+  const auto out = (folder.path() / "out").string();
+  const auto result = mjarm({"run", file, "--headless", "--out", out, "--control", "servo"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(support::load_json(folder.path() / "out" / "report.json").at("reason"), "path_error");
+  EXPECT_EQ(mjarm({"run", file, "--control", "servos"}).exit_code, 2);
+  EXPECT_EQ(mjarm({"run", file, "--tolerance", "-1"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace mjarm::app

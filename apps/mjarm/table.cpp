@@ -1,0 +1,26 @@
+#include "apps/mjarm/table.hpp"
+
+#include <algorithm>
+
+#include "mjarm/core/text_width.hpp"
+
+namespace mjarm::app {
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<int> widths(rows.empty() ? 0 : rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], text_width(row[i]));
+    }
+  }
+  std::string result;
+  for (const auto& row : rows) {
+    std::string line = " ";
+    for (std::size_t i = 0; i < row.size(); ++i) line += " " + padded(row[i], widths[i] + 1);
+    line.erase(line.find_last_not_of(' ') + 1);
+    result += line + "\n";
+  }
+  return result;
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "mjarm/control/controller.hpp"
+#include "mjarm/core/pose.hpp"
+
+namespace mjarm {
+
+/// Where something stands in a file, both from 1; 0 where it comes from no file.
+struct FilePlace {
+  int line = 0;
+  int column = 0;
+};
+
+/// The name of a frame of the program or of the model; empty = the frame that is set then.
+struct FrameName {
+  std::string name = {};
+  FilePlace place = {};
+};
+
+/// A tool pose as a program gives it.
+struct ProgramPose {
+  Pose X_FT = {};        ///< the tool in `frame`
+  FrameName frame = {};  ///< F
+};
+
+/// Straight in joint space, to joint values (dof,) [rad or m] (none: home) or to a tool pose; the
+/// answer to the pose is chosen so that what follows can be done from there.
+struct MoveJ {
+  std::variant<std::vector<double>, ProgramPose> goal;
+  std::optional<double> share = {};  ///< of the joints' limits, (0, 1]
+};
+
+/// The tool in a straight line to `goal`.
+struct MoveL {
+  ProgramPose goal;
+  std::optional<double> speed = {};  ///< [m/s] > 0
+  std::optional<double> blend = {};  ///< [m] >= 0: the corner at `goal` is cut within it
+};
+
+/// The tool on an arc of a circle through `via` to `to`; all the way round where `whole`.
+struct MoveC {
+  ProgramPose via, to;
+  std::optional<double> speed = {};
+  bool whole = false;
+};
+
+/// One lap of an ellipse, `word` "ellipse" or "circle"; see Ellipse for where it begins.
+struct DrawEllipse {
+  std::string word = "ellipse";
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m] in `frame`
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< in `frame`, any length but zero
+  double a = 0.1, b = 0.1;                            ///< [m] semi-axes, > 0
+  Eigen::Matrix3d R_FT = Eigen::Matrix3d::Identity();
+  FrameName frame = {};
+  std::optional<double> speed = {};
+};
+
+/// Straight from point to point, at least two.
+struct DrawPolyline {
+  std::vector<ProgramPose> points;
+  std::optional<double> speed = {};
+  std::optional<double> blend = {};  ///< [m] >= 0 of every corner
+};
+
+/// Straight strokes of letters; between them the tool is lifted against its own z axis.
+struct DrawText {
+  std::string text;
+  double height = 0.1;  ///< [m] of a letter, > 0
+  double lift = 0.02;   ///< [m] > 0
+  /// The plane: x to the right, y up, the first letter begins at its origin.
+  ProgramPose plane = {};
+  Eigen::Matrix3d R_FT = Eigen::Matrix3d::Identity();  ///< of the tool, in the plane's frame
+  std::optional<double> speed = {};
+};
+
+struct Wait {
+  double seconds = 0;  ///< [s] >= 0
+};
+
+/// Holds for all that follows.
+struct Set {
+  std::optional<std::string> tool = {};
+  std::optional<FrameName> frame = {};
+  std::optional<double> speed = {};  ///< [m/s] of tool moves, > 0
+  std::optional<double> share = {};  ///< of the joint limits in joint moves, (0, 1]
+  std::optional<double> zone = {};   ///< [m] >= 0, `blend` of straight moves that have none
+};
+
+/// Round obstacles, by the planner.
+struct PlanMove {
+  std::variant<std::vector<double>, ProgramPose> goal;
+};
+
+struct Grip {
+  bool close = true;
+};
+
+struct Instruction;
+
+struct Repeat {
+  int times = 1;  ///< >= 0
+  std::vector<Instruction> body;
+};
+
+/// One sentence of a program.
+struct Instruction {
+  using What = std::variant<MoveJ, MoveL, MoveC, DrawEllipse, DrawPolyline, DrawText, Wait, Set,
+                            PlanMove, Grip, Repeat>;
+  What what;
+  FilePlace place = {};
+};
+
+/// The word of an instruction in program files: "movej", "movel", "ellipse", ...
+[[nodiscard]] std::string_view word(const Instruction& instruction) noexcept;
+
+/// A motion program: what shall be done, and with what; a plain value. Nothing of it was tried.
+struct Program {
+  std::string name;   ///< of the file, without folder and extension
+  std::string robot;  ///< name of a shipped robot, or the path of a file
+  std::string scene;  ///< path of a file that holds the robot; empty = the robot's own
+  std::string tool;   ///< frame of the robot that is moved; empty = the robot's own
+  FilePlace robot_place, scene_place, tool_place;
+  std::map<std::string, ProgramPose> frames;  ///< by name, each in another one or in the world
+  Set start = {};                             ///< what holds before the first instruction
+  std::optional<ControlMode> control = {};
+  std::vector<Instruction> instructions;
+};
+
+/// The same sentences as calls, for programs written in C++; poses are in the frame that is set.
+[[nodiscard]] Instruction move_j(std::vector<double> q, std::optional<double> share = {});
+[[nodiscard]] Instruction move_j(const Pose& X_FT, std::optional<double> share = {});
+[[nodiscard]] Instruction move_l(const Pose& X_FT, std::optional<double> speed = {},
+                                 std::optional<double> blend = {});
+[[nodiscard]] Instruction move_c(const Pose& X_via, const Pose& X_to,
+                                 std::optional<double> speed = {});
+[[nodiscard]] Instruction wait(double seconds);
+[[nodiscard]] Instruction repeat(int times, std::vector<Instruction> body);
+
+}  // namespace mjarm

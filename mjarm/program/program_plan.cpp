@@ -1,0 +1,412 @@
+#include "mjarm/program/program_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mjarm/core/messages/program.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/ik_all.hpp"
+#include "mjarm/path/joint_path.hpp"
+#include "mjarm/program/motion.hpp"
+#include "mjarm/program/move_measures_internal.hpp"
+#include "mjarm/program/program_steps_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+using detail::Step;
+
+/// Ends the work on one step.
+struct PlanFault {
+  std::size_t step;
+  std::string reason;
+  std::string what;
+  Errc code = Errc::impossible;
+};
+
+/// Moves that follow each other, and what ended them early.
+struct Attempt {
+  std::vector<PlannedMove> moves;
+  std::size_t next = 0;  ///< the first step that is not done
+  JointVec q;            ///< where the arm is then
+  std::optional<PlanFault> fault;
+};
+
+/// What can be asked of one tool.
+struct Tool {
+  Arm arm;
+  IkSolver reach;  ///< geometry alone
+  IkSolver ik;     ///< without contact
+  MoveJudge judge;
+};
+
+class Planner {
+ public:
+  Planner(const Model& model, detail::Steps steps, const ProgramPlanOptions& options)
+      : steps_(std::move(steps.steps)), options_(options) {
+    plan_.arms = std::move(steps.arms);
+    plan_.faults = std::move(steps.faults);
+    plan_.q_start = plan_.arms.front().home;
+    for (const Arm& arm : plan_.arms) {
+      IkOptions ik;
+      ik.task = arm.dof() < 6 ? IkTask::position : IkTask::pose;
+      std::optional<ExactChecker> checker;
+      if (options.collision) checker.emplace(model, arm);
+      if (checker) ik.valid = checker->predicate();
+      tools_.push_back(
+          {arm, IkSolver(arm, {.task = ik.task}), IkSolver(arm, ik), MoveJudge(arm, checker)});
+    }
+  }
+
+  ProgramPlan plan() {
+    JointVec q = plan_.q_start;
+    bool known = true;  // whether the arm's posture is known after a fault
+    for (std::size_t i = 0; i < steps_.size();) {
+      if (options_.after_step && !options_.after_step(i, steps_.size())) break;
+      if (!known && !(known = stands_somewhere(steps_[i], q))) {
+        ++i;
+        continue;
+      }
+      Attempt attempt = from(i, q);
+      std::ranges::move(attempt.moves, std::back_inserter(plan_.moves));
+      i = attempt.next;
+      q = std::move(attempt.q);
+      if (!attempt.fault) continue;
+      note(*attempt.fault);
+      known = recover(steps_[attempt.fault->step], q);
+      i = attempt.fault->step + 1;
+    }
+    std::ranges::stable_sort(plan_.faults, [](const ProgramFault& a, const ProgramFault& b) {
+      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+    });
+    return std::move(plan_);
+  }
+
+ private:
+  static constexpr std::size_t kMostAnswers = 16;  ///< to one pose that are tried
+
+  const Tool& tool(const Step& step) const { return tools_[step.tool]; }
+
+  void note(const PlanFault& fault) {
+    const Step& step = steps_[fault.step];
+    const auto same = [&](const ProgramFault& other) {
+      return step.place.line > 0 && other.place.line == step.place.line &&
+             other.place.column == step.place.column && other.reason == fault.reason;
+    };
+    if (std::ranges::any_of(plan_.faults, same)) return;
+    plan_.faults.push_back(
+        {step.place, std::string(step.word), fault.reason, fault.what, fault.code});
+  }
+
+  /// After a fault the arm is taken to be where the step should have ended.
+  bool recover(const Step& step, JointVec& q) const {
+    const auto& valid = tool(step).ik.options().valid;
+    if (step.q.size() > 0) {
+      q = clamp_to_limits(tool(step).arm, view(step.q));
+      return !valid || valid(view(q));
+    }
+    const bool has_end = step.kind == Step::Kind::pose || step.kind == Step::Kind::line ||
+                         step.kind == Step::Kind::arc || step.kind == Step::Kind::plan;
+    if (!has_end && step.kind != Step::Kind::curve) return true;
+    const Pose X = has_end ? step.X_WT : step.curve->at(step.curve->end());
+    const auto answer = tool(step).ik.solve(X, view(q));
+    if (answer) q = answer->q;
+    return answer.has_value();
+  }
+
+  /// Whether a step can be begun by an arm that may stand anywhere; then it stands at home.
+  bool stands_somewhere(const Step& step, JointVec& q) const {
+    const bool free = step.kind == Step::Kind::joints || step.kind == Step::Kind::pose ||
+                      step.kind == Step::Kind::curve || step.kind == Step::Kind::plan;
+    if (free) q = plan_.q_start;
+    return free;
+  }
+
+  /// Plans step `i`, and what hangs on its answer.
+  Attempt from(std::size_t i, const JointVec& q) {
+    const Step& step = steps_[i];
+    switch (step.kind) {
+      case Step::Kind::joints:
+        return to_joints(i, q);
+      case Step::Kind::pose:
+        return to_pose(i, q);
+      case Step::Kind::curve:
+        return to_curve(i, q);
+      case Step::Kind::line:
+      case Step::Kind::arc:
+        return tool_move(i, q);
+      case Step::Kind::wait:
+        return rest(i, q, step.seconds);
+      case Step::Kind::grip:
+        return grip(i, q);
+      case Step::Kind::plan:
+        break;
+    }
+    return failed(i, q, {i, "not_available", text(msg::program_no_planner), Errc::not_available});
+  }
+
+  static Attempt failed(std::size_t i, const JointVec& q, PlanFault fault) {
+    return {{}, i, q, std::move(fault)};
+  }
+
+  PlannedMove begun(const Step& step) const {
+    PlannedMove move;
+    move.word = step.word;
+    move.place = step.place;
+    move.tool = step.tool;
+    return move;
+  }
+
+  Attempt rest(std::size_t i, const JointVec& q, double seconds) const {
+    const JointState still = JointState::at_rest(q);
+    const bool moment = !(seconds > 0);
+    Result<Trajectory> trajectory = moment ? Trajectory::through({0.0}, {still})
+                                           : Trajectory::through({0, seconds}, {still, still});
+    if (!trajectory) return failed(i, q, {i, "bad_input", trajectory.error().what});
+    PlannedMove move = begun(steps_[i]);
+    move.trajectory = std::move(*trajectory);
+    return {{std::move(move)}, i + 1, q, {}};
+  }
+
+  Attempt grip(std::size_t i, const JointVec& q) const {
+    constexpr double kSeconds = 1;  // [s] for the fingers to get there
+    if (!tool(steps_[i]).arm.gripper) {
+      return failed(i, q, {i, "not_available", text(msg::program_no_gripper)});
+    }
+    Attempt attempt = rest(i, q, kSeconds);
+    if (!attempt.fault) attempt.moves.back().close = steps_[i].close;
+    return attempt;
+  }
+
+  /// A joint move from `q` to `goal`; adds to `moves`.
+  std::optional<PlanFault> joint_move(std::size_t i, const JointVec& q, const JointVec& goal,
+                                      const char* word, std::vector<PlannedMove>& moves) {
+    const Step& step = steps_[i];
+    const Tool& with = tool(step);
+    if (const auto fault = with.judge.beyond_limits(goal)) {
+      return PlanFault{i, "joint_limit", *fault};
+    }
+    Result<Trajectory> trajectory =
+        time_joint_move(view(q), view(goal), with.arm.limits, {.joint_share = step.share});
+    if (!trajectory) return PlanFault{i, "bad_input", trajectory.error().what};
+    PlannedMove move = begun(step);
+    if (word != nullptr) move.word = word;
+    const std::vector<JointVec> way = joint_way(q, goal);
+    move.measures = with.judge.measure(with.ik, way);
+    if (const auto fault = with.judge.touches(*move.measures)) {
+      return PlanFault{i, "collision", text(msg::program_move_touches, *fault)};
+    }
+    move.trajectory = std::move(*trajectory);
+    moves.push_back(std::move(move));
+    return std::nullopt;
+  }
+
+  Attempt to_joints(std::size_t i, const JointVec& q) {
+    Attempt out{{}, i, q, {}};
+    out.fault = joint_move(i, q, steps_[i].q, nullptr, out.moves);
+    if (!out.fault) {
+      out.next = i + 1;
+      out.q = steps_[i].q;
+    }
+    return out;
+  }
+
+  /// To the answer from which the tool moves that follow go farthest; the nearest of equals.
+  Attempt to_pose(std::size_t i, const JointVec& q) {
+    const Tool& with = tool(steps_[i]);
+    const auto answers = solve_all(with.ik, steps_[i].X_WT, view(q));
+    if (!answers) {
+      return failed(
+          i, q, {i, std::string(name(answers.error().code)), describe(answers.error(), with.arm)});
+    }
+    std::optional<Attempt> best;
+    for (std::size_t k = 0; k < std::min(answers->size(), kMostAnswers); ++k) {
+      Attempt attempt{{}, i, q, {}};
+      attempt.fault = joint_move(i, q, (*answers)[k].q, nullptr, attempt.moves);
+      if (!attempt.fault) {
+        attempt.next = i + 1;
+        attempt.q = (*answers)[k].q;
+        tool_moves(attempt);
+      }
+      if (!attempt.fault) return attempt;
+      if (!best || attempt.next > best->next) best = std::move(attempt);
+    }
+    return std::move(*best);
+  }
+
+  /// Along a whole curve, from the answer to its first pose from which it and the tool moves that
+  /// follow go farthest.
+  Attempt to_curve(std::size_t i, const JointVec& q) {
+    const Step& step = steps_[i];
+    const Pose X_first = step.curve->at(0);
+    Attempt best = along(i, q, *step.curve, false);
+    if (!best.fault) tool_moves(best);
+    if (!best.fault || same_pose(fk(tool(step).arm, view(q)), X_first)) return best;
+    const auto answers = solve_all(tool(step).ik, X_first, view(q));
+    for (std::size_t k = 0; answers && k < std::min(answers->size(), kMostAnswers); ++k) {
+      Attempt attempt{{}, i, q, {}};
+      attempt.fault = joint_move(i, q, (*answers)[k].q, "approach", attempt.moves);
+      if (attempt.fault) continue;
+      Attempt rest = along(i, (*answers)[k].q, *step.curve, true);
+      if (!rest.fault) tool_moves(rest);
+      rest.moves.insert(rest.moves.begin(), std::move(attempt.moves.front()));
+      if (!rest.fault) return rest;
+      if (rest.next > best.next) best = std::move(rest);
+    }
+    return best;
+  }
+
+  /// Goes on with all that needs no other answer: straight moves, arcs and rests.
+  void tool_moves(Attempt& attempt) {
+    while (attempt.next < steps_.size() && !attempt.fault) {
+      const Step::Kind kind = steps_[attempt.next].kind;
+      if (kind != Step::Kind::line && kind != Step::Kind::arc && kind != Step::Kind::wait &&
+          kind != Step::Kind::grip) {
+        return;
+      }
+      Attempt more = from(attempt.next, attempt.q);
+      std::ranges::move(more.moves, std::back_inserter(attempt.moves));
+      attempt.next = more.next;
+      attempt.q = std::move(more.q);
+      attempt.fault = std::move(more.fault);
+    }
+  }
+
+  /// Why a pose that step `i` goes to is no place for the tool, whatever the way.
+  std::optional<PlanFault> out_of_place(std::size_t i, const Pose& X_WT, const JointVec& q) const {
+    const Tool& with = tool(steps_[i]);
+    const auto answer = with.reach.solve(X_WT, view(q));
+    if (answer || answer.error().code == IkErrc::no_convergence) return std::nullopt;
+    return PlanFault{i, std::string(name(answer.error().code)), describe(answer.error(), with.arm)};
+  }
+
+  /// An arc, or straight moves as far as they are blended into one.
+  Attempt tool_move(std::size_t i, const JointVec& q) {
+    const Step& step = steps_[i];
+    const Pose X_start = fk(tool(step).arm, view(q));
+    if (step.kind == Step::Kind::arc) {
+      for (const Pose* X : {&step.X_via, &step.X_WT}) {
+        if (auto fault = out_of_place(i, *X, q)) return failed(i, q, std::move(*fault));
+      }
+      const Result<Curve> curve = step.whole ? Curve::circle(X_start, step.X_via, step.X_WT)
+                                             : Curve::arc(X_start, step.X_via, step.X_WT);
+      if (!curve) return failed(i, q, {i, "bad_input", curve.error().what});
+      return along(i, q, *curve, true);
+    }
+    std::vector<Pose> points{X_start};
+    std::vector<double> blends;
+    std::size_t end = i;
+    for (; end < steps_.size(); ++end) {
+      if (auto fault = out_of_place(end, steps_[end].X_WT, q)) {
+        return failed(i, q, std::move(*fault));
+      }
+      points.push_back(steps_[end].X_WT);
+      const bool last = end + 1 == steps_.size() || steps_[end + 1].kind != Step::Kind::line ||
+                        steps_[end + 1].tool != step.tool || !(steps_[end].blend > 0);
+      if (last) break;
+      blends.push_back(steps_[end].blend);
+    }
+    if (end == i && same_pose(X_start, step.X_WT)) return rest(i, q, 0);
+    const Result<Curve> curve = Curve::polyline(points, blends);
+    if (!curve) return failed(i, q, {i, "bad_input", curve.error().what});
+    for (const CurveBlend& blend : curve->blends()) {
+      const double asked = blends[blend.point - 1];
+      if (blend.radius > 0 && blend.radius < asked * (1 - 1e-9)) {
+        const std::size_t at = i + blend.point - 1;
+        return failed(i, q,
+                      {at, "blend_overlap", text(msg::program_blend_overlap, asked, blend.radius)});
+      }
+    }
+    return along(i, q, *curve, true, end + 1 - i);
+  }
+
+  static bool same_pose(const Pose& a, const Pose& b) {
+    constexpr double kSame = 1e-9;
+    return (a.p - b.p).norm() < kSame && (a.R - b.R).norm() < kSame;
+  }
+
+  /// The tool along `curve`, which does `count` steps; approached by a joint move unless `here`.
+  Attempt along(std::size_t i, const JointVec& q, const Curve& curve, bool here,
+                std::size_t count = 1) {
+    const Step& step = steps_[i];
+    const Tool& with = tool(step);
+    for (const CurveBlend& blend : curve.blends()) {
+      if (!here && blend.radius > 0 && blend.radius < step.blend * (1 - 1e-9)) {
+        return failed(
+            i, q, {i, "blend_overlap", text(msg::program_blend_overlap, step.blend, blend.radius)});
+      }
+    }
+    MotionOptions options = motion_options(i, count, curve);
+    options.path.keep_start = here;
+    options.path.clearance = with.judge.clearance();
+    if (!here) {
+      const Pose X_now = fk(with.arm, view(q));
+      options.path.keep_start = same_pose(X_now, curve.at(0));
+    }
+    Result<ToolMotion, MotionFailure> motion = plan_tool_motion(with.ik, curve, view(q), options);
+    if (!motion) return failed(i, q, motion_fault(i, with.arm, motion.error()));
+    Attempt out{{}, i, q, {}};
+    const JointVec& first = motion->path.q.front();
+    constexpr double kThere = 1e-9;
+    if ((first - q).cwiseAbs().maxCoeff() > kThere && !here) {
+      out.fault = joint_move(i, q, first, "approach", out.moves);
+      if (out.fault) return out;
+    }
+    PlannedMove move = begun(step);
+    move.instructions = count;
+    move.measures = with.judge.measure(with.ik, motion->path.q);
+    move.trajectory = std::move(motion->trajectory);
+    move.curve = curve;
+    move.dips = std::move(motion->dips);
+    out.q = motion->path.q.back();
+    out.moves.push_back(std::move(move));
+    out.next = i + count;
+    return out;
+  }
+
+  /// Speeds of the steps that one curve does.
+  [[nodiscard]] MotionOptions motion_options(std::size_t i, std::size_t count,
+                                             const Curve& curve) const {
+    MotionOptions options;
+    const auto speed_of = [&](std::size_t k) {
+      return steps_[k].speed > 0 ? steps_[k].speed : options_.tool_speed;
+    };
+    options.timing.tool_speed = speed_of(i);
+    bool keep = steps_[i].keep_speed, alike = true;
+    for (std::size_t k = 1; k < count; ++k) {
+      alike = alike && speed_of(i + k) == speed_of(i);
+      keep = keep && steps_[i + k].keep_speed;
+      const double s = curve.nearest(steps_[i + k - 1].X_WT.p).s;
+      options.timing.tool_speeds.push_back({s, speed_of(i + k)});
+    }
+    if (alike) options.timing.tool_speeds.clear();
+    if (alike && keep) options.path.tool_speed = options.timing.tool_speed;
+    return options;
+  }
+
+  static PlanFault motion_fault(std::size_t i, const Arm& arm, const MotionFailure& failure) {
+    return {i, failure.path ? std::string(name(failure.path->code)) : "timing",
+            describe(failure, arm)};
+  }
+
+  std::vector<Step> steps_;
+  const ProgramPlanOptions& options_;
+  std::vector<Tool> tools_;
+  ProgramPlan plan_;
+};
+
+}  // namespace
+
+double ProgramPlan::duration() const {
+  double sum = 0;
+  for (const PlannedMove& move : moves) sum += move.trajectory.duration();
+  return sum;
+}
+
+ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& program,
+                         const ProgramPlanOptions& options) {
+  return Planner(model, detail::steps_of(program, model, arm), options).plan();
+}
+
+}  // namespace mjarm

@@ -1,0 +1,34 @@
+#include "mjarm/core/messages/program.hpp"
+#include "mjarm/model/find_arm.hpp"
+#include "mjarm/program/program_plan.hpp"
+#include "mjarm/program/yaml_tree_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+/// A path of a program: from its folder, or a name that a model is known by.
+Result<std::filesystem::path> find(const std::string& name, const std::filesystem::path& file) {
+  const std::filesystem::path beside = file.parent_path() / name;
+  std::error_code code;
+  if (std::filesystem::is_regular_file(beside, code)) return beside;
+  return find_model_file(name);
+}
+
+}  // namespace
+
+Result<ProgramRobot> load_program_robot(const Program& program, const std::filesystem::path& file) {
+  const bool scene = !program.scene.empty();
+  const FilePlace place = scene ? program.scene_place : program.robot_place;
+  const auto fault = [&](const Error& error, FilePlace at) {
+    return fail(error.code, detail::at_place(file.string(), at, error.what));
+  };
+  const Result<std::filesystem::path> found = find(scene ? program.scene : program.robot, file);
+  if (!found) return fault(found.error(), place);
+  Result<Model> model = Model::load(*found);
+  if (!model) return fault(model.error(), place);
+  Result<Arm> arm = find_arm(*model, {.tip = program.tool});
+  if (!arm) return fault(arm.error(), program.tool.empty() ? place : program.tool_place);
+  return ProgramRobot{std::move(*model), std::move(*arm)};
+}
+
+}  // namespace mjarm

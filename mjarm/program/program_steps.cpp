@@ -1,0 +1,297 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "mjarm/core/messages/program.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/path/ellipse.hpp"
+#include "mjarm/path/letters.hpp"
+#include "mjarm/program/program_steps_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr std::size_t kMostSteps = 100'000;
+
+/// Ends the work on one instruction.
+struct StepFault {
+  FilePlace place;
+  std::string reason;
+  std::string what;
+};
+
+template <class T>
+T value_or_fault(Result<T> result, FilePlace place, const char* reason) {
+  if (!result) throw StepFault{place, reason, result.error().what};
+  return std::move(*result);
+}
+
+class StepWriter {
+ public:
+  StepWriter(const Program& program, const Model& model, const Arm& arm)
+      : program_(program), model_(model), qpos_(model.qpos0().begin(), model.qpos0().end()) {
+    out_.arms.push_back(arm);
+    tools_[arm.tip] = 0;
+    for (int i = 0; i < arm.dof(); ++i) {
+      qpos_[static_cast<std::size_t>(arm.joints[static_cast<std::size_t>(i)].qpos)] = arm.home[i];
+    }
+  }
+
+  Steps write() {
+    try {
+      take(program_.start, {});
+    } catch (const StepFault& fault) {
+      out_.faults.push_back({fault.place, "program", fault.reason, fault.what, Errc::bad_input});
+    }
+    add_all(program_.instructions);
+    return std::move(out_);
+  }
+
+ private:
+  void add_all(const std::vector<Instruction>& instructions) {
+    for (const Instruction& instruction : instructions) {
+      if (full_) return;
+      try {
+        std::visit([&](const auto& what) { add(what, instruction); }, instruction.what);
+      } catch (const StepFault& fault) {
+        note(instruction, fault);
+      }
+    }
+  }
+
+  /// One fault of one place, however often it is repeated.
+  void note(const Instruction& instruction, const StepFault& fault) {
+    const FilePlace place = fault.place.line > 0 ? fault.place : instruction.place;
+    const auto same = [&](const ProgramFault& other) {
+      return place.line > 0 && other.place.line == place.line && other.place.column == place.column;
+    };
+    if (std::ranges::any_of(out_.faults, same)) return;
+    out_.faults.push_back({place, std::string(word(instruction)), fault.reason, fault.what,
+                           fault.reason == "unknown_name" ? Errc::bad_input : Errc::impossible});
+  }
+
+  Step& push(Step::Kind kind, const Instruction& instruction, std::optional<double> speed = {}) {
+    if (out_.steps.size() >= kMostSteps) {
+      full_ = true;
+      throw StepFault{instruction.place, "too_long", text(msg::program_too_long, kMostSteps)};
+    }
+    Step step;
+    step.kind = kind;
+    step.word = word(instruction);
+    step.place = instruction.place;
+    step.tool = tool_;
+    step.speed = speed.value_or(speed_.value_or(0));
+    step.keep_speed = speed.has_value() || speed_.has_value();
+    step.share = share_;
+    return out_.steps.emplace_back(std::move(step));
+  }
+
+  /// X_WF of the frame of that name, or of the one that is set.
+  Pose frame(const FrameName& name) {
+    const std::string& wanted = name.name.empty() ? frame_.name : name.name;
+    const FilePlace place = name.name.empty() ? frame_.place : name.place;
+    std::set<std::string> seen;
+    return frame(wanted, place, seen);
+  }
+
+  Pose frame(const std::string& name, FilePlace place, std::set<std::string>& seen) {
+    if (name.empty() || name == "world") return {};
+    const auto own = program_.frames.find(name);
+    if (own != program_.frames.end()) {
+      if (!seen.insert(name).second) {
+        throw StepFault{place, "unknown_name", text(msg::program_frame_loop, name)};
+      }
+      return frame(own->second.frame.name, own->second.frame.place, seen) * own->second.X_FT;
+    }
+    const Result<Pose> X_WF = frame_pose(model_, name, qpos_);
+    if (!X_WF) {
+      std::vector<std::string> known{"world"};
+      for (const auto& [other, pose] : program_.frames) known.push_back(other);
+      const std::string near = did_you_mean(name, known);
+      throw StepFault{
+          place, "unknown_name",
+          near.empty() ? X_WF.error().what : text(msg::program_unknown_frame, name) + near};
+    }
+    if (moves(name, *X_WF)) {
+      throw StepFault{place, "unknown_name", text(msg::program_frame_moves, name)};
+    }
+    return *X_WF;
+  }
+
+  /// Whether a frame of the model is carried along by the arm.
+  bool moves(const std::string& name, const Pose& X_WF) const {
+    constexpr double kNudge = 0.1;
+    for (const ArmJoint& joint : out_.arms.front().joints) {
+      std::vector<double> qpos = qpos_;
+      qpos[static_cast<std::size_t>(joint.qpos)] += kNudge;
+      const Result<Pose> moved = frame_pose(model_, name, qpos);
+      if (moved && (moved->p - X_WF.p).norm() + (moved->R - X_WF.R).norm() > 1e-9) return true;
+    }
+    return false;
+  }
+
+  Pose world(const ProgramPose& pose) { return frame(pose.frame) * pose.X_FT; }
+
+  void take(const Set& set, FilePlace place) {
+    if (set.frame) {
+      const FrameName before = std::exchange(frame_, *set.frame);
+      try {
+        static_cast<void>(frame(FrameName{}));
+      } catch (const StepFault&) {
+        frame_ = before;
+        throw;
+      }
+    }
+    if (set.speed) speed_ = set.speed;
+    if (set.share) share_ = *set.share;
+    if (set.zone) zone_ = *set.zone;
+    if (set.tool) tool_ = tool(*set.tool, place);
+  }
+
+  std::size_t tool(const std::string& name, FilePlace place) {
+    const auto known = tools_.find(name);
+    if (known != tools_.end()) return known->second;
+    Arm arm = value_or_fault(find_arm(model_, {.tip = name}), place, "unknown_name");
+    const Arm& first = out_.arms.front();
+    const bool same =
+        std::ranges::equal(arm.joints, first.joints, {}, &ArmJoint::qpos, &ArmJoint::qpos);
+    if (!same) throw StepFault{place, "unknown_name", text(msg::program_other_arm, name)};
+    arm.limits = first.limits;
+    arm.home = first.home;
+    out_.arms.push_back(std::move(arm));
+    return tools_[name] = out_.arms.size() - 1;
+  }
+
+  JointVec joints(const std::vector<double>& q, FilePlace place) const {
+    const Arm& arm = out_.arms.front();
+    if (q.empty()) return arm.home;
+    if (static_cast<int>(q.size()) != arm.dof()) {
+      throw StepFault{place, "bad_input", text(msg::program_wrong_joints, arm.dof(), q.size())};
+    }
+    return joint_vec(q);
+  }
+
+  void set_goal(Step& step, const std::variant<std::vector<double>, ProgramPose>& goal) {
+    if (const auto* q = std::get_if<std::vector<double>>(&goal)) {
+      step.kind = Step::Kind::joints;
+      step.q = joints(*q, step.place);
+    } else {
+      step.X_WT = world(std::get<ProgramPose>(goal));
+    }
+  }
+
+  /// Adds a step that `fill` completes; takes it away again where that fails.
+  template <class Fill>
+  void push_filled(Step::Kind kind, const Instruction& instruction, std::optional<double> speed,
+                   const Fill& fill) {
+    Step& step = push(kind, instruction, speed);
+    try {
+      fill(step);
+    } catch (...) {
+      out_.steps.pop_back();
+      throw;
+    }
+  }
+
+  void add(const MoveJ& what, const Instruction& instruction) {
+    push_filled(Step::Kind::pose, instruction, {}, [&](Step& step) {
+      step.share = what.share.value_or(share_);
+      set_goal(step, what.goal);
+    });
+  }
+
+  void add(const MoveL& what, const Instruction& instruction) {
+    push_filled(Step::Kind::line, instruction, what.speed, [&](Step& step) {
+      step.X_WT = world(what.goal);
+      step.blend = what.blend.value_or(zone_);
+    });
+  }
+
+  void add(const MoveC& what, const Instruction& instruction) {
+    push_filled(Step::Kind::arc, instruction, what.speed, [&](Step& step) {
+      step.X_via = world(what.via);
+      step.X_WT = world(what.to);
+      step.whole = what.whole;
+    });
+  }
+
+  void add(const DrawEllipse& what, const Instruction& instruction) {
+    push_filled(Step::Kind::curve, instruction, what.speed, [&](Step& step) {
+      const Pose X_WF = frame(what.frame);
+      const Ellipse ellipse{X_WF * what.center, what.a, what.b, X_WF.R * what.normal,
+                            X_WF.R * what.R_FT};
+      step.curve = value_or_fault(Curve::ellipse(ellipse), step.place, "bad_input");
+    });
+  }
+
+  void add(const DrawPolyline& what, const Instruction& instruction) {
+    push_filled(Step::Kind::curve, instruction, what.speed, [&](Step& step) {
+      std::vector<Pose> points;
+      for (const ProgramPose& point : what.points) points.push_back(world(point));
+      step.blend = what.blend.value_or(zone_);
+      step.curve = value_or_fault(Curve::polyline(points, step.blend), step.place, "bad_input");
+    });
+  }
+
+  void add(const DrawText& what, const Instruction& instruction) {
+    push_filled(Step::Kind::curve, instruction, what.speed, [&](Step& step) {
+      const auto strokes =
+          value_or_fault(letter_strokes(what.text, what.height), step.place, "bad_input");
+      const Pose X_WP = world(what.plane);
+      const Eigen::Matrix3d R = frame(what.plane.frame).R * what.R_FT;
+      const Eigen::Vector3d lifted = -what.lift * R.col(2);
+      std::vector<Pose> points;
+      for (const Stroke& stroke : strokes) {
+        points.push_back({X_WP * on_plane(stroke.front()) + lifted, R});
+        for (const Eigen::Vector2d& p : stroke) points.push_back({X_WP * on_plane(p), R});
+        points.push_back({X_WP * on_plane(stroke.back()) + lifted, R});
+      }
+      step.curve = value_or_fault(Curve::polyline(points), step.place, "bad_input");
+    });
+  }
+
+  static Eigen::Vector3d on_plane(const Eigen::Vector2d& p) { return {p.x(), p.y(), 0}; }
+
+  void add(const Wait& what, const Instruction& instruction) {
+    push(Step::Kind::wait, instruction).seconds = what.seconds;
+  }
+
+  void add(const Set& what, const Instruction& instruction) { take(what, instruction.place); }
+
+  void add(const PlanMove& what, const Instruction& instruction) {
+    push_filled(Step::Kind::plan, instruction, {}, [&](Step& step) {
+      set_goal(step, what.goal);
+      step.kind = Step::Kind::plan;
+    });
+  }
+
+  void add(const Grip& what, const Instruction& instruction) {
+    push(Step::Kind::grip, instruction).close = what.close;
+  }
+
+  void add(const Repeat& what, const Instruction&) {
+    for (int i = 0; i < what.times && !full_; ++i) add_all(what.body);
+  }
+
+  const Program& program_;
+  const Model& model_;
+  std::vector<double> qpos_;  // the arm at home
+  Steps out_;
+  std::map<std::string, std::size_t> tools_;
+  std::size_t tool_ = 0;
+  FrameName frame_;
+  std::optional<double> speed_;
+  double share_ = 1;
+  double zone_ = 0;
+  bool full_ = false;
+};
+
+}  // namespace
+
+Steps steps_of(const Program& program, const Model& model, const Arm& arm) {
+  return StepWriter(program, model, arm).write();
+}
+
+}  // namespace mjarm::detail

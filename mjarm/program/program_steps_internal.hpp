@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mjarm/model/find_arm.hpp"
+#include "mjarm/path/curve.hpp"
+#include "mjarm/program/program_plan.hpp"
+
+namespace mjarm::detail {
+
+/// One thing to be done, with all that holds at that moment; repeats are unrolled.
+struct Step {
+  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan };
+
+  Kind kind = Kind::wait;
+  std::string_view word;
+  FilePlace place;
+  std::size_t tool = 0;  ///< index of the arm with that tool
+  double speed = 0;      ///< [m/s]
+  bool keep_speed = false;
+  double share = 1;
+  JointVec q = {};                  ///< joints
+  Pose X_WT = {};                   ///< pose, line, arc: where it ends
+  Pose X_via = {};                  ///< arc
+  bool whole = false;               ///< arc
+  double blend = 0;                 ///< [m] line: of the corner at its end; curve: of all
+  std::optional<Curve> curve = {};  ///< curve
+  double seconds = 0;               ///< wait
+  bool close = false;               ///< grip
+};
+
+struct Steps {
+  std::vector<Arm> arms;  ///< by tool; the first is that of the beginning
+  std::vector<Step> steps;
+  std::vector<ProgramFault> faults;
+};
+
+/// Resolves frames, tools and settings of every instruction in the order in which they run.
+[[nodiscard]] Steps steps_of(const Program& program, const Model& model, const Arm& arm);
+
+}  // namespace mjarm::detail
