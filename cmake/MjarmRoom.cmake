@@ -59,7 +59,7 @@ endfunction()
 function(mjarm_tests target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PREFIX" "SOURCES;LINK")
   add_executable(${target} ${arg_SOURCES})
-  if(MJARM_SANITIZE MATCHES "address")
+  if(MJARM_SANITIZE)
     target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/keep_libraries.cpp")
   endif()
   target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing MuJoCo::mujoco
