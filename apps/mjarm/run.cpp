@@ -30,20 +30,7 @@ constexpr double kSettle = 0.5;  // [s] at rest at the end
 Report planned_report(const ProgramPlan& plan) {
   Report report;
   report.facts.push_back({"cycle_time", plan.duration()});
-  const auto least = [](std::optional<double>& known, double value) {
-    known = std::min(known.value_or(value), value);
-  };
-  for (const PlannedMove& move : plan.moves) {
-    if (!move.measures) continue;
-    report.max_joint_step = std::max(report.max_joint_step, move.measures->max_step);
-    if (!move.curve) continue;
-    least(report.min_manipulability, move.measures->manipulability);
-    least(report.min_singular_value, move.measures->singularity.smallest);
-    for (const SpeedDip& dip : move.dips) {
-      const Arm& arm = plan.arms[move.tool];
-      report.speed_dips.push_back({dip, arm.joints[static_cast<std::size_t>(dip.joint)].name});
-    }
-  }
+  for (const PlannedMove& move : plan.moves) add_motion(move, plan.arms[move.tool], report);
   return report;
 }
 

@@ -90,13 +90,8 @@ class Planner {
 
   void note(const PlanFault& fault) {
     const Step& step = steps_[fault.step];
-    const auto same = [&](const ProgramFault& other) {
-      return step.place.line > 0 && other.place.line == step.place.line &&
-             other.place.column == step.place.column && other.reason == fault.reason;
-    };
-    if (std::ranges::any_of(plan_.faults, same)) return;
-    plan_.faults.push_back(
-        {step.place, std::string(step.word), fault.reason, fault.what, fault.code});
+    detail::add_fault(plan_.faults,
+                      {step.place, std::string(step.word), fault.reason, fault.what, fault.code});
   }
 
   /// After a fault the arm is taken to be where the step should have ended.

@@ -61,22 +61,14 @@ class StepWriter {
     }
   }
 
-  /// One fault of one place, however often it is repeated.
   void note(const Instruction& instruction, const StepFault& fault) {
     const FilePlace place = fault.place.line > 0 ? fault.place : instruction.place;
-    const auto same = [&](const ProgramFault& other) {
-      return place.line > 0 && other.place.line == place.line && other.place.column == place.column;
-    };
-    if (std::ranges::any_of(out_.faults, same)) return;
-    out_.faults.push_back({place, std::string(word(instruction)), fault.reason, fault.what,
-                           fault.reason == "unknown_name" ? Errc::bad_input : Errc::impossible});
+    add_fault(out_.faults, {place, std::string(word(instruction)), fault.reason, fault.what,
+                            fault.reason == "unknown_name" ? Errc::bad_input : Errc::impossible});
   }
 
-  Step& push(Step::Kind kind, const Instruction& instruction, std::optional<double> speed = {}) {
-    if (out_.steps.size() >= kMostSteps) {
-      full_ = true;
-      throw StepFault{instruction.place, "too_long", text(msg::program_too_long, kMostSteps)};
-    }
+  [[nodiscard]] Step begun(Step::Kind kind, const Instruction& instruction,
+                           std::optional<double> speed = {}) const {
     Step step;
     step.kind = kind;
     step.word = word(instruction);
@@ -85,7 +77,15 @@ class StepWriter {
     step.speed = speed.value_or(speed_.value_or(0));
     step.keep_speed = speed.has_value() || speed_.has_value();
     step.share = share_;
-    return out_.steps.emplace_back(std::move(step));
+    return step;
+  }
+
+  void push(Step step) {
+    if (out_.steps.size() >= kMostSteps) {
+      full_ = true;
+      throw StepFault{step.place, "too_long", text(msg::program_too_long, kMostSteps)};
+    }
+    out_.steps.push_back(std::move(step));
   }
 
   /// X_WF of the frame of that name, or of the one that is set.
@@ -105,6 +105,8 @@ class StepWriter {
       }
       return frame(own->second.frame.name, own->second.frame.place, seen) * own->second.X_FT;
     }
+    const auto known_frame = model_frames_.find(name);
+    if (known_frame != model_frames_.end()) return known_frame->second;
     const Result<Pose> X_WF = frame_pose(model_, name, qpos_);
     if (!X_WF) {
       std::vector<std::string> known{"world"};
@@ -117,7 +119,7 @@ class StepWriter {
     if (moves(name, *X_WF)) {
       throw StepFault{place, "unknown_name", text(msg::program_frame_moves, name)};
     }
-    return *X_WF;
+    return model_frames_[name] = *X_WF;
   }
 
   /// Whether a frame of the model is carried along by the arm.
@@ -136,13 +138,8 @@ class StepWriter {
 
   void take(const Set& set, FilePlace place) {
     if (set.frame) {
-      const FrameName before = std::exchange(frame_, *set.frame);
-      try {
-        static_cast<void>(frame(FrameName{}));
-      } catch (const StepFault&) {
-        frame_ = before;
-        throw;
-      }
+      static_cast<void>(frame(*set.frame));  // a fault where there is no such frame
+      frame_ = *set.frame;
     }
     if (set.speed) speed_ = set.speed;
     if (set.share) share_ = *set.share;
@@ -182,93 +179,84 @@ class StepWriter {
     }
   }
 
-  /// Adds a step that `fill` completes; takes it away again where that fails.
-  template <class Fill>
-  void push_filled(Step::Kind kind, const Instruction& instruction, std::optional<double> speed,
-                   const Fill& fill) {
-    Step& step = push(kind, instruction, speed);
-    try {
-      fill(step);
-    } catch (...) {
-      out_.steps.pop_back();
-      throw;
-    }
-  }
-
   void add(const MoveJ& what, const Instruction& instruction) {
-    push_filled(Step::Kind::pose, instruction, {}, [&](Step& step) {
-      step.share = what.share.value_or(share_);
-      set_goal(step, what.goal);
-    });
+    Step step = begun(Step::Kind::pose, instruction);
+    step.share = what.share.value_or(share_);
+    set_goal(step, what.goal);
+    push(std::move(step));
   }
 
   void add(const MoveL& what, const Instruction& instruction) {
-    push_filled(Step::Kind::line, instruction, what.speed, [&](Step& step) {
-      step.X_WT = world(what.goal);
-      step.blend = what.blend.value_or(zone_);
-    });
+    Step step = begun(Step::Kind::line, instruction, what.speed);
+    step.X_WT = world(what.goal);
+    step.blend = what.blend.value_or(zone_);
+    push(std::move(step));
   }
 
   void add(const MoveC& what, const Instruction& instruction) {
-    push_filled(Step::Kind::arc, instruction, what.speed, [&](Step& step) {
-      step.X_via = world(what.via);
-      step.X_WT = world(what.to);
-      step.whole = what.whole;
-    });
+    Step step = begun(Step::Kind::arc, instruction, what.speed);
+    step.X_via = world(what.via);
+    step.X_WT = world(what.to);
+    step.whole = what.whole;
+    push(std::move(step));
   }
 
   void add(const DrawEllipse& what, const Instruction& instruction) {
-    push_filled(Step::Kind::curve, instruction, what.speed, [&](Step& step) {
-      const Pose X_WF = frame(what.frame);
-      const Ellipse ellipse{X_WF * what.center, what.a, what.b, X_WF.R * what.normal,
-                            X_WF.R * what.R_FT};
-      step.curve = value_or_fault(Curve::ellipse(ellipse), step.place, "bad_input");
-    });
+    Step step = begun(Step::Kind::curve, instruction, what.speed);
+    const Pose X_WF = frame(what.frame);
+    const Ellipse ellipse{X_WF * what.center, what.a, what.b, X_WF.R * what.normal,
+                          X_WF.R * what.R_FT};
+    step.curve = value_or_fault(Curve::ellipse(ellipse), step.place, "bad_input");
+    push(std::move(step));
   }
 
   void add(const DrawPolyline& what, const Instruction& instruction) {
-    push_filled(Step::Kind::curve, instruction, what.speed, [&](Step& step) {
-      std::vector<Pose> points;
-      for (const ProgramPose& point : what.points) points.push_back(world(point));
-      step.blend = what.blend.value_or(zone_);
-      step.curve = value_or_fault(Curve::polyline(points, step.blend), step.place, "bad_input");
-    });
+    Step step = begun(Step::Kind::curve, instruction, what.speed);
+    std::vector<Pose> points;
+    for (const ProgramPose& point : what.points) points.push_back(world(point));
+    step.blend = what.blend.value_or(zone_);
+    step.curve = value_or_fault(Curve::polyline(points, step.blend), step.place, "bad_input");
+    push(std::move(step));
   }
 
   void add(const DrawText& what, const Instruction& instruction) {
-    push_filled(Step::Kind::curve, instruction, what.speed, [&](Step& step) {
-      const auto strokes =
-          value_or_fault(letter_strokes(what.text, what.height), step.place, "bad_input");
-      const Pose X_WP = world(what.plane);
-      const Eigen::Matrix3d R = frame(what.plane.frame).R * what.R_FT;
-      const Eigen::Vector3d lifted = -what.lift * R.col(2);
-      std::vector<Pose> points;
-      for (const Stroke& stroke : strokes) {
-        points.push_back({X_WP * on_plane(stroke.front()) + lifted, R});
-        for (const Eigen::Vector2d& p : stroke) points.push_back({X_WP * on_plane(p), R});
-        points.push_back({X_WP * on_plane(stroke.back()) + lifted, R});
-      }
-      step.curve = value_or_fault(Curve::polyline(points), step.place, "bad_input");
-    });
+    Step step = begun(Step::Kind::curve, instruction, what.speed);
+    const auto strokes =
+        value_or_fault(letter_strokes(what.text, what.height), step.place, "bad_input");
+    const Pose X_WP = world(what.plane);
+    const Eigen::Matrix3d R = frame(what.plane.frame).R * what.R_FT;
+    const Eigen::Vector3d lifted = -what.lift * R.col(2);
+    std::vector<Pose> points;
+    for (const Stroke& stroke : strokes) {
+      points.push_back({X_WP * on_plane(stroke.front()) + lifted, R});
+      for (const Eigen::Vector2d& p : stroke) points.push_back({X_WP * on_plane(p), R});
+      points.push_back({X_WP * on_plane(stroke.back()) + lifted, R});
+    }
+    step.curve = value_or_fault(Curve::polyline(points), step.place, "bad_input");
+    push(std::move(step));
   }
 
   static Eigen::Vector3d on_plane(const Eigen::Vector2d& p) { return {p.x(), p.y(), 0}; }
 
   void add(const Wait& what, const Instruction& instruction) {
-    push(Step::Kind::wait, instruction).seconds = what.seconds;
+    Step step = begun(Step::Kind::wait, instruction);
+    step.seconds = what.seconds;
+    push(std::move(step));
   }
 
   void add(const Set& what, const Instruction& instruction) { take(what, instruction.place); }
 
   void add(const PlanMove& what, const Instruction& instruction) {
-    push_filled(Step::Kind::plan, instruction, {}, [&](Step& step) {
-      set_goal(step, what.goal);
-      step.kind = Step::Kind::plan;
-    });
+    Step step = begun(Step::Kind::plan, instruction);
+    set_goal(step, what.goal);
+    step.kind = Step::Kind::plan;
+    push(std::move(step));
   }
 
   void add(const Grip& what, const Instruction& instruction) {
-    push(Step::Kind::grip, instruction).close = what.close;
+    Step step = begun(Step::Kind::grip, instruction);
+    step.close = what.close;
+    push(std::move(step));
   }
 
   void add(const Repeat& what, const Instruction&) {
@@ -280,6 +268,7 @@ class StepWriter {
   std::vector<double> qpos_;  // the arm at home
   Steps out_;
   std::map<std::string, std::size_t> tools_;
+  std::map<std::string, Pose> model_frames_;  // X_WF, as they are asked for
   std::size_t tool_ = 0;
   FrameName frame_;
   std::optional<double> speed_;
@@ -289,6 +278,14 @@ class StepWriter {
 };
 
 }  // namespace
+
+void add_fault(std::vector<ProgramFault>& faults, ProgramFault fault) {
+  const auto same = [&](const ProgramFault& other) {
+    return fault.place.line > 0 && other.place.line == fault.place.line &&
+           other.place.column == fault.place.column && other.reason == fault.reason;
+  };
+  if (std::ranges::none_of(faults, same)) faults.push_back(std::move(fault));
+}
 
 Steps steps_of(const Program& program, const Model& model, const Arm& arm) {
   return StepWriter(program, model, arm).write();

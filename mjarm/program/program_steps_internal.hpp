@@ -39,6 +39,9 @@ struct Steps {
   std::vector<ProgramFault> faults;
 };
 
+/// Adds a fault; one of each place and reason, however often the place is repeated.
+void add_fault(std::vector<ProgramFault>& faults, ProgramFault fault);
+
 /// Resolves frames, tools and settings of every instruction in the order in which they run.
 [[nodiscard]] Steps steps_of(const Program& program, const Model& model, const Arm& arm);
 

@@ -51,19 +51,36 @@ void put_planned(const Report& report, Json& out) {
   if (report.min_singular_value) out["min_singular_value"] = *report.min_singular_value;
 }
 
+/// Keeps the least of each.
+void add_measures(double manipulability, double singular_value, Report& report) {
+  const auto least = [](std::optional<double>& known, double value) {
+    known = std::min(known.value_or(value), value);
+  };
+  least(report.min_manipulability, manipulability);
+  least(report.min_singular_value, singular_value);
+}
+
+void add_dips(const std::vector<SpeedDip>& dips, const Arm& arm, Report& report) {
+  for (const SpeedDip& dip : dips) {
+    report.speed_dips.push_back({dip, arm.joints[static_cast<std::size_t>(dip.joint)].name});
+  }
+}
+
 }  // namespace
 
 void add_motion(const ToolMotion& motion, const Arm& arm, Report& report) {
   const PathMeasures measures = measure_path(arm, motion.path.q);
-  const auto least = [](std::optional<double>& known, double value) {
-    known = std::min(known.value_or(value), value);
-  };
-  least(report.min_manipulability, measures.manipulability.value);
-  least(report.min_singular_value, measures.singular_value.value);
+  add_measures(measures.manipulability.value, measures.singular_value.value, report);
+  add_dips(motion.dips, arm, report);
   report.max_joint_step = std::max(report.max_joint_step, motion.path.max_step());
-  for (const SpeedDip& dip : motion.dips) {
-    report.speed_dips.push_back({dip, arm.joints[static_cast<std::size_t>(dip.joint)].name});
-  }
+}
+
+void add_motion(const PlannedMove& move, const Arm& arm, Report& report) {
+  if (!move.measures) return;
+  report.max_joint_step = std::max(report.max_joint_step, move.measures->max_step);
+  if (!move.curve) return;
+  add_measures(move.measures->manipulability, move.measures->singularity.smallest, report);
+  add_dips(move.dips, arm, report);
 }
 
 std::string to_json(const Report& report) {

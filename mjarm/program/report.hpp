@@ -10,6 +10,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/program/metrics.hpp"
 #include "mjarm/program/motion.hpp"
+#include "mjarm/program/program_plan.hpp"
 
 namespace mjarm {
 
@@ -72,6 +73,9 @@ struct Report {
 /// Adds what was planned: dips of the tool speed, how near it comes to singularities, the largest
 /// joint step where that is larger than the one known.
 void add_motion(const ToolMotion& motion, const Arm& arm, Report& report);
+
+/// The same of one motion of a program; joint moves and rests have only their joint steps.
+void add_motion(const PlannedMove& move, const Arm& arm, Report& report);
 
 /// `report` as one JSON document, keys in fixed order, full double precision, newline at the end.
 [[nodiscard]] std::string to_json(const Report& report);
