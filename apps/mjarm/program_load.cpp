@@ -1,17 +1,54 @@
 #include "apps/mjarm/program_load.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "mjarm/core/messages/motion_program.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/program/program_reader.hpp"
 
 namespace mjarm::app {
 
-Result<LoadedProgram> load_program(const std::string& file) {
-  Result<Program> program = read_program(file);
+namespace {
+
+/// Folder of the shipped programs; empty where the program's own place is unknown.
+std::filesystem::path shipped_folder() {
+  const Result<std::filesystem::path> self = executable_path();
+  if (!self) return {};
+  return (self->parent_path() / ".." / "share" / "mjarm" / "programs").lexically_normal();
+}
+
+}  // namespace
+
+Result<std::filesystem::path> find_program_file(const std::string& name_or_path) {
+  std::error_code code;
+  if (std::filesystem::exists(name_or_path, code)) return name_or_path;
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(shipped_folder(), code)) {
+    if (entry.path().extension() != ".yaml") continue;
+    names.push_back(entry.path().stem().string());
+    if (names.back() == name_or_path || entry.path().filename() == name_or_path) {
+      return entry.path();
+    }
+  }
+  std::ranges::sort(names);
+  return fail(Errc::bad_input,
+              text(msg::motion_program_no_file, name_or_path) + did_you_mean(name_or_path, names));
+}
+
+Result<LoadedProgram> load_program(const std::string& name_or_path) {
+  const Result<std::filesystem::path> found = find_program_file(name_or_path);
+  if (!found) return fail(found.error());
+  Result<Program> program = read_program(*found);
   if (!program) return fail(std::move(program.error()));
-  Result<ProgramRobot> robot = load_program_robot(*program, file);
+  Result<ProgramRobot> robot = load_program_robot(*program, *found);
   if (!robot) return fail(std::move(robot.error()));
+  return plan_loaded(found->string(), std::move(*program), std::move(*robot));
+}
+
+Result<LoadedProgram> plan_loaded(const std::string& file, Program program, ProgramRobot robot) {
   std::optional<Progress> progress;
   std::size_t told = 0;
   const auto after_step = [&](std::size_t done, std::size_t total) {
@@ -20,9 +57,9 @@ Result<LoadedProgram> load_program(const std::string& file) {
     told = done;
     return !interrupted();
   };
-  ProgramPlan plan = plan_program(robot->model, robot->arm, *program, {.after_step = after_step});
+  ProgramPlan plan = plan_program(robot.model, robot.arm, program, {.after_step = after_step});
   if (interrupted()) return fail(Errc::impossible, text(msg::motion_program_stopped));
-  return LoadedProgram{file, std::move(*program), std::move(*robot), std::move(plan)};
+  return LoadedProgram{file, std::move(program), std::move(robot), std::move(plan)};
 }
 
 std::string line_of(const LoadedProgram& loaded, const ProgramFault& fault) {

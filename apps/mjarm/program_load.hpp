@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "mjarm/core/result.hpp"
@@ -15,8 +16,17 @@ struct LoadedProgram {
   ProgramPlan plan;
 };
 
+/// File of a program: a path, or the name of a shipped one, with or without `.yaml`.
+/// @return an error with the nearest name.
+[[nodiscard]] Result<std::filesystem::path> find_program_file(const std::string& name_or_path);
+
 /// Reads a program, loads its robot and plans it, with a progress bar.
-[[nodiscard]] Result<LoadedProgram> load_program(const std::string& file);
+[[nodiscard]] Result<LoadedProgram> load_program(const std::string& name_or_path);
+
+/// Plans a program for a robot that is loaded already, with a progress bar.
+/// @param file  for messages.
+[[nodiscard]] Result<LoadedProgram> plan_loaded(const std::string& file, Program program,
+                                                ProgramRobot robot);
 
 /// `file:line:column: movel: out of reach by ...`.
 [[nodiscard]] std::string line_of(const LoadedProgram& loaded, const ProgramFault& fault);

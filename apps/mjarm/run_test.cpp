@@ -19,10 +19,6 @@ program:
   - wait: 100ms
 )";
 
-std::string shipped(const std::string& name) {
-  return std::string(MJARM_MODELS) + "/../examples/programs/" + name + ".yaml";
-}
-
 TEST(Check, ListsTheMotions) {
   const support::TempFolder folder;
   const auto file = folder.write("cell.yaml", kProgram).string();
@@ -77,21 +73,54 @@ TEST(Run, DoesWhatItPlannedAndWritesItDown) {
   }
 }
 
-TEST(Run, TheShippedProgramsReachWhatTheDemosReach) {
+class ShippedProgram : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedProgram, IsFollowedToAThousandthOfAMillimetre) {
   const support::TempFolder folder;
-  for (const std::string name :
-       {"ellipse", "movel", "point", "movej", "letters", "table", "ur5e"}) {
-    const auto out = folder.path() / name;
-    const auto result = mjarm({"run", shipped(name), "--headless", "--out", out.string()});
-    ASSERT_EQ(result.exit_code, 0) << name << ": " << result.err;
-    const auto report = support::load_json(out / "report.json");
-    EXPECT_EQ(report.at("ok"), true) << name;
-    EXPECT_LT(report.at("static_error").at("position"), 1e-6) << name;
-    if (report.contains("path_error_max")) {
-      EXPECT_LT(report.at("path_error_max"), 1e-6) << name;
-      EXPECT_GT(report.at("coverage"), 0.999) << name;
-    }
+  const auto out = folder.path() / "out";
+  const auto result = mjarm({"run", GetParam(), "--headless", "--out", out.string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = support::load_json(out / "report.json");
+  EXPECT_EQ(report.at("ok"), true);
+  EXPECT_LT(report.at("static_error").at("position"), 1e-6);
+  if (report.contains("path_error_max")) {
+    EXPECT_LT(report.at("path_error_max"), 1e-6);
+    EXPECT_GT(report.at("coverage"), 0.999);
   }
+}
+
+std::vector<std::string> shipped_programs() {
+  std::vector<std::string> names;
+  const std::filesystem::path folder = std::string(MJARM_MODELS) + "/../examples/programs";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedProgram, ::testing::ValuesIn(shipped_programs()),
+                         [](const auto& program) { return program.param; });
+
+/// A demo is its program: both write the same, but for the name.
+TEST(Run, ADemoIsItsProgram) {
+  const support::TempFolder folder;
+  std::vector<nlohmann::json> reports;
+  for (const char* command : {"demo", "run"}) {
+    const auto out = folder.path() / command;
+    const auto result =
+        mjarm({command, "movel", "--headless", "--no-timing", "--out", out.string()});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    reports.push_back(support::load_json(out / "report.json"));
+  }
+  EXPECT_EQ(reports[0], reports[1]);
+  EXPECT_EQ(folder.read("demo/log.csv"), folder.read("run/log.csv"));
+}
+
+TEST(Run, UnknownNamesGetTheNearestProgram) {
+  const auto result = mjarm({"run", "elipse"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(only_line(result), HasSubstr("\"ellipse\""));
 }
 
 TEST(Run, RefusesAProgramWithFaultsBeforeItMakesAFolder) {

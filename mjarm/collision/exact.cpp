@@ -11,6 +11,7 @@
 
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
+#include "mjarm/core/rng.hpp"
 
 namespace mjarm {
 namespace {
@@ -74,6 +75,7 @@ struct ExactChecker::Impl {
         addresses(other.addresses),
         pieces(other.pieces),
         capsule_boxes(other.capsule_boxes),
+        constant_pairs(other.constant_pairs),
         matches(other.matches) {
     make_data();
   }
@@ -186,15 +188,58 @@ struct ExactChecker::Impl {
 
   /// Candidates come from the collision detection with a wide margin, so that its rules decide
   /// which pairs count; their distance is measured exactly.
-  std::optional<NearestPair> nearest() {
-    std::set<GeomIds> candidates;
+  std::set<GeomIds> candidates() {
+    std::set<GeomIds> out;
     for (const mjContact& contact : detect(m_wide)) {
-      if (counts(contact)) candidates.insert({contact.geom[0], contact.geom[1]});
+      if (counts(contact)) out.insert({contact.geom[0], contact.geom[1]});
+    }
+    return out;
+  }
+
+  /// Up to the margin.
+  double distance(GeomIds ids) {
+    if (!detail::is_capsule_box(m, ids.geom1, ids.geom2)) {
+      return mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, nullptr);
+    }
+    const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
+    return gap ? gap->distance : options.margin;
+  }
+
+  /// Pairs that are equally far apart in every posture, found by drawing some.
+  void find_constant_pairs() {
+    constexpr int kPostures = 8;
+    constexpr double kSame = 1e-6;  // [m] more than the distance is uncertain by
+    constant_pairs.emplace();
+    std::map<GeomIds, double> same;
+    Rng rng(1);
+    for (int k = 0; k < kPostures && (k == 0 || !same.empty()); ++k) {
+      std::vector<double> q(addresses.size());
+      for (double& value : q) value = rng.uniform(-1.5, 1.5);
+      place(q);
+      if (k == 0) {
+        std::set<GeomIds> pairs = candidates();
+        pairs.insert(capsule_boxes.begin(), capsule_boxes.end());
+        for (const GeomIds ids : pairs) same.emplace(ids, distance(ids));
+        std::erase_if(same, [&](const auto& entry) { return !(entry.second < options.margin); });
+      } else {
+        std::erase_if(same, [&](const auto& entry) {
+          return std::abs(distance(entry.first) - entry.second) > kSame;
+        });
+      }
+    }
+    for (const auto& [ids, apart] : same) constant_pairs->insert(ids);
+  }
+
+  std::optional<NearestPair> nearest(std::span<const double> q) {
+    if (!constant_pairs) {
+      find_constant_pairs();
+      place(q);
     }
     GeomIds which;
     NearestPair best;
     best.distance = options.margin;
-    for (const GeomIds ids : candidates) {
+    for (const GeomIds ids : candidates()) {
+      if (constant_pairs->contains(ids)) continue;
       std::array<mjtNum, 6> segment{};
       const double distance =
           mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, segment.data());
@@ -203,6 +248,7 @@ struct ExactChecker::Impl {
       best = {{}, distance, vector(segment.data()), vector(segment.data() + 3)};
     }
     for (const GeomIds ids : capsule_boxes) {
+      if (constant_pairs->contains(ids)) continue;
       const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
       if (!gap || gap->distance >= best.distance) continue;
       which = ids;
@@ -222,7 +268,8 @@ struct ExactChecker::Impl {
   std::vector<int> addresses;  // of the arm's joints in qpos
   std::vector<int> pieces;     // per body: how many joints of the arm move it
   std::vector<GeomIds> capsule_boxes;
-  bool matches = false;  // the arm is one of this model
+  std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
+  bool matches = false;                             // the arm is one of this model
   std::unique_ptr<mjData, DeleteData> d;
 };
 
@@ -247,7 +294,7 @@ Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
   report.contacts = impl_->overlapping();
   report.free =
       report.contacts.empty() || report.contacts.front().depth <= impl_->options.allow_depth;
-  if (impl_->options.margin > 0) report.nearest = impl_->nearest();
+  if (impl_->options.margin > 0) report.nearest = impl_->nearest(q);
   return report;
 }
 

@@ -35,7 +35,8 @@ struct ContactPoint {
   Eigen::Vector3d normal_W;  ///< unit, from geom 1 to geom 2
 };
 
-/// The two geoms that are nearest to each other.
+/// The two geoms that are nearest to each other, of those whose distance the arm can change (a
+/// first link that turns over the floor always is as near to it).
 struct NearestPair {
   GeomPair pair;
   double distance = 0;   ///< [m] between the surfaces; negative where they overlap

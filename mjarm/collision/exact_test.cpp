@@ -248,6 +248,30 @@ TEST(ExactChecker, MujocosRulesDecideWhichPairsCount) {
   EXPECT_EQ(check(checker, {2, 0, -0.8}).contacts.size(), 2U);  // floor by 0, crate
 }
 
+TEST(ExactChecker, PairsWhoseDistanceNeverChangesAreNotTheNearest) {
+  const support::TempFolder folder;
+  const std::string xml = R"(<mujoco><compiler angle="radian"/><worldbody>
+    <geom name="floor" type="plane" size="5 5 1"/>
+    <body name="turret" pos="0 0 0.003">
+      <joint name="j1" type="hinge" axis="0 0 1" range="-3 3"/>
+      <geom name="shoulder" type="capsule" size="0.05" fromto="0 0 0.05 0.2 0 0.05"/>
+      <body name="lift" pos="0 0 0.5"><joint name="j2" type="slide" axis="0 0 1" range="-1 1"/>
+        <geom name="ball" type="sphere" size="0.1"/><site name="tip"/></body></body>
+    </worldbody></mujoco>)";
+  const World world = load(folder, xml);
+  ExactChecker checker(world.model, world.arm);
+  // The shoulder is 3 mm over the floor wherever it turns.
+  EXPECT_FALSE(check(checker, {0.3, 0.2}).nearest.has_value());
+  const CollisionReport low = check(checker, {0.3, -0.35});
+  ASSERT_TRUE(low.nearest.has_value());
+  EXPECT_EQ(low.nearest->pair.geom2, "ball");
+  // Where it does overlap, that is a contact as any other.
+  const std::string sunk = std::string(xml).replace(xml.find("0.003"), 5, "-0.01");
+  const World below = load(folder, sunk);
+  ExactChecker strict(below.model, below.arm);
+  EXPECT_FALSE(check(strict, {0.3, 0.2}).free);
+}
+
 TEST(ExactChecker, TouchingWithinTheAllowedDepthIsFree) {
   const support::TempFolder folder;
   const World world = load(

@@ -126,8 +126,10 @@ struct Program {
   std::string scene;  ///< path of a file that holds the robot; empty = the robot's own
   std::string tool;   ///< frame of the robot that is moved; empty = the robot's own
   FilePlace robot_place, scene_place, tool_place;
+  std::vector<double> start;  ///< [rad or m] (dof,) where the arm stands at first; empty = home
+  FilePlace start_place;
   std::map<std::string, ProgramPose> frames;  ///< by name, each in another one or in the world
-  Set start = {};                             ///< what holds before the first instruction
+  Set settings = {};                          ///< what holds before the first instruction
   std::optional<ControlMode> control = {};
   std::vector<Instruction> instructions;
 };

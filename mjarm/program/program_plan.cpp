@@ -43,11 +43,12 @@ struct Tool {
 
 class Planner {
  public:
-  Planner(const Model& model, detail::Steps steps, const ProgramPlanOptions& options)
-      : steps_(std::move(steps.steps)), options_(options) {
+  Planner(const Model& model, detail::Steps steps, FilePlace start_place,
+          const ProgramPlanOptions& options)
+      : steps_(std::move(steps.steps)), start_place_(start_place), options_(options) {
     plan_.arms = std::move(steps.arms);
     plan_.faults = std::move(steps.faults);
-    plan_.q_start = plan_.arms.front().home;
+    plan_.q_start = std::move(steps.q_start);
     for (const Arm& arm : plan_.arms) {
       IkOptions ik;
       ik.task = arm.dof() < 6 ? IkTask::position : IkTask::pose;
@@ -60,6 +61,7 @@ class Planner {
   }
 
   ProgramPlan plan() {
+    look_at_start();
     JointVec q = plan_.q_start;
     bool known = true;  // whether the arm's posture is known after a fault
     for (std::size_t i = 0; i < steps_.size();) {
@@ -87,6 +89,15 @@ class Planner {
   static constexpr std::size_t kMostAnswers = 16;  ///< to one pose that are tried
 
   const Tool& tool(const Step& step) const { return tools_[step.tool]; }
+
+  /// Where the program begins is within the limits, else it is a fault and taken to be home.
+  void look_at_start() {
+    if (const auto fault = tools_.front().judge.beyond_limits(plan_.q_start)) {
+      detail::add_fault(plan_.faults,
+                        {start_place_, "start", "joint_limit", *fault, Errc::impossible});
+      plan_.q_start = plan_.arms.front().home;
+    }
+  }
 
   void note(const PlanFault& fault) {
     const Step& step = steps_[fault.step];
@@ -386,6 +397,7 @@ class Planner {
   }
 
   std::vector<Step> steps_;
+  FilePlace start_place_;
   const ProgramPlanOptions& options_;
   std::vector<Tool> tools_;
   ProgramPlan plan_;
@@ -401,7 +413,7 @@ double ProgramPlan::duration() const {
 
 ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& program,
                          const ProgramPlanOptions& options) {
-  return Planner(model, detail::steps_of(program, model, arm), options).plan();
+  return Planner(model, detail::steps_of(program, model, arm), program.start_place, options).plan();
 }
 
 }  // namespace mjarm

@@ -51,6 +51,8 @@ struct PlannedMove {
   std::optional<bool> close;     ///< the gripper closes or opens
   std::vector<SpeedDip> dips;    ///< where the tool is slower than asked
   std::optional<MoveMeasures> measures;  ///< none for rests
+
+  [[nodiscard]] bool is_approach() const { return word == "approach"; }
 };
 
 /// What cannot be done, and where it stands in the file.
@@ -66,7 +68,7 @@ struct ProgramFault {
 /// A program that was thought through, before anything moves.
 struct ProgramPlan {
   std::vector<Arm> arms;             ///< the arm with each tool that is used
-  JointVec q_start;                  ///< where it begins: the arm's home
+  JointVec q_start;                  ///< where it begins: `start`, else the arm's home
   std::vector<PlannedMove> moves;    ///< one after another; gaps where there are faults
   std::vector<ProgramFault> faults;  ///< in the order of the program; it may run where empty
 
@@ -83,7 +85,7 @@ struct ProgramPlanOptions {
   std::function<bool(std::size_t done, std::size_t total)> after_step = {};
 };
 
-/// Plans every motion of `program`: the arm starts at home; goals of `movej` get the answer from
+/// Plans every motion of `program`: the arm begins at `start`; goals of `movej` get the answer from
 /// which the straight moves that follow can be done; straight moves and curves the branch that goes
 /// all the way (solve_path.hpp); curves that begin elsewhere are approached by a joint move. After
 /// a fault it goes on from where the faulty instruction should have ended, so that one call finds

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/ellipse.hpp"
 #include "mjarm/program/program_reader.hpp"
@@ -69,6 +71,27 @@ double strayed(const ProgramPlan& plan, const PlannedMove& move) {
     worst = std::max(worst, move.curve->nearest(fk(plan.arms[move.tool], view(q)).p).distance);
   }
   return worst;
+}
+
+TEST(ProgramPlan, BeginsAtItsStart) {
+  const std::string head = "postures: {up: [0, -90deg, 90deg, -90deg, 90deg, 0]}\nstart: up\n";
+  const ProgramPlan plan = plan_text("  - movej: {joints: home}\n", head);
+  ASSERT_TRUE(plan.ok()) << faults_of(plan);
+  EXPECT_NEAR(plan.q_start[1], -std::numbers::pi / 2, 1e-12);
+  EXPECT_EQ(plan.moves.front().trajectory.at(0).q, plan.q_start);
+  expect_connected(plan);
+}
+
+TEST(ProgramPlan, AStartBeyondTheLimitsOrOfOtherJointsIsAFault) {
+  const ProgramPlan beyond =
+      plan_text("  - movej: {joints: home}\n", "start: [0, 0, 9, 0, 0, 0]\n");
+  ASSERT_EQ(beyond.faults.size(), 1U) << faults_of(beyond);
+  EXPECT_EQ(beyond.faults[0].place.line, 2);
+  EXPECT_EQ(beyond.faults[0].reason, "joint_limit");
+  const ProgramPlan other = plan_text("  - movej: {joints: home}\n", "start: [0, 0]\n");
+  ASSERT_EQ(other.faults.size(), 1U) << faults_of(other);
+  EXPECT_THAT(other.faults[0].what, HasSubstr("expected 6 joint values, got 2"));
+  EXPECT_EQ(other.faults[0].code, Errc::bad_input);
 }
 
 TEST(ProgramPlan, DoesWhatTheCallsSay) {

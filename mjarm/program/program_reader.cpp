@@ -61,8 +61,8 @@ std::string optional_text(const Fields& fields, std::string_view key, FilePlace&
 
 Program read(const YamlNode& root) {
   const Fields fields(root, "program",
-                      {"robot", "scene", "tool", "frame", "frames", "poses", "postures", "speed",
-                       "joint_speed", "zone", "control", "program"});
+                      {"robot", "scene", "tool", "start", "frame", "frames", "poses", "postures",
+                       "speed", "joint_speed", "zone", "control", "program"});
   Program out;
   const YamlNode& robot = fields.need("robot");
   out.robot = detail::text_of(robot, "robot");
@@ -75,9 +75,13 @@ Program read(const YamlNode& root) {
     out.control = *mode;
   }
   out.frames = read_frames(fields);
-  out.start = detail::set_of(fields);
-  out.start.tool.reset();
+  out.settings = detail::set_of(fields);
+  out.settings.tool.reset();
   const NamedThings named = read_names(fields);
+  if (const YamlNode* start = fields.find("start")) {
+    out.start = detail::joints_of(*start, "start", named);
+    out.start_place = start->place;
+  }
   out.instructions = detail::instructions_of(fields.need("program"), "program", named);
   return out;
 }

@@ -59,10 +59,10 @@ TEST(ProgramReader, TakesEveryInstruction) {
   const Program& p = *read;
   EXPECT_EQ(p.robot, "ur5e");
   EXPECT_EQ(p.control, ControlMode::feed_forward);
-  EXPECT_EQ(p.start.frame->name, "table");
-  EXPECT_EQ(p.start.speed, 0.1);
-  EXPECT_EQ(p.start.share, 0.5);
-  EXPECT_EQ(p.start.zone, 0.005);
+  EXPECT_EQ(p.settings.frame->name, "table");
+  EXPECT_EQ(p.settings.speed, 0.1);
+  EXPECT_EQ(p.settings.share, 0.5);
+  EXPECT_EQ(p.settings.zone, 0.005);
   EXPECT_EQ(p.frames.at("corner").frame.name, "table");
   ASSERT_EQ(p.instructions.size(), 13U);
   EXPECT_EQ(p.instructions[0].place.line, 18);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -33,6 +34,7 @@ class StepWriter {
   StepWriter(const Program& program, const Model& model, const Arm& arm)
       : program_(program), model_(model), qpos_(model.qpos0().begin(), model.qpos0().end()) {
     out_.arms.push_back(arm);
+    out_.q_start = arm.home;
     tools_[arm.tip] = 0;
     for (int i = 0; i < arm.dof(); ++i) {
       qpos_[static_cast<std::size_t>(arm.joints[static_cast<std::size_t>(i)].qpos)] = arm.home[i];
@@ -40,16 +42,22 @@ class StepWriter {
   }
 
   Steps write() {
-    try {
-      take(program_.start, {});
-    } catch (const StepFault& fault) {
-      out_.faults.push_back({fault.place, "program", fault.reason, fault.what, Errc::bad_input});
-    }
+    attempt("program", [&] { take(program_.settings, {}); });
+    attempt("start", [&] { out_.q_start = joints(program_.start, program_.start_place); });
     add_all(program_.instructions);
     return std::move(out_);
   }
 
  private:
+  /// Does a part of what stands before the instructions.
+  void attempt(const char* part, const std::function<void()>& work) {
+    try {
+      work();
+    } catch (const StepFault& fault) {
+      out_.faults.push_back({fault.place, part, fault.reason, fault.what, Errc::bad_input});
+    }
+  }
+
   void add_all(const std::vector<Instruction>& instructions) {
     for (const Instruction& instruction : instructions) {
       if (full_) return;

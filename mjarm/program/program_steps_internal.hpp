@@ -36,6 +36,7 @@ struct Step {
 struct Steps {
   std::vector<Arm> arms;  ///< by tool; the first is that of the beginning
   std::vector<Step> steps;
+  JointVec q_start;  ///< where the arm stands at first
   std::vector<ProgramFault> faults;
 };
 

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "mjarm/model/arm.hpp"
 #include "mjarm/path/curve.hpp"
+#include "mjarm/program/metrics.hpp"
 #include "mjarm/render/plot.hpp"
 #include "mjarm/sim/recorder.hpp"
 
@@ -14,7 +16,8 @@ namespace mjarm::app {
 /// A part of a run that was measured against a curve, or against nothing but the plan.
 struct MeasuredRun {
   std::vector<RecordRow> rows;
-  const Curve* curve = nullptr;  ///< null = errors are from planned to executed tool
+  const Curve* curve = nullptr;         ///< null = errors are from planned to executed tool
+  std::optional<PathError> error = {};  ///< against `curve`
 };
 
 /// Single charts of a run; the tool speed [m/s], the distance to the curve [mm], joint values

@@ -1,9 +1,10 @@
 #include "mjarm/path/ellipse.hpp"
 
+#include <variant>
+
 #include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/demos/tutorial.hpp"
-#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/path/path_fix.hpp"
 
@@ -11,15 +12,7 @@ namespace mjarm::app {
 namespace {
 
 constexpr int kPoints = 200;
-
-Ellipse the_ellipse(bool guide) {
-  Ellipse ellipse;
-  ellipse.center = {0, guide ? -0.2 : -0.3, 0.5};
-  ellipse.a = 0.3;
-  ellipse.b = 0.15;
-  ellipse.R = tool_down();
-  return ellipse;
-}
+constexpr double kGuideY = -0.2;  // [m] of the tutorial's centre, part of whose ellipse is too near
 
 /// Says which points cannot be reached, why, and which shift of the whole curve mends it.
 Result<Report> refuse(Stage& stage, std::span<const Pose> points,
@@ -45,37 +38,25 @@ Result<Report> refuse(Stage& stage, std::span<const Pose> points,
 }  // namespace
 
 Result<Report> run_ellipse(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("ellipse", options);
-  if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  Result<Program> program = demo_program("ellipse");
+  if (!program) return fail(std::move(program.error()));
+  auto* drawn = std::get_if<DrawEllipse>(&program->instructions.front().what);
+  if (drawn == nullptr) return fail(Errc::bad_input, text(msg::demo_no_ellipse));
+  if (options.guide) drawn->center.y() = kGuideY;
+  const Ellipse ellipse{drawn->center, drawn->a, drawn->b, drawn->normal, drawn->R_FT};
+  const Result<LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  if (!loaded) return fail(loaded.error());
+  if (loaded->plan.ok()) return run_demo_plan(*loaded, options);
 
-  const Ellipse ellipse = the_ellipse(options.guide);
-  const Result<Curve> curve = Curve::ellipse(ellipse);
-  if (!curve) return fail(curve.error());
+  Result<std::unique_ptr<Stage>> stage =
+      Stage::open("ellipse", options, {loaded->robot.model, loaded->robot.arm});
+  if (!stage) return fail(std::move(stage.error()));
   const std::vector<Pose> points = ellipse_points(ellipse, kPoints);
-  stage.show().add_points(points, 2);
-  const std::span<const double> home = view(stage.arm().home);
-  const std::vector<UnreachableRange> ranges = unreachable_ranges(stage.reach(), points, home);
-  if (!ranges.empty()) return refuse(stage, points, ranges);
-
-  const Result<JointPath, PathFailure> path = solve_path(stage.ik(), points, home);
-  if (!path) return stage.refuse({.path = path.error(), .timing = {}});
-  const Result<ToolMotion, MotionFailure> motion =
-      plan_tool_motion(stage.ik(), *curve, view(path->q.front()), {.path = {.keep_start = true}});
-  if (!motion) return stage.refuse(motion.error());
-  log_info(text(msg::demo_plan, curve->length(), motion->trajectory.duration(), path->max_step()));
-
-  Report report;
-  report.max_joint_step = path->max_step();
-  stage.tell(*motion, report);
-  const ControlMode mode = stage.control(ControlMode::computed_torque);
-  if (auto done = stage.approach(view(motion->path.q.front()), mode); !done) {
-    return fail(std::move(done.error()));
-  }
-  if (auto done = stage.run(motion->trajectory, mode, 0.3, &*curve); !done) {
-    return fail(std::move(done.error()));
-  }
-  return stage.finish(std::move(report));
+  (*stage)->show().add_points(points, 2);
+  const std::vector<UnreachableRange> ranges =
+      unreachable_ranges((*stage)->reach(), points, view((*stage)->arm().home));
+  if (!ranges.empty()) return refuse(**stage, points, ranges);
+  return (*stage)->refuse(loaded->plan.faults.front().reason, first_fault(*loaded).what);
 }
 
 }  // namespace mjarm::app

@@ -1,4 +1,5 @@
 #include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
@@ -6,9 +7,10 @@
 #include "mjarm/path/joint_path.hpp"
 
 namespace mjarm::app {
+namespace {
 
 /// 100 joint waypoints, each waited for until all joints are within 0.02 rad, as the tutorial does.
-Result<Report> run_movej(const DemoOptions& options) {
+Result<Report> run_waypoints(const DemoOptions& options) {
   Result<std::unique_ptr<Stage>> opened = Stage::open("movej", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
@@ -23,10 +25,10 @@ Result<Report> run_movej(const DemoOptions& options) {
   stage.show().plot_tool();
 
   constexpr int kWaypoints = 100;
+  constexpr double kTolerance = 0.02;  // [m] a servo alone sags by nearly that
   const Result<JointPath> path = joint_line(seed, view(solution->q), kWaypoints);
   if (!path) return fail(path.error());
-  const ControlMode mode =
-      stage.control(options.guide ? ControlMode::servo : ControlMode::computed_torque);
+  const ControlMode mode = stage.control(ControlMode::servo);
   if (auto done = stage.wait_through(path->q, {}, mode); !done)
     return fail(std::move(done.error()));
   const std::size_t reached = stage.reached();
@@ -37,7 +39,13 @@ Result<Report> run_movej(const DemoOptions& options) {
   report.coverage = static_cast<double>(reached) / kWaypoints;
   report.static_error = pose_error(goal, stage.sim().tool(stage.arm()));
   log_info(text(msg::demo_waypoints, reached, kWaypoints, 1e3 * report.static_error->position));
-  return stage.finish(std::move(report), options.guide ? 0.02 : 1e-4);
+  return stage.finish(std::move(report), kTolerance);
+}
+
+}  // namespace
+
+Result<Report> run_movej(const DemoOptions& options) {
+  return options.guide ? run_waypoints(options) : run_program_demo("movej", options);
 }
 
 }  // namespace mjarm::app

@@ -42,20 +42,26 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
   start_at(view(arm_.home));
 }
 
-Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
-                                           int dof) {
+Result<Robot> load_stage_robot(const std::string& demo, const DemoOptions& options, int dof) {
   RobotOptions chosen = options.robot;
   if (options.meshes) {
     const Result<std::filesystem::path> scene = find_mesh_scene(chosen.robot);
     if (!scene) return fail(scene.error());
     chosen.robot = scene->string();
   }
-  const Result<Robot> robot = load_robot(chosen);
-  if (!robot) return fail(robot.error());
+  Result<Robot> robot = load_robot(chosen);
+  if (!robot) return robot;
   const int joints = robot->arm.dof();
   if (dof != 0 && joints != dof) {
     return fail(Errc::usage, text(msg::demo_other_joints, demo, dof, joints));
   }
+  return robot;
+}
+
+Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
+                                           int dof) {
+  const Result<Robot> robot = load_stage_robot(demo, options, dof);
+  if (!robot) return fail(robot.error());
   return open(demo, options, *robot);
 }
 
@@ -134,9 +140,13 @@ Result<void> Stage::follow(ControlMode mode, bool measured, const Curve* curve,
 Result<void> Stage::approach(std::span<const double> q, ControlMode mode) {
   const Result<Trajectory> move = time_joint_move(view(q_command_), q, arm_.limits);
   if (!move) return fail(move.error());
-  q_command_ = joint_vec(q);
+  return approach(*move, mode, 0.2);
+}
+
+Result<void> Stage::approach(const Trajectory& move, ControlMode mode, double settle) {
+  q_command_ = move.at(move.duration()).q;
   return follow(mode, false, nullptr, [&](const FollowSetup& setup) {
-    return follow_time(setup, *move, {.settle = 0.2});
+    return follow_time(setup, move, {.settle = settle});
   });
 }
 
@@ -213,6 +223,12 @@ std::vector<MeasuredRun> Stage::measured_runs() const {
       kept.X_WT = kept.X_WT * measured_[k].X_TU;
     }
   }
+  for (MeasuredRun& run : runs) {
+    if (run.curve == nullptr) continue;
+    std::vector<Eigen::Vector3d> p_W;
+    for (const RecordRow& row : run.rows) p_W.push_back(row.X_WT.p);
+    run.error = measure_path(*run.curve, p_W);
+  }
   return runs;
 }
 
@@ -222,21 +238,19 @@ void Stage::measure(std::span<const MeasuredRun> runs, Report& report) const {
   double sum2 = 0, covered = 0, length = 0;
   std::size_t count = 0;
   for (const MeasuredRun& run : runs) {
-    if (run.curve == nullptr) continue;
-    std::vector<Eigen::Vector3d> p_W;
-    for (const RecordRow& row : run.rows) p_W.push_back(row.X_WT.p);
-    const PathError error = measure_path(*run.curve, p_W);
-    sum2 += error.rms * error.rms * static_cast<double>(p_W.size());
-    count += p_W.size();
+    if (!run.error) continue;
+    const PathError& error = *run.error;
+    sum2 += error.rms * error.rms * static_cast<double>(run.rows.size());
+    count += run.rows.size();
     covered += error.coverage * run.curve->length();
     length += run.curve->length();
     if (error.max >= all.max) {
       all.max = error.max;
       all.at = error.at;
     }
-    for (std::size_t i = 1; i < p_W.size(); ++i) {
-      const double dt = run.rows[i].time - run.rows[i - 1].time;
-      const double speed = (p_W[i] - p_W[i - 1]).norm() / dt;
+    for (std::size_t i = 1; i < run.rows.size(); ++i) {
+      const RecordRow &before = run.rows[i - 1], &row = run.rows[i];
+      const double speed = (row.X_WT.p - before.X_WT.p).norm() / (row.time - before.time);
       report.tool_speed_max = std::max(report.tool_speed_max.value_or(0), speed);
     }
   }
@@ -248,7 +262,10 @@ void Stage::measure(std::span<const MeasuredRun> runs, Report& report) const {
 }
 
 Result<Report> Stage::finish(Report report, double tolerance) {
-  const std::vector<MeasuredRun> runs = measured_runs();
+  return finish(std::move(report), tolerance, measured_runs());
+}
+
+Result<Report> Stage::finish(Report report, double tolerance, std::span<const MeasuredRun> runs) {
   measure(runs, report);
   report.ok = !ended_early();
   report.reason = end_reason_;

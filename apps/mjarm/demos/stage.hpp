@@ -21,6 +21,11 @@
 
 namespace mjarm::app {
 
+/// The robot that the user chose for a demo, with real meshes where they are asked for.
+/// @param dof  number of joints the demo's postures are for; 0 = any.
+[[nodiscard]] Result<Robot> load_stage_robot(const std::string& demo, const DemoOptions& options,
+                                             int dof = 0);
+
 /// A demo's world: model, arm, simulation, log, and whatever shows them. `finish` or `refuse` ends
 /// it and writes the files.
 class Stage {
@@ -54,6 +59,8 @@ class Stage {
   void start_at(std::span<const double> q);
   /// Joint move from where the arm is commanded to `q`; not part of what is measured.
   [[nodiscard]] Result<void> approach(std::span<const double> q, ControlMode mode);
+  /// The same along a move that is planned already, with a rest of `settle` [s] after it.
+  [[nodiscard]] Result<void> approach(const Trajectory& move, ControlMode mode, double settle = 0);
   /// Runs `trajectory` and stays `settle` [s] at its end. With `curve`, the executed tool positions
   /// are measured against it.
   /// @param X_TU  the frame that is to be on the curve, in the arm's tool frame.
@@ -71,7 +78,7 @@ class Stage {
   /// enters the report or the log.
   [[nodiscard]] Result<MeasuredRun> rehearse(const Trajectory& trajectory, ControlMode mode,
                                              const Curve& curve);
-  /// What was run and measured so far.
+  /// What was run so far, measured against the curves; they point into the stage.
   [[nodiscard]] std::vector<MeasuredRun> measured_runs() const;
   /// Writes the page of a comparison into the folder, as comparison.png and .svg.
   [[nodiscard]] Result<void> save_comparison(const Plot& page) const;
@@ -87,6 +94,9 @@ class Stage {
   /// Writes report, log, plots and picture into the folder, and keeps the window open. `report`
   /// says what the demo alone knows; measured values are filled in, and `ok` is withdrawn where the
   /// path was not covered or left by more than `tolerance` [m].
+  /// @param runs  all that measured_runs() gives in the end.
+  [[nodiscard]] Result<Report> finish(Report report, double tolerance,
+                                      std::span<const MeasuredRun> runs);
   [[nodiscard]] Result<Report> finish(Report report, double tolerance = 5e-4);
   /// Ends a demo that cannot be done, before anything moves.
   [[nodiscard]] Result<Report> refuse(std::string_view reason, const std::string& detail,

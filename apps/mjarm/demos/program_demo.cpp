@@ -1,0 +1,45 @@
+#include "apps/mjarm/demos/program_demo.hpp"
+
+#include <utility>
+
+#include "apps/mjarm/program_run.hpp"
+#include "mjarm/program/program_reader.hpp"
+
+namespace mjarm::app {
+
+Result<Program> demo_program(const std::string& demo) {
+  return find_program_file(demo + ".yaml").and_then([](const std::filesystem::path& file) {
+    return read_program(file);
+  });
+}
+
+Result<LoadedProgram> plan_demo(Program program, const DemoOptions& options) {
+  Result<Robot> robot =
+      load_stage_robot(program.name, options, static_cast<int>(program.start.size()));
+  if (!robot) return fail(std::move(robot.error()));
+  const std::string file = program.name + ".yaml";
+  return plan_loaded(file, std::move(program), {std::move(robot->model), std::move(robot->arm)});
+}
+
+Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& options,
+                             const std::string& camera) {
+  constexpr double kTolerance = 5e-4;  // [m]
+  const Result<std::unique_ptr<Stage>> stage =
+      Stage::open(loaded.program.name, options, {loaded.robot.model, loaded.robot.arm});
+  if (!stage) return fail(stage.error());
+  if (!loaded.plan.ok()) {
+    return (*stage)->refuse(loaded.plan.faults.front().reason, first_fault(loaded).what);
+  }
+  (*stage)->set_camera(camera);
+  return run_plan(**stage, loaded, kTolerance);
+}
+
+Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options) {
+  Result<Program> program = demo_program(demo);
+  if (!program) return fail(std::move(program.error()));
+  const Result<LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  if (!loaded) return fail(loaded.error());
+  return run_demo_plan(*loaded, options);
+}
+
+}  // namespace mjarm::app

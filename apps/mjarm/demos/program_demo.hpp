@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/program_load.hpp"
+
+namespace mjarm::app {
+
+/// The shipped program of a demo.
+[[nodiscard]] Result<Program> demo_program(const std::string& demo);
+
+/// Plans `program` on the robot that the user chose.
+/// @return usage where the program's postures are for another number of joints.
+[[nodiscard]] Result<LoadedProgram> plan_demo(Program program, const DemoOptions& options);
+
+/// Runs it; a plan with faults ends the demo with the first of them.
+/// @param camera  of the picture at the end, where the model has it.
+[[nodiscard]] Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& options,
+                                           const std::string& camera = "overview");
+
+/// All of that: the demo is its program.
+[[nodiscard]] Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options);
+
+}  // namespace mjarm::app
