@@ -1,6 +1,6 @@
 """Brings the tables of docs/benchmarks.md up to date.
 
-Usage: update_docs.py [ik|path|time] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
+Usage: update_docs.py [ik|path|time|control] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
 update_docs.py ik build/release/bin/mjarm --data cases --peers .venv
 Without a suite all of them run with the same arguments, where --data SUITE=DIR names a folder for one suite.
 """
@@ -9,7 +9,7 @@ import pathlib
 import subprocess
 import sys
 
-SUITES = ("ik", "path", "time")
+SUITES = ("ik", "path", "time", "control")
 
 
 def arguments_of(suite, arguments):
@@ -29,7 +29,8 @@ def arguments_of(suite, arguments):
 def update(suite, program, arguments):
     begin, end = f"<!-- {suite}: begin -->\n", f"<!-- {suite}: end -->\n"
     page = pathlib.Path(__file__).resolve().parent.parent / "docs" / "benchmarks.md"
-    command = [program, "--lang", "en", "bench", suite, *arguments_of(suite, arguments)]
+    own = [] if suite == "control" else arguments_of(suite, arguments)  # it takes neither cases nor peers
+    command = [program, "--lang", "en", "bench", suite, *own]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(done.returncode)

@@ -23,4 +23,26 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   return result;
 }
 
+std::string markdown_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<int> widths;
+  for (const std::vector<std::string>& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], text_width(row[i]));
+    }
+  }
+  std::string out;
+  for (const std::vector<std::string>& row : rows) {
+    out += '|';
+    for (std::size_t i = 0; i < row.size(); ++i) out += " " + padded(row[i], widths[i]) + " |";
+    out += '\n';
+    if (&row != rows.data()) continue;
+    for (const int width : widths) {
+      out += "|" + std::string(static_cast<std::size_t>(width) + 2, '-');
+    }
+    out += "|\n";
+  }
+  return out;
+}
+
 }  // namespace mjarm::app

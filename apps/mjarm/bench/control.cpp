@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/bench/report.hpp"
 #include "apps/mjarm/bench/suite.hpp"
 #include "apps/mjarm/bench/suites.hpp"
 #include "apps/mjarm/json_doc.hpp"
@@ -72,7 +73,8 @@ std::string to_table(const std::vector<RestRun>& rests, const std::vector<LapRun
                     millimetres(run.result.worst.position),
                     fmt::format("{:.3g}", run.result.worst.rotation * 180 / std::numbers::pi)});
   }
-  std::string out = aligned(rows) + "\n";
+  std::string out = timing ? bench_occasion() + "\n\n" : std::string();
+  out += markdown_table(rows) + "\n";
   rows = {{text(msg::control_suite_lap), text(msg::control_suite_control), "max mm", "rms mm",
            text(msg::control_suite_half), text(msg::control_suite_lag),
            text(msg::control_suite_covered), "m/s", "rad/s2", text(msg::control_suite_cut)}};
@@ -86,7 +88,7 @@ std::string to_table(const std::vector<RestRun>& rests, const std::vector<LapRun
          fmt::format("{:.2f}", lap.peak_acceleration), std::to_string(lap.limited_steps)});
     if (timing) rows.back().push_back(fmt::format("{:.0f}", lap.rtf));
   }
-  return out + aligned(rows);
+  return out + markdown_table(rows);
 }
 
 JsonDoc to_json(const Robot& robot, const std::vector<RestRun>& rests,

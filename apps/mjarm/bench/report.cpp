@@ -10,10 +10,10 @@
 #include <tuple>
 #include <utility>
 
+#include "apps/mjarm/table.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/bench.hpp"
-#include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -67,28 +67,6 @@ Row row_of(const BenchResult& result, const BenchEntry& entry, bool timing) {
   row.push_back(ours(result, entry.set) == &entry ? "1" : ratio > 0 ? rounded(ratio) : "-");
   row.push_back(entry.timed);
   return row;
-}
-
-std::string aligned(const std::vector<Row>& rows) {
-  std::vector<int> widths;
-  for (const Row& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], text_width(row[i]));
-    }
-  }
-  std::string out;
-  for (const Row& row : rows) {
-    out += '|';
-    for (std::size_t i = 0; i < row.size(); ++i) out += " " + padded(row[i], widths[i]) + " |";
-    out += '\n';
-    if (&row != rows.data()) continue;
-    for (const int width : widths) {
-      out += "|" + std::string(static_cast<std::size_t>(width) + 2, '-');
-    }
-    out += "|\n";
-  }
-  return out;
 }
 
 std::vector<std::size_t> order_of(const BenchResult& result) {
@@ -165,7 +143,7 @@ std::string bench_table(const std::vector<BenchResult>& results, const std::vect
     for (const std::size_t i : order_of(result)) {
       rows.push_back(row_of(result, result.entries[i], timing));
     }
-    out += aligned(rows) + '\n';
+    out += markdown_table(rows) + '\n';
   }
   return out;
 }
