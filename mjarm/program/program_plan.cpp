@@ -298,7 +298,9 @@ class Planner {
       const Result<Curve> curve = step.whole ? Curve::circle(X_start, step.X_via, step.X_WT)
                                              : Curve::arc(X_start, step.X_via, step.X_WT);
       if (!curve) return failed(i, q, {i, "bad_input", curve.error().what});
-      return along(i, q, *curve, true);
+      const std::vector<PlannedPoint> points{
+          {X_start, step.place}, {step.X_via, step.place}, {step.X_WT, step.place}};
+      return made_from(points, along(i, q, *curve, true));
     }
     std::vector<Pose> points{X_start};
     std::vector<double> blends;
@@ -324,7 +326,14 @@ class Planner {
                       {at, "blend_overlap", text(msg::program_blend_overlap, asked, blend.radius)});
       }
     }
-    return along(i, q, *curve, true, end + 1 - i);
+    std::vector<PlannedPoint> told{{X_start, step.place}};
+    for (std::size_t k = i; k <= end; ++k) told.push_back({steps_[k].X_WT, steps_[k].place});
+    return made_from(told, along(i, q, *curve, true, end + 1 - i));
+  }
+
+  static Attempt made_from(const std::vector<PlannedPoint>& points, Attempt attempt) {
+    if (!attempt.fault) attempt.moves.back().points = points;
+    return attempt;
   }
 
   static bool same_pose(const Pose& a, const Pose& b) {
@@ -364,6 +373,7 @@ class Planner {
     move.measures = with.judge.measure(with.ik, motion->path.q);
     move.trajectory = std::move(motion->trajectory);
     move.curve = curve;
+    for (const Pose& X_WT : step.points) move.points.push_back({X_WT, step.place});
     move.dips = std::move(motion->dips);
     out.q = motion->path.q.back();
     out.moves.push_back(std::move(move));

@@ -40,6 +40,12 @@ struct MoveMeasures {
   double manipulability = 0;  ///< the least, see manipulability()
 };
 
+/// A tool pose that a motion was given.
+struct PlannedPoint {
+  Pose X_WT;
+  FilePlace place;  ///< of the instruction that goes there
+};
+
 /// One motion of a plan: an instruction, or several that are blended into one.
 struct PlannedMove {
   std::string word;              ///< of the instruction; "approach": to where a curve begins
@@ -48,8 +54,11 @@ struct PlannedMove {
   std::size_t tool = 0;          ///< index in ProgramPlan::arms
   Trajectory trajectory;         ///< a rest where nothing moves
   std::optional<Curve> curve;    ///< of the tool in the world; none for joint moves and rests
-  std::optional<bool> close;     ///< the gripper closes or opens
-  std::vector<SpeedDip> dips;    ///< where the tool is slower than asked
+  /// What `curve` was made from: where it starts, and the corners of straight moves (see
+  /// Curve::blends()) or the two poses of an arc; empty for curves that have a center.
+  std::vector<PlannedPoint> points;
+  std::optional<bool> close;             ///< the gripper closes or opens
+  std::vector<SpeedDip> dips;            ///< where the tool is slower than asked
   std::optional<MoveMeasures> measures;  ///< none for rests
 
   [[nodiscard]] bool is_approach() const { return word == "approach"; }

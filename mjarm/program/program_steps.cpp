@@ -224,6 +224,7 @@ class StepWriter {
     for (const ProgramPose& point : what.points) points.push_back(world(point));
     step.blend = what.blend.value_or(zone_);
     step.curve = value_or_fault(Curve::polyline(points, step.blend), step.place, "bad_input");
+    step.points = std::move(points);
     push(std::move(step));
   }
 
@@ -241,6 +242,7 @@ class StepWriter {
       points.push_back({X_WP * on_plane(stroke.back()) + lifted, R});
     }
     step.curve = value_or_fault(Curve::polyline(points), step.place, "bad_input");
+    step.points = std::move(points);
     push(std::move(step));
   }
 

@@ -29,6 +29,7 @@ struct Step {
   bool whole = false;               ///< arc
   double blend = 0;                 ///< [m] line: of the corner at its end; curve: of all
   std::optional<Curve> curve = {};  ///< curve
+  std::vector<Pose> points = {};    ///< curve: its corners X_WT, where it is straight between
   double seconds = 0;               ///< wait
   bool close = false;               ///< grip
 };
