@@ -17,7 +17,9 @@ TEST(BenchControl, StaysOnTheCurveAndCoversIt) {
   int driven = 0;
   for (const json& lap : bench.at("laps")) {
     EXPECT_FALSE(lap.contains("rtf"));
-    if (lap.at("control") == "servo") EXPECT_LT(lap.at("coverage").get<double>(), 0.5) << lap;
+    if (lap.at("control") == "servo") {
+      EXPECT_LT(lap.at("coverage").get<double>(), 0.5) << lap;
+    }
     if (lap.at("control") != "computed_torque") continue;
     ++driven;
     EXPECT_EQ(lap.at("coverage"), 1.0) << lap;
