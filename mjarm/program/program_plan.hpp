@@ -42,7 +42,9 @@ struct MoveMeasures {
 
 /// One motion of a plan: an instruction, or several that are blended into one.
 struct PlannedMove {
-  std::string word;              ///< of the instruction; "approach": to where a curve begins
+  /// Of the instruction; "approach": to where a curve begins. Of blended ones each word once, as in
+  /// "movel+movec".
+  std::string word;
   FilePlace place;               ///< of the first instruction
   std::size_t instructions = 1;  ///< how many it does
   std::size_t tool = 0;          ///< index in ProgramPlan::arms
