@@ -57,7 +57,7 @@ inline void begin(ProgramText& out) {
 /// One instruction that can be done from anywhere near where the others end.
 inline void add_good(ProgramText& out, Rng& rng) {
   const auto p = place(rng);
-  switch (rng.below(9)) {
+  switch (rng.below(10)) {
     case 0:
       out.add(fmt::format("  - movej: {{{}, speed: {:.2f}}}", down(p), rng.uniform(0.2, 1)));
       return;
@@ -96,6 +96,17 @@ inline void add_good(ProgramText& out, Rng& rng) {
       out.add(fmt::format("        - movel: {{{}}}", down(p)));
       out.add(fmt::format("        - movel: {{{}}}", down(place(rng))));
       return;
+    case 8: {
+      // A line, an arc towards the middle and a line, in one motion.
+      const double way = p[0] > 0 ? -0.1 : 0.1;
+      const std::array<double, 3> via{p[0] + 0.5 * way, p[1], p[2] + 0.03},
+          to{p[0] + way, p[1], p[2]};
+      out.add(fmt::format("  - movel: {{{}, blend: 15mm}}", down(p)));
+      out.add(
+          fmt::format("  - movec: {{via: {{{}}}, to: {{{}}}, blend: 10mm}}", down(via), down(to)));
+      out.add(fmt::format("  - movel: {{{}}}", down(place(rng))));
+      return;
+    }
     default:
       out.add(fmt::format("  - set: {{speed: {:.2f}, zone: 5mm}}", rng.uniform(0.05, 0.2)));
       out.add(fmt::format("  - movel: {{{}}}", down(p)));

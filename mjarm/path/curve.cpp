@@ -16,8 +16,9 @@ bool detail::smooth_joint(const CurvePiece& before, const CurvePiece& after) {
          (before.turn_rate(before.span) - after.turn_rate(0)).norm() <= kRate * (1 + before.rate);
 }
 
-Curve::Curve(std::vector<CurvePiece> pieces, std::vector<CurveBlend> blends)
-    : pieces_(std::move(pieces)), blends_(std::move(blends)) {
+Curve::Curve(std::vector<CurvePiece> pieces, std::vector<CurveBlend> blends,
+             std::vector<double> joints)
+    : pieces_(std::move(pieces)), blends_(std::move(blends)), joints_(std::move(joints)) {
   double s = 0;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     pieces_[i].start = s;
@@ -64,6 +65,8 @@ std::vector<Pose> Curve::poses(std::span<const double> s) const {
 const std::vector<double>& Curve::corners() const noexcept { return corners_; }
 
 const std::vector<CurveBlend>& Curve::blends() const noexcept { return blends_; }
+
+const std::vector<double>& Curve::joints() const noexcept { return joints_; }
 
 std::vector<double> Curve::stations(double step, double angle) const {
   std::vector<double> s{0.0};

@@ -11,10 +11,10 @@
 
 namespace mjarm {
 
-/// What became of a corner of a polyline.
+/// What became of a corner of a polyline or of joined legs.
 struct CurveBlend {
-  std::size_t point = 0;  ///< index of the given pose
-  double radius = 0;      ///< [m] the straight legs are left within it; 0: the corner stays sharp
+  std::size_t point = 0;  ///< index of the given pose; of joined legs: of the leg behind the corner
+  double radius = 0;      ///< [m] of way the legs are left within it; 0: the corner stays sharp
   double distance = 0;    ///< [m] how near the curve comes to the given point
   double turn = 0;        ///< [rad] between the given rotation and that at the nearest point
 };
@@ -37,6 +37,16 @@ class Curve {
   /// The same with a blend of its own for each inner point.
   [[nodiscard]] static Result<Curve> polyline(std::span<const Pose> points,
                                               std::span<const double> blends);
+  /// Legs one after another, each from line() or arc() (or circle(), where it is whole). Corners
+  /// between them are rounded as those of a polyline: the tool leaves its legs only within
+  /// `blends`[i] [m] of way from the corner between legs i and i + 1 and stays that near to it;
+  /// direction, curvature and rate of turn are continuous. Of an arc a corner takes a quarter of
+  /// the circle at most. Legs that go on in the same direction and at the same rate of turn have
+  /// no corner and stay as they are, though the curvature jumps from a line to an arc; a bend that
+  /// would come to a stop on its way leaves the corner sharp. Fails where there is no leg, where
+  /// one does not begin at the pose where the one before ends, and on other curves.
+  [[nodiscard]] static Result<Curve> joined(std::span<const Curve> legs,
+                                            std::span<const double> blends);
   /// Circular arc from `from` through `via` to `to`; fails where the three are on one line. The
   /// rotation goes through that of `via` too, at a rate without jumps (and constant where it can
   /// be).
@@ -69,8 +79,13 @@ class Curve {
   [[nodiscard]] std::vector<Pose> poses(std::span<const double> s) const;
   /// Parameters where the direction or the rate of turn breaks, ends included, ascending.
   [[nodiscard]] const std::vector<double>& corners() const noexcept;
-  /// What became of the corners of a polyline with blends, ascending; empty for all other curves.
+  /// What became of the corners of a polyline or of joined legs with blends, ascending; empty for
+  /// all other curves.
   [[nodiscard]] const std::vector<CurveBlend>& blends() const noexcept;
+  /// Parameters at which the legs of a polyline or of joined legs meet, ascending, one for each
+  /// inner point; where a corner is rounded, of the point nearest to it. Empty for all other
+  /// curves.
+  [[nodiscard]] const std::vector<double>& joints() const noexcept;
   /// Parameters so that neighbours are at most `step` [m] and `angle` [rad] apart (both > 0),
   /// evenly spread between the ends of the pieces; corners and ends included exactly.
   [[nodiscard]] std::vector<double> stations(double step, double angle) const;
@@ -84,11 +99,13 @@ class Curve {
   [[nodiscard]] Nearest nearest(const Eigen::Vector3d& p) const;
 
  private:
-  explicit Curve(std::vector<CurvePiece> pieces, std::vector<CurveBlend> blends = {});
+  explicit Curve(std::vector<CurvePiece> pieces, std::vector<CurveBlend> blends = {},
+                 std::vector<double> joints = {});
 
   std::vector<CurvePiece> pieces_;  // at least one
   std::vector<double> corners_;
   std::vector<CurveBlend> blends_;
+  std::vector<double> joints_;
 };
 
 }  // namespace mjarm

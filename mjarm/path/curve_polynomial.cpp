@@ -11,13 +11,15 @@ constexpr int kDegree = CurvePolynomial::kDegree;
 using Coefficients = CurvePolynomial::Coefficients;
 
 Eigen::Vector3d value(const Coefficients& c, double u) {
-  return c.col(0) + u * (c.col(1) + u * (c.col(2) + u * (c.col(3) + u * c.col(4))));
+  return c.col(0) +
+         u * (c.col(1) + u * (c.col(2) + u * (c.col(3) + u * (c.col(4) + u * c.col(5)))));
 }
 Eigen::Vector3d velocity(const Coefficients& c, double u) {
-  return c.col(1) + u * (2 * c.col(2) + u * (3 * c.col(3) + u * (4 * c.col(4))));
+  return c.col(1) +
+         u * (2 * c.col(2) + u * (3 * c.col(3) + u * (4 * c.col(4) + u * (5 * c.col(5)))));
 }
 Eigen::Vector3d acceleration(const Coefficients& c, double u) {
-  return 2 * c.col(2) + u * (6 * c.col(3) + u * (12 * c.col(4)));
+  return 2 * c.col(2) + u * (6 * c.col(3) + u * (12 * c.col(4) + u * (20 * c.col(5))));
 }
 
 /// Arc length between two parameters by the Gauss-Legendre rule of 8 points.
@@ -35,8 +37,9 @@ double quadrature(const Coefficients& c, double u0, double u1) {
   return half * sum;
 }
 
-/// A polynomial of degree 8 on an interval, by its Bernstein coefficients: the first and the last
-/// are its values at the ends, and all its values lie between the least and the largest one.
+/// A polynomial of degree 2 kDegree on an interval, by its Bernstein coefficients: the first and
+/// the last are its values at the ends, and all its values lie between the least and the largest
+/// one.
 using Bernstein = std::array<double, 2 * kDegree + 1>;
 
 double choose(int n, int k) {

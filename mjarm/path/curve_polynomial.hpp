@@ -7,11 +7,11 @@
 
 namespace mjarm {
 
-/// The space curve p(u) = c0 + c1 u + ... + c4 u^4, u in [0, 1], walked by its arc length s in
+/// The space curve p(u) = c0 + c1 u + ... + c5 u^5, u in [0, 1], walked by its arc length s in
 /// [0, length()] [m]. It never stops on its way, so that s has a smooth inverse. A plain value.
 class CurvePolynomial {
  public:
-  static constexpr int kDegree = 4;
+  static constexpr int kDegree = 5;
   using Coefficients = Eigen::Matrix<double, 3, kDegree + 1>;  ///< [m] column k: c_k
 
   /// None where the curve comes to a stop, or so near to one that its direction breaks (a cusp).

@@ -53,9 +53,10 @@ Instruction::What read_movel(const YamlNode& node, const NamedThings& named) {
 }
 
 Instruction::What read_movec(const YamlNode& node, const NamedThings& named) {
-  const Fields fields(node, "movec", {"via", "to", "speed"});
+  const Fields fields(node, "movec", {"via", "to", "speed", "blend"});
   return MoveC{pose_of(fields.need("via"), fields.named("via"), named),
-               pose_of(fields.need("to"), fields.named("to"), named), speed_of(fields)};
+               pose_of(fields.need("to"), fields.named("to"), named), speed_of(fields),
+               fields.not_negative("blend", Quantity::length)};
 }
 
 Instruction::What read_ellipse(const YamlNode& node, const NamedThings&) {
@@ -78,8 +79,10 @@ Instruction::What read_circle(const YamlNode& node, const NamedThings& named) {
       {"center", "radius", "normal", "via", "to", "euler", "quat", "matrix", "frame", "speed"});
   if (fields.find("via") != nullptr || fields.find("to") != nullptr) {
     const Fields round(node, "circle", {"via", "to", "speed"});
-    return MoveC{pose_of(round.need("via"), round.named("via"), named),
-                 pose_of(round.need("to"), round.named("to"), named), speed_of(round), true};
+    return MoveC{.via = pose_of(round.need("via"), round.named("via"), named),
+                 .to = pose_of(round.need("to"), round.named("to"), named),
+                 .speed = speed_of(round),
+                 .whole = true};
   }
   DrawEllipse out;
   out.word = "circle";

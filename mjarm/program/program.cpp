@@ -25,8 +25,9 @@ Instruction move_l(const Pose& X_FT, std::optional<double> speed, std::optional<
   return {MoveL{{X_FT}, speed, blend}};
 }
 
-Instruction move_c(const Pose& X_via, const Pose& X_to, std::optional<double> speed) {
-  return {MoveC{{X_via}, {X_to}, speed}};
+Instruction move_c(const Pose& X_via, const Pose& X_to, std::optional<double> speed,
+                   std::optional<double> blend) {
+  return {MoveC{{X_via}, {X_to}, speed, blend}};
 }
 
 Instruction wait(double seconds) { return {Wait{seconds}}; }

@@ -47,6 +47,8 @@ struct MoveL {
 struct MoveC {
   ProgramPose via, to;
   std::optional<double> speed = {};
+  std::optional<double> blend =
+      {};  ///< [m] >= 0: the corner at `to` is cut within it; not of whole
   bool whole = false;
 };
 
@@ -89,7 +91,7 @@ struct Set {
   std::optional<FrameName> frame = {};
   std::optional<double> speed = {};  ///< [m/s] of tool moves, > 0
   std::optional<double> share = {};  ///< of the joint limits in joint moves, (0, 1]
-  std::optional<double> zone = {};   ///< [m] >= 0, `blend` of straight moves that have none
+  std::optional<double> zone = {};  ///< [m] >= 0, `blend` of straight moves and arcs that have none
 };
 
 /// Round obstacles, by the planner.
@@ -140,7 +142,8 @@ struct Program {
 [[nodiscard]] Instruction move_l(const Pose& X_FT, std::optional<double> speed = {},
                                  std::optional<double> blend = {});
 [[nodiscard]] Instruction move_c(const Pose& X_via, const Pose& X_to,
-                                 std::optional<double> speed = {});
+                                 std::optional<double> speed = {},
+                                 std::optional<double> blend = {});
 [[nodiscard]] Instruction wait(double seconds);
 [[nodiscard]] Instruction repeat(int times, std::vector<Instruction> body);
 

@@ -287,53 +287,51 @@ class Planner {
     return PlanFault{i, std::string(name(answer.error().code)), describe(answer.error(), with.arm)};
   }
 
-  /// An arc, or straight moves as far as they are blended into one.
-  Attempt tool_move(std::size_t i, const JointVec& q) {
-    const Step& step = steps_[i];
-    const Pose X_start = fk(tool(step).arm, view(q));
-    if (step.kind == Step::Kind::arc) {
-      for (const Pose* X : {&step.X_via, &step.X_WT}) {
-        if (auto fault = out_of_place(i, *X, q)) return failed(i, q, std::move(*fault));
-      }
-      const Result<Curve> curve = step.whole ? Curve::circle(X_start, step.X_via, step.X_WT)
-                                             : Curve::arc(X_start, step.X_via, step.X_WT);
-      if (!curve) return failed(i, q, {i, "bad_input", curve.error().what});
-      const std::vector<PlannedPoint> points{
-          {X_start, step.place}, {step.X_via, step.place}, {step.X_WT, step.place}};
-      return made_from(points, along(i, q, *curve, true));
-    }
-    std::vector<Pose> points{X_start};
-    std::vector<double> blends;
-    std::size_t end = i;
-    for (; end < steps_.size(); ++end) {
-      if (auto fault = out_of_place(end, steps_[end].X_WT, q)) {
-        return failed(i, q, std::move(*fault));
-      }
-      points.push_back(steps_[end].X_WT);
-      const bool last = end + 1 == steps_.size() || steps_[end + 1].kind != Step::Kind::line ||
-                        steps_[end + 1].tool != step.tool || !(steps_[end].blend > 0);
-      if (last) break;
-      blends.push_back(steps_[end].blend);
-    }
-    if (end == i && same_pose(X_start, step.X_WT)) return rest(i, q, 0);
-    const Result<Curve> curve = Curve::polyline(points, blends);
-    if (!curve) return failed(i, q, {i, "bad_input", curve.error().what});
-    for (const CurveBlend& blend : curve->blends()) {
-      const double asked = blends[blend.point - 1];
-      if (blend.radius > 0 && blend.radius < asked * (1 - 1e-9)) {
-        const std::size_t at = i + blend.point - 1;
-        return failed(i, q,
-                      {at, "blend_overlap", text(msg::program_blend_overlap, asked, blend.radius)});
-      }
-    }
-    std::vector<PlannedPoint> told{{X_start, step.place}};
-    for (std::size_t k = i; k <= end; ++k) told.push_back({steps_[k].X_WT, steps_[k].place});
-    return made_from(told, along(i, q, *curve, true, end + 1 - i));
+  /// The way of the tool in one step from `X`: straight, on an arc or all round a circle.
+  static Result<Curve> leg_of(const Step& step, const Pose& X) {
+    if (step.kind == Step::Kind::line) return Curve::line(X, step.X_WT);
+    return step.whole ? Curve::circle(X, step.X_via, step.X_WT)
+                      : Curve::arc(X, step.X_via, step.X_WT);
   }
 
-  static Attempt made_from(const std::vector<PlannedPoint>& points, Attempt attempt) {
-    if (!attempt.fault) attempt.moves.back().points = points;
-    return attempt;
+  /// Whether the corner between step `k` and the next one is blended.
+  bool blended(std::size_t k) const {
+    if (k + 1 == steps_.size() || !(steps_[k].blend > 0)) return false;
+    const Step& next = steps_[k + 1];
+    const bool goes_on = next.kind == Step::Kind::line
+                             ? !same_pose(steps_[k].X_WT, next.X_WT)
+                             : next.kind == Step::Kind::arc && !next.whole;
+    return goes_on && next.tool == steps_[k].tool;
+  }
+
+  /// Straight moves and arcs as far as they are blended into one.
+  Attempt tool_move(std::size_t i, const JointVec& q) {
+    Pose X = fk(tool(steps_[i]).arm, view(q));
+    if (steps_[i].kind == Step::Kind::line && same_pose(X, steps_[i].X_WT)) return rest(i, q, 0);
+    std::vector<Curve> legs;
+    std::vector<double> blends;
+    std::vector<PlannedPoint> told{{X, steps_[i].place}};
+    for (std::size_t k = i;; ++k) {
+      const Step& step = steps_[k];
+      std::optional<PlanFault> fault;
+      if (step.kind == Step::Kind::arc) fault = out_of_place(k, step.X_via, q);
+      if (!fault) fault = out_of_place(k, step.X_WT, q);
+      if (fault) return failed(i, q, std::move(*fault));
+      Result<Curve> leg = leg_of(step, X);
+      if (!leg) return failed(i, q, {k, "bad_input", leg.error().what});
+      legs.push_back(std::move(*leg));
+      if (step.kind == Step::Kind::arc) told.push_back({step.X_via, step.place});
+      told.push_back({step.X_WT, step.place});
+      if (!blended(k)) break;
+      blends.push_back(step.blend);
+      X = step.X_WT;
+    }
+    const Result<Curve> curve = Curve::joined(legs, blends);
+    if (!curve) return failed(i, q, {i, "bad_input", curve.error().what});
+    Attempt out = along(i, q, *curve, true, legs.size());
+    const bool alike = legs.size() == 1 || told.size() == legs.size() + 1;
+    if (!out.fault && alike) out.moves.back().points = std::move(told);
+    return out;
   }
 
   static bool same_pose(const Pose& a, const Pose& b) {
@@ -347,9 +345,11 @@ class Planner {
     const Step& step = steps_[i];
     const Tool& with = tool(step);
     for (const CurveBlend& blend : curve.blends()) {
-      if (!here && blend.radius > 0 && blend.radius < step.blend * (1 - 1e-9)) {
-        return failed(
-            i, q, {i, "blend_overlap", text(msg::program_blend_overlap, step.blend, blend.radius)});
+      const std::size_t at = step.kind == Step::Kind::curve ? i : i + blend.point - 1;
+      const double asked = steps_[at].blend;
+      if (blend.radius > 0 && blend.radius < asked * (1 - 1e-9)) {
+        return failed(i, q,
+                      {at, "blend_overlap", text(msg::program_blend_overlap, asked, blend.radius)});
       }
     }
     MotionOptions options = motion_options(i, count, curve);
@@ -370,6 +370,11 @@ class Planner {
     }
     PlannedMove move = begun(step);
     move.instructions = count;
+    for (std::size_t k = i + 1; k < i + count; ++k) {
+      if (move.word.find(steps_[k].word) == std::string::npos) {
+        move.word += "+" + std::string(steps_[k].word);
+      }
+    }
     move.measures = with.judge.measure(with.ik, motion->path.q);
     move.trajectory = std::move(motion->trajectory);
     move.curve = curve;
@@ -393,8 +398,7 @@ class Planner {
     for (std::size_t k = 1; k < count; ++k) {
       alike = alike && speed_of(i + k) == speed_of(i);
       keep = keep && steps_[i + k].keep_speed;
-      const double s = curve.nearest(steps_[i + k - 1].X_WT.p).s;
-      options.timing.tool_speeds.push_back({s, speed_of(i + k)});
+      options.timing.tool_speeds.push_back({curve.joints()[k - 1], speed_of(i + k)});
     }
     if (alike) options.timing.tool_speeds.clear();
     if (alike && keep) options.path.tool_speed = options.timing.tool_speed;

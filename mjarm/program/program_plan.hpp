@@ -48,14 +48,17 @@ struct PlannedPoint {
 
 /// One motion of a plan: an instruction, or several that are blended into one.
 struct PlannedMove {
-  std::string word;              ///< of the instruction; "approach": to where a curve begins
+  /// Of the instruction; "approach": to where a curve begins. Of blended ones each word once, as in
+  /// "movel+movec".
+  std::string word;
   FilePlace place;               ///< of the first instruction
   std::size_t instructions = 1;  ///< how many it does
   std::size_t tool = 0;          ///< index in ProgramPlan::arms
   Trajectory trajectory;         ///< a rest where nothing moves
   std::optional<Curve> curve;    ///< of the tool in the world; none for joint moves and rests
   /// What `curve` was made from: where it starts, and the corners of straight moves (see
-  /// Curve::blends()) or the two poses of an arc; empty for curves that have a center.
+  /// Curve::blends()) or the two poses of one arc; empty where arcs are blended and for curves that
+  /// have a center.
   std::vector<PlannedPoint> points;
   std::optional<bool> close;             ///< the gripper closes or opens
   std::vector<SpeedDip> dips;            ///< where the tool is slower than asked

@@ -141,6 +141,101 @@ TEST(ProgramPlan, EveryLegHasItsOwnSpeed) {
   EXPECT_NEAR(fastest[1], 0.05, 0.0005);
 }
 
+/// Speed of the tool [m/s] from `t - h` to `t`.
+double speed_at(const PlannedMove& move, double t, double h) {
+  const Pose X = fk(robot().arm, view(move.trajectory.at(t).q));
+  return (X.p - fk(robot().arm, view(move.trajectory.at(t - h).q)).p).norm() / h;
+}
+
+TEST(ProgramPlan, LinesAndArcsAreBlendedIntoOneMotion) {
+  const Pose a{{0.2, -0.35, 0.4}, kDown}, b{{0.2, -0.5, 0.4}, kDown}, c{{-0.2, -0.5, 0.4}, kDown},
+      d{{-0.2, -0.35, 0.4}, kDown};
+  const Pose via{{0, -0.6, 0.4}, kDown};
+  Program program;
+  program.instructions = {move_j(kSeed), move_j(a), move_l(b, 0.2, 0.04),
+                          move_c(via, c, 0.08, 0.04), move_l(d, 0.2)};
+  const ProgramPlan plan = plan_of(program);
+  ASSERT_TRUE(plan.ok()) << faults_of(plan);
+  expect_connected(plan);
+  ASSERT_EQ(plan.moves.size(), 3U);
+  const PlannedMove& move = plan.moves.back();
+  EXPECT_EQ(move.instructions, 3U);
+  EXPECT_EQ(move.word, "movel+movec");
+  EXPECT_LT(strayed(plan, move), 1e-6);
+  EXPECT_LT((end_of(plan, 2).p - d.p).norm(), 1e-6);
+  for (const Pose& corner : {b, c}) {
+    const double cut = move.curve->nearest(corner.p).distance;
+    EXPECT_GT(cut, 0.001);
+    EXPECT_LT(cut, 0.04);
+  }
+  EXPECT_LT(move.curve->nearest(via.p).distance, 1e-9);
+  double most[2] = {0, 0}, least = 1;
+  const double h = 1e-3;
+  for (double t = h; t < move.trajectory.duration(); t += h) {
+    const Pose X = fk(robot().arm, view(move.trajectory.at(t).q));
+    const double speed = speed_at(move, t, h);
+    double& fastest = most[X.p.y() < -0.52 ? 1 : 0];
+    fastest = std::max(fastest, speed);
+    if ((X.p - a.p).norm() > 0.03 && (X.p - d.p).norm() > 0.03) least = std::min(least, speed);
+  }
+  EXPECT_NEAR(most[0], 0.2, 0.002);
+  EXPECT_NEAR(most[1], 0.08, 0.001);
+  EXPECT_GT(least, 0.05);  // no stop on the way
+
+  // The check can fail: without blends it is three motions with stops between them.
+  program.instructions = {move_j(kSeed), move_j(a), move_l(b, 0.2), move_c(via, c, 0.08),
+                          move_l(d, 0.2)};
+  const ProgramPlan stops = plan_of(program);
+  ASSERT_TRUE(stops.ok()) << faults_of(stops);
+  EXPECT_EQ(stops.moves.size(), 5U);
+}
+
+TEST(ProgramPlan, BlendsThatDoNotFitAreNamedWithWhatDoes) {
+  // Half a circle of radius 0.1 m between two lines: a corner takes a quarter of the circle, 0.157
+  // m, at most.
+  const std::string head =
+      "  - movej: {pos: [0.3, -0.5, 0.4], euler: [180deg, 0, 0]}\n"
+      "  - movel: {pos: [0.1, -0.5, 0.4], euler: [180deg, 0, 0]";
+  const std::string arc =
+      "}\n  - movec: {via: {pos: [0, -0.6, 0.4], euler: [180deg, 0, 0]}, "
+      "to: {pos: [-0.1, -0.5, 0.4], euler: [180deg, 0, 0]}";
+  const std::string last = "}\n  - movel: {pos: [-0.3, -0.5, 0.4], euler: [180deg, 0, 0]}\n";
+  EXPECT_THAT(faults_of(plan_text(head + ", blend: 20mm" + arc + ", blend: 180mm" + last)),
+              ::testing::AllOf(HasSubstr("5 blend_overlap"), HasSubstr("0.18 m"),
+                               HasSubstr("leave 0.1571 m")));
+  EXPECT_THAT(faults_of(plan_text(head + ", blend: 180mm" + arc + ", blend: 20mm" + last)),
+              HasSubstr("4 blend_overlap"));
+  // An arc that is none is named where it stands, though it belongs to the motion before.
+  const std::string straight =
+      "}\n  - movec: {via: {pos: [0, -0.5, 0.4], euler: [180deg, 0, 0]}, "
+      "to: {pos: [-0.1, -0.5, 0.4], euler: [180deg, 0, 0]}";
+  EXPECT_THAT(faults_of(plan_text(head + ", blend: 20mm" + straight + last)),
+              ::testing::AllOf(HasSubstr("5 bad_input"), HasSubstr("one line")));
+  // Polylines too, wherever the tool stands before.
+  EXPECT_THAT(faults_of(plan_text("  - polyline: {points: [[0.1, -0.4, 0.4], [0, -0.4, 0.4], "
+                                  "[0, -0.5, 0.4], [0.1, -0.5, 0.4]], euler: [180deg, 0, 0], "
+                                  "blend: 0.07}\n")),
+              HasSubstr("3 blend_overlap"));
+}
+
+TEST(ProgramPlan, WholeCirclesAndMovesThatGoNowhereAreNotBlended) {
+  const ProgramPlan plan = plan_text(
+      "  - movej: {pos: [0.1, -0.4, 0.4], euler: [180deg, 0, 0]}\n"
+      "  - set: {zone: 20mm}\n"
+      "  - movel: {pos: [0.1, -0.4, 0.4], euler: [180deg, 0, 0]}\n"
+      "  - movel: {pos: [0, -0.5, 0.4], euler: [180deg, 0, 0]}\n"
+      "  - circle: {via: {pos: [0.1, -0.5, 0.4], euler: [180deg, 0, 0]}, "
+      "to: {pos: [0.1, -0.6, 0.4], euler: [180deg, 0, 0]}}\n"
+      "  - movec: {via: {pos: [-0.1, -0.55, 0.4], euler: [180deg, 0, 0]}, "
+      "to: {pos: [-0.1, -0.45, 0.4], euler: [180deg, 0, 0]}}\n"
+      "  - movel: {pos: [0, -0.4, 0.4], euler: [180deg, 0, 0]}\n");
+  ASSERT_TRUE(plan.ok()) << faults_of(plan);
+  expect_connected(plan);
+  std::vector<std::string> words;
+  for (const PlannedMove& move : plan.moves) words.push_back(move.word);
+  EXPECT_THAT(words, ::testing::ElementsAre("movej", "movel", "movel", "movec", "movec+movel"));
+}
+
 TEST(ProgramPlan, GoalsOfJointMovesGetTheAnswerFromWhichTheRestCanBeDone) {
   // From the nearest answer to the first pose the line cannot be done, from another one it can.
   const ProgramPlan plan = plan_text(

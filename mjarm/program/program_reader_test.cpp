@@ -32,7 +32,7 @@ program:
   - movej: {joints: ready, speed: 0.2}
   - movej: above
   - movel: {pose: left, speed: 0.25, blend: 10mm}
-  - movec: {via: {pos: [0, 0.1, 0.3], euler: [3, 0, 0]}, to: above}
+  - movec: {via: {pos: [0, 0.1, 0.3], euler: [3, 0, 0]}, to: above, blend: 15mm}
   - ellipse: {center: [0, 0, 0.5], a: 0.3, b: 150mm, normal: [0, 0, 1], euler: [3.14, 0, 0]}
   - circle: {center: [0, 0, 0.5], radius: 0.1, normal: [0, 0, 1], euler: [3.14, 0, 0], frame: corner}
   - circle: {via: above, to: left}
@@ -77,6 +77,7 @@ TEST(ProgramReader, TakesEveryInstruction) {
   EXPECT_EQ(nth<MoveL>(p, 2).blend, 0.01);
   EXPECT_LT((nth<MoveL>(p, 2).goal.X_FT.R - from_euler({std::numbers::pi, 0, 0})).norm(), 1e-9);
   EXPECT_FALSE(nth<MoveC>(p, 3).whole);
+  EXPECT_EQ(nth<MoveC>(p, 3).blend, 0.015);
   EXPECT_EQ(nth<DrawEllipse>(p, 4).b, 0.15);
   EXPECT_EQ(word(p.instructions[5]), "circle");
   EXPECT_EQ(nth<DrawEllipse>(p, 5).frame.name, "corner");
@@ -135,6 +136,12 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"movel: {pose: up, pos: [1, 2, 3]}", "3:28", "goes without"},
         Wrong{"movel: {pos: [1, 2, 3], euler: [0, 0, 0], speed: 0}", "3:54", "above 0"},
         Wrong{"movel: {pos: [1, 2, 3], euler: [0, 0, 0], blend: -1}", "3:54", "0 or more"},
+        Wrong{"movec: {via: {pos: [1, 2, 3], euler: [0, 0, 0]}, to: {pos: [1, 2, 4], "
+              "euler: [0, 0, 0]}, blend: -5mm}",
+              "3:101", "0 or more"},
+        Wrong{"circle: {via: {pos: [1, 2, 3], euler: [0, 0, 0]}, to: {pos: [1, 2, 4], "
+              "euler: [0, 0, 0]}, blend: 5mm}",
+              "3:95", "\"blend\""},
         Wrong{"movej: {joints: [1], speed: 50}", "3:33", "share"},
         Wrong{"movej: {joints: hoem}", "3:21", "\"home\""},
         Wrong{"movej: {joints: []}", "3:21", "list of numbers"},

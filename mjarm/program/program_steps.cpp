@@ -206,6 +206,7 @@ class StepWriter {
     step.X_via = world(what.via);
     step.X_WT = world(what.to);
     step.whole = what.whole;
+    step.blend = what.whole ? 0 : what.blend.value_or(zone_);
     push(std::move(step));
   }
 

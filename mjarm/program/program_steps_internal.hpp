@@ -27,7 +27,7 @@ struct Step {
   Pose X_WT = {};                   ///< pose, line, arc: where it ends
   Pose X_via = {};                  ///< arc
   bool whole = false;               ///< arc
-  double blend = 0;                 ///< [m] line: of the corner at its end; curve: of all
+  double blend = 0;                 ///< [m] line, arc: of the corner at its end; curve: of all
   std::optional<Curve> curve = {};  ///< curve
   std::vector<Pose> points = {};    ///< curve: its corners X_WT, where it is straight between
   double seconds = 0;               ///< wait

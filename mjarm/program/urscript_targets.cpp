@@ -19,7 +19,7 @@ class TargetMaker {
       : move_(move), curve_(*move.curve), options_(options), clock_(arm, move.trajectory, curve_) {}
 
   std::vector<UrTarget> make() {
-    const bool round = move_.word == "circle" || move_.word == "movec";
+    const bool round = move_.word == "circle" || (move_.word == "movec" && move_.instructions == 1);
     if (round) {
       if (!arcs(move_.word == "circle" ? 2 : 1)) points();
     } else if (move_.points.size() > 1) {
