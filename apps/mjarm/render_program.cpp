@@ -84,10 +84,6 @@ class ProgramRun {
   Overlay overlay_;
 };
 
-Result<void> stopped_early(const PictureOptions& options) {
-  return fail(Errc::system, text(msg::render_command_stopped, options.out.string()));
-}
-
 Result<std::string> video_of(ProgramRun& run, const Model& model, const PictureOptions& options,
                              Progress& progress) {
   Result<VideoOfRun> video = VideoOfRun::open(model, options);
@@ -112,7 +108,9 @@ Result<std::string> picture_of(ProgramRun& run, const Model& model, const Pictur
     return !interrupted();
   };
   if (Result<void> ran = run.run(options.seconds, after_step); !ran) return fail(ran.error());
-  if (interrupted()) return fail(stopped_early(options).error());
+  if (interrupted()) {
+    return fail(Errc::system, text(msg::render_command_stopped, options.out.string()));
+  }
   return write_picture(*renderer, options, run.sim().snapshot(), *camera, run.overlay());
 }
 

@@ -1,5 +1,6 @@
 #include "apps/mjarm/render_video.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "mjarm/core/messages/render_command.hpp"
@@ -40,10 +41,9 @@ bool VideoOfRun::step(const Sim& sim, const Overlay& overlay) {
 
 Result<void> VideoOfRun::finish() {
   if (!error_ && !interrupted()) {
-    if (Result<void> finished = writer_.finish(); finished)
-      return {};
-    else
-      error_ = std::move(finished.error());
+    Result<void> finished = writer_.finish();
+    if (finished) return {};
+    error_ = std::move(finished.error());
   }
   if (interrupted()) {
     return fail(Errc::system, text(msg::render_command_stopped, options_.out.string()));
@@ -58,16 +58,22 @@ std::string VideoOfRun::summary() const {
 
 void grow_trail(std::vector<Eigen::Vector3d>& points_W, const Eigen::Vector3d& p_W) {
   constexpr double kSpacing = 0.002;  // [m] the eye sees no difference below
-  constexpr double kOff = 0.0002;     // [m] from a straight piece
-  constexpr double kLongest = 0.1;    // [m] of a piece, so that what bends slowly is not missed
-  if (!points_W.empty() && (p_W - points_W.back()).norm() < kSpacing) return;
+  constexpr double kOff = 0.0002;   // [m] so far may a straight piece leave the bend it stands for
+  constexpr double kLongest = 0.1;  // [m] of a piece
+  if (points_W.empty()) {
+    points_W.push_back(p_W);
+    return;
+  }
+  const Eigen::Vector3d step = p_W - points_W.back();
+  if (step.norm() < kSpacing) return;
   if (points_W.size() >= 2) {
     const Eigen::Vector3d& from = points_W[points_W.size() - 2];
     const Eigen::Vector3d piece = p_W - from;
-    const Eigen::Vector3d way = points_W.back() - from;
     const double length = piece.norm();
-    const bool onwards = way.dot(piece) > 0 && way.norm() < length && length < kLongest;
-    if (onwards && way.cross(piece).norm() / length < kOff) {
+    // Half the angle by which the way has turned since `from`; an arc of it bulges by a quarter of
+    // its length times that.
+    const double turn = std::atan2(step.cross(piece).norm(), step.dot(piece));
+    if (length < kLongest && length * turn / 4 < kOff) {
       points_W.back() = p_W;
       return;
     }

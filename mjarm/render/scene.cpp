@@ -34,7 +34,8 @@ mjModel with_quality(const mjModel& original, RenderQuality quality, bool softwa
     asked.shadowsize = 0;
     software ? at_most(12, 6) : at_most(16, 8);
   } else if (software) {
-    asked.shadowsize = std::min(asked.shadowsize, 2048);
+    const int most = quality == RenderQuality::high ? 2048 : 1024;
+    asked.shadowsize = std::min(asked.shadowsize, most);
     at_most(24, 12);
   }
   asked.offsamples = quality == RenderQuality::high ? std::max(asked.offsamples, 8) : 0;
@@ -213,8 +214,12 @@ double Scene::shadow_reach() const {
     if (light.castshadow == 0 || light.type != mjLIGHT_DIRECTIONAL) continue;
     reach = std::max(reach, kMargin * reach_of(m, scene, light));
   }
-  const double asked = m.vis.map.shadowclip * m.stat.extent;
-  return reach > 0 ? std::min(reach, asked) : asked;
+  const mjVisual& vis = impl_->owner.raw()->vis;
+  const double asked = vis.map.shadowclip * m.stat.extent;
+  if (reach == 0 || vis.quality.shadowsize <= 0) return asked;
+  // A finer grid than the model asks for would let surfaces shade themselves.
+  const double finest = asked * m.vis.quality.shadowsize / vis.quality.shadowsize;
+  return std::min(std::max(reach, finest), asked);
 }
 
 const mjModel& Scene::model() const noexcept { return impl_->m; }

@@ -41,8 +41,9 @@ class Scene {
   [[nodiscard]] CameraView view() const;
   /// Rebuilds the list of what is drawn.
   void update(const Overlay& overlay);
-  /// [m] Half the width of a shadow map that holds all shadows of directional lights, at most the
-  /// one the model asks for; as of the last `update`. The smaller, the sharper.
+  /// [m] Half the width of a shadow map that holds all shadows of directional lights, as of the
+  /// last `update`. A map that is smaller than the model asks for stays sharp by it: its grid is
+  /// never finer, and it never reaches farther, than the model's own.
   [[nodiscard]] double shadow_reach() const;
 
   /// For those who may include mujoco.h: the model with the quality set, camera and scene.

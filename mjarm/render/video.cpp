@@ -59,10 +59,11 @@ std::vector<std::string> output_options(VideoFormat format) {
 std::vector<std::string> ffmpeg_arguments(VideoFormat format, const VideoOptions& options,
                                           const std::filesystem::path& file) {
   const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
+  // Without -xerror a disk that is full at the very end would be no failure.
   std::vector<std::string> words = {
-      "-hide_banner",      "-loglevel", "error", "-nostdin",    "-y", "-f",
-      "rawvideo",          "-pix_fmt",  "rgb24", "-video_size", size, "-framerate",
-      number(options.fps), "-i",        "pipe:0"};
+      "-xerror",    "-hide_banner",      "-loglevel", "error", "-nostdin",    "-y",
+      "-f",         "rawvideo",          "-pix_fmt",  "rgb24", "-video_size", size,
+      "-framerate", number(options.fps), "-i",        "pipe:0"};
   for (std::string& word : output_options(format)) words.push_back(std::move(word));
   words.push_back("file:" + file.string());  // else a name with a colon would be a protocol
   return words;
@@ -84,12 +85,12 @@ Result<void> check_options(VideoFormat format, const VideoOptions& options) {
   return {};
 }
 
-/// The last line of what a program said; ffmpeg says the cause there.
-std::string last_line(std::string_view words) {
-  const auto is_space = [](char c) { return c == '\n' || c == '\r' || c == ' '; };
-  while (!words.empty() && is_space(words.back())) words.remove_suffix(1);
-  const std::size_t start = words.find_last_of("\r\n");
-  return std::string(start == std::string_view::npos ? words : words.substr(start + 1));
+/// The first line of what ffmpeg said: the cause; what follows are its consequences.
+std::string first_line(std::string_view words) {
+  const std::size_t start = words.find_first_not_of("\r\n ");
+  if (start == std::string_view::npos) return {};
+  words.remove_prefix(start);
+  return std::string(words.substr(0, words.find_first_of("\r\n")));
 }
 
 }  // namespace
@@ -109,7 +110,7 @@ struct VideoWriter::Impl {
     const Result<FedProgramEnd> done = ffmpeg.finish();
     if (!done) return fail(done.error());
     if (done->exit_code == 0) return {};
-    std::string why = last_line(done->complaints);
+    std::string why = first_line(done->complaints);
     if (why.empty()) why = text(msg::render_ffmpeg_code, done->exit_code);
     return fail(Errc::system, text(msg::render_ffmpeg_failed, path.string(), why));
   }
