@@ -11,7 +11,9 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/install.hpp"
+#include "mjarm/core/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_child_input.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/model/mujoco_library.hpp"
@@ -78,6 +80,13 @@ void look_at_graphics(Findings& findings) {
   if (!any) findings.problems.push_back(text(msg::app_doctor_no_gl));
 }
 
+/// Only videos need it.
+void look_at_ffmpeg(Findings& findings) {
+  const std::string file = find_program("ffmpeg").string();
+  add(findings, "ffmpeg", text(msg::render_command_doctor), file,
+      file.empty() ? text(msg::render_command_doctor_none) : file);
+}
+
 void look_at_models(Findings& findings) {
   std::vector<JsonDoc> found;
   std::string names;
@@ -120,6 +129,7 @@ Result<int> run(bool json) {
   look_at_mujoco(findings);
   look_at_machine(findings);
   look_at_graphics(findings);
+  look_at_ffmpeg(findings);
   look_at_models(findings);
   look_at_meshes(findings);
   const bool fine = findings.problems.empty();

@@ -29,6 +29,11 @@ class AtomicFile {
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&& other) noexcept;
 
+  /// Where it grows until `commit`, for another program that writes it in the place of `write`.
+  [[nodiscard]] const std::filesystem::path& growing() const noexcept {
+    return temporary_.empty() ? path_ : temporary_;
+  }
+
   /// Appends; fails when the disk is full or the like.
   [[nodiscard]] Result<void> write(std::string_view content);
   /// Writes out what is buffered and puts the file in its place. Call once, last.

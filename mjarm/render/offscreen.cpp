@@ -28,7 +28,9 @@ void flip_rows(Image& image) {
 struct OffscreenRenderer::Impl {
   Impl(GlContext context, const Model& model, const OffscreenOptions& options)
       : gl(std::move(context)),
-        scene(model, options.quality),
+        quality(gl.is_software() ? options.software_quality.value_or(options.quality)
+                                 : options.quality),
+        scene(model, quality, gl.is_software()),
         viewport{0, 0, options.width, options.height} {
     mjr_defaultContext(&context_);
   }
@@ -43,8 +45,6 @@ struct OffscreenRenderer::Impl {
     mjModel m = scene.model();
     m.vis.global.offwidth = viewport.width;
     m.vis.global.offheight = viewport.height;
-    // Without a GPU a larger shadow map costs more time than the whole rest of the picture.
-    if (gl.is_software()) m.vis.quality.shadowsize = std::min(m.vis.quality.shadowsize, 4096);
     const MujocoOutcome outcome =
         call_mujoco([&] { mjr_makeContext(&m, &context_, mjFONTSCALE_150); });
     gl.release();
@@ -55,6 +55,7 @@ struct OffscreenRenderer::Impl {
   }
 
   GlContext gl;  ///< must outlive `context_`
+  RenderQuality quality;
   Scene scene;
   mjrRect viewport;
   mjrContext context_{};
@@ -88,6 +89,7 @@ Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& ca
     return fail(std::move(current.error()));
   }
   scene.update(overlay);
+  impl_->context_.shadowClip = static_cast<float>(scene.shadow_reach());
   mjr_setBuffer(mjFB_OFFSCREEN, &impl_->context_);
   mjr_render(impl_->viewport, &scene.raw(), &impl_->context_);
   Image image{impl_->viewport.width, impl_->viewport.height, {}};
@@ -103,5 +105,6 @@ Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& ca
 }
 
 const GlContext& OffscreenRenderer::gl() const noexcept { return impl_->gl; }
+RenderQuality OffscreenRenderer::quality() const noexcept { return impl_->quality; }
 
 }  // namespace mjarm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "mjarm/core/result.hpp"
@@ -19,6 +20,8 @@ struct OffscreenOptions {
   int width = 1280;  ///< [px] 1 to 8192
   int height = 720;  ///< [px] 1 to 8192
   RenderQuality quality = RenderQuality::high;
+  /// In the place of `quality` where pictures are computed by the processor.
+  std::optional<RenderQuality> software_quality = {};
   GlChoice gl = GlChoice::automatic;
 };
 
@@ -41,6 +44,7 @@ class OffscreenRenderer {
                                    const Overlay& overlay = {});
 
   [[nodiscard]] const GlContext& gl() const noexcept;
+  [[nodiscard]] RenderQuality quality() const noexcept;  ///< the one chosen
 
  private:
   struct Impl;

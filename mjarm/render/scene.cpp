@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "mjarm/core/messages/render.hpp"
@@ -19,18 +20,51 @@ struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-/// A copy of the model's head that shares its arrays, with the quality set.
-mjModel with_quality(const mjModel& original, RenderQuality quality) {
+/// A copy of the model's head that shares its arrays, with the quality set. Where the processor
+/// draws, faces cost most: with half as many in each direction nobody sees a difference at the
+/// usual sizes, and a frame takes half the time.
+mjModel with_quality(const mjModel& original, RenderQuality quality, bool software) {
   mjModel m = original;
+  auto& asked = m.vis.quality;
+  const auto at_most = [&asked](int slices, int stacks) {
+    asked.numslices = std::min(asked.numslices, slices);
+    asked.numstacks = std::min(asked.numstacks, stacks);
+  };
   if (quality == RenderQuality::low) {
-    m.vis.quality.offsamples = 0;
-    m.vis.quality.shadowsize = 0;
-    m.vis.quality.numslices = std::min(m.vis.quality.numslices, 16);
-    m.vis.quality.numstacks = std::min(m.vis.quality.numstacks, 8);
-  } else {
-    m.vis.quality.offsamples = std::max(m.vis.quality.offsamples, 8);
+    asked.shadowsize = 0;
+    software ? at_most(12, 6) : at_most(16, 8);
+  } else if (software) {
+    const int most = quality == RenderQuality::high ? 2048 : 1024;
+    asked.shadowsize = std::min(asked.shadowsize, most);
+    at_most(24, 12);
   }
+  asked.offsamples = quality == RenderQuality::high ? std::max(asked.offsamples, 8) : 0;
   return m;
+}
+
+bool is_infinite_plane(const mjvGeom& geom) {
+  return geom.type == mjGEOM_PLANE && geom.size[0] == 0 && geom.size[1] == 0;
+}
+
+/// [m] Radius about its position in which all of a geom lies; infinite where that is not known.
+double radius_of(const mjModel& m, const mjvGeom& geom) {
+  if (geom.type == mjGEOM_PLANE || geom.type >= mjGEOM_FLEX) return mjMAXVAL;
+  if (geom.objtype == mjOBJ_GEOM) return m.geom_rbound[geom.objid];
+  return geom.size[0] + geom.size[1] + geom.size[2];
+}
+
+/// [m] From the axis of a light to the farthest end of what casts shadows.
+double reach_of(const mjModel& m, const mjvScene& scene, const mjvLight& light) {
+  const Eigen::Vector3f origin = Eigen::Map<const Eigen::Vector3f>(light.pos);
+  const Eigen::Vector3f axis = Eigen::Map<const Eigen::Vector3f>(light.dir);
+  double reach = 0;
+  for (const mjvGeom& geom : std::span(scene.geoms, static_cast<std::size_t>(scene.ngeom))) {
+    if (geom.castshadow == 0) continue;
+    const Eigen::Vector3f way = Eigen::Map<const Eigen::Vector3f>(geom.pos) - origin;
+    const double across = (way - way.dot(axis) * axis).norm();
+    reach = std::max(reach, across + radius_of(m, geom));
+  }
+  return reach;
 }
 
 /// Geoms that the model alone may fill, with room for what MuJoCo adds (frames, tendons, contacts).
@@ -52,10 +86,11 @@ mjvCamera free_camera(const CameraView& view) {
 }  // namespace
 
 struct Scene::Impl {
-  Impl(const Model& source, RenderQuality quality_asked)
+  Impl(const Model& source, RenderQuality quality_asked, bool software)
       : owner(source),
         quality(quality_asked),
-        m(with_quality(*source.raw(), quality_asked)),
+        reflections(quality_asked == RenderQuality::high && !software),
+        m(with_quality(*source.raw(), quality_asked, software)),
         d(mj_makeData(&m)) {
     mjv_defaultOption(&option);
     mjv_defaultScene(&scene);
@@ -74,9 +109,20 @@ struct Scene::Impl {
     mjv_freeScene(&scene);
     mjv_defaultScene(&scene);
     mjv_makeScene(&m, &scene, static_cast<int>(needed + overlay_geoms));
-    const bool high = quality == RenderQuality::high;
-    scene.flags[mjRND_SHADOW] = high;
-    scene.flags[mjRND_REFLECTION] = high;
+    scene.flags[mjRND_SHADOW] = quality != RenderQuality::low;
+    scene.flags[mjRND_REFLECTION] = reflections;
+  }
+
+  /// Puts the floor behind everything else, so that what is hidden of it costs nothing (not with
+  /// reflections: MuJoCo reflects in the first that can). It casts no shadow: nothing lies below.
+  void tame_floors() {
+    const std::span geoms(scene.geoms, static_cast<std::size_t>(scene.ngeom));
+    for (mjvGeom& geom : geoms) {
+      if (is_infinite_plane(geom)) geom.castshadow = 0;
+    }
+    if (reflections) return;
+    std::stable_partition(geoms.begin(), geoms.end(),
+                          [](const mjvGeom& geom) { return !is_infinite_plane(geom); });
   }
 
   /// All that drawing needs of a state; contacts and forces are not computed.
@@ -91,6 +137,7 @@ struct Scene::Impl {
 
   Model owner;  ///< keeps the arrays of `m` alive
   RenderQuality quality;
+  bool reflections;
   mjModel m;
   std::unique_ptr<mjData, DeleteData> d;
   mjvOption option{};
@@ -98,8 +145,8 @@ struct Scene::Impl {
   mjvScene scene{};
 };
 
-Scene::Scene(const Model& model, RenderQuality quality)
-    : impl_(std::make_unique<Impl>(model, quality)) {}
+Scene::Scene(const Model& model, RenderQuality quality, bool software)
+    : impl_(std::make_unique<Impl>(model, quality, software)) {}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
@@ -154,7 +201,25 @@ void Scene::update(const Overlay& overlay) {
   impl_->make_room(geoms_of(overlay));
   mjv_updateScene(&impl_->m, impl_->d.get(), &impl_->option, nullptr, &impl_->camera, mjCAT_ALL,
                   &impl_->scene);
+  impl_->tame_floors();
   add_overlay(overlay, impl_->scene);
+}
+
+double Scene::shadow_reach() const {
+  const mjModel& m = impl_->m;
+  const mjvScene& scene = impl_->scene;
+  constexpr double kMargin = 1.02;  // the map's border holds nothing
+  double reach = 0;
+  for (const mjvLight& light : std::span(scene.lights, static_cast<std::size_t>(scene.nlight))) {
+    if (light.castshadow == 0 || light.type != mjLIGHT_DIRECTIONAL) continue;
+    reach = std::max(reach, kMargin * reach_of(m, scene, light));
+  }
+  const mjVisual& vis = impl_->owner.raw()->vis;
+  const double asked = vis.map.shadowclip * m.stat.extent;
+  if (reach == 0 || vis.quality.shadowsize <= 0) return asked;
+  // A finer grid than the model asks for would let surfaces shade themselves.
+  const double finest = asked * m.vis.quality.shadowsize / vis.quality.shadowsize;
+  return std::min(std::max(reach, finest), asked);
 }
 
 const mjModel& Scene::model() const noexcept { return impl_->m; }

@@ -15,15 +15,18 @@ namespace mjarm {
 
 /// How much work goes into a picture.
 enum class RenderQuality {
-  low,   ///< no shadows, reflections or smoothing: for many frames without a GPU
-  high,  ///< shadows, reflections, 8 samples a pixel as far as OpenGL has them: for pictures
+  low,     ///< no shadows, reflections or smoothing: for many frames without a GPU
+  medium,  ///< shadows; no reflections or smoothing
+  high,    ///< shadows, reflections (with a GPU), 8 samples a pixel as far as OpenGL has them
 };
 
 /// What is to be seen: a model in some state, an overlay and a camera, without any OpenGL. Shared
 /// by pictures and windows; owns its copy of the simulated state.
 class Scene {
  public:
-  Scene(const Model& model, RenderQuality quality);
+  /// @param software  pictures are computed by the processor: round shapes get fewer faces, and the
+  ///                  faint reflections, which double the work, are left out.
+  Scene(const Model& model, RenderQuality quality, bool software = false);
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
@@ -38,6 +41,10 @@ class Scene {
   [[nodiscard]] CameraView view() const;
   /// Rebuilds the list of what is drawn.
   void update(const Overlay& overlay);
+  /// [m] Half the width of a shadow map that holds all shadows of directional lights, as of the
+  /// last `update`. A map that is smaller than the model asks for stays sharp by it: its grid is
+  /// never finer, and it never reaches farther, than the model's own.
+  [[nodiscard]] double shadow_reach() const;
 
   /// For those who may include mujoco.h: the model with the quality set, camera and scene.
   [[nodiscard]] const mjModel_& model() const noexcept;

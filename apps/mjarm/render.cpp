@@ -1,0 +1,115 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/render_options.hpp"
+#include "apps/mjarm/render_program.hpp"
+#include "apps/mjarm/render_video.hpp"
+#include "apps/mjarm/robot.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/render_command.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
+#include "mjarm/model/find_arm.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  std::string file;
+  PictureArguments picture;
+  std::vector<std::string> package_paths;
+  bool allow_outside = false;
+};
+
+Result<Model> load(const Options& options) {
+  const Result<std::filesystem::path> file = find_model_file(options.file);
+  if (!file) return fail(file.error());
+  Result<Model> model = Model::load(
+      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
+              .allow_outside = options.allow_outside});
+  if (!model) return model;
+  for (const std::string& warning : model->warnings()) log_warning(warning);
+  return model;
+}
+
+/// Keyframe `home`, else the arm's own home, else as the model starts.
+Snapshot home_of(const Model& model) {
+  Sim sim(model);
+  if (sim.reset("home")) return sim.snapshot();
+  if (const Result<Arm> arm = find_arm(model)) sim.place(*arm, view(arm->home));
+  return sim.snapshot();
+}
+
+/// Once around, from where the camera stands; the last frame goes on to the first.
+Result<std::string> turntable(const Model& model, const PictureOptions& options) {
+  constexpr double kSeconds = 5;
+  Result<VideoOfRun> video = VideoOfRun::open(model, options);
+  if (!video) return fail(std::move(video.error()));
+  const Snapshot home = home_of(model);
+  Scene scene(model, RenderQuality::low);  // knows where cameras stand
+  Result<void> set =
+      scene.set_state(home).and_then([&] { return scene.set_camera(video->camera()); });
+  if (!set) return fail(std::move(set.error()));
+  const CameraView from = scene.view();
+  const auto frames =
+      static_cast<int>(std::max(1.0, std::round(options.seconds.value_or(kSeconds) * options.fps)));
+  Progress progress(text(msg::render_command_progress), static_cast<std::uint64_t>(frames));
+  for (int i = 0; i < frames; ++i) {
+    CameraView around = from;
+    around.azimuth += 2 * std::numbers::pi * i / frames;
+    if (!video->add(home, {.view = around}, {})) break;
+    progress.advance();
+  }
+  if (Result<void> finished = video->finish(); !finished) return fail(finished.error());
+  return video->summary();
+}
+
+Result<std::string> picture(const Model& model, const PictureOptions& options) {
+  if (options.seconds) {
+    return fail(Errc::usage, text(msg::render_command_video_only, "--seconds"));
+  }
+  const Result<Camera> camera = choose_camera(model, options.camera);
+  if (!camera) return fail(camera.error());
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model, offscreen_options(options));
+  if (!renderer) return fail(std::move(renderer.error()));
+  return write_picture(*renderer, options, home_of(model), *camera, {});
+}
+
+Result<std::string> render(const Options& options, const PictureOptions& wanted) {
+  const std::string ending = std::filesystem::path(options.file).extension().string();
+  if (ending == ".yaml" || ending == ".yml") return render_program(options.file, wanted);
+  const Result<Model> model = load(options);
+  if (!model) return fail(model.error());
+  return wanted.video ? turntable(*model, wanted) : picture(*model, wanted);
+}
+
+Result<int> run(const Options& options) {
+  if (options.file.empty()) return fail(Errc::usage, text(msg::render_command_which));
+  const Result<PictureOptions> wanted = read_picture_options(options.picture);
+  if (!wanted) return fail(wanted.error());
+  const Result<std::string> line = render(options, *wanted);
+  if (!line) return fail(line.error());
+  std::printf("%s\n", line->c_str());
+  return 0;
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_option(app, "file", options->file, msg::render_command_file, "FILE|PROGRAM");
+  add_picture_options(app, options->picture);
+  add_package_path_option(app, options->package_paths);
+  add_outside_option(app, options->allow_outside);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command render_command() {
+  return {"render", msg::render_command_summary, msg::render_command_examples, setup};
+}
+
+}  // namespace mjarm::app

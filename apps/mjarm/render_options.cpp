@@ -1,0 +1,156 @@
+#include "apps/mjarm/render_options.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "apps/mjarm/usage.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/render_command.hpp"
+#include "mjarm/render/video.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr int kMostPixels = 8192;
+constexpr double kMostRate = 1000;     // [1/s]
+constexpr double kMostSeconds = 3600;  // [s]
+constexpr double kGifRate = 20;        // [1/s] a whole number of the hundredths a GIF counts in
+
+/// A whole number from the beginning of `words`, which is taken away; 0 where there is none.
+int take_number(std::string_view& words) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(words.data(), words.data() + words.size(), value);
+  if (error != std::errc()) return 0;
+  words.remove_prefix(static_cast<std::size_t>(end - words.data()));
+  return value;
+}
+
+Result<void> read_size(const std::string& words, PictureOptions& options) {
+  std::string_view left = words;
+  options.width = take_number(left);
+  const bool crossed = left.starts_with('x') || left.starts_with('X');
+  if (crossed) left.remove_prefix(1);
+  options.height = take_number(left);
+  const auto fits = [](int size) { return size >= 1 && size <= kMostPixels; };
+  if (crossed && left.empty() && fits(options.width) && fits(options.height)) return {};
+  return fail(Errc::usage, text(msg::render_command_size, words, kMostPixels));
+}
+
+Result<double> read_amount(const char* option, const std::string& words, Quantity quantity,
+                           double most) {
+  Result<double> value = parse_quantity(words, quantity);
+  if (!value) return fail(in_option(option, std::move(value.error())));
+  if (*value > 0 && *value <= most) return value;
+  return fail(Errc::usage, text(msg::render_command_range, option, words, most));
+}
+
+Result<void> read_times(const PictureArguments& arguments, PictureOptions& options) {
+  if (!arguments.fps.empty()) {
+    const Result<double> fps = read_amount("--fps", arguments.fps, Quantity::number, kMostRate);
+    if (!fps) return fail(fps.error());
+    if (!options.video) return fail(Errc::usage, text(msg::render_command_video_only, "--fps"));
+    options.fps = *fps;
+  }
+  if (!arguments.seconds.empty()) {
+    const Result<double> seconds =
+        read_amount("--seconds", arguments.seconds, Quantity::time, kMostSeconds);
+    if (!seconds) return fail(seconds.error());
+    options.seconds = *seconds;
+  }
+  return {};
+}
+
+/// Reads `azimuth,elevation,distance[,x,y,z]`.
+Result<CameraView> read_view(const Model& model, const std::string& words) {
+  const std::vector<std::string_view> parts = split_list(words);
+  if (parts.size() != 3 && parts.size() != 6) {
+    return fail(Errc::usage, text(msg::render_command_camera_values, words, parts.size()));
+  }
+  std::array<double, 6> values{};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Result<double> value =
+        parse_quantity(parts[i], i < 2 ? Quantity::angle : Quantity::length);
+    if (!value) return fail(in_option("--camera", value.error()));
+    values[i] = *value;
+  }
+  CameraView view = default_view(model);
+  view.azimuth = values[0];
+  view.elevation = values[1];
+  view.distance = values[2];
+  if (parts.size() == 6) view.lookat_W = {values[3], values[4], values[5]};
+  return view;
+}
+
+}  // namespace
+
+void add_picture_options(CLI::App& app, PictureArguments& arguments) {
+  add_option(app, "--out", arguments.out, msg::render_command_option_out, "F.png|mp4|gif");
+  add_option(app, "--size", arguments.size, msg::render_command_option_size, "WxH");
+  add_option(app, "--camera", arguments.camera, msg::render_command_option_camera, "C");
+  add_option(app, "--quality", arguments.quality, msg::render_command_option_quality, "Q");
+  add_option(app, "--fps", arguments.fps, msg::render_command_option_fps, "N");
+  add_option(app, "--seconds", arguments.seconds, msg::render_command_option_seconds, "S");
+}
+
+Result<PictureOptions> read_picture_options(const PictureArguments& arguments) {
+  if (arguments.out.empty()) return fail(Errc::usage, text(msg::app_option_missing, "--out"));
+  PictureOptions options;
+  options.out = arguments.out;
+  options.camera = arguments.camera;
+  const std::optional<VideoFormat> format = video_format(options.out);
+  const std::string ending = options.out.extension().string();
+  if (!format && ending != ".png" && ending != ".PNG") {
+    return fail(Errc::usage, text(msg::render_command_ending, arguments.out));
+  }
+  options.video = format.has_value();
+  if (format == VideoFormat::gif) {
+    options.width /= 2;
+    options.height /= 2;
+    options.fps = kGifRate;
+  }
+  if (!arguments.size.empty()) {
+    if (Result<void> read = read_size(arguments.size, options); !read) return fail(read.error());
+  }
+  if (!arguments.quality.empty()) {
+    static const std::array<std::string, 3> kWords = {"low", "medium", "high"};
+    const Result<std::size_t> word = parse_choice("--quality", arguments.quality, kWords);
+    if (!word) return fail(word.error());
+    options.quality = static_cast<RenderQuality>(*word);
+  }
+  if (Result<void> read = read_times(arguments, options); !read) return fail(read.error());
+  return options;
+}
+
+OffscreenOptions offscreen_options(const PictureOptions& options) {
+  OffscreenOptions out{.width = options.width, .height = options.height};
+  if (options.quality) {
+    out.quality = *options.quality;
+  } else if (options.video) {
+    out.software_quality = RenderQuality::low;
+  }
+  return out;
+}
+
+Result<Camera> choose_camera(const Model& model, const std::string& words) {
+  Camera camera;
+  if (words.empty()) {
+    if (std::ranges::count(camera_names(model), "overview") > 0) camera.name = "overview";
+    return camera;
+  }
+  if (words.find(',') != std::string::npos) {
+    const Result<CameraView> view = read_view(model, words);
+    if (!view) return fail(view.error());
+    camera.view = *view;
+  } else {
+    camera.name = words;
+  }
+  if (Result<void> checked = check_camera(model, camera); !checked) {
+    return fail(in_option("--camera", std::move(checked.error())));
+  }
+  return camera;
+}
+
+}  // namespace mjarm::app

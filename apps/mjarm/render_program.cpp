@@ -1,0 +1,144 @@
+#include "apps/mjarm/render_program.hpp"
+
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "apps/mjarm/program_load.hpp"
+#include "apps/mjarm/render_video.hpp"
+#include "mjarm/core/messages/render_command.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
+#include "mjarm/render/png.hpp"
+#include "mjarm/sim/follow.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kRest = 0.5;  // [s] at the end
+constexpr Rgba kPlannedColor = {0.85F, 0.15F, 0.15F, 1};
+constexpr Rgba kTrailColor = {0.10F, 0.45F, 0.85F, 1};
+
+/// Runs the motions of a plan one after the other, with the trail of the tool in an overlay.
+class ProgramRun {
+ public:
+  explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
+    sim_.place(loaded.robot.arm, view(loaded.plan.q_start));
+    overlay_.lines.push_back({.points_W = {}, .width = 0.006, .color = kTrailColor});
+    for (const PlannedMove& move : loaded.plan.moves) {
+      if (!move.curve) continue;
+      OverlayLine& line = overlay_.lines.emplace_back();
+      for (const Pose& X : move.curve->poses(move.curve->stations(0.01, 0.1))) {
+        grow_trail(line.points_W, X.p);
+      }
+      line.color = kPlannedColor;
+    }
+  }
+
+  /// @param seconds     [s] of simulated time at most.
+  /// @param after_step  returns false to stop; called once before anything moves.
+  Result<void> run(std::optional<double> seconds, const std::function<bool()>& after_step) {
+    if (!after_step()) return {};
+    const ProgramPlan& plan = loaded_.plan;
+    for (std::size_t i = 0; i < plan.moves.size(); ++i) {
+      const PlannedMove& move = plan.moves[i];
+      const bool last = i + 1 == plan.moves.size();
+      if (move.close) {
+        const Gripper& gripper = *plan.arms.front().gripper;
+        sim_.set_ctrl(gripper.id, *move.close ? gripper.ctrl_closed : gripper.ctrl_open);
+      }
+      if (!last && !(move.trajectory.duration() > 0)) continue;
+      const Result<bool> go_on = follow(move, last ? kRest : 0, seconds, after_step);
+      if (!go_on) return fail(go_on.error());
+      if (!*go_on) return {};
+    }
+    return {};
+  }
+
+  [[nodiscard]] const Sim& sim() const { return sim_; }
+  [[nodiscard]] const Overlay& overlay() const { return overlay_; }
+
+ private:
+  /// @return false where it was stopped.
+  Result<bool> follow(const PlannedMove& move, double rest, std::optional<double> seconds,
+                      const std::function<bool()>& after_step) {
+    const Arm& arm = loaded_.robot.arm;
+    const Arm& tool = loaded_.plan.arms[move.tool];
+    Result<Controller> controller = Controller::make(
+        loaded_.robot.model, arm, loaded_.program.control.value_or(ControlMode::computed_torque));
+    if (!controller) return fail(std::move(controller.error()));
+    const FollowSetup setup{.sim = sim_,
+                            .controller = *controller,
+                            .arm = arm,
+                            .after_step = [&](const Sim& sim, const JointVec&) {
+                              grow_trail(overlay_.lines.front().points_W, sim.tool(tool).p);
+                              return after_step() && !(seconds && sim.time() >= *seconds);
+                            }};
+    const auto outcome = follow_time(setup, move.trajectory, {.settle = rest});
+    if (outcome) return !outcome->stopped;
+    return fail(Errc::impossible, describe(outcome.error(), arm));
+  }
+
+  const LoadedProgram& loaded_;
+  Sim sim_;
+  Overlay overlay_;
+};
+
+Result<std::string> video_of(ProgramRun& run, const Model& model, const PictureOptions& options,
+                             Progress& progress) {
+  Result<VideoOfRun> video = VideoOfRun::open(model, options);
+  if (!video) return fail(std::move(video.error()));
+  const auto after_step = [&] {
+    progress.advance();
+    return video->step(run.sim(), run.overlay());
+  };
+  if (Result<void> ran = run.run(options.seconds, after_step); !ran) return fail(ran.error());
+  if (Result<void> finished = video->finish(); !finished) return fail(finished.error());
+  return video->summary();
+}
+
+Result<std::string> picture_of(ProgramRun& run, const Model& model, const PictureOptions& options,
+                               Progress& progress) {
+  const Result<Camera> camera = choose_camera(model, options.camera);
+  if (!camera) return fail(camera.error());
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model, offscreen_options(options));
+  if (!renderer) return fail(std::move(renderer.error()));
+  const auto after_step = [&progress] {
+    progress.advance();
+    return !interrupted();
+  };
+  if (Result<void> ran = run.run(options.seconds, after_step); !ran) return fail(ran.error());
+  if (interrupted()) {
+    return fail(Errc::system, text(msg::render_command_stopped, options.out.string()));
+  }
+  return write_picture(*renderer, options, run.sim().snapshot(), *camera, run.overlay());
+}
+
+}  // namespace
+
+Result<std::string> render_program(const std::string& file, const PictureOptions& options) {
+  const Result<LoadedProgram> loaded = load_program(file);
+  if (!loaded) return fail(loaded.error());
+  if (!loaded->plan.ok()) return fail(first_fault(*loaded));
+  const Model& model = loaded->robot.model;
+  double duration = loaded->plan.duration() + kRest;
+  if (options.seconds) duration = std::min(duration, *options.seconds);
+  Progress progress(text(msg::render_command_running),
+                    static_cast<std::uint64_t>(duration / model.timestep()));
+  ProgramRun run(*loaded);
+  return options.video ? video_of(run, model, options, progress)
+                       : picture_of(run, model, options, progress);
+}
+
+Result<std::string> write_picture(OffscreenRenderer& renderer, const PictureOptions& options,
+                                  const Snapshot& snapshot, const Camera& camera,
+                                  const Overlay& overlay) {
+  const Result<Image> image = renderer.draw(snapshot, camera, overlay);
+  if (!image) return fail(image.error());
+  if (Result<void> written = write_png(*image, options.out); !written) {
+    return fail(std::move(written.error()));
+  }
+  return text(msg::render_command_picture, options.out.string(), image->width, image->height);
+}
+
+}  // namespace mjarm::app
