@@ -35,10 +35,10 @@ TEST(ManipulabilityEllipsoid, IsTheEigenDecompositionOfJJt) {
       const Eigen::Matrix3d JJt = differenced(arm, q);
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(JJt);
       EXPECT_LT((found.semi_axes.cwiseAbs2().reverse() - eigen.eigenvalues()).norm(), 1e-8);
-      EXPECT_LT((found.R_WE * found.semi_axes.cwiseAbs2().asDiagonal() * found.R_WE.transpose() -
-                 JJt)
-                    .norm(),
-                1e-8);
+      EXPECT_LT(
+          (found.R_WE * found.semi_axes.cwiseAbs2().asDiagonal() * found.R_WE.transpose() - JJt)
+              .norm(),
+          1e-8);
       EXPECT_LT((found.R_WE.transpose() * found.R_WE - Eigen::Matrix3d::Identity()).norm(), 1e-12);
       EXPECT_NEAR(found.R_WE.determinant(), 1, 1e-12);
       EXPECT_GE(found.semi_axes[0], found.semi_axes[1]);
@@ -51,8 +51,8 @@ TEST(ManipulabilityEllipsoid, IsTheEigenDecompositionOfJJt) {
 TEST(ManipulabilityEllipsoid, IsFlatWhereTheToolCannotGo) {
   Pose X_JT;
   X_JT.p = {0.5, 0, 0};
-  const Arm arm = testing::make_arm(
-      "one", {{{0, 0, 0}, {0, 0, 0}, Eigen::Vector3d::UnitZ(), -3, 3}}, X_JT);
+  const Arm arm =
+      testing::make_arm("one", {{{0, 0, 0}, {0, 0, 0}, Eigen::Vector3d::UnitZ(), -3, 3}}, X_JT);
   const VelocityEllipsoid found = manipulability_ellipsoid(arm, std::vector<double>{0.0});
   EXPECT_NEAR(found.semi_axes[0], 0.5, 1e-12);
   EXPECT_NEAR(found.semi_axes[1], 0, 1e-12);
@@ -75,8 +75,7 @@ TEST(ManipulabilityEllipsoid, LosesADirectionAtASingularity) {
   const VelocityEllipsoid stretched =
       manipulability_ellipsoid(arm, std::vector<double>{0.3, 0.2, 0.0});
   EXPECT_LT(stretched.semi_axes[2], 1e-12);
-  const Eigen::Vector3d along =
-      fk(arm, std::vector<double>{0.3, 0.2, 0.0}).p.normalized();
+  const Eigen::Vector3d along = fk(arm, std::vector<double>{0.3, 0.2, 0.0}).p.normalized();
   EXPECT_NEAR(std::abs(stretched.R_WE.col(2).dot(along)), 1, 1e-9);
   const VelocityEllipsoid bent = manipulability_ellipsoid(arm, std::vector<double>{0.3, 0.2, 1.0});
   EXPECT_GT(bent.semi_axes[2], 0.1);

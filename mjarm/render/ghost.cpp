@@ -34,6 +34,13 @@ mjvOption only_geoms(const mjvOption& option) {
   return plain;
 }
 
+/// Moves what may stand in the robot itself towards the camera, so that the two do not flicker
+/// through each other.
+void lift(mjvGeom& geom, const mjvGLCamera& camera) {
+  constexpr float kLift = 0.002F;  // [m]
+  for (int i = 0; i < 3; ++i) geom.pos[i] -= kLift * camera.forward[i];
+}
+
 /// One colour for all, so that the ghost is not taken for the robot.
 void tint(mjvGeom& geom, const Rgba& color) {
   const float rgba[4] = {color.r, color.g, color.b, color.a};
@@ -79,6 +86,7 @@ void Ghosts::draw_one(const OverlayGhost& ghost, const mjvOption& option, const 
     mjvGeom& geom = scene.geoms[i];
     if (geom.objtype != mjOBJ_GEOM || !moved(*m_, *d_, d, geom.objid)) continue;
     tint(geom, ghost.color);
+    lift(geom, scene.camera[0]);
     if (kept != i) scene.geoms[kept] = geom;
     ++kept;
   }

@@ -20,13 +20,13 @@ constexpr Rgba kBlue = {0.20F, 0.38F, 0.85F, 1};
 
 /// Tubes that a picture can afford; a tube costs as much as some hundred thin lines.
 constexpr std::size_t kTubesLow = 300;
-constexpr std::size_t kTubesHigh = 3000;
-constexpr double kPixelsPerMetre = 700;  ///< width of thin lines: 3 mm are about two pixels
-constexpr double kThinnest = 1.0;        ///< [px]
-constexpr double kThickest = 5.0;        ///< [px]
-constexpr double kUnseen = 0.15;  ///< of its width a line may be off, to need fewer pieces
+constexpr std::size_t kTubesHigh = 400;
+constexpr double kPixelsPerMetre = 700;    ///< width of thin lines: 3 mm are about two pixels
+constexpr double kThinnest = 1.0;          ///< [px]
+constexpr double kThickest = 5.0;          ///< [px]
+constexpr double kUnseen = 0.15;           ///< of its width a line may be off, to need fewer pieces
 constexpr std::size_t kMostDashes = 1000;  ///< of a line
-constexpr double kFlat = 1e-3;           ///< smallest semi-axis as a share of the largest
+constexpr double kFlat = 1e-3;             ///< smallest semi-axis as a share of the largest
 
 /// Lets `room` of `wanted` things pass, evenly.
 class Sieve {
@@ -84,8 +84,7 @@ std::vector<Strokes> strokes_of(const Overlay& overlay) {
     strokes.points = strokes.own;
   }
   for (const OverlaySegments& segments : overlay.segments) {
-    out.push_back(
-        {segments.ends_W, false, segments.width, segments.color, segments.look, {}});
+    out.push_back({segments.ends_W, false, segments.width, segments.color, segments.look, {}});
   }
   return out;
 }
@@ -125,7 +124,9 @@ void add_connector(mjvScene& scene, int type, double width, const Vector3d& from
                    const Vector3d& to, const Rgba& color) {
   const double length = (to - from).norm();
   if (!(length >= mjMINVAL) || !std::isfinite(length)) return;
-  mjv_connector(&add_geom(scene, type, color), type, width, from.data(), to.data());
+  mjvGeom& geom = add_geom(scene, type, color);
+  mjv_connector(&geom, type, width, from.data(), to.data());
+  if (type == mjGEOM_ARROW) geom.size[2] *= 2;  // MuJoCo draws arrows half as long as they are
 }
 
 void add_solid(mjvScene& scene, int type, const Pose& X_WF, const Vector3d& sizes,
@@ -156,8 +157,8 @@ void add_label(mjvScene& scene, const OverlayLabel& label) {
 void add_strokes(const Strokes& strokes, Sieve& sieve, mjvScene& scene) {
   const bool thin = strokes.look == LineLook::thin;
   const int type = thin ? mjGEOM_LINE : mjGEOM_CAPSULE;
-  const double width = thin ? std::clamp(kPixelsPerMetre * strokes.width, kThinnest, kThickest)
-                            : strokes.width / 2;
+  const double width =
+      thin ? std::clamp(kPixelsPerMetre * strokes.width, kThinnest, kThickest) : strokes.width / 2;
   const std::span<const Vector3d> points = strokes.points;
   if (!strokes.connected) {
     for (std::size_t i = 1; i < points.size(); i += 2) {
@@ -219,8 +220,7 @@ void append_all(std::vector<T>& target, const std::vector<T>& source) {
 }  // namespace
 
 std::size_t shapes_of(const Overlay& overlay) {
-  std::size_t count =
-      single_shapes(overlay) + overlay.spheres.size() + overlay.capsules.size();
+  std::size_t count = single_shapes(overlay) + overlay.spheres.size() + overlay.capsules.size();
   for (const OverlayLine& line : overlay.lines) {
     if (line.points_W.size() > 1) count += line.points_W.size() - 1;
     if (line.dash > 0) count += kMostDashes;

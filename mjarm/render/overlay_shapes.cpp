@@ -9,7 +9,7 @@ namespace {
 
 constexpr Rgba kFar = {0.20F, 0.60F, 0.35F, 1};
 constexpr Rgba kNear = {0.90F, 0.15F, 0.15F, 1};
-constexpr double kPathDashes = 60;     ///< dashes a path
+constexpr double kPathDashes = 60;       ///< dashes a path
 constexpr double kShortestDash = 0.005;  ///< [m]
 
 }  // namespace

@@ -20,9 +20,9 @@ struct ContactMark {
 
 /// How contacts are drawn.
 struct ContactLook {
-  double radius = 0.008;              ///< [m] of the point, > 0
-  double metres_per_newton = 0.002;   ///< length of the arrow, > 0
-  double longest = 0.3;               ///< [m] of an arrow, > 0
+  double radius = 0.008;             ///< [m] of the point, > 0
+  double metres_per_newton = 0.002;  ///< length of the arrow, > 0
+  double longest = 0.3;              ///< [m] of an arrow, > 0
   Rgba color = {0.95F, 0.55F, 0.10F, 1};
 };
 
@@ -39,7 +39,7 @@ void add_closest_pair(Overlay& overlay, const Eigen::Vector3d& p1_W, const Eigen
 struct PathLook {
   double width = 0.004;  ///< [m] > 0
   Rgba color = {0.85F, 0.15F, 0.15F, 1};
-  bool dashed = true;    ///< about 60 dashes, of 5 mm at least
+  bool dashed = true;  ///< about 60 dashes, of 5 mm at least
 };
 
 /// Appends the way of the tool as it is planned, shape (n,).

@@ -26,8 +26,8 @@ bool is_straight(std::span<const Vector3d> points, std::size_t from, std::size_t
 
 }  // namespace
 
-std::vector<Vector3d> dashes(std::span<const Vector3d> points, double dash,
-                                    double gap, std::size_t most) {
+std::vector<Vector3d> dashes(std::span<const Vector3d> points, double dash, double gap,
+                             std::size_t most) {
   std::vector<Vector3d> ends;
   double total = 0;
   for (std::size_t i = 1; i < points.size(); ++i) total += (points[i] - points[i - 1]).norm();

@@ -14,9 +14,9 @@ struct TrailOptions {
   double spacing = 0.002;          ///< [m] nearer points are left out, >= 0
   double width = 0.005;            ///< [m] diameter of the line, > 0
   Rgba color = {0.10F, 0.45F, 0.85F, 1};
-  bool balls = false;            ///< red balls along the trail instead of a line
-  double ball_radius = 0.005;    ///< [m] > 0
-  double ball_spacing = 0.01;    ///< [m] way along the trail from ball to ball, > 0
+  bool balls = false;          ///< red balls along the trail instead of a line
+  double ball_radius = 0.005;  ///< [m] > 0
+  double ball_spacing = 0.01;  ///< [m] way along the trail from ball to ball, > 0
   Rgba ball_color = {0.85F, 0.15F, 0.15F, 1};
 };
 
@@ -40,7 +40,7 @@ class Trail {
  private:
   TrailOptions options_;
   std::vector<Eigen::Vector3d> ring_;
-  std::size_t begin_ = 0;       ///< the oldest, once the ring is full
+  std::size_t begin_ = 0;  ///< the oldest, once the ring is full
   Eigen::Vector3d newest_ = Eigen::Vector3d::Zero();
 };
 

@@ -86,6 +86,35 @@ TEST_F(Figures, TakeAnything) {
   EXPECT_LT(std::string(odd.title).size(), sizeof(odd.title));
 }
 
+TEST_F(Figures, DashesAndGapsAreSeparatePieces) {
+  LivePlot plot = {.series = {{.name = "a"}, {.style = LineStyle::dashed}}};
+  for (int i = 0; i < 900; ++i) {
+    plot.series[0].x.push_back(i);
+    plot.series[0].y.push_back(std::sin(0.01 * i));
+  }
+  plot.series[1].x = {0, 899};
+  plot.series[1].y = {0.5, 0.5};
+  const mjvFigure& figure = fill(plot);
+  ASSERT_EQ(figure.flg_barplot, 1);
+  // The first curve needs two lines of the figure, of which one has its name.
+  EXPECT_STREQ(figure.linename[0], "a");
+  EXPECT_STREQ(figure.linename[1], "");
+  EXPECT_EQ(figure.linepnt[0] + figure.linepnt[1], 2 * 899);
+  EXPECT_FLOAT_EQ(figure.linergb[0][0], figure.linergb[1][0]);
+  EXPECT_FLOAT_EQ(figure.linedata[1][2 * figure.linepnt[1] - 2], 899);
+  double drawn = 0;
+  for (int i = 0; i < figure.linepnt[2]; i += 2) {
+    drawn += figure.linedata[2][2 * i + 2] - figure.linedata[2][2 * i];
+    EXPECT_FLOAT_EQ(figure.linedata[2][2 * i + 1], 0.5F);
+  }
+  EXPECT_NEAR(drawn, 899 * 0.625, 30);
+  plot.series.resize(1);
+  EXPECT_EQ(fill(plot).flg_barplot, 0);
+  plot.series[0].y[500] = std::nan("");
+  EXPECT_EQ(fill(plot).flg_barplot, 1);
+  EXPECT_EQ(figure_->linepnt[0] + figure_->linepnt[1], 2 * 897);
+}
+
 TEST_F(Figures, HaveRoomForSoManyCurvesOnly) {
   LivePlot plot;
   plot.series.resize(mjMAXLINE + 10, {.x = {0, 1}, .y = {0, 1}});

@@ -2,7 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mjarm/core/rotation.hpp"
@@ -14,7 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kGrazing = 0.26;   ///< sine (15 degrees) below which a direction points at the eye
-constexpr double kHorizon = 0.05;   ///< sine: rays so flat to a plane meet it too far away
+constexpr double kFlattest = 0.1;   ///< sine: rays flatter to a plane do not take hold in it
+constexpr double kHorizon = 0.4;    ///< of the first ray's sine: flatter rays meet it too far away
 constexpr double kReach = 3;        ///< in distances to the eye
 constexpr double kDepthCost = 0.5;  ///< of a handle one arrow length behind another
 
@@ -53,24 +56,40 @@ Nearest nearest_to_segment(const Ray& ray, const Vector3d& a, const Vector3d& b)
   return nearest_to_point(ray, a + std::clamp(share, 0.0, 1.0) * along);
 }
 
+/// Corners of the ring as a polygon, with radius one.
+const std::array<Eigen::Vector2d, gizmo::kRingPieces>& ring_corners() {
+  static const auto corners = [] {
+    std::array<Eigen::Vector2d, gizmo::kRingPieces> out;
+    for (int i = 0; i < gizmo::kRingPieces; ++i) {
+      const double angle = 2 * std::numbers::pi * i / gizmo::kRingPieces;
+      out[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle)};
+    }
+    return out;
+  }();
+  return corners;
+}
+
 Nearest nearest_to_ring(const Ray& ray, const Vector3d& middle, const Vector3d& u,
                         const Vector3d& v) {
   Nearest best{std::numeric_limits<double>::infinity(), 0, middle};
-  for (int i = 0; i < gizmo::kRingPieces; ++i) {
-    const double from = 2 * std::numbers::pi * i / gizmo::kRingPieces;
-    const double to = 2 * std::numbers::pi * (i + 1) / gizmo::kRingPieces;
-    const Nearest found =
-        nearest_to_segment(ray, middle + std::cos(from) * u + std::sin(from) * v,
-                           middle + std::cos(to) * u + std::sin(to) * v);
+  const auto at = [&](const Eigen::Vector2d& c) -> Vector3d {
+    return middle + c.x() * u + c.y() * v;
+  };
+  Vector3d from = at(ring_corners().back());
+  for (const Eigen::Vector2d& corner : ring_corners()) {
+    const Vector3d to = at(corner);
+    const Nearest found = nearest_to_segment(ray, from, to);
     if (found.miss < best.miss) best = found;
+    from = to;
   }
   return best;
 }
 
 /// Where a ray meets a plane in front of it; none for rays too flat to it.
-std::optional<Vector3d> meet(const Ray& ray, const Vector3d& point, const Vector3d& normal) {
+std::optional<Vector3d> meet(const Ray& ray, const Vector3d& point, const Vector3d& normal,
+                             double flattest = kFlattest) {
   const double slope = ray.direction_W.dot(normal);
-  if (!(std::abs(slope) > kHorizon)) return std::nullopt;
+  if (!(std::abs(slope) > flattest)) return std::nullopt;
   const double way = (point - ray.origin_W).dot(normal) / slope;
   if (!(way > 0) || !std::isfinite(way)) return std::nullopt;
   return ray.at(way);
@@ -112,6 +131,7 @@ std::optional<TargetGizmo::Hit> TargetGizmo::find(const Ray& mouse) const {
   const double s = scale();
   if (!is_usable(mouse) || !(s > 0)) return std::nullopt;
   const double most = options_.nearness / options_.size * s;
+  if (nearest_to_point(mouse, X_WT_.p).miss > s + most) return std::nullopt;
   const Eigen::Matrix3d R = axes();
   const double middle = nearest_to_point(mouse, X_WT_.p).way;
   std::optional<Hit> best;
@@ -190,6 +210,7 @@ std::optional<TargetGizmo::Grip> TargetGizmo::grip_of(const Hit& hit, const Ray&
   const std::optional<Vector3d> met = meet(mouse, X_WT_.p, grip.plane_W);
   if (!met) return std::nullopt;
   grip.point_W = *met;
+  grip.flattest = kHorizon * std::abs(mouse.direction_W.dot(grip.plane_W));
   return grip;
 }
 
@@ -208,14 +229,14 @@ void TargetGizmo::turn(Grip& grip, const Vector3d& met) {
   const Vector3d to = without(met - grip.X_start.p, grip.axis_W);
   if (std::min(from.norm(), to.norm()) < 0.05 * scale()) return;
   const double angle = std::atan2(grip.axis_W.dot(from.cross(to)), from.dot(to));
-  grip.amount = angle + 2 * std::numbers::pi *
-                            std::round((grip.amount - angle) / (2 * std::numbers::pi));
+  grip.amount =
+      angle + 2 * std::numbers::pi * std::round((grip.amount - angle) / (2 * std::numbers::pi));
 }
 
 const Pose& TargetGizmo::drag(const Ray& mouse) {
   if (!grip_ || !is_usable(mouse)) return X_WT_;
   Grip& grip = *grip_;
-  const std::optional<Vector3d> met = meet(mouse, grip.X_start.p, grip.plane_W);
+  const std::optional<Vector3d> met = meet(mouse, grip.X_start.p, grip.plane_W, grip.flattest);
   if (!met) return X_WT_;
   const Vector3d way = *met - grip.point_W;
   if (is_ring(grip.handle)) {

@@ -25,7 +25,7 @@ enum class GizmoHandle {
 
 /// Sizes on the screen, as shares of the height of the picture. Every default is usable as is.
 struct GizmoOptions {
-  double size = 0.16;     ///< from the middle to the points of the arrows, > 0
+  double size = 0.16;       ///< from the middle to the points of the arrows, > 0
   double nearness = 0.012;  ///< so near to a handle the mouse holds it, > 0
 };
 
@@ -78,6 +78,7 @@ class TargetGizmo {
     Eigen::Vector3d point_W;   ///< [m] where the mouse met that plane
     Eigen::Vector3d across_W;  ///< amount a metre of way in that plane, where it is linear in it
     bool linear;               ///< the amount is `across_W` times the way
+    double flattest;           ///< rays whose sine to that plane is less change nothing
     double reach;              ///< [m] it is never moved further
     double amount = 0;         ///< [m or rad]
   };

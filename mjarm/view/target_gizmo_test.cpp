@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 constexpr int kPictureWidth = 1280;
 constexpr int kPictureHeight = 800;
 constexpr double kPi = std::numbers::pi;
-constexpr GizmoHandle kAll[] = {GizmoHandle::move_x,  GizmoHandle::move_y,  GizmoHandle::move_z,
-                                GizmoHandle::move_yz, GizmoHandle::move_zx, GizmoHandle::move_xy,
-                                GizmoHandle::turn_x,  GizmoHandle::turn_y,  GizmoHandle::turn_z,
+constexpr GizmoHandle kAll[] = {GizmoHandle::move_x,   GizmoHandle::move_y,  GizmoHandle::move_z,
+                                GizmoHandle::move_yz,  GizmoHandle::move_zx, GizmoHandle::move_xy,
+                                GizmoHandle::turn_x,   GizmoHandle::turn_y,  GizmoHandle::turn_z,
                                 GizmoHandle::move_free};
 
 Pose random_pose(Rng& rng) {
@@ -55,11 +55,14 @@ Ray at_pixel(const Eye& eye, const Vector2d& pixel) {
 /// A pixel near the target that meets the handle, looked for all over the target.
 std::optional<Vector2d> pixel_of(TargetGizmo& gizmo, const Eye& eye, GizmoHandle handle) {
   const auto middle = pixel_of_point(eye, kPictureWidth, kPictureHeight, gizmo.pose().p);
-  if (!middle) return std::nullopt;
-  for (double dy = -160; dy <= 160; dy += 3) {
-    for (double dx = -160; dx <= 160; dx += 3) {
-      const Vector2d pixel = *middle + Vector2d(dx, dy);
-      if (gizmo.hover(at_pixel(eye, pixel)) == handle) return pixel;
+  if (!middle || !gizmo.is_visible(handle)) return std::nullopt;
+  const bool square = handle >= GizmoHandle::move_yz && handle <= GizmoHandle::move_xy;
+  for (const double step : {7.0, square ? 2.5 : 5.0}) {  // narrow ones need a closer look
+    for (double dy = -140; dy <= 140; dy += step) {
+      for (double dx = -140; dx <= 140; dx += step) {
+        const Vector2d pixel = *middle + Vector2d(dx, dy);
+        if (gizmo.hover(at_pixel(eye, pixel)) == handle) return pixel;
+      }
     }
   }
   return std::nullopt;
@@ -121,8 +124,8 @@ TEST(TargetGizmo, IsAsLargeOnTheScreenFromAnyDistance) {
     for (const OverlayArrow& arrow : overlay.arrows) {
       const auto pixel = pixel_of_point(eye, kPictureWidth, kPictureHeight, arrow.to_W);
       ASSERT_TRUE(pixel);
-      furthest = std::max(
-          furthest, (*pixel - Vector2d(kPictureWidth / 2.0, kPictureHeight / 2.0)).norm());
+      furthest =
+          std::max(furthest, (*pixel - Vector2d(kPictureWidth / 2.0, kPictureHeight / 2.0)).norm());
     }
     EXPECT_NEAR(furthest, 0.15 * kPictureHeight, 0.03 * kPictureHeight) << distance;
   }
@@ -248,12 +251,13 @@ TEST(TargetGizmo, ADragThatComesBackChangesNothing) {
 /// never lets the target jump.
 TEST(TargetGizmo, NothingJumpsAtGrazingAngles) {
   Rng rng(26);
-  for (int i = 0; i < 120; ++i) {
+  for (int i = 0; i < 60; ++i) {
     const Pose start = random_pose(rng);
     const Vector3d towards =
-        start.R.col(i % 3) + rng.uniform(0, 0.3) * Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1),
-                                                            rng.uniform(-1, 1));
-    const Vector3d f = (i % 2 == 0 ? towards : towards.cross(start.R.col((i + 1) % 3))).normalized();
+        start.R.col(i % 3) +
+        rng.uniform(0, 0.3) * Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const Vector3d f =
+        (i % 2 == 0 ? towards : towards.cross(start.R.col((i + 1) % 3))).normalized();
     const double distance = 2;
     const Eye eye = eye_of({.lookat_W = start.p,
                             .distance = distance,
@@ -287,10 +291,10 @@ TEST(TargetGizmo, DegenerateRaysChangeNothing) {
   const Eye eye = eye_of({.lookat_W = start.p, .distance = 2, .elevation = -0.5}, 0.8);
   TargetGizmo gizmo(start);
   gizmo.set_eye(eye);
-  const Ray bad[] = {{{nan, 0, 0}, {1, 0, 0}},       {{0, 0, 0}, {nan, 0, 0}},
-                     {{0, 0, 0}, {0, 0, 0}},         {{0, 0, 0}, {INFINITY, 0, 0}},
-                     {eye.p_W, -eye.forward_W},      {eye.p_W, eye.up_W},
-                     {{1e300, 1e300, 1e300}, {1, 0, 0}}, {start.p, {1, 0, 0}}};
+  const Ray bad[] = {
+      {{nan, 0, 0}, {1, 0, 0}},           {{0, 0, 0}, {nan, 0, 0}},  {{0, 0, 0}, {0, 0, 0}},
+      {{0, 0, 0}, {INFINITY, 0, 0}},      {eye.p_W, -eye.forward_W}, {eye.p_W, eye.up_W},
+      {{1e300, 1e300, 1e300}, {1, 0, 0}}, {start.p, {1, 0, 0}}};
   for (const Ray& ray : bad) {
     gizmo.hover(ray);
     if (gizmo.grab(ray)) gizmo.drag(ray);
