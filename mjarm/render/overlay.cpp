@@ -154,22 +154,32 @@ void add_label(mjvScene& scene, const OverlayLabel& label) {
   geom.label[length] = '\0';
 }
 
+/// Lines take no light, and each light with shadows draws the picture once more on top.
+Rgba line_color(Rgba color, const mjvScene& scene) {
+  if (scene.flags[mjRND_SHADOW] == 0) return color;
+  const auto shadows = std::count_if(scene.lights, scene.lights + scene.nlight,
+                                     [](const mjvLight& light) { return light.castshadow != 0; });
+  const float share = 1.0F / static_cast<float>(1 + shadows);
+  return {share * color.r, share * color.g, share * color.b, color.a};
+}
+
 void add_strokes(const Strokes& strokes, Sieve& sieve, mjvScene& scene) {
   const bool thin = strokes.look == LineLook::thin;
   const int type = thin ? mjGEOM_LINE : mjGEOM_CAPSULE;
   const double width =
       thin ? std::clamp(kPixelsPerMetre * strokes.width, kThinnest, kThickest) : strokes.width / 2;
+  const Rgba color = thin ? line_color(strokes.color, scene) : strokes.color;
   const std::span<const Vector3d> points = strokes.points;
   if (!strokes.connected) {
     for (std::size_t i = 1; i < points.size(); i += 2) {
-      if (sieve.pass()) add_connector(scene, type, width, points[i - 1], points[i], strokes.color);
+      if (sieve.pass()) add_connector(scene, type, width, points[i - 1], points[i], color);
     }
     return;
   }
   std::size_t from = 0;  // what does not pass is bridged
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (!sieve.pass()) continue;
-    add_connector(scene, type, width, points[from], points[i], strokes.color);
+    add_connector(scene, type, width, points[from], points[i], color);
     from = i;
   }
 }

@@ -29,6 +29,10 @@ double nice_step(double least) {
 /// The part of an axis that shows all values seen, from one round number to another.
 class Range {
  public:
+  /// @param coarse  for the y axis, both of whose ends MuJoCo moves outwards to multiples of the
+  ///                power of ten in its length: they must be such from the start, or the grid is
+  ///                uneven.
+  explicit Range(bool coarse) : coarse_(coarse) {}
   void add(double value) {
     if (!std::isfinite(value)) return;
     seen_lower_ = std::min(seen_lower_, value);
@@ -40,20 +44,26 @@ class Range {
     const double largest = std::max(std::abs(seen_lower_), std::abs(seen_upper_));
     const double least = std::max(1e-4, 1e-3 * largest);
     double found = nice_step(std::max(seen_upper_ - seen_lower_, least) / kIntervals);
-    while (lower(found) + kIntervals * found < seen_upper_) found = nice_step(1.01 * found);
+    while (lower(found) + kIntervals * found < seen_upper_ - 1e-9 * found) {
+      found = nice_step(1.01 * found);
+    }
     return found;
   }
   /// So many steps show all.
   [[nodiscard]] int intervals(double step) const {
+    if (coarse_) return kIntervals;
     const double count = std::ceil((seen_upper_ - lower(step)) / step - 1e-9);
     return static_cast<int>(std::clamp(count, 1.0, static_cast<double>(kIntervals)));
   }
   /// Where an axis of that step begins.
   [[nodiscard]] double lower(double step) const {
-    return step * std::floor(seen_lower_ / step + 1e-9);
+    const double ten = std::pow(10.0, std::floor(std::log10(kIntervals * step) + 1e-9));
+    const double unit = coarse_ ? ten : step;
+    return unit * std::floor(seen_lower_ / unit + 1e-9);
   }
 
  private:
+  bool coarse_;
   double seen_lower_ = std::numeric_limits<double>::infinity();
   double seen_upper_ = -std::numeric_limits<double>::infinity();
 };
@@ -157,7 +167,7 @@ void draw_pieces(const LiveSeries& series, std::vector<Eigen::Vector3d> part,
 
 /// Axes that show all of the curves.
 void set_ranges(const LivePlot& plot, mjvFigure& figure) {
-  Range axes[2];
+  Range axes[2] = {Range(false), Range(true)};
   for (const LiveSeries& series : plot.series) {
     for (const double value : series.x) axes[0].add(value);
     for (const double value : series.y) axes[1].add(value);
@@ -167,8 +177,7 @@ void set_ranges(const LivePlot& plot, mjvFigure& figure) {
   if (plot.equal_aspect) steps[0] = steps[1] = std::max(steps[0], steps[1]);
   for (int i = 0; i < 2; ++i) {
     const double lower = axes[i].lower(steps[i]);
-    const bool time = i == 0 && !plot.equal_aspect;
-    const int intervals = time ? axes[i].intervals(steps[i]) : kIntervals;
+    const int intervals = plot.equal_aspect ? kIntervals : axes[i].intervals(steps[i]);
     figure.gridsize[i] = intervals + 1;
     figure.range[i][0] = static_cast<float>(lower);
     figure.range[i][1] = static_cast<float>(lower + intervals * steps[i]);

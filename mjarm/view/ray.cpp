@@ -56,8 +56,7 @@ Ray ray_of_pixel(const Eye& eye, int width, int height, double x, double y) {
   return {eye.p_W, (eye.forward_W + aside).normalized()};
 }
 
-std::optional<Vector2d> pixel_of_point(const Eye& eye, int width, int height,
-                                       const Vector3d& p_W) {
+std::optional<Vector2d> pixel_of_point(const Eye& eye, int width, int height, const Vector3d& p_W) {
   const Vector3d way = p_W - eye.p_W;
   const double depth = way.dot(eye.forward_W);
   if (!(depth > 0)) return std::nullopt;

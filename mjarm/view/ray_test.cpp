@@ -74,9 +74,8 @@ TEST_P(Rays, AgreeWithMujocosSelection) {
     int geom = -1;
     int flex = -1;
     int skin = -1;
-    const int body =
-        mjv_select(&m, d.get(), &option, static_cast<mjtNum>(kWide) / kHigh, x / kWide,
-                   1 - y / kHigh, &scene_->raw(), at, &geom, &flex, &skin);
+    const int body = mjv_select(&m, d.get(), &option, static_cast<mjtNum>(kWide) / kHigh, x / kWide,
+                                1 - y / kHigh, &scene_->raw(), at, &geom, &flex, &skin);
     if (body < 0) continue;
     ++found;
     const Vector3d p(at[0], at[1], at[2]);

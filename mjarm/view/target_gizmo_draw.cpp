@@ -30,7 +30,8 @@ class Front {
     if (eye.orthographic) return;
     const double depth = (p_W - eye.p_W).dot(eye.forward_W);
     // The nearest arrow must stay behind the plane where the picture begins.
-    share_ = std::clamp(std::max(kInFront, 1.5 * eye.near / std::max(depth - size, 1e-9)), 0.0, 1.0);
+    share_ =
+        std::clamp(std::max(kInFront, 1.5 * eye.near / std::max(depth - size, 1e-9)), 0.0, 1.0);
   }
   [[nodiscard]] Vector3d at(const Vector3d& p_W) const { return eye_ + share_ * (p_W - eye_); }
   [[nodiscard]] double length(double value) const { return share_ * value; }
@@ -88,7 +89,8 @@ void TargetGizmo::draw(Overlay& overlay, const Rgba& state) const {
   if (!(s > 0)) return;
   const Pose X_WG{X_WT_.p, axes()};
   const Front front(eye_, X_WG.p, s);
-  const Vector3d to_eye = eye_.orthographic ? Vector3d(-eye_.forward_W) : Vector3d(eye_.p_W - X_WG.p);
+  const Vector3d to_eye =
+      eye_.orthographic ? Vector3d(-eye_.forward_W) : Vector3d(eye_.p_W - X_WG.p);
   const auto look = [&](GizmoHandle handle, const Rgba& color) {
     return look_of(handle, hovered_, held(), color);
   };
@@ -121,7 +123,8 @@ void TargetGizmo::draw(Overlay& overlay, const Rgba& state) const {
   overlay.labels.push_back({above, amount_text(grip_->handle, grip_->amount)});
   const Vector3d way[2] = {front.at(grip_->X_start.p), front.at(X_WG.p)};
   if ((way[1] - way[0]).norm() > 0) {
-    overlay.lines.push_back({.points_W = {way[0], way[1]}, .color = kBright, .look = LineLook::thin});
+    overlay.lines.push_back(
+        {.points_W = {way[0], way[1]}, .color = kBright, .look = LineLook::thin});
   }
 }
 
