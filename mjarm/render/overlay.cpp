@@ -18,9 +18,9 @@ constexpr Rgba kRed = {0.85F, 0.22F, 0.20F, 1};
 constexpr Rgba kGreen = {0.25F, 0.66F, 0.28F, 1};
 constexpr Rgba kBlue = {0.20F, 0.38F, 0.85F, 1};
 
-/// Tubes that a picture can afford; a tube costs as much as some hundred thin lines.
-constexpr std::size_t kTubesLow = 300;
-constexpr std::size_t kTubesHigh = 400;
+/// Tubes that a picture can afford. Without a GPU a tube costs some ten thin lines at low quality,
+/// and some milliseconds of processor time at high.
+constexpr std::size_t kMostTubes = 100;
 constexpr double kPixelsPerMetre = 700;    ///< width of thin lines: 3 mm are about two pixels
 constexpr double kThinnest = 1.0;          ///< [px]
 constexpr double kThickest = 5.0;          ///< [px]
@@ -90,13 +90,13 @@ std::vector<Strokes> strokes_of(const Overlay& overlay) {
 }
 
 /// Draws tubes where there are few of them: the shortest lines have the first claim.
-void choose_looks(std::vector<Strokes>& all, RenderQuality quality) {
+void choose_looks(std::vector<Strokes>& all) {
   std::vector<Strokes*> order;
   for (Strokes& strokes : all) {
     if (strokes.look == LineLook::automatic) order.push_back(&strokes);
   }
   std::ranges::stable_sort(order, {}, [](const Strokes* strokes) { return strokes->count(); });
-  std::size_t left = quality == RenderQuality::low ? kTubesLow : kTubesHigh;
+  std::size_t left = kMostTubes;
   for (Strokes* strokes : order) {
     const bool tube = strokes->count() <= left;
     strokes->look = tube ? LineLook::tube : LineLook::thin;
@@ -265,9 +265,9 @@ std::size_t geoms_of(const Overlay& overlay, const mjModel& m) {
          ghosts * static_cast<std::size_t>(m.ngeom);
 }
 
-void add_overlay(const Overlay& overlay, RenderQuality quality, mjvScene& scene) {
+void add_overlay(const Overlay& overlay, mjvScene& scene) {
   std::vector<Strokes> strokes = strokes_of(overlay);
-  choose_looks(strokes, quality);
+  choose_looks(strokes);
   const auto free = static_cast<std::size_t>(std::max(scene.maxgeom - scene.ngeom, 0));
   const std::size_t room = std::min(free, kMostOverlayShapes);
   Sieve singles(single_shapes(overlay), room);

@@ -28,7 +28,7 @@ struct OverlaySphere {
 
 /// How a line or a set of segments is drawn.
 enum class LineLook {
-  automatic,  ///< a tube as long as the picture can afford it, else thin
+  automatic,  ///< a tube where there are few pieces (about 100 a picture), else thin
   tube,       ///< always a round tube of the width asked for
   thin,       ///< always of the same width on the screen; costs next to nothing
 };

@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "mjarm/render/overlay.hpp"
-#include "mjarm/render/scene.hpp"
 
 namespace mjarm {
 
@@ -14,6 +13,6 @@ namespace mjarm {
 
 /// Adds what `overlay` holds, but for its ghosts, to the geoms of `scene`. Where that is more than
 /// kMostOverlayShapes or than there is room for, it is thinned evenly.
-void add_overlay(const Overlay& overlay, RenderQuality quality, mjvScene& scene);
+void add_overlay(const Overlay& overlay, mjvScene& scene);
 
 }  // namespace mjarm

@@ -157,7 +157,7 @@ void Scene::update(const Overlay& overlay) {
   mjv_updateScene(&impl_->m, impl_->d.get(), &impl_->option, nullptr, &impl_->camera, mjCAT_ALL,
                   &impl_->scene);
   impl_->ghosts.draw(overlay.ghosts, impl_->option, *impl_->d, impl_->scene);
-  add_overlay(overlay, impl_->quality, impl_->scene);
+  add_overlay(overlay, impl_->scene);
 }
 
 const mjModel& Scene::model() const noexcept { return impl_->m; }
