@@ -5,12 +5,12 @@
 #include "mjarm/model/describe.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/render/offscreen.hpp"
-#include "mjarm/render/overlay.hpp"
+#include "mjarm/render/trail.hpp"
 
 namespace mjarm {
 namespace {
 
-/// Frames of the UR5e with a trail of so many segments, drawn in the look and quality given. The
+/// Frames of the UR5e with a trail of so many points, drawn in the look and quality given. The
 /// CPU time is that of all threads, as a software renderer has many.
 void trail_frame(benchmark::State& state, RenderQuality quality, LineLook look) {
   const auto file = find_model_file("ur5e");
@@ -19,13 +19,14 @@ void trail_frame(benchmark::State& state, RenderQuality quality, LineLook look) 
   if (!model) return state.SkipWithError(model.error().what.c_str());
   Result<OffscreenRenderer> renderer = OffscreenRenderer::create(*model, {.quality = quality});
   if (!renderer) return state.SkipWithError(renderer.error().what.c_str());
-  Overlay overlay;
-  OverlayLine& line = overlay.lines.emplace_back();
-  line.look = look;
+  Trail trail({.most_points = 20000});
   for (int i = 0; i <= state.range(0); ++i) {
-    const double a = 0.01 * i;
-    line.points_W.emplace_back(0.5 * std::cos(a), 0.3 * std::sin(a), 0.4 + 1e-4 * i);
+    const double a = 0.005 * i;  // 2 mm a point
+    trail.add({0.5 * std::cos(a), 0.3 * std::sin(a), 0.4 + 5e-5 * i});
   }
+  Overlay overlay;
+  trail.draw(overlay);
+  for (OverlayLine& line : overlay.lines) line.look = look;
   for (auto _ : state) {
     if (!renderer->draw({}, {}, overlay)) return state.SkipWithError("drawing failed");
   }

@@ -42,8 +42,10 @@ void Trail::draw(Overlay& overlay) const {
   if (ring_.empty()) return;
   std::vector<Eigen::Vector3d> way = points();
   if (!options_.balls) {
-    overlay.lines.push_back(
-        {.points_W = std::move(way), .width = options_.width, .color = options_.color});
+    overlay.lines.push_back({.points_W = std::move(way),
+                             .width = options_.width,
+                             .color = options_.color,
+                             .look = options_.look});
     return;
   }
   double since = options_.ball_spacing;  // the first point has a ball

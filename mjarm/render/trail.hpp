@@ -13,6 +13,7 @@ struct TrailOptions {
   std::size_t most_points = 2000;  ///< then the oldest go, >= 2
   double spacing = 0.002;          ///< [m] nearer points are left out, >= 0
   double width = 0.005;            ///< [m] diameter of the line, > 0
+  LineLook look = LineLook::thin;  ///< the same however long it grows
   Rgba color = {0.10F, 0.45F, 0.85F, 1};
   bool balls = false;          ///< red balls along the trail instead of a line
   double ball_radius = 0.005;  ///< [m] > 0

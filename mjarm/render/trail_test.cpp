@@ -50,6 +50,7 @@ TEST(Trail, IsALineOrBalls) {
   ASSERT_EQ(overlay.lines.size(), 1U);
   EXPECT_TRUE(overlay.spheres.empty());
   EXPECT_NEAR(static_cast<double>(overlay.lines[0].points_W.size()), 501, 2);
+  EXPECT_EQ(overlay.lines[0].look, LineLook::thin);
   trail.set_balls(true);
   Overlay balls;
   trail.draw(balls);
