@@ -17,7 +17,7 @@ using MakeCurrent = unsigned char (*)(Handle, void*, unsigned, int, int);
 using DestroyContext = void (*)(Handle);
 using GetProcAddress = void* (*)(const char*);
 
-constexpr const char* kLibrary = "libOSMesa.so.8";
+constexpr const char* kOsmesaLibrary = "libOSMesa.so.8";
 
 /// The functions of OSMesa that are needed, found at run time.
 struct Library {
@@ -28,7 +28,7 @@ struct Library {
 };
 
 Result<Library> open_osmesa() {
-  const Result<void*> handle = open_library(kLibrary);
+  const Result<void*> handle = open_library(kOsmesaLibrary);
   if (!handle) return fail(handle.error());
   Library library;
   const char* missing = nullptr;
@@ -70,7 +70,7 @@ class Osmesa : public GlContext::Impl {
   }
   void release() noexcept override { library_.make_current(nullptr, nullptr, kUnsignedByte, 0, 0); }
   void* function(const char* name) override { return library_.function(name); }
-  void publish() override { publish_library(kLibrary); }
+  void publish() override { publish_library(kOsmesaLibrary); }
 
  private:
   static constexpr int kSize = 16;

@@ -142,6 +142,9 @@ TEST_P(Offscreen, DrawsTheOverlayOnTop) {
     EXPECT_EQ(color_at(before, column_of(x), row_of(z)), Color::black) << x << " " << z;
     EXPECT_EQ(color_at(image, column_of(x), row_of(z)), Color::green) << x << " " << z;
   }
+  // The arrow ends at its point.
+  EXPECT_EQ(color_at(image, column_of(0.42), row_of(-0.5)), Color::green);
+  EXPECT_NE(color_at(image, column_of(0.55), row_of(-0.5)), Color::green);
   EXPECT_EQ(color_at(image, column_of(-1), row_of(0)), Color::red);
   EXPECT_EQ(picture().rgb, before.rgb) << "an overlay must not stay";
 }

@@ -8,10 +8,11 @@
 
 namespace mjarm {
 
-/// Most geoms that `overlay` needs in a scene.
-[[nodiscard]] std::size_t geoms_of(const Overlay& overlay);
+/// Most geoms that `overlay` is given in a scene of the model, ghosts included.
+[[nodiscard]] std::size_t geoms_of(const Overlay& overlay, const mjModel& m);
 
-/// Adds what `overlay` holds to the geoms of `scene`, which has room for it.
+/// Adds what `overlay` holds, but for its ghosts, to the geoms of `scene`. Where that is more than
+/// kMostOverlayShapes or than there is room for, it is thinned evenly.
 void add_overlay(const Overlay& overlay, mjvScene& scene);
 
 }  // namespace mjarm

@@ -74,7 +74,7 @@ std::vector<Rgba> colors_of(const PlotPanel& panel) {
       colors.push_back(kInk);
     } else {
       const std::size_t index = line.color < 0 ? next++ : static_cast<std::size_t>(line.color);
-      colors.push_back(kPalette[index % kPalette.size()]);
+      colors.push_back(plot_color(static_cast<int>(index)));
     }
   }
   return colors;
@@ -308,3 +308,7 @@ void draw(const PlotPanel& panel, const Layout& layout, Page& page) {
 }
 
 }  // namespace mjarm::panel
+
+mjarm::Rgba mjarm::plot_color(int index) {
+  return panel::kPalette[static_cast<std::size_t>(index) % panel::kPalette.size()];
+}

@@ -7,6 +7,7 @@
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/image.hpp"
+#include "mjarm/render/overlay.hpp"
 
 namespace mjarm {
 
@@ -31,6 +32,9 @@ struct PlotLine {
 /// with their names in the user's language. Add the executed one first, so that both are seen.
 [[nodiscard]] PlotLine planned_line(std::vector<double> x, std::vector<double> y);
 [[nodiscard]] PlotLine executed_line(std::vector<double> x, std::vector<double> y);
+
+/// The colour of the palette with an index >= 0.
+[[nodiscard]] Rgba plot_color(int index);
 
 /// A shaded strip between two heights (a tolerance), behind the curves.
 struct PlotBand {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/render.hpp"
+#include "mjarm/render/ghost_internal.hpp"
 #include "mjarm/render/overlay_internal.hpp"
 
 namespace mjarm {
@@ -143,6 +144,7 @@ struct Scene::Impl {
   mjvOption option{};
   mjvCamera camera{};
   mjvScene scene{};
+  Ghosts ghosts{m};
 };
 
 Scene::Scene(const Model& model, RenderQuality quality, bool software)
@@ -198,10 +200,11 @@ CameraView Scene::view() const {
 }
 
 void Scene::update(const Overlay& overlay) {
-  impl_->make_room(geoms_of(overlay));
+  impl_->make_room(geoms_of(overlay, impl_->m));
   mjv_updateScene(&impl_->m, impl_->d.get(), &impl_->option, nullptr, &impl_->camera, mjCAT_ALL,
                   &impl_->scene);
   impl_->tame_floors();
+  impl_->ghosts.draw(overlay.ghosts, impl_->option, *impl_->d, impl_->scene);
   add_overlay(overlay, impl_->scene);
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mjarm/render/overlay.hpp"
+#include "mjarm/render/plot.hpp"
 
 namespace mjarm {
 
@@ -11,8 +12,9 @@ namespace mjarm {
 struct LiveSeries {
   std::string name = {};  ///< in the legend; ASCII; empty = not in the legend
   Rgba color = {0.90F, 0.35F, 0.30F, 1};
-  std::vector<double> x = {};  ///< shape (n,)
-  std::vector<double> y = {};  ///< shape (n,)
+  std::vector<double> x = {};          ///< shape (n,)
+  std::vector<double> y = {};          ///< shape (n,); NaN leaves a gap
+  LineStyle style = LineStyle::solid;  ///< points are drawn as dots along the curve
 };
 
 /// A figure at the right edge of a window: a tool path (`equal_aspect`) or curves over time.
@@ -21,6 +23,7 @@ struct LivePlot {
   std::string x_label = {};  ///< ASCII, with its unit
   std::vector<LiveSeries> series = {};
   bool equal_aspect = false;  ///< one unit is equally long on both axes
+  bool y_from_zero = false;   ///< the y axis begins at 0 (errors)
 };
 
 }  // namespace mjarm

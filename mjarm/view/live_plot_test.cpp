@@ -86,6 +86,55 @@ TEST_F(Figures, TakeAnything) {
   EXPECT_LT(std::string(odd.title).size(), sizeof(odd.title));
 }
 
+/// MuJoCo moves the ends of the y axis outwards to multiples of the power of ten in its length; the
+/// labels of the grid are round only where they are such already.
+TEST_F(Figures, TheYAxisEndsWhereMujocoLeavesIt) {
+  for (const auto& [least, most] :
+       {std::pair(-0.31, 0.81), std::pair(0.0, 1.42), std::pair(0.03, 0.12), std::pair(-6.3, 6.3),
+        std::pair(99.0, 101.0), std::pair(0.0, 0.08), std::pair(-150.0, 28.0)}) {
+    const mjvFigure& figure = fill({.series = {{.x = {0, 12}, .y = {least, most}}}});
+    const double lower = figure.range[1][0];
+    const double upper = figure.range[1][1];
+    EXPECT_LE(lower, least + 1e-6);
+    EXPECT_GE(upper, most - 1e-6);
+    const double ten = std::pow(10, std::floor(std::log10(upper - lower) + 1e-5));
+    EXPECT_NEAR(lower / ten, std::round(lower / ten), 1e-4) << least << " " << most;
+    EXPECT_NEAR(upper / ten, std::round(upper / ten), 1e-4) << least << " " << most;
+    EXPECT_EQ(figure.gridsize[1], 5);
+    EXPECT_EQ(figure.gridsize[0], 4) << "0 5 10 15";
+    EXPECT_FLOAT_EQ(figure.range[0][1], 15);
+  }
+}
+
+TEST_F(Figures, DashesAndGapsAreSeparatePieces) {
+  LivePlot plot = {.series = {{.name = "a"}, {.style = LineStyle::dashed}}};
+  for (int i = 0; i < 900; ++i) {
+    plot.series[0].x.push_back(i);
+    plot.series[0].y.push_back(std::sin(0.01 * i));
+  }
+  plot.series[1].x = {0, 899};
+  plot.series[1].y = {0.5, 0.5};
+  const mjvFigure& figure = fill(plot);
+  ASSERT_EQ(figure.flg_barplot, 1);
+  // The first curve needs two lines of the figure, of which one has its name.
+  EXPECT_STREQ(figure.linename[0], "a");
+  EXPECT_STREQ(figure.linename[1], "");
+  EXPECT_EQ(figure.linepnt[0] + figure.linepnt[1], 2 * 899);
+  EXPECT_FLOAT_EQ(figure.linergb[0][0], figure.linergb[1][0]);
+  EXPECT_FLOAT_EQ(figure.linedata[1][2 * figure.linepnt[1] - 2], 899);
+  double drawn = 0;
+  for (int i = 0; i < figure.linepnt[2]; i += 2) {
+    drawn += figure.linedata[2][2 * i + 2] - figure.linedata[2][2 * i];
+    EXPECT_FLOAT_EQ(figure.linedata[2][2 * i + 1], 0.5F);
+  }
+  EXPECT_NEAR(drawn, 899 * 0.625, 30);
+  plot.series.resize(1);
+  EXPECT_EQ(fill(plot).flg_barplot, 0);
+  plot.series[0].y[500] = std::nan("");
+  EXPECT_EQ(fill(plot).flg_barplot, 1);
+  EXPECT_EQ(figure_->linepnt[0] + figure_->linepnt[1], 2 * 897);
+}
+
 TEST_F(Figures, HaveRoomForSoManyCurvesOnly) {
   LivePlot plot;
   plot.series.resize(mjMAXLINE + 10, {.x = {0, 1}, .y = {0, 1}});

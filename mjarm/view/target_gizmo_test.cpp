@@ -1,0 +1,356 @@
+#include "mjarm/view/target_gizmo.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "mjarm/core/rng.hpp"
+#include "mjarm/core/rotation.hpp"
+
+namespace mjarm {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kPictureWidth = 1280;
+constexpr int kPictureHeight = 800;
+constexpr double kPi = std::numbers::pi;
+constexpr GizmoHandle kAll[] = {GizmoHandle::move_x,   GizmoHandle::move_y,  GizmoHandle::move_z,
+                                GizmoHandle::move_yz,  GizmoHandle::move_zx, GizmoHandle::move_xy,
+                                GizmoHandle::turn_x,   GizmoHandle::turn_y,  GizmoHandle::turn_z,
+                                GizmoHandle::move_free};
+
+Pose random_pose(Rng& rng) {
+  return {{rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5), rng.uniform(0, 1)},
+          from_euler({rng.uniform(-3, 3), rng.uniform(-1.5, 1.5), rng.uniform(-3, 3)})};
+}
+
+/// An eye that has the point somewhere in its picture.
+Eye random_eye(Rng& rng, const Vector3d& p) {
+  const Vector3d aside(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3), rng.uniform(-0.2, 0.2));
+  Eye eye = eye_of({.lookat_W = p + aside,
+                    .distance = rng.uniform(1, 4),
+                    .azimuth = rng.uniform(-3, 3),
+                    .elevation = rng.uniform(-1.5, 1.5)},
+                   0.8);
+  eye.orthographic = rng.uniform() < 0.2;
+  return eye;
+}
+
+Ray ray_to(const Eye& eye, const Vector3d& p) {
+  if (eye.orthographic) {
+    return {p - (p - eye.p_W).dot(eye.forward_W) * eye.forward_W, eye.forward_W};
+  }
+  return {eye.p_W, (p - eye.p_W).normalized()};
+}
+
+Ray at_pixel(const Eye& eye, const Vector2d& pixel) {
+  return ray_of_pixel(eye, kPictureWidth, kPictureHeight, pixel.x(), pixel.y());
+}
+
+/// A pixel near the target that meets the handle, looked for all over the target.
+std::optional<Vector2d> pixel_of(TargetGizmo& gizmo, const Eye& eye, GizmoHandle handle) {
+  const auto middle = pixel_of_point(eye, kPictureWidth, kPictureHeight, gizmo.pose().p);
+  if (!middle || !gizmo.is_visible(handle)) return std::nullopt;
+  const bool square = handle >= GizmoHandle::move_yz && handle <= GizmoHandle::move_xy;
+  for (const double step : {7.0, square ? 2.5 : 5.0}) {  // narrow ones need a closer look
+    for (double dy = -140; dy <= 140; dy += step) {
+      for (double dx = -140; dx <= 140; dx += step) {
+        const Vector2d pixel = *middle + Vector2d(dx, dy);
+        if (gizmo.hover(at_pixel(eye, pixel)) == handle) return pixel;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+struct Case {
+  Eye eye;
+  TargetGizmo gizmo;
+};
+
+Case random_case(Rng& rng) {
+  const Pose pose = random_pose(rng);
+  Case out{random_eye(rng, pose.p), TargetGizmo(pose)};
+  out.gizmo.set_eye(out.eye);
+  if (rng.uniform() < 0.5) out.gizmo.set_axes(Eigen::Matrix3d::Identity());
+  return out;
+}
+
+Eigen::Matrix3d axes_of(const Case& c) {
+  Overlay overlay;
+  c.gizmo.draw(overlay, {});
+  Eigen::Matrix3d axes;
+  for (int i = 0; i < 3; ++i) {
+    const OverlayArrow& arrow = overlay.arrows.at(static_cast<std::size_t>(i));
+    axes.col(i) = (arrow.to_W - arrow.from_W).normalized();
+  }
+  return axes;
+}
+
+TEST(TargetGizmo, EveryHandleCanBeHitFromRandomCameras) {
+  Rng rng(21);
+  for (int i = 0; i < 60; ++i) {
+    Case c = random_case(rng);
+    const Vector3d sight = ray_to(c.eye, c.gizmo.pose().p).direction_W;
+    const Eigen::Matrix3d axes = axes_of(c);
+    for (const GizmoHandle handle : kAll) {
+      if (!c.gizmo.is_visible(handle)) continue;
+      const bool arrow = handle <= GizmoHandle::move_z;
+      // An arrow that points away from the eye stands behind the ball.
+      if (arrow && std::abs(axes.col(static_cast<int>(handle)).dot(sight)) > 0.97) continue;
+      const auto pixel = pixel_of(c.gizmo, c.eye, handle);
+      ASSERT_TRUE(pixel) << "case " << i << ", handle " << static_cast<int>(handle);
+      ASSERT_TRUE(c.gizmo.grab(at_pixel(c.eye, *pixel)));
+      EXPECT_EQ(c.gizmo.held(), handle);
+      EXPECT_EQ(c.gizmo.hover(at_pixel(c.eye, {0, 0})), handle) << "held ones stay";
+      c.gizmo.release();
+    }
+  }
+}
+
+TEST(TargetGizmo, IsAsLargeOnTheScreenFromAnyDistance) {
+  for (const double distance : {0.5, 1.0, 2.0, 8.0, 50.0}) {
+    const Eye eye = eye_of({.distance = distance, .azimuth = 0.4, .elevation = -0.5}, 0.8);
+    TargetGizmo gizmo;
+    gizmo.set_eye(eye);
+    Overlay overlay;
+    gizmo.draw(overlay, {});
+    double furthest = 0;
+    for (const OverlayArrow& arrow : overlay.arrows) {
+      const auto pixel = pixel_of_point(eye, kPictureWidth, kPictureHeight, arrow.to_W);
+      ASSERT_TRUE(pixel);
+      furthest =
+          std::max(furthest, (*pixel - Vector2d(kPictureWidth / 2.0, kPictureHeight / 2.0)).norm());
+    }
+    EXPECT_NEAR(furthest, 0.15 * kPictureHeight, 0.03 * kPictureHeight) << distance;
+  }
+}
+
+TEST(TargetGizmo, ArrowsMoveAlongTheirAxisAndUnderTheMouse) {
+  Rng rng(22);
+  int tried = 0;
+  for (int i = 0; i < 200; ++i) {
+    Case c = random_case(rng);
+    const Eigen::Matrix3d axes = axes_of(c);
+    const int k = i % 3;
+    const Vector3d a = axes.col(k);
+    const Pose start = c.gizmo.pose();
+    const auto pixel = pixel_of(c.gizmo, c.eye, static_cast<GizmoHandle>(k));
+    if (!pixel) continue;
+    ++tried;
+    const Ray begin = at_pixel(c.eye, *pixel);
+    ASSERT_TRUE(c.gizmo.grab(begin));
+    for (int n = 0; n < 20; ++n) {
+      const Vector2d to = *pixel + Vector2d(rng.uniform(-200, 200), rng.uniform(-200, 200));
+      const Pose moved = c.gizmo.drag(at_pixel(c.eye, to));
+      const Vector3d shift = moved.p - start.p;
+      EXPECT_LT((shift - shift.dot(a) * a).norm(), 1e-9);
+      EXPECT_EQ(moved.R, start.R);
+      EXPECT_NEAR(c.gizmo.amount(), shift.dot(a), 1e-9);
+    }
+    // The mouse that follows a point of the axis takes the target along with it.
+    const Vector3d sight = ray_to(c.eye, start.p).direction_W;
+    if (std::abs(a.dot(sight)) > 0.9) continue;
+    c.gizmo.release();
+    c.gizmo.set_pose(start);
+    const double s = 0.16 * c.eye.height_at(start.p);
+    ASSERT_TRUE(c.gizmo.grab(ray_to(c.eye, start.p + 0.98 * s * a)));
+    if (c.gizmo.held() != static_cast<GizmoHandle>(k)) continue;
+    const double way = rng.uniform(-0.2, 0.2);
+    c.gizmo.drag(ray_to(c.eye, start.p + (0.98 * s + way) * a));
+    EXPECT_LT((c.gizmo.pose().p - start.p - way * a).norm(), 1e-9);
+  }
+  EXPECT_GT(tried, 150);
+}
+
+TEST(TargetGizmo, RingsTurnByTheAngleSwept) {
+  Rng rng(23);
+  int tried = 0;
+  for (int i = 0; i < 300; ++i) {
+    Case c = random_case(rng);
+    const Eigen::Matrix3d axes = axes_of(c);
+    const int k = i % 3;
+    const Vector3d a = axes.col(k);
+    const Pose start = c.gizmo.pose();
+    const Vector3d sight = ray_to(c.eye, start.p).direction_W;
+    if (std::abs(a.dot(sight)) < 0.4) continue;
+    const double r = 0.72 * 0.16 * c.eye.height_at(start.p);
+    const auto on_ring = [&](double angle) {
+      return ray_to(c.eye, start.p + r * (std::cos(angle) * axes.col((k + 1) % 3) +
+                                          std::sin(angle) * axes.col((k + 2) % 3)));
+    };
+    const double from = rng.uniform(-kPi, kPi);
+    ASSERT_TRUE(c.gizmo.grab(on_ring(from)));
+    if (c.gizmo.held() != static_cast<GizmoHandle>(6 + k)) continue;
+    ++tried;
+    // Two turns and a half, and back to one: the angle is counted on.
+    for (double swept = 0; swept < 5 * kPi; swept += 0.1) {
+      c.gizmo.drag(on_ring(from + swept));
+      EXPECT_NEAR(c.gizmo.amount(), swept, 1e-9);
+      EXPECT_EQ(c.gizmo.pose().p, start.p);
+    }
+    for (double swept = 5 * kPi; swept > 1; swept -= 0.1) c.gizmo.drag(on_ring(from + swept));
+    c.gizmo.drag(on_ring(from + 1));
+    EXPECT_NEAR(c.gizmo.amount(), 1, 1e-9);
+    EXPECT_LT((c.gizmo.pose().R - rotation_exp(a) * start.R).norm(), 1e-9);
+  }
+  EXPECT_GT(tried, 60);
+}
+
+TEST(TargetGizmo, SquaresAndTheBallMoveInTheirPlane) {
+  Rng rng(24);
+  int tried = 0;
+  for (int i = 0; i < 160; ++i) {
+    Case c = random_case(rng);
+    const Eigen::Matrix3d axes = axes_of(c);
+    const GizmoHandle handle = kAll[i % 4 == 3 ? 9 : 3 + i % 4];
+    const Pose start = c.gizmo.pose();
+    const auto pixel = pixel_of(c.gizmo, c.eye, handle);
+    if (!pixel) continue;
+    ++tried;
+    ASSERT_TRUE(c.gizmo.grab(at_pixel(c.eye, *pixel)));
+    const Vector3d normal = handle == GizmoHandle::move_free ? ray_to(c.eye, start.p).direction_W
+                                                             : Vector3d(axes.col(i % 4));
+    for (int n = 0; n < 20; ++n) {
+      const Vector2d to = *pixel + Vector2d(rng.uniform(-200, 200), rng.uniform(-200, 200));
+      const Vector3d shift = c.gizmo.drag(at_pixel(c.eye, to)).p - start.p;
+      EXPECT_NEAR(shift.dot(normal), 0, 1e-9);
+      EXPECT_EQ(c.gizmo.pose().R, start.R);
+    }
+  }
+  EXPECT_GT(tried, 120);
+}
+
+/// Wherever the mouse goes in between, back at its start the target is where it was.
+TEST(TargetGizmo, ADragThatComesBackChangesNothing) {
+  Rng rng(25);
+  for (int i = 0; i < 60; ++i) {
+    Case c = random_case(rng);
+    for (const GizmoHandle handle : kAll) {
+      const Pose start = c.gizmo.pose();
+      const auto pixel = pixel_of(c.gizmo, c.eye, handle);
+      if (!pixel) continue;
+      ASSERT_TRUE(c.gizmo.grab(at_pixel(c.eye, *pixel)));
+      const Vector2d out(rng.uniform(-80, 80), rng.uniform(-80, 80));
+      for (const double share : {0.2, 0.6, 1.0, 0.7, 0.3, 0.0}) {
+        c.gizmo.drag(at_pixel(c.eye, *pixel + share * out));
+      }
+      EXPECT_LT((c.gizmo.pose().p - start.p).norm(), 1e-9);
+      EXPECT_LT((c.gizmo.pose().R - start.R).norm(), 1e-9) << static_cast<int>(handle);
+      c.gizmo.release();
+    }
+  }
+}
+
+/// Whatever the view, also along an axis or onto the edge of a ring: a mouse that goes by pixels
+/// never lets the target jump.
+TEST(TargetGizmo, NothingJumpsAtGrazingAngles) {
+  Rng rng(26);
+  for (int i = 0; i < 60; ++i) {
+    const Pose start = random_pose(rng);
+    const Vector3d towards =
+        start.R.col(i % 3) +
+        rng.uniform(0, 0.3) * Vector3d(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1));
+    const Vector3d f =
+        (i % 2 == 0 ? towards : towards.cross(start.R.col((i + 1) % 3))).normalized();
+    const double distance = 2;
+    const Eye eye = eye_of({.lookat_W = start.p,
+                            .distance = distance,
+                            .azimuth = std::atan2(f.y(), f.x()),
+                            .elevation = std::asin(f.z())},
+                           0.8);
+    TargetGizmo gizmo(start);
+    gizmo.set_eye(eye);
+    for (const GizmoHandle handle : kAll) {
+      const auto pixel = pixel_of(gizmo, eye, handle);
+      if (!pixel) continue;
+      ASSERT_TRUE(gizmo.grab(at_pixel(eye, *pixel)));
+      const double heading = rng.uniform(-kPi, kPi);
+      Pose last = start;
+      for (int n = 0; n < 800; ++n) {
+        const Vector2d to = *pixel + n * Vector2d(std::cos(heading), std::sin(heading));
+        const Pose now = gizmo.drag(at_pixel(eye, to));
+        EXPECT_TRUE(now.p.allFinite() && now.R.allFinite());
+        EXPECT_LT((now.p - last.p).norm(), 0.05 * distance) << static_cast<int>(handle);
+        EXPECT_LT((now.p - start.p).norm(), 3.001 * distance);
+        last = now;
+      }
+      gizmo.set_pose(start);
+    }
+  }
+}
+
+TEST(TargetGizmo, DegenerateRaysChangeNothing) {
+  const double nan = std::nan("");
+  const Pose start{{0.3, 0.1, 0.5}, from_euler({0.3, 0.2, 0.1})};
+  const Eye eye = eye_of({.lookat_W = start.p, .distance = 2, .elevation = -0.5}, 0.8);
+  TargetGizmo gizmo(start);
+  gizmo.set_eye(eye);
+  const Ray bad[] = {
+      {{nan, 0, 0}, {1, 0, 0}},           {{0, 0, 0}, {nan, 0, 0}},  {{0, 0, 0}, {0, 0, 0}},
+      {{0, 0, 0}, {INFINITY, 0, 0}},      {eye.p_W, -eye.forward_W}, {eye.p_W, eye.up_W},
+      {{1e300, 1e300, 1e300}, {1, 0, 0}}, {start.p, {1, 0, 0}}};
+  for (const Ray& ray : bad) {
+    gizmo.hover(ray);
+    if (gizmo.grab(ray)) gizmo.drag(ray);
+    gizmo.release();
+    EXPECT_LT((gizmo.pose().p - start.p).norm(), 1e-12);
+  }
+  for (const GizmoHandle handle : kAll) {
+    const auto pixel = pixel_of(gizmo, eye, handle);
+    if (!pixel) continue;
+    ASSERT_TRUE(gizmo.grab(at_pixel(eye, *pixel)));
+    for (const Ray& ray : bad) {
+      const Pose& pose = gizmo.drag(ray);
+      EXPECT_TRUE(pose.p.allFinite() && pose.R.allFinite());
+    }
+    gizmo.set_pose(start);
+  }
+  EXPECT_FALSE(gizmo.held());
+  gizmo.drag(ray_to(eye, {0, 0, 0}));
+  EXPECT_EQ(gizmo.pose().p, start.p) << "nothing is held";
+}
+
+TEST(TargetGizmo, BehindTheEyeItIsNeitherDrawnNorHit) {
+  TargetGizmo gizmo;
+  gizmo.set_eye(eye_of({.lookat_W = {5, 0, 0}, .distance = 1}, 0.8));
+  Overlay overlay;
+  gizmo.draw(overlay, {});
+  EXPECT_EQ(shapes_of(overlay), 0U);
+  EXPECT_FALSE(gizmo.hover({{4, 0, 0}, {-1, 0, 0}}));
+}
+
+TEST(TargetGizmo, DrawingShowsWhatIsHoveredAndHeld) {
+  const Eye eye = eye_of({.distance = 2, .azimuth = 0.6, .elevation = -0.5}, 0.8);
+  TargetGizmo gizmo;
+  gizmo.set_eye(eye);
+  const Rgba state{0.1F, 0.2F, 0.3F, 1};
+  Overlay plain;
+  gizmo.draw(plain, state);
+  EXPECT_EQ(plain.spheres.at(0).color, state);
+  EXPECT_TRUE(plain.labels.empty());
+  const auto pixel = pixel_of(gizmo, eye, GizmoHandle::move_z);
+  ASSERT_TRUE(pixel);
+  gizmo.hover(at_pixel(eye, *pixel));
+  Overlay hovered;
+  gizmo.draw(hovered, state);
+  EXPECT_NE(hovered.arrows.at(2).color, plain.arrows.at(2).color);
+  EXPECT_EQ(hovered.arrows.at(0).color, plain.arrows.at(0).color);
+  gizmo.grab(at_pixel(eye, *pixel));
+  gizmo.drag(at_pixel(eye, *pixel + Vector2d(0, -50)));
+  Overlay held;
+  gizmo.draw(held, state);
+  EXPECT_LT(held.arrows.at(0).color.a, 0.5F);
+  EXPECT_GT(held.arrows.at(2).color.a, 0.9F);
+  ASSERT_EQ(held.labels.size(), 1U);
+  EXPECT_EQ(held.labels[0].text.front(), '+') << held.labels[0].text;
+  EXPECT_GT(gizmo.pose().p.z(), 0.05);
+}
+
+}  // namespace
+}  // namespace mjarm
