@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "mjarm/core/messages/view.hpp"
-#include "mjarm/view/history_internal.hpp"
+#include "mjarm/view/plot_history_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -99,16 +99,16 @@ struct LivePlotSet::Impl {
         all(columns.count(), options.places, 0) {}
 
   [[nodiscard]] Chart chart(LiveFigure which, LiveSpan span) const;
-  void add_joints(Chart& chart, const History& history, std::size_t first) const;
+  void add_joints(Chart& chart, const PlotHistory& history, std::size_t first) const;
 
   Arm arm;
   Columns columns;
-  History latest;
-  History all;
+  PlotHistory latest;
+  PlotHistory all;
   double last_time = -std::numeric_limits<double>::infinity();
 };
 
-void LivePlotSet::Impl::add_joints(Chart& chart, const History& history, std::size_t first) const {
+void LivePlotSet::Impl::add_joints(Chart& chart, const PlotHistory& history, std::size_t first) const {
   for (std::size_t j = 0; j < columns.dof; ++j) {
     add_curve(chart, history.column(first + j), short_name(arm.joints[j].name),
               static_cast<int>(j));
@@ -116,7 +116,7 @@ void LivePlotSet::Impl::add_joints(Chart& chart, const History& history, std::si
 }
 
 Chart LivePlotSet::Impl::chart(LiveFigure which, LiveSpan span) const {
-  const History& history = span == LiveSpan::latest ? latest : all;
+  const PlotHistory& history = span == LiveSpan::latest ? latest : all;
   const auto single = [&](Msg title, std::string unit, std::size_t column) {
     Chart chart{title, std::move(unit), {}, true};
     add_curve(chart, history.column(column), "", 0);

@@ -14,13 +14,13 @@ struct TimedValue {
 
 /// Columns of numbers over time in bounded memory. Rows that have to share a place leave their
 /// least and greatest value and the times of both, so no peak is ever lost.
-class History {
+class PlotHistory {
  public:
   /// @param columns  numbers a row, > 0.
   /// @param places   >= 2; when all are taken, neighbours are joined.
   /// @param span     [s] > 0: only so much of the latest time is kept, and places are as long as
   ///                 they must be for that; 0: all of it is kept.
-  History(std::size_t columns, std::size_t places, double span);
+  PlotHistory(std::size_t columns, std::size_t places, double span);
 
   /// @param values  shape (columns,); NaN where there is nothing.
   /// @param time    [s] not before the last one.

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjarm/view/history_internal.hpp"
+#include "mjarm/view/plot_history_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -15,10 +15,10 @@ void widen(TimedValue& into, const TimedValue& more, bool greatest) {
 
 }  // namespace
 
-History::History(std::size_t columns, std::size_t places, double span)
+PlotHistory::PlotHistory(std::size_t columns, std::size_t places, double span)
     : columns_(columns), most_(std::max<std::size_t>(places, 2)), span_(span) {}
 
-void History::clear() {
+void PlotHistory::clear() {
   rows_a_place_ = 1;
   rows_in_last_ = 0;
   starts_.clear();
@@ -26,7 +26,7 @@ void History::clear() {
   last_.clear();
 }
 
-void History::add(double time, std::span<const double> values) {
+void PlotHistory::add(double time, std::span<const double> values) {
   open_place(time);
   last_.resize(columns_);
   Extremes* extremes = place(starts_.size() - 1);
@@ -39,7 +39,7 @@ void History::add(double time, std::span<const double> values) {
 }
 
 /// A new place where the last one is full.
-void History::open_place(double time) {
+void PlotHistory::open_place(double time) {
   if (!starts_.empty()) {
     const bool full = span_ > 0 ? time - starts_.back() >= span_ / static_cast<double>(most_)
                                 : rows_in_last_ >= rows_a_place_;
@@ -62,7 +62,7 @@ void History::open_place(double time) {
   rows_in_last_ = 0;
 }
 
-void History::join_pairs() {
+void PlotHistory::join_pairs() {
   const std::size_t pairs = (starts_.size() + 1) / 2;
   for (std::size_t i = 0; i < pairs; ++i) {
     starts_[i] = starts_[2 * i];
@@ -82,7 +82,7 @@ void History::join_pairs() {
   extremes_.resize(pairs * columns_);
 }
 
-std::vector<TimedValue> History::column(std::size_t index) const {
+std::vector<TimedValue> PlotHistory::column(std::size_t index) const {
   std::vector<TimedValue> out;
   out.reserve(2 * starts_.size() + 1);
   for (std::size_t i = 0; i < starts_.size(); ++i) {
