@@ -9,6 +9,7 @@
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/program_load.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/view_host.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/messages/motion_program.hpp"
@@ -136,7 +137,8 @@ Result<int> run(const Options& options) {
   if (!loaded->plan.ok()) return fail(first_fault(*loaded));
   const Result<DemoOptions> stage = stage_options(options, loaded->program);
   if (!stage) return fail(stage.error());
-  const Result<Report> report = run_plan(*loaded, *stage, *tolerance);
+  const Result<Report> report =
+      beside_windows(stage->headless, [&] { return run_plan(*loaded, *stage, *tolerance); });
   if (!report) return fail(report.error());
   return conclude(*report, stage->out);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/render.hpp"
+#include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/render/overlay_internal.hpp"
 
 namespace mjarm {
@@ -24,7 +25,8 @@ mjModel with_quality(const mjModel& original, RenderQuality quality) {
   mjModel m = original;
   if (quality == RenderQuality::low) {
     m.vis.quality.offsamples = 0;
-    m.vis.quality.shadowsize = 0;
+    // Not used at first; a window may switch shadows on.
+    m.vis.quality.shadowsize = std::min(m.vis.quality.shadowsize, 1024);
     m.vis.quality.numslices = std::min(m.vis.quality.numslices, 16);
     m.vis.quality.numstacks = std::min(m.vis.quality.numstacks, 8);
   } else {
@@ -36,6 +38,12 @@ mjModel with_quality(const mjModel& original, RenderQuality quality) {
 /// Geoms that the model alone may fill, with room for what MuJoCo adds (frames, tendons, contacts).
 std::size_t geoms_of(const mjModel& m) {
   return 2000 + static_cast<std::size_t>(m.ngeom + 2 * m.nsite + 4 * m.nwrap + 2 * m.njnt);
+}
+
+/// True where a geom of the scene belongs to one of the model that nothing can touch.
+bool is_for_show(const mjModel& m, const mjvGeom& geom) {
+  return geom.objtype == mjOBJ_GEOM && geom.objid >= 0 && m.geom_contype[geom.objid] == 0 &&
+         m.geom_conaffinity[geom.objid] == 0;
 }
 
 mjvCamera free_camera(const CameraView& view) {
@@ -58,6 +66,7 @@ struct Scene::Impl {
         m(with_quality(*source.raw(), quality_asked)),
         d(mj_makeData(&m)) {
     mjv_defaultOption(&option);
+    mjv_defaultPerturb(&perturb);
     mjv_defaultScene(&scene);
     camera = free_camera(default_view(owner));
     make_room(1000);
@@ -71,16 +80,22 @@ struct Scene::Impl {
   void make_room(std::size_t overlay_geoms) {
     const std::size_t needed = geoms_of(m) + overlay_geoms;
     if (static_cast<std::size_t>(scene.maxgeom) >= needed) return;
+    const mjvScene before = scene;
     mjv_freeScene(&scene);
     mjv_defaultScene(&scene);
     mjv_makeScene(&m, &scene, static_cast<int>(needed + overlay_geoms));
+    if (before.maxgeom > 0) {
+      std::copy(std::begin(before.flags), std::end(before.flags), scene.flags);
+      return;
+    }
     const bool high = quality == RenderQuality::high;
     scene.flags[mjRND_SHADOW] = high;
     scene.flags[mjRND_REFLECTION] = high;
   }
 
-  /// All that drawing needs of a state; contacts and forces are not computed.
+  /// All that drawing needs of a state; contacts and forces are computed only where asked for.
   void update_positions() {
+    if (dynamics && !call_mujoco([this] { mj_forward(&m, d.get()); }).failed) return;
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     mj_camlight(&m, d.get());
@@ -95,7 +110,10 @@ struct Scene::Impl {
   std::unique_ptr<mjData, DeleteData> d;
   mjvOption option{};
   mjvCamera camera{};
+  mjvPerturb perturb{};
   mjvScene scene{};
+  bool dynamics = false;
+  bool only_colliding = false;
 };
 
 Scene::Scene(const Model& model, RenderQuality quality)
@@ -152,13 +170,33 @@ CameraView Scene::view() const {
 
 void Scene::update(const Overlay& overlay) {
   impl_->make_room(geoms_of(overlay));
-  mjv_updateScene(&impl_->m, impl_->d.get(), &impl_->option, nullptr, &impl_->camera, mjCAT_ALL,
-                  &impl_->scene);
-  add_overlay(overlay, impl_->scene);
+  const mjModel& m = impl_->m;
+  mjvScene& scene = impl_->scene;
+  mjvOption option = impl_->option;
+  if (impl_->only_colliding) std::fill_n(option.geomgroup, mjNGROUP, mjtByte{1});
+  mjv_updateScene(&m, impl_->d.get(), &option, &impl_->perturb, &impl_->camera, mjCAT_ALL, &scene);
+  if (impl_->only_colliding) {
+    mjvGeom* end = std::remove_if(scene.geoms, scene.geoms + scene.ngeom,
+                                  [&m](const mjvGeom& geom) { return is_for_show(m, geom); });
+    scene.ngeom = static_cast<int>(end - scene.geoms);
+  }
+  add_overlay(overlay, scene);
 }
 
+void Scene::set_dynamics(bool on) {
+  if (on && !impl_->dynamics) {
+    impl_->dynamics = true;
+    impl_->update_positions();
+  }
+  impl_->dynamics = on;
+}
+void Scene::set_only_colliding(bool on) noexcept { impl_->only_colliding = on; }
+
 const mjModel& Scene::model() const noexcept { return impl_->m; }
+mjData& Scene::data() noexcept { return *impl_->d; }
+mjvOption& Scene::option() noexcept { return impl_->option; }
 mjvCamera& Scene::camera() noexcept { return impl_->camera; }
+mjvPerturb& Scene::perturb() noexcept { return impl_->perturb; }
 mjvScene& Scene::raw() noexcept { return impl_->scene; }
 
 }  // namespace mjarm
