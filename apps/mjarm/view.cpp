@@ -1,3 +1,5 @@
+#include "mjarm/core/messages/view.hpp"
+
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -12,7 +14,6 @@
 #include "apps/mjarm/view_sim.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"
@@ -131,7 +132,8 @@ Result<int> run(const Options& options) {
   const Result<WindowOptions> chosen = window_options(options, *sim);
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
-  Result<Window> window = Window::open(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen);
+  Result<Window> window =
+      Window::open(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen);
   if (!window) {
     // What is missing here is a display, without which nothing can be seen in a window.
     Error error = std::move(window.error());

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mjarm/control/controller.hpp"
-#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/arm.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/view/events.hpp"
 #include "mjarm/view/history.hpp"
@@ -13,8 +13,8 @@
 
 namespace mjarm::app {
 
-/// The free simulation of `mjarm view`: the arm, where there is one, stands where the user puts it,
-/// and all that happens in the window acts on it. Knows no window and no clock of its own.
+/// A simulation without a plan: the arm, where there is one, stands where the user puts it, and all
+/// that he does in a window acts on it. Knows no window and no clock of its own.
 class ViewSim {
  public:
   /// @param arm      is held against gravity; none = all actuators stay at 0.

@@ -48,8 +48,8 @@ class Scene {
   /// Draws only the geoms that take part in collisions, of all groups. Off at first.
   void set_only_colliding(bool on) noexcept;
 
-  /// For those who may include mujoco.h: the model with the quality set, the copy of the state, what
-  /// is drawn of it, camera, what is selected and pushed, and scene.
+  /// For those who may include mujoco.h: the model with the quality set, the copy of the state,
+  /// what is drawn of it, camera, what is selected and pushed, and scene.
   [[nodiscard]] const mjModel_& model() const noexcept;
   [[nodiscard]] mjData_& data() noexcept;
   [[nodiscard]] mjvOption_& option() noexcept;

@@ -22,8 +22,8 @@ struct SpeedEvent {
 struct ResetEvent {};
 /// The user pushes a body; comes with every frame while he does.
 struct PushEvent {
-  int body = -1;          ///< number in the model
-  std::string name = {};  ///< of the body; empty where it has none
+  int body = -1;                                       ///< number in the model
+  std::string name = {};                               ///< of the body; empty where it has none
   Eigen::Vector3d point_W = Eigen::Vector3d::Zero();   ///< [m] where it is held, in the world
   Eigen::Vector3d force_W = Eigen::Vector3d::Zero();   ///< [N] at the body's centre of mass
   Eigen::Vector3d torque_W = Eigen::Vector3d::Zero();  ///< [N m] about it, that of the force too

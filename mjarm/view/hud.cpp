@@ -1,11 +1,10 @@
-#include "mjarm/view/hud_internal.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <span>
 #include <string_view>
 
 #include "mjarm/view/controls.hpp"
+#include "mjarm/view/hud_internal.hpp"
 
 namespace mjarm {
 namespace {

@@ -6,8 +6,8 @@
 namespace mjarm {
 namespace {
 
-std::vector<RawInput>& inputs_of(GLFWwindow* window) {
-  return *static_cast<std::vector<RawInput>*>(glfwGetWindowUserPointer(window));
+RawInputs& inputs_of(GLFWwindow* window) {
+  return *static_cast<RawInputs*>(glfwGetWindowUserPointer(window));
 }
 
 bool is_down(GLFWwindow* window, int left_key, int right_key) {
@@ -16,13 +16,15 @@ bool is_down(GLFWwindow* window, int left_key, int right_key) {
 
 /// With all that is the same for every kind.
 RawInput& add_input(GLFWwindow* window, RawInput::Kind kind) {
-  RawInput& input = inputs_of(window).emplace_back();
+  RawInputs& inputs = inputs_of(window);
+  RawInput& input = inputs.all.emplace_back();
   input.kind = kind;
   input.time = glfwGetTime();
   input.control = is_down(window, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
   input.shift = is_down(window, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
   int width = 0, height = 0, pixels_wide = 0, pixels_high = 0;
-  glfwGetCursorPos(window, &input.x, &input.y);
+  input.x = inputs.x;
+  input.y = inputs.y;
   glfwGetWindowSize(window, &width, &height);
   glfwGetFramebufferSize(window, &pixels_wide, &pixels_high);
   if (width > 0 && height > 0) {
@@ -34,14 +36,18 @@ RawInput& add_input(GLFWwindow* window, RawInput::Kind kind) {
 
 void on_button(GLFWwindow* window, int button, int action, int modifiers) {
   if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
-  RawInput& input = add_input(
-      window, action == GLFW_PRESS ? RawInput::Kind::press : RawInput::Kind::release);
+  RawInput& input =
+      add_input(window, action == GLFW_PRESS ? RawInput::Kind::press : RawInput::Kind::release);
   input.button = button;
   input.control = (modifiers & GLFW_MOD_CONTROL) != 0;
   input.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
 }
 
-void on_move(GLFWwindow* window, double, double) { add_input(window, RawInput::Kind::move); }
+void on_move(GLFWwindow* window, double x, double y) {
+  inputs_of(window).x = x;
+  inputs_of(window).y = y;
+  add_input(window, RawInput::Kind::move);
+}
 
 void on_scroll(GLFWwindow* window, double, double notches) {
   add_input(window, RawInput::Kind::scroll).notches = notches;
@@ -59,7 +65,9 @@ void on_key(GLFWwindow* window, int key, int, int action, int modifiers) {
 
 }  // namespace
 
-void gather_inputs(GLFWwindow* window, std::vector<RawInput>& inputs) {
+void gather_inputs(GLFWwindow* window, RawInputs& inputs) {
+  // Later it would be where the mouse is by then, and not where it was when a button was pressed.
+  glfwGetCursorPos(window, &inputs.x, &inputs.y);
   glfwSetWindowUserPointer(window, &inputs);
   glfwSetMouseButtonCallback(window, on_button);
   glfwSetCursorPosCallback(window, on_move);

@@ -21,8 +21,14 @@ struct RawInput {
   double time = 0;  ///< [s] when it was told
 };
 
+/// What happened in a window and was not acted on yet.
+struct RawInputs {
+  std::vector<RawInput> all = {};
+  double x = 0;  ///< [screen units] where the mouse was told to be last, from the upper left
+  double y = 0;
+};
 /// Lets everything that happens in `window` gather in `inputs`, which outlives it. They are acted
 /// on later, when OpenGL can be used.
-void gather_inputs(GLFWwindow* window, std::vector<RawInput>& inputs);
+void gather_inputs(GLFWwindow* window, RawInputs& inputs);
 
 }  // namespace mjarm

@@ -1,10 +1,8 @@
-#include "mjarm/view/interaction_internal.hpp"
-
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "mjarm/view/interaction_internal.hpp"
 #include "mjarm/view/settings_internal.hpp"
 
 namespace mjarm {
@@ -52,10 +50,10 @@ void Interaction::copy_to_state(const RawInput& input) {
   state.y = input.y;
   state.control = input.control ? 1 : 0;
   state.shift = input.shift ? 1 : 0;
-  state.mouserect = mjr_findRect(static_cast<int>(std::lround(input.x)),
-                                 static_cast<int>(std::lround(input.y)), state.nrect - 1,
-                                 state.rect + 1) +
-                    1;
+  state.mouserect =
+      mjr_findRect(static_cast<int>(std::lround(input.x)), static_cast<int>(std::lround(input.y)),
+                   state.nrect - 1, state.rect + 1) +
+      1;
 }
 
 void Interaction::handle(const RawInput& input, const mjrContext& context) {
@@ -88,8 +86,9 @@ void Interaction::press(const RawInput& input, const mjrContext& context) {
   state.doubleclick = button == state.button && input.time - state.buttontime < kDoubleClick;
   state.button = button;
   state.buttontime = input.time;
-  (button == mjBUTTON_LEFT ? state.left : button == mjBUTTON_RIGHT ? state.right : state.middle) =
-      1;
+  (button == mjBUTTON_LEFT    ? state.left
+   : button == mjBUTTON_RIGHT ? state.right
+                              : state.middle) = 1;
   if (drag_ != Drag::none) return;  // a second button changes nothing
   drag_button_ = input.button;
   way_ = 0;
@@ -104,7 +103,8 @@ void Interaction::press(const RawInput& input, const mjrContext& context) {
     take_hold(input);
   } else {
     drag_ = Drag::camera;
-    if (state.doubleclick != 0 && input.button == 0) events_.push_back(picker.select(point_of(input)));
+    if (state.doubleclick != 0 && input.button == 0)
+      events_.push_back(picker.select(point_of(input)));
   }
 }
 
@@ -149,8 +149,9 @@ void Interaction::release(const RawInput& input, const mjrContext& context) {
   const int button = kButtons[input.button];
   state.type = mjEVENT_RELEASE;
   state.button = button;
-  (button == mjBUTTON_LEFT ? state.left : button == mjBUTTON_RIGHT ? state.right : state.middle) =
-      0;
+  (button == mjBUTTON_LEFT    ? state.left
+   : button == mjBUTTON_RIGHT ? state.right
+                              : state.middle) = 0;
   if (input.button != drag_button_) return;
   if (drag_ == Drag::panel) use_panel(context);
   if (drag_ == Drag::hook) (void)use_hook(input);

@@ -15,7 +15,7 @@ struct MouseInput {
   double x = 0;  ///< share of the picture's width, from the left
   double y = 0;  ///< share of its height, from below
   /// The line of sight through that point: from the camera, unit direction.
-  Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();        ///< [m]
+  Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d direction_W = Eigen::Vector3d::UnitX();
 };
 

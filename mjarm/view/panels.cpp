@@ -1,9 +1,10 @@
-#include "mjarm/view/panels_internal.hpp"
-
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <string>
+
+#include "mjarm/view/panels_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -26,6 +27,9 @@ PanelItem button(ViewAction action, std::string name, bool enabled = true) {
 std::vector<std::string> words(std::span<const char* const> names) {
   return {names.begin(), names.end()};
 }
+
+/// Without the digits of a zero that is almost one.
+double shown(double value) { return std::round(1e4 * value) / 1e4 + 0.0; }
 
 std::string in_range(const char* format, double lower, double upper) {
   char text[64];
@@ -110,10 +114,10 @@ PanelSection Panels::joint_section(const PanelFacts& facts) const {
   PanelSection section{"Joints", {}};
   for (const Joint& joint : joints_) {
     section.items.push_back({joint.dof, joint.name,
-                             PanelText{in_range("%.4g to %.4g", joint.lower, joint.upper)},
+                             PanelText{in_range("%.3g to %.3g", joint.lower, joint.upper)},
                              joint.live});
     section.items.push_back(
-        {joint.dof, "", PanelSlider{facts.d->qpos[joint.qpos], joint.lower, joint.upper},
+        {joint.dof, "", PanelSlider{shown(facts.d->qpos[joint.qpos]), joint.lower, joint.upper},
          joint.live});
   }
   return section;

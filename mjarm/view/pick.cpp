@@ -48,9 +48,8 @@ SightLine sight_line(Scene& scene, const PicturePoint& point) {
   const Vector3d right = forward.cross(up);
   const double height = camera.frustum_top - camera.frustum_bottom;
   const double across = camera.frustum_center + (point.x - 0.5) * height * point.aspect;
-  const Vector3d direction =
-      camera.frustum_near * forward + (camera.frustum_bottom + point.y * height) * up +
-      across * right;
+  const Vector3d direction = camera.frustum_near * forward +
+                             (camera.frustum_bottom + point.y * height) * up + across * right;
   return {vector(camera.pos), direction.normalized()};
 }
 
@@ -84,9 +83,7 @@ SelectEvent Picker::select(const PicturePoint& point) {
   return event;
 }
 
-bool Picker::can_move(int body) const {
-  return body > 0 && scene_.model().body_weldid[body] != 0;
-}
+bool Picker::can_move(int body) const { return body > 0 && scene_.model().body_weldid[body] != 0; }
 
 bool Picker::take_hold(const PicturePoint& point, bool twist) {
   (void)select(point);

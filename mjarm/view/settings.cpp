@@ -46,13 +46,19 @@ struct Place {
   int scene = -1;
 };
 constexpr Place kPlaces[] = {
-    {mjVIS_CONTACTPOINT}, {mjVIS_CONTACTFORCE},  {mjVIS_CONTACTSPLIT},  {mjVIS_TRANSPARENT},
-    {mjVIS_JOINT},        {mjVIS_ACTUATOR},      {mjVIS_COM},           {mjVIS_INERTIA},
-    {mjVIS_CONVEXHULL},   {-1},                  {mjVIS_STATIC},        {mjVIS_AUTOCONNECT},
-    {mjVIS_CONSTRAINT},   {mjVIS_TENDON},        {mjVIS_RANGEFINDER},   {mjVIS_CAMERA},
-    {mjVIS_LIGHT},        {mjVIS_PERTFORCE},     {mjVIS_PERTOBJ},       {mjVIS_TEXTURE},
-    {-1, mjRND_SHADOW},   {-1, mjRND_REFLECTION}, {-1, mjRND_WIREFRAME}, {-1, mjRND_SKYBOX},
-    {-1, mjRND_FOG},      {-1, mjRND_HAZE},
+    {mjVIS_CONTACTPOINT},  {mjVIS_CONTACTFORCE},
+    {mjVIS_CONTACTSPLIT},  {mjVIS_TRANSPARENT},
+    {mjVIS_JOINT},         {mjVIS_ACTUATOR},
+    {mjVIS_COM},           {mjVIS_INERTIA},
+    {mjVIS_CONVEXHULL},    {-1},
+    {mjVIS_STATIC},        {mjVIS_AUTOCONNECT},
+    {mjVIS_CONSTRAINT},    {mjVIS_TENDON},
+    {mjVIS_RANGEFINDER},   {mjVIS_CAMERA},
+    {mjVIS_LIGHT},         {mjVIS_PERTFORCE},
+    {mjVIS_PERTOBJ},       {mjVIS_TEXTURE},
+    {-1, mjRND_SHADOW},    {-1, mjRND_REFLECTION},
+    {-1, mjRND_WIREFRAME}, {-1, mjRND_SKYBOX},
+    {-1, mjRND_FOG},       {-1, mjRND_HAZE},
 };
 static_assert(std::size(kPlaces) == kViewFlags);
 

@@ -1,15 +1,15 @@
-#include "mjarm/view/ui_column_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
 
+#include "mjarm/view/ui_column_internal.hpp"
+
 namespace mjarm {
 namespace {
 
-constexpr int kWidth = 300;     // of a plain screen's pixels
-constexpr int kLabelWidth = 125;
+constexpr int kWidth = 300;  // of a plain screen's pixels
+constexpr int kLabelWidth = 150;
 constexpr int kListLines = 30;  // mjMAXUIMULTI is the most
 constexpr int kSliderDivisions = 2000;
 
@@ -57,12 +57,11 @@ bool same_item(const PanelItem& a, const PanelItem& b) {
 }
 
 bool same_structure(const std::vector<PanelSection>& a, const std::vector<PanelSection>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const PanelSection& x, const PanelSection& y) {
-                      return x.title == y.title &&
-                             std::equal(x.items.begin(), x.items.end(), y.items.begin(),
-                                        y.items.end(), same_item);
-                    });
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(), [](const PanelSection& x, const PanelSection& y) {
+        return x.title == y.title && std::equal(x.items.begin(), x.items.end(), y.items.begin(),
+                                                y.items.end(), same_item);
+      });
 }
 
 /// The first line that is shown, so that the current one is among those in the middle.
@@ -146,8 +145,7 @@ void UiColumn::build(const std::vector<PanelSection>& sections) {
   if (sections_.size() > mjMAXUISECT) sections_.resize(mjMAXUISECT);
   cells_.assign(sections_.size(), {});
   for (std::size_t i = 0; i < sections_.size(); ++i) {
-    mjuiDef title[2] = {definition(mjITEM_SECTION, sections_[i].title),
-                        definition(mjITEM_END, "")};
+    mjuiDef title[2] = {definition(mjITEM_SECTION, sections_[i].title), definition(mjITEM_END, "")};
     title[0].name[mjMAXUINAME - 2] = '\0';  // MuJoCo takes one less here
     title[0].state = states[i];
     mjui_add(ui_.get(), title);

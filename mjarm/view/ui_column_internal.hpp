@@ -36,7 +36,8 @@ class UiColumn {
   void render(const mjuiState& state, const mjrContext& context);
 
   [[nodiscard]] int width() const { return ui_->width; }
-  /// Middle of an item in the window, from its lower left, or of a title where `item` < 0; for tests.
+  /// Middle of an item in the window, from its lower left, or of a title where `item` < 0; for
+  /// tests.
   [[nodiscard]] std::optional<mjrRect> place(int section, int item, const mjuiState& state) const;
 
  private:

@@ -2,8 +2,7 @@
 
 namespace mjarm {
 
-Result<void> draw_until_closed(Window& window, ViewLink& link,
-                               const std::function<bool()>& ended) {
+Result<void> draw_until_closed(Window& window, ViewLink& link, const std::function<bool()>& ended) {
   ViewFrame frame;
   bool has_frame = false;
   Result<void> drawn;

@@ -24,8 +24,8 @@ struct ViewFrame {
 /// What passes between the thread that simulates and the main thread, which draws. Neither waits
 /// for the other: a slow picture never slows the simulation.
 struct ViewLink {
-  Mailbox<ViewFrame> frames;       ///< to the window
-  Queue<ViewEvent> events;         ///< from the window
+  Mailbox<ViewFrame> frames;        ///< to the window
+  Queue<ViewEvent> events;          ///< from the window
   std::atomic<bool> closed{false};  ///< the window is gone
 };
 

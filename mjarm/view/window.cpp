@@ -96,7 +96,7 @@ struct Window::Impl {
   Interaction user;
   FrameCounter counter;
   mjrContext context{};
-  std::vector<RawInput> inputs;
+  RawInputs inputs;
   double time = 0;  ///< [s] of the state shown
   std::string status;
   std::string note;
@@ -136,7 +136,7 @@ void Window::Impl::handle_inputs() {
   glfwGetFramebufferSize(handle, &width, &height);
   const mjrRect& whole = panels.state().rect[0];
   if (whole.width != width || whole.height != height) panels.resize(width, height);
-  for (const RawInput& input : std::exchange(inputs, {})) {
+  for (const RawInput& input : std::exchange(inputs.all, {})) {
     user.handle(input, context);
     panels_changed = true;
   }

@@ -46,8 +46,8 @@ struct WindowOptions {
 ///       if (auto drawn = window.draw(sim.snapshot(), overlay, plots); !drawn) return fail(...);
 ///     }
 ///
-/// With the physics in a thread of its own a slow picture never slows it: see `ViewLink`. What mouse
-/// and keys do is listed in `control_help`. Used from the main thread only; one at a time.
+/// With the physics in a thread of its own a slow picture never slows it: see `ViewLink`. What
+/// mouse and keys do is listed in `control_help`. Used from the main thread only; one at a time.
 class Window {
  public:
   /// @return not_available with a hint at `--headless` where there is no display or no OpenGL,

@@ -19,9 +19,9 @@ namespace mjarm::app {
 
 /// What people see of a demo: the window where there is one, the planned path and the trail, the
 /// live plots. Headless it only keeps the overlay, for the picture at the end. It belongs to the
-/// thread that simulates; the window is drawn by the main thread (`run_beside_windows`), and nothing
-/// in it changes what is simulated but a push of the user. Steps back show what was, and change
-/// nothing: a demo follows its plan.
+/// thread that simulates; the window is drawn by the main thread (`run_beside_windows`), and
+/// nothing in it changes what is simulated but a push of the user. Steps back show what was, and
+/// change nothing: a demo follows its plan.
 class Show {
  public:
   /// Opens a window unless `headless`; without a display it says so and goes on headless.
