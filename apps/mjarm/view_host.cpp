@@ -7,6 +7,7 @@
 #include <system_error>
 #include <thread>
 
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/view.hpp"
 
 namespace mjarm::app {
@@ -62,8 +63,10 @@ void serve(RemoteWindow::Order& order) {
     return;
   }
   order.opened.set_value({});
-  // Where the display is lost the work sees a closed window, and ends as it does then.
-  (void)draw_until_closed(*window, order.link, [&order] { return order.close_wanted.load(); });
+  const Result<void> drawn =
+      draw_until_closed(*window, order.link, [&order] { return order.close_wanted.load(); });
+  // The work sees a closed window, and ends as it does then.
+  if (!drawn) log_warning(drawn.error().what);
 }
 
 }  // namespace
