@@ -9,6 +9,7 @@
 
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/view.hpp"
+#include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
 
@@ -72,7 +73,7 @@ void serve(RemoteWindow::Order& order) {
 }  // namespace
 
 void run_beside_windows(bool headless, const std::function<void()>& work) {
-  if (headless) return work();
+  if (headless || !has_display()) return work();
   Desk desk;
   the_desk = &desk;
   std::thread worker;

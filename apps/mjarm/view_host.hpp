@@ -14,7 +14,8 @@ namespace mjarm::app {
 
 /// Runs `work` in a thread of its own, while this one, the main thread, opens the windows that it
 /// asks for and draws them. Returns when `work` is through.
-/// @param headless  `work` runs in this thread, and there are no windows.
+/// @param headless  `work` runs in this thread, and there are no windows; so it is without a
+/// display.
 void run_beside_windows(bool headless, const std::function<void()>& work);
 
 /// The same for work with a result.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string_view>
+#include <utility>
 
 #include "mjarm/view/ui_column_internal.hpp"
 
