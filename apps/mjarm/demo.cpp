@@ -8,6 +8,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/outcome.hpp"
 #include "apps/mjarm/options.hpp"
+#include "apps/mjarm/view_host.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
@@ -74,7 +75,8 @@ Result<int> run_demo(const DemoArguments& arguments) {
   const Result<DemoOptions> options = read_options(arguments);
   if (!options) return fail(options.error());
   catch_interrupts();
-  const Result<Report> report = (*demo)->run(*options);
+  const Result<Report> report =
+      beside_windows(options->headless, [&] { return (*demo)->run(*options); });
   if (!report) return fail(report.error());
   return conclude(*report, options->out);
 }

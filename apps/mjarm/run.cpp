@@ -5,6 +5,7 @@
 #include "apps/mjarm/demos/outcome.hpp"
 #include "apps/mjarm/program_run.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/view_host.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/messages/motion_program.hpp"
@@ -51,10 +52,12 @@ Result<int> run(const Options& options) {
   if (!loaded->plan.ok()) return fail(first_fault(*loaded));
   const Result<DemoOptions> chosen = stage_options(options, loaded->program);
   if (!chosen) return fail(chosen.error());
-  const Result<std::unique_ptr<Stage>> stage =
-      Stage::open(loaded->program.name, *chosen, {loaded->robot.model, loaded->robot.arm});
-  if (!stage) return fail(stage.error());
-  const Result<Report> report = run_plan(**stage, *loaded, *tolerance);
+  const Result<Report> report = beside_windows(chosen->headless, [&]() -> Result<Report> {
+    const Result<std::unique_ptr<Stage>> stage =
+        Stage::open(loaded->program.name, *chosen, {loaded->robot.model, loaded->robot.arm});
+    if (!stage) return fail(stage.error());
+    return run_plan(**stage, *loaded, *tolerance);
+  });
   if (!report) return fail(report.error());
   return conclude(*report, chosen->out);
 }

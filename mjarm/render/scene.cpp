@@ -10,6 +10,7 @@
 
 #include "mjarm/core/messages/render.hpp"
 #include "mjarm/render/ghost_internal.hpp"
+#include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/render/overlay_internal.hpp"
 
 namespace mjarm {
@@ -32,7 +33,8 @@ mjModel with_quality(const mjModel& original, RenderQuality quality, bool softwa
     asked.numstacks = std::min(asked.numstacks, stacks);
   };
   if (quality == RenderQuality::low) {
-    asked.shadowsize = 0;
+    // Not used at first; a window may switch shadows on.
+    asked.shadowsize = std::min(asked.shadowsize, 1024);
     software ? at_most(12, 6) : at_most(16, 8);
   } else if (software) {
     const int most = quality == RenderQuality::high ? 2048 : 1024;
@@ -73,6 +75,12 @@ std::size_t geoms_of(const mjModel& m) {
   return 2000 + static_cast<std::size_t>(m.ngeom + 2 * m.nsite + 4 * m.nwrap + 2 * m.njnt);
 }
 
+/// True where a geom of the scene belongs to one of the model that nothing can touch.
+bool is_for_show(const mjModel& m, const mjvGeom& geom) {
+  return geom.objtype == mjOBJ_GEOM && geom.objid >= 0 && m.geom_contype[geom.objid] == 0 &&
+         m.geom_conaffinity[geom.objid] == 0;
+}
+
 mjvCamera free_camera(const CameraView& view) {
   mjvCamera camera;
   mjv_defaultCamera(&camera);
@@ -94,6 +102,7 @@ struct Scene::Impl {
         m(with_quality(*source.raw(), quality_asked, software)),
         d(mj_makeData(&m)) {
     mjv_defaultOption(&option);
+    mjv_defaultPerturb(&perturb);
     mjv_defaultScene(&scene);
     camera = free_camera(default_view(owner));
     make_room(1000);
@@ -107,9 +116,14 @@ struct Scene::Impl {
   void make_room(std::size_t overlay_geoms) {
     const std::size_t needed = geoms_of(m) + overlay_geoms;
     if (static_cast<std::size_t>(scene.maxgeom) >= needed) return;
+    const mjvScene before = scene;
     mjv_freeScene(&scene);
     mjv_defaultScene(&scene);
     mjv_makeScene(&m, &scene, static_cast<int>(needed + overlay_geoms));
+    if (before.maxgeom > 0) {
+      std::copy(std::begin(before.flags), std::end(before.flags), scene.flags);
+      return;
+    }
     scene.flags[mjRND_SHADOW] = quality != RenderQuality::low;
     scene.flags[mjRND_REFLECTION] = reflections;
   }
@@ -121,13 +135,14 @@ struct Scene::Impl {
     for (mjvGeom& geom : geoms) {
       if (is_infinite_plane(geom)) geom.castshadow = 0;
     }
-    if (reflections) return;
+    if (scene.flags[mjRND_REFLECTION] != 0) return;
     std::stable_partition(geoms.begin(), geoms.end(),
                           [](const mjvGeom& geom) { return !is_infinite_plane(geom); });
   }
 
-  /// All that drawing needs of a state; contacts and forces are not computed.
+  /// All that drawing needs of a state; contacts and forces are computed only where asked for.
   void update_positions() {
+    if (dynamics && !call_mujoco([this] { mj_forward(&m, d.get()); }).failed) return;
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     mj_camlight(&m, d.get());
@@ -143,8 +158,11 @@ struct Scene::Impl {
   std::unique_ptr<mjData, DeleteData> d;
   mjvOption option{};
   mjvCamera camera{};
+  mjvPerturb perturb{};
   mjvScene scene{};
   Ghosts ghosts{m};
+  bool dynamics = false;
+  bool only_colliding = false;
 };
 
 Scene::Scene(const Model& model, RenderQuality quality, bool software)
@@ -200,6 +218,10 @@ CameraView Scene::view() const {
 }
 
 void Scene::update(const Overlay& overlay) {
+    if (before.maxgeom > 0) {
+      std::copy(std::begin(before.flags), std::end(before.flags), scene.flags);
+      return;
+    }
   impl_->make_room(geoms_of(overlay, impl_->m));
   mjv_updateScene(&impl_->m, impl_->d.get(), &impl_->option, nullptr, &impl_->camera, mjCAT_ALL,
                   &impl_->scene);
@@ -226,7 +248,10 @@ double Scene::shadow_reach() const {
 }
 
 const mjModel& Scene::model() const noexcept { return impl_->m; }
+mjData& Scene::data() noexcept { return *impl_->d; }
+mjvOption& Scene::option() noexcept { return impl_->option; }
 mjvCamera& Scene::camera() noexcept { return impl_->camera; }
+mjvPerturb& Scene::perturb() noexcept { return impl_->perturb; }
 mjvScene& Scene::raw() noexcept { return impl_->scene; }
 
 }  // namespace mjarm

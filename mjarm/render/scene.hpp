@@ -8,7 +8,10 @@
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/sim/sim.hpp"
 
+struct mjData_;
 struct mjvCamera_;
+struct mjvOption_;
+struct mjvPerturb_;
 struct mjvScene_;
 
 namespace mjarm {
@@ -46,9 +49,19 @@ class Scene {
   /// never finer, and it never reaches farther, than the model's own.
   [[nodiscard]] double shadow_reach() const;
 
-  /// For those who may include mujoco.h: the model with the quality set, camera and scene.
+  /// Also computes contacts and forces from now on, which drawing them and picking need; this takes
+  /// about as long as a step of the simulation. Off at first.
+  void set_dynamics(bool on);
+  /// Draws only the geoms that take part in collisions, of all groups. Off at first.
+  void set_only_colliding(bool on) noexcept;
+
+  /// For those who may include mujoco.h: the model with the quality set, the copy of the state,
+  /// what is drawn of it, camera, what is selected and pushed, and scene.
   [[nodiscard]] const mjModel_& model() const noexcept;
+  [[nodiscard]] mjData_& data() noexcept;
+  [[nodiscard]] mjvOption_& option() noexcept;
   [[nodiscard]] mjvCamera_& camera() noexcept;
+  [[nodiscard]] mjvPerturb_& perturb() noexcept;
   [[nodiscard]] mjvScene_& raw() noexcept;
 
  private:

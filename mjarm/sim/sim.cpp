@@ -175,6 +175,19 @@ void Sim::set_ctrl(int actuator, double value) {
   impl_->d().ctrl[actuator] = value;
 }
 
+void Sim::set_external_force(int body, const Eigen::Vector3d& force_W,
+                             const Eigen::Vector3d& torque_W) {
+  assert(body >= 0 && body < impl_->m().nbody);
+  assert(force_W.allFinite() && torque_W.allFinite());
+  double* wrench = impl_->d().xfrc_applied + 6 * body;
+  std::copy_n(force_W.data(), 3, wrench);
+  std::copy_n(torque_W.data(), 3, wrench + 3);
+}
+
+void Sim::clear_external_forces() {
+  std::fill_n(impl_->d().xfrc_applied, 6 * impl_->m().nbody, 0.0);
+}
+
 Result<void> Sim::step(std::span<const double> ctrl) {
   const mjModel& m = impl_->m();
   mjData& d = impl_->d();

@@ -52,6 +52,13 @@ class Sim {
   [[nodiscard]] Result<void> restore(const Snapshot& snapshot);
   /// Sets one actuator command, for the followers to hold while they move the arm (a gripper).
   void set_ctrl(int actuator, double value);
+  /// Pushes `body` (its number in the model) at its centre of mass in every step that comes, until
+  /// it is set anew; zeros end it. Part of snapshots, and gone after a reset.
+  /// @param force_W [N], @param torque_W [N m], in the world frame.
+  void set_external_force(int body, const Eigen::Vector3d& force_W,
+                          const Eigen::Vector3d& torque_W);
+  /// Ends all pushes.
+  void clear_external_forces();
   /// One time step with these actuator commands (nu,).
   /// @return an error that names time and joint when the simulation became unstable (NaN, huge
   ///         values); the world is then back in its initial state. A ctrl that is not a number is

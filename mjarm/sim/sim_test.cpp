@@ -12,6 +12,7 @@
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/sim/worlds_test.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace mjarm {
 namespace {
@@ -53,6 +54,59 @@ void expect_fresh(const Sim& sim, const Loaded& robot) {
   for (int i = 0; i < 9; ++i) EXPECT_EQ(X_WT.R(i / 3, i % 3), d->site_xmat[9 * site + i]);
   for (int i = 0; i < m->nsensordata; ++i) EXPECT_EQ(sim.sensor_data()[i], d->sensordata[i]);
   EXPECT_EQ(sim.contacts().empty(), d->ncon == 0);
+}
+
+/// Two free bodies without gravity: a ball of 4 kg and a box of 2 kg.
+constexpr const char* kFreeBodies = R"(
+<mujoco>
+  <option gravity="0 0 0" integrator="Euler" timestep="0.01"/>
+  <worldbody>
+    <body name="ball"><freejoint/>
+      <inertial pos="0.1 0 0" mass="4" diaginertia="0.5 0.5 0.5"/></body>
+    <body name="box" pos="0 3 0"><freejoint/>
+      <inertial pos="0 0 0" mass="2" diaginertia="0.1 0.2 0.3"/></body>
+  </worldbody>
+</mujoco>)";
+
+Model free_bodies() {
+  const support::TempFolder folder;
+  return Model::load(folder.write("free.xml", kFreeBodies)).value();
+}
+
+TEST(Sim, AnExternalForceActsAtTheCentreOfMassUntilItIsCleared) {
+  const Model model = free_bodies();
+  Sim sim(model);
+  const int steps = 50;
+  const double dt = model.timestep();
+  sim.set_external_force(1, {2, 0, -1}, {0, 0, 0});
+  sim.set_external_force(2, {0, 0, 0}, {0, 0, 0.6});
+  for (int i = 0; i < steps; ++i) ASSERT_TRUE(sim.step({}));
+  // v = F t / m, without turning: the force goes through the centre of mass. w = M t / I.
+  EXPECT_NEAR(sim.qvel()[0], 2 * steps * dt / 4, 1e-12);
+  EXPECT_NEAR(sim.qvel()[2], -1 * steps * dt / 4, 1e-12);
+  for (int i = 3; i < 6; ++i) EXPECT_NEAR(sim.qvel()[i], 0, 1e-12);
+  EXPECT_NEAR(sim.qvel()[11], 0.6 * steps * dt / 0.3, 1e-9);
+  sim.clear_external_forces();
+  const std::vector<double> before(sim.qvel().begin(), sim.qvel().end());
+  for (int i = 0; i < steps; ++i) ASSERT_TRUE(sim.step({}));
+  for (int i = 0; i < 12; ++i) EXPECT_NEAR(sim.qvel()[i], before[i], 1e-9) << i;
+}
+
+TEST(Sim, APushThatIsOverLeavesNoTraceInTheNextRun) {
+  const Loaded robot = load_text(small_world());
+  Sim sim(robot.model);
+  Sim untouched(robot.model);
+  const std::vector<double> ctrl(robot.model.nu(), 0.1);
+  sim.set_external_force(1, {3, 1, 2}, {0, 1, 0});
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(sim.step(ctrl));
+  const Snapshot pushed = sim.snapshot();
+  ASSERT_TRUE(sim.reset());
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(sim.step(ctrl));
+    ASSERT_TRUE(untouched.step(ctrl));
+  }
+  EXPECT_EQ(sim.snapshot().state, untouched.snapshot().state);
+  EXPECT_NE(sim.snapshot().state, pushed.state);
 }
 
 TEST(Sim, ReadsAreFreshAfterEveryWrite) {

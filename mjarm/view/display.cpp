@@ -90,15 +90,17 @@ bool display_lost() noexcept { return lost; }
 
 Result<GlWindow> open_gl_window(int width, int height, const std::string& title,
                                 std::optional<RenderQuality> quality) {
-  bool smooth = quality != RenderQuality::low;
+  // A smoothed window takes long to open without a GPU, so it comes second where nobody asked.
+  bool smooth = quality == RenderQuality::high;
   Result<GLFWwindow*> window = create(width, height, title, smooth);
   if (!window && smooth) window = create(width, height, title, smooth = false);
   if (!window) return fail(std::move(window.error()));
   const bool slow = is_software(gl_string(kGlRenderer));
   const RenderQuality chosen = quality.value_or(slow ? RenderQuality::low : RenderQuality::high);
-  if (smooth && chosen == RenderQuality::low) {
+  if (!quality && chosen == RenderQuality::high) {
     glfwDestroyWindow(*window);
-    window = create(width, height, title, false);
+    window = create(width, height, title, true);
+    if (!window) window = create(width, height, title, false);
     if (!window) return fail(std::move(window.error()));
   }
   if (glfwExtensionSupported("GL_ARB_framebuffer_object") == GLFW_FALSE) {
@@ -106,7 +108,7 @@ Result<GlWindow> open_gl_window(int width, int height, const std::string& title,
     glfwDestroyWindow(*window);
     return fail(std::move(error));
   }
-  return GlWindow{*window, chosen};
+  return GlWindow{*window, chosen, slow};
 }
 
 }  // namespace mjarm

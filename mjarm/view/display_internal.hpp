@@ -20,6 +20,7 @@ void close_display() noexcept;
 struct GlWindow {
   GLFWwindow* handle = nullptr;
   RenderQuality quality = RenderQuality::high;
+  bool software = false;  ///< the processor draws
 };
 
 /// Opens a window; smoothed where the picture is drawn by a GPU or `high` is asked for.

@@ -16,6 +16,11 @@ RealTimePacer::RealTimePacer(double timestep, double speed) : timestep_(timestep
   assert(timestep > 0 && speed > 0);
 }
 
+void RealTimePacer::set_speed(double speed) {
+  assert(speed > 0);
+  speed_ = speed;
+}
+
 int RealTimePacer::steps_due(bool paused) {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   return steps_due_at(std::chrono::duration<double>(now).count(), paused);

@@ -18,6 +18,10 @@ class RealTimePacer {
   /// The same with the clock given: `now` [s], from any fixed origin, never falling.
   [[nodiscard]] int steps_due_at(double now, bool paused = false);
 
+  /// @param speed simulated seconds a second from now on, > 0.
+  void set_speed(double speed);
+  [[nodiscard]] double speed() const noexcept { return speed_; }
+
  private:
   double timestep_;
   double speed_;

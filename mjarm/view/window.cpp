@@ -13,6 +13,10 @@
 #include "mjarm/render/gl_context.hpp"
 #include "mjarm/view/display_internal.hpp"
 #include "mjarm/view/figure_internal.hpp"
+#include "mjarm/view/hud_internal.hpp"
+#include "mjarm/view/interaction_internal.hpp"
+#include "mjarm/view/screenshot_internal.hpp"
+#include "mjarm/view/settings_internal.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -20,16 +24,17 @@
 namespace mjarm {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
-
 constexpr int kMaxSize = 16384;
 constexpr double kFramePeriod = 1.0 / 60;  // [s]
-constexpr double kDegPerHeight = 180;      // a drag over the height of the window turns this far
-constexpr double kZoomPerNotch = 0.1;
-constexpr const char* kHelp =
-    "left drag: turn   right drag: pan   wheel: zoom   space: pause   backspace: first view   "
-    "Esc: close";
+constexpr double kLeastRest = 1e-3;        // [s] between two frames, for whoever else works
+constexpr double kLongestRest = 2e-3;      // [s] that one call of draw may take for nothing
+constexpr double kIconPeriod = 0.05;       // [s] between two looks at a window that is an icon
+constexpr double kNoteTime = 4;            // [s] a note stays
+constexpr int kPanelEvery = 4;             // frames from one update of the panels to the next
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 /// The font that is as large as `scale` asks for (1 = a plain screen).
 int font_scale(float scale) {
@@ -46,15 +51,19 @@ void flip_rows(Image& image) {
   }
 }
 
+Error display_lost_error() { return {Errc::system, text(msg::view_display_lost)}; }
+
 }  // namespace
 
 struct Window::Impl {
-  Impl(GlWindow window, const Model& model, const WindowOptions& options)
-      : handle(window.handle), scene(model, window.quality), is_paused(options.paused) {
-    glfwSetWindowUserPointer(handle, this);
-    glfwSetKeyCallback(handle, on_key);
-    glfwSetScrollCallback(handle, on_scroll);
-    glfwSetCursorPosCallback(handle, on_move);
+  Impl(GlWindow window, const Model& model, const WindowOptions& chosen, double opened)
+      : handle(window.handle),
+        options(chosen),
+        scene(model, window.quality, window.software),
+        panels(scene.model(), chosen.jog_dofs, chosen.can_step, chosen.can_reset),
+        user(scene, panels, {chosen.can_step, chosen.can_reset, chosen.can_push}, chosen.paused),
+        counter(opened) {
+    gather_inputs(handle, inputs);
     glfwSwapInterval(0);
     mjr_defaultContext(&context);
   }
@@ -69,71 +78,34 @@ struct Window::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  static Impl& self(GLFWwindow* window) {
-    return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
-  }
-  static void on_key(GLFWwindow* window, int key, int, int action, int);
-  static void on_scroll(GLFWwindow* window, double, double notches);
-  static void on_move(GLFWwindow* window, double x, double y);
-
   Result<void> upload();
-  void set_view(const CameraView& view);
-  void turn_or_pan(double dx, double dy);
+  [[nodiscard]] bool is_icon() const;
+  void fill_figures(std::span<const LivePlot> plots);
+  void handle_inputs();
+  void prepare(const Overlay& overlay, std::span<const PanelSection> sections);
   void render();
-  void render_plots(const mjrRect& viewport);
+  void render_plots(const mjrRect& view);
+  [[nodiscard]] HudText hud() const;
+  [[nodiscard]] Image read_picture();
+  void save_picture();
 
   GLFWwindow* handle;
+  WindowOptions options;
   Scene scene;
+  Panels panels;
+  Interaction user;
+  FrameCounter counter;
   mjrContext context{};
-  CameraView first_view;
-  bool is_paused;
-  double cursor_x = 0;
-  double cursor_y = 0;
+  RawInputs inputs;
   double time = 0;  ///< [s] of the state shown
   std::string status;
+  std::string note;
+  double note_until = 0;  ///< [s]
   std::vector<mjvFigure> figures;
-  Clock::time_point next_frame = Clock::now();
+  long frame = 0;
+  bool panels_changed = true;
+  double next_frame = 0;  ///< [s]
 };
-
-void Window::Impl::on_key(GLFWwindow* window, int key, int, int action, int) {
-  if (action != GLFW_PRESS) return;
-  Impl& impl = self(window);
-  if (key == GLFW_KEY_SPACE) impl.is_paused = !impl.is_paused;
-  if (key == GLFW_KEY_BACKSPACE) impl.set_view(impl.first_view);
-  if (key == GLFW_KEY_ESCAPE) glfwSetWindowShouldClose(window, GLFW_TRUE);
-  impl.next_frame = Clock::now();
-}
-
-void Window::Impl::on_scroll(GLFWwindow* window, double, double notches) {
-  Impl& impl = self(window);
-  double& distance = impl.scene.camera().distance;
-  const double extent = impl.scene.model().stat.extent;
-  distance = std::clamp(distance * std::exp(-kZoomPerNotch * notches), 0.01 * extent, 100 * extent);
-}
-
-void Window::Impl::on_move(GLFWwindow* window, double x, double y) {
-  Impl& impl = self(window);
-  const double dx = x - std::exchange(impl.cursor_x, x);
-  const double dy = y - std::exchange(impl.cursor_y, y);
-  int width = 0;
-  int height = 0;
-  glfwGetWindowSize(window, &width, &height);
-  if (height > 0) impl.turn_or_pan(dx / height, dy / height);
-}
-
-/// @param dx, dy way of the cursor as a share of the window's height, y down.
-void Window::Impl::turn_or_pan(double dx, double dy) {
-  const auto pressed = [this](int button) {
-    return glfwGetMouseButton(handle, button) == GLFW_PRESS;
-  };
-  mjvCamera& camera = scene.camera();
-  if (pressed(GLFW_MOUSE_BUTTON_LEFT)) {
-    camera.azimuth = std::remainder(camera.azimuth - kDegPerHeight * dx, 360);
-    camera.elevation = std::clamp(camera.elevation - kDegPerHeight * dy, -89.9, 89.9);
-  } else if (pressed(GLFW_MOUSE_BUTTON_RIGHT) || pressed(GLFW_MOUSE_BUTTON_MIDDLE)) {
-    mjv_moveCamera(&scene.model(), mjMOUSE_MOVE_V, dx, dy, &camera);
-  }
-}
 
 /// Hands the model to OpenGL.
 Result<void> Window::Impl::upload() {
@@ -146,41 +118,109 @@ Result<void> Window::Impl::upload() {
   return fail(Errc::not_available, text(msg::view_no_window, outcome.error));
 }
 
-void Window::Impl::set_view(const CameraView& view) {
-  // A view that was taken from a camera or checked before is never refused.
-  (void)scene.set_camera({.view = view});
+bool Window::Impl::is_icon() const {
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(handle, &width, &height);
+  return width < 1 || height < 1 || glfwGetWindowAttrib(handle, GLFW_ICONIFIED) == GLFW_TRUE;
+}
+
+void Window::Impl::fill_figures(std::span<const LivePlot> plots) {
+  figures.resize(plots.size());
+  for (std::size_t i = 0; i < plots.size(); ++i) fill_figure(plots[i], figures[i]);
+}
+
+void Window::Impl::handle_inputs() {
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(handle, &width, &height);
+  const mjrRect& whole = panels.state().rect[0];
+  if (whole.width != width || whole.height != height) panels.resize(width, height);
+  for (const RawInput& input : std::exchange(inputs.all, {})) {
+    user.handle(input, context);
+    panels_changed = true;
+  }
+  if (auto said = user.take_said()) {
+    note = std::move(*said);
+    note_until = seconds_now() + kNoteTime;
+  }
+  if (user.close_wanted()) glfwSetWindowShouldClose(handle, GLFW_TRUE);
+}
+
+void Window::Impl::prepare(const Overlay& overlay, std::span<const PanelSection> sections) {
+  user.update();
+  apply(user.settings, scene);
+  scene.set_dynamics(needs_dynamics(user.settings) || user.picker.body() >= 0);
+  scene.update(overlay);
+  if (std::exchange(panels_changed, false) || frame % kPanelEvery == 0) {
+    mjr_setBuffer(mjFB_WINDOW, &context);
+    panels.show(user.settings, {&scene.data(), user.paused(), user.speed()}, sections, context);
+  }
+  if (seconds_now() > note_until) note.clear();
+}
+
+HudText Window::Impl::hud() const {
+  return {.time = time,
+          .paused = user.paused(),
+          .speed = user.speed(),
+          .camera = user.camera.name(),
+          .selected = user.picker.describe(),
+          .status = status,
+          .note = note,
+          .help = user.help_shown(),
+          .stats = counter.stats()};
 }
 
 /// Draws what was last set into the back buffer.
 void Window::Impl::render() {
-  mjrRect viewport = {0, 0, 0, 0};
-  glfwGetFramebufferSize(handle, &viewport.width, &viewport.height);
-  if (viewport.width < 1 || viewport.height < 1) return;  // minimised
   mjr_setBuffer(mjFB_WINDOW, &context);
-  mjr_render(viewport, &scene.raw(), &context);
-  render_plots(viewport);
-  char clock[64];
-  std::snprintf(clock, sizeof(clock), "%s%.2f s", is_paused ? "paused   " : "", time);
-  mjr_overlay(mjFONT_NORMAL, mjGRID_TOPLEFT, viewport, clock, nullptr, &context);
-  const std::string foot = status.empty() ? std::string(kHelp) : status + "\n" + kHelp;
-  mjr_overlay(mjFONT_NORMAL, mjGRID_BOTTOMLEFT, viewport, foot.c_str(), nullptr, &context);
+  const mjrRect& view = panels.view();
+  if (view.width > 0) mjr_render(view, &scene.raw(), &context);
+  render_plots(view);
+  draw_hud(hud(), view, context);
+  panels.render(context);
 }
 
 /// Figures stand one above the other at the right edge.
-void Window::Impl::render_plots(const mjrRect& viewport) {
+void Window::Impl::render_plots(const mjrRect& view) {
   const int count = static_cast<int>(figures.size());
   if (count == 0) return;
-  const int width = viewport.width * 3 / 10;
-  const int height = std::min(viewport.height / std::max(count, 2), width);
+  const int width = view.width * 3 / 10;
+  const int height = std::min(view.height / std::max(count, 2), width);
   for (int i = 0; i < count; ++i) {
-    const mjrRect place = {viewport.width - width, viewport.height - (i + 1) * height, width,
+    const mjrRect place = {view.left + view.width - width, view.height - (i + 1) * height, width,
                            height};
-    mjr_figure(place, &figures[i], &context);
+    mjr_figure(place, &figures[static_cast<std::size_t>(i)], &context);
   }
+}
+
+Image Window::Impl::read_picture() {
+  const mjrRect& whole = panels.state().rect[0];
+  Image image{whole.width, whole.height, {}};
+  image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
+  mjr_readPixels(image.rgb.data(), nullptr, whole, &context);
+  flip_rows(image);
+  return image;
+}
+
+void Window::Impl::save_picture() {
+  if (options.screenshots.empty()) {
+    user.say("no folder for screenshots was named (--out DIR)");
+    return;
+  }
+  ScreenshotEvent event;
+  if (auto file = save_screenshot(read_picture(), options.screenshots)) {
+    event.file = file->string();
+  } else {
+    event.error = file.error().what;
+  }
+  user.say(event.error.empty() ? "written: " + event.file : "the screenshot was not written");
+  user.tell(std::move(event));
 }
 
 Result<Window> Window::open(const Model& model, const std::string& title,
                             const WindowOptions& options) {
+  const double opened = seconds_now();
   const auto fits = [](int size) { return size >= 1 && size <= kMaxSize; };
   if (!fits(options.width) || !fits(options.height)) {
     return fail(Errc::bad_input, text(msg::view_bad_size, options.width, options.height, kMaxSize));
@@ -188,7 +228,7 @@ Result<Window> Window::open(const Model& model, const std::string& title,
   if (Result<void> checked = check_camera(model, options.camera); !checked) {
     return fail(std::move(checked.error()));
   }
-  if (Result<void> opened = open_display(); !opened) return fail(std::move(opened.error()));
+  if (Result<void> display = open_display(); !display) return fail(std::move(display.error()));
   Result<void> claimed = claim_gl(GlKind::egl);
   Result<GlWindow> window =
       claimed ? open_gl_window(options.width, options.height, title, options.quality)
@@ -197,13 +237,12 @@ Result<Window> Window::open(const Model& model, const std::string& title,
     close_display();
     return fail(std::move(window.error()));
   }
-  auto impl = std::make_unique<Impl>(*window, model, options);
+  auto impl = std::make_unique<Impl>(*window, model, options, opened);
   if (Result<void> uploaded = impl->upload(); !uploaded) return fail(std::move(uploaded.error()));
   if (Result<void> set = impl->scene.set_camera(options.camera); !set) {
     return fail(std::move(set.error()));
   }
-  impl->first_view = impl->scene.view();
-  impl->set_view(impl->first_view);
+  impl->user.camera.begin();
   glfwShowWindow(impl->handle);
   return Window(std::move(impl));
 }
@@ -216,53 +255,63 @@ Window& Window::operator=(Window&&) noexcept = default;
 bool Window::is_open() const noexcept {
   return !display_lost() && glfwWindowShouldClose(impl_->handle) == GLFW_FALSE;
 }
-bool Window::paused() const noexcept { return impl_->is_paused; }
-void Window::set_paused(bool paused) noexcept { impl_->is_paused = paused; }
+bool Window::paused() const noexcept { return impl_->user.paused(); }
+void Window::set_paused(bool paused) noexcept { impl_->user.set_paused(paused); }
 void Window::set_status(std::string line) { impl_->status = std::move(line); }
+const ViewSettings& Window::settings() const noexcept { return impl_->user.settings; }
+void Window::set_settings(const ViewSettings& settings) { impl_->user.settings = settings; }
+void Window::set_mouse_hook(MouseHook hook) { impl_->user.set_hook(std::move(hook)); }
+std::vector<ViewEvent> Window::take_events() { return impl_->user.take_events(); }
 CameraView Window::view() const { return impl_->scene.view(); }
+std::string Window::camera_name() const { return impl_->user.camera.name(); }
+ViewStats Window::stats() const { return impl_->counter.stats(); }
+
+std::optional<Window::Spot> Window::item_spot(bool left, int section, int item) const {
+  const std::optional<mjrRect> rect = impl_->panels.place(left, section, item);
+  if (!rect) return {};
+  return Spot{rect->left + 0.5 * rect->width,
+              impl_->panels.state().rect[0].height - rect->bottom - 0.5 * rect->height};
+}
 
 Result<void> Window::draw(const Snapshot& snapshot, const Overlay& overlay,
-                          std::span<const LivePlot> plots) {
-  const auto lost = [] { return fail(Errc::system, text(msg::view_display_lost)); };
-  if (display_lost()) return lost();
-  if (Clock::now() < impl_->next_frame) {
-    glfwWaitEventsTimeout(0.001);
-    if (display_lost()) return lost();
+                          std::span<const LivePlot> plots, std::span<const PanelSection> panels) {
+  if (display_lost()) return fail(display_lost_error());
+  const double begin = seconds_now();
+  if (begin < impl_->next_frame) {
+    glfwWaitEventsTimeout(std::min(impl_->next_frame - begin, kLongestRest));
+    if (display_lost()) return fail(display_lost_error());
     return {};
   }
-  const Clock::time_point begin = Clock::now();
+  glfwPollEvents();
+  if (display_lost()) return fail(display_lost_error());
   if (Result<void> set = impl_->scene.set_state(snapshot); !set) return set;
-  impl_->scene.update(overlay);
   impl_->time = snapshot.time;
-  impl_->figures.resize(plots.size());
-  for (std::size_t i = 0; i < plots.size(); ++i) {
-    fill_figure(plots[i], impl_->figures[i]);
+  if (impl_->is_icon()) {
+    impl_->next_frame = begin + kIconPeriod;
+    return {};
   }
+  impl_->fill_figures(plots);
   glfwMakeContextCurrent(impl_->handle);
+  impl_->handle_inputs();
+  impl_->prepare(overlay, panels);
   impl_->render();
+  if (impl_->user.take_screenshot()) impl_->save_picture();
   glfwSwapBuffers(impl_->handle);
   glfwMakeContextCurrent(nullptr);  // so that a picture may be drawn in between
-  glfwPollEvents();
-  if (display_lost()) return lost();
-  // Slow drawing takes at most two thirds of the time, so that the physics goes on.
-  const Clock::time_point end = Clock::now();
-  const double spent = Seconds(end - begin).count();
-  const double rest = std::max(kFramePeriod - spent, spent / 2);
-  impl_->next_frame = end + std::chrono::duration_cast<Clock::duration>(Seconds(rest));
+  if (display_lost()) return fail(display_lost_error());
+  const double end = seconds_now();
+  ++impl_->frame;
+  impl_->counter.add(begin, end, snapshot.time, impl_->user.paused());
+  impl_->next_frame = std::max(begin + kFramePeriod, end + kLeastRest);
   return {};
 }
 
 Result<Image> Window::picture() {
-  if (display_lost()) return fail(Errc::system, text(msg::view_display_lost));
+  if (display_lost()) return fail(display_lost_error());
   glfwMakeContextCurrent(impl_->handle);
   impl_->render();
-  mjrRect viewport = {0, 0, 0, 0};
-  glfwGetFramebufferSize(impl_->handle, &viewport.width, &viewport.height);
-  Image image{viewport.width, viewport.height, {}};
-  image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
-  mjr_readPixels(image.rgb.data(), nullptr, viewport, &impl_->context);
+  Image image = impl_->read_picture();
   glfwMakeContextCurrent(nullptr);
-  flip_rows(image);
   return image;
 }
 

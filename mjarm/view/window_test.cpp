@@ -2,117 +2,21 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <functional>
-#include <iostream>
 
-#include "mjarm/core/os.hpp"
 #include "mjarm/render/offscreen.hpp"
-#include "tests/support/run_program.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "mjarm/view/real_window_test.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr const char* kScene = R"(
-<mujoco>
-  <visual><headlight ambient="1 1 1" diffuse="0 0 0" specular="0 0 0"/></visual>
-  <statistic center="0 0 0" extent="2"/>
-  <worldbody>
-    <camera name="front" pos="0 -3 0" xyaxes="1 0 0 0 0 1"/>
-    <geom type="sphere" size="0.4" rgba="1 0 0 1"/>
-  </worldbody>
-</mujoco>)";
-constexpr const char* kTitle = "mjarm window test";
-constexpr const char* kXdotool = "/usr/bin/xdotool";
-
-Model load_scene() {
-  const support::TempFolder folder;
-  return Model::load(folder.write("scene.xml", kScene)).value();
-}
-
-/// All tests share one display with one mouse, so they take turns, also those of other processes.
-class Turn {
- public:
-  Turn()
-      : file_(open((temp_directory() / "mjarm_window_test.lock").c_str(), O_RDWR | O_CREAT, 0666)) {
-    flock(file_, LOCK_EX);
-  }
-  ~Turn() { close(file_); }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-
- private:
-  int file_;
-};
-
-/// A window that a stand-in for the user drives.
-class RealWindow : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "DISPLAY is not set";
-    if (access(kXdotool, X_OK) != 0) GTEST_SKIP() << "xdotool is not installed";
-    Result<Window> opened =
-        Window::open(model_, kTitle, {.width = 400, .height = 300, .camera = {.name = "front"}});
-    ASSERT_TRUE(opened) << opened.error().what;
-    window_ = std::make_unique<Window>(std::move(*opened));
-    ASSERT_TRUE(frames_until([this] { return id() != ""; })) << "the window does not appear";
-    xdotool({"windowmove", "--sync", id(), "0", "0", "windowfocus", "--sync", id()});
-    frames_until([] { return false; }, 0.2);
-  }
-
-  /// Draws until something holds, at most so many seconds; returns whether it came to hold.
-  bool frames_until(const std::function<bool()>& holds, double seconds = 20) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (std::chrono::steady_clock::now() < end) {
-      const Result<void> drawn = window_->draw({});
-      if (!drawn) ADD_FAILURE() << drawn.error().what;
-      if (holds()) return true;
-    }
-    return holds();
-  }
-  /// Lets the stand-in do something until it shows: on a busy machine a click may get lost between
-  /// the programs, and a user clicks again.
-  bool act_until(const std::vector<std::string>& input, const std::function<bool()>& holds) {
-    for (int attempt = 0; attempt < 4; ++attempt) {
-      xdotool(input);
-      if (frames_until(holds, 5)) return true;
-    }
-    return false;
-  }
-  static support::ProgramResult xdotool(const std::vector<std::string>& arguments) {
-    support::ProgramResult result = support::run_program(kXdotool, arguments);
-    if (result.exit_code != 0) std::cerr << "xdotool " << arguments[0] << ": " << result.err;
-    return result;
-  }
-  static std::string id() {
-    const auto found = support::lines_of(xdotool({"search", "--name", kTitle}).out);
-    return found.empty() ? std::string() : found.back();
-  }
-  static std::vector<std::string> drag(const std::string& button, int dx, int dy) {
-    return {"mousemove",
-            "200",
-            "150",
-            "mousedown",
-            button,
-            "mousemove_relative",
-            "--",
-            std::to_string(dx),
-            std::to_string(dy),
-            "mouseup",
-            button};
-  }
-
-  Turn turn_;
-  Model model_ = load_scene();
-  std::unique_ptr<Window> window_;
-};
+using testing::kWindowTitle;
+using testing::RealWindow;
+using testing::window_scene;
 
 TEST_F(RealWindow, ShowsTheModelTheOverlayAndPlots) {
   Overlay overlay;
@@ -175,7 +79,7 @@ TEST_F(RealWindow, MovingWithoutAButtonDoesNothing) {
   EXPECT_EQ(window_->view().lookat_W, before.lookat_W);
 }
 
-TEST_F(RealWindow, SpacePausesAndBackspaceGoesBack) {
+TEST_F(RealWindow, SpacePausesAndControlAGoesBack) {
   EXPECT_FALSE(window_->paused());
   EXPECT_TRUE(act_until({"key", "space"}, [&] { return window_->paused(); }));
   EXPECT_TRUE(act_until({"key", "space"}, [&] { return !window_->paused(); }));
@@ -185,7 +89,7 @@ TEST_F(RealWindow, SpacePausesAndBackspaceGoesBack) {
   ASSERT_TRUE(
       act_until(drag("1", 60, 30), [&] { return window_->view().azimuth != before.azimuth; }));
   EXPECT_TRUE(
-      act_until({"key", "BackSpace"}, [&] { return window_->view().azimuth == before.azimuth; }));
+      act_until({"key", "ctrl+a"}, [&] { return window_->view().azimuth == before.azimuth; }));
 }
 
 TEST_F(RealWindow, EscapeCloses) {
@@ -219,7 +123,7 @@ class WindowDeathTest : public ::testing::Test {
 /// Ends with code 0 where opening a window fails with a text that contains `part`.
 [[noreturn]] void expect_refusal(const Model& model, const WindowOptions& options,
                                  const std::string& part) {
-  const Result<Window> opened = Window::open(model, kTitle, options);
+  const Result<Window> opened = Window::open(model, kWindowTitle, options);
   if (!opened) std::fputs(opened.error().what.c_str(), stderr);
   const bool as_expected = !opened && opened.error().what.find(part) != std::string::npos &&
                            opened.error().what.find('\n') == std::string::npos;
@@ -230,7 +134,7 @@ TEST_F(WindowDeathTest, WithoutADisplaySaysWhatToDo) {
   const auto run = [] {
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");
-    expect_refusal(load_scene(), {}, "no display: use --headless");
+    expect_refusal(window_scene(), {}, "no display: use --headless");
   };
   EXPECT_EXIT(run(), ::testing::ExitedWithCode(0), "");
 }
@@ -239,15 +143,15 @@ TEST_F(WindowDeathTest, ADisplayThatIsNotThereIsAnError) {
   const auto run = [] {
     setenv("DISPLAY", ":987", 1);
     unsetenv("WAYLAND_DISPLAY");
-    expect_refusal(load_scene(), {}, "--headless");
+    expect_refusal(window_scene(), {}, "--headless");
   };
   EXPECT_EXIT(run(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST_F(WindowDeathTest, AnUnknownCameraIsAnErrorBeforeAnythingOpens) {
-  EXPECT_EXIT(expect_refusal(load_scene(), {.camera = {.name = "nose"}}, "front"),
+  EXPECT_EXIT(expect_refusal(window_scene(), {.camera = {.name = "nose"}}, "front"),
               ::testing::ExitedWithCode(0), "");
-  EXPECT_EXIT(expect_refusal(load_scene(), {.width = 0}, "0 x 800"), ::testing::ExitedWithCode(0),
+  EXPECT_EXIT(expect_refusal(window_scene(), {.width = 0}, "0 x 800"), ::testing::ExitedWithCode(0),
               "");
 }
 
@@ -257,14 +161,15 @@ struct OwnDisplay {
   std::string name;
 };
 
-OwnDisplay start_display() {
+OwnDisplay start_display(const char* option = "-noreset", const char* value = nullptr) {
   int ends[2];
   if (pipe(ends) != 0) return {};
   const pid_t server = fork();
   if (server == 0) {
     dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
     const std::string number = std::to_string(ends[1]);
-    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "640x480x24", nullptr);
+    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "640x480x24", option,
+           value, nullptr);
     _exit(127);
   }
   close(ends[1]);
@@ -282,7 +187,8 @@ OwnDisplay start_display() {
   unsetenv("WAYLAND_DISPLAY");
   bool reported = false;
   {
-    Result<Window> window = Window::open(load_scene(), kTitle, {.width = 300, .height = 200});
+    Result<Window> window =
+        Window::open(window_scene(), kWindowTitle, {.width = 300, .height = 200});
     if (window && window->draw({})) {
       kill(display.server, SIGKILL);
       waitpid(display.server, nullptr, 0);
@@ -299,6 +205,25 @@ OwnDisplay start_display() {
 TEST_F(WindowDeathTest, LosingTheDisplayIsAnErrorAndNoCrash) {
   if (std::system("command -v Xvfb >/dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
   EXPECT_EXIT(lose_display(), ::testing::ExitedWithCode(0), "");
+}
+
+/// Ends with code 0 where a display without OpenGL gives one line.
+[[noreturn]] void open_without_gl() {
+  const OwnDisplay display = start_display("-extension", "GLX");
+  if (display.name == ":") std::_Exit(77);
+  setenv("DISPLAY", display.name.c_str(), 1);
+  unsetenv("WAYLAND_DISPLAY");
+  const Result<Window> opened = Window::open(window_scene(), kWindowTitle);
+  kill(display.server, SIGKILL);
+  waitpid(display.server, nullptr, 0);
+  const bool as_expected = !opened && opened.error().code == Errc::not_available &&
+                           opened.error().what.find('\n') == std::string::npos;
+  std::_Exit(as_expected ? 0 : 1);
+}
+
+TEST_F(WindowDeathTest, ADisplayWithoutOpenGlIsAnErrorAndNoCrash) {
+  if (std::system("command -v Xvfb >/dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
+  EXPECT_EXIT(open_without_gl(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "apps/mjarm/demos/show.hpp"
 
+#include <chrono>
+#include <thread>
+
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
@@ -9,6 +12,7 @@ namespace {
 
 constexpr double kTrailSpacing = 0.002;  // [m] the eye sees no difference below
 constexpr double kBallSpacing = 0.01;    // [m]
+constexpr auto kRest = std::chrono::microseconds(500);
 constexpr Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
 constexpr Rgba kTrail = {0.10F, 0.45F, 0.85F, 1};
 
@@ -17,8 +21,8 @@ constexpr Rgba kTrail = {0.10F, 0.45F, 0.85F, 1};
 Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
   Show show(model.timestep());
   show.overlay_.lines.push_back({.points_W = {}, .width = 0.006, .color = kTrail});
-  if (headless || !has_display()) return show;
-  Result<Window> window = Window::open(model, title);
+  if (headless || !has_display() || !RemoteWindow::is_possible()) return show;
+  Result<RemoteWindow> window = RemoteWindow::open(model, title, {.can_reset = false});
   if (window) {
     show.window_ = std::move(*window);
   } else if (window.error().code == Errc::not_available) {
@@ -78,20 +82,59 @@ bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   if (trail_on_) grow_trail(p_WT);
   grow_plots(sim.time(), p_WT);
   if (!window_) return true;
+  history_.add(sim.snapshot());
+  changed_ = true;
   if (due_ > 0) --due_;
+  offer();
   while (due_ == 0) {
     if (!window_->is_open() || interrupted()) return false;
-    if (!window_->draw(sim.snapshot(), overlay_, plots_)) return false;
-    due_ = pacer_.steps_due(window_->paused());
+    handle_events();
+    due_ = playback_.steps_due();
+    offer();
+    if (due_ == 0) std::this_thread::sleep_for(kRest);
   }
   return true;
+}
+
+void Show::handle_events() {
+  for (const ViewEvent& event : window_->link().events.take()) handle(event);
+}
+
+void Show::handle(const ViewEvent& event) {
+  changed_ = true;
+  if (const auto* push = std::get_if<PushEvent>(&event); push != nullptr && pushed_ != nullptr) {
+    pushed_->set_external_force(push->body, push->force_W, push->torque_W);
+  } else if (std::holds_alternative<ReleaseEvent>(event) && pushed_ != nullptr) {
+    pushed_->clear_external_forces();
+  }
+  if (const auto* step = std::get_if<StepEvent>(&event)) {
+    if (step->steps < 0) (void)history_.back();
+    if (step->steps < 0 || history_.forward() != nullptr) return;
+  }
+  (void)playback_.handle(event);
+  if (!playback_.paused()) history_.to_present();
+}
+
+void Show::offer() {
+  Mailbox<ViewFrame>& frames = window_->link().frames;
+  if (!changed_ || !frames.is_empty() || history_.size() == 0) return;
+  changed_ = false;
+  frame_.snapshot = history_.at();
+  frame_.overlay = overlay_;
+  frame_.plots = plots_;
+  frame_.status = history_.is_past() ? "looking back; space goes on from now" : "";
+  frames.post(frame_);
 }
 
 void Show::linger(const Sim& sim) {
   if (!window_ || !window_->is_open() || interrupted()) return;
   log_info(text(msg::demo_close_window));
+  history_.add(sim.snapshot());
+  changed_ = true;
   while (window_->is_open() && !interrupted()) {
-    if (!window_->draw(sim.snapshot(), overlay_, plots_)) return;
+    handle_events();
+    offer();
+    std::this_thread::sleep_for(kRest);
   }
 }
 

@@ -5,18 +5,23 @@
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/view_host.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/sim/sim.hpp"
+#include "mjarm/view/history.hpp"
 #include "mjarm/view/live_plot.hpp"
-#include "mjarm/view/real_time.hpp"
-#include "mjarm/view/window.hpp"
+#include "mjarm/view/playback.hpp"
+#include "mjarm/view/view_link.hpp"
 
 namespace mjarm::app {
 
 /// What people see of a demo: the window where there is one, the planned path and the trail, the
-/// live plots. Headless it only keeps the overlay, for the picture at the end.
+/// live plots. Headless it only keeps the overlay, for the picture at the end. It belongs to the
+/// thread that simulates; the window is drawn by the main thread (`run_beside_windows`), and
+/// nothing in it changes what is simulated but a push of the user. Steps back show what was, and
+/// change nothing: a demo follows its plan.
 class Show {
  public:
   /// Opens a window unless `headless`; without a display it says so and goes on headless.
@@ -34,8 +39,11 @@ class Show {
   /// Live plots of the tool: its path from above, and its coordinates over time.
   void plot_tool();
 
-  /// Called after each simulation step; draws where a frame is due and keeps real time with a
-  /// window.
+  /// Lets the user push the bodies of `sim`, which outlives this.
+  void let_push(Sim& sim) { pushed_ = &sim; }
+
+  /// Called after each simulation step; with a window hands over a frame where one is wanted, does
+  /// what the user asks for and keeps real time.
   /// @return false when the user ended it.
   [[nodiscard]] bool step(const Sim& sim, const Eigen::Vector3d& p_WT);
   /// Keeps the window open until the user closes it; returns at once without one.
@@ -45,13 +53,21 @@ class Show {
   [[nodiscard]] const Overlay& overlay() const { return overlay_; }
 
  private:
-  explicit Show(double timestep) : pacer_(timestep) {}
+  explicit Show(double timestep) : playback_(timestep) {}
   void grow_trail(const Eigen::Vector3d& p_WT);
   void grow_plots(double time, const Eigen::Vector3d& p_WT);
+  void handle_events();
+  void handle(const ViewEvent& event);
+  /// Hands a frame to the window where it took the last one.
+  void offer();
 
-  std::optional<Window> window_;
-  RealTimePacer pacer_;
+  std::optional<RemoteWindow> window_;
+  Playback playback_;
+  History<Snapshot> history_{2000};
+  Sim* pushed_ = nullptr;
   int due_ = 0;
+  bool changed_ = true;  ///< since the last frame
+  ViewFrame frame_;      ///< memory that is used again
   bool trail_on_ = false;
   bool trail_as_balls_ = false;
   Overlay overlay_;

@@ -40,6 +40,7 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
       recorder_(model_, arm_),
       show_(std::move(show)) {
   start_at(view(arm_.home));
+  show_.let_push(sim_);
 }
 
 Result<Robot> load_stage_robot(const std::string& demo, const DemoOptions& options, int dof) {

@@ -1,0 +1,196 @@
+#include "mjarm/core/messages/view.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "apps/mjarm/command.hpp"
+#include "apps/mjarm/robot.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/view_sim.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/text_width.hpp"
+#include "mjarm/core/units.hpp"
+#include "mjarm/view/controls.hpp"
+#include "mjarm/view/view_link.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  RobotOptions robot;
+  std::string size, camera, quality, seconds, out;
+  bool passive = false, paused = false, stats = false;
+};
+
+struct Loaded {
+  Model model;
+  std::optional<Arm> arm;
+};
+
+/// Any model can be looked at; one without an arm has nothing to hold.
+Result<Loaded> load(const Options& options) {
+  if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::view_which));
+  const Result<std::filesystem::path> file = find_model_file(options.robot.robot);
+  if (!file) return fail(file.error());
+  const std::vector<std::string>& paths = options.robot.package_paths;
+  Result<Model> model = Model::load(*file, {.package_paths = {paths.begin(), paths.end()},
+                                            .allow_outside = options.robot.allow_outside});
+  if (!model) return fail(std::move(model.error()));
+  for (const std::string& warning : model->warnings()) log_info(warning);
+  Result<Arm> arm = find_arm(*model, {.tip = options.robot.tip});
+  if (!arm && !options.robot.tip.empty()) return fail(std::move(arm.error()));
+  Loaded loaded{std::move(*model), std::nullopt};
+  if (arm) loaded.arm = std::move(*arm);
+  return loaded;
+}
+
+Result<ViewSim> make_sim(const Loaded& loaded, bool passive) {
+  Result<ViewSim> sim = ViewSim::make(loaded.model, loaded.arm, passive);
+  if (sim || sim.error().code != Errc::not_available) return sim;
+  log_info(text(msg::view_not_held, sim.error().what));
+  return ViewSim::make(loaded.model, loaded.arm, true);
+}
+
+/// `1280x800`
+Result<void> read_size(const std::string& size, WindowOptions& options) {
+  int width = 0, height = 0, end = 0;
+  const bool read = std::sscanf(size.c_str(), "%dx%d%n", &width, &height, &end) == 2 &&
+                    static_cast<std::size_t>(end) == size.size() && width > 0 && height > 0;
+  if (!read) return fail(Errc::usage, text(msg::view_bad_size_text, size));
+  options.width = width;
+  options.height = height;
+  return {};
+}
+
+Result<WindowOptions> window_options(const Options& options, const ViewSim& sim) {
+  WindowOptions out{.paused = options.paused, .jog_dofs = sim.jog_dofs()};
+  out.camera.name = options.camera;
+  out.screenshots = options.out;
+  if (!options.size.empty()) {
+    if (auto read = read_size(options.size, out); !read) return fail(std::move(read.error()));
+  }
+  if (!options.quality.empty()) {
+    const std::string words[] = {"low", "high"};
+    const auto chosen = parse_choice("--quality", options.quality, words);
+    if (!chosen) return fail(chosen.error());
+    out.quality = *chosen == 0 ? RenderQuality::low : RenderQuality::high;
+  }
+  return out;
+}
+
+Result<double> seconds_of(const Options& options) {
+  if (options.seconds.empty()) return 0;
+  Result<double> seconds = parse_quantity(options.seconds, Quantity::time);
+  if (!seconds) return fail(in_option("--seconds", seconds.error()));
+  if (!(*seconds > 0)) return fail(Errc::usage, text(msg::view_bad_seconds, options.seconds));
+  return seconds;
+}
+
+/// Keeps real time in a thread of its own, and does what the user asks for, until the window is
+/// gone.
+void simulate(ViewSim& sim, ViewLink& link) {
+  ViewFrame frame;
+  bool changed = true;
+  const auto offer = [&] {
+    if (!changed || !link.frames.is_empty()) return;
+    changed = false;
+    frame.snapshot = sim.sim().snapshot();
+    frame.status = sim.status();
+    link.frames.post(frame);
+  };
+  while (!link.closed) {
+    for (const ViewEvent& event : link.events.take()) {
+      sim.handle(event);
+      changed = true;
+    }
+    for (int due = sim.steps_due(); due > 0 && !link.closed; --due) {
+      sim.step();
+      changed = true;
+      offer();
+    }
+    offer();
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
+  }
+}
+
+Result<int> run(const Options& options) {
+  const Result<double> seconds = seconds_of(options);
+  if (!seconds) return fail(seconds.error());
+  const Result<Loaded> loaded = load(options);
+  if (!loaded) return fail(loaded.error());
+  Result<ViewSim> sim = make_sim(*loaded, options.passive);
+  if (!sim) return fail(std::move(sim.error()));
+  const Result<WindowOptions> chosen = window_options(options, *sim);
+  if (!chosen) return fail(chosen.error());
+  catch_interrupts();
+  Result<Window> window =
+      Window::open(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen);
+  if (!window) {
+    // What is missing here is a display, without which nothing can be seen in a window.
+    Error error = std::move(window.error());
+    if (error.code == Errc::not_available) error.code = Errc::impossible;
+    return fail(std::move(error));
+  }
+  if (options.paused) sim->handle(PauseEvent{true});
+  const auto end = Clock::now() + std::chrono::duration<double>(*seconds);
+  ViewLink link;
+  std::thread worker([&] { simulate(*sim, link); });
+  const Result<void> drawn = draw_until_closed(
+      *window, link, [&] { return interrupted() || (*seconds > 0 && Clock::now() >= end); });
+  worker.join();
+  if (!drawn) return fail(drawn.error());
+  const ViewStats stats = window->stats();
+  if (options.stats) {
+    const std::string line = text(msg::view_stats, stats.frames, stats.fps, stats.frame_ms,
+                                  stats.first_frame_ms, stats.sim_rate);
+    std::printf("%s\n", line.c_str());
+  }
+  return 0;
+}
+
+/// Examples, and below them every control, in one language.
+std::string help_end(Language language) {
+  std::string lines(msg::view_examples.in(language));
+  lines += "\n\n";
+  lines += msg::view_controls.in(language);
+  for (const ControlHelp& row : control_help()) {
+    lines += "\n  " + padded(row.keys, 20) + std::string(row.about.in(language));
+  }
+  return lines;
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_option(app, "file", options->robot.robot, msg::app_model_file, "FILE");
+  add_option(app, "--tip", options->robot.tip, msg::app_option_tip, "FRAME");
+  add_package_path_option(app, options->robot.package_paths);
+  add_outside_option(app, options->robot.allow_outside);
+  add_flag(app, "--passive", options->passive, msg::view_option_passive);
+  add_flag(app, "--paused", options->paused, msg::view_option_paused);
+  add_option(app, "--size", options->size, msg::view_option_size, "WxH");
+  add_option(app, "--camera", options->camera, msg::view_option_camera, "CAMERA");
+  add_option(app, "--quality", options->quality, msg::view_option_quality, "low|high");
+  add_option(app, "--out", options->out, msg::view_option_out, "DIR");
+  add_option(app, "--seconds", options->seconds, msg::view_option_seconds, "S");
+  add_flag(app, "--stats", options->stats, msg::view_option_stats);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command view_command() {
+  static const std::string english = help_end(Language::english);
+  static const std::string chinese = help_end(Language::chinese);
+  return {"view", msg::view_summary, Msg{english.c_str(), chinese.c_str()}, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,75 @@
+#include "mjarm/view/controls.hpp"
+
+#include "mjarm/core/messages/view.hpp"
+#include "mjarm/view/settings.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace mjarm {
+namespace {
+
+using enum KeyModifier;
+using enum ViewAction;
+
+constexpr ActionRow kActions[] = {
+    {pause, GLFW_KEY_SPACE, none, "space", msg::view_key_pause},
+    {step, GLFW_KEY_RIGHT, none, "right", msg::view_key_step},
+    {step_back, GLFW_KEY_LEFT, none, "left", msg::view_key_step_back},
+    {faster, GLFW_KEY_EQUAL, none, "+", msg::view_key_faster},
+    {slower, GLFW_KEY_MINUS, none, "-", msg::view_key_slower},
+    {reset, GLFW_KEY_BACKSPACE, none, "Backspace", msg::view_key_reset},
+    {first_view, GLFW_KEY_A, control, "Ctrl-A", msg::view_key_first_view},
+    {previous_camera, GLFW_KEY_LEFT_BRACKET, none, "[", msg::view_key_previous_camera},
+    {next_camera, GLFW_KEY_RIGHT_BRACKET, none, "]", msg::view_key_next_camera},
+    {left_panel, GLFW_KEY_TAB, none, "Tab", msg::view_key_left_panel},
+    {right_panel, GLFW_KEY_TAB, shift, "Shift-Tab", msg::view_key_right_panel},
+    {next_frame, GLFW_KEY_F6, none, "F6", msg::view_key_next_frame},
+    {next_label, GLFW_KEY_F7, none, "F7", msg::view_key_next_label},
+    {screenshot, GLFW_KEY_P, control, "Ctrl-P", msg::view_key_screenshot},
+    {help, GLFW_KEY_F1, none, "F1", msg::view_key_help},
+    {close, GLFW_KEY_ESCAPE, none, "Esc", msg::view_key_close},
+};
+
+/// The same keys elsewhere on the keyboard.
+int main_key(int key) {
+  if (key == GLFW_KEY_KP_ADD) return GLFW_KEY_EQUAL;
+  if (key == GLFW_KEY_KP_SUBTRACT) return GLFW_KEY_MINUS;
+  return key;
+}
+
+constexpr double kSpeeds[] = {0.1, 0.2, 0.5, 1, 2, 5, 10};
+
+}  // namespace
+
+std::span<const ActionRow> action_rows() noexcept { return kActions; }
+std::span<const double> view_speeds() noexcept { return kSpeeds; }
+
+std::optional<ViewAction> action_of(int key, bool control_held, bool shift_held) noexcept {
+  const KeyModifier held = control_held ? control : shift_held ? shift : none;
+  const ActionRow* found = nullptr;
+  for (const ActionRow& row : kActions) {
+    if (row.key != main_key(key)) continue;
+    if (row.modifier == held) return row.action;
+    // Shift alone makes no other key, as in `+`.
+    if (row.modifier == none && held == shift) found = &row;
+  }
+  return found == nullptr ? std::nullopt : std::optional(found->action);
+}
+
+std::vector<ControlHelp> control_help() {
+  std::vector<ControlHelp> rows = {
+      {"left drag", msg::view_mouse_turn},      {"right/middle drag", msg::view_mouse_pan},
+      {"wheel", msg::view_mouse_zoom},          {"right click", msg::view_mouse_settings},
+      {"double click", msg::view_mouse_select}, {"Ctrl-right drag", msg::view_mouse_push},
+      {"Ctrl-left drag", msg::view_mouse_twist}};
+  for (const ActionRow& row : kActions) rows.push_back({row.shown, row.about});
+  rows.push_back({"0 - 5", msg::view_key_geom_groups});
+  rows.push_back({"Shift 0 - 5", msg::view_key_site_groups});
+  for (const SettingRow& row : setting_rows()) {
+    rows.push_back({std::string(1, static_cast<char>(row.key)), row.about});
+  }
+  return rows;
+}
+
+}  // namespace mjarm
