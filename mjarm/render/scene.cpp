@@ -218,16 +218,20 @@ CameraView Scene::view() const {
 }
 
 void Scene::update(const Overlay& overlay) {
-    if (before.maxgeom > 0) {
-      std::copy(std::begin(before.flags), std::end(before.flags), scene.flags);
-      return;
-    }
   impl_->make_room(geoms_of(overlay, impl_->m));
-  mjv_updateScene(&impl_->m, impl_->d.get(), &impl_->option, nullptr, &impl_->camera, mjCAT_ALL,
-                  &impl_->scene);
+  const mjModel& m = impl_->m;
+  mjvScene& scene = impl_->scene;
+  mjvOption option = impl_->option;
+  if (impl_->only_colliding) std::fill_n(option.geomgroup, mjNGROUP, mjtByte{1});
+  mjv_updateScene(&m, impl_->d.get(), &option, &impl_->perturb, &impl_->camera, mjCAT_ALL, &scene);
+  if (impl_->only_colliding) {
+    mjvGeom* end = std::remove_if(scene.geoms, scene.geoms + scene.ngeom,
+                                  [&m](const mjvGeom& geom) { return is_for_show(m, geom); });
+    scene.ngeom = static_cast<int>(end - scene.geoms);
+  }
   impl_->tame_floors();
-  impl_->ghosts.draw(overlay.ghosts, impl_->option, *impl_->d, impl_->scene);
-  add_overlay(overlay, impl_->scene);
+  impl_->ghosts.draw(overlay.ghosts, option, *impl_->d, scene);
+  add_overlay(overlay, scene);
 }
 
 double Scene::shadow_reach() const {
