@@ -22,7 +22,7 @@ namespace {
 struct DemoArguments {
   std::string name, out, seconds, text, control;
   RobotOptions robot{.robot = "ur5e"};
-  bool headless = false, meshes = false, guide = false, no_timing = false;
+  bool headless = false, meshes = false, guide = false, video = false, no_timing = false;
 };
 
 void list_demos() {
@@ -48,6 +48,7 @@ Result<DemoOptions> read_options(const DemoArguments& arguments) {
   options.headless = arguments.headless;
   options.meshes = arguments.meshes;
   options.guide = arguments.guide;
+  options.video = arguments.video;
   options.timing = !arguments.no_timing;
   options.text = arguments.text;
   if (!arguments.seconds.empty()) {
@@ -88,6 +89,7 @@ Run setup(CLI::App& app) {
   add_flag(app, "--headless", arguments->headless, msg::demo_option_headless);
   add_flag(app, "--meshes", arguments->meshes, msg::install_option_meshes);
   add_flag(app, "--guide", arguments->guide, msg::demo_option_guide);
+  add_flag(app, "--video", arguments->video, msg::demo_option_video);
   add_option(app, "--seconds", arguments->seconds, msg::demo_option_seconds, "S");
   add_option(app, "--text", arguments->text, msg::demo_option_text, "TEXT");
   add_option(app, "--control", arguments->control, msg::demo_option_control, "MODE");

@@ -9,29 +9,24 @@
 #include "mjarm/core/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/render/overlay_shapes.hpp"
 #include "mjarm/render/png.hpp"
+#include "mjarm/render/trail.hpp"
 #include "mjarm/sim/follow.hpp"
 
 namespace mjarm::app {
 namespace {
 
 constexpr double kRest = 0.5;  // [s] at the end
-constexpr Rgba kPlannedColor = {0.85F, 0.15F, 0.15F, 1};
-constexpr Rgba kTrailColor = {0.10F, 0.45F, 0.85F, 1};
 
 /// Runs the motions of a plan one after the other, with the trail of the tool in an overlay.
 class ProgramRun {
  public:
   explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
     sim_.place(loaded.robot.arm, view(loaded.plan.q_start));
-    overlay_.lines.push_back({.points_W = {}, .width = 0.006, .color = kTrailColor});
     for (const PlannedMove& move : loaded.plan.moves) {
       if (!move.curve) continue;
-      OverlayLine& line = overlay_.lines.emplace_back();
-      for (const Pose& X : move.curve->poses(move.curve->stations(0.01, 0.1))) {
-        grow_trail(line.points_W, X.p);
-      }
-      line.color = kPlannedColor;
+      add_planned_path(planned_, move.curve->poses(move.curve->stations(0.01, 0.1)));
     }
   }
 
@@ -56,7 +51,11 @@ class ProgramRun {
   }
 
   [[nodiscard]] const Sim& sim() const { return sim_; }
-  [[nodiscard]] const Overlay& overlay() const { return overlay_; }
+  [[nodiscard]] Overlay overlay() const {
+    Overlay all = planned_;
+    trail_.draw(all);
+    return all;
+  }
 
  private:
   /// @return false where it was stopped.
@@ -71,7 +70,7 @@ class ProgramRun {
                             .controller = *controller,
                             .arm = arm,
                             .after_step = [&](const Sim& sim, const JointVec&) {
-                              grow_trail(overlay_.lines.front().points_W, sim.tool(tool).p);
+                              trail_.add(sim.tool(tool).p);
                               return after_step() && !(seconds && sim.time() >= *seconds);
                             }};
     const auto outcome = follow_time(setup, move.trajectory, {.settle = rest});
@@ -81,7 +80,8 @@ class ProgramRun {
 
   const LoadedProgram& loaded_;
   Sim sim_;
-  Overlay overlay_;
+  Overlay planned_;
+  Trail trail_{{.most_points = 10000}};
 };
 
 Result<std::string> video_of(ProgramRun& run, const Model& model, const PictureOptions& options,
@@ -90,7 +90,7 @@ Result<std::string> video_of(ProgramRun& run, const Model& model, const PictureO
   if (!video) return fail(std::move(video.error()));
   const auto after_step = [&] {
     progress.advance();
-    return video->step(run.sim(), run.overlay());
+    return video->is_due(run.sim()) ? video->step(run.sim(), run.overlay()) : !interrupted();
   };
   if (Result<void> ran = run.run(options.seconds, after_step); !ran) return fail(ran.error());
   if (Result<void> finished = video->finish(); !finished) return fail(finished.error());

@@ -1,6 +1,5 @@
 #include "apps/mjarm/render_video.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "mjarm/core/messages/render_command.hpp"
@@ -27,13 +26,16 @@ bool VideoOfRun::add(const Snapshot& snapshot, const Camera& camera, const Overl
   return !error_;
 }
 
-bool VideoOfRun::step(const Sim& sim, const Overlay& overlay) {
-  if (error_ || interrupted()) return false;
-  const double now = sim.time();
-  if (!start_) start_ = now;
+bool VideoOfRun::is_due(const Sim& sim) const {
   // Half a step early is as near as half a step late.
   const double half = sim.model().timestep() / 2;
-  while (*start_ + frames() / options_.fps <= now + half) {
+  return !start_ || *start_ + frames() / options_.fps <= sim.time() + half;
+}
+
+bool VideoOfRun::step(const Sim& sim, const Overlay& overlay) {
+  if (error_ || interrupted()) return false;
+  if (!start_) start_ = sim.time();
+  while (is_due(sim)) {
     if (!add(sim.snapshot(), camera_, overlay)) return false;
   }
   return true;
@@ -54,31 +56,6 @@ Result<void> VideoOfRun::finish() {
 std::string VideoOfRun::summary() const {
   return text(msg::render_command_video, options_.out.string(), options_.width, options_.height,
               frames(), frames() / options_.fps);
-}
-
-void grow_trail(std::vector<Eigen::Vector3d>& points_W, const Eigen::Vector3d& p_W) {
-  constexpr double kSpacing = 0.002;  // [m] the eye sees no difference below
-  constexpr double kOff = 0.0002;   // [m] so far may a straight piece leave the bend it stands for
-  constexpr double kLongest = 0.1;  // [m] of a piece
-  if (points_W.empty()) {
-    points_W.push_back(p_W);
-    return;
-  }
-  const Eigen::Vector3d step = p_W - points_W.back();
-  if (step.norm() < kSpacing) return;
-  if (points_W.size() >= 2) {
-    const Eigen::Vector3d& from = points_W[points_W.size() - 2];
-    const Eigen::Vector3d piece = p_W - from;
-    const double length = piece.norm();
-    // Half the angle by which the way has turned since `from`; an arc of it bulges by a quarter of
-    // its length times that.
-    const double turn = std::atan2(step.cross(piece).norm(), step.dot(piece));
-    if (length < kLongest && length * turn / 4 < kOff) {
-      points_W.back() = p_W;
-      return;
-    }
-  }
-  points_W.push_back(p_W);
 }
 
 }  // namespace mjarm::app

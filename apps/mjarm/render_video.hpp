@@ -1,8 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
-#include <vector>
 
 #include "apps/mjarm/render_options.hpp"
 #include "mjarm/core/result.hpp"
@@ -25,6 +23,9 @@ class VideoOfRun {
   /// Checks the camera, opens OpenGL and starts ffmpeg; nothing stands under the name of the file
   /// before `finish`.
   [[nodiscard]] static Result<VideoOfRun> open(const Model& model, const PictureOptions& options);
+
+  /// Whether `step` would take a frame now; spares making an overlay for nothing.
+  [[nodiscard]] bool is_due(const Sim& sim) const;
 
   /// Takes the frames that are due, the first at the time of the first call. After each step.
   /// @return false where the user pressed Ctrl-C or a frame could not be kept: stop then, `finish`
@@ -57,9 +58,5 @@ class VideoOfRun {
   std::optional<double> start_;  ///< [s] of the first frame
   std::optional<Error> error_;
 };
-
-/// Appends `p_W` to the trail of a tool in as few points as the eye needs: one every 2 mm in bends,
-/// few on straight pieces.
-void grow_trail(std::vector<Eigen::Vector3d>& points_W, const Eigen::Vector3d& p_W);
 
 }  // namespace mjarm::app

@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
   std::string file, out, control, tolerance;
-  bool headless = false, no_timing = false;
+  bool headless = false, video = false, no_timing = false;
 };
 
 /// Options of the command as those of a demo, which is shown and kept the same way.
@@ -25,6 +25,7 @@ Result<DemoOptions> stage_options(const Options& options, const Program& program
   out.out = options.out.empty() ? std::filesystem::path("mjarm-out") / program.name
                                 : std::filesystem::path(options.out);
   out.headless = options.headless;
+  out.video = options.video;
   out.timing = !options.no_timing;
   if (options.control.empty()) return out;
   const Result<ControlMode> mode = control_mode(options.control);
@@ -67,6 +68,7 @@ Run setup(CLI::App& app) {
   add_option(app, "program", options->file, msg::motion_program_file, "PROGRAM.yaml");
   add_option(app, "--out", options->out, msg::demo_option_out, "DIR");
   add_flag(app, "--headless", options->headless, msg::demo_option_headless);
+  add_flag(app, "--video", options->video, msg::demo_option_video);
   add_option(app, "--control", options->control, msg::demo_option_control, "MODE");
   add_option(app, "--tolerance", options->tolerance, msg::motion_program_option_tolerance,
              "LENGTH");

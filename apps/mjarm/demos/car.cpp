@@ -145,6 +145,10 @@ Result<Report> run_car(const DemoOptions& options) {
   Result<Show> show = Show::open(*model, "mjarm car", options.headless);
   if (!show) return fail(std::move(show.error()));
   show->set_trail(true);
+  if (options.video) {
+    auto filming = show->film(*model, options.out / kVideoFile, "overview");
+    if (!filming) return fail(std::move(filming.error()));
+  }
 
   Drive drive;
   const double most = options.seconds > 0 ? options.seconds : 1e9;
@@ -156,9 +160,10 @@ Result<Report> run_car(const DemoOptions& options) {
   }
   Report report = report_of(drive, sim);
   const DemoOutput output{report, plot_of(drive), show->overlay(), "overview"};
-  auto written = write_file(options.out / "log.csv", to_csv(drive)).and_then([&] {
-    return write_output(options.out, *model, sim.snapshot(), output);
-  });
+  auto written =
+      write_file(options.out / "log.csv", to_csv(drive))
+          .and_then([&] { return write_output(options.out, *model, sim.snapshot(), output); })
+          .and_then([&] { return show->end_film(); });
   if (!written) return fail(std::move(written.error()));
   show->linger(sim);
   return report;

@@ -20,6 +20,7 @@ struct DemoOptions {
   bool headless = false;               ///< no window even where there is a display
   bool meshes = false;                 ///< the robot's real meshes, which must be installed
   bool guide = false;                  ///< do it the tutorial's way
+  bool video = false;                  ///< writes video.mp4 as well
   bool timing = true;                  ///< wall-clock fields in the report
   double seconds = 0;                  ///< [s] most simulated time, 0 = as long as the motion takes
   std::string text;                    ///< for `letters`

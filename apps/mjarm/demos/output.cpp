@@ -20,9 +20,8 @@ Result<void> write_picture(const std::filesystem::path& file, const Model& model
     log_warning(text(msg::demo_no_picture, renderer.error().what));
     return {};
   }
-  const std::vector<std::string> cameras = camera_names(model);
   Camera camera;
-  if (std::ranges::find(cameras, output.camera) != cameras.end()) camera.name = output.camera;
+  camera.name = output.camera;
   const Result<Image> image = renderer->draw(snapshot, camera, output.overlay);
   if (!image) return fail(image.error());
   return write_png(*image, file);

@@ -17,8 +17,10 @@ struct DemoOutput {
   Report report;
   Plot plot;
   Overlay overlay;     ///< drawn into the picture
-  std::string camera;  ///< of the model; empty or unknown = the model's own view
+  std::string camera;  ///< of the model; empty = the model's own view
 };
+
+inline constexpr const char* kVideoFile = "video.mp4";
 
 /// Makes `folder`. @return an error where it cannot be made or is a file.
 [[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);

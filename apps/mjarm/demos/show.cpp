@@ -6,21 +6,18 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/render/overlay_shapes.hpp"
 
 namespace mjarm::app {
 namespace {
 
-constexpr double kTrailSpacing = 0.002;  // [m] the eye sees no difference below
-constexpr double kBallSpacing = 0.01;    // [m]
 constexpr auto kRest = std::chrono::microseconds(500);
 constexpr Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
-constexpr Rgba kTrail = {0.10F, 0.45F, 0.85F, 1};
 
 }  // namespace
 
 Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
   Show show(model.timestep());
-  show.overlay_.lines.push_back({.points_W = {}, .width = 0.006, .color = kTrail});
   if (headless || !has_display() || !RemoteWindow::is_possible()) return show;
   Result<RemoteWindow> window = RemoteWindow::open(model, title, {.can_reset = false});
   if (window) {
@@ -35,24 +32,16 @@ Result<Show> Show::open(const Model& model, const std::string& title, bool headl
 
 void Show::add_points(std::span<const Pose> X_WT, std::size_t every) {
   for (std::size_t i = 0; i < X_WT.size(); i += every) {
-    overlay_.spheres.push_back({.p_W = X_WT[i].p, .radius = 0.005, .color = kPlanned});
+    planned_.spheres.push_back({.p_W = X_WT[i].p, .radius = 0.005, .color = kPlanned});
   }
 }
 
-void Show::grow_trail(const Eigen::Vector3d& p_WT) {
-  std::vector<Eigen::Vector3d>& trail = overlay_.lines.front().points_W;
-  const double spacing = trail_as_balls_ ? kBallSpacing : kTrailSpacing;
-  if (!trail.empty() && (trail.back() - p_WT).norm() < spacing) return;
-  trail.push_back(p_WT);
-  if (trail_as_balls_) {
-    overlay_.spheres.push_back({.p_W = p_WT, .radius = 0.005, .color = kPlanned});
-  }
-}
+void Show::add_line(std::span<const Pose> X_WT) { add_planned_path(planned_, X_WT); }
 
-void Show::add_line(std::span<const Pose> X_WT) {
-  OverlayLine& line = overlay_.lines.emplace_back();
-  for (const Pose& pose : X_WT) line.points_W.push_back(pose.p);
-  line.color = kPlanned;
+Overlay Show::overlay() const {
+  Overlay all = planned_;
+  trail_.draw(all);
+  return all;
 }
 
 void Show::plot_tool() {
@@ -79,8 +68,9 @@ void Show::grow_plots(double time, const Eigen::Vector3d& p_WT) {
 
 bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   if (interrupted()) return false;
-  if (trail_on_) grow_trail(p_WT);
+  if (trail_on_) trail_.add(p_WT);
   grow_plots(sim.time(), p_WT);
+  if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
   if (!window_) return true;
   history_.add(sim.snapshot());
   changed_ = true;
@@ -94,6 +84,27 @@ bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
     if (due_ == 0) std::this_thread::sleep_for(kRest);
   }
   return true;
+}
+
+Result<void> Show::film(const Model& model, const std::filesystem::path& file,
+                        const std::string& camera) {
+  Result<VideoOfRun> video =
+      VideoOfRun::open(model, {.out = file, .video = true, .camera = camera});
+  if (!video) return fail(std::move(video.error()));
+  video_.emplace(std::move(*video));
+  return {};
+}
+
+Result<void> Show::end_film() {
+  if (!video_) return {};
+  Result<void> done = video_->finish();
+  if (done) {
+    log_info(video_->summary());
+  } else if (interrupted()) {
+    log_warning(done.error().what);
+    return {};
+  }
+  return done;
 }
 
 void Show::handle_events() {
@@ -120,9 +131,10 @@ void Show::offer() {
   if (!changed_ || !frames.is_empty() || history_.size() == 0) return;
   changed_ = false;
   frame_.snapshot = history_.at();
-  frame_.overlay = overlay_;
+  frame_.overlay = overlay();
   frame_.plots = plots_;
-  frame_.status = history_.is_past() ? "looking back; space goes on from now" : "";
+  frame_.status =
+      history_.is_past() ? "looking back; space goes on from now" : overlay_notice(frame_.overlay);
   frames.post(frame_);
 }
 

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/render_video.hpp"
 #include "apps/mjarm/view_host.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/overlay.hpp"
+#include "mjarm/render/trail.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/view/history.hpp"
 #include "mjarm/view/live_plot.hpp"
@@ -33,11 +36,22 @@ class Show {
   /// The trail grows with every call of `step` while on.
   void set_trail(bool on) { trail_on_ = on; }
   /// Red balls along the trail, as the tutorial draws it.
-  void set_balls(bool on) { trail_as_balls_ = on; }
-  /// A tube along straight pieces.
+  void set_balls(bool on) { trail_.set_balls(on); }
+  /// The way of the tool as it is planned, dashed.
   void add_line(std::span<const Pose> X_WT);
   /// Live plots of the tool: its path from above, and its coordinates over time.
   void plot_tool();
+
+  /// From now on every step is filmed into `file`, an MP4, in simulated time.
+  /// @param camera  of the model; empty = its own view.
+  [[nodiscard]] Result<void> film(const Model& model, const std::filesystem::path& file,
+                                  const std::string& camera);
+  /// Leaves out steps, or goes on.
+  void set_filming(bool on) { filming_ = on; }
+  /// Puts the video in its place, if there is one. A run that the user ends has none, which is
+  /// told.
+  [[nodiscard]] Result<void> end_film();
+  [[nodiscard]] bool is_filming() const { return video_.has_value(); }
 
   /// Lets the user push the bodies of `sim`, which outlives this.
   void let_push(Sim& sim) { pushed_ = &sim; }
@@ -50,11 +64,11 @@ class Show {
   void linger(const Sim& sim);
 
   [[nodiscard]] bool has_window() const { return window_.has_value(); }
-  [[nodiscard]] const Overlay& overlay() const { return overlay_; }
+  /// What is planned, and the trail so far.
+  [[nodiscard]] Overlay overlay() const;
 
  private:
   explicit Show(double timestep) : playback_(timestep) {}
-  void grow_trail(const Eigen::Vector3d& p_WT);
   void grow_plots(double time, const Eigen::Vector3d& p_WT);
   void handle_events();
   void handle(const ViewEvent& event);
@@ -69,8 +83,10 @@ class Show {
   bool changed_ = true;  ///< since the last frame
   ViewFrame frame_;      ///< memory that is used again
   bool trail_on_ = false;
-  bool trail_as_balls_ = false;
-  Overlay overlay_;
+  bool filming_ = true;
+  std::optional<VideoOfRun> video_;
+  Trail trail_{{.most_points = 10000}};
+  Overlay planned_;
   std::vector<LivePlot> plots_;
 };
 

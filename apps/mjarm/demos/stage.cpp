@@ -9,6 +9,7 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
+#include "mjarm/render/camera.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -95,11 +96,13 @@ FollowSetup Stage::setup(Controller& controller, bool measured) {
           .controller = controller,
           .arm = arm_,
           .recorder = &recorder_,
-          .after_step = [this](const Sim& sim, const JointVec&) {
-            if (options_.seconds > 0 && sim.time() >= options_.seconds) return false;
-            if (tick_) tick_();
-            return show_.step(sim, sim.tool(arm_).p);
-          }};
+          .after_step = [this](const Sim& sim, const JointVec&) { return show_step(sim); }};
+}
+
+bool Stage::show_step(const Sim& sim) {
+  if (options_.seconds > 0 && sim.time() >= options_.seconds) return false;
+  if (tick_) tick_();
+  return show_.step(sim, sim.tool(arm_).p);
 }
 
 void Stage::add(const FollowOutcome& outcome) {
@@ -112,9 +115,18 @@ void Stage::add(const FollowOutcome& outcome) {
   if (!total_.first_contact) total_.first_contact = outcome.first_contact;
 }
 
+std::string Stage::known_camera() const {
+  const std::vector<std::string> cameras = camera_names(model_);
+  return std::ranges::find(cameras, camera_) != cameras.end() ? camera_ : std::string();
+}
+
 Result<void> Stage::follow(ControlMode mode, bool measured, const Curve* curve,
                            const Follower& follower) {
   if (ended_early()) return {};
+  if (options_.video && !show_.is_filming()) {
+    auto filming = show_.film(model_, options_.out / kVideoFile, known_camera());
+    if (!filming) return filming;
+  }
   Result<Controller> controller = Controller::make(model_, arm_, mode);
   if (!controller) return fail(std::move(controller.error()));
   const double from = sim_.time();
@@ -184,13 +196,17 @@ Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mo
   if (!controller) return fail(std::move(controller.error()));
   Sim sim(model_);
   sim.place(arm_, view(trajectory.at(0).q));
+  show_.set_trail(false);
+  show_.set_filming(false);
   Recorder recorder(model_, arm_);
-  const auto outcome = follow_time({.sim = sim,
-                                    .controller = *controller,
-                                    .arm = arm_,
-                                    .recorder = &recorder,
-                                    .after_step = setup(*controller, false).after_step},
-                                   trajectory, {.settle = 0.3});
+  const auto outcome = follow_time(
+      {.sim = sim,
+       .controller = *controller,
+       .arm = arm_,
+       .recorder = &recorder,
+       .after_step = [this](const Sim& other, const JointVec&) { return show_step(other); }},
+      trajectory, {.settle = 0.3});
+  show_.set_filming(true);
   if (!outcome && outcome.error().error) return fail(*outcome.error().error);
   MeasuredRun run{.rows = {}, .curve = &curve};
   for (std::size_t i = 0; i < recorder.size(); ++i) run.rows.push_back(recorder.row(i));
@@ -302,13 +318,14 @@ Result<Report> Stage::write(Report report, Plot plot) {
     report.first_contact =
         contact.first + " - " + contact.second + " at " + number(total_.first_contact->time) + " s";
   }
-  if (options_.timing && !show_.has_window() && wall_seconds_ > 0) {
+  if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {
     report.rtf = total_.duration / wall_seconds_;
   }
-  const DemoOutput output{report, std::move(plot), show_.overlay(), camera_};
+  const DemoOutput output{report, std::move(plot), show_.overlay(), known_camera()};
   auto written = recorder_.write_csv(options_.out / "log.csv").and_then([&] {
     return write_output(options_.out, model_, sim_.snapshot(), output);
   });
+  if (written) written = show_.end_film();
   if (!written) return fail(std::move(written.error()));
   show_.linger(sim_);
   return report;

@@ -113,11 +113,15 @@ class Stage {
 
   Stage(std::string demo, const DemoOptions& options, Model model, Arm arm, Show show);
   [[nodiscard]] FollowSetup setup(Controller& controller, bool measured);
+  /// Shows a step of any world; false when the user or a limit ended it.
+  [[nodiscard]] bool show_step(const Sim& sim);
   using Follower = std::function<Result<FollowOutcome, FollowFailure>(const FollowSetup& setup)>;
   /// Runs one follower and keeps what it did, unless something ended the motion before.
   [[nodiscard]] Result<void> follow(ControlMode mode, bool measured, const Curve* curve,
                                     const Follower& follower);
   void add(const FollowOutcome& outcome);
+  /// The camera that was chosen, where the model has it; else empty.
+  [[nodiscard]] std::string known_camera() const;
   void measure(std::span<const MeasuredRun> runs, Report& report) const;
   [[nodiscard]] Result<Report> write(Report report, Plot plot);
 
