@@ -26,6 +26,7 @@ constexpr ActionRow kActions[] = {
     {right_panel, GLFW_KEY_TAB, shift, "Shift-Tab", msg::view_key_right_panel},
     {next_frame, GLFW_KEY_F6, none, "F6", msg::view_key_next_frame},
     {next_label, GLFW_KEY_F7, none, "F7", msg::view_key_next_label},
+    {target, GLFW_KEY_T, control, "Ctrl-T", msg::view_key_target},
     {screenshot, GLFW_KEY_P, control, "Ctrl-P", msg::view_key_screenshot},
     {help, GLFW_KEY_F1, none, "F1", msg::view_key_help},
     {close, GLFW_KEY_ESCAPE, none, "Esc", msg::view_key_close},
