@@ -29,7 +29,7 @@ constexpr double kMoveSteps[] = {0.001, 0.01, 0.05};  ///< [m]
 constexpr double kTurnSteps[] = {1, 5, 15};           ///< [deg]
 constexpr double kDeg = std::numbers::pi / 180;
 constexpr const char* kJogAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
-constexpr float kGhostAlpha = 0.4F;
+constexpr float kGhostAlpha = 0.3F;
 
 const char* word_of(TargetGrade grade) {
   switch (grade) {
@@ -151,8 +151,10 @@ PanelSection TargetControl::target_section() const {
   char room[32] = "none";
   std::string joint;
   if (std::isfinite(target_.room())) {
-    std::snprintf(room, sizeof(room), "%.2f", target_.room());
-    joint = target_.arm().joints[static_cast<std::size_t>(target_.tightest())].name;
+    const ArmJoint& nearest = target_.arm().joints[static_cast<std::size_t>(target_.tightest())];
+    const char* unit = nearest.type == JointType::hinge ? "rad" : "m";
+    std::snprintf(room, sizeof(room), "%.2f %s", target_.room(), unit);
+    joint = nearest.name;
   }
   char singular[32];
   std::snprintf(singular, sizeof(singular), "%.3f", target_.singular().smallest);

@@ -60,10 +60,10 @@ std::optional<ViewAction> action_of(int key, bool control_held, bool shift_held)
 
 std::vector<ControlHelp> control_help() {
   std::vector<ControlHelp> rows = {
-      {"left drag", msg::view_mouse_turn},      {"right/middle drag", msg::view_mouse_pan},
-      {"wheel", msg::view_mouse_zoom},          {"right click", msg::view_mouse_settings},
-      {"double click", msg::view_mouse_select}, {"Ctrl-right drag", msg::view_mouse_push},
-      {"Ctrl-left drag", msg::view_mouse_twist}};
+      {"left drag", msg::view_mouse_turn},       {"right/middle drag", msg::view_mouse_pan},
+      {"wheel", msg::view_mouse_zoom},           {"right click", msg::view_mouse_settings},
+      {"drag a handle", msg::view_mouse_target}, {"double click", msg::view_mouse_select},
+      {"Ctrl-right drag", msg::view_mouse_push}, {"Ctrl-left drag", msg::view_mouse_twist}};
   for (const ActionRow& row : kActions) rows.push_back({row.shown, row.about});
   rows.push_back({"0 - 5", msg::view_key_geom_groups});
   rows.push_back({"Shift 0 - 5", msg::view_key_site_groups});
