@@ -220,9 +220,18 @@ std::string ToolTarget::jump_line(const JointVec& to) const {
               arm().joints[static_cast<std::size_t>(joint)].name, unit_of(arm(), joint));
 }
 
+/// Of a collision what touches, which the solver does not know.
+std::string ToolTarget::reason_of(const IkFailure& failure) const {
+  if (failure.code == IkErrc::collision && checker_) {
+    const Result<CollisionReport> report = checker_->check(view(failure.best.q));
+    if (report && !report->free) return describe(*report);
+  }
+  return describe(failure, arm());
+}
+
 std::string ToolTarget::line_of(const Standing& standing) const {
   if (standing.failure) {
-    return text(msg::target_not_reachable, describe(*standing.failure, arm()));
+    return text(msg::target_not_reachable, reason_of(*standing.failure));
   }
   if (standing.jump) return jump_line(*standing.jump);
   const double smallest = standing.singular.smallest;

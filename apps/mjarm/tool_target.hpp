@@ -91,6 +91,7 @@ class ToolTarget {
   [[nodiscard]] bool lead(const Pose& X_to);
   [[nodiscard]] bool is_connected(const JointVec& from, const JointVec& to) const;
   [[nodiscard]] Standing rate() const;
+  [[nodiscard]] std::string reason_of(const IkFailure& failure) const;
   [[nodiscard]] std::string line_of(const Standing& standing) const;
   [[nodiscard]] std::string jump_line(const JointVec& to) const;
 

@@ -85,7 +85,7 @@ TEST(ToolTarget, RandomPosesAgreeWithTheSolver) {
   ExactChecker checker(robot.model, robot.arm);
   const IkSolver judge(robot.arm, {.valid = checker.predicate()});
   Rng rng(7);
-  int reached = 0, jumps = 0, refused = 0;
+  int reached = 0, jumps = 0, refused = 0, touching = 0;
   for (int i = 0; i < 300; ++i) {
     ToolTarget target(robot.model, robot.arm);
     const Eigen::Vector3d p(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1.2));
@@ -108,11 +108,15 @@ TEST(ToolTarget, RandomPosesAgreeWithTheSolver) {
       ASSERT_TRUE(target.failure());
       EXPECT_EQ(target.failure()->code, answer.error().code);
       EXPECT_THAT(target.line(), StartsWith("not reachable: "));
+      if (target.failure()->code != IkErrc::collision) continue;
+      EXPECT_THAT(target.line(), HasSubstr("overlaps"));
+      ++touching;
     }
   }
   EXPECT_GT(reached, 20);
   EXPECT_GT(jumps, 20);
   EXPECT_GT(refused, 20);
+  EXPECT_GT(touching, 0);
 }
 
 TEST(ToolTarget, ALineOutOfTheWorkspaceStopsAtItsEdge) {
