@@ -11,6 +11,7 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/view_robot.hpp"
 #include "apps/mjarm/view_sim.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -72,7 +73,8 @@ Result<void> read_size(const std::string& size, WindowOptions& options) {
 }
 
 Result<WindowOptions> window_options(const Options& options, const ViewSim& sim) {
-  WindowOptions out{.paused = options.paused, .jog_dofs = sim.jog_dofs()};
+  WindowOptions out{
+      .paused = options.paused, .can_target = sim.is_held(), .jog_dofs = sim.jog_dofs()};
   out.camera.name = options.camera;
   out.screenshots = options.out;
   if (!options.size.empty()) {
@@ -93,33 +95,6 @@ Result<double> seconds_of(const Options& options) {
   if (!seconds) return fail(in_option("--seconds", seconds.error()));
   if (!(*seconds > 0)) return fail(Errc::usage, text(msg::view_bad_seconds, options.seconds));
   return seconds;
-}
-
-/// Keeps real time in a thread of its own, and does what the user asks for, until the window is
-/// gone.
-void simulate(ViewSim& sim, ViewLink& link) {
-  ViewFrame frame;
-  bool changed = true;
-  const auto offer = [&] {
-    if (!changed || !link.frames.is_empty()) return;
-    changed = false;
-    frame.snapshot = sim.sim().snapshot();
-    frame.status = sim.status();
-    link.frames.post(frame);
-  };
-  while (!link.closed) {
-    for (const ViewEvent& event : link.events.take()) {
-      sim.handle(event);
-      changed = true;
-    }
-    for (int due = sim.steps_due(); due > 0 && !link.closed; --due) {
-      sim.step();
-      changed = true;
-      offer();
-    }
-    offer();
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
-  }
 }
 
 Result<int> run(const Options& options) {
@@ -143,7 +118,13 @@ Result<int> run(const Options& options) {
   if (options.paused) sim->handle(PauseEvent{true});
   const auto end = Clock::now() + std::chrono::duration<double>(*seconds);
   ViewLink link;
-  std::thread worker([&] { simulate(*sim, link); });
+  RobotView view(loaded->model, loaded->arm, *sim);
+  std::optional<TargetHandle> handle;
+  if (TargetControl* target = view.target()) {
+    handle.emplace(target->link(), target->target().turns());
+    handle->attach(*window);
+  }
+  std::thread worker([&] { view.run(link); });
   const Result<void> drawn = draw_until_closed(
       *window, link, [&] { return interrupted() || (*seconds > 0 && Clock::now() >= end); });
   worker.join();

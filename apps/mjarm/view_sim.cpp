@@ -96,6 +96,11 @@ std::vector<int> ViewSim::jog_dofs() const {
   return dofs;
 }
 
+void ViewSim::set_goal(const JointVec& q) {
+  if (!controller_ || q.size() != q_goal_.size()) return;
+  q_goal_ = q.cwiseMax(arm_->limits.lower).cwiseMin(arm_->limits.upper);
+}
+
 void ViewSim::jog(const JointEvent& event) {
   if (!controller_) return;
   for (int i = 0; i < arm_->dof(); ++i) {

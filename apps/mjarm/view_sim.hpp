@@ -36,6 +36,14 @@ class ViewSim {
   [[nodiscard]] const Playback& playback() const { return playback_; }
   /// One line for the window, ASCII; empty = nothing to say.
   [[nodiscard]] const std::string& status() const { return status_; }
+  /// True where an arm is held, which goes where it is sent.
+  [[nodiscard]] bool is_held() const noexcept { return controller_.has_value(); }
+  /// Where the held arm goes, shape (dof,) [rad or m].
+  [[nodiscard]] const JointVec& goal() const noexcept { return q_goal_; }
+  /// Sends it to `q`, shape (dof,) [rad or m], clamped to its limits; nothing where it is not held.
+  void set_goal(const JointVec& q);
+  /// Where the held arm should be now on its way, shape (dof,) [rad or m].
+  [[nodiscard]] const JointVec& reference() const noexcept { return q_now_; }
   /// Dofs that a slider can move.
   [[nodiscard]] std::vector<int> jog_dofs() const;
 

@@ -176,7 +176,7 @@ TEST(ViewCommand, WithoutADisplayPointsAtRender) {
 
 TEST(ViewCommand, TheHelpListsEveryControlInBothLanguages) {
   const std::string english = mjarm({"view", "--help"}).out;
-  for (const char* part : {"double click", "Ctrl-P", "contact points", "Backspace"}) {
+  for (const char* part : {"double click", "Ctrl-P", "Ctrl-T", "contact points", "Backspace"}) {
     EXPECT_NE(english.find(part), std::string::npos) << part;
   }
   EXPECT_NE(mjarm({"view", "--help", "--lang", "zh"}).out.find("接触点"), std::string::npos);

@@ -4,19 +4,27 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <optional>
 
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm {
 namespace {
 
 std::atomic<Language> current_language{Language::english};
+thread_local std::optional<Language> language_of_thread;
 
 }  // namespace
 
 void set_language(Language language) noexcept { current_language = language; }
 
-Language language() noexcept { return current_language; }
+Language language() noexcept { return language_of_thread.value_or(current_language); }
+
+LanguageScope::LanguageScope(Language language) noexcept : before_(language_of_thread) {
+  language_of_thread = language;
+}
+LanguageScope::~LanguageScope() { language_of_thread = before_; }
 
 Language language_of(std::string_view name) noexcept {
   const bool chinese =

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/messages/core.hpp"
 
 namespace mjarm {
@@ -33,6 +35,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/render_command.inc"
 #include "mjarm/core/messages/run.inc"
 #include "mjarm/core/messages/sim.inc"
+#include "mjarm/core/messages/target.inc"
 #include "mjarm/core/messages/trajectory.inc"
 #include "mjarm/core/messages/view.inc"
 #include "mjarm/core/messages/workspace.inc"
@@ -154,6 +157,20 @@ TEST(Messages, FillsInOrderAndInTheLanguageInUse) {
   set_language(Language::chinese);
   EXPECT_EQ(text(msg::core_cannot_read, "a.txt", "why"), "a.txt：无法读取：why");
   set_language(Language::english);
+}
+
+TEST(Messages, AScopeIsForItsThreadAlone) {
+  set_language(Language::chinese);
+  {
+    const LanguageScope scope(Language::english);
+    EXPECT_EQ(text(msg::core_cannot_read, "a", "b"), "a: cannot be read: b");
+    std::thread([] { EXPECT_EQ(language(), Language::chinese); }).join();
+    const LanguageScope inner(Language::chinese);
+    EXPECT_EQ(language(), Language::chinese);
+  }
+  EXPECT_EQ(text(msg::core_cannot_read, "a", "b"), "a：无法读取：b");
+  set_language(Language::english);
+  EXPECT_EQ(language(), Language::english);
 }
 
 TEST(Messages, TooFewValuesDoNotThrow) {

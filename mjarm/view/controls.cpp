@@ -26,6 +26,7 @@ constexpr ActionRow kActions[] = {
     {right_panel, GLFW_KEY_TAB, shift, "Shift-Tab", msg::view_key_right_panel},
     {next_frame, GLFW_KEY_F6, none, "F6", msg::view_key_next_frame},
     {next_label, GLFW_KEY_F7, none, "F7", msg::view_key_next_label},
+    {target, GLFW_KEY_T, control, "Ctrl-T", msg::view_key_target},
     {screenshot, GLFW_KEY_P, control, "Ctrl-P", msg::view_key_screenshot},
     {help, GLFW_KEY_F1, none, "F1", msg::view_key_help},
     {close, GLFW_KEY_ESCAPE, none, "Esc", msg::view_key_close},
@@ -59,10 +60,10 @@ std::optional<ViewAction> action_of(int key, bool control_held, bool shift_held)
 
 std::vector<ControlHelp> control_help() {
   std::vector<ControlHelp> rows = {
-      {"left drag", msg::view_mouse_turn},      {"right/middle drag", msg::view_mouse_pan},
-      {"wheel", msg::view_mouse_zoom},          {"right click", msg::view_mouse_settings},
-      {"double click", msg::view_mouse_select}, {"Ctrl-right drag", msg::view_mouse_push},
-      {"Ctrl-left drag", msg::view_mouse_twist}};
+      {"left drag", msg::view_mouse_turn},       {"right/middle drag", msg::view_mouse_pan},
+      {"wheel", msg::view_mouse_zoom},           {"right click", msg::view_mouse_settings},
+      {"drag a handle", msg::view_mouse_target}, {"double click", msg::view_mouse_select},
+      {"Ctrl-right drag", msg::view_mouse_push}, {"Ctrl-left drag", msg::view_mouse_twist}};
   for (const ActionRow& row : kActions) rows.push_back({row.shown, row.about});
   rows.push_back({"0 - 5", msg::view_key_geom_groups});
   rows.push_back({"Shift 0 - 5", msg::view_key_site_groups});

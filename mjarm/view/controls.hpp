@@ -24,6 +24,7 @@ enum class ViewAction {
   right_panel,
   next_frame,
   next_label,
+  target,
   screenshot,
   help,
   close,

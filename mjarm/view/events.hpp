@@ -51,6 +51,8 @@ struct PanelEvent {
   int id = -1;       ///< of the item
   double value = 0;  ///< see `PanelItem`
 };
+/// The user wants the target of the tool shown, or put away.
+struct TargetEvent {};
 /// A picture of the window was written, or could not be.
 struct ScreenshotEvent {
   std::string file = {};
@@ -58,7 +60,8 @@ struct ScreenshotEvent {
 };
 
 /// What the user did in a window, for the application to act on.
-using ViewEvent = std::variant<PauseEvent, StepEvent, SpeedEvent, ResetEvent, PushEvent,
-                               ReleaseEvent, SelectEvent, JointEvent, PanelEvent, ScreenshotEvent>;
+using ViewEvent =
+    std::variant<PauseEvent, StepEvent, SpeedEvent, ResetEvent, PushEvent, ReleaseEvent,
+                 SelectEvent, JointEvent, PanelEvent, TargetEvent, ScreenshotEvent>;
 
 }  // namespace mjarm

@@ -268,6 +268,10 @@ void Interaction::act(ViewAction action) {
     case ViewAction::next_label:
       settings.label = (settings.label + 1) % static_cast<int>(view_label_names().size());
       return;
+    case ViewAction::target:
+      if (!may_.target) return say("there is no target here");
+      events_.emplace_back(TargetEvent{});
+      return;
     case ViewAction::screenshot:
       screenshot_wanted_ = true;
       return;

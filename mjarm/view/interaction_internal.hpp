@@ -17,6 +17,7 @@ struct Permissions {
   bool step = true;
   bool reset = true;
   bool push = true;
+  bool target = false;
 };
 
 /// Turns what the user does with mouse and keys into changes of the view and into events. An OpenGL

@@ -198,7 +198,7 @@ TEST(ControlTable, EveryKeyDoesOneThing) {
   }
   EXPECT_FALSE(action_of('B', true, false));
   EXPECT_EQ(action_of('=', false, true), ViewAction::faster);  // `+` is Shift and `=`
-  EXPECT_EQ(control_help().size(), action_rows().size() + setting_rows().size() + 9);
+  EXPECT_EQ(control_help().size(), action_rows().size() + setting_rows().size() + 10);
   for (const ControlHelp& row : control_help()) {
     for (const char c : row.about.in(Language::english)) EXPECT_TRUE(c >= 32 && c < 127);
   }

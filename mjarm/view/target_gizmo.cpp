@@ -122,7 +122,8 @@ double TargetGizmo::amount() const noexcept { return grip_ ? grip_->amount : 0; 
 double TargetGizmo::scale() const { return options_.size * eye_.height_at(X_WT_.p); }
 
 bool TargetGizmo::is_visible(GizmoHandle handle) const {
-  if (is_arrow(handle) || is_ring(handle) || handle == GizmoHandle::move_free) return true;
+  if (is_ring(handle)) return options_.turns;
+  if (is_arrow(handle) || handle == GizmoHandle::move_free) return true;
   const Vector3d sight = eye_.orthographic ? eye_.forward_W : (X_WT_.p - eye_.p_W).normalized();
   return std::abs(axes().col(axis_of(handle)).dot(sight)) > gizmo::kEdgeOn;
 }
@@ -146,8 +147,10 @@ std::optional<TargetGizmo::Hit> TargetGizmo::find(const Ray& mouse) const {
     const Vector3d v = R.col((i + 2) % 3);
     offer(static_cast<GizmoHandle>(i),
           nearest_to_segment(mouse, X_WT_.p + gizmo::kArrowBegin * s * a, X_WT_.p + s * a));
-    offer(static_cast<GizmoHandle>(6 + i),
-          nearest_to_ring(mouse, X_WT_.p, gizmo::kRing * s * u, gizmo::kRing * s * v));
+    if (options_.turns) {
+      offer(static_cast<GizmoHandle>(6 + i),
+            nearest_to_ring(mouse, X_WT_.p, gizmo::kRing * s * u, gizmo::kRing * s * v));
+    }
     const auto square = static_cast<GizmoHandle>(3 + i);
     const Vector3d centre = X_WT_.p + gizmo::kSquare * s * (u + v);
     const std::optional<Vector3d> met = meet(mouse, centre, a);

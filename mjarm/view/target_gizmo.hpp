@@ -27,6 +27,7 @@ enum class GizmoHandle {
 struct GizmoOptions {
   double size = 0.16;       ///< from the middle to the points of the arrows, > 0
   double nearness = 0.012;  ///< so near to a handle the mouse holds it, > 0
+  bool turns = true;        ///< has rings; false for an arm whose tool is placed by position alone
 };
 
 /// A target pose to be dragged with the mouse: three arrows, three rings, three squares and a ball.
@@ -61,7 +62,8 @@ class TargetGizmo {
   [[nodiscard]] std::optional<GizmoHandle> held() const noexcept;
   /// How far it was dragged since `grab` [m, or rad beyond a full turn as well]; 0 if not held.
   [[nodiscard]] double amount() const noexcept;
-  /// False for a square that is seen from its edge: it is neither drawn nor taken hold of.
+  /// False for a square that is seen from its edge, and for rings where there are none: they are
+  /// neither drawn nor taken hold of.
   [[nodiscard]] bool is_visible(GizmoHandle handle) const;
 
   /// Appends the handles, in front of all that stands in their way.

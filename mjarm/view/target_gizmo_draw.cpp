@@ -111,8 +111,9 @@ void TargetGizmo::draw(Overlay& overlay, const Rgba& state) const {
       half[i] = front.length(0.004 * s);
       overlay.boxes.push_back({{front.at(centre), X_WG.R}, half, look(square, pale).color});
     }
-    draw_ring(overlay, front, X_WG, i, s, to_eye,
-              look(static_cast<GizmoHandle>(6 + i), kAxisColors[i]));
+    const auto ring = static_cast<GizmoHandle>(6 + i);
+    if (!is_visible(ring)) continue;
+    draw_ring(overlay, front, X_WG, i, s, to_eye, look(ring, kAxisColors[i]));
   }
   const Look ball = look(GizmoHandle::move_free, state);
   overlay.spheres.push_back({.p_W = front.at(X_WG.p),

@@ -325,6 +325,30 @@ TEST(TargetGizmo, BehindTheEyeItIsNeitherDrawnNorHit) {
   EXPECT_FALSE(gizmo.hover({{4, 0, 0}, {-1, 0, 0}}));
 }
 
+TEST(TargetGizmo, WithoutRingsNothingTurns) {
+  const Eye eye{.p_W = {-2, 0, 0}};
+  TargetGizmo with;
+  TargetGizmo without({}, {.turns = false});
+  with.set_eye(eye);
+  without.set_eye(eye);
+  Overlay rings, none;
+  with.draw(rings, {});
+  without.draw(none, {});
+  EXPECT_EQ(rings.lines.size(), 6U);
+  EXPECT_TRUE(none.lines.empty());
+  EXPECT_EQ(none.arrows.size(), 3U);
+  int turned = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Ray ray = ray_of_pixel(eye, 20, 20, 5 + 0.5 * (i % 20), 5 + 0.5 * (i / 20));
+    const auto is_ring = [](std::optional<GizmoHandle> handle) {
+      return handle && *handle >= GizmoHandle::turn_x && *handle <= GizmoHandle::turn_z;
+    };
+    if (is_ring(with.hover(ray))) ++turned;
+    EXPECT_FALSE(is_ring(without.hover(ray)));
+  }
+  EXPECT_GT(turned, 0);
+}
+
 TEST(TargetGizmo, DrawingShowsWhatIsHoveredAndHeld) {
   const Eye eye = eye_of({.distance = 2, .azimuth = 0.6, .elevation = -0.5}, 0.8);
   TargetGizmo gizmo;

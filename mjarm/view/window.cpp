@@ -61,7 +61,8 @@ struct Window::Impl {
         options(chosen),
         scene(model, window.quality, window.software),
         panels(scene.model(), chosen.jog_dofs, chosen.can_step, chosen.can_reset),
-        user(scene, panels, {chosen.can_step, chosen.can_reset, chosen.can_push}, chosen.paused),
+        user(scene, panels, {chosen.can_step, chosen.can_reset, chosen.can_push, chosen.can_target},
+             chosen.paused),
         counter(opened) {
     gather_inputs(handle, inputs);
     glfwSwapInterval(0);
@@ -97,6 +98,7 @@ struct Window::Impl {
   FrameCounter counter;
   mjrContext context{};
   RawInputs inputs;
+  DrawHook draw_hook;
   double time = 0;  ///< [s] of the state shown
   std::string status;
   std::string note;
@@ -151,7 +153,14 @@ void Window::Impl::prepare(const Overlay& overlay, std::span<const PanelSection>
   user.update();
   apply(user.settings, scene);
   scene.set_dynamics(needs_dynamics(user.settings) || user.picker.body() >= 0);
-  scene.update(overlay);
+  if (draw_hook) {
+    mjv_updateCamera(&scene.model(), &scene.data(), &scene.camera(), &scene.raw());
+    Overlay with_tools = overlay;
+    draw_hook(eye_of(scene), with_tools);
+    scene.update(with_tools);
+  } else {
+    scene.update(overlay);
+  }
   if (std::exchange(panels_changed, false) || frame % kPanelEvery == 0) {
     mjr_setBuffer(mjFB_WINDOW, &context);
     panels.show(user.settings, {&scene.data(), user.paused(), user.speed()}, sections, context);
@@ -261,6 +270,7 @@ void Window::set_status(std::string line) { impl_->status = std::move(line); }
 const ViewSettings& Window::settings() const noexcept { return impl_->user.settings; }
 void Window::set_settings(const ViewSettings& settings) { impl_->user.settings = settings; }
 void Window::set_mouse_hook(MouseHook hook) { impl_->user.set_hook(std::move(hook)); }
+void Window::set_draw_hook(DrawHook hook) { impl_->draw_hook = std::move(hook); }
 std::vector<ViewEvent> Window::take_events() { return impl_->user.take_events(); }
 CameraView Window::view() const { return impl_->scene.view(); }
 std::string Window::camera_name() const { return impl_->user.camera.name(); }

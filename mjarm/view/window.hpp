@@ -14,6 +14,7 @@
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/scene.hpp"
 #include "mjarm/sim/sim.hpp"
+#include "mjarm/view/draw_hook.hpp"
 #include "mjarm/view/events.hpp"
 #include "mjarm/view/live_plot.hpp"
 #include "mjarm/view/mouse_input.hpp"
@@ -33,6 +34,7 @@ struct WindowOptions {
   bool can_step = true;                       ///< the application follows StepEvent
   bool can_reset = true;                      ///< ... and ResetEvent
   bool can_push = true;                       ///< ... and PushEvent
+  bool can_target = false;                    ///< ... and TargetEvent
   std::vector<int> jog_dofs = {};             ///< ... and JointEvent of these dofs
   std::filesystem::path screenshots = {};     ///< folder of pictures the user takes; empty = none
 };
@@ -70,6 +72,8 @@ class Window {
   void set_settings(const ViewSettings& settings);
   /// Lets a tool in the scene use the mouse before the camera does.
   void set_mouse_hook(MouseHook hook);
+  /// Lets it add to the overlay of every frame.
+  void set_draw_hook(DrawHook hook);
 
   /// What the user did since the last call, in order.
   [[nodiscard]] std::vector<ViewEvent> take_events();

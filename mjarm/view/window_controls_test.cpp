@@ -16,6 +16,7 @@ class Controls : public testing::RealWindow {
   WindowOptions options() override {
     WindowOptions options = RealWindow::options();
     options.jog_dofs = {0};
+    options.can_target = true;
     options.screenshots = folder_.path() / "shots";
     return options;
   }
@@ -89,6 +90,31 @@ TEST_F(Controls, PlusAndMinusChangeTheSpeed) {
 }
 
 TEST_F(Controls, BackspaceResets) { EXPECT_NE(act_for<ResetEvent>({"key", "BackSpace"}), nullptr); }
+
+TEST_F(Controls, CtrlTAsksForTheTarget) {
+  EXPECT_NE(act_for<TargetEvent>({"key", "ctrl+t"}), nullptr);
+  EXPECT_FALSE(window_->settings().shows(ViewFlag::transparent)) << "T alone is another key";
+}
+
+/// The eye is the one of this frame, after the mouse has moved the camera.
+TEST_F(Controls, TheDrawHookSeesTheEyeAndAddsToThePicture) {
+  const auto middle = [this] {
+    const Image image = window_->picture().value();
+    return image.pixel(image.width / 2, image.height / 2)[2];
+  };
+  frames_until([] { return false; }, 0.1);
+  EXPECT_LT(middle(), 100);
+  Eye seen;
+  window_->set_draw_hook([&seen](const Eye& eye, Overlay& overlay) {
+    seen = eye;
+    overlay.spheres.push_back({eye.p_W + eye.forward_W, 0.1, {0, 0, 1, 1}});
+  });
+  EXPECT_TRUE(frames_until([&] { return middle() > 200; }));
+  ASSERT_TRUE(act_until(drag("1", 50, 0), [&] { return window_->view().azimuth < 1.5; }));
+  const Eye now = eye_of(window_->view(), 0.5);
+  EXPECT_LT((seen.p_W - now.p_W).norm(), 1e-5);
+  EXPECT_LT((seen.forward_W - now.forward_W).norm(), 1e-5);
+}
 
 TEST_F(Controls, BracketsGoThroughTheCameras) {
   EXPECT_TRUE(key_until("bracketright", [&] { return window_->camera_name() == "front"; }));
