@@ -234,6 +234,15 @@ void Scene::update(const Overlay& overlay) {
   add_overlay(overlay, scene);
 }
 
+void Scene::set_dynamics(bool on) {
+  if (on && !impl_->dynamics) {
+    impl_->dynamics = true;
+    impl_->update_positions();
+  }
+  impl_->dynamics = on;
+}
+void Scene::set_only_colliding(bool on) noexcept { impl_->only_colliding = on; }
+
 double Scene::shadow_reach() const {
   const mjModel& m = impl_->m;
   const mjvScene& scene = impl_->scene;
