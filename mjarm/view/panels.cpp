@@ -39,8 +39,9 @@ std::string in_range(const char* format, double lower, double upper) {
 
 }  // namespace
 
-Panels::Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset)
-    : can_step_(can_step), can_reset_(can_reset) {
+Panels::Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset,
+               bool joints_open)
+    : can_step_(can_step), can_reset_(can_reset), joints_open_(joints_open) {
   for (int i = 0; i < m.njnt; ++i) {
     if (m.jnt_type[i] != mjJNT_HINGE && m.jnt_type[i] != mjJNT_SLIDE) continue;
     const bool hinge = m.jnt_type[i] == mjJNT_HINGE;
@@ -111,7 +112,7 @@ std::vector<PanelSection> Panels::left_sections(const ViewSettings& settings,
 }
 
 PanelSection Panels::joint_section(const PanelFacts& facts) const {
-  PanelSection section{"Joints", {}};
+  PanelSection section{"Joints", {}, joints_open_};
   for (const Joint& joint : joints_) {
     section.items.push_back({joint.dof, joint.name,
                              PanelText{in_range("%.3g to %.3g", joint.lower, joint.upper)},

@@ -25,8 +25,10 @@ struct PanelFacts {
 /// own sections at the right. An OpenGL context is current in every call but the constructor.
 class Panels {
  public:
-  /// @param jog_dofs  dofs of the joints whose sliders work; the others are grey.
-  Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset);
+  /// @param jog_dofs     dofs of the joints whose sliders work; the others are grey.
+  /// @param joints_open  their section is unfolded at first.
+  Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset,
+         bool joints_open);
 
   /// Puts them into a window of that size [pixels].
   void resize(int width, int height);
@@ -73,6 +75,7 @@ class Panels {
   bool right_shown_ = false;
   bool can_step_;
   bool can_reset_;
+  bool joints_open_;
   std::vector<Joint> joints_;
   std::vector<PanelSection> right_sections_;  ///< as shown last
 };
