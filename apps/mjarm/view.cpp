@@ -11,6 +11,7 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/view_program.hpp"
 #include "apps/mjarm/view_sim.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
@@ -71,8 +72,8 @@ Result<void> read_size(const std::string& size, WindowOptions& options) {
   return {};
 }
 
-Result<WindowOptions> window_options(const Options& options, const ViewSim& sim) {
-  WindowOptions out{.paused = options.paused, .jog_dofs = sim.jog_dofs()};
+Result<WindowOptions> window_options(const Options& options, std::vector<int> jog_dofs) {
+  WindowOptions out{.paused = options.paused, .jog_dofs = std::move(jog_dofs)};
   out.camera.name = options.camera;
   out.screenshots = options.out;
   if (!options.size.empty()) {
@@ -122,14 +123,27 @@ void simulate(ViewSim& sim, ViewLink& link) {
   }
 }
 
+/// A program brings its robot and tool along, and holds it.
+Result<int> run_program(const Options& options, double seconds) {
+  const RobotOptions& robot = options.robot;
+  if (options.passive || robot.allow_outside || !robot.tip.empty() ||
+      !robot.package_paths.empty()) {
+    return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
+  }
+  const Result<WindowOptions> window = window_options(options, {});
+  if (!window) return fail(window.error());
+  return view_program(robot.robot, *window, {seconds, options.stats});
+}
+
 Result<int> run(const Options& options) {
   const Result<double> seconds = seconds_of(options);
   if (!seconds) return fail(seconds.error());
+  if (is_program(options.robot.robot)) return run_program(options, *seconds);
   const Result<Loaded> loaded = load(options);
   if (!loaded) return fail(loaded.error());
   Result<ViewSim> sim = make_sim(*loaded, options.passive);
   if (!sim) return fail(std::move(sim.error()));
-  const Result<WindowOptions> chosen = window_options(options, *sim);
+  const Result<WindowOptions> chosen = window_options(options, sim->jog_dofs());
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
   Result<Window> window =
@@ -170,7 +184,7 @@ std::string help_end(Language language) {
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  add_option(app, "file", options->robot.robot, msg::app_model_file, "FILE");
+  add_option(app, "file", options->robot.robot, msg::view_file, "FILE");
   add_option(app, "--tip", options->robot.tip, msg::app_option_tip, "FRAME");
   add_package_path_option(app, options->robot.package_paths);
   add_outside_option(app, options->robot.allow_outside);
