@@ -56,7 +56,7 @@ void ProgramPlayer::restart() {
 void ProgramPlayer::keep() {
   record_.add(sim_.time(),
               [this] { return Moment{sim_.snapshot(), walk_.motion(), walk_.time()}; });
-  scene_.add(sim_, walk_.motion(), walk_.q_ref());
+  scene_.add(sim_, sim_.time() - record_.time(0), walk_.motion(), walk_.q_ref());
 }
 
 int ProgramPlayer::steps_due() {

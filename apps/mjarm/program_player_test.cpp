@@ -121,11 +121,17 @@ TEST(ProgramPlayer, RestartBeginsAnew) {
 
 TEST(ProgramPlayer, WhatIsShownIsChosen) {
   ProgramPlayer world = new_player();
-  press(world, kRunItem);
-  make_steps(world, 400);
+  make_steps(world, 40);
   ViewFrame frame;
   world.fill(frame);
-  EXPECT_EQ(frame.plots.size(), 2U);
+  EXPECT_TRUE(frame.plots.empty());
+  press(world, kRunItem);
+  make_steps(world, 400);
+  world.fill(frame);
+  ASSERT_EQ(frame.plots.size(), 2U);
+  // Figures begin when the time line does.
+  EXPECT_EQ(frame.plots[0].series[0].x.front(), 0);
+  EXPECT_NEAR(frame.plots[0].series[0].x.back(), world.facts().recorded, 1e-9);
   const std::size_t lines = frame.overlay.lines.size();
   EXPECT_GE(lines, 4U);  // three paths and a trail
   EXPECT_TRUE(frame.overlay.ghosts.empty());

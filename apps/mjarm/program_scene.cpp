@@ -35,7 +35,7 @@ ProgramScene::ProgramScene(const LoadedProgram& loaded)
   }
 }
 
-void ProgramScene::add(const Sim& sim, std::size_t motion, const JointVec& q_ref) {
+void ProgramScene::add(const Sim& sim, double time, std::size_t motion, const JointVec& q_ref) {
   const ProgramPlan& plan = loaded_->plan;
   if (plan.moves.empty()) return;
   const Arm& arm = plan.arms[plan.moves[std::min(motion, plan.moves.size() - 1)].tool];
@@ -43,7 +43,7 @@ void ProgramScene::add(const Sim& sim, std::size_t motion, const JointVec& q_ref
   const Pose X_WT = sim.tool(arm);
   trail_.add(X_WT.p);
   has_curves_ = true;
-  plots_.add({.time = sim.time(),
+  plots_.add({.time = time,
               .q = q,
               .q_ref = q_ref,
               .X_WT = X_WT,

@@ -32,7 +32,8 @@ class ProgramScene {
   explicit ProgramScene(const LoadedProgram& loaded);
 
   /// One more step was made, by motion `motion` of the plan.
-  void add(const Sim& sim, std::size_t motion, const JointVec& q_ref);
+  /// @param time  [s] since the program was begun, for the figures.
+  void add(const Sim& sim, double time, std::size_t motion, const JointVec& q_ref);
   /// Forgets the trail and the curves of the figures.
   void clear();
 
