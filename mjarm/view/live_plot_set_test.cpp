@@ -52,10 +52,12 @@ TEST(LivePlotSet, WhatGoesInComesOut) {
       EXPECT_DOUBLE_EQ(joints.series[1].x[i], 0.05 * i);
       EXPECT_DOUBLE_EQ(joints.series[1].y[i], std::cos(0.05 * i));
     }
-    for (const double error : plots.figure(LiveFigure::tracking_error, span).series.at(0).y) {
+    const LivePlot tracking = plots.figure(LiveFigure::tracking_error, span);
+    for (const double error : tracking.series.at(0).y) {
       EXPECT_NEAR(error, 5, 1e-9) << "millimetres";
     }
-    for (const double error : plots.figure(LiveFigure::joint_error, span).series.at(0).y) {
+    const LivePlot worst = plots.figure(LiveFigure::joint_error, span);
+    for (const double error : worst.series.at(0).y) {
       EXPECT_NEAR(error, 4, 1e-9) << "milliradians, of the worst joint";
     }
     EXPECT_NEAR(plots.figure(LiveFigure::tool_position, span).series.at(0).y.at(50), 0.25, 1e-12);
