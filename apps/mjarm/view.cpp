@@ -72,8 +72,9 @@ Result<void> read_size(const std::string& size, WindowOptions& options) {
   return {};
 }
 
-Result<WindowOptions> window_options(const Options& options, std::vector<int> jog_dofs) {
-  WindowOptions out{.paused = options.paused, .jog_dofs = std::move(jog_dofs)};
+/// @param out  with what the user has no say in.
+Result<WindowOptions> window_options(const Options& options, WindowOptions out) {
+  out.paused = options.paused;
   out.camera.name = options.camera;
   out.screenshots = options.out;
   if (!options.size.empty()) {
@@ -123,27 +124,14 @@ void simulate(ViewSim& sim, ViewLink& link) {
   }
 }
 
-/// A program brings its robot and tool along, and holds it.
-Result<int> run_program(const Options& options, double seconds) {
-  const RobotOptions& robot = options.robot;
-  if (options.passive || robot.allow_outside || !robot.tip.empty() ||
-      !robot.package_paths.empty()) {
-    return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
-  }
-  const Result<WindowOptions> window = window_options(options, {});
-  if (!window) return fail(window.error());
-  return view_program(robot.robot, *window, {seconds, options.stats});
-}
-
 Result<int> run(const Options& options) {
   const Result<double> seconds = seconds_of(options);
   if (!seconds) return fail(seconds.error());
-  if (is_program(options.robot.robot)) return run_program(options, *seconds);
   const Result<Loaded> loaded = load(options);
   if (!loaded) return fail(loaded.error());
   Result<ViewSim> sim = make_sim(*loaded, options.passive);
   if (!sim) return fail(std::move(sim.error()));
-  const Result<WindowOptions> chosen = window_options(options, sim->jog_dofs());
+  const Result<WindowOptions> chosen = window_options(options, {.jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
   Result<Window> window =
@@ -171,6 +159,20 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
+/// A program brings its robot and tool along, and holds it.
+Result<int> run_program(const Options& options) {
+  const Result<double> seconds = seconds_of(options);
+  if (!seconds) return fail(seconds.error());
+  const RobotOptions& robot = options.robot;
+  if (options.passive || robot.allow_outside || !robot.tip.empty() ||
+      !robot.package_paths.empty()) {
+    return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
+  }
+  const Result<WindowOptions> window = window_options(options, {});
+  if (!window) return fail(window.error());
+  return view_program(robot.robot, *window, {*seconds, options.stats});
+}
+
 /// Examples, and below them every control, in one language.
 std::string help_end(Language language) {
   std::string lines(msg::view_examples.in(language));
@@ -196,7 +198,9 @@ Run setup(CLI::App& app) {
   add_option(app, "--out", options->out, msg::view_option_out, "DIR");
   add_option(app, "--seconds", options->seconds, msg::view_option_seconds, "S");
   add_flag(app, "--stats", options->stats, msg::view_option_stats);
-  return [options] { return run(*options); };
+  return [options] {
+    return is_program(options->robot.robot) ? run_program(*options) : run(*options);
+  };
 }
 
 }  // namespace

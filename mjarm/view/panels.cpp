@@ -39,9 +39,8 @@ std::string in_range(const char* format, double lower, double upper) {
 
 }  // namespace
 
-Panels::Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset,
-               bool joints_open)
-    : can_step_(can_step), can_reset_(can_reset), joints_open_(joints_open) {
+Panels::Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset)
+    : can_step_(can_step), can_reset_(can_reset) {
   for (int i = 0; i < m.njnt; ++i) {
     if (m.jnt_type[i] != mjJNT_HINGE && m.jnt_type[i] != mjJNT_SLIDE) continue;
     const bool hinge = m.jnt_type[i] == mjJNT_HINGE;

@@ -25,15 +25,15 @@ struct PanelFacts {
 /// own sections at the right. An OpenGL context is current in every call but the constructor.
 class Panels {
  public:
-  /// @param jog_dofs     dofs of the joints whose sliders work; the others are grey.
-  /// @param joints_open  their section is unfolded at first.
-  Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset,
-         bool joints_open);
+  /// @param jog_dofs  dofs of the joints whose sliders work; the others are grey.
+  Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool can_reset);
 
   /// Puts them into a window of that size [pixels].
   void resize(int width, int height);
   void toggle_left();
   void toggle_right();
+  /// The section of joints is folded away when it is shown first.
+  void fold_joints() { joints_open_ = false; }
   [[nodiscard]] bool left_shown() const { return left_shown_; }
   [[nodiscard]] bool right_shown() const { return right_shown_; }
 
@@ -73,9 +73,9 @@ class Panels {
   UiColumn right_{2};
   bool left_shown_ = false;
   bool right_shown_ = false;
+  bool joints_open_ = true;
   bool can_step_;
   bool can_reset_;
-  bool joints_open_;
   std::vector<Joint> joints_;
   std::vector<PanelSection> right_sections_;  ///< as shown last
 };

@@ -60,8 +60,7 @@ struct Window::Impl {
       : handle(window.handle),
         options(chosen),
         scene(model, window.quality, window.software),
-        panels(scene.model(), chosen.jog_dofs, chosen.can_step, chosen.can_reset,
-               chosen.joints_open),
+        panels(scene.model(), chosen.jog_dofs, chosen.can_step, chosen.can_reset),
         user(scene, panels, {chosen.can_step, chosen.can_reset, chosen.can_push}, chosen.paused),
         counter(opened) {
     gather_inputs(handle, inputs);
@@ -245,6 +244,7 @@ Result<Window> Window::open(const Model& model, const std::string& title,
   }
   impl->user.camera.begin();
   if (options.right_panel) impl->panels.toggle_right();
+  if (!options.joints_open) impl->panels.fold_joints();
   glfwShowWindow(impl->handle);
   return Window(std::move(impl));
 }
