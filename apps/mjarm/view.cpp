@@ -11,6 +11,7 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
+#include "apps/mjarm/view_program.hpp"
 #include "apps/mjarm/view_robot.hpp"
 #include "apps/mjarm/view_sim.hpp"
 #include "mjarm/core/log.hpp"
@@ -72,9 +73,9 @@ Result<void> read_size(const std::string& size, WindowOptions& options) {
   return {};
 }
 
-Result<WindowOptions> window_options(const Options& options, const ViewSim& sim) {
-  WindowOptions out{
-      .paused = options.paused, .can_target = sim.is_held(), .jog_dofs = sim.jog_dofs()};
+/// @param out  with what the user has no say in.
+Result<WindowOptions> window_options(const Options& options, WindowOptions out) {
+  out.paused = options.paused;
   out.camera.name = options.camera;
   out.screenshots = options.out;
   if (!options.size.empty()) {
@@ -104,7 +105,8 @@ Result<int> run(const Options& options) {
   if (!loaded) return fail(loaded.error());
   Result<ViewSim> sim = make_sim(*loaded, options.passive);
   if (!sim) return fail(std::move(sim.error()));
-  const Result<WindowOptions> chosen = window_options(options, *sim);
+  const Result<WindowOptions> chosen =
+      window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
   Result<Window> window =
@@ -138,6 +140,20 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
+/// A program brings its robot and tool along, and holds it.
+Result<int> run_program(const Options& options) {
+  const Result<double> seconds = seconds_of(options);
+  if (!seconds) return fail(seconds.error());
+  const RobotOptions& robot = options.robot;
+  if (options.passive || robot.allow_outside || !robot.tip.empty() ||
+      !robot.package_paths.empty()) {
+    return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
+  }
+  const Result<WindowOptions> window = window_options(options, {});
+  if (!window) return fail(window.error());
+  return view_program(robot.robot, *window, {*seconds, options.stats});
+}
+
 /// Examples, and below them every control, in one language.
 std::string help_end(Language language) {
   std::string lines(msg::view_examples.in(language));
@@ -151,7 +167,7 @@ std::string help_end(Language language) {
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  add_option(app, "file", options->robot.robot, msg::app_model_file, "FILE");
+  add_option(app, "file", options->robot.robot, msg::view_file, "FILE");
   add_option(app, "--tip", options->robot.tip, msg::app_option_tip, "FRAME");
   add_package_path_option(app, options->robot.package_paths);
   add_outside_option(app, options->robot.allow_outside);
@@ -163,7 +179,9 @@ Run setup(CLI::App& app) {
   add_option(app, "--out", options->out, msg::view_option_out, "DIR");
   add_option(app, "--seconds", options->seconds, msg::view_option_seconds, "S");
   add_flag(app, "--stats", options->stats, msg::view_option_stats);
-  return [options] { return run(*options); };
+  return [options] {
+    return is_program(options->robot.robot) ? run_program(*options) : run(*options);
+  };
 }
 
 }  // namespace

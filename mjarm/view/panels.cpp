@@ -111,7 +111,7 @@ std::vector<PanelSection> Panels::left_sections(const ViewSettings& settings,
 }
 
 PanelSection Panels::joint_section(const PanelFacts& facts) const {
-  PanelSection section{"Joints", {}};
+  PanelSection section{"Joints", {}, joints_open_};
   for (const Joint& joint : joints_) {
     section.items.push_back({joint.dof, joint.name,
                              PanelText{in_range("%.3g to %.3g", joint.lower, joint.upper)},

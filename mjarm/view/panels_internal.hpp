@@ -32,6 +32,8 @@ class Panels {
   void resize(int width, int height);
   void toggle_left();
   void toggle_right();
+  /// The section of joints is folded away when it is shown first.
+  void fold_joints() { joints_open_ = false; }
   [[nodiscard]] bool left_shown() const { return left_shown_; }
   [[nodiscard]] bool right_shown() const { return right_shown_; }
 
@@ -71,6 +73,7 @@ class Panels {
   UiColumn right_{2};
   bool left_shown_ = false;
   bool right_shown_ = false;
+  bool joints_open_ = true;
   bool can_step_;
   bool can_reset_;
   std::vector<Joint> joints_;

@@ -252,6 +252,8 @@ Result<Window> Window::open(const Model& model, const std::string& title,
     return fail(std::move(set.error()));
   }
   impl->user.camera.begin();
+  if (options.right_panel) impl->panels.toggle_right();
+  if (!options.joints_open) impl->panels.fold_joints();
   glfwShowWindow(impl->handle);
   return Window(std::move(impl));
 }

@@ -37,6 +37,8 @@ struct WindowOptions {
   bool can_target = false;                    ///< ... and TargetEvent
   std::vector<int> jog_dofs = {};             ///< ... and JointEvent of these dofs
   std::filesystem::path screenshots = {};     ///< folder of pictures the user takes; empty = none
+  bool right_panel = false;                   ///< is shown at first
+  bool joints_open = true;                    ///< its section of joints is unfolded at first
 };
 
 /// A window that shows a simulated world. The caller owns the loop and the physics; what the user

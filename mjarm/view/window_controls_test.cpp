@@ -344,6 +344,24 @@ TEST_F(PanelItems, ShowWhatTheApplicationSays) {
   EXPECT_TRUE(frames_until([&] { return window_->item_spot(false, 1, 1)->y > before + 100; }));
 }
 
+/// An application whose own sections matter most.
+class PanelAtFirst : public PanelItems {
+ protected:
+  WindowOptions options() override {
+    WindowOptions options = PanelItems::options();
+    options.right_panel = true;
+    options.joints_open = false;
+    return options;
+  }
+};
+
+TEST_F(PanelAtFirst, IsThereWithItsJointsFoldedAway) {
+  ASSERT_TRUE(window_->item_spot(false, 0, -1).has_value());
+  EXPECT_FALSE(window_->item_spot(false, 0, 0).has_value());
+  EXPECT_TRUE(
+      act_until(click(false, 0, -1), [&] { return window_->item_spot(false, 0, 0).has_value(); }));
+}
+
 /// An application that cannot do something says so, and gets no events of it.
 class Refusals : public Controls {
  protected:

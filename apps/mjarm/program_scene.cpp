@@ -1,0 +1,82 @@
+#include "apps/mjarm/program_scene.hpp"
+
+#include <algorithm>
+
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/render/overlay_shapes.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr int kJointMovePieces = 60;
+constexpr Rgba kJointMoveColor = {0.55F, 0.55F, 0.60F, 1};
+
+/// Where the tool goes in a motion; fewer than two poses where it rests.
+std::vector<Pose> tool_path(const PlannedMove& move, const Arm& arm) {
+  if (move.curve) return move.curve->poses(move.curve->stations(0.01, 0.1));
+  std::vector<Pose> out;
+  if (!move.measures && !move.is_approach()) return out;
+  for (int i = 0; i <= kJointMovePieces; ++i) {
+    const double t = move.trajectory.duration() * i / kJointMovePieces;
+    out.push_back(fk(arm, view(move.trajectory.at(t).q)));
+  }
+  return out;
+}
+
+}  // namespace
+
+ProgramScene::ProgramScene(const LoadedProgram& loaded)
+    : loaded_(&loaded), plots_(loaded.robot.arm) {
+  for (const PlannedMove& move : loaded.plan.moves) {
+    PathLook look;
+    if (!move.curve) look.color = kJointMoveColor;
+    const std::vector<Pose> X_WT = tool_path(move, loaded.plan.arms[move.tool]);
+    if (X_WT.size() > 1) add_planned_path(paths_, X_WT, look);
+  }
+}
+
+void ProgramScene::add(const Sim& sim, double time, std::size_t motion, const JointVec& q_ref) {
+  const ProgramPlan& plan = loaded_->plan;
+  if (plan.moves.empty()) return;
+  const Arm& arm = plan.arms[plan.moves[std::min(motion, plan.moves.size() - 1)].tool];
+  const JointVec q = sim.arm_state(arm).q;
+  const Pose X_WT = sim.tool(arm);
+  trail_.add(X_WT.p);
+  has_curves_ = true;
+  plots_.add({.time = time,
+              .q = q,
+              .q_ref = q_ref,
+              .X_WT = X_WT,
+              .X_ref = fk(arm, view(q_ref)),
+              .torque = sim.arm_torque(arm),
+              .manipulability = manipulability(fk_jacobian(arm, view(q)).J_W)});
+}
+
+void ProgramScene::clear() {
+  trail_.clear();
+  plots_.clear();
+  has_curves_ = false;
+}
+
+Overlay ProgramScene::overlay(const Choice& choice, std::optional<std::size_t> motion) const {
+  Overlay out;
+  if (choice.paths) out = paths_;
+  if (choice.trail) trail_.draw(out);
+  const std::vector<PlannedMove>& moves = loaded_->plan.moves;
+  if (choice.goal && motion && *motion < moves.size()) {
+    const Trajectory& way = moves[*motion].trajectory;
+    out.ghosts.push_back(ghost_of(loaded_->robot.arm, view(way.at(way.duration()).q)));
+  }
+  return out;
+}
+
+std::vector<LivePlot> ProgramScene::figures(const Choice& choice) const {
+  std::vector<LivePlot> out;
+  if (!has_curves_) return out;
+  for (std::size_t i = 0; i < kLiveFigures; ++i) {
+    if (choice.figures[i]) out.push_back(plots_.figure(static_cast<LiveFigure>(i)));
+  }
+  return out;
+}
+
+}  // namespace mjarm::app
