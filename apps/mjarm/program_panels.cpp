@@ -6,22 +6,24 @@
 namespace mjarm::app {
 namespace {
 
-constexpr const char* kStateWords[] = {"ready", "running", "stopping", "stopped", "done"};
-constexpr const char* kLookWords[] = {"now", "the past", "replay"};
-constexpr const char* kFigureWords[kLiveFigures] = {
+constexpr const char* kProgramStateWords[] = {"ready", "running", "stopping", "stopped", "done"};
+constexpr const char* kProgramLookWords[] = {"now", "the past", "replay"};
+constexpr const char* kProgramFigureWords[kLiveFigures] = {
     "Tool position", "Tracking error", "Joint error", "Joints", "Torque", "Manipulability"};
 
-PanelItem button(ProgramItem item, const char* name, bool enabled = true) {
+PanelItem program_button(ProgramItem item, const char* name, bool enabled = true) {
   return {item, name, PanelButton{}, enabled};
 }
 
-PanelItem checkbox(int item, const char* name, bool on) { return {item, name, PanelCheckbox{on}}; }
-
-PanelItem line(const char* name, std::string value) {
-  return {kTextItem, name, PanelText{std::move(value)}};
+PanelItem program_checkbox(int item, const char* name, bool on) {
+  return {item, name, PanelCheckbox{on}};
 }
 
-std::string times(double part, double whole) {
+PanelItem program_line(const char* name, std::string value) {
+  return {kProgramText, name, PanelText{std::move(value)}};
+}
+
+std::string part_of(double part, double whole) {
   char text[48];
   std::snprintf(text, sizeof(text), "%.1f / %.1f s", part, whole);
   return text;
@@ -31,13 +33,13 @@ PanelSection program_section(const ProgramFacts& facts, const std::vector<std::s
   const bool done = facts.state == PlanWalk::State::done;
   const std::size_t last = lines.empty() ? 0 : lines.size() - 1;
   return {"Program",
-          {button(kRunItem, "Run", !done),
-           button(kStepItem, "Step", !done),
-           button(kStopItem, "Stop"),
-           button(kRestartItem, "Restart"),
-           line("State", kStateWords[static_cast<int>(facts.state)]),
-           line("Motion", times(facts.time, facts.duration)),
-           {kLinesItem, "", PanelList{lines, static_cast<int>(std::min(facts.motion, last))}}}};
+          {program_button(kProgramRun, "Run", !done),
+           program_button(kProgramStep, "Step", !done),
+           program_button(kProgramStop, "Stop"),
+           program_button(kProgramRestart, "Restart"),
+           program_line("State", kProgramStateWords[static_cast<int>(facts.state)]),
+           program_line("Motion", part_of(facts.time, facts.duration)),
+           {kProgramLines, "", PanelList{lines, static_cast<int>(std::min(facts.motion, last))}}}};
 }
 
 PanelSection time_section(const ProgramFacts& facts) {
@@ -45,11 +47,11 @@ PanelSection time_section(const ProgramFacts& facts) {
   double end = std::max(facts.expected, 1.0);
   while (end < facts.recorded) end *= 1.5;
   return {"Time",
-          {{kTimeItem, "", PanelTimeline{facts.shown, end}},
-           button(kReplayItem, "Replay"),
-           button(kNowItem, "Now"),
-           line("Shown", kLookWords[static_cast<int>(facts.look)]),
-           line("Time", times(facts.shown, facts.recorded))}};
+          {{kProgramTime, "", PanelTimeline{facts.shown, end}},
+           program_button(kProgramReplay, "Replay"),
+           program_button(kProgramNow, "Now"),
+           program_line("Shown", kProgramLookWords[static_cast<int>(facts.look)]),
+           program_line("Time", part_of(facts.shown, facts.recorded))}};
 }
 
 }  // namespace
@@ -68,14 +70,14 @@ std::vector<PanelSection> program_panels(const ProgramFacts& facts,
                                          const ProgramScene::Choice& choice) {
   PanelSection plots{"Plots", {}};
   for (std::size_t i = 0; i < kLiveFigures; ++i) {
-    plots.items.push_back(
-        checkbox(kFigureItem + static_cast<int>(i), kFigureWords[i], choice.figures[i]));
+    plots.items.push_back(program_checkbox(kProgramFigure + static_cast<int>(i),
+                                           kProgramFigureWords[i], choice.figures[i]));
   }
   return {time_section(facts), program_section(facts, lines),
           PanelSection{"Show",
-                       {checkbox(kPathsItem, "Planned paths", choice.paths),
-                        checkbox(kTrailItem, "Trail", choice.trail),
-                        checkbox(kGoalItem, "Goal", choice.goal)}},
+                       {program_checkbox(kProgramPaths, "Planned paths", choice.paths),
+                        program_checkbox(kProgramTrail, "Trail", choice.trail),
+                        program_checkbox(kProgramGoal, "Goal", choice.goal)}},
           std::move(plots)};
 }
 

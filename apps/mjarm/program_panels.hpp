@@ -11,19 +11,19 @@ namespace mjarm::app {
 
 /// Numbers of the items in the panel of a program; those of figures follow each other.
 enum ProgramItem {
-  kRunItem,
-  kStepItem,
-  kStopItem,
-  kRestartItem,
-  kLinesItem,
-  kTimeItem,
-  kReplayItem,
-  kNowItem,
-  kPathsItem,
-  kTrailItem,
-  kGoalItem,
-  kTextItem,
-  kFigureItem = 20,
+  kProgramRun,
+  kProgramStep,
+  kProgramStop,
+  kProgramRestart,
+  kProgramLines,
+  kProgramTime,
+  kProgramReplay,
+  kProgramNow,
+  kProgramPaths,
+  kProgramTrail,
+  kProgramGoal,
+  kProgramText,
+  kProgramFigure = 20,
 };
 
 /// What somebody looks at.

@@ -114,22 +114,22 @@ void ProgramPlayer::step_moments(int steps) {
 
 void ProgramPlayer::press(const PanelEvent& event) {
   switch (event.id) {
-    case kRunItem:
+    case kProgramRun:
       to_present();
       return walk_.run();
-    case kStepItem:
+    case kProgramStep:
       to_present();
       return walk_.run_one();
-    case kStopItem:
+    case kProgramStop:
       to_present();
       return walk_.stop();
-    case kRestartItem:
+    case kProgramRestart:
       return restart();
-    case kNowItem:
+    case kProgramNow:
       return to_present();
-    case kTimeItem:
+    case kProgramTime:
       return look_at(record_.empty() ? 0 : record_.time(0) + event.value);
-    case kReplayItem:
+    case kProgramReplay:
       if (record_.empty()) return;
       // From where one looks, or else from the beginning.
       if (look_ != ProgramLook::past || cursor_ >= record_.time(record_.size() - 1)) {
@@ -137,7 +137,7 @@ void ProgramPlayer::press(const PanelEvent& event) {
       }
       look_ = ProgramLook::replay;
       return;
-    case kLinesItem:
+    case kProgramLines:
       // A line that was begun shows how it began.
       for (std::size_t i = 0; i < record_.size(); ++i) {
         if (static_cast<double>(record_.at(i).motion) == event.value) {
@@ -152,10 +152,10 @@ void ProgramPlayer::press(const PanelEvent& event) {
 
 void ProgramPlayer::choose(const PanelEvent& event) {
   const bool on = event.value != 0;
-  if (event.id == kPathsItem) choice_.paths = on;
-  if (event.id == kTrailItem) choice_.trail = on;
-  if (event.id == kGoalItem) choice_.goal = on;
-  const int figure = event.id - kFigureItem;
+  if (event.id == kProgramPaths) choice_.paths = on;
+  if (event.id == kProgramTrail) choice_.trail = on;
+  if (event.id == kProgramGoal) choice_.goal = on;
+  const int figure = event.id - kProgramFigure;
   if (figure >= 0 && figure < static_cast<int>(kLiveFigures)) {
     choice_.figures[static_cast<std::size_t>(figure)] = on;
   }

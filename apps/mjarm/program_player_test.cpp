@@ -43,7 +43,7 @@ TEST(ProgramPlayer, RunsAsMjarmRunDoes) {
   const auto log = joints_of_log(read_file(out / "log.csv").value(), timestep);
 
   ProgramPlayer world = new_player();
-  press(world, kRunItem);
+  press_item(world, kProgramRun);
   long step = 0;
   double worst = 0;
   while (world.walk().state() == State::running) {
@@ -66,7 +66,7 @@ TEST(ProgramPlayer, StepStopsAtTheEndOfEachMotion) {
   EXPECT_EQ(world.walk().state(), State::ready);
   for (std::size_t i = 0; i < plan.moves.size(); ++i) {
     EXPECT_EQ(world.facts().motion, i);
-    press(world, kStepItem);
+    press_item(world, kProgramStep);
     steps_until(world, i + 1 < plan.moves.size() ? State::stopped : State::done);
     const Trajectory& way = plan.moves[i].trajectory;
     EXPECT_EQ(world.walk().q_ref(), way.at(way.duration()).q);
@@ -78,15 +78,15 @@ TEST(ProgramPlayer, StepStopsAtTheEndOfEachMotion) {
 
 TEST(ProgramPlayer, StopComesToRestAndRunGoesOn) {
   ProgramPlayer world = new_player();
-  press(world, kRunItem);
+  press_item(world, kProgramRun);
   make_steps(world, 400);
-  press(world, kStopItem);
+  press_item(world, kProgramStop);
   EXPECT_EQ(world.walk().state(), State::stopping);
   EXPECT_LE(steps_until(world, State::stopped), PlanWalk::kBrakeSteps);
   make_steps(world, 200);
   const JointState rest = world.sim().arm_state(there_and_back().robot.arm);
   EXPECT_LT(rest.v.cwiseAbs().maxCoeff(), 1e-6);
-  press(world, kRunItem);
+  press_item(world, kProgramRun);
   double worst = 0;
   while (world.walk().state() == State::running) {
     world.step();
@@ -100,22 +100,23 @@ TEST(ProgramPlayer, StopComesToRestAndRunGoesOn) {
 /// Who looks back changes nothing of what comes.
 TEST(ProgramPlayer, RestartBeginsAnew) {
   ProgramPlayer world = new_player();
-  const std::vector<double> first = shown(world);
-  press(world, kRunItem);
+  const std::vector<double> first = state_shown(world);
+  press_item(world, kProgramRun);
   make_steps(world, 300);
-  const std::vector<double> later = shown(world);
-  for (const ViewEvent& event : {ViewEvent{ResetEvent{}}, ViewEvent{PanelEvent{kRestartItem, 1}}}) {
+  const std::vector<double> later = state_shown(world);
+  for (const ViewEvent& event :
+       {ViewEvent{ResetEvent{}}, ViewEvent{PanelEvent{kProgramRestart, 1}}}) {
     world.handle(PushEvent{.body = 4, .force_W = {5, 0, 0}});
     make_steps(world, 40);
-    press(world, kTimeItem, 0.1);
+    press_item(world, kProgramTime, 0.1);
     world.handle(event);
     EXPECT_EQ(world.look(), ProgramLook::present);
     EXPECT_EQ(world.walk().state(), State::ready);
     EXPECT_EQ(world.facts().recorded, 0);
-    EXPECT_EQ(shown(world), first);
-    press(world, kRunItem);
+    EXPECT_EQ(state_shown(world), first);
+    press_item(world, kProgramRun);
     make_steps(world, 300);
-    EXPECT_EQ(shown(world), later);
+    EXPECT_EQ(state_shown(world), later);
   }
 }
 
@@ -125,7 +126,7 @@ TEST(ProgramPlayer, WhatIsShownIsChosen) {
   ViewFrame frame;
   world.fill(frame);
   EXPECT_TRUE(frame.plots.empty());
-  press(world, kRunItem);
+  press_item(world, kProgramRun);
   make_steps(world, 400);
   world.fill(frame);
   ASSERT_EQ(frame.plots.size(), 2U);
@@ -135,10 +136,10 @@ TEST(ProgramPlayer, WhatIsShownIsChosen) {
   const std::size_t lines = frame.overlay.lines.size();
   EXPECT_GE(lines, 4U);  // three paths and a trail
   EXPECT_TRUE(frame.overlay.ghosts.empty());
-  press(world, kGoalItem, 1);
-  press(world, kTrailItem, 0);
+  press_item(world, kProgramGoal, 1);
+  press_item(world, kProgramTrail, 0);
   for (int i = 0; i < static_cast<int>(kLiveFigures); ++i) {
-    world.handle(PanelEvent{kFigureItem + i, 1});
+    world.handle(PanelEvent{kProgramFigure + i, 1});
   }
   world.fill(frame);
   EXPECT_EQ(frame.plots.size(), kLiveFigures);
@@ -146,10 +147,10 @@ TEST(ProgramPlayer, WhatIsShownIsChosen) {
   ASSERT_EQ(frame.overlay.ghosts.size(), 1U);
   const Trajectory& way = there_and_back().plan.moves[world.walk().motion()].trajectory;
   EXPECT_EQ(joint_vec(frame.overlay.ghosts[0].qpos), way.at(way.duration()).q);
-  press(world, kTimeItem, 0.2);  // the past has no goal
+  press_item(world, kProgramTime, 0.2);  // the past has no goal
   world.fill(frame);
   EXPECT_TRUE(frame.overlay.ghosts.empty());
-  press(world, kPathsItem, 0);
+  press_item(world, kProgramPaths, 0);
   world.fill(frame);
   EXPECT_TRUE(frame.overlay.lines.empty());
 }
@@ -170,13 +171,13 @@ program:
   ProgramPlayer world = ProgramPlayer::make(loaded).value();
   const Gripper& gripper = *loaded.robot.arm.gripper;
   const auto ctrl = [&] { return world.sim().ctrl()[static_cast<std::size_t>(gripper.id)]; };
-  press(world, kRunItem);
+  press_item(world, kProgramRun);
   make_steps(world, 5);
   EXPECT_EQ(ctrl(), gripper.ctrl_open);
   steps_until(world, State::done);
   EXPECT_EQ(ctrl(), gripper.ctrl_closed);
-  press(world, kRestartItem);
-  press(world, kStepItem);
+  press_item(world, kProgramRestart);
+  press_item(world, kProgramStep);
   steps_until(world, State::stopped);
   EXPECT_EQ(world.walk().motion(), 1U);
   EXPECT_EQ(ctrl(), gripper.ctrl_open);
@@ -203,27 +204,27 @@ ViewEvent any_event(Rng& rng) {
     case 4:
       return rng.below(20) == 0 ? ViewEvent{ResetEvent{}} : ViewEvent{SelectEvent{}};
     default:
-      if (rng.below(10) != 0 && rng.below(3) == 0) return PanelEvent{kRunItem, 1};
-      return PanelEvent{static_cast<int>(rng.below(kFigureItem + 8)) - 1, kOdd[rng.below(8)]};
+      if (rng.below(10) != 0 && rng.below(3) == 0) return PanelEvent{kProgramRun, 1};
+      return PanelEvent{static_cast<int>(rng.below(kProgramFigure + 8)) - 1, kOdd[rng.below(8)]};
   }
 }
 
 TEST(ProgramPlayer, TakesEventsInAnyOrder) {
   Rng rng(3);
   ProgramPlayer world = new_player();
-  const std::size_t size = shown(world).size();
+  const std::size_t size = state_shown(world).size();
   int past = 0, done = 0;
   for (int i = 0; i < 20000; ++i) {
     world.handle(any_event(rng));
     make_steps(world, static_cast<int>(rng.below(12)));
     if (i % 1000 == 0) {  // now and then all of it
-      press(world, kRunItem);
+      press_item(world, kProgramRun);
       steps_until(world, State::done);
     }
     past += world.look() != ProgramLook::present ? 1 : 0;
     done += world.walk().state() == State::done ? 1 : 0;
     if (i % 50 != 0) continue;
-    ASSERT_EQ(shown(world).size(), size);
+    ASSERT_EQ(state_shown(world).size(), size);
     const ProgramFacts facts = world.facts();
     ASSERT_GE(facts.shown, 0);
     ASSERT_LE(facts.shown, facts.recorded);

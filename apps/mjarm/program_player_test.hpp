@@ -29,7 +29,7 @@ inline const LoadedProgram& there_and_back() {
 
 inline ProgramPlayer new_player() { return ProgramPlayer::make(there_and_back()).value(); }
 
-inline void press(ProgramPlayer& player, ProgramItem item, double value = 1) {
+inline void press_item(ProgramPlayer& player, ProgramItem item, double value = 1) {
   player.handle(PanelEvent{item, value});
 }
 
@@ -44,7 +44,7 @@ inline int steps_until(ProgramPlayer& player, State state) {
   return steps;
 }
 
-inline std::vector<double> shown(const ProgramPlayer& player) {
+inline std::vector<double> state_shown(const ProgramPlayer& player) {
   ViewFrame frame;
   player.fill(frame);
   return frame.snapshot.state;

@@ -85,54 +85,54 @@ class ProgramWindow : public mjarm::testing::RealWindow {
 TEST_F(ProgramWindow, RunStopStepRestart) {
   EXPECT_TRUE(is(State::ready));
   player_.handle(SpeedEvent{0.2});  // so that a click may get lost and be repeated
-  ASSERT_TRUE(click(kRunItem, [this] { return is(State::running); }));
+  ASSERT_TRUE(click(kProgramRun, [this] { return is(State::running); }));
   EXPECT_TRUE(until([this] { return player_.facts().recorded > 0.1; }));
-  ASSERT_TRUE(click(kStopItem, [this] { return state() != State::running; }));
+  ASSERT_TRUE(click(kProgramStop, [this] { return state() != State::running; }));
   EXPECT_TRUE(until([this] { return is(State::stopped); }));
   const JointVec q = player_.walk().q_ref();
   until([] { return false; }, 0.2);
   EXPECT_EQ(player_.walk().q_ref(), q);
   // The rest of the motion, and no more.
   const std::size_t motion = player_.walk().motion();
-  ASSERT_TRUE(click(kStepItem, [&] { return player_.walk().motion() == motion + 1; }));
+  ASSERT_TRUE(click(kProgramStep, [&] { return player_.walk().motion() == motion + 1; }));
   EXPECT_TRUE(is(State::stopped));
-  ASSERT_TRUE(click(kRunItem, [this] { return state() == State::running; }));
+  ASSERT_TRUE(click(kProgramRun, [this] { return state() == State::running; }));
   player_.handle(SpeedEvent{4});
   EXPECT_TRUE(until([this] { return is(State::done); }, 60));
   const Trajectory& last = loaded_.plan.moves.back().trajectory;
   EXPECT_EQ(player_.walk().q_ref(), last.at(last.duration()).q);
-  ASSERT_TRUE(click(kRestartItem, [this] { return is(State::ready); }));
+  ASSERT_TRUE(click(kProgramRestart, [this] { return is(State::ready); }));
   EXPECT_EQ(player_.walk().q_ref(), loaded_.plan.q_start);
 }
 
 TEST_F(ProgramWindow, ScrubReplayNowAndLines) {
   player_.handle(SpeedEvent{4});
-  ASSERT_TRUE(click(kRunItem, [this] { return state() == State::running; }));
+  ASSERT_TRUE(click(kProgramRun, [this] { return state() == State::running; }));
   ASSERT_TRUE(until([this] { return is(State::done); }, 60));
   const double all = player_.facts().recorded;
   const double end = player_.facts().expected;
   const double present = frame_.snapshot.time;
   EXPECT_NEAR(all, end, 0.01);
   // The middle of the line is half of the time.
-  ASSERT_TRUE(click(kTimeItem, [this] { return is(State::done, ProgramLook::past); }));
+  ASSERT_TRUE(click(kProgramTime, [this] { return is(State::done, ProgramLook::past); }));
   EXPECT_NEAR(player_.facts().shown, 0.5 * end, 0.03 * end);
   EXPECT_LT(frame_.snapshot.time, present - 0.4 * end);
   // Replay goes on from there to the end.
   player_.handle(SpeedEvent{0.5});
   const double from = player_.facts().shown;
-  ASSERT_TRUE(click(kReplayItem, [this] { return player_.look() == ProgramLook::replay; }));
+  ASSERT_TRUE(click(kProgramReplay, [this] { return player_.look() == ProgramLook::replay; }));
   EXPECT_TRUE(until([&] { return player_.facts().shown > from + 0.2; }));
   EXPECT_TRUE(until([this] { return player_.look() == ProgramLook::past; }, 60));
   EXPECT_EQ(player_.facts().shown, all);
-  ASSERT_TRUE(click(kNowItem, [this] { return player_.look() == ProgramLook::present; }));
+  ASSERT_TRUE(click(kProgramNow, [this] { return player_.look() == ProgramLook::present; }));
   // The middle of four lines is the third.
-  ASSERT_TRUE(click(kLinesItem, [this] { return player_.look() == ProgramLook::past; }));
+  ASSERT_TRUE(click(kProgramLines, [this] { return player_.look() == ProgramLook::past; }));
   EXPECT_EQ(player_.facts().motion, 2U);
 }
 
 TEST_F(ProgramWindow, KeysPauseAndStepThroughTheRecord) {
   player_.handle(SpeedEvent{0.2});
-  ASSERT_TRUE(click(kRunItem, [this] { return state() == State::running; }));
+  ASSERT_TRUE(click(kProgramRun, [this] { return state() == State::running; }));
   ASSERT_TRUE(until([this] { return player_.facts().recorded > 0.1; }));
   // Of the picture, not of the panel.
   xdotool({"mousemove", "200", "300"});
@@ -153,9 +153,9 @@ TEST_F(ProgramWindow, KeysPauseAndStepThroughTheRecord) {
 }
 
 TEST_F(ProgramWindow, CheckBoxesChoose) {
-  ASSERT_TRUE(click(kGoalItem, [this] { return player_.choice().goal; }));
+  ASSERT_TRUE(click(kProgramGoal, [this] { return player_.choice().goal; }));
   EXPECT_EQ(frame_.overlay.ghosts.size(), 1U);
-  ASSERT_TRUE(click(kPathsItem, [this] { return !player_.choice().paths; }));
+  ASSERT_TRUE(click(kProgramPaths, [this] { return !player_.choice().paths; }));
   EXPECT_TRUE(frame_.overlay.lines.empty());
 }
 

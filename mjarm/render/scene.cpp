@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "mjarm/core/messages/render.hpp"
-#include "mjarm/render/ghost_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/render/ghost_internal.hpp"
 #include "mjarm/render/overlay_internal.hpp"
 
 namespace mjarm {
