@@ -108,7 +108,8 @@ struct LivePlotSet::Impl {
   double last_time = -std::numeric_limits<double>::infinity();
 };
 
-void LivePlotSet::Impl::add_joints(Chart& chart, const PlotHistory& history, std::size_t first) const {
+void LivePlotSet::Impl::add_joints(Chart& chart, const PlotHistory& history,
+                                   std::size_t first) const {
   for (std::size_t j = 0; j < columns.dof; ++j) {
     add_curve(chart, history.column(first + j), short_name(arm.joints[j].name),
               static_cast<int>(j));
