@@ -1,12 +1,9 @@
 #include "mjarm/core/messages/view.hpp"
 
-#include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/robot.hpp"
@@ -20,12 +17,9 @@
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/view/controls.hpp"
-#include "mjarm/view/view_link.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Options {
   RobotOptions robot;
@@ -109,35 +103,16 @@ Result<int> run(const Options& options) {
       window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
-  Result<Window> window =
-      Window::open(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen);
-  if (!window) {
-    // What is missing here is a display, without which nothing can be seen in a window.
-    Error error = std::move(window.error());
-    if (error.code == Errc::not_available) error.code = Errc::impossible;
-    return fail(std::move(error));
-  }
   if (options.paused) sim->handle(PauseEvent{true});
-  const auto end = Clock::now() + std::chrono::duration<double>(*seconds);
-  ViewLink link;
   RobotView view(loaded->model, loaded->arm, *sim);
   std::optional<TargetHandle> handle;
+  ShowOptions show{*seconds, options.stats};
   if (TargetControl* target = view.target()) {
     handle.emplace(target->link(), target->target().turns());
-    handle->attach(*window);
+    show.on_open = [&handle](Window& window) { handle->attach(window); };
   }
-  std::thread worker([&] { view.run(link); });
-  const Result<void> drawn = draw_until_closed(
-      *window, link, [&] { return interrupted() || (*seconds > 0 && Clock::now() >= end); });
-  worker.join();
-  if (!drawn) return fail(drawn.error());
-  const ViewStats stats = window->stats();
-  if (options.stats) {
-    const std::string line = text(msg::view_stats, stats.frames, stats.fps, stats.frame_ms,
-                                  stats.first_frame_ms, stats.sim_rate);
-    std::printf("%s\n", line.c_str());
-  }
-  return 0;
+  return show_in_window(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen, show,
+                        [&view](ViewLink& link) { simulate_world(view, link); });
 }
 
 /// A program brings its robot and tool along, and holds it.

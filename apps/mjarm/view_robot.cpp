@@ -1,9 +1,5 @@
 #include "apps/mjarm/view_robot.hpp"
 
-#include <chrono>
-#include <string>
-#include <thread>
-
 #include "mjarm/core/language_scope.hpp"
 
 namespace mjarm::app {
@@ -59,31 +55,6 @@ void RobotView::fill(ViewFrame& frame) {
   frame.status = sim_.status();
   if (frame.status.empty()) frame.status = overlay_notice(frame.overlay);
   if (frame.status.empty() && target_) frame.status = target_->line();
-}
-
-void RobotView::run(ViewLink& link) {
-  ViewFrame frame;
-  bool changed = true;
-  const auto offer = [&] {
-    if (!changed || !link.frames.is_empty()) return;
-    changed = false;
-    fill(frame);
-    link.frames.post(frame);
-  };
-  while (!link.closed) {
-    for (const ViewEvent& event : link.events.take()) {
-      handle(event);
-      changed = true;
-    }
-    if (take_drags()) changed = true;
-    for (int due = sim_.steps_due(); due > 0 && !link.closed; --due) {
-      step();
-      changed = true;
-      offer();
-    }
-    offer();
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
-  }
 }
 
 }  // namespace mjarm::app

@@ -16,13 +16,11 @@ class RobotView {
   /// @param sim  of `model` and `arm`; outlives this.
   RobotView(const Model& model, const std::optional<Arm>& arm, ViewSim& sim);
 
-  /// Keeps real time, and does what the user asks for, until the window is gone.
-  void run(ViewLink& link);
-
-  /// The parts of `run`, in its order.
+  /// What `simulate_world` calls, in its order.
   void handle(const ViewEvent& event);
   /// @return false where nothing was dragged.
   bool take_drags();
+  [[nodiscard]] int steps_due() { return sim_.steps_due(); }
   void step();
   /// Writes the next frame, and hands over how the target is to be shown.
   void fill(ViewFrame& frame);

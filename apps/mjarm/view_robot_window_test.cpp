@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "apps/mjarm/view_robot_test.hpp"
+#include "apps/mjarm/view_show.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/view/real_window_test.hpp"
 
@@ -220,7 +221,7 @@ TEST_F(RobotInWindow, InItsOwnThreadTheArmFollowsAsWell) {
   const Eigen::Vector2d from = pixel(held);
   const Eigen::Vector2d to = pixel(held - 0.1 * Eigen::Vector3d::UnitX());
   ViewLink link;
-  std::thread worker([&] { view_.run(link); });
+  std::thread worker([&] { simulate_world(view_, link); });
   std::atomic<bool> moved{false};
   std::atomic<bool> given_up{false};
   std::thread user([&] {

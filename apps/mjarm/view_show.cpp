@@ -19,6 +19,7 @@ Result<int> show_in_window(const Model& model, const std::string& title,
     if (error.code == Errc::not_available) error.code = Errc::impossible;
     return fail(std::move(error));
   }
+  if (options.on_open) options.on_open(*window);
   const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
   ViewLink link;
   std::thread worker([&] { simulate(link); });

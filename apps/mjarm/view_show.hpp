@@ -14,6 +14,8 @@ namespace mjarm::app {
 struct ShowOptions {
   double seconds = 0;  ///< closes by itself after so long; 0 = never
   bool stats = false;  ///< prints frames a second and the like at the end
+  /// Called with the open window, before anything is drawn; may be empty.
+  std::function<void(Window&)> on_open = {};
 };
 
 /// Opens a window and draws in it what `simulate` hands over, which runs in a thread of its own,
@@ -23,7 +25,8 @@ struct ShowOptions {
                                          const WindowOptions& window, const ShowOptions& options,
                                          const std::function<void(ViewLink&)>& simulate);
 
-/// Lets `world` keep real time and do what the user asks for, until the window is gone.
+/// Lets `world` keep real time and do what the user asks for, until the window is gone. A world
+/// with something to be dragged has `take_drags` besides, which tells whether it was.
 template <class World>
 void simulate_world(World& world, ViewLink& link) {
   ViewFrame frame;
@@ -38,6 +41,9 @@ void simulate_world(World& world, ViewLink& link) {
     for (const ViewEvent& event : link.events.take()) {
       world.handle(event);
       changed = true;
+    }
+    if constexpr (requires { world.take_drags(); }) {
+      if (world.take_drags()) changed = true;
     }
     for (int due = world.steps_due(); due > 0 && !link.closed; --due) {
       world.step();
