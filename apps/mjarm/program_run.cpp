@@ -53,25 +53,29 @@ std::vector<ReportedMove> reported_moves(const ProgramPlan& plan,
 
 }  // namespace
 
-Result<void> execute(Stage& stage, const ProgramPlan& plan, ControlMode mode, double settle) {
-  stage.start_at(view(plan.q_start));
+Result<void> for_each_motion(
+    const ProgramPlan& plan, Sim& sim, double settle,
+    const std::function<Result<void>(const PlannedMove& move, double rest)>& drive) {
   for (std::size_t i = 0; i < plan.moves.size(); ++i) {
     const PlannedMove& move = plan.moves[i];
     if (move.close) {
       const Gripper& gripper = *plan.arms.front().gripper;
-      stage.sim().set_ctrl(gripper.id, *move.close ? gripper.ctrl_closed : gripper.ctrl_open);
+      sim.set_ctrl(gripper.id, *move.close ? gripper.ctrl_closed : gripper.ctrl_open);
     }
-    const double rest = i + 1 == plan.moves.size() ? settle : 0;
-    Result<void> done;
-    if (move.is_approach()) {
-      done = stage.approach(move.trajectory, mode);
-    } else if (is_measured(plan, i)) {
-      done = stage.run(move.trajectory, mode, rest, move.curve ? &*move.curve : nullptr,
-                       tool_in_tool(plan, move.tool));
-    }
-    if (!done) return done;
+    const bool last = i + 1 == plan.moves.size();
+    if (!last && !(move.trajectory.duration() > 0)) continue;
+    if (auto done = drive(move, last ? settle : 0); !done) return done;
   }
   return {};
+}
+
+Result<void> execute(Stage& stage, const ProgramPlan& plan, ControlMode mode, double settle) {
+  stage.start_at(view(plan.q_start));
+  return for_each_motion(plan, stage.sim(), settle, [&](const PlannedMove& move, double rest) {
+    if (move.is_approach()) return stage.approach(move.trajectory, mode, rest);
+    return stage.run(move.trajectory, mode, rest, move.curve ? &*move.curve : nullptr,
+                     tool_in_tool(plan, move.tool));
+  });
 }
 
 Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolerance) {

@@ -1,9 +1,18 @@
 #pragma once
 
+#include <functional>
+
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/program_load.hpp"
 
 namespace mjarm::app {
+
+/// Calls `drive` for every motion of a plan that takes time, and for the last one, in order; the
+/// gripper is told before what it has to do meanwhile.
+/// @param settle  [s] rest after the last motion; `drive` gets how long to rest after each.
+[[nodiscard]] Result<void> for_each_motion(
+    const ProgramPlan& plan, Sim& sim, double settle,
+    const std::function<Result<void>(const PlannedMove& move, double rest)>& drive);
 
 /// Moves the arm along a whole plan, from its beginning; the reference rests `settle` [s] at the
 /// end. Approaches are not part of what is measured.

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "apps/mjarm/program_load.hpp"
+#include "apps/mjarm/program_run.hpp"
 #include "apps/mjarm/render_video.hpp"
 #include "mjarm/core/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
@@ -34,20 +34,15 @@ class ProgramRun {
   /// @param after_step  returns false to stop; called once before anything moves.
   Result<void> run(std::optional<double> seconds, const std::function<bool()>& after_step) {
     if (!after_step()) return {};
-    const ProgramPlan& plan = loaded_.plan;
-    for (std::size_t i = 0; i < plan.moves.size(); ++i) {
-      const PlannedMove& move = plan.moves[i];
-      const bool last = i + 1 == plan.moves.size();
-      if (move.close) {
-        const Gripper& gripper = *plan.arms.front().gripper;
-        sim_.set_ctrl(gripper.id, *move.close ? gripper.ctrl_closed : gripper.ctrl_open);
-      }
-      if (!last && !(move.trajectory.duration() > 0)) continue;
-      const Result<bool> go_on = follow(move, last ? kRest : 0, seconds, after_step);
-      if (!go_on) return fail(go_on.error());
-      if (!*go_on) return {};
-    }
-    return {};
+    bool stopped = false;
+    return for_each_motion(loaded_.plan, sim_, kRest,
+                           [&](const PlannedMove& move, double rest) -> Result<void> {
+                             if (stopped) return {};
+                             const Result<bool> went = follow(move, rest, seconds, after_step);
+                             if (!went) return fail(went.error());
+                             stopped = !*went;
+                             return {};
+                           });
   }
 
   [[nodiscard]] const Sim& sim() const { return sim_; }

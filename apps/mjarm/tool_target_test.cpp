@@ -11,27 +11,18 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/shipped_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::app {
 namespace {
 
+using mjarm::testing::shipped_arm;
+using mjarm::testing::TestArm;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-struct Posed {
-  Model model;
-  Arm arm;
-};
-
-Posed posed(const char* name) {
-  Model model = Model::load(find_model_file(name).value()).value();
-  Arm arm = find_arm(model).value();
-  return {std::move(model), std::move(arm)};
-}
-
 /// An arm of three joints on a table.
-Posed short_arm() {
+TestArm short_arm() {
   const support::TempFolder folder;
   Model model = Model::load(folder.write("short.xml", R"(
 <mujoco>
@@ -69,7 +60,7 @@ Pose moved(Pose pose, const Eigen::Vector3d& way) {
 
 TEST(ToolTarget, BeginsAtHomeInGreen) {
   for (const char* name : {"ur5e", "panda"}) {
-    const Posed robot = posed(name);
+    const TestArm robot = shipped_arm(name);
     const ToolTarget target(robot.model, robot.arm);
     EXPECT_EQ(target.goal(), robot.arm.home);
     expect_same(target.pose(), fk(robot.arm, view(robot.arm.home)));
@@ -81,7 +72,7 @@ TEST(ToolTarget, BeginsAtHomeInGreen) {
 
 /// The arm's solver from home is the judge; it knows nothing of ways.
 TEST(ToolTarget, RandomPosesAgreeWithTheSolver) {
-  const Posed robot = posed("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ExactChecker checker(robot.model, robot.arm);
   const IkSolver judge(robot.arm, {.valid = checker.predicate()});
   Rng rng(7);
@@ -122,7 +113,7 @@ TEST(ToolTarget, RandomPosesAgreeWithTheSolver) {
 TEST(ToolTarget, ALineOutOfTheWorkspaceStopsAtItsEdge) {
   for (const char* name : {"ur5e", "panda"}) {
     for (const double step : {0.02, 2.0}) {
-      const Posed robot = posed(name);
+      const TestArm robot = shipped_arm(name);
       const IkSolver judge(robot.arm);
       ToolTarget target(robot.model, robot.arm);
       const Pose X_home = target.pose();
@@ -150,7 +141,7 @@ TEST(ToolTarget, ALineOutOfTheWorkspaceStopsAtItsEdge) {
 /// No joint moves far between neighbours unless it is said, wherever a random walk goes.
 TEST(ToolTarget, NeighboursDoNotJump) {
   for (const char* name : {"ur5e", "panda"}) {
-    const Posed robot = posed(name);
+    const TestArm robot = shipped_arm(name);
     ToolTarget target(robot.model, robot.arm);
     Rng rng(11);
     Eigen::Vector3d speed(0, 0, 0), turning(0, 0, 0);
@@ -188,7 +179,7 @@ TEST(ToolTarget, NeighboursDoNotJump) {
 
 /// Beyond the last winding of the wrist the pose needs another branch: that is said, not done.
 TEST(ToolTarget, AJumpIsShownAndTakenOnlyWhenAsked) {
-  const Posed robot = posed("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ToolTarget target(robot.model, robot.arm);
   JointVec q = robot.arm.home;
   q[5] = robot.arm.limits.upper[5] - 0.05;
@@ -216,7 +207,7 @@ TEST(ToolTarget, AJumpIsShownAndTakenOnlyWhenAsked) {
 }
 
 TEST(ToolTarget, ANearSingularityIsAmber) {
-  const Posed robot = posed("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ToolTarget target(robot.model, robot.arm);
   JointVec q = robot.arm.home;
   q[4] = 0.004;
@@ -228,7 +219,7 @@ TEST(ToolTarget, ANearSingularityIsAmber) {
 
 TEST(ToolTarget, JogsAlongTheAxesOfTheFrame) {
   for (const char* name : {"ur5e", "panda"}) {
-    const Posed robot = posed(name);
+    const TestArm robot = shipped_arm(name);
     for (const JogFrame frame : {JogFrame::world, JogFrame::tool, JogFrame::base}) {
       ToolTarget target(robot.model, robot.arm);
       for (int axis = 0; axis < 6; ++axis) {
@@ -257,7 +248,7 @@ TEST(ToolTarget, JogsAlongTheAxesOfTheFrame) {
 }
 
 TEST(ToolTarget, AJogThatCannotBeLeavesTheTarget) {
-  const Posed robot = posed("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ToolTarget target(robot.model, robot.arm);
   Pose before = target.pose();
   JointVec goal = target.goal();
@@ -277,10 +268,10 @@ TEST(ToolTarget, AJogThatCannotBeLeavesTheTarget) {
 }
 
 TEST(ToolTarget, FewJointsTakeThePositionAlone) {
-  const Posed robot = short_arm();
+  const TestArm robot = short_arm();
   ToolTarget target(robot.model, robot.arm);
   EXPECT_FALSE(target.turns());
-  EXPECT_TRUE(ToolTarget(posed("ur5e").model, posed("ur5e").arm).turns());
+  EXPECT_TRUE(ToolTarget(shipped_arm("ur5e").model, shipped_arm("ur5e").arm).turns());
   const Pose asked{target.pose().p + Eigen::Vector3d(-0.05, 0.1, 0.05),
                    rotation_exp({0.3, 0.2, 1})};
   target.move_to(asked);
@@ -293,7 +284,7 @@ TEST(ToolTarget, FewJointsTakeThePositionAlone) {
 }
 
 TEST(ToolTarget, LinesAreAsciiInTheWindowAndChineseElsewhere) {
-  const Posed robot = posed("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ToolTarget target(robot.model, robot.arm);
   const auto check = [&] {
     for (const char c : target.line()) EXPECT_TRUE(c >= 32 && c < 127) << target.line();

@@ -13,23 +13,15 @@
 
 #include "apps/mjarm/view_sim.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/shipped_test.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::app {
 namespace {
 
-struct Shipped {
-  Model model;
-  Arm arm;
-};
-
-Shipped shipped(const char* name) {
-  Model model = Model::load(find_model_file(name).value()).value();
-  Arm arm = find_arm(model).value();
-  return {std::move(model), std::move(arm)};
-}
+using mjarm::testing::shipped_arm;
+using mjarm::testing::TestArm;
 
 std::vector<double> positions(const ViewSim& world) {
   return {world.sim().qpos().begin(), world.sim().qpos().end()};
@@ -41,7 +33,7 @@ void run(ViewSim& world, int steps) {
 
 TEST(ViewSim, HoldsTheArmAtHome) {
   for (const char* name : {"ur5e", "panda"}) {
-    const Shipped robot = shipped(name);
+    const TestArm robot = shipped_arm(name);
     ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
     run(world, 1000);
     const JointVec off = world.sim().arm_state(robot.arm).q - robot.arm.home;
@@ -50,7 +42,7 @@ TEST(ViewSim, HoldsTheArmAtHome) {
 }
 
 TEST(ViewSim, PassiveFalls) {
-  const Shipped robot = shipped("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ViewSim world = ViewSim::make(robot.model, robot.arm, true).value();
   EXPECT_TRUE(world.jog_dofs().empty());
   run(world, 500);
@@ -59,7 +51,7 @@ TEST(ViewSim, PassiveFalls) {
 }
 
 TEST(ViewSim, JogsWithinTheSpeedLimit) {
-  const Shipped robot = shipped("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
   const int dof = robot.arm.joints[2].dof;
   ASSERT_EQ(world.jog_dofs().size(), 6U);
@@ -81,7 +73,7 @@ TEST(ViewSim, JogsWithinTheSpeedLimit) {
 }
 
 TEST(ViewSim, StepsBackAndForthAreTheSameToTheLastBit) {
-  const Shipped robot = shipped("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
   world.handle(JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
   run(world, 40);
@@ -108,7 +100,7 @@ TEST(ViewSim, StepsBackAndForthAreTheSameToTheLastBit) {
 }
 
 TEST(ViewSim, PushesMoveTheArmUntilLetGo) {
-  const Shipped robot = shipped("ur5e");
+  const TestArm robot = shipped_arm("ur5e");
   ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
   const std::vector<double> before = positions(world);
   const int body = robot.model.raw()->dof_bodyid[robot.arm.joints.back().dof];
@@ -126,7 +118,7 @@ TEST(ViewSim, PushesMoveTheArmUntilLetGo) {
 }
 
 TEST(ViewSim, ResetBeginsAnew) {
-  const Shipped robot = shipped("panda");
+  const TestArm robot = shipped_arm("panda");
   ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
   const Snapshot first = world.sim().snapshot();
   run(world, 30);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
+#include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/model.hpp"
 
 namespace mjarm::testing {
@@ -13,6 +16,20 @@ inline Model shipped(std::string_view name) {
   auto model = Model::load(*file);
   EXPECT_TRUE(model) << (model ? "" : model.error().what);
   return *model;
+}
+
+/// A model and its arm, for tests.
+struct TestArm {
+  Model model;
+  Arm arm;
+};
+
+/// A shipped model and its arm.
+inline TestArm shipped_arm(std::string_view name) {
+  Model model = shipped(name);
+  auto arm = find_arm(model);
+  EXPECT_TRUE(arm) << (arm ? "" : arm.error().what);
+  return {std::move(model), std::move(*arm)};
 }
 
 }  // namespace mjarm::testing
