@@ -25,17 +25,19 @@ std::filesystem::path shipped_folder() {
 Result<std::filesystem::path> find_program_file(const std::string& name_or_path) {
   std::error_code code;
   if (std::filesystem::exists(name_or_path, code)) return name_or_path;
+  return find_shipped_program(name_or_path);
+}
+
+Result<std::filesystem::path> find_shipped_program(const std::string& name) {
+  std::error_code code;
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(shipped_folder(), code)) {
     if (entry.path().extension() != ".yaml") continue;
     names.push_back(entry.path().stem().string());
-    if (names.back() == name_or_path || entry.path().filename() == name_or_path) {
-      return entry.path();
-    }
+    if (names.back() == name || entry.path().filename() == name) return entry.path();
   }
   std::ranges::sort(names);
-  return fail(Errc::bad_input,
-              text(msg::motion_program_no_file, name_or_path) + did_you_mean(name_or_path, names));
+  return fail(Errc::bad_input, text(msg::motion_program_no_file, name) + did_you_mean(name, names));
 }
 
 Result<LoadedProgram> load_program(const std::string& name_or_path) {

@@ -16,6 +16,10 @@ struct LoadedProgram {
   ProgramPlan plan;
 };
 
+/// File of a shipped program, by its name with or without `.yaml`.
+/// @return an error with the nearest name.
+[[nodiscard]] Result<std::filesystem::path> find_shipped_program(const std::string& name);
+
 /// File of a program: a path, or the name of a shipped one, with or without `.yaml`.
 /// @return an error with the nearest name.
 [[nodiscard]] Result<std::filesystem::path> find_program_file(const std::string& name_or_path);

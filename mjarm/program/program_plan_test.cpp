@@ -309,6 +309,18 @@ TEST(ProgramPlan, RepeatsAreUnrolled) {
   EXPECT_THAT(faults_of(long_one), HasSubstr("too_long"));
 }
 
+TEST(ProgramPlan, RepeatsOfNothingThatMovesEndToo) {
+  const auto thrice = [](const std::string& body) {
+    return "  - repeat: {times: 10000, program: [repeat: {times: 10000, program: [repeat: {times: "
+           "10000, program: [" +
+           body + "]}]}]}\n";
+  };
+  EXPECT_THAT(faults_of(plan_text(thrice("set: {speed: 0.1}"))), HasSubstr("too_long"));
+  const ProgramPlan wrong = plan_text(thrice("set: {tool: nothing}"));
+  EXPECT_EQ(wrong.faults.size(), 1U) << faults_of(wrong);
+  EXPECT_THAT(faults_of(wrong), HasSubstr("unknown_name"));
+}
+
 TEST(ProgramPlan, GoesOnAfterAFault) {
   const ProgramPlan plan = plan_text(
       "  - movej: {pos: [0, -0.45, 0.4], euler: [180deg, 0, 0]}\n"

@@ -15,6 +15,7 @@ namespace mjarm::detail {
 namespace {
 
 constexpr std::size_t kMostSteps = 100'000;
+constexpr std::size_t kMostVisits = 10 * kMostSteps;  // of instructions that make no step as well
 
 /// Ends the work on one instruction.
 struct StepFault {
@@ -62,6 +63,7 @@ class StepWriter {
     for (const Instruction& instruction : instructions) {
       if (full_) return;
       try {
+        if (++visits_ > kMostVisits) too_long(instruction.place);
         std::visit([&](const auto& what) { add(what, instruction); }, instruction.what);
       } catch (const StepFault& fault) {
         note(instruction, fault);
@@ -70,6 +72,7 @@ class StepWriter {
   }
 
   void note(const Instruction& instruction, const StepFault& fault) {
+    ++noted_;
     const FilePlace place = fault.place.line > 0 ? fault.place : instruction.place;
     add_fault(out_.faults, {place, std::string(word(instruction)), fault.reason, fault.what,
                             fault.reason == "unknown_name" ? Errc::bad_input : Errc::impossible});
@@ -88,11 +91,13 @@ class StepWriter {
     return step;
   }
 
+  [[noreturn]] void too_long(FilePlace place) {
+    full_ = true;
+    throw StepFault{place, "too_long", text(msg::program_too_long, kMostSteps)};
+  }
+
   void push(Step step) {
-    if (out_.steps.size() >= kMostSteps) {
-      full_ = true;
-      throw StepFault{step.place, "too_long", text(msg::program_too_long, kMostSteps)};
-    }
+    if (out_.steps.size() >= kMostSteps) too_long(step.place);
     out_.steps.push_back(std::move(step));
   }
 
@@ -271,7 +276,10 @@ class StepWriter {
   }
 
   void add(const Repeat& what, const Instruction&) {
-    for (int i = 0; i < what.times && !full_; ++i) add_all(what.body);
+    if (what.body.empty()) return;
+    const std::size_t before = noted_;
+    // What is wrong in a body is wrong in each of its repeats.
+    for (int i = 0; i < what.times && !full_ && noted_ == before; ++i) add_all(what.body);
   }
 
   const Program& program_;
@@ -286,6 +294,8 @@ class StepWriter {
   double share_ = 1;
   double zone_ = 0;
   bool full_ = false;
+  std::size_t visits_ = 0;
+  std::size_t noted_ = 0;  // faults, repeated ones counted
 };
 
 }  // namespace

@@ -8,9 +8,9 @@
 namespace mjarm::app {
 
 Result<Program> demo_program(const std::string& demo) {
-  return find_program_file(demo + ".yaml").and_then([](const std::filesystem::path& file) {
-    return read_program(file);
-  });
+  // Not a file of that name in the working directory.
+  return find_shipped_program(demo).and_then(
+      [](const std::filesystem::path& file) { return read_program(file); });
 }
 
 Result<LoadedProgram> plan_demo(Program program, const DemoOptions& options) {
