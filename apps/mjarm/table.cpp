@@ -5,14 +5,23 @@
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
+namespace {
 
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<int> widths(rows.empty() ? 0 : rows.front().size(), 0);
-  for (const auto& row : rows) {
+std::vector<int> column_widths(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<int> widths;
+  for (const std::vector<std::string>& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
     for (std::size_t i = 0; i < row.size(); ++i) {
       widths[i] = std::max(widths[i], text_width(row[i]));
     }
   }
+  return widths;
+}
+
+}  // namespace
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  const std::vector<int> widths = column_widths(rows);
   std::string result;
   for (const auto& row : rows) {
     std::string line = " ";
@@ -24,13 +33,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string markdown_table(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<int> widths;
-  for (const std::vector<std::string>& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], text_width(row[i]));
-    }
-  }
+  const std::vector<int> widths = column_widths(rows);
   std::string out;
   for (const std::vector<std::string>& row : rows) {
     out += '|';

@@ -59,18 +59,24 @@ Instruction::What read_movec(const YamlNode& node, const NamedThings& named) {
                fields.not_negative("blend", Quantity::length)};
 }
 
-Instruction::What read_ellipse(const YamlNode& node, const NamedThings&) {
-  const Fields fields(node, "ellipse",
-                      {"center", "a", "b", "normal", "euler", "quat", "matrix", "frame", "speed"});
+/// @param a, b  keys of the semi-axes.
+DrawEllipse ellipse_of(const Fields& fields, const char* word, const char* a, const char* b) {
   DrawEllipse out;
+  out.word = word;
   out.center = fields.vector("center", Quantity::length);
   out.normal = fields.vector("normal", Quantity::number);
-  out.a = positive_of(fields.need("a"), fields.named("a"), Quantity::length);
-  out.b = positive_of(fields.need("b"), fields.named("b"), Quantity::length);
+  out.a = positive_of(fields.need(a), fields.named(a), Quantity::length);
+  out.b = positive_of(fields.need(b), fields.named(b), Quantity::length);
   out.R_FT = fields.rotation();
   out.frame = fields.frame();
   out.speed = speed_of(fields);
   return out;
+}
+
+Instruction::What read_ellipse(const YamlNode& node, const NamedThings&) {
+  const Fields fields(node, "ellipse",
+                      {"center", "a", "b", "normal", "euler", "quat", "matrix", "frame", "speed"});
+  return ellipse_of(fields, "ellipse", "a", "b");
 }
 
 Instruction::What read_circle(const YamlNode& node, const NamedThings& named) {
@@ -84,15 +90,7 @@ Instruction::What read_circle(const YamlNode& node, const NamedThings& named) {
                  .speed = speed_of(round),
                  .whole = true};
   }
-  DrawEllipse out;
-  out.word = "circle";
-  out.center = fields.vector("center", Quantity::length);
-  out.normal = fields.vector("normal", Quantity::number);
-  out.a = out.b = positive_of(fields.need("radius"), fields.named("radius"), Quantity::length);
-  out.R_FT = fields.rotation();
-  out.frame = fields.frame();
-  out.speed = speed_of(fields);
-  return out;
+  return ellipse_of(fields, "circle", "radius", "radius");
 }
 
 Instruction::What read_polyline(const YamlNode& node, const NamedThings& named) {

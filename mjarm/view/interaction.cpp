@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "mjarm/view/interaction_internal.hpp"
+#include "mjarm/view/ray.hpp"
 #include "mjarm/view/settings_internal.hpp"
 
 namespace mjarm {
@@ -189,7 +190,7 @@ void Interaction::use_panel(const mjrContext& context) {
 bool Interaction::use_hook(const RawInput& input) {
   if (!hook_ || (drag_ == Drag::none && panels_.owns_event())) return false;
   const PicturePoint point = point_of(input);
-  const SightLine line = sight_line(scene_, point);
+  const Ray line = ray_of_share(eye_of(scene_), point.aspect, point.x, point.y);
   MouseInput::Kind kind = MouseInput::Kind::move;
   if (input.kind == RawInput::Kind::press) kind = MouseInput::Kind::press;
   if (input.kind == RawInput::Kind::release) kind = MouseInput::Kind::release;

@@ -36,22 +36,7 @@ std::string vector_text(const mjtNum* values, int count) {
   return result;
 }
 
-Vector3d vector(const float* values) { return {values[0], values[1], values[2]}; }
-
 }  // namespace
-
-SightLine sight_line(Scene& scene, const PicturePoint& point) {
-  const mjvScene& drawn = scene.raw();
-  const mjvGLCamera camera = mjv_averageCamera(drawn.camera, drawn.camera + 1);
-  const Vector3d forward = vector(camera.forward);
-  const Vector3d up = vector(camera.up);
-  const Vector3d right = forward.cross(up);
-  const double height = camera.frustum_top - camera.frustum_bottom;
-  const double across = camera.frustum_center + (point.x - 0.5) * height * point.aspect;
-  const Vector3d direction = camera.frustum_near * forward +
-                             (camera.frustum_bottom + point.y * height) * up + across * right;
-  return {vector(camera.pos), direction.normalized()};
-}
 
 SelectEvent Picker::select(const PicturePoint& point) {
   scene_.set_dynamics(true);

@@ -16,13 +16,6 @@ struct PicturePoint {
   double aspect = 1;  ///< width over height
 };
 
-/// The line of sight through `point` of the picture that was drawn last.
-struct SightLine {
-  Eigen::Vector3d origin_W;     ///< [m]
-  Eigen::Vector3d direction_W;  ///< unit
-};
-[[nodiscard]] SightLine sight_line(Scene& scene, const PicturePoint& point);
-
 /// What is selected in a scene, and the push on it; kept in the scene's mjvPerturb, which draws
 /// both.
 class Picker {

@@ -6,6 +6,7 @@
 #include "mjarm/view/camera_control_internal.hpp"
 #include "mjarm/view/controls.hpp"
 #include "mjarm/view/pick_internal.hpp"
+#include "mjarm/view/ray.hpp"
 #include "mjarm/view/settings_internal.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -102,7 +103,7 @@ TEST_F(PickTest, PushesTheWayTheMouseGoesAndTwistsAboutTheView) {
 TEST_F(PickTest, SightLinesGoThroughWhatMuJoCoSelects) {
   for (const double x : {0.45, 0.5, 0.55}) {
     const PicturePoint point{x, 0.55, 4.0 / 3};
-    const SightLine line = sight_line(scene_, point);
+    const Ray line = ray_of_share(eye_of(scene_), point.aspect, point.x, point.y);
     const SelectEvent event = picker_.select(point);
     ASSERT_EQ(event.body, 1);
     const Eigen::Vector3d way = event.point_W - line.origin_W;

@@ -48,9 +48,13 @@ Eye eye_of(Scene& scene) {
 }
 
 Ray ray_of_pixel(const Eye& eye, int width, int height, double x, double y) {
-  const double scale = (eye.upper - eye.lower) / height;  // of a pixel
-  const double right = eye.middle + scale * (x - 0.5 * width);
-  const double up = eye.upper - scale * y;
+  return ray_of_share(eye, static_cast<double>(width) / height, x / width, 1 - y / height);
+}
+
+Ray ray_of_share(const Eye& eye, double aspect, double x, double y) {
+  const double height = eye.upper - eye.lower;
+  const double right = eye.middle + height * aspect * (x - 0.5);
+  const double up = eye.lower + height * y;
   const Vector3d aside = right * eye.right_W() + up * eye.up_W;
   if (eye.orthographic) return {eye.p_W + aside, eye.forward_W};
   return {eye.p_W, (eye.forward_W + aside).normalized()};

@@ -47,6 +47,10 @@ struct Eye {
 /// @param x, y  [px] from the left upper corner; the middle of the first pixel is (0.5, 0.5).
 [[nodiscard]] Ray ray_of_pixel(const Eye& eye, int width, int height, double x, double y);
 
+/// The same through shares of the picture's width and height, from its lower left corner.
+/// @param aspect  width over height.
+[[nodiscard]] Ray ray_of_share(const Eye& eye, double aspect, double x, double y);
+
 /// The place of a point of the world in a picture, as above; none behind the eye.
 [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of_point(const Eye& eye, int width, int height,
                                                             const Eigen::Vector3d& p_W);
