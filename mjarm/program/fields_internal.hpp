@@ -9,7 +9,7 @@
 
 #include "mjarm/core/units.hpp"
 #include "mjarm/program/program.hpp"
-#include "mjarm/program/yaml_tree_internal.hpp"
+#include "mjarm/program/yaml_tree.hpp"
 
 namespace mjarm::detail {
 

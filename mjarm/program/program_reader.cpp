@@ -13,7 +13,6 @@ namespace {
 using detail::Fields;
 using detail::NamedThings;
 using detail::ReadFault;
-using detail::YamlNode;
 
 const YamlNode& map_at(const Fields& fields, std::string_view key) {
   const YamlNode& node = fields.need(key);
@@ -89,12 +88,12 @@ Program read(const YamlNode& root) {
 }  // namespace
 
 Result<Program> parse_program(const std::string& content, const std::string& name) {
-  const Result<YamlNode> root = detail::read_yaml(content, name);
+  const Result<YamlNode> root = read_yaml(content, name);
   if (!root) return fail(root.error());
   try {
     return read(*root);
   } catch (const ReadFault& fault) {
-    return fail(Errc::bad_input, detail::at_place(name, fault.place, fault.what));
+    return fail(Errc::bad_input, at_place(name, fault.place, fault.what));
   }
 }
 

@@ -1,7 +1,7 @@
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/program_plan.hpp"
-#include "mjarm/program/yaml_tree_internal.hpp"
+#include "mjarm/program/yaml_tree.hpp"
 
 namespace mjarm {
 namespace {
@@ -20,7 +20,7 @@ Result<ProgramRobot> load_program_robot(const Program& program, const std::files
   const bool scene = !program.scene.empty();
   const FilePlace place = scene ? program.scene_place : program.robot_place;
   const auto fault = [&](const Error& error, FilePlace at) {
-    return fail(error.code, detail::at_place(file.string(), at, error.what));
+    return fail(error.code, at_place(file.string(), at, error.what));
   };
   const Result<std::filesystem::path> found = find(scene ? program.scene : program.robot, file);
   if (!found) return fault(found.error(), place);

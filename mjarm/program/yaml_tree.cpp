@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "mjarm/core/messages/program.hpp"
-#include "mjarm/program/yaml_tree_internal.hpp"
+#include "mjarm/program/yaml_tree.hpp"
 
-namespace mjarm::detail {
+namespace mjarm {
 namespace {
 
 constexpr std::size_t kMostLevels = 32;
@@ -164,4 +164,4 @@ Result<YamlNode> read_yaml(const std::string& content, std::string_view name) {
   }
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm

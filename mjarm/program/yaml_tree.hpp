@@ -8,7 +8,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/program/program.hpp"
 
-namespace mjarm::detail {
+namespace mjarm {
 
 /// A YAML document as a tree that knows where everything stands, without yaml-cpp's headers.
 struct YamlNode {
@@ -31,4 +31,4 @@ struct YamlNode {
 /// `name:line:column: what`; the place is left out where there is none.
 [[nodiscard]] std::string at_place(std::string_view name, FilePlace place, std::string_view what);
 
-}  // namespace mjarm::detail
+}  // namespace mjarm
