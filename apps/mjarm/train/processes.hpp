@@ -1,0 +1,16 @@
+#pragma once
+
+#include <memory>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/rl/ranks.hpp"
+
+namespace mjarm::app {
+
+/// Joins the processes that one `mpirun` started, once in a process; they part when it is
+/// destroyed.
+/// @return null where this process is alone; an error where it is one of several and mjarm was
+///         built without MPI (CMake option MJARM_MPI), or MPI does not start.
+[[nodiscard]] Result<std::unique_ptr<rl::Ranks>> join_processes();
+
+}  // namespace mjarm::app

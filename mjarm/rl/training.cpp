@@ -1,0 +1,193 @@
+#include "mjarm/rl/training.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjarm/rl/progress_log_internal.hpp"
+#include "mjarm/rl/reach_env.hpp"
+#include "mjarm/rl/safetensors.hpp"
+
+namespace mjarm::rl {
+namespace {
+
+constexpr const char* kBestEvaluation = "training.best";
+constexpr const char* kLastEvaluation = "training.last";
+
+// An evaluation in a checkpoint: what is told of it, without the single distances.
+using Numbers = std::array<double Evaluation::*, 11>;
+constexpr Numbers kNumbers = {
+    &Evaluation::within_5cm, &Evaluation::within_2cm,   &Evaluation::within_1cm,
+    &Evaluation::within_5mm, &Evaluation::median,       &Evaluation::p95,
+    &Evaluation::max,        &Evaluation::steps,        &Evaluation::steps_to_2cm,
+    &Evaluation::turn_p95,   &Evaluation::touched};
+
+void store(const std::optional<Evaluation>& evaluation, const char* name, TensorSet& set) {
+  if (!evaluation) return;
+  std::vector<double> values = {static_cast<double>(evaluation->episodes), evaluation->turn_median};
+  for (const auto number : kNumbers) values.push_back((*evaluation).*number);
+  set.tensors[name] = {{static_cast<std::int64_t>(values.size())}, std::move(values)};
+}
+
+std::optional<Evaluation> stored(const TensorSet& set, const char* name) {
+  const auto found = set.tensors.find(name);
+  if (found == set.tensors.end()) return std::nullopt;
+  const auto* values = std::get_if<std::vector<double>>(&found->second.values);
+  if (values == nullptr || values->size() != kNumbers.size() + 2) return std::nullopt;
+  Evaluation evaluation;
+  evaluation.episodes = static_cast<int>((*values)[0]);
+  evaluation.turn_median = (*values)[1];
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) {
+    evaluation.*kNumbers[i] = (*values)[i + 2];
+  }
+  return evaluation;
+}
+
+std::string last_name(int rank) {
+  return rank == 0 ? Training::kLast : "last.rank" + std::to_string(rank) + ".safetensors";
+}
+
+}  // namespace
+
+double score(const Evaluation& evaluation) noexcept {
+  const double shares = evaluation.within_5cm + evaluation.within_2cm + evaluation.within_1cm +
+                        evaluation.within_5mm;
+  const double near = std::isfinite(evaluation.median) ? std::exp(-evaluation.median / 0.01) : 0;
+  return shares + near / (2 * std::max(evaluation.episodes, 1));
+}
+
+struct Training::State {
+  State(const Model& task_model, const TrainingOptions& how, ReachEnv made_env)
+      : model(task_model), options(how), env(std::move(made_env)) {}
+
+  [[nodiscard]] int rank() const { return ranks == nullptr ? 0 : ranks->rank(); }
+  [[nodiscard]] bool is_time_to_evaluate(std::int64_t steps_before) const;
+  [[nodiscard]] bool is_good_enough() const;
+  [[nodiscard]] Result<void> evaluate_now(TrainingStep& step);
+  [[nodiscard]] Result<void> save(const TrainingStep& step);
+  [[nodiscard]] Result<void> save_best();
+  [[nodiscard]] bool all_agree_to_stop();
+
+  const Model& model;
+  TrainingOptions options;
+  ReachEnv env;
+  std::optional<PpoTrainer> trainer;
+  Ranks* ranks = nullptr;
+  std::filesystem::path folder;
+  std::map<std::string, std::string> metadata;
+  std::optional<ProgressLog> log;  ///< of rank 0
+  std::optional<Evaluation> last, best;
+  bool stopped = false;
+};
+
+bool Training::State::is_time_to_evaluate(std::int64_t steps_before) const {
+  const std::int64_t every = options.evaluate_every;
+  return trainer->steps() / every != steps_before / every ||
+         trainer->steps() >= options.ppo.total_steps;
+}
+
+bool Training::State::is_good_enough() const {
+  if (options.stop_share <= 0 || !last) return false;
+  const auto near = std::ranges::count_if(
+      last->distances, [&](double distance) { return distance <= options.stop_within; });
+  return static_cast<double>(near) >= options.stop_share * last->episodes;
+}
+
+Result<void> Training::State::evaluate_now(TrainingStep& step) {
+  Result<Evaluation> found =
+      evaluate(model, options.task, trainer->policy(), options.evaluation);
+  if (!found) return fail(std::move(found.error()));
+  last = std::move(*found);
+  step.evaluation = last;
+  step.best = !best || score(*last) > score(*best);
+  if (step.best) best = last;
+  stopped = is_good_enough();
+  return {};
+}
+
+Result<void> Training::State::save_best() {
+  TensorSet set = trainer->policy().tensors();
+  set.metadata.insert(metadata.begin(), metadata.end());
+  set.metadata["steps"] = std::to_string(trainer->steps());
+  store(best, kBestEvaluation, set);
+  return save_safetensors(folder / kBest, set);
+}
+
+Result<void> Training::State::save(const TrainingStep& step) {
+  if (step.best) {
+    if (auto saved = save_best(); !saved) return saved;
+  }
+  if (log) {
+    if (auto added = log->add(step); !added) return added;
+  }
+  TensorSet set = trainer->checkpoint();
+  set.metadata.insert(metadata.begin(), metadata.end());
+  store(best, kBestEvaluation, set);
+  store(last, kLastEvaluation, set);
+  return save_safetensors(folder / last_name(rank()), set);
+}
+
+bool Training::State::all_agree_to_stop() {
+  if (ranks == nullptr) return stopped;
+  std::array<double, 1> stops = {stopped ? 1.0 : 0.0};
+  ranks->sum(std::span<double>(stops));
+  return stops[0] > 0;
+}
+
+Training::Training(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Training::~Training() = default;
+Training::Training(Training&&) noexcept = default;
+Training& Training::operator=(Training&&) noexcept = default;
+
+Result<Training> Training::create(const Model& model, const TrainingOptions& options,
+                                  const std::filesystem::path& folder,
+                                  std::map<std::string, std::string> metadata, Ranks* ranks) {
+  Result<ReachEnv> env = ReachEnv::make(model, options.task);
+  if (!env) return fail(std::move(env.error()));
+  auto state = std::make_unique<State>(model, options, std::move(*env));
+  state->folder = folder;
+  state->metadata = std::move(metadata);
+  state->ranks = ranks;
+  Result<PpoTrainer> trainer = PpoTrainer::create(state->env, options.ppo, ranks);
+  if (!trainer) return fail(std::move(trainer.error()));
+  state->trainer = std::move(*trainer);
+  if (state->rank() == 0) state->log.emplace(folder / kProgress, folder / kEvents);
+  return Training(std::move(state));
+}
+
+Result<void> Training::resume() {
+  const Result<TensorSet> set = load_safetensors(state_->folder / last_name(state_->rank()));
+  if (!set) return fail(set.error());
+  if (auto restored = state_->trainer->restore(*set); !restored) return restored;
+  state_->best = stored(*set, kBestEvaluation);
+  state_->last = stored(*set, kLastEvaluation);
+  return state_->log ? state_->log->resume(state_->trainer->iterations()) : Result<void>();
+}
+
+bool Training::done() const noexcept {
+  return state_->stopped || state_->trainer->steps() >= state_->options.ppo.total_steps;
+}
+
+Result<TrainingStep> Training::advance() {
+  const std::int64_t before = state_->trainer->steps();
+  Result<IterationReport> iteration = state_->trainer->iterate();
+  if (!iteration) return fail(std::move(iteration.error()));
+  TrainingStep step{*iteration};
+  if (state_->is_time_to_evaluate(before)) {
+    if (state_->rank() == 0) {
+      if (auto done = state_->evaluate_now(step); !done) return fail(std::move(done.error()));
+    }
+    state_->stopped = state_->all_agree_to_stop();
+  }
+  if (auto saved = state_->save(step); !saved) return fail(std::move(saved.error()));
+  return step;
+}
+
+const PpoTrainer& Training::trainer() const noexcept { return *state_->trainer; }
+const std::optional<Evaluation>& Training::last_evaluation() const noexcept { return state_->last; }
+const std::optional<Evaluation>& Training::best_evaluation() const noexcept { return state_->best; }
+
+}  // namespace mjarm::rl
