@@ -11,6 +11,7 @@
 #include "apps/mjarm/view_host.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/install.hpp"
+#include "mjarm/core/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"
@@ -113,6 +114,7 @@ std::span<const Demo> demos() {
       {"singularity", msg::demo_about_singularity, run_singularity},
       {"flip", msg::demo_about_flip, run_flip},
       {"square", msg::demo_about_square, run_square},
+      {"reach", msg::train_about_reach, run_reach},
   };
   return kDemos;
 }

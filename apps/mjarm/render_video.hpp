@@ -27,6 +27,9 @@ class VideoOfRun {
   /// Whether `step` would take a frame now; spares making an overlay for nothing.
   [[nodiscard]] bool is_due(const Sim& sim) const;
 
+  /// Another run begins here, whatever its clock says: the next frame is due now.
+  void begin_again(const Sim& sim) { start_ = sim.time() - frames() / options_.fps; }
+
   /// Takes the frames that are due, the first at the time of the first call. After each step.
   /// @return false where the user pressed Ctrl-C or a frame could not be kept: stop then, `finish`
   ///         tells why.

@@ -36,6 +36,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/run.inc"
 #include "mjarm/core/messages/sim.inc"
 #include "mjarm/core/messages/target.inc"
+#include "mjarm/core/messages/train.inc"
 #include "mjarm/core/messages/trajectory.inc"
 #include "mjarm/core/messages/view.inc"
 #include "mjarm/core/messages/workspace.inc"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -26,10 +27,10 @@ struct ReportedDip {
   std::string joint;
 };
 
-/// A figure or a word that one demo alone has.
+/// A figure, a word or some figures by name that one demo alone has.
 struct Fact {
   std::string name;  ///< its key in report.json
-  std::variant<double, std::string> value;
+  std::variant<double, std::string, std::map<std::string, double>> value;
 };
 
 /// One motion of a program.

@@ -59,6 +59,13 @@ double score(const Evaluation& evaluation) noexcept {
   return shares + near / (2 * std::max(evaluation.episodes, 1));
 }
 
+double share_within(const Evaluation& evaluation, double distance) noexcept {
+  if (distance >= 0.05) return evaluation.within_5cm;
+  if (distance >= 0.02) return evaluation.within_2cm;
+  if (distance >= 0.01) return evaluation.within_1cm;
+  return distance >= 0.005 ? evaluation.within_5mm : 0;
+}
+
 struct Training::State {
   State(const Model& task_model, const TrainingOptions& how, ReachEnv made_env)
       : model(task_model), options(how), env(std::move(made_env)) {}
@@ -69,6 +76,7 @@ struct Training::State {
   [[nodiscard]] Result<void> evaluate_now(TrainingStep& step);
   [[nodiscard]] Result<void> save(const TrainingStep& step);
   [[nodiscard]] Result<void> save_best();
+  [[nodiscard]] Result<void> add_row(const TrainingStep& step);
   [[nodiscard]] bool all_agree_to_stop();
 
   const Model& model;
@@ -78,9 +86,10 @@ struct Training::State {
   Ranks* ranks = nullptr;
   std::filesystem::path folder;
   std::map<std::string, std::string> metadata;
-  std::optional<ProgressLog> log;  ///< of rank 0
+  std::optional<detail::ProgressLog> log;  ///< of rank 0
   std::optional<Evaluation> last, best;
   bool stopped = false;
+  std::int64_t resumed_at = kNoStep;  ///< steps of the checkpoint
 };
 
 bool Training::State::is_time_to_evaluate(std::int64_t steps_before) const {
@@ -90,10 +99,8 @@ bool Training::State::is_time_to_evaluate(std::int64_t steps_before) const {
 }
 
 bool Training::State::is_good_enough() const {
-  if (options.stop_share <= 0 || !last) return false;
-  const auto near = std::ranges::count_if(
-      last->distances, [&](double distance) { return distance <= options.stop_within; });
-  return static_cast<double>(near) >= options.stop_share * last->episodes;
+  return options.stop_share > 0 && last &&
+         share_within(*last, options.stop_within) >= options.stop_share;
 }
 
 Result<void> Training::State::evaluate_now(TrainingStep& step) {
@@ -120,14 +127,23 @@ Result<void> Training::State::save(const TrainingStep& step) {
   if (step.best) {
     if (auto saved = save_best(); !saved) return saved;
   }
-  if (log) {
-    if (auto added = log->add(step); !added) return added;
+  if (rank() == 0) {
+    if (auto logged = add_row(step); !logged) return logged;
   }
   TensorSet set = trainer->checkpoint();
   set.metadata.insert(metadata.begin(), metadata.end());
   store(best, kBestEvaluation, set);
   store(last, kLastEvaluation, set);
   return save_safetensors(folder / last_name(rank()), set);
+}
+
+Result<void> Training::State::add_row(const TrainingStep& step) {
+  if (!log) {  // opened so late that a training that cannot begin leaves old files alone
+    auto opened = detail::ProgressLog::open(folder, resumed_at);
+    if (!opened) return fail(std::move(opened.error()));
+    log = std::move(*opened);
+  }
+  return log->add(step);
 }
 
 bool Training::State::all_agree_to_stop() {
@@ -154,17 +170,20 @@ Result<Training> Training::create(const Model& model, const TrainingOptions& opt
   Result<PpoTrainer> trainer = PpoTrainer::create(state->env, options.ppo, ranks);
   if (!trainer) return fail(std::move(trainer.error()));
   state->trainer = std::move(*trainer);
-  if (state->rank() == 0) state->log.emplace(folder / kProgress, folder / kEvents);
   return Training(std::move(state));
 }
 
-Result<void> Training::resume() {
-  const Result<TensorSet> set = load_safetensors(state_->folder / last_name(state_->rank()));
+Result<void> Training::resume(const std::filesystem::path& checkpoint) {
+  const int rank = state_->rank();
+  const Result<TensorSet> set = load_safetensors(
+      rank == 0 ? checkpoint : checkpoint.parent_path() / last_name(rank));
   if (!set) return fail(set.error());
   if (auto restored = state_->trainer->restore(*set); !restored) return restored;
   state_->best = stored(*set, kBestEvaluation);
   state_->last = stored(*set, kLastEvaluation);
-  return state_->log ? state_->log->resume(state_->trainer->iterations()) : Result<void>();
+  state_->stopped = state_->is_good_enough();
+  state_->resumed_at = state_->trainer->steps();
+  return {};
 }
 
 bool Training::done() const noexcept {

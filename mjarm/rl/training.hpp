@@ -22,7 +22,7 @@ struct TrainingOptions {
   PpoOptions ppo = {};                    ///< `total_steps` is where the training ends at the latest
   std::int64_t evaluate_every = 50000;    ///< steps between evaluations, > 0; the end has one too
   EvaluateOptions evaluation = {};        ///< of the mean actions, on goals never trained on
-  double stop_within = 0.02;              ///< [m] > 0
+  double stop_within = 0.02;              ///< [m] see `share_within`
   double stop_share = 0;                  ///< ends once so many goals are reached within
                                           ///< `stop_within`, 0 to 1; 0: never
 };
@@ -37,6 +37,10 @@ struct TrainingStep {
 /// Orders evaluations: the sum of the four shares, and below that, so that small steps count, how
 /// near the middle one came.
 [[nodiscard]] double score(const Evaluation& evaluation) noexcept;
+
+/// Share of the goals reached within the largest of 5, 2, 1 and 0.5 cm that is not above `distance`
+/// [m]; 0 below.
+[[nodiscard]] double share_within(const Evaluation& evaluation, double distance) noexcept;
 
 /// A training with its files in one folder, each of which is whole at any time:
 ///
@@ -66,9 +70,9 @@ class Training {
   Training(Training&&) noexcept;
   Training& operator=(Training&&) noexcept;
 
-  /// Goes on from the last checkpoint in the folder, as if it had never stopped: with the same
-  /// options to the last bit. Call before anything else.
-  [[nodiscard]] Result<void> resume();
+  /// Goes on from a `last.safetensors`, beside which those of the other ranks stand, as if it had
+  /// never stopped: with the same options to the last bit. Call before anything else.
+  [[nodiscard]] Result<void> resume(const std::filesystem::path& checkpoint);
 
   /// True at the end: all steps are done, or the policy is good enough.
   [[nodiscard]] bool done() const noexcept;

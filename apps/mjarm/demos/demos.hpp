@@ -49,5 +49,6 @@ Result<Report> run_letters(const DemoOptions& options);
 Result<Report> run_singularity(const DemoOptions& options);
 Result<Report> run_flip(const DemoOptions& options);
 Result<Report> run_square(const DemoOptions& options);
+Result<Report> run_reach(const DemoOptions& options);
 
 }  // namespace mjarm::app

@@ -13,6 +13,7 @@ namespace {
 
 constexpr auto kRest = std::chrono::microseconds(500);
 constexpr Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
+constexpr Rgba kGoal = {0.15F, 0.70F, 0.30F, 0.6F};
 
 }  // namespace
 
@@ -38,8 +39,15 @@ void Show::add_points(std::span<const Pose> X_WT, std::size_t every) {
 
 void Show::add_line(std::span<const Pose> X_WT) { add_planned_path(planned_, X_WT); }
 
+void Show::begin_goal(const Sim& sim, const Eigen::Vector3d& p_W) {
+  goal_ = OverlaySphere{.p_W = p_W, .radius = 0.02, .color = kGoal};
+  trail_.clear();
+  if (video_) video_->begin_again(sim);
+}
+
 Overlay Show::overlay() const {
   Overlay all = planned_;
+  if (goal_) all.spheres.push_back(*goal_);
   trail_.draw(all);
   return all;
 }

@@ -39,6 +39,9 @@ class Show {
   void set_balls(bool on) { trail_.set_balls(on); }
   /// The way of the tool as it is planned, dashed.
   void add_line(std::span<const Pose> X_WT);
+  /// A green ball at `p_W` [m], in the place of the one before, and a new trail: another run to
+  /// another goal begins, which may set the clock back.
+  void begin_goal(const Sim& sim, const Eigen::Vector3d& p_W);
   /// Live plots of the tool: its path from above, and its coordinates over time.
   void plot_tool();
 
@@ -87,6 +90,7 @@ class Show {
   std::optional<VideoOfRun> video_;
   Trail trail_{{.most_points = 10000}};
   Overlay planned_;
+  std::optional<OverlaySphere> goal_;
   std::vector<LivePlot> plots_;
 };
 
