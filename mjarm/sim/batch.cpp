@@ -258,6 +258,7 @@ Result<BatchSim> BatchSim::make(const Model& model, const Arm& arm, int count, i
 
 int BatchSim::count() const noexcept { return impl_->count; }
 const Model& BatchSim::model() const noexcept { return impl_->model; }
+int BatchSim::mocaps() const noexcept { return static_cast<int>(impl_->m().nmocap); }
 
 void BatchSim::place(std::span<const int> worlds, std::span<const double> qpos,
                      std::span<const double> ctrl, std::span<const double> mocap) {

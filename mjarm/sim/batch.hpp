@@ -35,6 +35,7 @@ class BatchSim {
 
   [[nodiscard]] int count() const noexcept;
   [[nodiscard]] const Model& model() const noexcept;
+  [[nodiscard]] int mocaps() const noexcept;  ///< mocap bodies of a world
 
   /// Puts some worlds into the initial state of the model but for what is given here, at rest.
   /// @param worlds  their numbers, rising
