@@ -34,6 +34,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/reach.inc"
 #include "mjarm/core/messages/render.inc"
 #include "mjarm/core/messages/render_command.inc"
+#include "mjarm/core/messages/rl.inc"
 #include "mjarm/core/messages/run.inc"
 #include "mjarm/core/messages/sim.inc"
 #include "mjarm/core/messages/target.inc"

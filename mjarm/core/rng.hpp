@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace mjarm {
@@ -10,6 +11,10 @@ class Rng {
  public:
   /// `stream` separates independent sequences of one seed (one a thread, one an environment).
   explicit Rng(std::uint64_t seed, std::uint64_t stream = 0) noexcept;
+  /// Goes on where another one with this state() stood; not all words may be 0.
+  explicit Rng(const std::array<std::uint64_t, 4>& state) noexcept : state_(state) {}
+  /// Everything that decides what comes next.
+  [[nodiscard]] const std::array<std::uint64_t, 4>& state() const noexcept { return state_; }
   /// 64 random bits.
   std::uint64_t next() noexcept;
   /// Uniform in [0, 1).
@@ -22,7 +27,7 @@ class Rng {
   double normal() noexcept;
 
  private:
-  std::uint64_t state_[4];
+  std::array<std::uint64_t, 4> state_;
 };
 
 }  // namespace mjarm

@@ -31,6 +31,13 @@ TEST(Rng, SameSeedSameNumbers) {
   EXPECT_EQ(same_stream, 0);
 }
 
+TEST(Rng, GoesOnFromItsState) {
+  Rng rng(5, 3);
+  for (int i = 0; i < 100; ++i) rng.normal();
+  Rng other(rng.state());
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(rng.next(), other.next());
+}
+
 TEST(Rng, StreamsDoNotMeet) {
   std::set<std::uint64_t> firsts;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/rl/normaliser.hpp"
 #include "mjarm/rl/tensor_set.hpp"
 
 namespace mjarm::rl {
@@ -15,10 +16,13 @@ namespace mjarm::rl {
 /// What stands between two layers.
 enum class Activation { tanh, relu };
 
+/// "tanh" or "relu".
+[[nodiscard]] std::string_view name(Activation activation) noexcept;
+
 /// Sizes of an actor and a critic that share nothing.
 struct PolicyShape {
-  int observations = 0;                   ///< > 0
-  int actions = 0;                        ///< > 0
+  int observations = 0;                  ///< > 0
+  int actions = 0;                       ///< > 0
   std::vector<int> actor = {256, 256};   ///< hidden layers
   std::vector<int> critic = {256, 256};  ///< hidden layers
   Activation activation = Activation::tanh;
@@ -35,17 +39,6 @@ struct ParameterBlock {
   std::size_t offset = 0;
 };
 
-/// Shifts and scales observations to about N(0, 1), by what was seen so far. With `count` 0 it does
-/// nothing, not even clip.
-struct Normaliser {
-  Eigen::VectorXd mean;
-  Eigen::VectorXd variance;
-  double count = 0;
-  double clip = 10;  ///< > 0, of the normalised values
-
-  [[nodiscard]] bool operator==(const Normaliser&) const = default;
-};
-
 /// A Gaussian policy and its value function as plain numbers: float32 parameters of two multilayer
 /// perceptrons and the logarithms of the standard deviations, and the normaliser before both.
 class Policy {
@@ -54,9 +47,13 @@ class Policy {
   explicit Policy(PolicyShape shape);
 
   [[nodiscard]] const PolicyShape& shape() const noexcept { return shape_; }
+  /// The actor's layers, the critic's, "log_std"; weights before biases, without gaps.
   [[nodiscard]] const std::vector<ParameterBlock>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] std::span<float> parameters() noexcept { return parameters_; }
   [[nodiscard]] std::span<const float> parameters() const noexcept { return parameters_; }
+
+  /// (actions,) logarithms of the standard deviations, which no observation changes.
+  [[nodiscard]] std::span<const float> log_std() const noexcept;
 
   /// The mean action, not clamped.
   /// @param observation (observations,), not normalised.  @return (actions,)

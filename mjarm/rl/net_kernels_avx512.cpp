@@ -1,0 +1,7 @@
+#include "mjarm/rl/net_loops_internal.hpp"
+
+namespace mjarm::rl::detail {
+
+const NetKernels kNetAvx512 = kLoops;
+
+}  // namespace mjarm::rl::detail

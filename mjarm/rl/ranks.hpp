@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+
+namespace mjarm::rl {
+
+/// Processes that train one policy together, each on environments of its own: sums over all of
+/// them. Every rank makes the same calls in the same order. A sum over one rank changes nothing.
+class Ranks {
+ public:
+  virtual ~Ranks() = default;
+
+  [[nodiscard]] virtual int rank() const noexcept = 0;  ///< of this process, from 0
+  [[nodiscard]] virtual int size() const noexcept = 0;  ///< how many, >= 1
+
+  /// Replaces each value by its sum over all ranks: the same bytes on each of them.
+  virtual void sum(std::span<double> values) = 0;
+  virtual void sum(std::span<float> values) = 0;
+};
+
+}  // namespace mjarm::rl
