@@ -31,6 +31,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/path.inc"
 #include "mjarm/core/messages/path_command.inc"
 #include "mjarm/core/messages/program.inc"
+#include "mjarm/core/messages/reach.inc"
 #include "mjarm/core/messages/render.inc"
 #include "mjarm/core/messages/render_command.inc"
 #include "mjarm/core/messages/rl.inc"

@@ -1,5 +1,6 @@
 #include <cassert>
 
+#include "mjarm/core/messages/sim.hpp"
 #include "mjarm/sim/raw_internal.hpp"
 
 namespace mjarm::raw {
@@ -41,6 +42,23 @@ std::string geom_name(const mjModel& m, int geom) {
   const char* name = mj_id2name(&m, mjOBJ_GEOM, geom);
   if (name == nullptr) name = mj_id2name(&m, mjOBJ_BODY, m.geom_bodyid[geom]);
   return name != nullptr ? name : "geom " + std::to_string(geom);
+}
+
+bool unstable(const mjWarningStat* warnings) {
+  return warnings[mjWARN_BADQPOS].number > 0 || warnings[mjWARN_BADQVEL].number > 0 ||
+         warnings[mjWARN_BADQACC].number > 0;
+}
+
+std::string instability(const mjModel& m, const mjWarningStat* warnings, double time) {
+  std::string joint;
+  if (warnings[mjWARN_BADQACC].number > 0) {
+    joint = dof_name(m, warnings[mjWARN_BADQACC].lastinfo);
+  } else if (warnings[mjWARN_BADQVEL].number > 0) {
+    joint = dof_name(m, warnings[mjWARN_BADQVEL].lastinfo);
+  } else {
+    joint = qpos_name(m, warnings[mjWARN_BADQPOS].lastinfo);
+  }
+  return text(msg::sim_unstable, time, joint, m.opt.timestep);
 }
 
 }  // namespace mjarm::raw

@@ -26,4 +26,10 @@ using Data = std::unique_ptr<mjData, DeleteData>;
 /// Geom name, else the name of its body, else "geom 7"; "flex" for what is no geom.
 [[nodiscard]] std::string geom_name(const mjModel& m, int geom);
 
+/// True where MuJoCo counted a bad number in the state or its change.
+/// @param warnings  all mjNWARNING of one world.
+[[nodiscard]] bool unstable(const mjWarningStat* warnings);
+/// What went wrong at `time` [s] in a world that is unstable, naming the joint.
+[[nodiscard]] std::string instability(const mjModel& m, const mjWarningStat* warnings, double time);
+
 }  // namespace mjarm::raw

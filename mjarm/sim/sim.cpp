@@ -59,10 +59,7 @@ struct Sim::Impl {
   [[nodiscard]] const mjModel& m() const { return *model.raw(); }
   [[nodiscard]] mjData& d() const { return *data; }
 
-  [[nodiscard]] bool unstable() const {
-    return d().warning[mjWARN_BADQPOS].number > 0 || d().warning[mjWARN_BADQVEL].number > 0 ||
-           d().warning[mjWARN_BADQACC].number > 0;
-  }
+  [[nodiscard]] bool unstable() const { return raw::unstable(d().warning); }
 
   /// Runs `work`, in which MuJoCo may give up; then the world is of no use until it is reset.
   template <class Work>
@@ -84,17 +81,9 @@ struct Sim::Impl {
 
   /// What went wrong at `time`, and back to the initial state, whether or not MuJoCo went there.
   Error instability(double time) {
-    const auto& warning = d().warning;
-    std::string joint;
-    if (warning[mjWARN_BADQACC].number > 0) {
-      joint = raw::dof_name(m(), warning[mjWARN_BADQACC].lastinfo);
-    } else if (warning[mjWARN_BADQVEL].number > 0) {
-      joint = raw::dof_name(m(), warning[mjWARN_BADQVEL].lastinfo);
-    } else {
-      joint = raw::qpos_name(m(), warning[mjWARN_BADQPOS].lastinfo);
-    }
+    std::string what = raw::instability(m(), d().warning, time);
     reset();
-    return {Errc::impossible, text(msg::sim_unstable, time, joint, m().opt.timestep)};
+    return {Errc::impossible, std::move(what)};
   }
 
   [[nodiscard]] std::vector<Contact> contacts(int root) const {

@@ -1,0 +1,132 @@
+#include "mjarm/rl/evaluate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "mjarm/core/messages/reach.hpp"
+#include "mjarm/rl/reach_env.hpp"
+
+namespace mjarm::rl {
+namespace {
+
+constexpr double kNear = 0.02;  // [m] of steps_to_2cm
+constexpr double kLost = std::numeric_limits<double>::infinity();
+
+/// The first episode of every copy, as it goes on.
+struct Trial {
+  bool over = false;
+  int steps = 0;
+  int steps_to_near = 0;  ///< 0: not yet
+  bool touched = false;
+  double distance = kLost;
+  double turn = 0;
+};
+
+/// Takes note of the step just done; returns how many trials ended in it.
+int follow(const ReachEnv& env, std::vector<Trial>& trials) {
+  int ended = 0;
+  for (int i = 0; i < env.count(); ++i) {
+    Trial& trial = trials[i];
+    if (trial.over) continue;
+    ++trial.steps;
+    trial.touched = trial.touched || env.touching()[i] != 0;
+    if (trial.steps_to_near == 0 && env.distances()[i] < kNear) trial.steps_to_near = trial.steps;
+    if (env.terminated()[i] == 0 && env.truncated()[i] == 0) continue;
+    trial.over = true;
+    ++ended;
+    const double distance = env.final_distances()[i];
+    if (!std::isnan(distance)) trial.distance = distance;
+    trial.turn = env.final_turns()[i];
+  }
+  return ended;
+}
+
+/// The smallest of `sorted` that so large a share of them does not exceed.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+double share_within(const std::vector<double>& sorted, double distance) {
+  const auto end = std::upper_bound(sorted.begin(), sorted.end(), distance);
+  return static_cast<double>(end - sorted.begin()) / static_cast<double>(sorted.size());
+}
+
+Evaluation summary(const std::vector<Trial>& trials) {
+  Evaluation e;
+  e.episodes = static_cast<int>(trials.size());
+  const double n = e.episodes;
+  std::vector<double> turns;
+  int near_ones = 0;
+  for (const Trial& trial : trials) {
+    e.distances.push_back(trial.distance);
+    turns.push_back(trial.turn);
+    e.steps += trial.steps / n;
+    e.touched += trial.touched ? 1 / n : 0;
+    e.steps_to_2cm += trial.steps_to_near;
+    near_ones += trial.steps_to_near > 0 ? 1 : 0;
+  }
+  e.steps_to_2cm /= std::max(near_ones, 1);
+  std::vector<double> sorted = e.distances;
+  std::sort(sorted.begin(), sorted.end());
+  std::sort(turns.begin(), turns.end());
+  e.within_5cm = share_within(sorted, 0.05);
+  e.within_2cm = share_within(sorted, 0.02);
+  e.within_1cm = share_within(sorted, 0.01);
+  e.within_5mm = share_within(sorted, 0.005);
+  e.median = quantile(sorted, 0.5);
+  e.p95 = quantile(sorted, 0.95);
+  e.max = sorted.back();
+  e.turn_median = quantile(turns, 0.5);
+  e.turn_p95 = quantile(turns, 0.95);
+  return e;
+}
+
+Result<ReachEnv> judged_env(const Model& model, ReachOptions options, const EvaluateOptions& how) {
+  options.environments = how.episodes;
+  options.held_out = true;
+  auto env = ReachEnv::make(model, options);
+  if (!env) return env;
+  if (auto begun = env->reset(how.seed); !begun) return fail(std::move(begun.error()));
+  return env;
+}
+
+Result<Evaluation> run(ReachEnv& env, const ActFunction& act) {
+  std::vector<Trial> trials(env.count());
+  std::vector<float> actions(static_cast<std::size_t>(env.count()) * env.action_size());
+  for (int left = env.count(); left > 0; left -= follow(env, trials)) {
+    act(env.observations(), actions);
+    if (auto stepped = env.step(actions); !stepped) return fail(std::move(stepped.error()));
+  }
+  return summary(trials);
+}
+
+}  // namespace
+
+Result<Evaluation> evaluate(const Model& model, const ReachOptions& options, const ActFunction& act,
+                            const EvaluateOptions& how) {
+  auto env = judged_env(model, options, how);
+  if (!env) return fail(std::move(env.error()));
+  return run(*env, act);
+}
+
+Result<Evaluation> evaluate(const Model& model, const ReachOptions& options, const Policy& policy,
+                            const EvaluateOptions& how) {
+  auto env = judged_env(model, options, how);
+  if (!env) return fail(std::move(env.error()));
+  const int in = env->observation_size(), out = env->action_size();
+  if (policy.shape().observations != in || policy.shape().actions != out) {
+    return fail(Errc::bad_input, text(msg::reach_policy_size, policy.shape().observations,
+                                      policy.shape().actions, in, out));
+  }
+  return run(*env, [&](std::span<const float> observations, std::span<float> actions) {
+    for (int i = 0; i < env->count(); ++i) {
+      const Eigen::VectorXf action = policy.act(observations.subspan(std::size_t(i) * in, in));
+      std::copy_n(action.data(), out, actions.begin() + std::ptrdiff_t{i} * out);
+    }
+  });
+}
+
+}  // namespace mjarm::rl
