@@ -1,0 +1,141 @@
+#include <zlib.h>
+
+#include "mjarm/core/messages/policy_file.hpp"
+#include "mjarm/rl/byte_order_internal.hpp"
+#include "mjarm/rl/json_internal.hpp"
+#include "mjarm/rl/stored_zip_internal.hpp"
+
+// Records and their fields: PKWARE, APPNOTE.TXT - .ZIP File Format Specification 6.3, section 4.3.
+namespace mjarm::rl {
+namespace {
+
+constexpr std::size_t kEndRecord = 22;
+constexpr std::size_t kDirectoryRecord = 46;
+constexpr std::size_t kLocalRecord = 30;
+constexpr std::size_t kLongestComment = 0xFFFF;
+constexpr unsigned kEncrypted = 1;
+
+std::size_t word16(std::string_view bytes, std::size_t at) {
+  return load_little<std::uint16_t>(bytes, at);
+}
+std::size_t word32(std::string_view bytes, std::size_t at) {
+  return load_little<std::uint32_t>(bytes, at);
+}
+
+/// True where `count` bytes from `at` on lie before `end`.
+bool fits(std::size_t at, std::size_t count, std::size_t end) {
+  return at <= end && count <= end - at;
+}
+
+bool has_signature(std::string_view bytes, std::size_t at, char third, char fourth) {
+  return bytes.substr(at, 2) == "PK" && bytes[at + 2] == third && bytes[at + 3] == fourth;
+}
+
+/// Where the last record stands, whose comment must end with the file; npos where there is none.
+std::size_t end_record(std::string_view bytes) {
+  const std::size_t least = kEndRecord + kLongestComment;
+  const std::size_t first = bytes.size() > least ? bytes.size() - least : 0;
+  std::size_t end = bytes.size();
+  while (end >= first + kEndRecord) {
+    const std::size_t at = bytes.rfind("PK\5\6", end - kEndRecord);
+    if (at == std::string_view::npos || at < first) break;
+    if (word16(bytes, at + 20) == bytes.size() - at - kEndRecord) return at;
+    end = at + kEndRecord - 1;
+  }
+  return std::string_view::npos;
+}
+
+}  // namespace
+
+/// Takes the directory's entry at `at`, and moves `at` behind it; false where it is damaged.
+bool StoredZip::add_entry(std::string_view bytes, std::size_t& at, std::size_t directory,
+                          std::string& twice) {
+  if (!fits(at, kDirectoryRecord, bytes.size()) || !has_signature(bytes, at, 1, 2)) return false;
+  const std::size_t name_size = word16(bytes, at + 28);
+  const std::size_t size = word32(bytes, at + 20);
+  const std::size_t local = word32(bytes, at + 42);
+  const bool stored = word16(bytes, at + 10) == 0 && word32(bytes, at + 24) == size;
+  const bool plain = stored && (word16(bytes, at + 8) & kEncrypted) == 0;
+  const auto crc = load_little<std::uint32_t>(bytes, at + 16);
+  if (!fits(at + kDirectoryRecord, name_size, bytes.size())) return false;
+  const std::string_view name = bytes.substr(at + kDirectoryRecord, name_size);
+  at += kDirectoryRecord + name_size + word16(bytes, at + 30) + word16(bytes, at + 32);
+  if (at > bytes.size()) return false;
+
+  // The local record may leave the sizes open, but not the name.
+  if (!fits(local, kLocalRecord, directory) || !has_signature(bytes, local, 3, 4)) return false;
+  const std::size_t begin = local + kLocalRecord + name_size + word16(bytes, local + 28);
+  if (word16(bytes, local + 26) != name_size || !fits(begin, size, directory) ||
+      bytes.substr(local + kLocalRecord, name_size) != name) {
+    return false;
+  }
+  const bool added =
+      entries_.emplace(std::string(name), Entry{bytes.substr(begin, size), crc, plain}).second;
+  if (!added) twice = in_quotes(name);
+  return true;
+}
+
+Result<StoredZip> StoredZip::open(std::string_view bytes, std::string source) {
+  StoredZip zip;
+  zip.source_ = std::move(source);
+  const std::size_t end = end_record(bytes);
+  if (end == std::string_view::npos) {
+    return fail(Errc::bad_input, text(msg::policy_file_no_zip, zip.source_));
+  }
+  const std::size_t count = word16(bytes, end + 10);
+  const std::size_t directory = word32(bytes, end + 16);
+  // One part only; what lies between the directory and the last record is of no concern.
+  if (word16(bytes, end + 4) != 0 || word16(bytes, end + 8) != count ||
+      !fits(directory, word32(bytes, end + 12), end)) {
+    return fail(Errc::bad_input, text(msg::policy_file_no_zip, zip.source_));
+  }
+  std::size_t at = directory;
+  const std::string_view records = bytes.substr(0, directory + word32(bytes, end + 12));
+  std::string twice;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!zip.add_entry(records, at, directory, twice)) {
+      return fail(Errc::bad_input, text(msg::policy_file_zip_entry, zip.source_, i + 1));
+    }
+    if (!twice.empty()) {
+      return fail(Errc::bad_input, text(msg::policy_file_zip_twice, zip.source_, twice));
+    }
+  }
+  if (at != records.size()) {
+    return fail(Errc::bad_input, text(msg::policy_file_zip_entry, zip.source_, count + 1));
+  }
+  return zip;
+}
+
+Result<std::string_view> StoredZip::read(std::string_view name) const {
+  const auto found = entries_.find(name);
+  if (found == entries_.end()) {
+    return fail(Errc::bad_input, text(msg::policy_file_zip_missing, source_, in_quotes(name)));
+  }
+  const Entry& entry = found->second;
+  if (!entry.plain) {
+    return fail(Errc::bad_input, text(msg::policy_file_zip_packed, source_, in_quotes(name)));
+  }
+  return entry.content;
+}
+
+Result<std::string_view> StoredZip::read_checked(std::string_view name) const {
+  const Result<std::string_view> content = read(name);
+  if (!content) return content;
+  const auto* first = reinterpret_cast<const Bytef*>(content->data());
+  if (crc32_z(0, first, content->size()) != entries_.find(name)->second.crc) {
+    return fail(Errc::bad_input, text(msg::policy_file_zip_crc, source_, in_quotes(name)));
+  }
+  return content;
+}
+
+std::string_view StoredZip::name_ending_in(std::string_view end) const {
+  std::string_view found;
+  for (const auto& [name, entry] : entries_) {
+    if (!name.ends_with(end)) continue;
+    if (!found.empty()) return {};
+    found = name;
+  }
+  return found;
+}
+
+}  // namespace mjarm::rl

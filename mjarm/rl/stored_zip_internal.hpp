@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::rl {
+
+/// A zip archive whose entries are stored as they are, as stable-baselines3 and torch write them.
+/// Entries are views of its bytes: nothing is unpacked, so no archive can grow.
+class StoredZip {
+ public:
+  /// Reads the directory of an archive and checks that every entry lies within it.
+  /// @param bytes   the archive; must outlive this object.
+  /// @param source  name of the file, for messages.
+  /// @return bad_input where it is damaged, or names an entry twice.
+  [[nodiscard]] static Result<StoredZip> open(std::string_view bytes, std::string source);
+
+  /// Content of an entry, as it stands there.
+  /// @return bad_input where it is missing, compressed or encrypted.
+  [[nodiscard]] Result<std::string_view> read(std::string_view name) const;
+  /// Content of an entry; also fails where it has another CRC-32.
+  [[nodiscard]] Result<std::string_view> read_checked(std::string_view name) const;
+  [[nodiscard]] bool contains(std::string_view name) const { return entries_.contains(name); }
+  /// The name that ends in `end`; empty where none or more than one does.
+  [[nodiscard]] std::string_view name_ending_in(std::string_view end) const;
+
+ private:
+  struct Entry {
+    std::string_view content;
+    std::uint32_t crc = 0;
+    bool plain = false;  ///< neither compressed nor encrypted
+  };
+  bool add_entry(std::string_view bytes, std::size_t& at, std::size_t directory,
+                 std::string& twice);
+
+  std::string source_;
+  std::map<std::string, Entry, std::less<>> entries_;
+};
+
+}  // namespace mjarm::rl
