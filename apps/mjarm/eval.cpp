@@ -49,7 +49,8 @@ Result<int> run(const Options& options) {
     trial.seed = *seed;
   }
   DemoOptions chosen;
-  chosen.out = options.out.empty() ? std::filesystem::path("mjarm-out") / "eval" : options.out;
+  chosen.out = options.out.empty() ? std::filesystem::path("mjarm-out") / "eval"
+                                   : std::filesystem::path(options.out);
   chosen.headless = !options.view;
   chosen.video = options.video;
   chosen.timing = !options.no_timing;

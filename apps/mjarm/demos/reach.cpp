@@ -1,14 +1,15 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/train/policy_run.hpp"
-#include "mjarm/core/messages/train.hpp"
-#include "mjarm/model/shipped.hpp"
+#include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
 
 Result<Report> run_reach(const DemoOptions& options) {
-  const Result<std::filesystem::path> file = find_shared_file("models/policies/reach.safetensors");
-  if (!file) return fail(file.error());
-  const Result<LoadedPolicy> loaded = load_policy(*file);
+  const Result<std::filesystem::path> self = executable_path();
+  if (!self) return fail(self.error());
+  const std::filesystem::path file =
+      self->parent_path() / ".." / "share" / "mjarm" / "models" / "policies" / "reach.safetensors";
+  const Result<LoadedPolicy> loaded = load_policy(file.lexically_normal());
   if (!loaded) return fail(loaded.error());
   Result<PolicyOutcome> outcome =
       run_policy(*loaded, {.name = "reach", .least_success = 0.95}, options);

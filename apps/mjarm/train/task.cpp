@@ -1,6 +1,7 @@
 #include "apps/mjarm/train/task.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "apps/mjarm/train/config.hpp"
 #include "apps/mjarm/usage.hpp"
@@ -33,7 +34,7 @@ Result<rl::TrainingOptions> with_task(const TaskArguments& arguments,
     return fail(Errc::usage, arguments.task.empty()
                                  ? text(msg::train_which_task)
                                  : text(msg::train_unknown_task, arguments.task) +
-                                       did_you_mean(arguments.task, {"reach"}));
+                                       did_you_mean(arguments.task, std::array{std::string("reach")}));
   }
   if (arguments.guide) {
     const int environments = options.task.environments;

@@ -12,7 +12,7 @@ namespace mjarm::app {
 
 /// Which task, as it stands on the command line.
 struct TaskArguments {
-  std::string task, region, seed, threads;
+  std::string task = {}, region = {}, seed = {}, threads = {};
   bool orientation = false, obstacle = false, guide = false;
 };
 
