@@ -102,6 +102,18 @@ TEST(PpoTrainer, KnowsThatACutIsNoEnd) {
   EXPECT_NEAR(trainer.policy().value(std::vector<float>{0.3F}), 10, 1.0);
 }
 
+TEST(PpoTrainer, ValuesGoOnBehindACut) {
+  testing::Level env(16);
+  PpoOptions options = small_options();
+  options.discount = 0.8;
+  PpoTrainer trainer = trainer_of(env, options);
+  run(trainer, 40);
+  for (const double level : {-0.8, 0.0, 0.5}) {
+    EXPECT_NEAR(trainer.policy().value(std::vector<float>{testing::Level::shown(level)}), 5 * level,
+                0.3);
+  }
+}
+
 TEST(PpoTrainer, SameBytesForAnyNumberOfThreads) {
   std::vector<TensorSet> ends;
   std::vector<std::vector<double>> reports;

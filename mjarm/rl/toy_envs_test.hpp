@@ -177,4 +177,21 @@ class CashOut : public ToyEnv {
   }
 };
 
+/// Every step gives the level of the episode, whatever is done; it is shown on a scale of its own.
+/// Episodes are cut after 4 steps: the value of going on is level / (1 - discount).
+class Level : public ToyEnv {
+ public:
+  explicit Level(int copies) : ToyEnv(copies, 1, 1, 4) {}
+  static float shown(double level) { return static_cast<float>(100 + 20 * level); }
+
+ private:
+  void start(Rng& rng, std::span<float> observation) override {
+    observation[0] = shown(rng.uniform(-1, 1));
+  }
+  bool advance(std::span<float> observation, std::span<const float>, float& reward) override {
+    reward = (observation[0] - 100) / 20;
+    return false;
+  }
+};
+
 }  // namespace mjarm::rl::testing
