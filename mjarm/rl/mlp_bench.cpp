@@ -188,5 +188,12 @@ BENCHMARK(gradient_step)
     ->Args({kAvx512, 2, 2048})
     ->UseRealTime();
 
+/// One observation through the actor alone, as an evaluation of one copy does.
+void policy_act(benchmark::State& state) {
+  const Learning learning(1, 1, SimdLevel::baseline);
+  for (auto _ : state) benchmark::DoNotOptimize(learning.policy.act(learning.observations));
+}
+BENCHMARK(policy_act);
+
 }  // namespace
 }  // namespace mjarm::rl

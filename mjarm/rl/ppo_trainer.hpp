@@ -13,8 +13,8 @@
 namespace mjarm::rl {
 
 /// What one iteration (a rollout and an update) did. Losses and the like are means over all
-/// minibatches of the update; with several ranks `steps`, `episodes` and the means of episodes are
-/// of all of them, the rest of this one.
+/// minibatches of the update; with several ranks all but the times and `explained_variance` is of
+/// all of them.
 struct IterationReport {
   std::int64_t iteration = 0;  ///< from 1
   std::int64_t steps = 0;      ///< of all copies since the start of the training
@@ -25,7 +25,7 @@ struct IterationReport {
   double policy_loss = 0;
   double value_loss = 0;          ///< mean squared error, not weighted
   double entropy = 0;             ///< [nat] of the actions
-  double kl = 0;                  ///< [nat] about how far the update moved the policy
+  double kl = 0;                  ///< [nat] about how far the policy had moved in the last epoch
   double clip_fraction = 0;       ///< share of samples whose ratio was clipped
   double explained_variance = 0;  ///< of the returns by the critic, before the update; at best 1
   double gradient_norm = 0;       ///< before it is clipped
