@@ -57,17 +57,18 @@ double share_within(const std::vector<double>& sorted, double distance) {
 Evaluation summary(const std::vector<Trial>& trials) {
   Evaluation e;
   e.episodes = static_cast<int>(trials.size());
-  const double n = e.episodes;
   std::vector<double> turns;
   int near_ones = 0;
   for (const Trial& trial : trials) {
     e.distances.push_back(trial.distance);
     turns.push_back(trial.turn);
-    e.steps += trial.steps / n;
-    e.touched += trial.touched ? 1 / n : 0;
+    e.steps += trial.steps;
+    e.touched += trial.touched ? 1 : 0;
     e.steps_to_2cm += trial.steps_to_near;
     near_ones += trial.steps_to_near > 0 ? 1 : 0;
   }
+  e.steps /= e.episodes;
+  e.touched /= e.episodes;
   e.steps_to_2cm /= std::max(near_ones, 1);
   std::vector<double> sorted = e.distances;
   std::sort(sorted.begin(), sorted.end());
