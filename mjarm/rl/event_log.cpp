@@ -103,11 +103,11 @@ Result<std::string> old_content(const fs::path& path, std::int64_t keep) {
   return read_file(path);
 }
 
-Error cannot_write(const fs::path& path, const std::string& reason) {
+Error log_error(const fs::path& path, const std::string& reason) {
   return {Errc::system, text(msg::core_cannot_write, path.string(), reason)};
 }
 
-Result<void> check_row(const fs::path& path, std::size_t values, std::size_t columns) {
+Result<void> check_row_size(const fs::path& path, std::size_t values, std::size_t columns) {
   if (values == columns) return {};
   return fail(Errc::usage, text(msg::policy_file_row_size, path.string(), values, columns));
 }
@@ -119,16 +119,16 @@ Result<GrowingFile> GrowingFile::open(const fs::path& path, std::uintmax_t keep)
   grown.path_ = path;
   std::error_code error;
   if (keep > 0) fs::resize_file(path, keep, error);
-  if (error) return fail(cannot_write(path, error.message()));
+  if (error) return fail(log_error(path, error.message()));
   grown.file_.reset(std::fopen(path.c_str(), keep > 0 ? "ab" : "wb"));
-  if (!grown.file_) return fail(cannot_write(path, system_message(errno)));
+  if (!grown.file_) return fail(log_error(path, system_message(errno)));
   return grown;
 }
 
 Result<void> GrowingFile::append(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size() ||
       std::fflush(file_.get()) != 0) {
-    return fail(cannot_write(path_, system_message(errno)));
+    return fail(log_error(path_, system_message(errno)));
   }
   return {};
 }
@@ -150,7 +150,7 @@ Result<EventLog> EventLog::open(const fs::path& path, std::vector<std::string> t
 }
 
 Result<void> EventLog::append(std::int64_t step, std::span<const double> values, double wall_time) {
-  if (auto done = check_row(file_.path(), values.size(), tags_.size()); !done) return done;
+  if (auto done = check_row_size(file_.path(), values.size(), tags_.size()); !done) return done;
   ProtobufMessage event, summary;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto number = static_cast<float>(values[i]);
@@ -184,7 +184,7 @@ Result<CsvLog> CsvLog::open(const fs::path& path, std::vector<std::string> colum
 }
 
 Result<void> CsvLog::append(std::int64_t step, std::span<const double> values) {
-  if (auto done = check_row(file_.path(), values.size(), columns_); !done) return done;
+  if (auto done = check_row_size(file_.path(), values.size(), columns_); !done) return done;
   std::string line = std::to_string(step);
   for (const double value : values) {
     line += ',';

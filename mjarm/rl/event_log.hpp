@@ -55,7 +55,7 @@ class EventLog {
   /// @param step       >= 0, larger than that of the row before.
   /// @param values     one a tag.
   /// @param wall_time  [s] since 1970, for the axis "wall" of TensorBoard; with the default equal
-  ///                   runs give equal bytes.
+  ///                   runs give equal bytes. The file's first record has 0 in any case.
   [[nodiscard]] Result<void> append(std::int64_t step, std::span<const double> values,
                                     double wall_time = 0);
 

@@ -16,9 +16,9 @@ namespace {
 using support::TempFolder;
 using testing::expect_refused;
 
-const std::vector<std::string> kTags = {"train/reward", "eval/success"};
+const std::vector<std::string> kLogTags = {"train/reward", "eval/success"};
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kName = "events.out.tfevents.0.test";
+constexpr const char* kEventsName = "events.out.tfevents.0.test";
 
 struct ReadEvent {
   double wall_time = 0;
@@ -66,14 +66,14 @@ std::vector<ReadEvent> read_events(std::string_view bytes) {
 }
 
 /// Row `i` of a training that never ends.
-std::vector<double> row(std::int64_t i) {
+std::vector<double> log_row(std::int64_t i) {
   return {0.1 * static_cast<double>(i), i % 3 == 0 ? 1.0 / static_cast<double>(i) : kNotMeasured};
 }
 
 template <class Log>
 void append_rows(Log& log, std::int64_t first, std::int64_t last) {
   for (std::int64_t i = first; i <= last; ++i) {
-    const auto done = log.append(300 * i, row(i));
+    const auto done = log.append(300 * i, log_row(i));
     ASSERT_TRUE(done) << done.error().what;
   }
 }
@@ -91,9 +91,9 @@ TEST(Crc32c, OfKnownBytes) {
 
 TEST(EventLog, HoldsEveryRowAsSoonAsItIsAppended) {
   const TempFolder folder;
-  auto log = EventLog::open(folder.path() / kName, kTags);
+  auto log = EventLog::open(folder.path() / kEventsName, kLogTags);
   ASSERT_TRUE(log) << log.error().what;
-  EXPECT_EQ(read_events(folder.read(kName)).size(), 1u);
+  EXPECT_EQ(read_events(folder.read(kEventsName)).size(), 1u);
   ASSERT_TRUE(log->append(0, std::vector{1.5, 0.25}));
   ASSERT_TRUE(log->append(std::int64_t{1} << 40, std::vector{kNotMeasured, -2.0}, 1e9 + 0.5));
   ASSERT_TRUE(log->append((std::int64_t{1} << 40) + 1, std::vector{kNotMeasured, 1e300}));
@@ -103,43 +103,43 @@ TEST(EventLog, HoldsEveryRowAsSoonAsItIsAppended) {
       {0, 0, "", {{"train/reward", 1.5f}, {"eval/success", 0.25f}}},
       {1e9 + 0.5, std::int64_t{1} << 40, "", {{"eval/success", -2.f}}},
       {0, (std::int64_t{1} << 40) + 1, "", {}}};
-  EXPECT_EQ(read_events(folder.read(kName)), expected);
+  EXPECT_EQ(read_events(folder.read(kEventsName)), expected);
 }
 
 TEST(EventLog, GoesOnAfterACheckpointAsIfNothingHadHappened) {
   const TempFolder folder;
-  auto whole = EventLog::open(folder.path() / "whole", kTags);
+  auto whole = EventLog::open(folder.path() / "whole", kLogTags);
   append_rows(*whole, 1, 9);
   {
-    auto log = EventLog::open(folder.path() / kName, kTags);
+    auto log = EventLog::open(folder.path() / kEventsName, kLogTags);
     append_rows(*log, 1, 7);
   }
-  auto resumed = EventLog::open(folder.path() / kName, kTags, 300 * 4);
+  auto resumed = EventLog::open(folder.path() / kEventsName, kLogTags, 300 * 4);
   ASSERT_TRUE(resumed) << resumed.error().what;
-  EXPECT_EQ(read_events(folder.read(kName)).back().step, 300 * 4);
+  EXPECT_EQ(read_events(folder.read(kEventsName)).back().step, 300 * 4);
   append_rows(*resumed, 5, 9);
-  EXPECT_EQ(folder.read(kName), folder.read("whole"));
+  EXPECT_EQ(folder.read(kEventsName), folder.read("whole"));
   // A later checkpoint than the last row drops none.
-  ASSERT_TRUE(EventLog::open(folder.path() / kName, kTags, 300 * 100));
-  EXPECT_EQ(folder.read(kName), folder.read("whole"));
+  ASSERT_TRUE(EventLog::open(folder.path() / kEventsName, kLogTags, 300 * 100));
+  EXPECT_EQ(folder.read(kEventsName), folder.read("whole"));
   // Where there is no file, a resumed training begins one.
-  ASSERT_TRUE(EventLog::open(folder.path() / "new", kTags, 300));
+  ASSERT_TRUE(EventLog::open(folder.path() / "new", kLogTags, 300));
   EXPECT_EQ(read_events(folder.read("new")).size(), 1u);
   // A new training keeps nothing.
-  ASSERT_TRUE(EventLog::open(folder.path() / kName, kTags));
-  EXPECT_EQ(read_events(folder.read(kName)).size(), 1u);
+  ASSERT_TRUE(EventLog::open(folder.path() / kEventsName, kLogTags));
+  EXPECT_EQ(read_events(folder.read(kEventsName)).size(), 1u);
 }
 
 TEST(EventLog, DropsATornRecordWhereverItIsTorn) {
   const TempFolder folder;
-  auto log = EventLog::open(folder.path() / kName, kTags);
+  auto log = EventLog::open(folder.path() / kEventsName, kLogTags);
   append_rows(*log, 1, 5);
-  const std::string whole = folder.read(kName);
+  const std::string whole = folder.read(kEventsName);
   const auto events = read_events(whole);
   for (std::size_t size = 0; size <= whole.size(); ++size) {
     SCOPED_TRACE(size);
     folder.write("torn", whole.substr(0, size));
-    auto resumed = EventLog::open(folder.path() / "torn", kTags, 300 * 100);
+    auto resumed = EventLog::open(folder.path() / "torn", kLogTags, 300 * 100);
     ASSERT_TRUE(resumed) << resumed.error().what;
     const auto left = read_events(folder.read("torn"));
     ASSERT_GE(left.size(), 1u);
@@ -152,15 +152,15 @@ TEST(EventLog, DropsATornRecordWhereverItIsTorn) {
 
 TEST(EventLog, DropsEverythingFromADamagedByteOn) {
   const TempFolder folder;
-  auto log = EventLog::open(folder.path() / kName, kTags);
+  auto log = EventLog::open(folder.path() / kEventsName, kLogTags);
   append_rows(*log, 1, 5);
-  const std::string whole = folder.read(kName);
+  const std::string whole = folder.read(kEventsName);
   for (std::size_t at = 0; at < whole.size(); ++at) {
     SCOPED_TRACE(at);
     std::string bytes = whole;
     bytes[at] ^= 4;
     folder.write("flipped", bytes);
-    const auto resumed = EventLog::open(folder.path() / "flipped", kTags, 300 * 100);
+    const auto resumed = EventLog::open(folder.path() / "flipped", kLogTags, 300 * 100);
     if (resumed) {
       const std::string left = folder.read("flipped");
       EXPECT_LE(left.size(), at);
@@ -173,47 +173,47 @@ TEST(EventLog, DropsEverythingFromADamagedByteOn) {
 
 TEST(EventLog, TouchesNoOtherFile) {
   const TempFolder folder;
-  folder.write(kName, "my thesis");
-  const std::string path = (folder.path() / kName).string();
-  expect_refused(EventLog::open(path, kTags, 300), path, "is no TensorBoard event file");
-  EXPECT_EQ(folder.read(kName), "my thesis");
+  folder.write(kEventsName, "my thesis");
+  const std::string path = (folder.path() / kEventsName).string();
+  expect_refused(EventLog::open(path, kLogTags, 300), path, "is no TensorBoard event file");
+  EXPECT_EQ(folder.read(kEventsName), "my thesis");
 }
 
 TEST(EventLog, SaysWhenTheDiskIsFullOrARowIsNone) {
   const TempFolder folder;
-  const auto full = EventLog::open("/dev/full", kTags);
+  const auto full = EventLog::open("/dev/full", kLogTags);
   ASSERT_FALSE(full);
   EXPECT_EQ(full.error().code, Errc::system);
-  const auto nowhere = EventLog::open(folder.path() / "no" / kName, kTags);
+  const auto nowhere = EventLog::open(folder.path() / "no" / kEventsName, kLogTags);
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(nowhere.error().code, Errc::system);
-  auto log = EventLog::open(folder.path() / kName, kTags);
+  auto log = EventLog::open(folder.path() / kEventsName, kLogTags);
   EXPECT_FALSE(log->append(1, std::vector{1.0}));
-  EXPECT_EQ(read_events(folder.read(kName)).size(), 1u);
+  EXPECT_EQ(read_events(folder.read(kEventsName)).size(), 1u);
 }
 
 TEST(CsvLog, HoldsTheSameRows) {
   const TempFolder folder;
-  auto log = CsvLog::open(folder.path() / "log.csv", kTags);
+  auto log = CsvLog::open(folder.path() / "log.csv", kLogTags);
   ASSERT_TRUE(log) << log.error().what;
   ASSERT_TRUE(log->append(0, std::vector{1.5, 0.25}));
   ASSERT_TRUE(log->append(300, std::vector{0.1, kNotMeasured}));
   EXPECT_EQ(folder.read("log.csv"), "step,train/reward,eval/success\n0,1.5,0.25\n300,0.1,\n");
   EXPECT_FALSE(log->append(600, std::vector{0.1}));
-  const auto full = CsvLog::open("/dev/full", kTags);
+  const auto full = CsvLog::open("/dev/full", kLogTags);
   ASSERT_FALSE(full);
   EXPECT_EQ(full.error().code, Errc::system);
 }
 
 TEST(CsvLog, GoesOnAfterACheckpointAsIfNothingHadHappened) {
   const TempFolder folder;
-  auto log = CsvLog::open(folder.path() / "whole.csv", kTags);
+  auto log = CsvLog::open(folder.path() / "whole.csv", kLogTags);
   append_rows(*log, 1, 12);
   const std::string whole = folder.read("whole.csv");
   for (std::size_t size = 0; size <= whole.size(); ++size) {
     SCOPED_TRACE(size);
     folder.write("log.csv", whole.substr(0, size));
-    auto resumed = CsvLog::open(folder.path() / "log.csv", kTags, 300 * 8);
+    auto resumed = CsvLog::open(folder.path() / "log.csv", kLogTags, 300 * 8);
     ASSERT_TRUE(resumed) << resumed.error().what;
     const std::string left = folder.read("log.csv");
     EXPECT_TRUE(whole.starts_with(left));

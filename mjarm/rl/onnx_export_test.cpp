@@ -20,7 +20,7 @@ using testing::all_of;
 using testing::expect_refused;
 using testing::only;
 
-TensorSet random_policy(std::vector<int> sizes, const std::string& activation, bool normalised) {
+TensorSet random_actor(std::vector<int> sizes, const std::string& activation, bool normalised) {
   std::mt19937_64 random(8);
   std::normal_distribution<float> number;
   TensorSet set;
@@ -49,7 +49,7 @@ TensorSet random_policy(std::vector<int> sizes, const std::string& activation, b
 }
 
 /// The oracle, in double precision: (x - mean) / sqrt(variance + 1e-8), clipped, then the layers.
-std::vector<double> action_of(const TensorSet& set, std::vector<double> x) {
+std::vector<double> expected_action(const TensorSet& set, std::vector<double> x) {
   const auto numbers = [&](const char* name) {
     return std::get<std::vector<double>>(set.tensors.at(name).values);
   };
@@ -59,21 +59,21 @@ std::vector<double> action_of(const TensorSet& set, std::vector<double> x) {
                           std::sqrt(numbers("normaliser.variance")[i] + 1e-8);
     x[i] = std::clamp(scaled, -clip, clip);
   }
-  return testing::forward(set, "actor", x);
+  return testing::forward_pass(set, "actor", x);
 }
 
-struct Node {
+struct OnnxNode {
   std::string type;
   std::vector<std::string> inputs;
   std::string output;
 };
 
-std::vector<Node> nodes_of(std::string_view graph) {
-  std::vector<Node> nodes;
+std::vector<OnnxNode> nodes_of(std::string_view graph) {
+  std::vector<OnnxNode> nodes;
   for (const auto& field : all_of(graph, 1)) {
-    Node node{.type = std::string(only(field.bytes, 4).bytes),
-              .inputs = {},
-              .output = std::string(only(field.bytes, 2).bytes)};
+    OnnxNode node{.type = std::string(only(field.bytes, 4).bytes),
+                  .inputs = {},
+                  .output = std::string(only(field.bytes, 2).bytes)};
     for (const auto& input : all_of(field.bytes, 1)) node.inputs.emplace_back(input.bytes);
     if (node.type == "Gemm") {
       const auto attribute = only(field.bytes, 5).bytes;
@@ -99,7 +99,7 @@ std::pair<std::string, std::uint64_t> port_of(std::string_view port) {
 }
 
 TEST(OnnxExport, HasTheStructureThatOnnxWants) {
-  const TensorSet set = random_policy({5, 7, 3, 2}, "tanh", true);
+  const TensorSet set = random_actor({5, 7, 3, 2}, "tanh", true);
   const std::string bytes = to_onnx(set).value();
   EXPECT_EQ(to_onnx(set).value(), bytes);
   EXPECT_EQ(only(bytes, 1).integer, 8u);
@@ -131,7 +131,7 @@ TEST(OnnxExport, HasTheStructureThatOnnxWants) {
 
   // One chain from the input to the output; every other input is a constant.
   std::string last = "observation", types;
-  for (const Node& node : nodes_of(graph)) {
+  for (const OnnxNode& node : nodes_of(graph)) {
     EXPECT_EQ(node.inputs.at(0), last);
     for (std::size_t i = 1; i < node.inputs.size(); ++i) {
       EXPECT_TRUE(constants.contains(node.inputs[i])) << node.inputs[i];
@@ -144,7 +144,7 @@ TEST(OnnxExport, HasTheStructureThatOnnxWants) {
 }
 
 TEST(OnnxExport, LeavesOutANormaliserThatDoesNothing) {
-  TensorSet set = random_policy({4, 3}, "relu", false);
+  TensorSet set = random_actor({4, 3}, "relu", false);
   const std::string bytes = to_onnx(set).value();
   EXPECT_EQ(nodes_of(only(bytes, 7).bytes).size(), 1u);
   for (const char* name : {"mean", "variance", "count", "clip"}) {
@@ -154,7 +154,7 @@ TEST(OnnxExport, LeavesOutANormaliserThatDoesNothing) {
 }
 
 TEST(OnnxExport, NamesTheTensorThatDoesNotFit) {
-  const TensorSet good = random_policy({5, 7, 2}, "relu", true);
+  const TensorSet good = random_actor({5, 7, 2}, "relu", true);
   for (const char* name : {"actor.0.weight", "actor.0.bias", "actor.1.bias", "normaliser.mean",
                            "normaliser.variance", "normaliser.clip"}) {
     TensorSet set = good;
@@ -189,8 +189,8 @@ TEST(OnnxExport, ActsTheSameInOnnxruntime) {
   }
   const support::TempFolder folder;
   for (const TensorSet& set :
-       {random_policy({24, 64, 64, 7}, "tanh", true), random_policy({3, 5, 2}, "relu", false),
-        random_policy({6, 1}, "relu", true)}) {
+       {random_actor({24, 64, 64, 7}, "tanh", true), random_actor({3, 5, 2}, "relu", false),
+        random_actor({6, 1}, "relu", true)}) {
     const auto inputs = static_cast<std::size_t>(set.tensors.at("actor.0.weight").shape[1]);
     std::mt19937_64 random(9);
     std::normal_distribution<float> number(0, 2);
@@ -207,7 +207,7 @@ TEST(OnnxExport, ActsTheSameInOnnxruntime) {
     const auto actions = nlohmann::json::parse(run.out).get<std::vector<std::vector<double>>>();
     ASSERT_EQ(actions.size(), observations.size());
     for (std::size_t i = 0; i < actions.size(); ++i) {
-      const auto expected = action_of(set, {observations[i].begin(), observations[i].end()});
+      const auto expected = expected_action(set, {observations[i].begin(), observations[i].end()});
       ASSERT_EQ(actions[i].size(), expected.size());
       for (std::size_t k = 0; k < expected.size(); ++k) {
         EXPECT_NEAR(actions[i][k], expected[k], 1e-5);

@@ -14,7 +14,7 @@
 #include "mjarm/rl/tensor_set.hpp"
 
 /// What the tests of files of policies share.
-namespace mjarm::rl::testing {
+namespace mjarm::testing {
 
 inline std::filesystem::path test_file(const std::string& name) {
   return std::filesystem::path(MJARM_RL_TESTDATA) / name;
@@ -34,12 +34,12 @@ void expect_refused(const Result<T>& result, const std::string& source,
   EXPECT_LT(error.what.size(), 400u) << error.what;
 }
 
-inline std::size_t value_count_of(const Tensor& tensor) {
+inline std::size_t value_count_of(const rl::Tensor& tensor) {
   return std::visit([](const auto& values) { return values.size(); }, tensor.values);
 }
 
 /// Every tensor has as many numbers as its shape says.
-inline void expect_whole(const TensorSet& set) {
+inline void expect_whole(const rl::TensorSet& set) {
   for (const auto& [name, tensor] : set.tensors) {
     const auto product = std::accumulate(tensor.shape.begin(), tensor.shape.end(), std::int64_t{1},
                                          std::multiplies<>());
@@ -48,11 +48,11 @@ inline void expect_whole(const TensorSet& set) {
 }
 
 /// The oracle: a net of plain layers in double precision, without normaliser.
-inline std::vector<double> forward(const TensorSet& set, const std::string& net,
-                                   std::vector<double> x) {
+inline std::vector<double> forward_pass(const rl::TensorSet& set, const std::string& net,
+                                        std::vector<double> x) {
   for (int layer = 0;; ++layer) {
     const std::string name = net + "." + std::to_string(layer);
-    const Tensor& weight = set.tensors.at(name + ".weight");
+    const rl::Tensor& weight = set.tensors.at(name + ".weight");
     const auto& w = std::get<std::vector<float>>(weight.values);
     const auto& bias = std::get<std::vector<float>>(set.tensors.at(name + ".bias").values);
     std::vector<double> y(bias.begin(), bias.end());
@@ -66,4 +66,4 @@ inline std::vector<double> forward(const TensorSet& set, const std::string& net,
   }
 }
 
-}  // namespace mjarm::rl::testing
+}  // namespace mjarm::testing

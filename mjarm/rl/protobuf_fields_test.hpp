@@ -8,7 +8,7 @@
 
 #include "mjarm/rl/byte_order_internal.hpp"
 
-namespace mjarm::rl::testing {
+namespace mjarm::testing {
 
 /// One field of a message of protocol buffers, as it stands in the bytes.
 struct Field {
@@ -66,4 +66,4 @@ inline Field only(std::string_view bytes, int number) {
   return found[0];
 }
 
-}  // namespace mjarm::rl::testing
+}  // namespace mjarm::testing

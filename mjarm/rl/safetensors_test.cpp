@@ -124,22 +124,23 @@ TEST(Safetensors, RefusesToWriteWhatItCouldNotRead) {
   expect_refused(to_safetensors(set, "f"), "f: ", "not UTF-8");
 }
 
-struct Planted {
+struct PlantedFile {
   std::string bytes;
   std::string phrase;
 };
 
-std::string one(const std::string& type, const std::string& shape, const std::string& offsets) {
+std::string one_tensor(const std::string& type, const std::string& shape,
+                       const std::string& offsets) {
   return R"({"x":{"dtype":)" + type + R"(,"shape":)" + shape + R"(,"data_offsets":)" + offsets +
          "}}";
 }
 
-std::string two(const std::string& first, const std::string& second) {
+std::string two_tensors(const std::string& first, const std::string& second) {
   return R"({"a":{"dtype":"F32","shape":[2],"data_offsets":)" + first +
          R"(},"b":{"dtype":"F32","shape":[2],"data_offsets":)" + second + "}}";
 }
 
-std::vector<Planted> planted_headers() {
+std::vector<PlantedFile> planted_headers() {
   const std::string huge = "18446744073709551615";
   return {
       {"", "0 bytes, too few"},
@@ -162,7 +163,7 @@ std::vector<Planted> planted_headers() {
       {file_with(std::string(100000, '['), 0), "not valid JSON"},
       {file_with("{\"a\":" + std::string(99999, '[') + std::string(99999, ']') + "}", 0),
        "nests deeper than 3 levels"},
-      {file_with(one("\"F32\"", "[[1]]", "[0,4]"), 4), "nests deeper"},
+      {file_with(one_tensor("\"F32\"", "[[1]]", "[0,4]"), 4), "nests deeper"},
       {file_with("{}", 1), "1 bytes follow"},
       {file_with("{\"__metadata__\":7}", 0), "__metadata__"},
       {file_with("{\"__metadata__\":{\"a\":7}}", 0), "__metadata__"},
@@ -171,7 +172,7 @@ std::vector<Planted> planted_headers() {
   };
 }
 
-std::vector<Planted> planted_tensors() {
+std::vector<PlantedFile> planted_tensors() {
   const std::string f = "\"F32\"";
   return {
       {file_with("{\"x\":7}", 0), "tensor \"x\" needs dtype"},
@@ -186,56 +187,57 @@ std::vector<Planted> planted_tensors() {
        "names \"shape\" twice"},
       {file_with(R"({"a\nb":7})", 0), R"(tensor "a\nb" needs)"},
       {file_with("{\"" + std::string(5000, 'n') + "\":7}", 0), "nnn\"... needs"},
-      {file_with(one("7", "[1]", "[0,4]"), 4), "needs dtype"},
-      {file_with(one("\"F16\"", "[2]", "[0,4]"), 4), "type \"F16\""},
-      {file_with(one("\"f32\"", "[1]", "[0,4]"), 4), "type \"f32\""},
-      {file_with(one("\"\"", "[1]", "[0,4]"), 4), "type \"\""},
-      {file_with(one(f, "1", "[0,4]"), 4), "shape must"},
-      {file_with(one(f, "[-1]", "[0,4]"), 4), "shape must"},
-      {file_with(one(f, "[1.0]", "[0,4]"), 4), "shape must"},
-      {file_with(one(f, "[\"1\"]", "[0,4]"), 4), "shape must"},
-      {file_with(one(f, "[null]", "[0,4]"), 4), "shape must"},
-      {file_with(one(f, "[9223372036854775808]", "[0,4]"), 4), "shape must"},
-      {file_with(one(f, "[1,1,1,1,1,1,1,1,1]", "[0,4]"), 4), "at most 8"},
-      {file_with(one(f, "[4294967296,4294967296]", "[0,0]"), 0), "0 bytes, which is not"},
-      {file_with(one(f, "[4294967296,4294967297]", "[0,4]"), 4), "4 bytes, which is not"},
-      {file_with(one(f, "[4611686018427387904]", "[0,0]"), 0), "which is not"},
-      {file_with(one(f, "[1]", "[0]"), 4), "data_offsets must"},
-      {file_with(one(f, "[1]", "[0,4,8]"), 4), "data_offsets must"},
-      {file_with(one(f, "[1]", "{}"), 4), "data_offsets must"},
-      {file_with(one(f, "[1]", "[4,0]"), 4), "data_offsets must"},
-      {file_with(one(f, "[1]", "[-4,0]"), 4), "data_offsets must"},
-      {file_with(one(f, "[1]", "[0,4.0]"), 4), "data_offsets must"},
-      {file_with(one(f, "[1]", "[0,8]"), 4), "ends at byte 8 of the data, which has 4"},
-      {file_with(one(f, "[1]", "[0,9223372036854775807]"), 4), "ends at byte"},
-      {file_with(one(f, "[2]", "[0,4]"), 4), "4 bytes, which is not"},
-      {file_with(one(f, "[]", "[0,8]"), 8), "8 bytes, which is not"},
-      {file_with(one(f, "[1]", "[0,5]"), 5), "5 bytes, which is not"},
-      {file_with(one("\"F64\"", "[1]", "[0,4]"), 4), "which is not"},
-      {file_with(one("\"I64\"", "[0]", "[0,8]"), 8), "which is not"},
-      {file_with(one(f, "[1]", "[4,8]"), 8), "begins at byte 4 of the data instead of 0"},
-      {file_with(one(f, "[1]", "[0,4]"), 5), "1 bytes follow"},
-      {file_with(two("[0,8]", "[8,16]"), 24), "8 bytes follow"},
-      {file_with(two("[0,8]", "[4,12]"), 12), "tensor \"b\" begins at byte 4"},
-      {file_with(two("[0,8]", "[0,8]"), 8), "tensor \"b\" begins at byte 0"},
-      {file_with(two("[8,16]", "[4,12]"), 16), "begins"},
-      {file_with(two("[0,8]", "[12,20]"), 20), "begins at byte 12 of the data instead of 8"},
-      {file_with(two("[0,8]", "[8,16]"), 15), "ends at byte 16"},
+      {file_with(one_tensor("7", "[1]", "[0,4]"), 4), "needs dtype"},
+      {file_with(one_tensor("\"F16\"", "[2]", "[0,4]"), 4), "type \"F16\""},
+      {file_with(one_tensor("\"f32\"", "[1]", "[0,4]"), 4), "type \"f32\""},
+      {file_with(one_tensor("\"\"", "[1]", "[0,4]"), 4), "type \"\""},
+      {file_with(one_tensor(f, "1", "[0,4]"), 4), "shape must"},
+      {file_with(one_tensor(f, "[-1]", "[0,4]"), 4), "shape must"},
+      {file_with(one_tensor(f, "[1.0]", "[0,4]"), 4), "shape must"},
+      {file_with(one_tensor(f, "[\"1\"]", "[0,4]"), 4), "shape must"},
+      {file_with(one_tensor(f, "[null]", "[0,4]"), 4), "shape must"},
+      {file_with(one_tensor(f, "[9223372036854775808]", "[0,4]"), 4), "shape must"},
+      {file_with(one_tensor(f, "[1,1,1,1,1,1,1,1,1]", "[0,4]"), 4), "at most 8"},
+      {file_with(one_tensor(f, "[4294967296,4294967296]", "[0,0]"), 0), "0 bytes, which is not"},
+      {file_with(one_tensor(f, "[4294967296,4294967297]", "[0,4]"), 4), "4 bytes, which is not"},
+      {file_with(one_tensor(f, "[4611686018427387904]", "[0,0]"), 0), "which is not"},
+      {file_with(one_tensor(f, "[1]", "[0]"), 4), "data_offsets must"},
+      {file_with(one_tensor(f, "[1]", "[0,4,8]"), 4), "data_offsets must"},
+      {file_with(one_tensor(f, "[1]", "{}"), 4), "data_offsets must"},
+      {file_with(one_tensor(f, "[1]", "[4,0]"), 4), "data_offsets must"},
+      {file_with(one_tensor(f, "[1]", "[-4,0]"), 4), "data_offsets must"},
+      {file_with(one_tensor(f, "[1]", "[0,4.0]"), 4), "data_offsets must"},
+      {file_with(one_tensor(f, "[1]", "[0,8]"), 4), "ends at byte 8 of the data, which has 4"},
+      {file_with(one_tensor(f, "[1]", "[0,9223372036854775807]"), 4), "ends at byte"},
+      {file_with(one_tensor(f, "[2]", "[0,4]"), 4), "4 bytes, which is not"},
+      {file_with(one_tensor(f, "[]", "[0,8]"), 8), "8 bytes, which is not"},
+      {file_with(one_tensor(f, "[1]", "[0,5]"), 5), "5 bytes, which is not"},
+      {file_with(one_tensor("\"F64\"", "[1]", "[0,4]"), 4), "which is not"},
+      {file_with(one_tensor("\"I64\"", "[0]", "[0,8]"), 8), "which is not"},
+      {file_with(one_tensor(f, "[1]", "[4,8]"), 8), "begins at byte 4 of the data instead of 0"},
+      {file_with(one_tensor(f, "[1]", "[0,4]"), 5), "1 bytes follow"},
+      {file_with(two_tensors("[0,8]", "[8,16]"), 24), "8 bytes follow"},
+      {file_with(two_tensors("[0,8]", "[4,12]"), 12), "tensor \"b\" begins at byte 4"},
+      {file_with(two_tensors("[0,8]", "[0,8]"), 8), "tensor \"b\" begins at byte 0"},
+      {file_with(two_tensors("[8,16]", "[4,12]"), 16), "begins"},
+      {file_with(two_tensors("[0,8]", "[12,20]"), 20),
+       "begins at byte 12 of the data instead of 8"},
+      {file_with(two_tensors("[0,8]", "[8,16]"), 15), "ends at byte 16"},
   };
 }
 
 TEST(Safetensors, EveryPlantedFaultGetsOneLine) {
-  std::vector<Planted> all = planted_headers();
-  for (Planted& more : planted_tensors()) all.push_back(std::move(more));
+  std::vector<PlantedFile> all = planted_headers();
+  for (PlantedFile& more : planted_tensors()) all.push_back(std::move(more));
   EXPECT_GE(all.size(), 60u);
-  for (const Planted& planted : all) {
+  for (const PlantedFile& planted : all) {
     SCOPED_TRACE(planted.phrase);
     expect_refused(parse_safetensors(planted.bytes, "f.safetensors"),
                    "f.safetensors: ", planted.phrase);
   }
   // The same without a fault is fine.
-  EXPECT_TRUE(parse_safetensors(file_with(one("\"F32\"", "[1]", "[0,4]") + "   ", 4), "f"));
-  EXPECT_TRUE(parse_safetensors(file_with(two("[8,16]", "[0,8]"), 16), "f"));
+  EXPECT_TRUE(parse_safetensors(file_with(one_tensor("\"F32\"", "[1]", "[0,4]") + "   ", 4), "f"));
+  EXPECT_TRUE(parse_safetensors(file_with(two_tensors("[8,16]", "[0,8]"), 16), "f"));
   EXPECT_TRUE(parse_safetensors(file_with("{}", 0), "f"));
 }
 

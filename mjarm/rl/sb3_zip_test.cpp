@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/rl/policy_file_test.hpp"
@@ -14,78 +13,16 @@ namespace mjarm::rl {
 namespace {
 
 using nlohmann::json;
+using testing::expect_policy_refused;
 using testing::expect_refused;
+using testing::float_bytes;
 using testing::PlantedTensor;
+using testing::policy_around;
+using testing::policy_of;
+using testing::policy_with;
+using testing::small_state;
+using testing::torch_entries;
 using testing::ZipEntry;
-
-constexpr std::int32_t kHuge = 2147483647;
-
-std::string bytes_of(const std::string& name) {
-  return read_file(testing::test_file(name + ".zip")).value();
-}
-
-std::string floats(const std::vector<float>& values) {
-  std::string out;
-  for (const float value : values) append_little(out, value);
-  return out;
-}
-
-/// The smallest policy: two observations, one action, one hidden layer of three.
-std::vector<PlantedTensor> small_state() {
-  const auto matrix = [](const std::string& name, int rows, int cols) {
-    return PlantedTensor{.name = name + ".weight",
-                         .shape = {rows, cols},
-                         .strides = {cols, 1},
-                         .count = rows * cols,
-                         .storage = name + "w"};
-  };
-  const auto vector = [](const std::string& name, int size, const std::string& storage) {
-    return PlantedTensor{.name = name, .shape = {size}, .count = size, .storage = storage};
-  };
-  return {vector("log_std", 1, "ls"),
-          matrix("mlp_extractor.policy_net.0", 3, 2),
-          vector("mlp_extractor.policy_net.0.bias", 3, "pb"),
-          matrix("mlp_extractor.value_net.0", 3, 2),
-          vector("mlp_extractor.value_net.0.bias", 3, "vb"),
-          matrix("action_net", 1, 3),
-          vector("action_net.bias", 1, "ab"),
-          matrix("value_net", 1, 3),
-          vector("value_net.bias", 1, "b")};
-}
-
-std::vector<ZipEntry> torch_entries(const std::vector<PlantedTensor>& state) {
-  std::vector<ZipEntry> entries = {
-      {.name = "archive/data.pkl", .content = testing::pickled_state(state)},
-      {.name = "archive/byteorder", .content = "little"}};
-  for (const PlantedTensor& tensor : state) {
-    std::vector<float> values(static_cast<std::size_t>(std::max(tensor.count, 0)));
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.25f * static_cast<float>(i + 1);
-    entries.push_back({.name = "archive/data/" + tensor.storage, .content = floats(values)});
-  }
-  return entries;
-}
-
-std::string policy_around(const std::vector<ZipEntry>& torch, const std::string& data = "{}") {
-  return testing::zip_of({{.name = "data", .content = data},
-                          {.name = "policy.pth", .content = testing::zip_of(torch)}});
-}
-
-std::string policy_of(const std::vector<PlantedTensor>& state, const std::string& data = "{}") {
-  return policy_around(torch_entries(state), data);
-}
-
-/// The smallest policy with one of its tensors changed.
-template <class Change>
-std::string policy_with(std::size_t index, const Change& change) {
-  std::vector<PlantedTensor> state = small_state();
-  change(state.at(index));
-  return policy_of(state);
-}
-
-void expect_policy_refused(const std::string& bytes, const std::string& phrase) {
-  SCOPED_TRACE(phrase);
-  expect_refused(parse_sb3_zip(bytes, "f.zip"), "f.zip: ", phrase);
-}
 
 class Sb3Policy : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Files, Sb3Policy,
@@ -104,14 +41,14 @@ TEST_P(Sb3Policy, ActsAsStableBaselinesDoes) {
   int clipped = 0, compared = 0;
   for (std::size_t i = 0; i < truth["observations"].size(); ++i) {
     const auto observation = truth["observations"][i].get<std::vector<double>>();
-    const std::vector<double> action = testing::forward(*set, "actor", observation);
+    const std::vector<double> action = testing::forward_pass(*set, "actor", observation);
     for (std::size_t k = 0; k < action.size(); ++k, ++compared) {
       const double kept = std::clamp(action[k], double{low[k]}, double{high[k]});
       clipped += kept != action[k];
       EXPECT_NEAR(kept, truth[name]["actions"][i][k].get<double>(), 1e-5);
     }
     if (!truth[name].contains("values")) continue;
-    const double value = testing::forward(*set, "critic", observation).at(0);
+    const double value = testing::forward_pass(*set, "critic", observation).at(0);
     EXPECT_NEAR(value, truth[name]["values"][i].get<double>(), 1e-5);
   }
   EXPECT_GT(clipped, 0);
@@ -161,42 +98,6 @@ TEST(Sb3Zip, WhatTheTestsWriteIsRead) {
             (std::vector{0.5f, 0.75f, 1.f, 1.25f, 1.5f, 1.75f}));
 }
 
-TEST(Sb3Zip, TensorsStayWithinTheirNumbers) {
-  const auto planted = [](const auto& change, const std::string& phrase) {
-    expect_policy_refused(policy_with(1, change), phrase);
-  };
-  const std::string beyond = "reaches beyond its numbers";
-  planted([](auto& w) { w.strides = {-2, 1}; }, beyond);
-  planted([](auto& w) { w.strides = {2, -1}; }, beyond);
-  planted([](auto& w) { w.shape = {-3, 2}; }, beyond);
-  planted([](auto& w) { w.offset = -1; }, beyond);
-  planted([](auto& w) { w.offset = 1; }, beyond);
-  planted([](auto& w) { w.offset = kHuge; }, beyond);
-  planted([](auto& w) { w.strides = {3, 1}; }, beyond);
-  planted([](auto& w) { w.shape = {4, 2}; }, beyond);
-  planted([](auto& w) { w.shape = {kHuge, kHuge}, w.strides = {kHuge, kHuge}; }, beyond);
-  planted([](auto& w) { w.shape = {3, 2, 1}, w.strides = {2, 1, 1}; }, "two dimensions");
-  // Strides of 0 take few bytes in the file, and could take all memory.
-  planted([](auto& w) { w.shape = {kHuge, kHuge}, w.strides = {0, 0}; }, "67108864 numbers");
-  planted([](auto& w) { w.shape = {1 << 13, (1 << 13) + 1}, w.strides = {0, 0}; }, "67108864");
-  planted([](auto& w) { w.shape = {0, 2}; }, "fits no layer");
-  planted([](auto& w) { w.shape = {6}, w.strides = {1}; }, "fits no layer");
-
-  std::vector<ZipEntry> torch = torch_entries(small_state());
-  torch[3].content.pop_back();
-  expect_policy_refused(policy_around(torch), "another size than 24 bytes");
-  torch[3].content += "12345";
-  expect_policy_refused(policy_around(torch), "another size than 24 bytes");
-  torch.erase(torch.begin() + 3);
-  expect_policy_refused(policy_around(torch), "missing");
-  expect_policy_refused(policy_with(1, [](auto& w) { w.count = -6; }), "size than -24");
-  std::vector<PlantedTensor> state = small_state();
-  state[1].storage = "../../data";
-  torch = torch_entries(small_state());
-  torch[0].content = testing::pickled_state(state);
-  expect_policy_refused(policy_around(torch), "missing");
-}
-
 TEST(Sb3Zip, LayersMustMakeAnActorAndACritic) {
   const auto renamed = [](std::size_t index, const std::string& name, const std::string& phrase) {
     expect_policy_refused(policy_with(index, [&](auto& tensor) { tensor.name = name; }), phrase);
@@ -233,7 +134,7 @@ TEST(Sb3Zip, LayersMustMakeAnActorAndACritic) {
   resized(6, {});
   resized(7, {2, 3});
   std::vector<ZipEntry> torch = torch_entries(small_state());
-  torch[2].content = floats({std::numeric_limits<float>::quiet_NaN()});
+  torch[2].content = float_bytes({std::numeric_limits<float>::quiet_NaN()});
   expect_policy_refused(policy_around(torch), "\"log_std\" holds a number that is not finite");
 }
 
@@ -290,115 +191,6 @@ TEST(Sb3Zip, BoundsOfActionsAreReadWhereTheyArePrinted) {
   EXPECT_FALSE(has_bounds("[]", "[]"));
   EXPECT_FALSE(has_bounds("[-1.x]", "[1.]"));
   EXPECT_FALSE(has_bounds("[", "]"));
-}
-
-TEST(Sb3Zip, DamagedArchivesGetOneLine) {
-  const std::vector<ZipEntry> torch = torch_entries(small_state());
-  const ZipEntry data{.name = "data", .content = "{}"};
-  const ZipEntry policy{.name = "policy.pth", .content = testing::zip_of(torch)};
-  const auto refused = [](const std::vector<ZipEntry>& entries, const std::string& phrase) {
-    expect_policy_refused(testing::zip_of(entries), phrase);
-  };
-  const auto changed = [](ZipEntry entry, const auto& change) {
-    change(entry);
-    return entry;
-  };
-  ASSERT_TRUE(parse_sb3_zip(testing::zip_of({data, policy}), "f"));
-  refused({}, "has no \"data\"");
-  refused({data}, "has no \"policy.pth\"");
-  refused({data, policy, data}, "\"data\" stands in it twice");
-  refused({data, changed(policy, [](auto& e) { e.method = 8; })}, "is compressed");
-  refused({data, changed(policy, [](auto& e) { e.flags = 1; })}, "compressed or encrypted");
-  refused({data, changed(policy, [](auto& e) { e.wrong_crc = true; })}, "damaged (CRC-32)");
-  refused({changed(data, [](auto& e) { e.wrong_crc = true; }), policy}, "damaged (CRC-32)");
-  refused({data, changed(policy, [](auto& e) { e.size_off = 1; })}, "entry 2");
-  refused({data, changed(policy, [](auto& e) { e.size_off = 4000000000; })}, "entry 2");
-  refused({changed(data, [](auto& e) { e.local_off = 1; }), policy}, "entry 1");
-  refused({changed(data, [](auto& e) { e.local_off = -1; }), policy}, "entry 1");
-  refused({changed(data, [](auto& e) { e.local_off = 1 << 30; }), policy}, "entry 1");
-  // A bomb: what is said to unpack to 4 GB is not unpacked at all.
-  refused({data, changed(policy, [](auto& e) { e.method = 8, e.size_off = 0; })}, "compressed");
-  expect_policy_refused("", "no whole zip archive");
-  expect_policy_refused("PK\5\6", "no whole zip archive");
-  expect_policy_refused(std::string(100, 'x'), "no whole zip archive");
-  expect_policy_refused(testing::zip_of({data, policy}) + "x", "no whole zip archive");
-  expect_policy_refused("x" + testing::zip_of({data, policy}), "entry 1");
-  // Within policy.pth.
-  const auto inner = [&](const std::string& content, const std::string& phrase) {
-    refused({data, {.name = "policy.pth", .content = content}}, phrase);
-  };
-  inner("\x80\x02N.", "policy.pth: is no whole zip archive");
-  inner(testing::zip_of({}), "has no \"data.pkl\"");
-  std::vector<ZipEntry> more = torch;
-  more.push_back({.name = "other/data.pkl", .content = "."});
-  inner(testing::zip_of(more), "has no \"data.pkl\"");
-  more = torch;
-  more[1].content = "big";
-  inner(testing::zip_of(more), "not little-endian");
-  more = torch;
-  more[2].method = 8;
-  inner(testing::zip_of(more), "missing or have another size");
-  more = torch;
-  more[0].content =
-      "\x80\x02" + testing::global("os", "system") + "(" + testing::unicode("touch owned") + "tR.";
-  inner(testing::zip_of(more), "refused: data.pkl asks for \"os.system\"");
-}
-
-TEST(Sb3Zip, IsRefusedCutOffAnywhere) {
-  const std::string whole = bytes_of("sb3_tanh");
-  for (std::size_t size = 0; size < whole.size(); ++size) {
-    SCOPED_TRACE(size);
-    expect_refused(parse_sb3_zip(std::string_view(whole).substr(0, size), "f"), "f: ");
-  }
-  const std::string torch = testing::zip_of(torch_entries(small_state()));
-  for (std::size_t size = 0; size < torch.size(); ++size) {
-    SCOPED_TRACE(size);
-    const std::string policy =
-        testing::zip_of({{.name = "data", .content = "{}"},
-                         {.name = "policy.pth", .content = torch.substr(0, size)}});
-    expect_refused(parse_sb3_zip(policy, "f"), "f: ");
-  }
-}
-
-TEST(Sb3Zip, ByteFlipsChangeNothingOrAreSeen) {
-  const std::string whole = bytes_of("sb3_tanh");
-  const TensorSet truth = parse_sb3_zip(whole, "f").value();
-  std::mt19937_64 random(3);
-  int seen = 0;
-  for (int round = 0; round < 20000; ++round) {
-    std::string bytes = whole;
-    bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
-    const auto read = parse_sb3_zip(bytes, "f");
-    if (read) {
-      EXPECT_EQ(read->tensors, truth.tensors);
-      EXPECT_EQ(read->metadata.at("activation"), truth.metadata.at("activation"));
-    } else {
-      expect_refused(read, "f: ");
-      ++seen;
-    }
-  }
-  EXPECT_GT(seen, 10000);
-}
-
-TEST(Sb3Zip, ByteFlipsBehindTheChecksumGiveWholeTensorsOrOneLine) {
-  const std::string torch = testing::zip_of(torch_entries(small_state()));
-  std::mt19937_64 random(4);
-  int accepted = 0;
-  for (int round = 0; round < 20000; ++round) {
-    std::string bytes = torch;
-    bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
-    const auto read = parse_sb3_zip(testing::zip_of({{.name = "data", .content = "{}"},
-                                                     {.name = "policy.pth", .content = bytes}}),
-                                    "f");
-    if (!read) {
-      expect_refused(read, "f: ");
-      continue;
-    }
-    ++accepted;
-    testing::expect_whole(*read);
-    EXPECT_EQ(testing::forward(*read, "actor", {1, 2}).size(), 1u);
-  }
-  EXPECT_GT(accepted, 0);  // weights may be others
 }
 
 }  // namespace

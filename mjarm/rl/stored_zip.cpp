@@ -23,11 +23,11 @@ std::size_t word32(std::string_view bytes, std::size_t at) {
 }
 
 /// True where `count` bytes from `at` on lie before `end`.
-bool fits(std::size_t at, std::size_t count, std::size_t end) {
+bool fits_in(std::size_t at, std::size_t count, std::size_t end) {
   return at <= end && count <= end - at;
 }
 
-bool has_signature(std::string_view bytes, std::size_t at, char third, char fourth) {
+bool has_zip_signature(std::string_view bytes, std::size_t at, char third, char fourth) {
   return bytes.substr(at, 2) == "PK" && bytes[at + 2] == third && bytes[at + 3] == fourth;
 }
 
@@ -50,22 +50,24 @@ std::size_t end_record(std::string_view bytes) {
 /// Takes the directory's entry at `at`, and moves `at` behind it; false where it is damaged.
 bool StoredZip::add_entry(std::string_view bytes, std::size_t& at, std::size_t directory,
                           std::string& twice) {
-  if (!fits(at, kDirectoryRecord, bytes.size()) || !has_signature(bytes, at, 1, 2)) return false;
+  if (!fits_in(at, kDirectoryRecord, bytes.size()) || !has_zip_signature(bytes, at, 1, 2))
+    return false;
   const std::size_t name_size = word16(bytes, at + 28);
   const std::size_t size = word32(bytes, at + 20);
   const std::size_t local = word32(bytes, at + 42);
   const bool stored = word16(bytes, at + 10) == 0 && word32(bytes, at + 24) == size;
   const bool plain = stored && (word16(bytes, at + 8) & kEncrypted) == 0;
   const auto crc = load_little<std::uint32_t>(bytes, at + 16);
-  if (!fits(at + kDirectoryRecord, name_size, bytes.size())) return false;
+  if (!fits_in(at + kDirectoryRecord, name_size, bytes.size())) return false;
   const std::string_view name = bytes.substr(at + kDirectoryRecord, name_size);
   at += kDirectoryRecord + name_size + word16(bytes, at + 30) + word16(bytes, at + 32);
   if (at > bytes.size()) return false;
 
   // The local record may leave the sizes open, but not the name.
-  if (!fits(local, kLocalRecord, directory) || !has_signature(bytes, local, 3, 4)) return false;
+  if (!fits_in(local, kLocalRecord, directory) || !has_zip_signature(bytes, local, 3, 4))
+    return false;
   const std::size_t begin = local + kLocalRecord + name_size + word16(bytes, local + 28);
-  if (word16(bytes, local + 26) != name_size || !fits(begin, size, directory) ||
+  if (word16(bytes, local + 26) != name_size || !fits_in(begin, size, directory) ||
       bytes.substr(local + kLocalRecord, name_size) != name) {
     return false;
   }
@@ -86,7 +88,7 @@ Result<StoredZip> StoredZip::open(std::string_view bytes, std::string source) {
   const std::size_t directory = word32(bytes, end + 16);
   // One part only; what lies between the directory and the last record is of no concern.
   if (word16(bytes, end + 4) != 0 || word16(bytes, end + 8) != count ||
-      !fits(directory, word32(bytes, end + 12), end)) {
+      !fits_in(directory, word32(bytes, end + 12), end)) {
     return fail(Errc::bad_input, text(msg::policy_file_no_zip, zip.source_));
   }
   std::size_t at = directory;

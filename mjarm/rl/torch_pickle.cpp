@@ -17,7 +17,7 @@ constexpr std::size_t kDeepestStack = 4096;
 constexpr std::size_t kMostMarks = 32;
 constexpr std::size_t kMostMemos = 1 << 17;
 
-enum class ValueKind { none, truth, integer, words, global, tuple, dict, storage, tensor };
+enum class PickleKind { none, truth, integer, words, global, tuple, dict, storage, tensor };
 
 constexpr const char* kOrderedDict = "collections.OrderedDict";
 constexpr const char* kRebuildTensor = "torch._utils._rebuild_tensor_v2";
@@ -28,7 +28,7 @@ constexpr const char* kFloatStorage = "torch.FloatStorage";
 using ValueId = std::size_t;
 
 struct PickleValue {
-  ValueKind kind = ValueKind::none;
+  PickleKind kind = PickleKind::none;
   std::int64_t number = 0;          ///< of an integer; numbers in a storage
   std::string words = {};           ///< a text; a global's full name; a storage's name
   std::vector<ValueId> items = {};  ///< of a tuple; of a dict its keys and values in turn; of a
@@ -79,7 +79,7 @@ class TorchPickle {
   /// Values that an instruction may take: those after the last mark.
   std::size_t available() const { return stack_.size() - (marks_.empty() ? 0 : marks_.back()); }
   PickleValue& top(std::size_t below = 0) { return values_[stack_[stack_.size() - 1 - below]]; }
-  bool top_is(ValueKind kind, std::size_t below = 0) {
+  bool top_is(PickleKind kind, std::size_t below = 0) {
     return available() > below && top(below).kind == kind;
   }
 
@@ -152,12 +152,12 @@ TorchPickle::Refusal TorchPickle::add_global() {
   if (name != kOrderedDict && name != kRebuildTensor && name != kFloatStorage) {
     return refused_global(name);
   }
-  return add({.kind = ValueKind::global, .words = std::move(name)});
+  return add({.kind = PickleKind::global, .words = std::move(name)});
 }
 
 /// The values from `first` on become one tuple.
 TorchPickle::Refusal TorchPickle::add_tuple(std::size_t first) {
-  PickleValue tuple{.kind = ValueKind::tuple};
+  PickleValue tuple{.kind = PickleKind::tuple};
   tuple.items.assign(stack_.begin() + static_cast<std::ptrdiff_t>(first), stack_.end());
   stack_.resize(first);
   return add(std::move(tuple));
@@ -165,14 +165,15 @@ TorchPickle::Refusal TorchPickle::add_tuple(std::size_t first) {
 
 /// ("storage", torch.FloatStorage, name, device, count): the device is of no concern.
 TorchPickle::Refusal TorchPickle::add_storage() {
-  if (!top_is(ValueKind::tuple) || top().items.size() != 5) return misfit();
+  if (!top_is(PickleKind::tuple) || top().items.size() != 5) return misfit();
   const auto item = [&](std::size_t i) -> const PickleValue& { return values_[top().items[i]]; };
-  const bool known = item(0).kind == ValueKind::words && item(0).words == "storage" &&
-                     item(1).kind == ValueKind::global && item(1).words == kFloatStorage &&
-                     item(2).kind == ValueKind::words && item(3).kind == ValueKind::words &&
-                     item(4).kind == ValueKind::integer;
+  const bool known = item(0).kind == PickleKind::words && item(0).words == "storage" &&
+                     item(1).kind == PickleKind::global && item(1).words == kFloatStorage &&
+                     item(2).kind == PickleKind::words && item(3).kind == PickleKind::words &&
+                     item(4).kind == PickleKind::integer;
   if (!known) return misfit();
-  PickleValue storage{.kind = ValueKind::storage, .number = item(4).number, .words = item(2).words};
+  PickleValue storage{
+      .kind = PickleKind::storage, .number = item(4).number, .words = item(2).words};
   stack_.pop_back();
   return add(std::move(storage));
 }
@@ -181,9 +182,9 @@ TorchPickle::Refusal TorchPickle::add_storage() {
 TorchPickle::Refusal TorchPickle::set_items(std::size_t first) {
   if (available() == 0 || first == 0 || (stack_.size() - first) % 2 != 0) return misfit();
   PickleValue& dict = values_[stack_[first - 1]];
-  if (dict.kind != ValueKind::dict) return misfit();
+  if (dict.kind != PickleKind::dict) return misfit();
   for (std::size_t i = first; i < stack_.size(); ++i) {
-    if ((i - first) % 2 == 0 && values_[stack_[i]].kind != ValueKind::words) return misfit();
+    if ((i - first) % 2 == 0 && values_[stack_[i]].kind != PickleKind::words) return misfit();
     dict.items.push_back(stack_[i]);
   }
   stack_.resize(first);
@@ -192,20 +193,20 @@ TorchPickle::Refusal TorchPickle::set_items(std::size_t first) {
 
 /// An OrderedDict gets attributes, "_metadata" with the versions of modules: nobody needs them.
 TorchPickle::Refusal TorchPickle::build() {
-  if (!top_is(ValueKind::dict) || !top_is(ValueKind::dict, 1)) return misfit();
+  if (!top_is(PickleKind::dict) || !top_is(PickleKind::dict, 1)) return misfit();
   stack_.pop_back();
   return std::nullopt;
 }
 
 TorchPickle::Refusal TorchPickle::reduce() {
-  if (!top_is(ValueKind::tuple) || !top_is(ValueKind::global, 1)) return misfit();
+  if (!top_is(PickleKind::tuple) || !top_is(PickleKind::global, 1)) return misfit();
   std::vector<ValueId> arguments = top().items;
   const std::string name = top(1).words;
   PickleValue made;
   if (name == kOrderedDict && arguments.empty()) {
-    made.kind = ValueKind::dict;
+    made.kind = PickleKind::dict;
   } else if (name == kRebuildTensor && arguments.size() >= 6 && arguments.size() <= 7) {
-    made.kind = ValueKind::tensor;
+    made.kind = PickleKind::tensor;
     made.items = std::move(arguments);
   } else {
     return misfit();
@@ -258,21 +259,21 @@ TorchPickle::Refusal TorchPickle::run(unsigned char code) {
       return add({});
     case PickleOp::new_true:
     case PickleOp::new_false:
-      return add({.kind = ValueKind::truth});
+      return add({.kind = PickleKind::truth});
     case PickleOp::bin_int:
-      return add({.kind = ValueKind::integer, .number = take_number<std::int32_t>()});
+      return add({.kind = PickleKind::integer, .number = take_number<std::int32_t>()});
     case PickleOp::bin_int1:
-      return add({.kind = ValueKind::integer, .number = take_number<std::uint8_t>()});
+      return add({.kind = PickleKind::integer, .number = take_number<std::uint8_t>()});
     case PickleOp::bin_int2:
-      return add({.kind = ValueKind::integer, .number = take_number<std::uint16_t>()});
+      return add({.kind = PickleKind::integer, .number = take_number<std::uint16_t>()});
     case PickleOp::bin_unicode: {
       const std::size_t size = take_number<std::uint32_t>();
-      return add({.kind = ValueKind::words, .words = std::string(take(size))});
+      return add({.kind = PickleKind::words, .words = std::string(take(size))});
     }
     case PickleOp::empty_tuple:
-      return add({.kind = ValueKind::tuple});
+      return add({.kind = PickleKind::tuple});
     case PickleOp::empty_dict:
-      return add({.kind = ValueKind::dict});
+      return add({.kind = PickleKind::dict});
     case PickleOp::bin_put:
       return put(take_number<std::uint8_t>());
     case PickleOp::long_bin_put:
@@ -287,10 +288,10 @@ TorchPickle::Refusal TorchPickle::run(unsigned char code) {
 }
 
 std::optional<std::vector<std::int64_t>> TorchPickle::integers(const PickleValue& tuple) const {
-  if (tuple.kind != ValueKind::tuple) return std::nullopt;
+  if (tuple.kind != PickleKind::tuple) return std::nullopt;
   std::vector<std::int64_t> numbers;
   for (const ValueId id : tuple.items) {
-    if (values_[id].kind != ValueKind::integer) return std::nullopt;
+    if (values_[id].kind != PickleKind::integer) return std::nullopt;
     numbers.push_back(values_[id].number);
   }
   return numbers;
@@ -299,12 +300,12 @@ std::optional<std::vector<std::int64_t>> TorchPickle::integers(const PickleValue
 /// (storage, offset, shape, strides, requires_grad, hooks[, metadata])
 Result<PickledTensor> TorchPickle::tensor(const PickleValue& value) const {
   const auto damaged = fail(Errc::bad_input, text(msg::policy_file_pickle_state, source_));
-  if (value.kind != ValueKind::tensor) return damaged;
+  if (value.kind != PickleKind::tensor) return damaged;
   const PickleValue& storage = values_[value.items[0]];
   const PickleValue& offset = values_[value.items[1]];
   auto shape = integers(values_[value.items[2]]);
   auto strides = integers(values_[value.items[3]]);
-  if (storage.kind != ValueKind::storage || offset.kind != ValueKind::integer || !shape ||
+  if (storage.kind != PickleKind::storage || offset.kind != PickleKind::integer || !shape ||
       !strides || shape->size() != strides->size()) {
     return damaged;
   }
@@ -332,7 +333,7 @@ Result<std::map<std::string, PickledTensor>> TorchPickle::read() {
     return fail(Errc::bad_input, text(msg::policy_file_pickle_after, source_, bytes_.size() - at_));
   }
   const auto damaged = fail(Errc::bad_input, text(msg::policy_file_pickle_state, source_));
-  if (stack_.size() != 1 || !marks_.empty() || top().kind != ValueKind::dict) return damaged;
+  if (stack_.size() != 1 || !marks_.empty() || top().kind != PickleKind::dict) return damaged;
   std::map<std::string, PickledTensor> tensors;
   const std::vector<ValueId>& items = top().items;
   for (std::size_t i = 0; i + 1 < items.size(); i += 2) {
