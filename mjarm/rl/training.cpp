@@ -79,7 +79,7 @@ struct Training::State {
   [[nodiscard]] Result<void> add_row(const TrainingStep& step);
   [[nodiscard]] bool all_agree_to_stop();
 
-  const Model& model;
+  Model model;
   TrainingOptions options;
   ReachEnv env;
   std::optional<PpoTrainer> trainer;

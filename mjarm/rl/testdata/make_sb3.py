@@ -7,6 +7,7 @@ sb3_relu.zip    ReLU, an actor and a critic of different depth
 sb3_shared.zip  layers that actor and critic share, in the names of stable-baselines3 1.x
 sb3_flat.zip    no hidden layer
 sb3_sde.zip     state-dependent exploration, which is refused
+sb3_guide.zip   the sizes of the tutorial's task: ten observations, seven actions
 sb3_actions.json  observations and the actions of stable-baselines3 itself
 """
 
@@ -27,21 +28,22 @@ HIGH = numpy.array([0.7, 0.5], numpy.float32)
 
 
 class Still(gymnasium.Env):
-    """A task of five numbers in which nothing happens."""
+    """A task in which nothing happens."""
 
-    observation_space = gymnasium.spaces.Box(-numpy.inf, numpy.inf, (5,), numpy.float32)
-    action_space = gymnasium.spaces.Box(LOW, HIGH)
+    def __init__(self, observations, low, high):
+        self.observation_space = gymnasium.spaces.Box(-numpy.inf, numpy.inf, (observations,), numpy.float32)
+        self.action_space = gymnasium.spaces.Box(low, high)
 
     def reset(self, seed=None, options=None):
-        return numpy.zeros(5, numpy.float32), {}
+        return numpy.zeros(self.observation_space.shape, numpy.float32), {}
 
     def step(self, action):
-        return numpy.zeros(5, numpy.float32), 0.0, False, False, {}
+        return numpy.zeros(self.observation_space.shape, numpy.float32), 0.0, False, False, {}
 
 
-def policy(seed, **arguments):
+def policy(seed, task=None, **arguments):
     model = stable_baselines3.PPO(
-        "MlpPolicy", Still(), seed=seed, n_steps=8, batch_size=8, device="cpu", **arguments)
+        "MlpPolicy", task or Still(5, LOW, HIGH), seed=seed, n_steps=8, batch_size=8, device="cpu", **arguments)
     with torch.no_grad():
         for parameter in model.policy.parameters():
             parameter.add_(0.4 * torch.randn_like(parameter))
@@ -85,9 +87,12 @@ def main():
                                              "activation_fn": torch.nn.ReLU}),
         "sb3_shared": policy(3, policy_kwargs={"net_arch": [6, 5]}),
         "sb3_flat": policy(4, policy_kwargs={"net_arch": []}),
+        "sb3_guide": policy(6, Still(10, -numpy.ones(7, numpy.float32), numpy.ones(7, numpy.float32)),
+                            policy_kwargs={"net_arch": [4]}),
         "sb3_sde": policy(5, policy_kwargs={"net_arch": [4]}, use_sde=True),
     }
     truth = {"low": LOW.tolist(), "high": HIGH.tolist(), "observations": observations.tolist()}
+    models.pop("sb3_guide").save(HERE / "sb3_guide.zip")
     for name, model in models.items():
         actions, _ = model.predict(observations, deterministic=True)
         values = model.policy.predict_values(torch.from_numpy(observations)).detach().numpy()
