@@ -29,6 +29,8 @@ PpoOptions small_options() {
           .minibatch = 128,
           .epochs = 8,
           .learning_rate = 3e-3,
+          .schedule = Schedule::constant,
+          .discount = 0.99,
           .actor = {16, 16},
           .critic = {16, 16},
           .initial_log_std = -0.5};

@@ -12,25 +12,29 @@ namespace {
 
 using testing::PointMass;
 
-/// A point mass under an untrained policy, whose normaliser has seen something.
+/// An untrained policy, somewhat different from row to row.
+Policy drawn_policy() {
+  Policy policy({.observations = 4, .actions = 2, .actor = {16}, .critic = {8}});
+  Rng rng(8);
+  detail::draw_first_weights(policy, -0.3, rng);
+  for (float& value : policy.parameters()) value += static_cast<float>(0.1 * rng.normal());
+  return policy;
+}
+
+/// A point mass under such a policy, whose normaliser has seen something.
 struct Collecting {
   PointMass env{6};
-  Policy policy{{.observations = 4, .actions = 2, .actor = {16}, .critic = {8}}};
+  Policy policy = drawn_policy();
   detail::Workers workers{2};
+  detail::Networks networks{detail::net_kernels(simd_level()), policy, workers};
   Rng rng{7};
   detail::OpenEpisodes open{6};
   detail::Rollout rollout{70, 6, policy.shape()};
-  detail::Networks networks;
 
-  Collecting() : networks((draw(), detail::net_kernels(simd_level())), policy, workers) {
+  Collecting() {
     EXPECT_TRUE(env.reset(3));
     policy.normaliser.absorb(env.observations());
-    const auto collected = detail::collect(env, policy, networks, rng, open, rollout);
-    EXPECT_TRUE(collected);
-  }
-  void draw() {
-    detail::draw_first_weights(policy, -0.3, rng);
-    for (float& value : policy.parameters()) value += static_cast<float>(0.1 * rng.normal());
+    EXPECT_TRUE(detail::collect(env, policy, networks, rng, open, rollout));
   }
 };
 
