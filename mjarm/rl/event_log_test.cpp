@@ -133,7 +133,7 @@ TEST(EventLog, GoesOnAfterACheckpointAsIfNothingHadHappened) {
 TEST(EventLog, DropsATornRecordWhereverItIsTorn) {
   const TempFolder folder;
   auto log = EventLog::open(folder.path() / kEventsName, kLogTags);
-  append_rows(*log, 1, 5);
+  append_rows(*log, 1, 3);
   const std::string whole = folder.read(kEventsName);
   const auto events = read_events(whole);
   for (std::size_t size = 0; size <= whole.size(); ++size) {
@@ -145,7 +145,7 @@ TEST(EventLog, DropsATornRecordWhereverItIsTorn) {
     ASSERT_GE(left.size(), 1u);
     ASSERT_LE(left.size(), events.size());
     EXPECT_TRUE(std::equal(left.begin(), left.end(), events.begin()));
-    append_rows(*resumed, static_cast<std::int64_t>(left.size()), 5);
+    append_rows(*resumed, static_cast<std::int64_t>(left.size()), 3);
     EXPECT_EQ(folder.read("torn"), whole);
   }
 }
@@ -153,7 +153,7 @@ TEST(EventLog, DropsATornRecordWhereverItIsTorn) {
 TEST(EventLog, DropsEverythingFromADamagedByteOn) {
   const TempFolder folder;
   auto log = EventLog::open(folder.path() / kEventsName, kLogTags);
-  append_rows(*log, 1, 5);
+  append_rows(*log, 1, 3);
   const std::string whole = folder.read(kEventsName);
   for (std::size_t at = 0; at < whole.size(); ++at) {
     SCOPED_TRACE(at);
@@ -208,16 +208,16 @@ TEST(CsvLog, HoldsTheSameRows) {
 TEST(CsvLog, GoesOnAfterACheckpointAsIfNothingHadHappened) {
   const TempFolder folder;
   auto log = CsvLog::open(folder.path() / "whole.csv", kLogTags);
-  append_rows(*log, 1, 12);
+  append_rows(*log, 1, 5);
   const std::string whole = folder.read("whole.csv");
   for (std::size_t size = 0; size <= whole.size(); ++size) {
     SCOPED_TRACE(size);
     folder.write("log.csv", whole.substr(0, size));
-    auto resumed = CsvLog::open(folder.path() / "log.csv", kLogTags, 300 * 8);
+    auto resumed = CsvLog::open(folder.path() / "log.csv", kLogTags, 300 * 3);
     ASSERT_TRUE(resumed) << resumed.error().what;
     const std::string left = folder.read("log.csv");
     EXPECT_TRUE(whole.starts_with(left));
-    append_rows(*resumed, std::count(left.begin(), left.end(), '\n'), 12);
+    append_rows(*resumed, std::count(left.begin(), left.end(), '\n'), 5);
     EXPECT_EQ(folder.read("log.csv"), whole);
   }
   const std::string path = (folder.path() / "whole.csv").string();

@@ -253,7 +253,7 @@ TEST(Safetensors, ByteFlipsNeverGiveWrongSizes) {
   const std::string whole = read_file(testing::test_file("library.safetensors")).value();
   std::mt19937_64 random(11);
   int accepted = 0;
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < 5000; ++round) {
     std::string bytes = whole;
     for (std::uint64_t i = 1 + random() % 3; i-- > 0;) {
       bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);

@@ -140,7 +140,7 @@ TEST(HostileSb3Zip, ByteFlipsChangeNothingOrAreSeen) {
   const TensorSet truth = parse_sb3_zip(whole, "f").value();
   std::mt19937_64 random(3);
   int seen = 0;
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < 5000; ++round) {
     std::string bytes = whole;
     bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
     const auto read = parse_sb3_zip(bytes, "f");
@@ -152,14 +152,14 @@ TEST(HostileSb3Zip, ByteFlipsChangeNothingOrAreSeen) {
       ++seen;
     }
   }
-  EXPECT_GT(seen, 10000);
+  EXPECT_GT(seen, 2500);
 }
 
 TEST(HostileSb3Zip, ByteFlipsBehindTheChecksumGiveWholeTensorsOrOneLine) {
   const std::string torch = testing::zip_of(torch_entries(small_state()));
   std::mt19937_64 random(4);
   int accepted = 0;
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < 5000; ++round) {
     std::string bytes = torch;
     bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
     const auto read = parse_sb3_zip(testing::zip_of({{.name = "data", .content = "{}"},
