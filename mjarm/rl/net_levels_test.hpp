@@ -4,11 +4,13 @@
 
 #include "mjarm/rl/net_kernels_internal.hpp"
 
-namespace mjarm::rl::testing {
+namespace mjarm::testing {
+
+using namespace rl;
 
 /// Those of all levels that this machine runs and MJARM_SIMD allows.
-inline std::vector<const detail::NetKernels*> all_net_kernels() {
-  std::vector<const detail::NetKernels*> all = {&detail::kNetBaseline};
+inline std::vector<const rl::detail::NetKernels*> all_net_kernels() {
+  std::vector<const rl::detail::NetKernels*> all = {&detail::kNetBaseline};
 #if defined(__x86_64__)
   if (simd_level() >= SimdLevel::avx2) all.push_back(&detail::kNetAvx2);
   if (simd_level() >= SimdLevel::avx512) all.push_back(&detail::kNetAvx512);
@@ -16,4 +18,4 @@ inline std::vector<const detail::NetKernels*> all_net_kernels() {
   return all;
 }
 
-}  // namespace mjarm::rl::testing
+}  // namespace mjarm::testing

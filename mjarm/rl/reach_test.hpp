@@ -12,7 +12,9 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/rl/reach_env.hpp"
 
-namespace mjarm::rl::testing {
+namespace mjarm::testing {
+
+using namespace rl;
 
 inline Model reach_model(const ReachOptions& options = {}) {
   const auto scene = reach_scene(options);
@@ -99,4 +101,4 @@ class Expert {
   ReachOptions options_;
 };
 
-}  // namespace mjarm::rl::testing
+}  // namespace mjarm::testing

@@ -8,7 +8,9 @@
 
 #include "mjarm/rl/ppo_gradient_internal.hpp"
 
-namespace mjarm::rl::testing {
+namespace mjarm::testing {
+
+using namespace rl;
 
 /// PPO's loss in double precision, written down from its definition, number by number: the oracle
 /// of the gradient.
@@ -104,4 +106,4 @@ class ReferenceLoss {
   const PpoOptions& options_;
 };
 
-}  // namespace mjarm::rl::testing
+}  // namespace mjarm::testing

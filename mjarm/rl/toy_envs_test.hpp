@@ -9,7 +9,9 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/rl/vec_env.hpp"
 
-namespace mjarm::rl::testing {
+namespace mjarm::testing {
+
+using namespace rl;
 
 /// What small tasks share: rows of numbers, and a random stream for each copy.
 class ToyEnv : public VecEnv {
@@ -194,4 +196,4 @@ class Level : public ToyEnv {
   }
 };
 
-}  // namespace mjarm::rl::testing
+}  // namespace mjarm::testing
