@@ -105,39 +105,44 @@ LossMeans PpoGradient::compute(const Policy& policy, const Samples& samples,
   return means *= batch.weight();
 }
 
+void PpoGradient::actor_loss(const Batch& batch, std::span<const int> rows, Mlp::Scratch& scratch,
+                             LossMeans& sums, std::span<double> by_log_std) const {
+  const auto actions = static_cast<std::size_t>(shape_.actions);
+  std::vector<float> mean(actions);
+  for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
+    const auto sample = static_cast<std::size_t>(rows[i]);
+    const float* action = batch.samples.actions.data() + sample * actions;
+    for (std::size_t k = 0; k < actions; ++k) mean[k] = scratch.values.back().at(i, int(k));
+    const double log_prob = batch.gaussian.log_prob(action, mean.data());
+    const double advantage =
+        (batch.samples.advantages[sample] - batch.scale.mean) * batch.scale.factor;
+    const SurrogateTerm term = surrogate_term(log_prob - double(batch.samples.log_probs[sample]),
+                                              advantage, batch.options.clip);
+    sums += {term.loss, 0, term.kl, term.clipped ? 1.0 : 0.0};
+    const double slope = term.slope * batch.weight();
+    for (std::size_t k = 0; k < actions; ++k) {
+      const double z = batch.gaussian.distance(k, action, mean.data());
+      const double by_mean = slope * z * batch.gaussian.inverse(k);
+      scratch.gradients.back().at(i, int(k)) = static_cast<float>(by_mean);
+      by_log_std[k] += slope * (z * z - 1);
+    }
+  }
+}
+
 void PpoGradient::run_actor(const Batch& batch, int slice, int thread) {
   const Mlp& net = networks_.actor();
   Mlp::Scratch& scratch = networks_.actor_scratch(thread);
-  const auto actions = static_cast<std::size_t>(shape_.actions);
   LossMeans sums;
-  std::vector<double> by_log_std(actions, 0.0);
-  std::vector<float> mean(actions);
+  std::vector<double> by_log_std(static_cast<std::size_t>(shape_.actions), 0.0);
   float* gradient = slices_[slice].gradient.data();
   batch.for_each_block(slice, [&](std::span<const int> rows, bool first) {
     gather(batch.samples, rows, scratch.values.front());
     net.forward(static_cast<int>(rows.size()), scratch);
-    for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
-      const auto sample = static_cast<std::size_t>(rows[i]);
-      const float* action = batch.samples.actions.data() + sample * actions;
-      for (std::size_t k = 0; k < actions; ++k) mean[k] = scratch.values.back().at(i, int(k));
-      const double log_prob = batch.gaussian.log_prob(action, mean.data());
-      const double advantage =
-          (batch.samples.advantages[sample] - batch.scale.mean) * batch.scale.factor;
-      const SurrogateTerm term = surrogate_term(log_prob - double(batch.samples.log_probs[sample]),
-                                                advantage, batch.options.clip);
-      sums += {term.loss, 0, term.kl, term.clipped ? 1.0 : 0.0};
-      const double slope = term.slope * batch.weight();
-      for (std::size_t k = 0; k < actions; ++k) {
-        const double z = batch.gaussian.distance(k, action, mean.data());
-        const double by_mean = slope * z * batch.gaussian.inverse(k);
-        scratch.gradients.back().at(i, int(k)) = static_cast<float>(by_mean);
-        by_log_std[k] += slope * (z * z - 1);
-      }
-    }
+    actor_loss(batch, rows, scratch, sums, by_log_std);
     net.backward(static_cast<int>(rows.size()), scratch, !first, gradient);
   });
   // log_std stands last of all parameters.
-  std::ranges::copy(by_log_std, gradient + gradient_.size() - actions);
+  std::ranges::copy(by_log_std, gradient + gradient_.size() - by_log_std.size());
   slices_[slice].sums.policy = sums.policy;
   slices_[slice].sums.kl = sums.kl;
   slices_[slice].sums.clip_fraction = sums.clip_fraction;

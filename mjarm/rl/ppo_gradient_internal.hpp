@@ -52,6 +52,10 @@ class PpoGradient {
     FloatBuffer gradient;
     LossMeans sums;
   };
+  /// After the actor's forward pass over `rows`: the gradient by its outputs, and what comes to the
+  /// sums.
+  void actor_loss(const Batch& batch, std::span<const int> rows, Mlp::Scratch& scratch,
+                  LossMeans& sums, std::span<double> by_log_std) const;
   void run_actor(const Batch& batch, int slice, int thread);
   void run_critic(const Batch& batch, int slice, int thread);
   void add_slices(int count, std::span<const float> parameters, const PpoOptions& options);
