@@ -19,6 +19,10 @@ find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 
+if(MJARM_MPI)
+  find_package(MPI REQUIRED COMPONENTS CXX)
+endif()
+
 # Debian 12 names the target of yaml-cpp 0.7 without a namespace.
 if(NOT TARGET yaml-cpp::yaml-cpp)
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)

@@ -77,6 +77,8 @@ Run setup(CLI::App& app) {
 
 }  // namespace
 
-Command eval_command() { return {"eval", msg::train_eval_summary, msg::train_eval_examples, setup}; }
+Command eval_command() {
+  return {"eval", msg::train_eval_summary, msg::train_eval_examples, setup};
+}
 
 }  // namespace mjarm::app

@@ -1,3 +1,5 @@
+#include "mjarm/core/messages/train.hpp"
+
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -14,7 +16,6 @@
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/train.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
@@ -43,7 +44,8 @@ void add_fact(JsonDoc& doc, const Fact& fact) {
 
 bool is_good_enough(const TrainedSeed& run) {
   return run.options.stop_share <= 0 ||
-         (run.best && rl::share_within(*run.best, run.options.stop_within) >= run.options.stop_share);
+         (run.best &&
+          rl::share_within(*run.best, run.options.stop_within) >= run.options.stop_share);
 }
 
 void tell(const rl::TrainingStep& step, double seconds) {
@@ -52,8 +54,8 @@ void tell(const rl::TrainingStep& step, double seconds) {
 }
 
 Result<TrainedSeed> train(const Model& model, const rl::TrainingOptions& options,
-                      const std::filesystem::path& folder, const std::filesystem::path& checkpoint,
-                      rl::Ranks* ranks) {
+                          const std::filesystem::path& folder,
+                          const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
   Result<rl::Training> training = rl::Training::create(
       model, options, folder, {{"task", "reach"}, {"config", config_text(options)}}, ranks);
   if (!training) return fail(std::move(training.error()));
@@ -62,13 +64,13 @@ Result<TrainedSeed> train(const Model& model, const rl::TrainingOptions& options
     log_info(text(msg::train_resumed, training->trainer().steps()));
   }
   TrainedSeed trained{options};
-  Progress progress(text(msg::train_progress),
-                    static_cast<std::uint64_t>(options.ppo.total_steps));
+  Progress progress(text(msg::train_progress), static_cast<std::uint64_t>(options.ppo.total_steps));
   progress.advance(static_cast<std::uint64_t>(training->trainer().steps()));
   while (!training->done() && !(trained.interrupted = interrupted())) {
     const std::int64_t before = training->trainer().steps();
     const Result<rl::TrainingStep> step = training->advance();
     if (!step) return fail(step.error());
+    trained.advanced = true;
     trained.seconds += 1e-6 * (step->iteration.collect_us + step->iteration.update_us);
     progress.advance(static_cast<std::uint64_t>(step->iteration.steps - before));
     tell(*step, trained.seconds);
@@ -89,7 +91,8 @@ Result<void> write_report(const std::filesystem::path& folder, const TrainedSeed
   }
   if (timing) doc.set("us", 1e6 * trained.seconds);
   return write_file(folder / "report.json", doc.document()).and_then([&] {
-    return draw_curve(folder);
+    // One that was over when it was resumed has made no progress to be drawn.
+    return trained.advanced ? draw_curve(folder) : Result<void>();
   });
 }
 
@@ -126,7 +129,8 @@ Result<int> train_seeds(const Options& options, const Model& model,
   if (!first) return 0;
   std::printf("%s%s\n", seeds_table(runs).c_str(),
               text(msg::train_folder, folder_of(options).string()).c_str());
-  if (runs.back().interrupted) return fail(Errc::impossible, text(msg::train_interrupted));
+  if (runs.back().interrupted) return fail(Errc::impossible, text(msg::train_interrupted,
+                                       (folder_of(options) / rl::Training::kLast).string()));
   for (const TrainedSeed& run : runs) {
     if (!is_good_enough(run)) {
       return fail(Errc::impossible, text(msg::train_not_reached, 100 * run.options.stop_share,
@@ -187,8 +191,6 @@ Run setup(CLI::App& app) {
 
 }  // namespace
 
-Command train_command() {
-  return {"train", msg::train_summary, msg::train_examples, setup};
-}
+Command train_command() { return {"train", msg::train_summary, msg::train_examples, setup}; }
 
 }  // namespace mjarm::app

@@ -20,9 +20,9 @@ constexpr const char* kLastEvaluation = "training.last";
 // An evaluation in a checkpoint: what is told of it, without the single distances.
 using Numbers = std::array<double Evaluation::*, 11>;
 constexpr Numbers kNumbers = {
-    &Evaluation::within_5cm, &Evaluation::within_2cm,   &Evaluation::within_1cm,
-    &Evaluation::within_5mm, &Evaluation::median,       &Evaluation::p95,
-    &Evaluation::max,        &Evaluation::steps,        &Evaluation::steps_to_2cm,
+    &Evaluation::within_5cm, &Evaluation::within_2cm, &Evaluation::within_1cm,
+    &Evaluation::within_5mm, &Evaluation::median,     &Evaluation::p95,
+    &Evaluation::max,        &Evaluation::steps,      &Evaluation::steps_to_2cm,
     &Evaluation::turn_p95,   &Evaluation::touched};
 
 void store(const std::optional<Evaluation>& evaluation, const char* name, TensorSet& set) {
@@ -53,8 +53,8 @@ std::string last_name(int rank) {
 }  // namespace
 
 double score(const Evaluation& evaluation) noexcept {
-  const double shares = evaluation.within_5cm + evaluation.within_2cm + evaluation.within_1cm +
-                        evaluation.within_5mm;
+  const double shares =
+      evaluation.within_5cm + evaluation.within_2cm + evaluation.within_1cm + evaluation.within_5mm;
   const double near = std::isfinite(evaluation.median) ? std::exp(-evaluation.median / 0.01) : 0;
   return shares + near / (2 * std::max(evaluation.episodes, 1));
 }
@@ -104,8 +104,7 @@ bool Training::State::is_good_enough() const {
 }
 
 Result<void> Training::State::evaluate_now(TrainingStep& step) {
-  Result<Evaluation> found =
-      evaluate(model, options.task, trainer->policy(), options.evaluation);
+  Result<Evaluation> found = evaluate(model, options.task, trainer->policy(), options.evaluation);
   if (!found) return fail(std::move(found.error()));
   last = std::move(*found);
   step.evaluation = last;
@@ -175,8 +174,8 @@ Result<Training> Training::create(const Model& model, const TrainingOptions& opt
 
 Result<void> Training::resume(const std::filesystem::path& checkpoint) {
   const int rank = state_->rank();
-  const Result<TensorSet> set = load_safetensors(
-      rank == 0 ? checkpoint : checkpoint.parent_path() / last_name(rank));
+  const Result<TensorSet> set =
+      load_safetensors(rank == 0 ? checkpoint : checkpoint.parent_path() / last_name(rank));
   if (!set) return fail(set.error());
   if (auto restored = state_->trainer->restore(*set); !restored) return restored;
   state_->best = stored(*set, kBestEvaluation);

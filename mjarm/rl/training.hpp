@@ -19,12 +19,12 @@ namespace mjarm::rl {
 /// How long to train, how often to look how good it is, and when that is good enough.
 struct TrainingOptions {
   ReachOptions task = {};
-  PpoOptions ppo = {};                    ///< `total_steps` is where the training ends at the latest
-  std::int64_t evaluate_every = 50000;    ///< steps between evaluations, > 0; the end has one too
-  EvaluateOptions evaluation = {};        ///< of the mean actions, on goals never trained on
-  double stop_within = 0.02;              ///< [m] see `share_within`
-  double stop_share = 0;                  ///< ends once so many goals are reached within
-                                          ///< `stop_within`, 0 to 1; 0: never
+  PpoOptions ppo = {};                  ///< `total_steps` is where the training ends at the latest
+  std::int64_t evaluate_every = 50000;  ///< steps between evaluations, > 0; the end has one too
+  EvaluateOptions evaluation = {};      ///< of the mean actions, on goals never trained on
+  double stop_within = 0.02;            ///< [m] see `share_within`
+  double stop_share = 0;                ///< ends once so many goals are reached within
+                                        ///< `stop_within`, 0 to 1; 0: never
 };
 
 /// What one iteration brought.

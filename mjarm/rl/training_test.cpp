@@ -61,8 +61,8 @@ TEST(TrainingFiles, AreThereAfterEveryIteration) {
   EXPECT_EQ(best->metadata.at("steps"), "256");
   const auto policy = Policy::from(*best);
   ASSERT_TRUE(policy) << policy.error().what;
-  const auto again = evaluate(reach_model(), small_training().task, *policy,
-                              small_training().evaluation);
+  const auto again =
+      evaluate(reach_model(), small_training().task, *policy, small_training().evaluation);
   ASSERT_TRUE(again) << again.error().what;
   EXPECT_EQ(again->median, training->best_evaluation()->median);
   const auto rows = support::lines_of(folder.read(Training::kProgress));

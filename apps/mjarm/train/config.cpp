@@ -172,8 +172,7 @@ std::vector<std::string> names_in(const std::vector<Field>& fields, std::string_
   std::vector<std::string> names;
   for (const Field& field : fields) {
     const std::string& name = section.empty() ? field.section : field.key;
-    if ((section.empty() || field.section == section) &&
-        (names.empty() || names.back() != name)) {
+    if ((section.empty() || field.section == section) && (names.empty() || names.back() != name)) {
       names.push_back(name);
     }
   }

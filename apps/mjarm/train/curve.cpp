@@ -78,8 +78,7 @@ std::string seeds_table(const std::vector<TrainedSeed>& runs) {
       {text(msg::train_column_seed), text(msg::train_column_steps), text(msg::train_column_seconds),
        "5 cm", "2 cm", "1 cm", "5 mm", text(msg::train_column_median)}};
   for (const TrainedSeed& run : runs) {
-    std::vector<std::string> row = {std::to_string(run.options.ppo.seed),
-                                    std::to_string(run.steps),
+    std::vector<std::string> row = {std::to_string(run.options.ppo.seed), std::to_string(run.steps),
                                     text(msg::train_count, run.seconds)};
     if (run.best) {
       for (const double share : {run.best->within_5cm, run.best->within_2cm, run.best->within_1cm,
@@ -100,8 +99,9 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
   PlotPanel success{.title = text(msg::train_plot_success),
                     .x_label = text(msg::train_plot_steps),
                     .y_label = text(msg::train_plot_share)};
-  for (const auto& [name, label] : {std::pair{"within_5cm", "5 cm"}, std::pair{"within_2cm", "2 cm"},
-                                    std::pair{"within_1cm", "1 cm"}, std::pair{"within_5mm", "5 mm"}}) {
+  for (const auto& [name, label] :
+       {std::pair{"within_5cm", "5 cm"}, std::pair{"within_2cm", "2 cm"},
+        std::pair{"within_1cm", "1 cm"}, std::pair{"within_5mm", "5 mm"}}) {
     success.lines.push_back(line_of(table, name, 100, label));
   }
   success.y_range = PlotRange{0, 100};
@@ -120,10 +120,10 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
                    .y_label = text(msg::train_plot_std)};
   spread.lines.push_back(line_of(table, "mean_std", 1, {}));
   spread.y_from_zero = true;
-  return save_plot({.title = text(msg::train_plot_title),
-                    .panels = {std::move(success), std::move(reward), std::move(distance),
-                               std::move(spread)}},
-                   folder / "curve");
+  return save_plot(
+      {.title = text(msg::train_plot_title),
+       .panels = {std::move(success), std::move(reward), std::move(distance), std::move(spread)}},
+      folder / "curve");
 }
 
 }  // namespace mjarm::app

@@ -16,7 +16,8 @@ struct TrainedSeed {
   rl::TrainingOptions options;
   std::int64_t steps = 0;
   std::optional<rl::Evaluation> best = {};
-  double seconds = 0;  ///< [s] wall-clock time of this run, without evaluations
+  double seconds = 0;     ///< [s] wall-clock time of this run, without evaluations
+  bool advanced = false;  ///< by an iteration at least
   bool interrupted = false;
 };
 

@@ -35,8 +35,8 @@ std::string evaluation_table(const rl::Evaluation& evaluation) {
       row(msg::train_row_steps_to_2cm, msg::train_count, evaluation.steps_to_2cm),
       row(msg::train_row_touched, msg::train_percent, 100 * evaluation.touched)};
   if (evaluation.turn_p95 > 0) {
-    rows.push_back(row(msg::train_row_turn_median, msg::train_deg,
-                       kDegrees * evaluation.turn_median));
+    rows.push_back(
+        row(msg::train_row_turn_median, msg::train_deg, kDegrees * evaluation.turn_median));
     rows.push_back(row(msg::train_row_turn_p95, msg::train_deg, kDegrees * evaluation.turn_p95));
   }
   return aligned(rows);
@@ -50,9 +50,9 @@ std::vector<Fact> facts_of(const rl::Evaluation& evaluation) {
                                                {"1cm", evaluation.within_1cm},
                                                {"5mm", evaluation.within_5mm}}},
       {"episodes", static_cast<double>(evaluation.episodes)},
-      {"distance", std::map<std::string, double>{{"median", evaluation.median},
-                                                 {"p95", evaluation.p95},
-                                                 {"max", evaluation.max}}},
+      {"distance",
+       std::map<std::string, double>{
+           {"median", evaluation.median}, {"p95", evaluation.p95}, {"max", evaluation.max}}},
       {"actions", evaluation.steps},
       {"actions_to_2cm", evaluation.steps_to_2cm},
       {"touched", evaluation.touched}};

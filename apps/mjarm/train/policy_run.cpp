@@ -140,7 +140,7 @@ Result<LoadedPolicy> load_policy(const std::filesystem::path& file) {
     if (!options) return fail(options.error());
     task = options->task;
   }
-  return LoadedPolicy{std::move(*policy), std::move(task)};
+  return LoadedPolicy{file, std::move(*policy), std::move(task)};
 }
 
 Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& trial,
@@ -150,8 +150,10 @@ Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& 
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
   const Stopwatch watch;
   auto evaluation = rl::evaluate(*model, loaded.task, loaded.policy,
-                                       {.episodes = trial.episodes, .seed = trial.seed});
-  if (!evaluation) return fail(evaluation.error());
+                                 {.episodes = trial.episodes, .seed = trial.seed});
+  if (!evaluation) {
+    return fail(evaluation.error().code, loaded.file.string() + ": " + evaluation.error().what);
+  }
   const double seconds = 1e-6 * watch.us();
   log_info(in_words(*evaluation));
 

@@ -14,6 +14,7 @@ namespace mjarm::app {
 
 /// A policy and the task it was trained for.
 struct LoadedPolicy {
+  std::filesystem::path file;
   rl::Policy policy;
   rl::ReachOptions task;
 };
@@ -23,11 +24,11 @@ struct LoadedPolicy {
 
 /// How a policy is tried.
 struct PolicyTrial {
-  std::string name;              ///< of the report
-  int episodes = 200;            ///< that count, on goals never trained on
-  std::uint64_t seed = 1;        ///< of the goals
-  int shown = 6;                 ///< first goals that are shown, filmed and logged
-  double least_success = 0;      ///< share within 2 cm below which the report is not ok
+  std::string name;          ///< of the report
+  int episodes = 200;        ///< that count, on goals never trained on
+  std::uint64_t seed = 1;    ///< of the goals
+  int shown = 6;             ///< first goals that are shown, filmed and logged
+  double least_success = 0;  ///< share within 2 cm below which the report is not ok
 };
 
 /// What came of it.

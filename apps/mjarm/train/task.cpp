@@ -27,14 +27,14 @@ void add_task_options(CLI::App& app, TaskArguments& arguments) {
   add_option(app, "--threads", arguments.threads, msg::train_option_threads, "N");
 }
 
-Result<rl::TrainingOptions> with_task(const TaskArguments& arguments,
-                                      rl::TrainingOptions options) {
+Result<rl::TrainingOptions> with_task(const TaskArguments& arguments, rl::TrainingOptions options) {
   constexpr int kMostThreads = 16;  // by itself: more than that a small network cannot feed
   if (arguments.task != "reach") {
-    return fail(Errc::usage, arguments.task.empty()
-                                 ? text(msg::train_which_task)
-                                 : text(msg::train_unknown_task, arguments.task) +
-                                       did_you_mean(arguments.task, std::array{std::string("reach")}));
+    return fail(Errc::usage,
+                arguments.task.empty()
+                    ? text(msg::train_which_task)
+                    : text(msg::train_unknown_task, arguments.task) +
+                          did_you_mean(arguments.task, std::array{std::string("reach")}));
   }
   if (arguments.guide) {
     const int environments = options.task.environments;

@@ -125,8 +125,9 @@ TEST(Train, GoesOnAfterKill) {
   const support::TempFolder folder;
   const auto config = folder.write("small.yaml", kSmall).string();
   const auto train = [&](const std::string& out) {
-    return std::vector<std::string>{"train", "reach", "--config", config, "--steps", "4096",
-                                    "--no-timing", "--out", path_in(folder, out)};
+    return std::vector<std::string>{"train",       "reach",   "--config",
+                                    config,        "--steps", "4096",
+                                    "--no-timing", "--out",   path_in(folder, out)};
   };
   ASSERT_EQ(mjarm(train("whole")).exit_code, 0);
   std::string script = "'" MJARM_PROGRAM "'";
@@ -134,8 +135,8 @@ TEST(Train, GoesOnAfterKill) {
   script += " & pid=$!; while [ ! -e '" + path_in(folder, "killed/best.safetensors") +
             "' ]; do sleep 0.01; done; kill -KILL $pid; wait $pid";
   EXPECT_NE(support::run_program("/bin/sh", {"-c", script}).exit_code, 0);
-  const auto resumed = mjarm({"train", "reach", "--resume", path_in(folder, "killed/last.safetensors"),
-                              "--no-timing"});
+  const auto resumed = mjarm(
+      {"train", "reach", "--resume", path_in(folder, "killed/last.safetensors"), "--no-timing"});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   for (const char* name : {"last.safetensors", "best.safetensors", "progress.csv", "report.json",
                            "events.out.tfevents.mjarm"}) {
@@ -148,8 +149,8 @@ TEST(Train, CtrlCLeavesACheckpointThatGoesOn) {
   const support::TempFolder folder;
   const auto config = folder.write("small.yaml", kSmall).string();
   const std::string out = path_in(folder, "out");
-  const std::string script = "'" MJARM_PROGRAM "' train reach --steps 100000000 --config '" + config +
-                             "' --out '" + out + "' & pid=$!; while [ ! -e '" + out +
+  const std::string script = "'" MJARM_PROGRAM "' train reach --steps 100000000 --config '" +
+                             config + "' --out '" + out + "' & pid=$!; while [ ! -e '" + out +
                              "/last.safetensors' ]; do sleep 0.01; done; kill -INT $pid; wait $pid";
   const auto stopped = support::run_program("/bin/sh", {"-c", script});
   EXPECT_EQ(stopped.exit_code, 1);
@@ -159,6 +160,43 @@ TEST(Train, CtrlCLeavesACheckpointThatGoesOn) {
                               "1", "--out", path_in(folder, "other")});
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
 }
+
+#ifdef MJARM_MPIRUN
+/// Runs `mjarm` in so many processes on this machine.
+support::ProgramResult in_processes(int count, const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = {
+      "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n",
+      std::to_string(count), MJARM_PROGRAM};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return support::run_program(MJARM_MPIRUN, all);
+}
+
+TEST(TrainInProcesses, OneIsTheSameAsNoneAndTwoShareTheWork) {
+  const support::TempFolder folder;
+  const auto config = folder.write("small.yaml", kSmall).string();
+  const auto train = [&](const std::string& out, const std::string& steps) {
+    return std::vector<std::string>{
+        "train", "reach", "--config",           config,       "--steps", steps, "--threads",
+        "1",     "--out", path_in(folder, out), "--no-timing"};
+  };
+  ASSERT_EQ(mjarm(train("alone", "768")).exit_code, 0);
+  const auto one = in_processes(1, train("one", "768"));
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_EQ(folder.read("one/last.safetensors"), folder.read("alone/last.safetensors"));
+
+  const auto two = in_processes(2, train("two", "1536"));
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_TRUE(folder.exists("two/last.rank1.safetensors"));
+  EXPECT_EQ(support::load_json(folder.path() / "two" / "report.json").at("steps"), 1536);
+  // Goes on in both, from the checkpoint of each.
+  auto resume = train("two", "2048");
+  resume[2] = "--resume";
+  resume[3] = path_in(folder, "two/last.safetensors");
+  const auto resumed = in_processes(2, resume);
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("going on after 1536 steps"));
+}
+#endif
 
 TEST(Train, WhatIsNotReachedIsExitCodeOne) {
   const support::TempFolder folder;
