@@ -53,7 +53,7 @@ struct ReachReward {
   double coarse = 0.5;         ///< >= 0
   double coarse_scale = 0.05;  ///< [m] > 0
   double fine = 0.5;           ///< >= 0
-  double fine_scale = 0.01;    ///< [m] > 0
+  double fine_scale = 0.005;   ///< [m] > 0
   double action = 0.01;        ///< >= 0
   double collision = 0.5;      ///< >= 0
   double limit = 0.1;          ///< >= 0
