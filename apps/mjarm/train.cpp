@@ -129,8 +129,9 @@ Result<int> train_seeds(const Options& options, const Model& model,
   if (!first) return 0;
   std::printf("%s%s\n", seeds_table(runs).c_str(),
               text(msg::train_folder, folder_of(options).string()).c_str());
-  if (runs.back().interrupted) return fail(Errc::impossible, text(msg::train_interrupted,
-                                       (folder_of(options) / rl::Training::kLast).string()));
+  if (runs.back().interrupted)
+    return fail(Errc::impossible,
+                text(msg::train_interrupted, (folder_of(options) / rl::Training::kLast).string()));
   for (const TrainedSeed& run : runs) {
     if (!is_good_enough(run)) {
       return fail(Errc::impossible, text(msg::train_not_reached, 100 * run.options.stop_share,

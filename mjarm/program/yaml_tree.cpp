@@ -1,3 +1,5 @@
+#include "mjarm/program/yaml_tree.hpp"
+
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
@@ -10,7 +12,6 @@
 #include <vector>
 
 #include "mjarm/core/messages/program.hpp"
-#include "mjarm/program/yaml_tree.hpp"
 
 namespace mjarm {
 namespace {

@@ -52,6 +52,16 @@ std::string last_name(int rank) {
 
 }  // namespace
 
+PpoOptions reach_ppo() {
+  PpoOptions options;
+  options.rollout_steps = 64;
+  options.minibatch = 512;
+  options.discount = 0.9;
+  options.gae_lambda = 0.9;
+  options.initial_log_std = -1.5;
+  return options;
+}
+
 double score(const Evaluation& evaluation) noexcept {
   const double shares =
       evaluation.within_5cm + evaluation.within_2cm + evaluation.within_1cm + evaluation.within_5mm;

@@ -16,10 +16,13 @@
 
 namespace mjarm::rl {
 
+/// PPO as it learns to reach fast, found by trying on the default task.
+[[nodiscard]] PpoOptions reach_ppo();
+
 /// How long to train, how often to look how good it is, and when that is good enough.
 struct TrainingOptions {
   ReachOptions task = {};
-  PpoOptions ppo = {};                  ///< `total_steps` is where the training ends at the latest
+  PpoOptions ppo = reach_ppo();         ///< `total_steps` is where the training ends at the latest
   std::int64_t evaluate_every = 50000;  ///< steps between evaluations, > 0; the end has one too
   EvaluateOptions evaluation = {};      ///< of the mean actions, on goals never trained on
   double stop_within = 0.02;            ///< [m] see `share_within`
