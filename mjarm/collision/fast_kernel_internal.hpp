@@ -62,24 +62,32 @@ class BlockSearch {
     return half_ * multiply_add(half_, splat(motion_->bend[g]), speed) * 1.0001F;
   }
 
-  static Floats plus(float radius, [[maybe_unused]] const Floats& grow) {
-    if constexpr (kCover) return grow + radius;
-    return splat(radius);
+  /// (radius + growth)^2.
+  Floats squared_reach(float radius) const {
+    if constexpr (kCover) {
+      const Floats reach = grow_ + radius;
+      return reach * reach;
+    }
+    return splat(radius * radius);
   }
 
-  /// Lanes of `active_` whose squared gap is below (radius + growth)^2.
-  LaneBits near(const Floats& gap2, float radius) const {
-    const Floats reach = plus(radius, grow_);
-    return less(gap2, reach * reach) & active_;
+  /// Overlaps of several solids, noted all at once: branches cost more than the tests.
+  struct Overlaps {
+    LaneBits lanes = 0;  ///< with growth
+    LaneBits hits = 0;   ///< without
+  };
+
+  void look(const Floats& gap2, float radius, Overlaps& overlaps) const {
+    overlaps.lanes |= less(gap2, squared_reach(radius));
+    if constexpr (kCover) overlaps.hits |= less(gap2, splat(radius * radius));
   }
 
-  /// Notes an overlap of two solids whose gap is to be larger than `radius`.
-  void note(const Floats& gap2, float radius) {
-    const LaneBits lanes = near(gap2, radius);
+  void note(const Overlaps& overlaps) {
+    const LaneBits lanes = overlaps.lanes & active_;
     if (lanes == 0) return;
     if constexpr (kCover) {
       verdict_.blocked |= lanes;
-      verdict_.hit |= less(gap2, splat(radius * radius)) & lanes;
+      verdict_.hit |= overlaps.hits & lanes;
       half_ = zero_where(lanes, half_);  // such a lane goes on as a single configuration
       grow_ = zero_where(lanes, grow_);
     } else {
@@ -94,9 +102,7 @@ class BlockSearch {
       const FastList& list = world_.lists[k];
       const Point ball = into_frame(world_, list.frame, block_.balls[g]);
       meet_boxes(g, list, ball);
-      if (is_done()) return;
       meet_run(g, list.frame, ball, world_.boxes, list.rounds);
-      if (is_done()) return;
       meet_run(g, list.frame, ball, world_.cylinders, list.cylinders);
       if (is_done()) return;
     }
@@ -104,14 +110,19 @@ class BlockSearch {
 
   /// As meet_run(), the radius being the same for all.
   void meet_boxes(int g, const FastList& list, const Point& ball) {
-    const float radius = robot_.groups[g].ball.radius;
-    Floats reach = plus(radius, grow_);
-    reach = reach * reach;
-    const FastBox* const first = world_.boxes + list.boxes.first;
-    for (const FastBox* box = first; box != first + list.boxes.count; ++box) {
-      if ((less(squared_gap(*box, ball), reach) & active_) == 0) continue;
-      meet_spheres(g, list.frame, *box);
-      if (is_done()) return;
+    const Floats reach = squared_reach(robot_.groups[g].ball.radius);
+    for (int first = 0; first < list.boxes.count; first += 64) {
+      const FastBox* const boxes = world_.boxes + list.boxes.first + first;
+      const int count = list.boxes.count - first < 64 ? list.boxes.count - first : 64;
+      std::uint64_t near = 0;
+      for (int i = 0; i < count; ++i) {
+        const bool any = (less(squared_gap(boxes[i], ball), reach) & active_) != 0;
+        near |= static_cast<std::uint64_t>(any) << i;
+      }
+      for (; near != 0; near &= near - 1) {
+        meet_spheres(g, list.frame, boxes[__builtin_ctzll(near)]);
+        if (is_done()) return;
+      }
     }
   }
 
@@ -120,9 +131,9 @@ class BlockSearch {
     const float radius = robot_.groups[g].ball.radius;
     for (const Solid* solid = solids + run.first; solid != solids + run.first + run.count;
          ++solid) {
-      if (near(squared_gap(*solid, ball), radius + rounding_of(*solid)) == 0) continue;
+      const Floats reach = squared_reach(radius + rounding_of(*solid));
+      if ((less(squared_gap(*solid, ball), reach) & active_) == 0) continue;
       meet_spheres(g, frame, *solid);
-      if (is_done()) return;
     }
   }
 
@@ -130,35 +141,35 @@ class BlockSearch {
   void meet_spheres(int g, int frame, const Solid& solid) {
     block_.place_spheres(robot_, g);
     const FastGroup& group = robot_.groups[g];
+    Overlaps overlaps;
     for (int k = group.first; k < group.first + group.count; ++k) {
       const Point center = into_frame(world_, frame, block_.centers[k]);
-      const float radius = robot_.spheres[k].radius;
-      note(squared_gap(solid, center), radius + rounding_of(solid));
-      if (is_done()) return;
+      look(squared_gap(solid, center), robot_.spheres[k].radius + rounding_of(solid), overlaps);
     }
+    note(overlaps);
   }
 
   void meet_itself(const FastPair& pair) {
     const FastGroup& a = robot_.groups[pair.a];
     const FastGroup& b = robot_.groups[pair.b];
-    if (near(squared(block_.balls[pair.a] - block_.balls[pair.b]),
-             a.ball.radius + b.ball.radius) == 0) {
-      return;
-    }
+    const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
+    if ((less(balls, squared_reach(a.ball.radius + b.ball.radius)) & active_) == 0) return;
     block_.place_spheres(robot_, pair.a);
     block_.place_spheres(robot_, pair.b);
+    Overlaps overlaps;
     for (int k = pair.first; k < pair.first + pair.count; ++k) {
       const FastRow& row = robot_.rows[k];
       const float radius = robot_.spheres[row.sphere].radius;
       const Point center = block_.centers[row.sphere];
-      if (near(squared(center - block_.balls[pair.b]), radius + b.ball.radius) == 0) continue;
+      const Floats to_ball = squared(center - block_.balls[pair.b]);
+      if ((less(to_ball, squared_reach(radius + b.ball.radius)) & active_) == 0) continue;
       for (int j = row.first; j < row.first + row.count; ++j) {
         const int other = robot_.partners[j];
-        note(squared(center - block_.centers[other]),
-             radius + robot_.spheres[other].radius);
+        look(squared(center - block_.centers[other]), radius + robot_.spheres[other].radius,
+             overlaps);
       }
-      if (is_done()) return;
     }
+    note(overlaps);
   }
 
   const FastRobotTables& robot_;
