@@ -121,15 +121,14 @@ class EdgeSearch {
     for (int i = 0; i < data_.arm.dof(); ++i) {
       for (std::size_t k = 0; k < width_; ++k) {
         const double t = open[std::min(k, count - 1)].t;
-        q[static_cast<std::size_t>(i) * width_ + k] =
-            static_cast<float>(start_[static_cast<std::size_t>(i)] +
-                               t * way_[static_cast<std::size_t>(i)]);
+        q[static_cast<std::size_t>(i) * width_ + k] = static_cast<float>(
+            start_[static_cast<std::size_t>(i)] + t * way_[static_cast<std::size_t>(i)]);
       }
     }
     const detail::FastMotion motion{dq_.data(), slack_.data(), bend_.data(), pair_rate_.data()};
     const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
-    const detail::FastVerdict found = checker_.kernels().cover(
-        data_.tables, checker_.world().tables, q, lanes, motion, half);
+    const detail::FastVerdict found =
+        checker_.kernels().cover(data_.tables, checker_.world().tables, q, lanes, motion, half);
     result_.stations += static_cast<int>(count);
     if (found.hit != 0) return end(EdgeVerdict::hit, open[__builtin_ctz(found.hit)].t);
     for (std::size_t k = 0; k < count; ++k) {

@@ -97,15 +97,13 @@ GroupBounds group_bounds(const Arm& arm, const LinkChain& chain, int body,
   for (std::size_t i = 0; i < hulls.size(); ++i) {
     const Hull& hull = hulls[i];
     const double height = std::max(hull.high - middle, middle - hull.low);
-    const double far =
-        std::min(std::hypot(hull.radial, height), hull.norm + std::abs(middle));
+    const double far = std::min(std::hypot(hull.radial, height), hull.norm + std::abs(middle));
     out.reach = std::max(out.reach, far + spheres[i].radius);
     way = std::max(way, hull.norm + spheres[i].radius);
   }
   const Link& first = chain.links[0];
   const Eigen::Vector3d t(first.t[0], first.t[1], first.t[2]);
-  const Eigen::Vector3d tip =
-      t + middle * Eigen::Vector3d(0, -first.tilt_sin, first.tilt_cos);
+  const Eigen::Vector3d tip = t + middle * Eigen::Vector3d(0, -first.tilt_sin, first.tilt_cos);
   out.reach_center_W = {chain.base_cos * tip.x() - chain.base_sin * tip.y(),
                         chain.base_sin * tip.x() + chain.base_cos * tip.y(), tip.z()};
   out.padding = padding_of(arm, chain, body, out, way + t.norm());

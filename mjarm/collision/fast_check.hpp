@@ -21,7 +21,7 @@ struct FastKernels;
 /// How far a configuration is from its nearest collision, as a lower bound.
 struct Clearance {
   /// [m] no sphere is nearer than this to an obstacle or to a sphere it is paired with; negative
-  /// where they overlap, at most 1. Obstacles that no link can ever reach do not count.
+  /// where they overlap, at most 1. Links at rest count against moving links only.
   double distance = 1;
   int link = -1;        ///< of the nearest pair, by index into the sphere set; -1: none within 1 m
   int obstacle = -1;    ///< the other of the pair; -1: a link

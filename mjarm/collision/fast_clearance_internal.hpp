@@ -39,7 +39,8 @@ class NearestSearch {
   }
 
   void meet_world(int g) {
-    const FastRun& lists = world_.lists_of_group[g];
+    if (robot_.groups[g].body == 0) return;
+    const FastRun& lists = world_.every_list;
     for (int k = lists.first; k < lists.first + lists.count; ++k) {
       const FastList& list = world_.lists[k];
       meet_run(g, list.frame, world_.boxes, list.boxes, world_.box_ids);
@@ -49,8 +50,7 @@ class NearestSearch {
   }
 
   template <class Solid>
-  void meet_run(int g, int frame, const Solid* solids, const FastRun& run,
-                const int* ids) {
+  void meet_run(int g, int frame, const Solid* solids, const FastRun& run, const int* ids) {
     const FastGroup& group = robot_.groups[g];
     const Point ball = into_frame(world_, frame, block_.balls[g]);
     for (int i = run.first; i < run.first + run.count; ++i) {
@@ -61,8 +61,7 @@ class NearestSearch {
       for (int k = group.first; k < group.first + group.count; ++k) {
         const Point center = into_frame(world_, frame, block_.centers[k]);
         const float radius = robot_.spheres[k].radius;
-        note(gap(squared_gap(solid, center), radius + round),
-             {0, k, ids[i], -1});
+        note(gap(squared_gap(solid, center), radius + round), {0, k, ids[i], -1});
       }
     }
   }
@@ -82,8 +81,7 @@ class NearestSearch {
       if (less(gap(to_ball, radius + b.ball.radius), best_) == 0) continue;
       for (int j = row.first; j < row.first + row.count; ++j) {
         const int other = robot_.partners[j];
-        note(gap(squared(center - block_.centers[other]),
-                 radius + robot_.spheres[other].radius),
+        note(gap(squared(center - block_.centers[other]), radius + robot_.spheres[other].radius),
              {0, row.sphere, -1, other});
       }
     }

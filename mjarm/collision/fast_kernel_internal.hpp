@@ -56,9 +56,9 @@ class BlockSearch {
     const FastGroup& group = robot_.groups[g];
     const Twist& twist = block_.twists[group.body];
     const Point v = plus_cross(twist.v, twist.w, block_.balls[g] - block_.frames[group.body].p);
-    const Floats speed = multiply_add(square_root(squared(twist.w)), splat(group.spread),
-                                      square_root(squared(v))) +
-                         motion_->slack[g];
+    const Floats speed =
+        multiply_add(square_root(squared(twist.w)), splat(group.spread), square_root(squared(v))) +
+        motion_->slack[g];
     return half_ * multiply_add(half_, splat(motion_->bend[g]), speed) * 1.0001F;
   }
 

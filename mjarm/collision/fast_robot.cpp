@@ -119,8 +119,7 @@ void add_groups(FastRobotData& data, const LinkChain& chain) {
     data.groups.push_back(fast_group(data, joint(link) + 1, spheres, bounds.padding));
     data.bounds.push_back(bounds);
     data.link_of_group.push_back(link);
-    data.group_of_sphere.resize(data.spheres.size(),
-                                static_cast<int>(data.groups.size()) - 1);
+    data.group_of_sphere.resize(data.spheres.size(), static_cast<int>(data.groups.size()) - 1);
   }
 }
 

@@ -38,10 +38,10 @@ struct FastRobotData {
   std::vector<FastPair> pairs;
   std::vector<FastRow> rows;
   std::vector<int> partners;
-  FastRobotTables tables;            ///< of the above
-  std::vector<GroupBounds> bounds;   ///< one a group
-  std::vector<int> link_of_group;    ///< index into the set
-  std::vector<int> group_of_sphere;  ///< of the tables
+  FastRobotTables tables;                              ///< of the above
+  std::vector<GroupBounds> bounds;                     ///< one a group
+  std::vector<int> link_of_group;                      ///< index into the set
+  std::vector<int> group_of_sphere;                    ///< of the tables
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
   double padding = 0;                                  ///< [m] largest of the groups
 };

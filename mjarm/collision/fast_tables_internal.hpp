@@ -96,6 +96,7 @@ struct FastWorldTables {
   const float* frames = nullptr;                ///< 9 a frame, by rows: into that frame
   const FastList* lists = nullptr;
   const FastRun* lists_of_group = nullptr;
+  FastRun every_list;  ///< what is within 1 m of the reach of any group, for distances
   const FastBox* boxes = nullptr;
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is

@@ -7,10 +7,10 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kSameTurn = 1e-7;           // [rad] two orientations that count as one
-constexpr std::size_t kMostCompared = 64;    // orientations that a new one is compared with
-constexpr double kFloat = 0x1p-24;           // relative rounding error
-constexpr double kEverywhere = 1e9;          // [m]
+constexpr double kSameTurn = 1e-7;         // [rad] two orientations that count as one
+constexpr std::size_t kMostCompared = 64;  // orientations that a new one is compared with
+constexpr double kFloat = 0x1p-24;         // relative rounding error
+constexpr double kEverywhere = 1e9;        // [m]
 
 enum class Kind { box, round, cylinder };
 
@@ -20,9 +20,9 @@ struct Placed {
   int frame = 0;
   Kind kind = Kind::box;
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;  // box without its rounding
-  double round = 0;           // of a round; radius of a cylinder
-  int axis = 2;               // of a cylinder
-  double distance = 0;        // from where the robot stands: what is near is looked at first
+  double round = 0;                                           // of a round; radius of a cylinder
+  int axis = 2;                                               // of a cylinder
+  double distance = 0;  // from where the robot stands: what is near is looked at first
 };
 
 /// Index of the entry of `v` that is 1 or -1 while the others vanish; -1 where there is none.
@@ -50,11 +50,10 @@ class WorldBuilder {
   void build(const Obstacles& obstacles) {
     write_frames();
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
-      FastRun run{static_cast<int>(out_.lists.size()), 0};
-      if (robot_.groups[g].body > 0) add_lists(g, obstacles);
-      run.count = static_cast<int>(out_.lists.size()) - run.first;
-      out_.lists_of_group.push_back(run);
+      const bool moves = robot_.groups[g].body > 0;
+      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, obstacles) : FastRun{});
     }
+    out_.tables.every_list = add_lists(everyone(), kMostClearance, obstacles);
   }
 
  private:
@@ -151,24 +150,37 @@ class WorldBuilder {
     }
   }
 
-  void add_lists(std::size_t g, const Obstacles& obstacles) {
-    const GroupBounds& bounds = robot_.bounds[g];
+  /// Bounds that hold for every group.
+  GroupBounds everyone() const {
+    GroupBounds out = robot_.bounds.front();
+    for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
+      if (robot_.groups[g].body == 0) continue;
+      const GroupBounds& bounds = robot_.bounds[g];
+      const double apart = (bounds.reach_center_W - out.reach_center_W).norm();
+      out.reach = std::max(out.reach, apart + bounds.reach);
+    }
+    return out;
+  }
+
+  FastRun add_lists(const GroupBounds& bounds, double margin, const Obstacles& obstacles) {
+    const int first = static_cast<int>(out_.lists.size());
     for (const Placed& placed : placed_) {
       const Obstacle& solid = obstacles.solids[static_cast<std::size_t>(placed.id)];
-      if (distance(solid, bounds.reach_center_W) > bounds.reach + 1e-4) continue;
+      if (distance(solid, bounds.reach_center_W) > bounds.reach + margin + 1e-4) continue;
+      const int lists = static_cast<int>(out_.lists.size());
+      if (lists == first || out_.lists.back().frame != placed.frame) start_list(placed.frame);
       add(bounds, placed);
     }
+    return {first, static_cast<int>(out_.lists.size()) - first};
+  }
+
+  void start_list(int frame) {
+    const FastRun boxes{static_cast<int>(out_.boxes.size()), 0};
+    const FastRun cylinders{static_cast<int>(out_.cylinders.size()), 0};
+    out_.lists.push_back({frame, boxes, boxes, cylinders});
   }
 
   void add(const GroupBounds& bounds, const Placed& placed) {
-    const bool fresh = out_.lists.empty() || out_.lists.back().frame != placed.frame ||
-                       list_group_ != &bounds;
-    if (fresh) {
-      const FastRun boxes{static_cast<int>(out_.boxes.size()), 0};
-      const FastRun cylinders{static_cast<int>(out_.cylinders.size()), 0};
-      out_.lists.push_back({placed.frame, boxes, boxes, cylinders});
-      list_group_ = &bounds;
-    }
     FastList& list = out_.lists.back();
     if (placed.kind == Kind::cylinder) {
       add_cylinder(placed);
@@ -223,7 +235,6 @@ class WorldBuilder {
   int main_ = 0;                         // the frame that most solids share
   std::vector<Placed> placed_;
   FastWorld& out_;
-  const GroupBounds* list_group_ = nullptr;  // whose list is being written
 };
 
 }  // namespace

@@ -75,8 +75,7 @@ inline Floats smaller(Floats a, Floats b) { return (Floats)_mm256_min_ps((__m256
 inline Floats larger(Floats a, Floats b) { return (Floats)_mm256_max_ps((__m256)a, (__m256)b); }
 inline Floats square_root(Floats x) { return (Floats)_mm256_sqrt_ps((__m256)x); }
 inline LaneBits less(Floats a, Floats b) {
-  return static_cast<LaneBits>(
-      _mm256_movemask_ps(_mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ)));
+  return static_cast<LaneBits>(_mm256_movemask_ps(_mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ)));
 }
 #elif defined(__SSE2__)
 inline Floats multiply_add(Floats a, Floats b, Floats c) { return a * b + c; }

@@ -35,8 +35,8 @@ inline Eigen::Vector3d vector_of(const nlohmann::json& v) {
 
 inline Pose pose_of(const nlohmann::json& from, const char* place) {
   const auto& q = from.at("quat");
-  const Eigen::Quaterniond quat(q.at(0).get<double>(), q.at(1).get<double>(),
-                                q.at(2).get<double>(), q.at(3).get<double>());
+  const Eigen::Quaterniond quat(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(),
+                                q.at(3).get<double>());
   return {vector_of(from.at(place)), quat.normalized().toRotationMatrix()};
 }
 
@@ -105,8 +105,8 @@ inline void read_robot(const nlohmann::json& robot, PlanningProblems& out) {
         {place.X * vector_of(sphere.at("center")), sphere.at("radius").get<double>()});
   }
   for (const auto& pair : robot.at("self_collision_link_pairs")) {
-    out.set.pairs.push_back({links.at(pair.at(0).get<std::string>()),
-                             links.at(pair.at(1).get<std::string>())});
+    out.set.pairs.push_back(
+        {links.at(pair.at(0).get<std::string>()), links.at(pair.at(1).get<std::string>())});
   }
 }
 

@@ -39,8 +39,8 @@ Sphere bounding_sphere(std::span<const Sphere> spheres) {
   Eigen::Vector3d center = 0.5 * (low + high);
   // Steps towards the farthest sphere, ever shorter (M. Badoiu and K. Clarkson, 2003).
   for (int round = 1; round <= 200; ++round) {
-    const Sphere& far = *std::max_element(
-        spheres.begin(), spheres.end(), [&](const Sphere& a, const Sphere& b) {
+    const Sphere& far =
+        *std::max_element(spheres.begin(), spheres.end(), [&](const Sphere& a, const Sphere& b) {
           return reach_from(center, a) < reach_from(center, b);
         });
     const Eigen::Vector3d away = far.center - center;
@@ -62,15 +62,15 @@ Result<void> check_sphere_set(const SphereSet& set, const Arm& arm) {
       return fail(Errc::bad_input,
                   text(msg::collision_link_joint, link.name, link.joint, arm.dof()));
     }
-    if (link.spheres.empty() ||
-        !std::all_of(link.spheres.begin(), link.spheres.end(), is_usable)) {
+    if (link.spheres.empty() || !std::all_of(link.spheres.begin(), link.spheres.end(), is_usable)) {
       return fail(Errc::bad_input, text(msg::collision_link_spheres, link.name));
     }
   }
   const auto is_link = [&](int i) { return i >= 0 && i < static_cast<int>(set.links.size()); };
   for (const auto& [a, b] : set.pairs) {
-    if (!is_link(a) || !is_link(b) || set.links[static_cast<std::size_t>(a)].joint ==
-                                          set.links[static_cast<std::size_t>(b)].joint) {
+    if (!is_link(a) || !is_link(b) ||
+        set.links[static_cast<std::size_t>(a)].joint ==
+            set.links[static_cast<std::size_t>(b)].joint) {
       return fail(Errc::bad_input, text(msg::collision_link_pair, a, b));
     }
   }
