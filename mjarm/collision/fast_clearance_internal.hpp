@@ -19,7 +19,7 @@ class NearestSearch {
     for (int k = 0; k < kWidth; ++k) out[k] = {best_[k], -1, -1, -1};
     found_ = out;
     for (int g = 0; g < robot_.group_count; ++g) meet_world(g);
-    for (int k = 0; k < robot_.pair_count; ++k) meet_itself(robot_.pairs[k]);
+    for (int k = 0; k < robot_.every_pair_count; ++k) meet_itself(robot_.every_pair[k]);
     for (int k = 0; k < kWidth; ++k) out[k].distance = best_[k];
   }
 

@@ -13,9 +13,7 @@ namespace {
 
 using detail::FastGroup;
 using detail::FastJoint;
-using detail::FastPair;
 using detail::FastRobotData;
-using detail::FastRow;
 using detail::FastSphere;
 using detail::Tilt;
 
@@ -123,28 +121,6 @@ void add_groups(FastRobotData& data, const LinkChain& chain) {
   }
 }
 
-void add_pairs(FastRobotData& data) {
-  std::vector<int> group_of_link(data.set.links.size());
-  for (std::size_t g = 0; g < data.link_of_group.size(); ++g) {
-    group_of_link[static_cast<std::size_t>(data.link_of_group[g])] = static_cast<int>(g);
-  }
-  for (const auto& [first, second] : data.set.pairs) {
-    FastPair pair;
-    pair.a = group_of_link[static_cast<std::size_t>(first)];
-    pair.b = group_of_link[static_cast<std::size_t>(second)];
-    const auto group = [&](int g) { return data.groups[static_cast<std::size_t>(g)]; };
-    if (group(pair.a).body > group(pair.b).body) std::swap(pair.a, pair.b);
-    const FastGroup a = group(pair.a), b = group(pair.b);
-    pair.first = static_cast<int>(data.rows.size());
-    pair.count = a.count;
-    for (int k = a.first; k < a.first + a.count; ++k) {
-      data.rows.push_back({k, static_cast<int>(data.partners.size()), b.count});
-      for (int j = b.first; j < b.first + b.count; ++j) data.partners.push_back(j);
-    }
-    data.pairs.push_back(pair);
-  }
-}
-
 }  // namespace
 
 Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
@@ -161,12 +137,14 @@ Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   for (int i = 0; i < arm.dof(); ++i) data->tables.joints[i] = fast_joint(arm, links, i);
   data->R_WB = link_frame(links, 0).R;
   add_groups(*data, links);
-  add_pairs(*data);
+  detail::add_pairs(*data, links);
   data->tables.group_count = static_cast<int>(data->groups.size());
   data->tables.pair_count = static_cast<int>(data->pairs.size());
+  data->tables.every_pair_count = static_cast<int>(data->every_pair.size());
   data->tables.groups = data->groups.data();
   data->tables.spheres = data->spheres.data();
   data->tables.pairs = data->pairs.data();
+  data->tables.every_pair = data->every_pair.data();
   data->tables.rows = data->rows.data();
   data->tables.partners = data->partners.data();
   return FastRobot(std::move(data));

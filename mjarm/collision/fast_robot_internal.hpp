@@ -35,7 +35,7 @@ struct FastRobotData {
   SphereSet set;
   std::vector<FastGroup> groups;
   std::vector<FastSphere> spheres;
-  std::vector<FastPair> pairs;
+  std::vector<FastPair> pairs, every_pair;
   std::vector<FastRow> rows;
   std::vector<int> partners;
   FastRobotTables tables;                              ///< of the above
@@ -62,5 +62,8 @@ struct FastLimits {
 /// Bounds for points fixed to body `body` (from 1), the centres of spheres `spheres` in its frame.
 [[nodiscard]] GroupBounds group_bounds(const Arm& arm, const LinkChain& chain, int body,
                                        std::span<const Sphere> spheres);
+
+/// Fills the pairs, rows and partners of a robot whose groups are there.
+void add_pairs(FastRobotData& data, const LinkChain& chain);
 
 }  // namespace mjarm::detail

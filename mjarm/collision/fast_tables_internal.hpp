@@ -57,9 +57,11 @@ struct FastRobotTables {
   FastJoint joints[kFastJoints];
   int group_count = 0;
   int pair_count = 0;
+  int every_pair_count = 0;
   const FastGroup* groups = nullptr;  ///< farthest body first
   const FastSphere* spheres = nullptr;
-  const FastPair* pairs = nullptr;
+  const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
+  const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
   const FastRow* rows = nullptr;
   const int* partners = nullptr;  ///< spheres of group b
 };
