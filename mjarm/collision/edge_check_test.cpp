@@ -45,7 +45,8 @@ void compare_edge(const FastChecker& checker, const Obstacles& world, std::span<
   switch (result.verdict) {
     case EdgeVerdict::free:
       ++tally.free;
-      ASSERT_GT(least_clearance(arm, set, world, q0, q1, 100), 0) << "false certificate";
+      ASSERT_GT(least_clearance(arm, set, world, q0, q1, testing::rounds(60, 400)), 0)
+          << "false certificate";
       break;
     case EdgeVerdict::hit:
       ++tally.hit;

@@ -80,9 +80,9 @@ class NearestSearch {
       const Floats to_ball = squared(center - block_.balls[pair.b]);
       if (less(gap(to_ball, radius + b.ball.radius), best_) == 0) continue;
       for (int j = row.first; j < row.first + row.count; ++j) {
-        const int other = robot_.partners[j];
-        note(gap(squared(center - block_.centers[other]), radius + robot_.spheres[other].radius),
-             {0, row.sphere, -1, other});
+        const FastPartner& other = robot_.partners[j];
+        note(gap(squared(center - block_.centers[other.sphere]), other.reach),
+             {0, row.sphere, -1, other.sphere});
       }
     }
   }

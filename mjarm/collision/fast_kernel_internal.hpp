@@ -71,23 +71,27 @@ class BlockSearch {
     return splat(radius * radius);
   }
 
-  /// Overlaps of several solids, noted all at once: branches cost more than the tests.
+  /// The deepest overlap of several solids, noted all at once: branches cost more than the tests.
+  /// Squared gaps less the squares of what they must be; negative: an overlap.
   struct Overlaps {
-    LaneBits lanes = 0;  ///< with growth
-    LaneBits hits = 0;   ///< without
+    Floats grown = splat(1);  ///< with growth
+    Floats bare = splat(1);   ///< without
   };
 
-  void look(const Floats& gap2, float radius, Overlaps& overlaps) const {
-    overlaps.lanes |= less(gap2, squared_reach(radius));
-    if constexpr (kCover) overlaps.hits |= less(gap2, splat(radius * radius));
+  void look(const Floats& gap2, float radius, float minus_radius2, Overlaps& overlaps) const {
+    const Floats bare = gap2 + minus_radius2;
+    overlaps.bare = smaller(overlaps.bare, bare);
+    if constexpr (kCover) {
+      overlaps.grown = smaller(overlaps.grown, gap2 - squared_reach(radius));
+    }
   }
 
   void note(const Overlaps& overlaps) {
-    const LaneBits lanes = overlaps.lanes & active_;
+    const LaneBits lanes = less(kCover ? overlaps.grown : overlaps.bare, Floats{}) & active_;
     if (lanes == 0) return;
     if constexpr (kCover) {
       verdict_.blocked |= lanes;
-      verdict_.hit |= overlaps.hits & lanes;
+      verdict_.hit |= less(overlaps.bare, Floats{}) & lanes;
       half_ = zero_where(lanes, half_);  // such a lane goes on as a single configuration
       grow_ = zero_where(lanes, grow_);
     } else {
@@ -144,7 +148,8 @@ class BlockSearch {
     Overlaps overlaps;
     for (int k = group.first; k < group.first + group.count; ++k) {
       const Point center = into_frame(world_, frame, block_.centers[k]);
-      look(squared_gap(solid, center), robot_.spheres[k].radius + rounding_of(solid), overlaps);
+      const float radius = robot_.spheres[k].radius + rounding_of(solid);
+      look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
     note(overlaps);
   }
@@ -164,8 +169,8 @@ class BlockSearch {
       const Floats to_ball = squared(center - block_.balls[pair.b]);
       if ((less(to_ball, squared_reach(radius + b.ball.radius)) & active_) == 0) continue;
       for (int j = row.first; j < row.first + row.count; ++j) {
-        const int other = robot_.partners[j];
-        look(squared(center - block_.centers[other]), radius + robot_.spheres[other].radius,
+        const FastPartner& other = robot_.partners[j];
+        look(squared(center - block_.centers[other.sphere]), other.reach, other.minus_reach2,
              overlaps);
       }
     }

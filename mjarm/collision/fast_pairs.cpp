@@ -95,11 +95,11 @@ void add_pair(FastRobotData& data, std::vector<FastPair>& pairs, int a, int b, M
   for (int k = from.first; k < from.first + from.count; ++k) {
     FastRow row{k, static_cast<int>(data.partners.size()), 0};
     for (int j = to.first; j < to.first + to.count; ++j) {
-      if (!meets(data.spheres[static_cast<std::size_t>(k)],
-                 data.spheres[static_cast<std::size_t>(j)])) {
-        continue;
-      }
-      data.partners.push_back(j);
+      const FastSphere& one = data.spheres[static_cast<std::size_t>(k)];
+      const FastSphere& other = data.spheres[static_cast<std::size_t>(j)];
+      if (!meets(one, other)) continue;
+      const float reach = round_up(static_cast<double>(one.radius) + other.radius);
+      data.partners.push_back({j, reach, -round_up(static_cast<double>(reach) * reach)});
       ++row.count;
     }
     if (row.count == 0) continue;

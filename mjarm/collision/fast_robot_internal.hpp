@@ -37,7 +37,7 @@ struct FastRobotData {
   std::vector<FastSphere> spheres;
   std::vector<FastPair> pairs, every_pair;
   std::vector<FastRow> rows;
-  std::vector<int> partners;
+  std::vector<FastPartner> partners;
   FastRobotTables tables;                              ///< of the above
   std::vector<GroupBounds> bounds;                     ///< one a group
   std::vector<int> link_of_group;                      ///< index into the set

@@ -39,6 +39,13 @@ struct FastGroup {
   float spread = 0;          ///< [m] farthest centre of a sphere from that of the ball
 };
 
+/// A sphere that another must not overlap.
+struct FastPartner {
+  int sphere = 0;
+  float reach = 0;         ///< [m] sum of both radii
+  float minus_reach2 = 0;  ///< [m^2] minus its square
+};
+
 /// One sphere of a link against some of another.
 struct FastRow {
   int sphere = 0;
@@ -63,7 +70,7 @@ struct FastRobotTables {
   const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
   const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
   const FastRow* rows = nullptr;
-  const int* partners = nullptr;  ///< spheres of group b
+  const FastPartner* partners = nullptr;  ///< spheres of group b
 };
 
 /// A box, or what a radius put round it makes: a ball has no extent, a capsule one. Bounds in the
