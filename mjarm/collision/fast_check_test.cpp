@@ -26,23 +26,23 @@ std::vector<double> random_rows(const Arm& arm, Rng& rng, int count) {
 }
 
 TEST(FloatLanes, SineAndCosineKeepTheirBound) {
-  using namespace detail;
+  using detail::kWidth;
   Rng rng(1);
   double worst = 0;
   for (int i = 0; i < 200'000; ++i) {
     const double size = i % 3 == 0 ? 100 : i % 3 == 1 ? 4 : 1e-3;
     float x[kWidth], s[kWidth], c[kWidth];
     for (float& value : x) value = static_cast<float>(rng.uniform(-size, size));
-    Floats sine, cosine;
-    sine_cosine(load(x), sine, cosine);
-    store(s, sine);
-    store(c, cosine);
+    detail::Floats sine, cosine;
+    detail::sine_cosine(detail::load(x), sine, cosine);
+    detail::store(s, sine);
+    detail::store(c, cosine);
     for (int k = 0; k < kWidth; ++k) {
       worst = std::max({worst, std::abs(s[k] - std::sin(static_cast<double>(x[k]))),
                         std::abs(c[k] - std::cos(static_cast<double>(x[k])))});
     }
   }
-  EXPECT_LT(worst, kTrigError);
+  EXPECT_LT(worst, detail::kTrigError);
   EXPECT_GT(worst, 1e-8);
 }
 
