@@ -12,7 +12,6 @@ namespace mjarm {
 namespace {
 
 constexpr std::size_t kMostOpen = 2048;  // intervals that wait; more means: undecided
-constexpr std::size_t kMostPairs = 1024;
 constexpr int kMostWidth = 16;
 
 /// t and half are sums of powers of two, which floats hold exactly.
@@ -88,7 +87,6 @@ class EdgeSearch {
       slack_[g] = static_cast<float>(1e-5 * speed);
       bend_[g] = static_cast<float>(0.5001 * bend);
     }
-    assert(data_.pairs.size() <= kMostPairs);
     for (std::size_t p = 0; p < data_.pairs.size(); ++p) {
       const auto a = static_cast<std::size_t>(data_.pairs[p].a);
       const auto b = static_cast<std::size_t>(data_.pairs[p].b);
@@ -165,7 +163,7 @@ class EdgeSearch {
   std::array<double, kMaxDof> start_{}, way_{};
   std::array<float, kMaxDof> dq_{};
   std::array<float, kMostSphereLinks> slack_, bend_;
-  std::array<float, kMostPairs> pair_rate_;
+  std::array<float, kMostSpherePairs> pair_rate_;
   double length_ = 0;
   double outside_ = 2;  // where the edge is outside of the limits; 2: nowhere
   float least_half_ = 0;

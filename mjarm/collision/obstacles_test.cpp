@@ -102,6 +102,11 @@ TEST(SphereSet, WhatIsRefused) {
     set.pairs = {pair};
     EXPECT_NE(fault(set), "");
   }
+  SphereSet paired = good;
+  paired.pairs.resize(kMostSpherePairs + 1, good.pairs[0]);
+  EXPECT_NE(fault(paired), "");
+  paired.pairs.pop_back();
+  EXPECT_EQ(fault(paired), "");
   SphereSet many = good;
   many.links[0].spheres.resize(kMostSpheres, good.links[0].spheres[0]);
   EXPECT_NE(fault(many), "");

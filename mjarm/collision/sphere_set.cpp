@@ -66,6 +66,10 @@ Result<void> check_sphere_set(const SphereSet& set, const Arm& arm) {
       return fail(Errc::bad_input, text(msg::collision_link_spheres, link.name));
     }
   }
+  if (set.pairs.size() > kMostSpherePairs) {
+    return fail(Errc::bad_input,
+                text(msg::collision_many_pairs, set.pairs.size(), kMostSpherePairs));
+  }
   const auto is_link = [&](int i) { return i >= 0 && i < static_cast<int>(set.links.size()); };
   for (const auto& [a, b] : set.pairs) {
     if (!is_link(a) || !is_link(b) ||

@@ -35,9 +35,10 @@ struct SphereSet {
   [[nodiscard]] std::size_t size() const noexcept;  ///< number of spheres
 };
 
-/// Most spheres of a set, and links in it.
+/// Most spheres of a set, links and pairs of links in it.
 inline constexpr std::size_t kMostSpheres = 512;
 inline constexpr std::size_t kMostSphereLinks = 128;
+inline constexpr std::size_t kMostSpherePairs = 1024;
 
 /// A ball that contains all of `spheres` (not empty), at most a few percent larger than the least.
 [[nodiscard]] Sphere bounding_sphere(std::span<const Sphere> spheres);
