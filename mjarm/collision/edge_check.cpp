@@ -1,0 +1,212 @@
+#include "mjarm/collision/edge_check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "mjarm/collision/fast_world_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr std::size_t kMostOpen = 2048;  // intervals that wait; more means: undecided
+constexpr int kMostWidth = 16;
+
+/// t and half are sums of powers of two, which floats hold exactly.
+struct OpenInterval {
+  float t, half;
+};
+
+/// Intervals that wait, widest first.
+struct IntervalQueue {
+  std::array<OpenInterval, kMostOpen> open;
+  std::size_t size = 0;
+
+  bool push(OpenInterval interval) {
+    if (size == kMostOpen) return false;
+    open[size++] = interval;
+    return true;
+  }
+};
+
+class EdgeSearch {
+ public:
+  EdgeSearch(const FastChecker& checker, std::span<const double> q0, std::span<const double> q1,
+             const EdgeOptions& options)
+      : checker_(checker), data_(checker.robot().data()), width_(checker.width()) {
+    double length = 0;
+    for (std::size_t i = 0; i < q0.size(); ++i) {
+      start_[i] = q0[i];
+      way_[i] = q1[i] - q0[i];
+      dq_[i] = static_cast<float>(way_[i]);
+      length += way_[i] * way_[i];
+      const detail::FastLimits limits = detail::fast_limits(data_.arm, static_cast<int>(i));
+      const auto fits = [&](double q) { return q > limits.lower && q < limits.upper; };
+      if (!fits(q0[i])) outside_ = 0;
+      if (fits(q0[i]) && !fits(q1[i])) outside_ = std::min(outside_, 1.0);
+    }
+    length_ = std::sqrt(length);
+    least_half_ = static_cast<float>(
+        std::clamp(0.5 * options.resolution / std::max(length_, 1e-12), 0x1p-16, 1.0));
+    bound_motion();
+  }
+
+  EdgeResult run(std::vector<EdgeInterval>* proof) {
+    if (checker_.fixed_overlap()) return {EdgeVerdict::hit, 0, 0};
+    if (outside_ <= 1) return {EdgeVerdict::hit, outside_, 0};
+    IntervalQueue* now = &queues_[0];
+    IntervalQueue* next = &queues_[1];
+    split({0.5F, 0.5F}, width_, *now);
+    while (now->size > 0 && is_open_) {
+      next->size = 0;
+      for (std::size_t first = 0; first < now->size && is_open_; first += width_) {
+        look(*now, first, *next, proof);
+      }
+      if (is_open_) refine(*next, *now);
+    }
+    return result_;
+  }
+
+  double length() const { return length_; }
+
+ private:
+  /// Bounds of speeds and second derivatives along the edge, for every link.
+  void bound_motion() {
+    const std::size_t dof = static_cast<std::size_t>(data_.arm.dof());
+    for (std::size_t g = 0; g < data_.groups.size(); ++g) {
+      const auto& levers = data_.bounds[g].levers;
+      double speed = 0, bend = 0, before = 0;
+      for (std::size_t k = 0; k < dof; ++k) {
+        const double rate = std::abs(way_[k]);
+        speed += levers[k] * rate;
+        bend += levers[k] * rate * (rate + 2 * before);
+        before += rate;
+      }
+      slack_[g] = static_cast<float>(1e-5 * speed);
+      bend_[g] = static_cast<float>(0.5001 * bend);
+    }
+    for (std::size_t p = 0; p < data_.pairs.size(); ++p) {
+      const auto a = static_cast<std::size_t>(data_.pairs[p].a);
+      const auto b = static_cast<std::size_t>(data_.pairs[p].b);
+      double rate = 0;
+      for (int k = data_.groups[a].body; k < data_.groups[b].body; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        rate += data_.bounds[b].levers[i] * std::abs(way_[i]);
+      }
+      pair_rate_[p] = static_cast<float>(1.0001 * rate);
+    }
+  }
+
+  bool split(OpenInterval whole, std::size_t parts, IntervalQueue& to) {
+    const float half = whole.half / static_cast<float>(parts);
+    for (std::size_t k = 0; k < parts; ++k) {
+      const float t = whole.t - whole.half + half * static_cast<float>(2 * k + 1);
+      if (!to.push({t, half})) return false;
+    }
+    return true;
+  }
+
+  /// One block of intervals; those that are not proved go to `rest`.
+  void look(const IntervalQueue& queue, std::size_t first, IntervalQueue& rest,
+            std::vector<EdgeInterval>* proof) {
+    const std::size_t count = std::min(width_, queue.size - first);
+    const OpenInterval* const open = &queue.open[first];
+    alignas(64) float q[kMaxDof * kMostWidth];
+    alignas(64) float half[kMostWidth];
+    for (std::size_t k = 0; k < width_; ++k) half[k] = open[std::min(k, count - 1)].half;
+    for (int i = 0; i < data_.arm.dof(); ++i) {
+      for (std::size_t k = 0; k < width_; ++k) {
+        const double t = open[std::min(k, count - 1)].t;
+        q[static_cast<std::size_t>(i) * width_ + k] = static_cast<float>(
+            start_[static_cast<std::size_t>(i)] + t * way_[static_cast<std::size_t>(i)]);
+      }
+    }
+    const detail::FastMotion motion{dq_.data(), slack_.data(), bend_.data(), pair_rate_.data()};
+    const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
+    const detail::FastVerdict found =
+        checker_.kernels().cover(data_.tables, checker_.world().tables, q, lanes, motion, half);
+    result_.stations += static_cast<int>(count);
+    if (found.hit != 0) return end(EdgeVerdict::hit, open[__builtin_ctz(found.hit)].t);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (((found.blocked >> k) & 1) == 0) {
+        if (proof != nullptr) proof->push_back({open[k].t, open[k].half});
+      } else if (open[k].half <= least_half_) {
+        return end(EdgeVerdict::undecided, open[k].t);
+      } else {
+        rest.push(open[k]);
+      }
+    }
+  }
+
+  /// Cuts what is left in two, or in so many parts that all lanes have work.
+  void refine(const IntervalQueue& rest, IntervalQueue& to) {
+    to.size = 0;
+    if (rest.size == 0) return;
+    std::size_t parts = 2;
+    while (rest.size * parts * 2 <= width_) parts *= 2;
+    for (std::size_t k = 0; k < rest.size; ++k) {
+      if (!split(rest.open[k], parts, to)) return end(EdgeVerdict::undecided, rest.open[k].t);
+    }
+  }
+
+  void end(EdgeVerdict verdict, double t) {
+    result_.verdict = verdict;
+    result_.t = t;
+    is_open_ = false;
+  }
+
+  const FastChecker& checker_;
+  const detail::FastRobotData& data_;
+  std::size_t width_;
+  std::array<double, kMaxDof> start_{}, way_{};
+  std::array<float, kMaxDof> dq_{};
+  std::array<float, kMostSphereLinks> slack_, bend_;
+  std::array<float, kMostSpherePairs> pair_rate_;
+  double length_ = 0;
+  double outside_ = 2;  // where the edge is outside of the limits; 2: nowhere
+  float least_half_ = 0;
+  IntervalQueue queues_[2];
+  EdgeResult result_;
+  bool is_open_ = true;
+};
+
+}  // namespace
+
+EdgeResult check_edge(const FastChecker& checker, std::span<const double> q0,
+                      std::span<const double> q1, const EdgeOptions& options) noexcept {
+  assert(q0.size() == q1.size() && q0.size() == static_cast<std::size_t>(checker.robot().dof()));
+  return EdgeSearch(checker, q0, q1, options).run(nullptr);
+}
+
+Result<EdgeCertificate, EdgeResult> certify_edge(const FastChecker& checker,
+                                                 std::span<const double> q0,
+                                                 std::span<const double> q1,
+                                                 const EdgeOptions& options) {
+  EdgeCertificate out;
+  EdgeSearch search(checker, q0, q1, options);
+  const EdgeResult result = search.run(&out.intervals);
+  if (result.verdict != EdgeVerdict::free) return tl::unexpected<EdgeResult>(result);
+  std::sort(out.intervals.begin(), out.intervals.end(),
+            [](const EdgeInterval& a, const EdgeInterval& b) { return a.t < b.t; });
+  std::vector<double> q;
+  double half = 1;
+  for (const EdgeInterval& interval : out.intervals) {
+    half = std::min(half, interval.half);
+    for (std::size_t i = 0; i < q0.size(); ++i) {
+      q.push_back(q0[i] + interval.t * (q1[i] - q0[i]));
+    }
+  }
+  out.step = 2 * half * search.length();
+  std::vector<Clearance> clearances(out.intervals.size());
+  checker.clearances(q, clearances);
+  const auto least = std::min_element(
+      clearances.begin(), clearances.end(),
+      [](const Clearance& a, const Clearance& b) { return a.distance < b.distance; });
+  out.nearest = *least;
+  out.nearest_t = out.intervals[static_cast<std::size_t>(least - clearances.begin())].t;
+  return out;
+}
+
+}  // namespace mjarm

@@ -1,0 +1,178 @@
+#pragma once
+
+#include "mjarm/collision/fast_tables_internal.hpp"
+#include "mjarm/collision/float_lanes_internal.hpp"
+
+/// Where the spheres of a robot are, for as many configurations as a register holds. Included by
+/// one file for each width of the registers.
+namespace mjarm::detail {
+inline namespace MJARM_FLOAT_LANES {
+
+struct Point {
+  Floats x, y, z;
+};
+
+inline Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+inline Floats squared(const Point& a) {
+  return multiply_add(a.x, a.x, multiply_add(a.y, a.y, a.z * a.z));
+}
+
+/// p + k * a.
+inline Point along(const Point& p, Floats k, const Point& a) {
+  return {multiply_add(k, a.x, p.x), multiply_add(k, a.y, p.y), multiply_add(k, a.z, p.z)};
+}
+
+/// p + a x b.
+inline Point plus_cross(const Point& p, const Point& a, const Point& b) {
+  return {multiply_add(a.y, b.z, p.x) - a.z * b.y, multiply_add(a.z, b.x, p.y) - a.x * b.z,
+          multiply_add(a.x, b.y, p.z) - a.y * b.x};
+}
+
+/// Axes and origin of a body.
+struct Frame {
+  Point x, y, z, p;
+};
+
+/// Its velocity, by the parameter of an edge.
+struct Twist {
+  Point v, w;
+};
+
+inline Point in_world(const Frame& f, const FastSphere& s) {
+  Point out = f.p;
+  if (s.x != 0) out = along(out, splat(s.x), f.x);
+  if (s.y != 0) out = along(out, splat(s.y), f.y);
+  if (s.z != 0) out = along(out, splat(s.z), f.z);
+  return out;
+}
+
+inline void tilt(const FastJoint& joint, Frame& f) {
+  const Point y = f.y, z = f.z;
+  switch (joint.tilt) {
+    case Tilt::none:
+      break;
+    case Tilt::quarter:
+      f.y = z;
+      f.z = {-y.x, -y.y, -y.z};
+      break;
+    case Tilt::any: {
+      const Floats c = splat(joint.tilt_cos), s = splat(joint.tilt_sin);
+      f.y = {multiply_add(c, y.x, s * z.x), multiply_add(c, y.y, s * z.y),
+             multiply_add(c, y.z, s * z.z)};
+      f.z = {multiply_add(c, z.x, -s * y.x), multiply_add(c, z.y, -s * y.y),
+             multiply_add(c, z.z, -s * y.z)};
+      break;
+    }
+  }
+}
+
+/// Carries a frame over a joint at `q`.
+inline void carry(const FastJoint& joint, Floats q, Frame& f) {
+  if (joint.t[0] != 0) f.p = along(f.p, splat(joint.t[0]), f.x);
+  if (joint.t[1] != 0) f.p = along(f.p, splat(joint.t[1]), f.y);
+  if (joint.t[2] != 0) f.p = along(f.p, splat(joint.t[2]), f.z);
+  tilt(joint, f);
+  if (joint.slide) f.p = along(f.p, q, f.z);
+  if (joint.slide && joint.offset == 0) return;
+  Floats s, c;
+  sine_cosine(joint.slide ? splat(joint.offset) : q + joint.offset, s, c);
+  const Point x = f.x, y = f.y;
+  f.x = {multiply_add(c, x.x, s * y.x), multiply_add(c, x.y, s * y.y),
+         multiply_add(c, x.z, s * y.z)};
+  f.y = {multiply_add(c, y.x, -s * x.x), multiply_add(c, y.y, -s * x.y),
+         multiply_add(c, y.z, -s * x.z)};
+}
+
+/// The scratch memory of one check.
+struct Block {
+  Frame frames[kFastJoints + 1];
+  Twist twists[kFastJoints + 1];
+  Point balls[kFastGroups];
+  Point centers[kFastSpheres];
+  bool placed[kFastGroups];
+
+  /// Frames of all bodies and the balls round the links; no sphere yet.
+  void place(const FastRobotTables& robot, const FastWorldTables& world, const float* q) {
+    const float* b = world.base;
+    const Floats none{};
+    frames[0] = {{splat(b[0]), splat(b[1]), splat(b[2])},
+                 {splat(b[3]), splat(b[4]), splat(b[5])},
+                 {splat(b[6]), splat(b[7]), splat(b[8])},
+                 {none, none, none}};
+    Frame f = frames[0];
+    for (int i = 0; i < robot.dof; ++i) {
+      carry(robot.joints[i], load(q + i * kWidth), f);
+      frames[i + 1] = f;
+    }
+    for (int g = 0; g < robot.group_count; ++g) {
+      balls[g] = in_world(frames[robot.groups[g].body], robot.groups[g].ball);
+      placed[g] = false;
+    }
+  }
+
+  /// Velocities of all bodies, whose frames are placed.
+  void move(const FastRobotTables& robot, const float* dq) {
+    Twist now{};
+    twists[0] = now;
+    for (int i = 0; i < robot.dof; ++i) {
+      now.v = plus_cross(now.v, now.w, frames[i + 1].p - frames[i].p);
+      Point& moved = robot.joints[i].slide ? now.v : now.w;
+      moved = along(moved, splat(dq[i]), frames[i + 1].z);
+      twists[i + 1] = now;
+    }
+  }
+
+  void place_spheres(const FastRobotTables& robot, int g) {
+    if (placed[g]) return;
+    placed[g] = true;
+    const FastGroup& group = robot.groups[g];
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      centers[k] = in_world(frames[group.body], robot.spheres[k]);
+    }
+  }
+};
+
+/// Lanes whose configuration is outside of the limits, or not a number.
+inline LaneBits outside_limits(const FastRobotTables& robot, const float* q) {
+  LaneBits inside = kAllLanes;
+  for (int i = 0; i < robot.dof; ++i) {
+    const Floats value = load(q + i * kWidth);
+    inside &= less(splat(robot.joints[i].lower), value) & less(value, splat(robot.joints[i].upper));
+  }
+  return ~inside & kAllLanes;
+}
+
+/// Turns a point from frame 0 into another.
+inline Point into_frame(const FastWorldTables& world, int frame, const Point& p) {
+  if (frame == 0) return p;
+  const float* r = world.frames + 9 * frame;
+  return {multiply_add(splat(r[0]), p.x, multiply_add(splat(r[1]), p.y, splat(r[2]) * p.z)),
+          multiply_add(splat(r[3]), p.x, multiply_add(splat(r[4]), p.y, splat(r[5]) * p.z)),
+          multiply_add(splat(r[6]), p.x, multiply_add(splat(r[7]), p.y, splat(r[8]) * p.z))};
+}
+
+/// Squared distance from a box without its rounding, in its frame.
+inline Floats squared_gap(const FastBox& box, const Point& p) {
+  const Point out = {p.x - smaller(larger(p.x, splat(box.low[0])), splat(box.high[0])),
+                     p.y - smaller(larger(p.y, splat(box.low[1])), splat(box.high[1])),
+                     p.z - smaller(larger(p.z, splat(box.low[2])), splat(box.high[2]))};
+  return squared(out);
+}
+
+/// The same from a finite cylinder.
+inline Floats squared_gap(const FastCylinder& cylinder, const Point& p) {
+  const Floats d[3] = {p.x - cylinder.center[0], p.y - cylinder.center[1],
+                       p.z - cylinder.center[2]};
+  const int a = cylinder.axis;
+  const Floats u = d[(a + 1) % 3], v = d[(a + 2) % 3], w = d[a];
+  const Floats side = larger(square_root(multiply_add(u, u, v * v)) - cylinder.radius, Floats{});
+  const Floats beyond = larger(larger(w, -w) - cylinder.half, Floats{});
+  return multiply_add(side, side, beyond * beyond);
+}
+
+inline float rounding_of(const FastBox& box) { return box.round; }
+inline float rounding_of(const FastCylinder&) { return 0; }
+
+}  // namespace MJARM_FLOAT_LANES
+}  // namespace mjarm::detail

@@ -1,0 +1,134 @@
+#include "mjarm/collision/fast_check.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "mjarm/collision/fast_clearance_internal.hpp"
+#include "mjarm/collision/fast_kernel_internal.hpp"
+#include "mjarm/collision/fast_world_internal.hpp"
+
+namespace mjarm {
+namespace detail {
+
+const FastKernels kFastBaseline = {kWidth, collide_block, cover_block, clearances_of_block};
+
+}  // namespace detail
+
+namespace {
+
+constexpr int kMostLanes = 16;
+
+const detail::FastKernels& fast_kernels([[maybe_unused]] SimdLevel level) {
+#if defined(__x86_64__)
+  switch (std::min(level, simd_level())) {
+    case SimdLevel::avx512:
+      return detail::kFastAvx512;
+    case SimdLevel::avx2:
+      return detail::kFastAvx2;
+    default:
+      break;
+  }
+#endif
+  return detail::kFastBaseline;
+}
+
+/// Some configurations, joint by joint, as the kernels take them; unused lanes repeat the last.
+struct LaneInput {
+  alignas(64) float q[kMaxDof * kMostLanes];
+
+  LaneInput(const double* rows, std::size_t count, std::size_t dof, std::size_t width) {
+    for (std::size_t i = 0; i < dof; ++i) {
+      for (std::size_t k = 0; k < width; ++k) {
+        q[i * width + k] = static_cast<float>(rows[std::min(k, count - 1) * dof + i]);
+      }
+    }
+  }
+};
+
+std::optional<FastChecker::FixedOverlap> find_fixed_overlap(const SphereSet& set,
+                                                            const Obstacles& obstacles) {
+  for (std::size_t l = 0; l < set.links.size(); ++l) {
+    if (set.links[l].joint >= 0) continue;
+    for (const Sphere& sphere : set.links[l].spheres) {
+      for (std::size_t i = 0; i < obstacles.solids.size(); ++i) {
+        if (distance(obstacles.solids[i], sphere.center) < sphere.radius) {
+          return FastChecker::FixedOverlap{static_cast<int>(l), static_cast<int>(i)};
+        }
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+FastChecker::FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel level)
+    : robot_(std::move(robot)),
+      world_(std::make_shared<detail::FastWorld>(robot_.data(), obstacles)),
+      kernels_(&fast_kernels(level)),
+      fixed_overlap_(find_fixed_overlap(robot_.spheres(), obstacles)) {}
+
+Result<FastChecker> FastChecker::make(FastRobot robot, const Obstacles& obstacles,
+                                      SimdLevel level) {
+  if (const Result<void> fine = check_obstacles(obstacles); !fine) return fail(fine.error());
+  return FastChecker(std::move(robot), obstacles, level);
+}
+
+int FastChecker::width() const noexcept { return kernels_->width; }
+
+void FastChecker::check(std::span<const double> q, std::span<std::uint8_t> free) const noexcept {
+  const auto dof = static_cast<std::size_t>(robot_.dof());
+  const auto width = static_cast<std::size_t>(kernels_->width);
+  assert(q.size() == free.size() * dof);
+  for (std::size_t first = 0; first < free.size(); first += width) {
+    const std::size_t count = std::min(width, free.size() - first);
+    const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
+    std::uint32_t hit = lanes;
+    if (!fixed_overlap_) {
+      const LaneInput input(q.data() + first * dof, count, dof, width);
+      hit = kernels_->collide(robot_.data().tables, world_->tables, input.q, lanes, false);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      free[first + k] = static_cast<std::uint8_t>(1 - ((hit >> k) & 1));
+    }
+  }
+}
+
+bool FastChecker::is_free(std::span<const double> q) const noexcept {
+  std::uint8_t free = 0;
+  check(q, {&free, 1});
+  return free != 0;
+}
+
+void FastChecker::clearances(std::span<const double> q, std::span<Clearance> out) const noexcept {
+  const auto dof = static_cast<std::size_t>(robot_.dof());
+  const auto width = static_cast<std::size_t>(kernels_->width);
+  assert(q.size() == out.size() * dof);
+  const detail::FastRobotData& data = robot_.data();
+  const auto link_of = [&](int sphere) {
+    const int group = data.group_of_sphere[static_cast<std::size_t>(sphere)];
+    return data.link_of_group[static_cast<std::size_t>(group)];
+  };
+  for (std::size_t first = 0; first < out.size(); first += width) {
+    const std::size_t count = std::min(width, out.size() - first);
+    const LaneInput input(q.data() + first * dof, count, dof, width);
+    detail::FastNearest nearest[kMostLanes];
+    kernels_->clearances(data.tables, world_->tables, input.q,
+                         static_cast<float>(detail::kMostClearance), nearest);
+    for (std::size_t k = 0; k < count; ++k) {
+      const detail::FastNearest& from = nearest[k];
+      Clearance& to = out[first + k];
+      to = {from.distance, -1, from.obstacle, -1};
+      if (from.sphere >= 0) to.link = link_of(from.sphere);
+      if (from.other >= 0) to.other_link = link_of(from.other);
+    }
+  }
+}
+
+Clearance FastChecker::clearance(std::span<const double> q) const noexcept {
+  Clearance out;
+  clearances(q, {&out, 1});
+  return out;
+}
+
+}  // namespace mjarm

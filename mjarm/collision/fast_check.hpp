@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mjarm/collision/fast_robot.hpp"
+#include "mjarm/collision/obstacles.hpp"
+#include "mjarm/core/cpu.hpp"
+
+namespace mjarm {
+
+namespace detail {
+struct FastWorld;
+struct FastKernels;
+}  // namespace detail
+
+/// How far a configuration is from its nearest collision, as a lower bound.
+struct Clearance {
+  /// [m] no sphere is nearer than this to an obstacle or to a sphere it is paired with; negative
+  /// where they overlap, at most 1. Links at rest count against moving links only.
+  double distance = 1;
+  int link = -1;        ///< of the nearest pair, by index into the sphere set; -1: none within 1 m
+  int obstacle = -1;    ///< the other of the pair; -1: a link
+  int other_link = -1;  ///< that link
+};
+
+/// Collision checks of many configurations at once: forward kinematics and spheres against solids
+/// and each other, as many at a time as the registers of this machine hold. Single precision, but
+/// every radius is padded by a bound of what that can do, so that a configuration that is called
+/// free is free; what keeps FastRobot::padding() (two links: twice) away is never called in
+/// collision. Immutable; may be used from many threads at once. The same input gives the same
+/// answer on one level of SIMD.
+class FastChecker {
+ public:
+  /// Takes the obstacles apart; they are not needed afterwards.
+  /// @param level  instructions to use; more than this machine has are not taken.
+  /// @return check_obstacles()'s error.
+  [[nodiscard]] static Result<FastChecker> make(FastRobot robot, const Obstacles& obstacles,
+                                                SimdLevel level = simd_level());
+
+  /// Whether each configuration is free; one outside of the limits (by more than 2e-4) or with a
+  /// number that is not finite is not.
+  /// @param q     shape (n, dof), row by row [rad or m].
+  /// @param free  shape (n,): 1 or 0.
+  void check(std::span<const double> q, std::span<std::uint8_t> free) const noexcept;
+  /// The same for one of shape (dof,).
+  [[nodiscard]] bool is_free(std::span<const double> q) const noexcept;
+
+  /// Lower bounds of the clearance of configurations within the limits.
+  /// @param q  shape (n, dof), row by row [rad or m], finite.
+  void clearances(std::span<const double> q, std::span<Clearance> out) const noexcept;
+  [[nodiscard]] Clearance clearance(std::span<const double> q) const noexcept;
+
+  /// The link at rest and the obstacle that overlap, which no configuration can undo.
+  struct FixedOverlap {
+    int link = -1, obstacle = -1;
+  };
+  [[nodiscard]] const std::optional<FixedOverlap>& fixed_overlap() const noexcept {
+    return fixed_overlap_;
+  }
+
+  [[nodiscard]] const FastRobot& robot() const noexcept { return robot_; }
+  /// Configurations that are looked at at once.
+  [[nodiscard]] int width() const noexcept;
+
+  [[nodiscard]] const detail::FastWorld& world() const noexcept { return *world_; }
+  [[nodiscard]] const detail::FastKernels& kernels() const noexcept { return *kernels_; }
+
+ private:
+  FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel level);
+
+  FastRobot robot_;
+  std::shared_ptr<const detail::FastWorld> world_;
+  const detail::FastKernels* kernels_;
+  std::optional<FixedOverlap> fixed_overlap_;
+};
+
+}  // namespace mjarm

@@ -1,0 +1,8 @@
+#include "mjarm/collision/fast_clearance_internal.hpp"
+#include "mjarm/collision/fast_kernel_internal.hpp"
+
+namespace mjarm::detail {
+
+const FastKernels kFastAvx512 = {kWidth, collide_block, cover_block, clearances_of_block};
+
+}  // namespace mjarm::detail

@@ -1,0 +1,265 @@
+#include "mjarm/collision/fast_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "mjarm/collision/float_lanes_internal.hpp"
+#include "mjarm/collision/problems_test.hpp"
+#include "mjarm/collision/random_scene_test.hpp"
+#include "mjarm/kinematics/long_tests_test.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr std::array kLevels{SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512};
+
+std::vector<double> random_rows(const Arm& arm, Rng& rng, int count) {
+  std::vector<double> rows;
+  for (int i = 0; i < count; ++i) {
+    const JointVec q = testing::random_q(arm, rng);
+    rows.insert(rows.end(), q.data(), q.data() + q.size());
+  }
+  return rows;
+}
+
+TEST(FloatLanes, SineAndCosineKeepTheirBound) {
+  using detail::kWidth;
+  Rng rng(1);
+  double worst = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const double size = i % 3 == 0 ? 100 : i % 3 == 1 ? 4 : 1e-3;
+    float x[kWidth], s[kWidth], c[kWidth];
+    for (float& value : x) value = static_cast<float>(rng.uniform(-size, size));
+    detail::Floats sine, cosine;
+    detail::sine_cosine(detail::load(x), sine, cosine);
+    detail::store(s, sine);
+    detail::store(c, cosine);
+    for (int k = 0; k < kWidth; ++k) {
+      worst = std::max({worst, std::abs(s[k] - std::sin(static_cast<double>(x[k]))),
+                        std::abs(c[k] - std::cos(static_cast<double>(x[k])))});
+    }
+  }
+  EXPECT_LT(worst, detail::kTrigError);
+  EXPECT_GT(worst, 1e-8);
+}
+
+struct Tally {
+  int free = 0, blocked = 0, padded = 0;
+};
+
+/// Holds the answers of one level for random configurations against the oracle. `extent` [m]: of
+/// the largest solid and its distance.
+void compare(const Arm& arm, const SphereSet& set, const Obstacles& world, SimdLevel level,
+             Rng& rng, int count, Tally& tally, double extent = 1) {
+  const auto robot = FastRobot::make(arm, set);
+  ASSERT_TRUE(robot.has_value()) << robot.error().what;
+  const auto checker = FastChecker::make(*robot, world, level);
+  ASSERT_TRUE(checker.has_value()) << checker.error().what;
+  EXPECT_LT(robot->padding(), 2e-4);
+  const auto dof = static_cast<std::size_t>(arm.dof());
+  const std::vector<double> rows = random_rows(arm, rng, count);
+  std::vector<std::uint8_t> free(static_cast<std::size_t>(count));
+  checker->check(rows, free);
+  std::vector<Clearance> clearances(free.size());
+  checker->clearances(rows, clearances);
+  const double pad = 2 * robot->padding() + 2e-6 * extent;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const std::span<const double> q(&rows[i * dof], dof);
+    const double truth = testing::true_clearance(arm, set, world, q);
+    if (free[i] != 0) {
+      ++tally.free;
+      ASSERT_GT(truth, 0) << "called free";
+    } else {
+      ++tally.blocked;
+      ASSERT_LT(truth, pad) << "called blocked";
+      tally.padded += truth > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(checker->is_free(q), free[i] != 0);
+    const double gap = testing::true_clearance(arm, set, world, q, true);
+    const double bound = clearances[i].distance;
+    EXPECT_LE(bound, std::max(gap, 0.0) + 1e-9);
+    EXPECT_GT(bound, std::min(gap, 0.99) - pad - 1e-6 - 1e-6 * extent);
+    EXPECT_EQ(clearances[i].link >= 0, bound < 1);
+  }
+}
+
+TEST(FastChecker, NeverFreeWhereRandomRobotsCollide) {
+  Rng rng(11);
+  Tally tally;
+  const int worlds = testing::rounds(150, 15'000);
+  for (int round = 0; round < worlds; ++round) {
+    const Arm arm = testing::random_arm(1 + round % 9, rng);
+    const SphereSet set = testing::random_spheres(arm, rng);
+    const Obstacles world = testing::random_world(rng, static_cast<int>(rng.below(12)));
+    for (const SimdLevel level : kLevels) compare(arm, set, world, level, rng, 225, tally);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.free, worlds * 20);
+  EXPECT_GT(tally.blocked, worlds * 20);
+  RecordProperty("padded", tally.padded);
+}
+
+TEST(FastChecker, LargeAndFarSolidsStaySafe) {
+  Rng rng(12);
+  Tally tally;
+  for (int round = 0; round < 60; ++round) {
+    const Arm arm = testing::panda();
+    const SphereSet set = testing::random_spheres(arm, rng);
+    Obstacles world;
+    const Eigen::Vector3d away = testing::random_vector(rng, 1).normalized();
+    const Eigen::Matrix3d R =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), away).toRotationMatrix();
+    const double size = std::pow(10, rng.uniform(1, 3.9));
+    const double gap = rng.uniform(0.2, 0.8);
+    const ObstacleShape shapes[] = {BallShape{size}, BoxShape{{size, size, size}},
+                                    CylinderShape{size, size}, CapsuleShape{size, 1}};
+    const double up = round % 4 == 3 ? size + 1 : size;
+    world.solids.push_back({"huge", {(gap + up) * away, R}, shapes[round % 4]});
+    compare(arm, set, world, kLevels[round % 3], rng, 200, tally, 4 * size);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.free, 1000);
+  EXPECT_GT(tally.blocked, 1000);
+}
+
+TEST(FastChecker, WhatIsAskedDoesNotDependOnNeighboursOrRuns) {
+  Rng rng(13);
+  const Arm arm = testing::panda();
+  const SphereSet set = testing::random_spheres(arm, rng);
+  const Obstacles world = testing::random_world(rng, 8);
+  const auto robot = FastRobot::make(arm, set).value();
+  const std::vector<double> rows = random_rows(arm, rng, 333);
+  for (const SimdLevel level : kLevels) {
+    const auto checker = FastChecker::make(robot, world, level).value();
+    const auto again = FastChecker::make(FastRobot::make(arm, set).value(), world, level).value();
+    std::vector<std::uint8_t> free(333), once(333);
+    checker.check(rows, free);
+    again.check(rows, once);
+    EXPECT_EQ(free, once);
+    for (std::size_t i = 0; i < 333; ++i) {
+      const std::span<const double> q(&rows[7 * i], 7);
+      EXPECT_EQ(checker.is_free(q), free[i] != 0);
+      const Clearance a = checker.clearance(q), b = again.clearance(q);
+      EXPECT_EQ(a.distance, b.distance);
+      EXPECT_EQ(a.obstacle, b.obstacle);
+    }
+  }
+}
+
+TEST(FastChecker, NearestPairIsNamed) {
+  Rng rng(14);
+  const Arm arm = testing::panda();
+  const SphereSet set = testing::random_spheres(arm, rng);
+  const Obstacles world = testing::random_world(rng, 12);
+  const std::vector<double> rows = random_rows(arm, rng, 500);
+  const auto robot = FastRobot::make(arm, set).value();
+  for (const SimdLevel level : kLevels) {
+    const auto checker = FastChecker::make(robot, world, level).value();
+    for (std::size_t i = 0; i < 500; ++i) {
+      const std::span<const double> q(&rows[7 * i], 7);
+      const Clearance found = checker.clearance(q);
+      const double truth = testing::true_clearance(arm, set, world, q, true);
+      if (truth < 0 || truth > 0.9) continue;
+      EXPECT_NEAR(found.distance, truth, 1e-4);
+      ASSERT_GE(found.link, 0);
+      ASSERT_NE(found.obstacle < 0, found.other_link < 0);
+      SphereSet links;
+      links.links = {set.links[static_cast<std::size_t>(found.link)]};
+      Obstacles one;
+      if (found.obstacle >= 0) {
+        one.solids = {world.solids[static_cast<std::size_t>(found.obstacle)]};
+      } else {
+        links.links.push_back(set.links[static_cast<std::size_t>(found.other_link)]);
+        links.pairs = {{0, 1}};
+      }
+      EXPECT_NEAR(testing::true_clearance(arm, links, one, q), found.distance, 1e-4);
+    }
+  }
+}
+
+TEST(FastChecker, LimitsAndNumbers) {
+  const Arm arm = testing::panda();
+  SphereSet set;
+  set.links = {{"hand", 6, {{Eigen::Vector3d::Zero(), 0.05}}}};
+  const auto checker = FastChecker::make(FastRobot::make(arm, set).value(), {}).value();
+  std::vector<double> q(arm.home.data(), arm.home.data() + 7);
+  EXPECT_TRUE(checker.is_free(q));
+  q[3] = arm.limits.upper[3] + 1e-4;
+  EXPECT_TRUE(checker.is_free(q));
+  for (const double bad : {arm.limits.upper[3] + 3e-4, std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(), -1e300}) {
+    q[3] = bad;
+    EXPECT_FALSE(checker.is_free(q)) << bad;
+  }
+  EXPECT_EQ(checker.clearance(view(arm.home)).link, -1);
+}
+
+TEST(FastChecker, PieceAtRestInAnObstacle) {
+  const Arm arm = testing::panda();
+  SphereSet set;
+  set.links = {{"base", -1, {{{0, 0, 0.05}, 0.08}}}, {"hand", 6, {{{0, 0, 0.1}, 0.02}}}};
+  Obstacles world;
+  world.solids = {{"far", {{5, 5, 5}, Eigen::Matrix3d::Identity()}, BallShape{0.1}},
+                  {"table", {{0, 0, -0.2}, Eigen::Matrix3d::Identity()}, BoxShape{{1, 1, 0.18}}}};
+  const auto checker = FastChecker::make(FastRobot::make(arm, set).value(), world).value();
+  ASSERT_TRUE(checker.fixed_overlap().has_value());
+  EXPECT_EQ(checker.fixed_overlap()->link, 0);
+  EXPECT_EQ(checker.fixed_overlap()->obstacle, 1);
+  EXPECT_FALSE(checker.is_free(view(arm.home)));
+}
+
+/// Starts and goals of the public problems are what their file says.
+void check_problem_states(const std::filesystem::path& file, int expected_valid) {
+  const testing::PlanningProblems all = testing::read_problems(file);
+  const auto robot = FastRobot::make(all.arm, all.set).value();
+  int valid = 0;
+  for (const testing::PlanningProblem& problem : all.problems) {
+    const auto checker = FastChecker::make(robot, problem.obstacles).value();
+    EXPECT_EQ(checker.is_free(problem.start), problem.start_free) << problem.id;
+    for (std::size_t i = 0; i < problem.goals.size(); ++i) {
+      EXPECT_EQ(checker.is_free(problem.goals[i]), problem.goals_free[i]) << problem.id;
+    }
+    valid += problem.valid ? 1 : 0;
+  }
+  EXPECT_EQ(valid, expected_valid);
+}
+
+TEST(FastChecker, StatesOfThePublicPandaProblems) {
+  MJARM_TEST_FILE(file, "motionbenchmaker/mbm_panda_public.json.gz");
+  check_problem_states(file, 350);
+}
+
+TEST(FastChecker, StatesOfThePublicUr5Problems) {
+  MJARM_TEST_FILE(file, "motionbenchmaker/mbm_ur5_public.json.gz");
+  check_problem_states(file, 342);
+}
+
+TEST(FastChecker, RandomStatesOfThePublicProblems) {
+  for (const char* const name : {"panda", "ur5"}) {
+    MJARM_TEST_FILE(file, std::string("motionbenchmaker/mbm_") + name + "_public.json.gz");
+    const testing::PlanningProblems all = testing::read_problems(file);
+    Rng rng(15);
+    Tally tally;
+    for (std::size_t i = 0; i < all.problems.size(); i += 10) {
+      compare(all.arm, all.set, all.problems[i].obstacles, kLevels[i / 10 % 3], rng,
+              testing::rounds(300, 30'000), tally);
+    }
+    EXPECT_GT(tally.free, 1000);
+    EXPECT_GT(tally.blocked, 1000);
+  }
+}
+
+TEST(FastRobot, WhatItRefuses) {
+  Arm arm = testing::panda();
+  SphereSet set;
+  set.links = {{"hand", 6, {{Eigen::Vector3d::Zero(), 0.05}}}};
+  EXPECT_TRUE(FastRobot::make(arm, set).has_value());
+  arm.joints.clear();
+  EXPECT_EQ(FastRobot::make(arm, set).error().code, Errc::bad_input);
+}
+
+}  // namespace
+}  // namespace mjarm

@@ -1,0 +1,103 @@
+#pragma once
+
+#include "mjarm/collision/fast_block_internal.hpp"
+
+/// The search for the nearest pair of a block of configurations. Included by one file for each
+/// width of the registers.
+namespace mjarm::detail {
+inline namespace MJARM_FLOAT_LANES {
+
+class NearestSearch {
+ public:
+  NearestSearch(const FastRobotTables& robot, const FastWorldTables& world, const float* q,
+                float most)
+      : robot_(robot), world_(world), best_(splat(most)) {
+    block_.place(robot, world, q);
+  }
+
+  void run(FastNearest* out) {
+    for (int k = 0; k < kWidth; ++k) out[k] = {best_[k], -1, -1, -1};
+    found_ = out;
+    for (int g = 0; g < robot_.group_count; ++g) meet_world(g);
+    for (int k = 0; k < robot_.every_pair_count; ++k) meet_itself(robot_.every_pair[k]);
+    for (int k = 0; k < kWidth; ++k) out[k].distance = best_[k];
+  }
+
+ private:
+  /// Rounding of the root and of the radii that are taken off: less than 1e-6 of the distance.
+  static Floats gap(const Floats& gap2, float radius) {
+    return square_root(gap2) * (1 - 1e-6F) - radius;
+  }
+
+  void note(const Floats& distance, const FastNearest& pair) {
+    const LaneBits lanes = less(distance, best_);
+    if (lanes == 0) return;
+    best_ = smaller(distance, best_);
+    for (int k = 0; k < kWidth; ++k) {
+      if (((lanes >> k) & 1) != 0) found_[k] = pair;
+    }
+  }
+
+  void meet_world(int g) {
+    if (robot_.groups[g].body == 0) return;
+    const FastRun& lists = world_.every_list;
+    for (int k = lists.first; k < lists.first + lists.count; ++k) {
+      const FastList& list = world_.lists[k];
+      meet_run(g, list.frame, world_.boxes, list.boxes, world_.box_ids);
+      meet_run(g, list.frame, world_.boxes, list.rounds, world_.box_ids);
+      meet_run(g, list.frame, world_.cylinders, list.cylinders, world_.cylinder_ids);
+    }
+  }
+
+  template <class Solid>
+  void meet_run(int g, int frame, const Solid* solids, const FastRun& run, const int* ids) {
+    const FastGroup& group = robot_.groups[g];
+    const Point ball = into_frame(world_, frame, block_.balls[g]);
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      const Solid& solid = solids[i];
+      const float round = rounding_of(solid);
+      if (less(gap(squared_gap(solid, ball), group.ball.radius + round), best_) == 0) continue;
+      block_.place_spheres(robot_, g);
+      for (int k = group.first; k < group.first + group.count; ++k) {
+        const Point center = into_frame(world_, frame, block_.centers[k]);
+        const float radius = robot_.spheres[k].radius;
+        note(gap(squared_gap(solid, center), radius + round), {0, k, ids[i], -1});
+      }
+    }
+  }
+
+  void meet_itself(const FastPair& pair) {
+    const FastGroup& a = robot_.groups[pair.a];
+    const FastGroup& b = robot_.groups[pair.b];
+    const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
+    if (less(gap(balls, a.ball.radius + b.ball.radius), best_) == 0) return;
+    block_.place_spheres(robot_, pair.a);
+    block_.place_spheres(robot_, pair.b);
+    for (int k = pair.first; k < pair.first + pair.count; ++k) {
+      const FastRow& row = robot_.rows[k];
+      const float radius = robot_.spheres[row.sphere].radius;
+      const Point center = block_.centers[row.sphere];
+      const Floats to_ball = squared(center - block_.balls[pair.b]);
+      if (less(gap(to_ball, radius + b.ball.radius), best_) == 0) continue;
+      for (int j = row.first; j < row.first + row.count; ++j) {
+        const FastPartner& other = robot_.partners[j];
+        note(gap(squared(center - block_.centers[other.sphere]), other.reach),
+             {0, row.sphere, -1, other.sphere});
+      }
+    }
+  }
+
+  const FastRobotTables& robot_;
+  const FastWorldTables& world_;
+  FastNearest* found_ = nullptr;
+  Floats best_;
+  Block block_;
+};
+
+inline void clearances_of_block(const FastRobotTables& robot, const FastWorldTables& world,
+                                const float* q, float most, FastNearest* out) {
+  NearestSearch(robot, world, q, most).run(out);
+}
+
+}  // namespace MJARM_FLOAT_LANES
+}  // namespace mjarm::detail

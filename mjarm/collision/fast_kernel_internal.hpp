@@ -1,0 +1,203 @@
+#pragma once
+
+#include "mjarm/collision/fast_block_internal.hpp"
+
+/// The search for collisions of a block of configurations. Included by one file for each width of
+/// the registers.
+namespace mjarm::detail {
+inline namespace MJARM_FLOAT_LANES {
+
+/// With kCover every radius grows by what its sphere can move within the lane's interval, so that
+/// lanes without overlap prove their whole interval.
+template <bool kCover>
+class BlockSearch {
+ public:
+  BlockSearch(const FastRobotTables& robot, const FastWorldTables& world, LaneBits active, bool any)
+      : robot_(robot), world_(world), active_(active), any_(any) {}
+
+  FastVerdict collide(const float* q) {
+    const LaneBits outside = outside_limits(robot_, q) & active_;
+    verdict_.hit = outside;
+    active_ &= ~outside;
+    if (is_done()) return verdict_;
+    block_.place(robot_, world_, q);
+    search();
+    return verdict_;
+  }
+
+  FastVerdict cover(const float* q, const FastMotion& motion, const float* half) {
+    block_.place(robot_, world_, q);
+    block_.move(robot_, motion.dq);
+    motion_ = &motion;
+    half_ = load(half);
+    search();
+    return verdict_;
+  }
+
+ private:
+  bool is_done() const { return active_ == 0 || (any_ && verdict_.hit != 0); }
+
+  void search() {
+    for (int g = 0; g < robot_.group_count; ++g) {
+      if (kCover) grow_ = growth(g);
+      meet_world(g);
+      if (is_done()) return;
+    }
+    for (int k = 0; k < robot_.pair_count; ++k) {
+      if (kCover) grow_ = half_ * motion_->pair_rate[k];
+      meet_itself(robot_.pairs[k]);
+      if (is_done()) return;
+    }
+  }
+
+  /// By how much a sphere of a group moves at most within the half interval: speed now, and what
+  /// the speed can become.
+  Floats growth(int g) const {
+    const FastGroup& group = robot_.groups[g];
+    const Twist& twist = block_.twists[group.body];
+    const Point v = plus_cross(twist.v, twist.w, block_.balls[g] - block_.frames[group.body].p);
+    const Floats speed =
+        multiply_add(square_root(squared(twist.w)), splat(group.spread), square_root(squared(v))) +
+        motion_->slack[g];
+    return half_ * multiply_add(half_, splat(motion_->bend[g]), speed) * 1.0001F;
+  }
+
+  /// (radius + growth)^2.
+  Floats squared_reach(float radius) const {
+    if constexpr (kCover) {
+      const Floats reach = grow_ + radius;
+      return reach * reach;
+    }
+    return splat(radius * radius);
+  }
+
+  /// The deepest overlap of several solids, noted all at once: branches cost more than the tests.
+  /// Squared gaps less the squares of what they must be; negative: an overlap.
+  struct Overlaps {
+    Floats grown = splat(1);  ///< with growth
+    Floats bare = splat(1);   ///< without
+  };
+
+  void look(const Floats& gap2, float radius, float minus_radius2, Overlaps& overlaps) const {
+    const Floats bare = gap2 + minus_radius2;
+    overlaps.bare = smaller(overlaps.bare, bare);
+    if constexpr (kCover) {
+      overlaps.grown = smaller(overlaps.grown, gap2 - squared_reach(radius));
+    }
+  }
+
+  void note(const Overlaps& overlaps) {
+    const LaneBits lanes = less(kCover ? overlaps.grown : overlaps.bare, Floats{}) & active_;
+    if (lanes == 0) return;
+    if constexpr (kCover) {
+      verdict_.blocked |= lanes;
+      verdict_.hit |= less(overlaps.bare, Floats{}) & lanes;
+      half_ = zero_where(lanes, half_);  // such a lane goes on as a single configuration
+      grow_ = zero_where(lanes, grow_);
+    } else {
+      verdict_.hit |= lanes;
+      active_ &= ~lanes;
+    }
+  }
+
+  void meet_world(int g) {
+    const FastRun& lists = world_.lists_of_group[g];
+    for (int k = lists.first; k < lists.first + lists.count; ++k) {
+      const FastList& list = world_.lists[k];
+      const Point ball = into_frame(world_, list.frame, block_.balls[g]);
+      meet_boxes(g, list, ball);
+      meet_run(g, list.frame, ball, world_.boxes, list.rounds);
+      meet_run(g, list.frame, ball, world_.cylinders, list.cylinders);
+      if (is_done()) return;
+    }
+  }
+
+  /// As meet_run(), the radius being the same for all.
+  void meet_boxes(int g, const FastList& list, const Point& ball) {
+    const Floats reach = squared_reach(robot_.groups[g].ball.radius);
+    for (int first = 0; first < list.boxes.count; first += 64) {
+      const FastBox* const boxes = world_.boxes + list.boxes.first + first;
+      const int count = list.boxes.count - first < 64 ? list.boxes.count - first : 64;
+      std::uint64_t near = 0;
+      for (int i = 0; i < count; ++i) {
+        const bool any = (less(squared_gap(boxes[i], ball), reach) & active_) != 0;
+        near |= static_cast<std::uint64_t>(any) << i;
+      }
+      for (; near != 0; near &= near - 1) {
+        meet_spheres(g, list.frame, boxes[__builtin_ctzll(near)]);
+        if (is_done()) return;
+      }
+    }
+  }
+
+  template <class Solid>
+  void meet_run(int g, int frame, const Point& ball, const Solid* solids, const FastRun& run) {
+    const float radius = robot_.groups[g].ball.radius;
+    for (const Solid* solid = solids + run.first; solid != solids + run.first + run.count;
+         ++solid) {
+      const Floats reach = squared_reach(radius + rounding_of(*solid));
+      if ((less(squared_gap(*solid, ball), reach) & active_) == 0) continue;
+      meet_spheres(g, frame, *solid);
+    }
+  }
+
+  template <class Solid>
+  void meet_spheres(int g, int frame, const Solid& solid) {
+    block_.place_spheres(robot_, g);
+    const FastGroup& group = robot_.groups[g];
+    Overlaps overlaps;
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      const Point center = into_frame(world_, frame, block_.centers[k]);
+      const float radius = robot_.spheres[k].radius + rounding_of(solid);
+      look(squared_gap(solid, center), radius, -radius * radius, overlaps);
+    }
+    note(overlaps);
+  }
+
+  void meet_itself(const FastPair& pair) {
+    const FastGroup& a = robot_.groups[pair.a];
+    const FastGroup& b = robot_.groups[pair.b];
+    const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
+    if ((less(balls, squared_reach(a.ball.radius + b.ball.radius)) & active_) == 0) return;
+    block_.place_spheres(robot_, pair.a);
+    block_.place_spheres(robot_, pair.b);
+    Overlaps overlaps;
+    for (int k = pair.first; k < pair.first + pair.count; ++k) {
+      const FastRow& row = robot_.rows[k];
+      const float radius = robot_.spheres[row.sphere].radius;
+      const Point center = block_.centers[row.sphere];
+      const Floats to_ball = squared(center - block_.balls[pair.b]);
+      if ((less(to_ball, squared_reach(radius + b.ball.radius)) & active_) == 0) continue;
+      for (int j = row.first; j < row.first + row.count; ++j) {
+        const FastPartner& other = robot_.partners[j];
+        look(squared(center - block_.centers[other.sphere]), other.reach, other.minus_reach2,
+             overlaps);
+      }
+    }
+    note(overlaps);
+  }
+
+  const FastRobotTables& robot_;
+  const FastWorldTables& world_;
+  LaneBits active_;
+  bool any_;
+  FastVerdict verdict_;
+  const FastMotion* motion_ = nullptr;
+  Floats half_{};
+  Floats grow_{};
+  Block block_;
+};
+
+inline std::uint32_t collide_block(const FastRobotTables& robot, const FastWorldTables& world,
+                                   const float* q, std::uint32_t active, bool any) {
+  return BlockSearch<false>(robot, world, active, any).collide(q).hit;
+}
+
+inline FastVerdict cover_block(const FastRobotTables& robot, const FastWorldTables& world,
+                               const float* q, std::uint32_t active, const FastMotion& motion,
+                               const float* half) {
+  return BlockSearch<true>(robot, world, active, true).cover(q, motion, half);
+}
+
+}  // namespace MJARM_FLOAT_LANES
+}  // namespace mjarm::detail

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+
+#include "mjarm/collision/sphere_set.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/arm.hpp"
+
+namespace mjarm {
+
+namespace detail {
+struct FastRobotData;
+}
+
+/// An arm and its spheres, made ready for FastChecker: any arm, read at run time. Immutable and
+/// cheap to copy.
+class FastRobot {
+ public:
+  /// A joint without stops is taken within two turns (a slide: 10 m) to either side.
+  /// @return check_sphere_set()'s error; bad_input for an arm without joints or with too many.
+  [[nodiscard]] static Result<FastRobot> make(const Arm& arm, const SphereSet& set);
+
+  [[nodiscard]] int dof() const noexcept;
+  [[nodiscard]] const Arm& arm() const noexcept;
+  [[nodiscard]] const SphereSet& spheres() const noexcept;
+  /// [m] by how much the radii grow to make up for single precision; a sphere of the set that keeps
+  /// this far (two spheres: twice as far) from everything is never called in collision.
+  [[nodiscard]] double padding() const noexcept;
+
+  [[nodiscard]] const detail::FastRobotData& data() const noexcept { return *data_; }
+
+ private:
+  explicit FastRobot(std::shared_ptr<const detail::FastRobotData> data) : data_(std::move(data)) {}
+  std::shared_ptr<const detail::FastRobotData> data_;
+};
+
+}  // namespace mjarm

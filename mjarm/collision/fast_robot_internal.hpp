@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "mjarm/collision/fast_robot.hpp"
+#include "mjarm/collision/fast_tables_internal.hpp"
+#include "mjarm/kinematics/link_chain.hpp"
+
+namespace mjarm::detail {
+
+/// [rad or m] how far outside of the limits a configuration still counts.
+inline constexpr double kLimitSlack = 2e-4;
+/// [m] clearances are reported up to here.
+inline constexpr double kMostClearance = 1;
+
+/// What a group can do, in double precision.
+struct GroupBounds {
+  Eigen::Vector3d reach_center_W = Eigen::Vector3d::Zero();
+  double reach = 0;  ///< [m] all spheres stay within this distance of that point
+  /// Largest distance of a sphere's centre from the axis of joint k [m], over all configurations;
+  /// for a slide 1: so much a centre moves a unit of q_k.
+  std::array<double, kMaxDof> levers{};
+  double padding = 0;  ///< [m] of the radii
+};
+
+struct FastRobotData {
+  FastRobotData() = default;
+  FastRobotData(const FastRobotData&) = delete;  // the tables point into it
+  FastRobotData& operator=(const FastRobotData&) = delete;
+
+  Arm arm;
+  SphereSet set;
+  std::vector<FastGroup> groups;
+  std::vector<FastSphere> spheres;
+  std::vector<FastPair> pairs, every_pair;
+  std::vector<FastRow> rows;
+  std::vector<FastPartner> partners;
+  FastRobotTables tables;                              ///< of the above
+  std::vector<GroupBounds> bounds;                     ///< one a group
+  std::vector<int> link_of_group;                      ///< index into the set
+  std::vector<int> group_of_sphere;                    ///< of the tables
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
+  double padding = 0;                                  ///< [m] largest of the groups
+};
+
+/// The next float towards infinity, or towards minus infinity.
+inline float round_up(double x) {
+  const float f = static_cast<float>(x);
+  return f >= x ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+inline float round_down(double x) { return -round_up(-x); }
+
+/// The widest limits that are looked at, finite.
+struct FastLimits {
+  double lower, upper;
+};
+[[nodiscard]] FastLimits fast_limits(const Arm& arm, int joint);
+
+/// Bounds for points fixed to body `body` (from 1), the centres of spheres `spheres` in its frame.
+[[nodiscard]] GroupBounds group_bounds(const Arm& arm, const LinkChain& chain, int body,
+                                       std::span<const Sphere> spheres);
+
+/// Fills the pairs, rows and partners of a robot whose groups are there.
+void add_pairs(FastRobotData& data, const LinkChain& chain);
+
+}  // namespace mjarm::detail

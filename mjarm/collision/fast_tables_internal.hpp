@@ -1,0 +1,157 @@
+#pragma once
+
+#include <cstdint>
+
+/// What the kernels of the fast checker read: a robot and its world as flat arrays of floats.
+/// Radii carry the padding that makes up for single precision (see fast_bounds.cpp), so that what
+/// is called free is free. Plain memory only: this is compiled for several widths of registers, and
+/// no inline function of a library may come from the wrong one.
+namespace mjarm::detail {
+
+inline constexpr int kFastJoints = 16;    ///< most joints (kMaxDof)
+inline constexpr int kFastGroups = 128;   ///< most links (kMostSphereLinks)
+inline constexpr int kFastSpheres = 512;  ///< most spheres (kMostSpheres)
+
+/// How the frame of a joint is tilted about x against the one before, by 0 to pi. A quarter turn
+/// only swaps axes.
+enum class Tilt { none, quarter, any };
+
+/// T(t) Rx(tilt) Rz(offset + q), or T(t) Rx(tilt) Rz(offset) Tz(q) for a slide.
+struct FastJoint {
+  float t[3] = {0, 0, 0};
+  Tilt tilt = Tilt::none;
+  float tilt_cos = 1, tilt_sin = 0;
+  float offset = 0;
+  bool slide = false;
+  float lower = 0, upper = 0;  ///< open bounds, a little outside of the limits
+};
+
+struct FastSphere {
+  float x = 0, y = 0, z = 0;  ///< in the frame of its body
+  float radius = 0;
+};
+
+/// The spheres of one link. Bodies are counted from 1; body 0 is what stands still.
+struct FastGroup {
+  int body = 0;
+  int first = 0, count = 0;  ///< of the spheres
+  FastSphere ball;           ///< contains them all
+  float spread = 0;          ///< [m] farthest centre of a sphere from that of the ball
+};
+
+/// A sphere that another must not overlap.
+struct FastPartner {
+  int sphere = 0;
+  float reach = 0;         ///< [m] sum of both radii
+  float minus_reach2 = 0;  ///< [m^2] minus its square
+};
+
+/// One sphere of a link against some of another.
+struct FastRow {
+  int sphere = 0;
+  int first = 0, count = 0;  ///< of the partners
+};
+
+/// Two links that must not overlap; `b` is on the body farther from the base.
+struct FastPair {
+  int a = 0, b = 0;          ///< groups
+  int first = 0, count = 0;  ///< of the rows
+};
+
+/// A robot, whatever stands round it.
+struct FastRobotTables {
+  int dof = 0;
+  FastJoint joints[kFastJoints];
+  int group_count = 0;
+  int pair_count = 0;
+  int every_pair_count = 0;
+  const FastGroup* groups = nullptr;  ///< farthest body first
+  const FastSphere* spheres = nullptr;
+  const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
+  const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
+  const FastRow* rows = nullptr;
+  const FastPartner* partners = nullptr;  ///< spheres of group b
+};
+
+/// A box, or what a radius put round it makes: a ball has no extent, a capsule one. Bounds in the
+/// frame it belongs to.
+struct FastBox {
+  float low[3], high[3];
+  float round = 0;  ///< [m] radius round it
+};
+
+/// A finite cylinder along axis `axis` of its frame.
+struct FastCylinder {
+  float center[3];
+  float radius = 0, half = 0;
+  int axis = 2;
+};
+
+/// A run of entries of one kind: [first, first + count).
+struct FastRun {
+  int first = 0, count = 0;
+};
+
+/// What a group can meet, of one orientation.
+struct FastList {
+  int frame = 0;
+  FastRun boxes, rounds, cylinders;  ///< boxes and rounds are both in `boxes` of the world
+};
+
+/// What stands round the robot. Everything is seen from frame 0, the orientation most solids share:
+/// the base is turned into it, so that these solids need no turning at all.
+struct FastWorldTables {
+  float base[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< columns: axes before the first joint
+  const float* frames = nullptr;                ///< 9 a frame, by rows: into that frame
+  const FastList* lists = nullptr;
+  const FastRun* lists_of_group = nullptr;
+  FastRun every_list;  ///< what is within 1 m of the reach of any group, for distances
+  const FastBox* boxes = nullptr;
+  const FastCylinder* cylinders = nullptr;
+  const int* box_ids = nullptr;  ///< which obstacle each of them is
+  const int* cylinder_ids = nullptr;
+};
+
+/// How the configurations of one edge move: q(t) = q0 + t dq, with what bounds the second
+/// derivative, for each group.
+struct FastMotion {
+  const float* dq;         ///< (dof,)
+  const float* slack;      ///< (groups,) [m] what rounding may hide of the speed
+  const float* bend;       ///< (groups,) [m] half of the largest second derivative
+  const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links
+};
+
+struct FastVerdict {
+  std::uint32_t hit = 0;      ///< lanes that may be in collision
+  std::uint32_t blocked = 0;  ///< lanes whose interval is not proved (cover() only)
+};
+
+/// What clearances() found for a lane: sphere -1 where nothing is nearer than the bound.
+struct FastNearest {
+  float distance = 0;
+  int sphere = -1;    ///< index into the spheres
+  int obstacle = -1;  ///< index of the obstacle, -1: another sphere
+  int other = -1;     ///< that sphere
+};
+
+/// The kernels of one level of SIMD. q is (dof, width), joint by joint.
+struct FastKernels {
+  int width;
+  /// Lanes of `active` that may be in collision or are outside of the limits; with `any` the first
+  /// found end the search.
+  std::uint32_t (*collide)(const FastRobotTables&, const FastWorldTables&, const float* q,
+                           std::uint32_t active, bool any);
+  /// Looks at intervals t +- half[lane] of an edge, where q is at t. Ends with the first hit.
+  FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, const float* q,
+                       std::uint32_t active, const FastMotion& motion, const float* half);
+  /// Lower bounds of the distance, up to `most`.
+  void (*clearances)(const FastRobotTables&, const FastWorldTables&, const float* q, float most,
+                     FastNearest* out);
+};
+extern const FastKernels kFastBaseline;
+#if defined(__x86_64__)
+extern const FastKernels kFastAvx2;
+extern const FastKernels kFastAvx512;
+#endif
+
+}  // namespace mjarm::detail

@@ -1,0 +1,253 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mjarm/collision/fast_world_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr double kSameTurn = 1e-7;         // [rad] two orientations that count as one
+constexpr std::size_t kMostCompared = 64;  // orientations that a new one is compared with
+constexpr double kFloat = 0x1p-24;         // relative rounding error
+constexpr double kEverywhere = 1e9;        // [m]
+
+enum class Kind { box, round, cylinder };
+
+/// A solid in the frame it was sorted into.
+struct Placed {
+  int id = 0;
+  int frame = 0;
+  Kind kind = Kind::box;
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;  // box without its rounding
+  double round = 0;                                           // of a round; radius of a cylinder
+  int axis = 2;                                               // of a cylinder
+  double distance = 0;  // from where the robot stands: what is near is looked at first
+};
+
+/// Index of the entry of `v` that is 1 or -1 while the others vanish; -1 where there is none.
+int lone_axis(const Eigen::Vector3d& v) {
+  Eigen::Index largest = 0;
+  v.cwiseAbs().maxCoeff(&largest);
+  Eigen::Vector3d rest = v;
+  rest[largest] = 0;
+  return rest.norm() < kSameTurn ? static_cast<int>(largest) : -1;
+}
+
+class WorldBuilder {
+ public:
+  WorldBuilder(const FastRobotData& robot, const Obstacles& obstacles, FastWorld& out)
+      : robot_(robot), out_(out) {
+    place(obstacles);
+    move_largest_frame_first();
+    std::sort(placed_.begin(), placed_.end(), [](const Placed& a, const Placed& b) {
+      if (a.frame != b.frame) return a.frame < b.frame;
+      if (a.kind != b.kind) return a.kind < b.kind;
+      return a.distance < b.distance || (a.distance == b.distance && a.id < b.id);
+    });
+  }
+
+  void build(const Obstacles& obstacles) {
+    write_frames();
+    for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
+      const bool moves = robot_.groups[g].body > 0;
+      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, obstacles) : FastRun{});
+    }
+    out_.tables.every_list = add_lists(everyone(), kMostClearance, obstacles);
+  }
+
+ private:
+  void place(const Obstacles& obstacles) {
+    const Eigen::Vector3d middle = robot_.bounds.front().reach_center_W;
+    std::vector<int> balls;
+    for (std::size_t i = 0; i < obstacles.solids.size(); ++i) {
+      const Obstacle& solid = obstacles.solids[i];
+      Placed placed;
+      placed.id = static_cast<int>(i);
+      placed.distance = distance(solid, middle);
+      if (std::holds_alternative<BallShape>(solid.shape)) {
+        balls.push_back(placed.id);
+      } else {
+        placed.frame = frame_for(solid);
+        ++used_[static_cast<std::size_t>(placed.frame)];
+      }
+      placed_.push_back(placed);
+    }
+    if (frames_.empty()) {
+      frames_.push_back(Eigen::Matrix3d::Identity());
+      used_.push_back(0);
+    }
+    main_ = static_cast<int>(std::max_element(used_.begin(), used_.end()) - used_.begin());
+    for (const int i : balls) placed_[static_cast<std::size_t>(i)].frame = main_;
+    for (Placed& placed : placed_) {
+      fill(obstacles.solids[static_cast<std::size_t>(placed.id)], placed);
+    }
+  }
+
+  /// The frame whose axes a solid shares, a new one where there is none.
+  int frame_for(const Obstacle& solid) {
+    const bool box = std::holds_alternative<BoxShape>(solid.shape);
+    for (std::size_t f = 0; f < std::min(frames_.size(), kMostCompared); ++f) {
+      const Eigen::Matrix3d R = frames_[f].transpose() * solid.X_WO.R;
+      if (lone_axis(R.col(2)) >= 0 && (!box || lone_axis(R.col(0)) >= 0)) {
+        return static_cast<int>(f);
+      }
+    }
+    frames_.push_back(solid.X_WO.R);
+    used_.push_back(0);
+    return static_cast<int>(frames_.size()) - 1;
+  }
+
+  void fill(const Obstacle& solid, Placed& out) const {
+    const Eigen::Matrix3d& F = frames_[static_cast<std::size_t>(out.frame)];
+    const Eigen::Vector3d p = F.transpose() * solid.X_WO.p;
+    const Eigen::Matrix3d R = F.transpose() * solid.X_WO.R;
+    const auto span = [&](const Eigen::Vector3d& half) {
+      out.low = p - half;
+      out.high = p + half;
+    };
+    if (const auto* box = std::get_if<BoxShape>(&solid.shape)) {
+      span(R.cwiseAbs() * box->half);  // what the axes differ by is covered as well
+    } else if (const auto* ball = std::get_if<BallShape>(&solid.shape)) {
+      span(Eigen::Vector3d::Zero());
+      set_round(ball->radius, out);
+    } else if (const auto* capsule = std::get_if<CapsuleShape>(&solid.shape)) {
+      span(R.col(2).cwiseAbs() * capsule->half_length);
+      set_round(capsule->radius, out);
+    } else if (const auto* cylinder = std::get_if<CylinderShape>(&solid.shape)) {
+      out.kind = Kind::cylinder;
+      out.axis = lone_axis(R.col(2));
+      const double leak = kSameTurn * (cylinder->radius + cylinder->half_length);
+      span(Eigen::Vector3d::Unit(out.axis) * (cylinder->half_length + leak));
+      out.round = cylinder->radius + leak;
+    } else {
+      span(Eigen::Vector3d::Constant(kEverywhere));
+      const int axis = lone_axis(R.col(2));
+      (R(axis, 2) > 0 ? out.high : out.low)[axis] = p[axis];
+    }
+  }
+
+  static void set_round(double radius, Placed& out) {
+    out.kind = Kind::round;
+    out.round = radius;
+  }
+
+  /// Frame 0 costs no turning.
+  void move_largest_frame_first() {
+    std::swap(frames_[0], frames_[static_cast<std::size_t>(main_)]);
+    for (Placed& placed : placed_) {
+      placed.frame = placed.frame == main_ ? 0 : placed.frame == 0 ? main_ : placed.frame;
+    }
+  }
+
+  void write_frames() {
+    const Eigen::Matrix3d& F = frames_[0];
+    Eigen::Map<Eigen::Matrix3f>(out_.tables.base) = (F.transpose() * robot_.R_WB).cast<float>();
+    out_.frames.resize(9 * frames_.size());
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      const Eigen::Matrix3f R = (frames_[f].transpose() * F).cast<float>();
+      Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(out_.frames.data() + 9 * f) = R;
+    }
+  }
+
+  /// Bounds that hold for every group.
+  GroupBounds everyone() const {
+    GroupBounds out = robot_.bounds.front();
+    for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
+      if (robot_.groups[g].body == 0) continue;
+      const GroupBounds& bounds = robot_.bounds[g];
+      const double apart = (bounds.reach_center_W - out.reach_center_W).norm();
+      out.reach = std::max(out.reach, apart + bounds.reach);
+    }
+    return out;
+  }
+
+  FastRun add_lists(const GroupBounds& bounds, double margin, const Obstacles& obstacles) {
+    const int first = static_cast<int>(out_.lists.size());
+    for (const Placed& placed : placed_) {
+      const Obstacle& solid = obstacles.solids[static_cast<std::size_t>(placed.id)];
+      if (distance(solid, bounds.reach_center_W) > bounds.reach + margin + 1e-4) continue;
+      const int lists = static_cast<int>(out_.lists.size());
+      if (lists == first || out_.lists.back().frame != placed.frame) start_list(placed.frame);
+      add(bounds, placed);
+    }
+    return {first, static_cast<int>(out_.lists.size()) - first};
+  }
+
+  void start_list(int frame) {
+    const FastRun boxes{static_cast<int>(out_.boxes.size()), 0};
+    const FastRun cylinders{static_cast<int>(out_.cylinders.size()), 0};
+    out_.lists.push_back({frame, boxes, boxes, cylinders});
+  }
+
+  void add(const GroupBounds& bounds, const Placed& placed) {
+    FastList& list = out_.lists.back();
+    if (placed.kind == Kind::cylinder) {
+      add_cylinder(placed);
+      ++list.cylinders.count;
+      return;
+    }
+    add_box(bounds, placed);
+    if (placed.kind == Kind::box) {
+      ++list.boxes.count;
+      ++list.rounds.first;
+    } else {
+      ++list.rounds.count;
+    }
+  }
+
+  /// Plain boxes are cut down to what is within reach, where floats are fine enough; what has a
+  /// radius grows by what rounding does to its place.
+  void add_box(const GroupBounds& bounds, const Placed& placed) {
+    const Eigen::Vector3d middle =
+        frames_[static_cast<std::size_t>(placed.frame)].transpose() * bounds.reach_center_W;
+    const double most = bounds.reach + 2 * kMostClearance;
+    const bool plain = placed.kind == Kind::box;
+    FastBox box;
+    for (int k = 0; k < 3; ++k) {
+      const double low = plain ? std::max(placed.low[k], middle[k] - most) : placed.low[k];
+      const double high = plain ? std::min(placed.high[k], middle[k] + most) : placed.high[k];
+      box.low[k] = round_down(low);
+      box.high[k] = round_up(high);
+    }
+    const double far = placed.low.norm() + placed.high.norm() + placed.round;
+    box.round = plain ? 0 : round_up(placed.round + 4 * kFloat * far);
+    out_.boxes.push_back(box);
+    out_.box_ids.push_back(placed.id);
+  }
+
+  void add_cylinder(const Placed& placed) {
+    const Eigen::Vector3d center = 0.5 * (placed.low + placed.high);
+    const double half = 0.5 * (placed.high - placed.low)[placed.axis];
+    const double leak = 8 * kFloat * (center.norm() + half + placed.round);
+    FastCylinder out;
+    for (int k = 0; k < 3; ++k) out.center[k] = static_cast<float>(center[k]);
+    out.radius = round_up(placed.round + leak);
+    out.half = round_up(half + leak);
+    out.axis = placed.axis;
+    out_.cylinders.push_back(out);
+    out_.cylinder_ids.push_back(placed.id);
+  }
+
+  const FastRobotData& robot_;
+  std::vector<Eigen::Matrix3d> frames_;  // R_WF
+  std::vector<int> used_;                // solids of each frame
+  int main_ = 0;                         // the frame that most solids share
+  std::vector<Placed> placed_;
+  FastWorld& out_;
+};
+
+}  // namespace
+
+FastWorld::FastWorld(const FastRobotData& robot, const Obstacles& obstacles) {
+  WorldBuilder(robot, obstacles, *this).build(obstacles);
+  tables.frames = frames.data();
+  tables.lists = lists.data();
+  tables.lists_of_group = lists_of_group.data();
+  tables.boxes = boxes.data();
+  tables.cylinders = cylinders.data();
+  tables.box_ids = box_ids.data();
+  tables.cylinder_ids = cylinder_ids.data();
+}
+
+}  // namespace mjarm::detail
