@@ -18,15 +18,11 @@ constexpr Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
 
 Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
   Show show(model.timestep());
-  if (headless || !has_display() || !RemoteWindow::is_possible()) return show;
-  Result<RemoteWindow> window = RemoteWindow::open(model, title, {.can_reset = false});
-  if (window) {
-    show.window_ = std::move(*window);
-  } else if (window.error().code == Errc::not_available) {
-    log_info(window.error().what);
-  } else {
-    return fail(std::move(window.error()));
-  }
+  if (headless) return show;
+  Result<std::optional<RemoteWindow>> window =
+      RemoteWindow::open_where_possible(model, title, {.can_reset = false});
+  if (!window) return fail(std::move(window.error()));
+  show.window_ = std::move(*window);
   return show;
 }
 
