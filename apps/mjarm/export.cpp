@@ -36,9 +36,8 @@ Result<int> run(const Options& options) {
     return fail(Errc::usage, text(msg::motion_program_export_over, options.out));
   }
   catch_interrupts();
-  const Result<LoadedProgram> loaded = load_program(options.file);
+  const Result<LoadedProgram> loaded = load_sound_program(options.file);
   if (!loaded) return fail(loaded.error());
-  if (!loaded->plan.ok()) return fail(first_fault(*loaded));
   const Result<std::string> script =
       to_urscript(loaded->program, loaded->robot, loaded->plan, {.version = MJARM_VERSION});
   if (!script) return fail(script.error().code, options.file + ": " + script.error().what);

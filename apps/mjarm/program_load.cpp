@@ -40,6 +40,12 @@ Result<std::filesystem::path> find_shipped_program(const std::string& name) {
   return fail(Errc::bad_input, text(msg::motion_program_no_file, name) + did_you_mean(name, names));
 }
 
+bool is_program(const std::string& name_or_path) {
+  const std::filesystem::path extension = std::filesystem::path(name_or_path).extension();
+  if (extension == ".yaml" || extension == ".yml") return true;
+  return !find_model_file(name_or_path) && find_program_file(name_or_path).has_value();
+}
+
 Result<LoadedProgram> load_program(const std::string& name_or_path) {
   const Result<std::filesystem::path> found = find_program_file(name_or_path);
   if (!found) return fail(found.error());
@@ -48,6 +54,12 @@ Result<LoadedProgram> load_program(const std::string& name_or_path) {
   Result<ProgramRobot> robot = load_program_robot(*program, *found);
   if (!robot) return fail(std::move(robot.error()));
   return plan_loaded(found->string(), std::move(*program), std::move(*robot));
+}
+
+Result<LoadedProgram> load_sound_program(const std::string& name_or_path) {
+  Result<LoadedProgram> loaded = load_program(name_or_path);
+  if (loaded && !loaded->plan.ok()) return fail(first_fault(*loaded));
+  return loaded;
 }
 
 Result<LoadedProgram> plan_loaded(const std::string& file, Program program, ProgramRobot robot) {

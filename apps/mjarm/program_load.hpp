@@ -24,8 +24,14 @@ struct LoadedProgram {
 /// @return an error with the nearest name.
 [[nodiscard]] Result<std::filesystem::path> find_program_file(const std::string& name_or_path);
 
+/// True for a `.yaml` or `.yml` file, and for the name of a shipped program that is no model's.
+[[nodiscard]] bool is_program(const std::string& name_or_path);
+
 /// Reads a program, loads its robot and plans it, with a progress bar.
 [[nodiscard]] Result<LoadedProgram> load_program(const std::string& name_or_path);
+
+/// The same; a plan with faults is an error, the first of them.
+[[nodiscard]] Result<LoadedProgram> load_sound_program(const std::string& name_or_path);
 
 /// Plans a program for a robot that is loaded already, with a progress bar.
 /// @param file  for messages.

@@ -8,8 +8,6 @@ namespace {
 
 constexpr const char* kProgramStateWords[] = {"ready", "running", "stopping", "stopped", "done"};
 constexpr const char* kProgramLookWords[] = {"now", "the past", "replay"};
-constexpr const char* kProgramFigureWords[kLiveFigures] = {
-    "Tool position", "Tracking error", "Joint error", "Joints", "Torque", "Manipulability"};
 
 PanelItem program_button(ProgramItem item, const char* name, bool enabled = true) {
   return {item, name, PanelButton{}, enabled};
@@ -67,12 +65,7 @@ std::vector<std::string> program_lines(const ProgramPlan& plan) {
 
 std::vector<PanelSection> program_panels(const ProgramFacts& facts,
                                          const std::vector<std::string>& lines,
-                                         const ProgramScene::Choice& choice) {
-  PanelSection plots{"Plots", {}};
-  for (std::size_t i = 0; i < kLiveFigures; ++i) {
-    plots.items.push_back(program_checkbox(kProgramFigure + static_cast<int>(i),
-                                           kProgramFigureWords[i], choice.figures[i]));
-  }
+                                         const ProgramScene::Choice& choice, PanelSection plots) {
   return {time_section(facts), program_section(facts, lines),
           PanelSection{"Show",
                        {program_checkbox(kProgramPaths, "Planned paths", choice.paths),

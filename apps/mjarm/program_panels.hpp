@@ -50,8 +50,10 @@ struct ProgramFacts {
 
 /// The sections Time, Program, Show and Plots; a long list comes after what has to be at hand.
 /// @param lines  as program_lines() gives them.
+/// @param plots  the section Plots.
 [[nodiscard]] std::vector<PanelSection> program_panels(const ProgramFacts& facts,
                                                        const std::vector<std::string>& lines,
-                                                       const ProgramScene::Choice& choice);
+                                                       const ProgramScene::Choice& choice,
+                                                       PanelSection plots);
 
 }  // namespace mjarm::app

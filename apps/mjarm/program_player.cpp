@@ -27,7 +27,7 @@ ProgramPlayer::ProgramPlayer(const LoadedProgram& loaded, Controller controller)
       walk_(loaded.plan, loaded.robot.model.timestep()),
       playback_(loaded.robot.model.timestep()),
       record_(most_recorded(sim_)),
-      scene_(loaded),
+      scene_(loaded, kProgramFigure),
       lines_(program_lines(loaded.plan)) {
   restart();
 }
@@ -155,10 +155,7 @@ void ProgramPlayer::choose(const PanelEvent& event) {
   if (event.id == kProgramPaths) choice_.paths = on;
   if (event.id == kProgramTrail) choice_.trail = on;
   if (event.id == kProgramGoal) choice_.goal = on;
-  const int figure = event.id - kProgramFigure;
-  if (figure >= 0 && figure < static_cast<int>(kLiveFigures)) {
-    choice_.figures[static_cast<std::size_t>(figure)] = on;
-  }
+  (void)scene_.figures().handle(event);
 }
 
 void ProgramPlayer::handle(const ViewEvent& event) {
@@ -217,8 +214,8 @@ void ProgramPlayer::fill(ViewFrame& frame) const {
   const bool present = look_ == ProgramLook::present;
   frame.snapshot = present ? sim_.snapshot() : shown().snapshot;
   frame.overlay = scene_.overlay(choice_, present ? std::optional(walk_.motion()) : std::nullopt);
-  frame.plots = scene_.figures(choice_);
-  frame.panels = program_panels(facts(), lines_, choice_);
+  frame.plots = scene_.plots();
+  frame.panels = program_panels(facts(), lines_, choice_, scene_.figures().section());
   frame.status = status();
 }
 

@@ -132,7 +132,7 @@ TEST(ProgramPlayer, WhatIsShownIsChosen) {
   ASSERT_EQ(frame.plots.size(), 2U);
   // Figures begin when the time line does.
   EXPECT_EQ(frame.plots[0].series[0].x.front(), 0);
-  EXPECT_NEAR(frame.plots[0].series[0].x.back(), world.facts().recorded, 1e-9);
+  EXPECT_NEAR(frame.plots[0].series[0].x.back(), world.facts().recorded, 0.01);
   const std::size_t lines = frame.overlay.lines.size();
   EXPECT_GE(lines, 4U);  // three paths and a trail
   EXPECT_TRUE(frame.overlay.ghosts.empty());

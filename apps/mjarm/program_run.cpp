@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "apps/mjarm/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/motion_program.hpp"
 #include "mjarm/core/progress.hpp"
@@ -100,6 +101,23 @@ Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolera
                                      stage.sim().tool(plan.arms.front()));
   }
   return stage.finish(std::move(report), tolerance, runs);
+}
+
+DemoOptions out_of_sight(DemoOptions options) {
+  options.headless = true;
+  return options;
+}
+
+Result<Report> run_and_show(const LoadedProgram& loaded, const DemoOptions& options,
+                            double tolerance, const std::string& camera) {
+  const Result<std::unique_ptr<Stage>> stage = Stage::open(
+      loaded.program.name, out_of_sight(options), {loaded.robot.model, loaded.robot.arm});
+  if (!stage) return fail(stage.error());
+  (*stage)->set_camera(camera);
+  Result<Report> report = run_plan(**stage, loaded, tolerance);
+  if (!report || options.headless) return report;
+  if (auto shown = show_program(loaded, options.seconds); !shown) return fail(shown.error());
+  return report;
 }
 
 }  // namespace mjarm::app

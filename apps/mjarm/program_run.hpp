@@ -23,4 +23,13 @@ namespace mjarm::app {
 /// and writes its files; `ok` is withdrawn where a curve was left by more than `tolerance` [m].
 [[nodiscard]] Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolerance);
 
+/// The same with a stage of its own, out of sight, since nobody could look as fast as that; then
+/// `show_program`, unless there is to be no window.
+/// @param camera  of the picture at the end, where the model has it.
+[[nodiscard]] Result<Report> run_and_show(const LoadedProgram& loaded, const DemoOptions& options,
+                                          double tolerance, const std::string& camera = "overview");
+
+/// Options for a stage that nobody looks at.
+[[nodiscard]] DemoOptions out_of_sight(DemoOptions options);
+
 }  // namespace mjarm::app

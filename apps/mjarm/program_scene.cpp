@@ -25,8 +25,8 @@ std::vector<Pose> tool_path(const PlannedMove& move, const Arm& arm) {
 
 }  // namespace
 
-ProgramScene::ProgramScene(const LoadedProgram& loaded)
-    : loaded_(&loaded), plots_(loaded.robot.arm) {
+ProgramScene::ProgramScene(const LoadedProgram& loaded, int first_figure)
+    : loaded_(&loaded), figures_(loaded.robot.arm, first_figure, {true, true}) {
   for (const PlannedMove& move : loaded.plan.moves) {
     PathLook look;
     if (!move.curve) look.color = kJointMoveColor;
@@ -39,22 +39,14 @@ void ProgramScene::add(const Sim& sim, double time, std::size_t motion, const Jo
   const ProgramPlan& plan = loaded_->plan;
   if (plan.moves.empty()) return;
   const Arm& arm = plan.arms[plan.moves[std::min(motion, plan.moves.size() - 1)].tool];
-  const JointVec q = sim.arm_state(arm).q;
-  const Pose X_WT = sim.tool(arm);
-  trail_.add(X_WT.p);
+  trail_.add(sim.tool(arm).p);
+  figures_.add(sim, time, arm, q_ref);
   has_curves_ = true;
-  plots_.add({.time = time,
-              .q = q,
-              .q_ref = q_ref,
-              .X_WT = X_WT,
-              .X_ref = fk(arm, view(q_ref)),
-              .torque = sim.arm_torque(arm),
-              .manipulability = manipulability(fk_jacobian(arm, view(q)).J_W)});
 }
 
 void ProgramScene::clear() {
   trail_.clear();
-  plots_.clear();
+  figures_.clear();
   has_curves_ = false;
 }
 
@@ -70,13 +62,8 @@ Overlay ProgramScene::overlay(const Choice& choice, std::optional<std::size_t> m
   return out;
 }
 
-std::vector<LivePlot> ProgramScene::figures(const Choice& choice) const {
-  std::vector<LivePlot> out;
-  if (!has_curves_) return out;
-  for (std::size_t i = 0; i < kLiveFigures; ++i) {
-    if (choice.figures[i]) out.push_back(plots_.figure(static_cast<LiveFigure>(i)));
-  }
-  return out;
+std::vector<LivePlot> ProgramScene::plots() const {
+  return has_curves_ ? figures_.plots() : std::vector<LivePlot>();
 }
 
 }  // namespace mjarm::app

@@ -1,20 +1,16 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
+#include "apps/mjarm/arm_figures.hpp"
 #include "apps/mjarm/plan_walk.hpp"
 #include "apps/mjarm/program_load.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/trail.hpp"
 #include "mjarm/sim/sim.hpp"
-#include "mjarm/view/live_plot_set.hpp"
 
 namespace mjarm::app {
-
-/// Number of LiveFigure.
-inline constexpr std::size_t kLiveFigures = 6;
 
 /// What a window shows of a program besides the arm: planned paths, the trail of the tool, the goal
 /// of a motion, figures.
@@ -25,11 +21,11 @@ class ProgramScene {
     bool paths = true;
     bool trail = true;
     bool goal = false;  ///< the arm once more, which costs as much as the arm
-    std::array<bool, kLiveFigures> figures = {true, true};  ///< in the order of LiveFigure
   };
 
-  /// @param loaded  has no faults; outlives this.
-  explicit ProgramScene(const LoadedProgram& loaded);
+  /// @param loaded        has no faults; outlives this.
+  /// @param first_figure  number of the first item of its figures.
+  ProgramScene(const LoadedProgram& loaded, int first_figure);
 
   /// One more step was made, by motion `motion` of the plan.
   /// @param time  [s] since the program was begun, for the figures.
@@ -39,14 +35,16 @@ class ProgramScene {
 
   /// @param motion  whose goal is shown; none = no goal is.
   [[nodiscard]] Overlay overlay(const Choice& choice, std::optional<std::size_t> motion) const;
-  /// None before the first step.
-  [[nodiscard]] std::vector<LivePlot> figures(const Choice& choice) const;
+  /// Those that the user chose; none before the first step.
+  [[nodiscard]] std::vector<LivePlot> plots() const;
+  [[nodiscard]] ArmFigures& figures() { return figures_; }
+  [[nodiscard]] const ArmFigures& figures() const { return figures_; }
 
  private:
   const LoadedProgram* loaded_;
   Overlay paths_;
   Trail trail_;
-  LivePlotSet plots_;
+  ArmFigures figures_;
   bool has_curves_ = false;
 };
 

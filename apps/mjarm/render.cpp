@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/program_load.hpp"
 #include "apps/mjarm/render_options.hpp"
 #include "apps/mjarm/render_program.hpp"
 #include "apps/mjarm/render_video.hpp"
 #include "apps/mjarm/robot.hpp"
-#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
@@ -19,22 +19,9 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file;
+  RobotOptions robot;
   PictureArguments picture;
-  std::vector<std::string> package_paths;
-  bool allow_outside = false;
 };
-
-Result<Model> load(const Options& options) {
-  const Result<std::filesystem::path> file = find_model_file(options.file);
-  if (!file) return fail(file.error());
-  Result<Model> model = Model::load(
-      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
-              .allow_outside = options.allow_outside});
-  if (!model) return model;
-  for (const std::string& warning : model->warnings()) log_warning(warning);
-  return model;
-}
 
 /// Keyframe `home`, else the arm's own home, else as the model starts.
 Snapshot home_of(const Model& model) {
@@ -80,15 +67,15 @@ Result<std::string> picture(const Model& model, const PictureOptions& options) {
 }
 
 Result<std::string> render(const Options& options, const PictureOptions& wanted) {
-  const std::string ending = std::filesystem::path(options.file).extension().string();
-  if (ending == ".yaml" || ending == ".yml") return render_program(options.file, wanted);
-  const Result<Model> model = load(options);
+  if (is_program(options.robot.robot)) return render_program(options.robot.robot, wanted);
+  const Result<Model> model = load_model(options.robot);
   if (!model) return fail(model.error());
+  tell_warnings(*model);
   return wanted.video ? turntable(*model, wanted) : picture(*model, wanted);
 }
 
 Result<int> run(const Options& options) {
-  if (options.file.empty()) return fail(Errc::usage, text(msg::render_command_which));
+  if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::render_command_which));
   const Result<PictureOptions> wanted = read_picture_options(options.picture);
   if (!wanted) return fail(wanted.error());
   const Result<std::string> line = render(options, *wanted);
@@ -99,10 +86,10 @@ Result<int> run(const Options& options) {
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  add_option(app, "file", options->file, msg::render_command_file, "FILE|PROGRAM");
+  add_option(app, "file", options->robot.robot, msg::render_command_file, "FILE|PROGRAM");
   add_picture_options(app, options->picture);
-  add_package_path_option(app, options->package_paths);
-  add_outside_option(app, options->allow_outside);
+  add_package_path_option(app, options->robot.package_paths);
+  add_outside_option(app, options->robot.allow_outside);
   return [options] { return run(*options); };
 }
 

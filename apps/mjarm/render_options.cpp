@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
@@ -14,30 +13,9 @@
 namespace mjarm::app {
 namespace {
 
-constexpr int kMostPixels = 8192;
 constexpr double kMostRate = 1000;     // [1/s]
 constexpr double kMostSeconds = 3600;  // [s]
 constexpr double kGifRate = 20;        // [1/s] a whole number of the hundredths a GIF counts in
-
-/// A whole number from the beginning of `words`, which is taken away; 0 where there is none.
-int take_number(std::string_view& words) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(words.data(), words.data() + words.size(), value);
-  if (error != std::errc()) return 0;
-  words.remove_prefix(static_cast<std::size_t>(end - words.data()));
-  return value;
-}
-
-Result<void> read_size(const std::string& words, PictureOptions& options) {
-  std::string_view left = words;
-  options.width = take_number(left);
-  const bool crossed = left.starts_with('x') || left.starts_with('X');
-  if (crossed) left.remove_prefix(1);
-  options.height = take_number(left);
-  const auto fits = [](int size) { return size >= 1 && size <= kMostPixels; };
-  if (crossed && left.empty() && fits(options.width) && fits(options.height)) return {};
-  return fail(Errc::usage, text(msg::render_command_size, words, kMostPixels));
-}
 
 Result<double> read_amount(const char* option, const std::string& words, Quantity quantity,
                            double most) {
@@ -112,7 +90,10 @@ Result<PictureOptions> read_picture_options(const PictureArguments& arguments) {
     options.fps = kGifRate;
   }
   if (!arguments.size.empty()) {
-    if (Result<void> read = read_size(arguments.size, options); !read) return fail(read.error());
+    const Result<PixelSize> size = parse_size("--size", arguments.size);
+    if (!size) return fail(size.error());
+    options.width = size->width;
+    options.height = size->height;
   }
   if (!arguments.quality.empty()) {
     static const std::array<std::string, 3> kWords = {"low", "medium", "high"};

@@ -112,9 +112,8 @@ Result<std::string> picture_of(ProgramRun& run, const Model& model, const Pictur
 }  // namespace
 
 Result<std::string> render_program(const std::string& file, const PictureOptions& options) {
-  const Result<LoadedProgram> loaded = load_program(file);
+  const Result<LoadedProgram> loaded = load_sound_program(file);
   if (!loaded) return fail(loaded.error());
-  if (!loaded->plan.ok()) return fail(first_fault(*loaded));
   const Model& model = loaded->robot.model;
   double duration = loaded->plan.duration() + kRest;
   if (options.seconds) duration = std::min(duration, *options.seconds);

@@ -116,6 +116,18 @@ TEST_F(Render, AModelAtHome) {
   EXPECT_NE(qualities[1].rgb, qualities[2].rgb);
 }
 
+TEST_F(Render, AShippedProgramByItsName) {
+  const std::vector<std::string> small = {"--size", "160x90", "--quality", "low"};
+  const auto drawn = [&](const char* name) {
+    std::vector<std::string> words = small;
+    words.insert(words.begin(), name);
+    return picture(words);
+  };
+  const Picture program = drawn("ellipse.yaml");
+  EXPECT_EQ(program.rgb, drawn("ellipse").rgb);
+  EXPECT_NE(program.rgb, drawn("ur5e").rgb) << "the trail of the tool is there";
+}
+
 TEST_F(Render, ModelsOfEveryKind) {
   for (const std::string& model :
        {std::string("car"), std::string("panda"), model_file("universal_robots_ur5e/ur5e.urdf")}) {

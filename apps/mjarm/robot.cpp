@@ -23,15 +23,23 @@ void add_package_path_option(CLI::App& app, std::vector<std::string>& folders) {
   add_option(app, "--package-path", folders, msg::app_option_package_path, "DIR");
 }
 
+Result<Model> load_model(const RobotOptions& options) {
+  const Result<std::filesystem::path> file = find_model_file(options.robot);
+  if (!file) return fail(file.error());
+  return Model::load(*file,
+                     {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
+                      .allow_outside = options.allow_outside});
+}
+
+void tell_warnings(const Model& model) {
+  for (const std::string& warning : model.warnings()) log_info(warning);
+}
+
 Result<Robot> load_robot(const RobotOptions& options) {
   if (options.robot.empty()) {
     return fail(Errc::usage, text(msg::app_option_missing, "--robot"));
   }
-  Result<std::filesystem::path> file = find_model_file(options.robot);
-  if (!file) return fail(std::move(file.error()));
-  Result<Model> model = Model::load(
-      *file, {.package_paths = {options.package_paths.begin(), options.package_paths.end()},
-              .allow_outside = options.allow_outside});
+  Result<Model> model = load_model(options);
   if (!model) return fail(std::move(model.error()));
   for (const std::string& warning : model->warnings()) log_debug(warning);
   Result<Arm> arm = find_arm(*model, {.tip = options.tip});

@@ -34,6 +34,12 @@ struct Robot {
   Arm arm;
 };
 
+/// Finds and loads a model, which need not have an arm; `options.tip` does not matter.
+[[nodiscard]] Result<Model> load_model(const RobotOptions& options);
+
+/// Logs what a user who looks at the model wants to know about how it was read.
+void tell_warnings(const Model& model);
+
 /// Finds, loads and searches the robot; a usage error where `--robot` is missing.
 [[nodiscard]] Result<Robot> load_robot(const RobotOptions& options);
 

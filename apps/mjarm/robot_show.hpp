@@ -1,13 +1,12 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
+#include "apps/mjarm/arm_figures.hpp"
 #include "apps/mjarm/view_sim.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/trail.hpp"
-#include "mjarm/view/live_plot_set.hpp"
 #include "mjarm/view/panel_section.hpp"
 
 namespace mjarm::app {
@@ -31,7 +30,7 @@ class RobotShow {
   [[nodiscard]] bool wants_ghost() const noexcept { return ghost_; }
   void add_sections(std::vector<PanelSection>& sections) const;
   void add_overlay(Overlay& overlay, const ViewSim& sim);
-  [[nodiscard]] std::vector<LivePlot> plots() const;
+  [[nodiscard]] std::vector<LivePlot> plots() const { return figures_.plots(); }
 
  private:
   void add_contact(Overlay& overlay, const JointVec& q);
@@ -39,14 +38,12 @@ class RobotShow {
   Arm arm_;
   ExactChecker checker_;
   Trail trail_;
-  LivePlotSet plots_;
-  double next_row_ = 0;  ///< [s]
+  ArmFigures figures_;
   bool ghost_ = false;
   bool ellipsoid_ = false;
   bool contacts_ = false;
   bool nearest_ = false;
   int trail_look_ = 1;  ///< off, line, balls
-  std::array<bool, 6> figures_ = {};
 };
 
 }  // namespace mjarm::app

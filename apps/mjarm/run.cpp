@@ -20,10 +20,9 @@ struct Options {
 };
 
 /// Options of the command as those of a demo, which is shown and kept the same way.
-Result<DemoOptions> stage_options(const Options& options, const Program& program) {
+Result<DemoOptions> stage_options(const Options& options) {
   DemoOptions out;
-  out.out = options.out.empty() ? std::filesystem::path("mjarm-out") / program.name
-                                : std::filesystem::path(options.out);
+  out.out = options.out;
   out.headless = options.headless;
   out.video = options.video;
   out.timing = !options.no_timing;
@@ -47,18 +46,15 @@ Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
   const Result<double> tolerance = tolerance_of(options);
   if (!tolerance) return fail(tolerance.error());
-  catch_interrupts();
-  const Result<LoadedProgram> loaded = load_program(options.file);
-  if (!loaded) return fail(loaded.error());
-  if (!loaded->plan.ok()) return fail(first_fault(*loaded));
-  const Result<DemoOptions> chosen = stage_options(options, loaded->program);
+  Result<DemoOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
-  const Result<Report> report = beside_windows(chosen->headless, [&]() -> Result<Report> {
-    const Result<std::unique_ptr<Stage>> stage =
-        Stage::open(loaded->program.name, *chosen, {loaded->robot.model, loaded->robot.arm});
-    if (!stage) return fail(stage.error());
-    return run_plan(**stage, *loaded, *tolerance);
-  });
+  catch_interrupts();
+  Result<LoadedProgram> loaded = load_sound_program(options.file);
+  if (!loaded) return fail(loaded.error());
+  if (chosen->control) loaded->program.control = chosen->control;
+  if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
+  const Result<Report> report =
+      beside_windows(chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
   if (!report) return fail(report.error());
   return conclude(*report, chosen->out);
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/mjarm/program_test.hpp"
+#include "mjarm/core/file.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -71,6 +72,7 @@ TEST(Run, DoesWhatItPlannedAndWritesItDown) {
   for (const char* name : {"log.csv", "plot.png", "plot.svg"}) {
     EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
   }
+  EXPECT_NE(read_file(out / "plot.svg").value().find(">limits<"), std::string::npos);
 }
 
 class ShippedProgram : public ::testing::TestWithParam<std::string> {};

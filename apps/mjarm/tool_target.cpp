@@ -158,7 +158,11 @@ void ToolTarget::move_to(const Pose& X_WT) {
     standing_.grade = TargetGrade::jump;
     standing_.jump = answer->q;
   }
-  // Where the orientation does not count, the target turns with the tool.
+  turn_with_tool();
+}
+
+/// Where the orientation does not count, the target turns with the tool.
+void ToolTarget::turn_with_tool() {
   if (!turns()) X_WT_.R = fk(arm(), view(goal_)).R;
 }
 
@@ -172,6 +176,8 @@ bool ToolTarget::jog(JogFrame frame, int axis, double amount) {
   const Pose X_before = X_WT_;
   const JointVec goal_before = goal_;
   const Standing before = standing_;
+  // A target out of reach is taken up from where the arm stays.
+  if (grade() == TargetGrade::unreachable) X_WT_ = fk(arm(), view(goal_));
   const Eigen::Vector3d direction_W = axes(frame).col(axis % 3);
   Pose X_WT = X_WT_;
   if (axis < 3) {
@@ -192,6 +198,8 @@ void ToolTarget::take_jump() {
   if (!jump()) return;
   goal_ = *jump();
   standing_ = rate();
+  refused_.reset();
+  turn_with_tool();
 }
 
 /// Of the goal, which reaches the target.

@@ -44,7 +44,8 @@ class ToolTarget {
   /// that is not to the end, it stays at the edge and `failure` or `jump` tell why.
   void move_to(const Pose& X_WT);
   /// Moves the target along (axis 0 to 2, `amount` [m]) or turns it about (3 to 5, [rad]) an axis
-  /// of a frame; turning leaves its origin where it is.
+  /// of a frame; turning leaves its origin where it is. One that cannot be reached begins anew at
+  /// the tool, where the arm stays.
   /// @return false where that could not be reached: then the target is where it was, and `line`
   ///         tells why.
   bool jog(JogFrame frame, int axis, double amount);
@@ -89,6 +90,7 @@ class ToolTarget {
   };
   ToolTarget(const Arm& arm, std::shared_ptr<ExactChecker> checker);
   [[nodiscard]] bool lead(const Pose& X_to);
+  void turn_with_tool();
   [[nodiscard]] bool is_connected(const JointVec& from, const JointVec& to) const;
   [[nodiscard]] Standing rate() const;
   [[nodiscard]] std::string reason_of(const IkFailure& failure) const;

@@ -267,6 +267,56 @@ TEST(ToolTarget, AJogThatCannotBeLeavesTheTarget) {
   EXPECT_THAT(target.line(), ::testing::Not(HasSubstr("stays")));
 }
 
+/// After a drag out of reach, whose goal stays at the edge, every jog that leads back is taken, as
+/// far as it was asked for.
+TEST(ToolTarget, AJogAfterADragOutOfReachBeginsAtTheTool) {
+  const TestArm robot = shipped_arm("ur5e");
+  ToolTarget target(robot.model, robot.arm);
+  target.move_to(moved(target.pose(), {0, 3, 0}));
+  ASSERT_EQ(target.grade(), TargetGrade::unreachable);
+  const Pose far = target.pose();
+  const Pose edge = fk(robot.arm, view(target.goal()));
+  EXPECT_FALSE(target.jog(JogFrame::world, 1, 0.05));
+  expect_same(target.pose(), far, 1e-12);
+  expect_same(fk(robot.arm, view(target.goal())), edge, 1e-12);
+  EXPECT_TRUE(target.jog(JogFrame::world, 1, -0.05)) << target.line();
+  EXPECT_TRUE(target.is_reached());
+  expect_same(target.pose(), moved(edge, {0, -0.05, 0}));
+  expect_same(fk(robot.arm, view(target.goal())), target.pose());
+}
+
+TEST(ToolTarget, AJumpTakenAfterARefusedJogIsAllThatTheLineTells) {
+  const TestArm robot = shipped_arm("ur5e");
+  ToolTarget target(robot.model, robot.arm);
+  JointVec q = robot.arm.home;
+  q[5] = robot.arm.limits.upper[5] - 0.05;
+  target.set_goal(q);
+  Pose turned = target.pose();
+  turned.R = turned.R * rotation_exp({0, 0, 0.2});
+  target.move_to(turned);
+  ASSERT_EQ(target.grade(), TargetGrade::jump);
+  ASSERT_FALSE(target.jog(JogFrame::world, 1, 5));
+  EXPECT_THAT(target.line(), StartsWith("the target stays"));
+  ASSERT_EQ(target.grade(), TargetGrade::jump);
+  target.take_jump();
+  EXPECT_TRUE(target.is_reached());
+  EXPECT_THAT(target.line(), StartsWith("reachable"));
+}
+
+/// An arm of three joints near the limit of its second one has only the other elbow beyond.
+TEST(ToolTarget, AJumpOfFewJointsTurnsTheTargetWithTheTool) {
+  const TestArm robot = short_arm();
+  ToolTarget target(robot.model, robot.arm);
+  target.set_goal(joint_vec(std::vector<double>{0, 1.95, -0.6}));
+  const JointVec beyond = joint_vec(std::vector<double>{0, 2.1, -0.6});
+  target.move_to({fk(robot.arm, view(beyond)).p, Eigen::Matrix3d::Identity()});
+  ASSERT_EQ(target.grade(), TargetGrade::jump) << target.line();
+  target.take_jump();
+  ASSERT_TRUE(target.is_reached());
+  EXPECT_GT(target.goal()[2], 0.5);
+  expect_same(target.pose(), fk(robot.arm, view(target.goal())));
+}
+
 TEST(ToolTarget, FewJointsTakeThePositionAlone) {
   const TestArm robot = short_arm();
   ToolTarget target(robot.model, robot.arm);

@@ -8,6 +8,20 @@
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {
+namespace {
+
+constexpr int kMostPixels = 8192;
+
+/// A whole number from the beginning of `words`, which is taken away; 0 where there is none.
+int take_whole(std::string_view& words) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(words.data(), words.data() + words.size(), value);
+  if (error != std::errc()) return 0;
+  words.remove_prefix(static_cast<std::size_t>(end - words.data()));
+  return value;
+}
+
+}  // namespace
 
 Result<std::uint64_t> parse_whole(const std::string& option, const std::string& value) {
   std::uint64_t number = 0;
@@ -54,6 +68,18 @@ Result<std::vector<double>> parse_joints(const std::string& option, const std::s
     q.push_back(*joint);
   }
   return q;
+}
+
+Result<PixelSize> parse_size(const std::string& option, std::string_view value) {
+  std::string_view left = value;
+  PixelSize size{};
+  size.width = take_whole(left);
+  const bool crossed = left.starts_with('x') || left.starts_with('X');
+  if (crossed) left.remove_prefix(1);
+  size.height = take_whole(left);
+  const auto fits = [](int side) { return side >= 1 && side <= kMostPixels; };
+  if (crossed && left.empty() && fits(size.width) && fits(size.height)) return size;
+  return fail(Errc::usage, text(msg::app_bad_size, option, value, kMostPixels));
 }
 
 Error in_option(const std::string& option, Error error) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjarm/core/result.hpp"
@@ -29,6 +30,14 @@ namespace mjarm::app {
 /// Reads one value a joint: angles for hinges, lengths for slides.
 [[nodiscard]] Result<std::vector<double>> parse_joints(const std::string& option,
                                                        const std::string& value, const Arm& arm);
+
+/// Size of a picture or a window, both sides from 1 to 8192.
+struct PixelSize {
+  int width;
+  int height;
+};
+/// Reads `1280x720`. @return a usage error that names `option`.
+[[nodiscard]] Result<PixelSize> parse_size(const std::string& option, std::string_view value);
 
 /// Puts the name of the option before an error about its value: `--q: "x" is not a number`.
 [[nodiscard]] Error in_option(const std::string& option, Error error);

@@ -1,11 +1,11 @@
 #include "mjarm/core/messages/view.hpp"
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "apps/mjarm/command.hpp"
+#include "apps/mjarm/program_load.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "apps/mjarm/view_program.hpp"
@@ -35,13 +35,9 @@ struct Loaded {
 /// Any model can be looked at; one without an arm has nothing to hold.
 Result<Loaded> load(const Options& options) {
   if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::view_which));
-  const Result<std::filesystem::path> file = find_model_file(options.robot.robot);
-  if (!file) return fail(file.error());
-  const std::vector<std::string>& paths = options.robot.package_paths;
-  Result<Model> model = Model::load(*file, {.package_paths = {paths.begin(), paths.end()},
-                                            .allow_outside = options.robot.allow_outside});
+  Result<Model> model = load_model(options.robot);
   if (!model) return fail(std::move(model.error()));
-  for (const std::string& warning : model->warnings()) log_info(warning);
+  tell_warnings(*model);
   Result<Arm> arm = find_arm(*model, {.tip = options.robot.tip});
   if (!arm && !options.robot.tip.empty()) return fail(std::move(arm.error()));
   Loaded loaded{std::move(*model), std::nullopt};
@@ -56,24 +52,16 @@ Result<ViewSim> make_sim(const Loaded& loaded, bool passive) {
   return ViewSim::make(loaded.model, loaded.arm, true);
 }
 
-/// `1280x800`
-Result<void> read_size(const std::string& size, WindowOptions& options) {
-  int width = 0, height = 0, end = 0;
-  const bool read = std::sscanf(size.c_str(), "%dx%d%n", &width, &height, &end) == 2 &&
-                    static_cast<std::size_t>(end) == size.size() && width > 0 && height > 0;
-  if (!read) return fail(Errc::usage, text(msg::view_bad_size_text, size));
-  options.width = width;
-  options.height = height;
-  return {};
-}
-
 /// @param out  with what the user has no say in.
 Result<WindowOptions> window_options(const Options& options, WindowOptions out) {
   out.paused = options.paused;
   out.camera.name = options.camera;
   out.screenshots = options.out;
   if (!options.size.empty()) {
-    if (auto read = read_size(options.size, out); !read) return fail(std::move(read.error()));
+    const Result<PixelSize> size = parse_size("--size", options.size);
+    if (!size) return fail(size.error());
+    out.width = size->width;
+    out.height = size->height;
   }
   if (!options.quality.empty()) {
     const std::string words[] = {"low", "high"};

@@ -64,8 +64,8 @@ void serve(RemoteWindow::Order& order) {
     return;
   }
   order.opened.set_value({});
-  const Result<void> drawn =
-      draw_until_closed(*window, order.link, [&order] { return order.close_wanted.load(); });
+  const Result<void> drawn = draw_until_closed(
+      *window, order.link, [&order] { return order.close_wanted.load() || interrupted(); });
   // The work sees a closed window, and ends as it does then.
   if (!drawn) log_warning(drawn.error().what);
 }
@@ -106,6 +106,16 @@ Result<RemoteWindow> RemoteWindow::open(const Model& model, const std::string& t
   RemoteWindow window(std::move(order));
   if (Result<void> result = opened.get(); !result) return fail(std::move(result.error()));
   return window;
+}
+
+Result<std::optional<RemoteWindow>> RemoteWindow::open_where_possible(
+    const Model& model, const std::string& title, const WindowOptions& options) {
+  if (!is_possible()) return std::nullopt;
+  Result<RemoteWindow> window = open(model, title, options);
+  if (window) return std::move(*window);
+  if (window.error().code != Errc::not_available) return fail(std::move(window.error()));
+  log_info(window.error().what);
+  return std::nullopt;
 }
 
 void RemoteWindow::close() {

@@ -35,13 +35,16 @@ class RemoteWindow {
   /// @return what `Window::open` says.
   [[nodiscard]] static Result<RemoteWindow> open(const Model& model, const std::string& title,
                                                  const WindowOptions& options);
+  /// The same; none where there is no main thread for it, no display or no OpenGL.
+  [[nodiscard]] static Result<std::optional<RemoteWindow>> open_where_possible(
+      const Model& model, const std::string& title, const WindowOptions& options);
   /// Waits until it is gone.
   ~RemoteWindow();
   RemoteWindow(RemoteWindow&&) noexcept;
   RemoteWindow& operator=(RemoteWindow&&) noexcept;
 
   [[nodiscard]] ViewLink& link() const;
-  /// False once the user closed it.
+  /// False once the user closed it or ended the program.
   [[nodiscard]] bool is_open() const { return !link().closed; }
 
   struct Order;

@@ -1,32 +1,72 @@
 #include "apps/mjarm/view_program.hpp"
 
-#include <filesystem>
 #include <utility>
 
 #include "apps/mjarm/program_player.hpp"
+#include "apps/mjarm/view_host.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
+namespace {
 
-bool is_program(const std::string& name_or_path) {
-  const std::filesystem::path extension = std::filesystem::path(name_or_path).extension();
-  if (extension == ".yaml" || extension == ".yml") return true;
-  return !find_model_file(name_or_path) && find_program_file(name_or_path).has_value();
+/// A program that stops at a time of the simulation, as if the user had asked for it.
+class ProgramUntil {
+ public:
+  /// @param seconds  [s] 0 = never.
+  ProgramUntil(ProgramPlayer& player, double seconds) : player_(player), seconds_(seconds) {}
+
+  void handle(const ViewEvent& event) { player_.handle(event); }
+  [[nodiscard]] int steps_due() { return player_.steps_due(); }
+  void step() {
+    player_.step();
+    if (!(seconds_ > 0) || player_.sim().time() < seconds_) return;
+    player_.handle(PanelEvent{kProgramStop, 1});
+    seconds_ = 0;
+  }
+  void fill(ViewFrame& frame) const { player_.fill(frame); }
+
+ private:
+  ProgramPlayer& player_;
+  double seconds_;
+};
+
+std::string window_title(const LoadedProgram& loaded) { return "mjarm " + loaded.program.name; }
+
+WindowOptions with_panel(WindowOptions window) {
+  window.right_panel = true;
+  window.joints_open = false;
+  return window;
 }
+
+}  // namespace
 
 Result<int> view_program(const std::string& name_or_path, WindowOptions window,
                          const ShowOptions& options) {
   catch_interrupts();
-  const Result<LoadedProgram> loaded = load_program(name_or_path);
+  const Result<LoadedProgram> loaded = load_sound_program(name_or_path);
   if (!loaded) return fail(loaded.error());
-  if (!loaded->plan.ok()) return fail(first_fault(*loaded));
   Result<ProgramPlayer> player = ProgramPlayer::make(*loaded);
   if (!player) return fail(std::move(player.error()));
   if (window.paused) player->handle(PauseEvent{true});
-  window.right_panel = true;
-  window.joints_open = false;
-  return show_in_window(loaded->robot.model, "mjarm " + loaded->program.name, window, options,
-                        [&player](ViewLink& link) { simulate_world(*player, link); });
+  return show_in_window(loaded->robot.model, window_title(*loaded), with_panel(std::move(window)),
+                        options, [&player](ViewLink& link) { simulate_world(*player, link); });
+}
+
+Result<void> show_program(const LoadedProgram& loaded, double seconds) {
+  if (interrupted()) return {};
+  Result<ProgramPlayer> player = ProgramPlayer::make(loaded);
+  if (!player) return fail(std::move(player.error()));
+  const Result<std::optional<RemoteWindow>> window =
+      RemoteWindow::open_where_possible(loaded.robot.model, window_title(loaded), with_panel({}));
+  if (!window) return fail(window.error());
+  if (!*window) return {};
+  log_info(text(msg::demo_close_window));
+  player->handle(PanelEvent{kProgramRun, 1});
+  ProgramUntil world(*player, seconds);
+  simulate_world(world, (*window)->link());
+  return {};
 }
 
 }  // namespace mjarm::app

@@ -152,7 +152,8 @@ TEST(ViewCommand, RefusesWhatMakesNoSense) {
   };
   refused({"view"}, "mjarm view FILE");
   refused({"view", "ur5"}, "ur5e");
-  refused({"view", "ur5e", "--size", "12x"}, "1280x800");
+  refused({"view", "ur5e", "--size", "12x"}, "1280x720");
+  refused({"view", "ur5e", "--size", "90000x800"}, "8192");
   refused({"view", "ur5e", "--quality", "best"}, "low");
   refused({"view", "ur5e", "--seconds", "-1"}, "--seconds");
   refused({"view", "ur5e", "--camera", "nose"}, "nose");
@@ -212,14 +213,25 @@ TEST_F(OnADisplay, AWindowOpensDrawsAndCloses) {
 }
 
 /// The window looks on: the log of a demo has the same bytes with and without it, whatever the user
-/// does with the clock. Closing it ends the program.
-TEST_F(OnADisplay, AWindowNeverChangesTheLog) {
+/// does with the clock, be it shown as it goes (the tutorial's way) or as a program after it was
+/// run. Closing it ends the program.
+class DemoOnADisplay : public OnADisplay, public ::testing::WithParamInterface<bool> {};
+
+std::string way_name(const ::testing::TestParamInfo<bool>& info) {
+  return info.param ? "Guide" : "Program";
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, DemoOnADisplay, ::testing::Bool(), way_name);
+
+TEST_P(DemoOnADisplay, AWindowNeverChangesTheLog) {
   static constexpr const char* kXdotool = "/usr/bin/xdotool";
   if (!std::filesystem::exists(kXdotool)) GTEST_SKIP() << "xdotool is not installed";
   const support::TempFolder folder;
   const auto arguments = [&](const char* name) {
-    return std::vector<std::string>{"demo", "movej", "--seconds",
-                                    "1.5",  "--out", (folder.path() / name).string()};
+    std::vector<std::string> words{"demo", "movej", "--seconds",
+                                   "1.5",  "--out", (folder.path() / name).string()};
+    if (GetParam()) words.emplace_back("--guide");
+    return words;
   };
   support::ProgramResult seen;
   std::thread program([&] { seen = mjarm(arguments("seen"), {{"DISPLAY", display_}}); });
@@ -232,6 +244,8 @@ TEST_F(OnADisplay, AWindowNeverChangesTheLog) {
   xdotool({"windowfocus", "--sync", window, "key", "--delay", "60", "space", "Left", "Left",
            "Right", "minus", "space", "BackSpace", "plus", "Tab", "c"});
   const std::filesystem::path log = folder.path() / "seen" / "log.csv";
+  // A program is run before it is shown.
+  EXPECT_TRUE(GetParam() || std::filesystem::exists(log));
   for (int i = 0; i < 3000 && !std::filesystem::exists(log); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

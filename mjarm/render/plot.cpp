@@ -125,6 +125,26 @@ PlotLine executed_line(std::vector<double> x, std::vector<double> y) {
           .width = 2.2};
 }
 
+std::vector<PlotLine> limit_lines(std::span<const double> lower, std::span<const double> upper,
+                                  double from, double to, const std::string& label) {
+  std::vector<PlotLine> out;
+  for (const std::span<const double> side : {lower, upper}) {
+    for (std::size_t j = 0; j < side.size(); ++j) {
+      const double limit = side[j];
+      const auto is_drawn = [limit](const PlotLine& line) { return line.y.front() == limit; };
+      if (!std::isfinite(limit) || std::ranges::any_of(out, is_drawn)) continue;
+      const bool shared = std::ranges::count(side, limit) > 1;
+      out.push_back({.x = {from, to},
+                     .y = {limit, limit},
+                     .label = out.empty() ? label : std::string(),
+                     .style = LineStyle::dotted,
+                     .color = shared ? PlotLine::kInk : static_cast<int>(j),
+                     .width = 0.9});
+    }
+  }
+  return out;
+}
+
 Result<std::string> plot_svg(const Plot& plot) {
   if (Result<void> checked = check(plot); !checked) return fail(std::move(checked.error()));
   return canvas::to_svg(lay_out(plot));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,14 @@ struct PlotLine {
 /// with their names in the user's language. Add the executed one first, so that both are seen.
 [[nodiscard]] PlotLine planned_line(std::vector<double> x, std::vector<double> y);
 [[nodiscard]] PlotLine executed_line(std::vector<double> x, std::vector<double> y);
+
+/// Limits of joints as dotted lines between two places of the x axis: joint j in colour j, what
+/// several joints share once, in ink. Infinite limits have none.
+/// @param lower, upper  shape (dof,), in the unit of the panel's y axis.
+/// @param label         of the first line; empty = none has one.
+[[nodiscard]] std::vector<PlotLine> limit_lines(std::span<const double> lower,
+                                                std::span<const double> upper, double from,
+                                                double to, const std::string& label = {});
 
 /// The colour of the palette with an index >= 0.
 [[nodiscard]] Rgba plot_color(int index);

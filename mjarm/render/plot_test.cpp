@@ -105,6 +105,21 @@ TEST(Plot, PictureHasTheColoursOfItsCurves) {
   EXPECT_GT(dark, 300);
 }
 
+TEST(Plot, LimitsHaveTheColourOfTheirJointAndSharedOnesInk) {
+  const std::vector<double> lower = {-3, -3, -INFINITY}, upper = {3, 2, INFINITY};
+  const std::vector<PlotLine> lines = limit_lines(lower, upper, 1, 5, "limits");
+  ASSERT_EQ(lines.size(), 3U);
+  const double heights[] = {-3, 3, 2};
+  const int colors[] = {PlotLine::kInk, 0, 1};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(lines[i].x, (std::vector<double>{1, 5}));
+    EXPECT_EQ(lines[i].y, (std::vector<double>{heights[i], heights[i]}));
+    EXPECT_EQ(lines[i].color, colors[i]);
+    EXPECT_EQ(lines[i].style, LineStyle::dotted);
+    EXPECT_EQ(lines[i].label, i == 0 ? "limits" : "");
+  }
+}
+
 TEST(Plot, CurvesThatDoNotCountLeaveTheAxesAlone) {
   Plot plot{.panels = {{.lines = {{.x = {0, 1, 2}, .y = {0, 1, 0}}}}}};
   const std::string before = plot_svg(plot).value();

@@ -15,6 +15,7 @@ struct LiveSeries {
   std::vector<double> x = {};          ///< shape (n,)
   std::vector<double> y = {};          ///< shape (n,); NaN leaves a gap
   LineStyle style = LineStyle::solid;  ///< points are drawn as dots along the curve
+  bool operator==(const LiveSeries&) const = default;
 };
 
 /// A figure at the right edge of a window: a tool path (`equal_aspect`) or curves over time.
@@ -24,6 +25,7 @@ struct LivePlot {
   std::vector<LiveSeries> series = {};
   bool equal_aspect = false;  ///< one unit is equally long on both axes
   bool y_from_zero = false;   ///< the y axis begins at 0 (errors)
+  bool operator==(const LivePlot&) const = default;
 };
 
 }  // namespace mjarm

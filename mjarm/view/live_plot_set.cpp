@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string_view>
 
 #include "mjarm/core/messages/view.hpp"
@@ -47,22 +48,12 @@ void add_curve(Chart& chart, const std::vector<TimedValue>& values, std::string 
   chart.lines.push_back(std::move(line));
 }
 
-/// Limits over all of the time that the curves take; joints of equal limits share one line.
+/// Limits over all of the time that the curves take.
 void add_limits(Chart& chart, const JointVec& lower, const JointVec& upper) {
   if (chart.lines.empty() || chart.lines.front().x.empty()) return;
-  const double begin = chart.lines.front().x.front();
-  const double end = chart.lines.front().x.back();
-  std::vector<double> drawn;
-  for (const JointVec* side : {&lower, &upper}) {
-    for (Eigen::Index j = 0; j < side->size(); ++j) {
-      const double limit = (*side)[j];
-      if (!std::isfinite(limit) || std::ranges::find(drawn, limit) != drawn.end()) continue;
-      drawn.push_back(limit);
-      const bool shared = std::count(side->begin(), side->end(), limit) > 1;
-      add_curve(chart, {{begin, limit}, {end, limit}}, "",
-                shared ? PlotLine::kInk : static_cast<int>(j), LineStyle::dotted);
-    }
-  }
+  const std::vector<double>& times = chart.lines.front().x;
+  std::ranges::move(limit_lines(view(lower), view(upper), times.front(), times.back()),
+                    std::back_inserter(chart.lines));
 }
 
 /// The unit of all joints, where they have one in common.

@@ -104,6 +104,7 @@ struct Window::Impl {
   std::string note;
   double note_until = 0;  ///< [s]
   std::vector<mjvFigure> figures;
+  std::vector<std::optional<LivePlot>> figures_of;  ///< what they show
   long frame = 0;
   bool panels_changed = true;
   double next_frame = 0;  ///< [s]
@@ -129,7 +130,12 @@ bool Window::Impl::is_icon() const {
 
 void Window::Impl::fill_figures(std::span<const LivePlot> plots) {
   figures.resize(plots.size());
-  for (std::size_t i = 0; i < plots.size(); ++i) fill_figure(plots[i], figures[i]);
+  figures_of.resize(plots.size());
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    if (figures_of[i] == plots[i]) continue;
+    fill_figure(plots[i], figures[i]);
+    figures_of[i] = plots[i];
+  }
 }
 
 void Window::Impl::handle_inputs() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <limits>
 
 #include "mjarm/core/messages/demo.hpp"
@@ -132,8 +133,14 @@ PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
 }
 
 PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
-  return a_line_a_joint(arm, rows_to_draw(runs), over_time(msg::demo_plot_joints, "rad"),
-                        [](const RecordRow& row, int j) { return row.q[j]; });
+  const Rows rows = rows_to_draw(runs);
+  PlotPanel panel = a_line_a_joint(arm, rows, over_time(msg::demo_plot_joints, "rad"),
+                                   [](const RecordRow& row, int j) { return row.q[j]; });
+  if (rows.empty()) return panel;
+  std::ranges::move(limit_lines(view(arm.limits.lower), view(arm.limits.upper), rows.front()->time,
+                                rows.back()->time, text(msg::demo_plot_limits)),
+                    std::back_inserter(panel.lines));
+  return panel;
 }
 
 PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs) {

@@ -21,7 +21,7 @@ struct MeasuredRun {
 };
 
 /// Single charts of a run; the tool speed [m/s], the distance to the curve [mm], joint values
-/// [rad], and joint speeds [rad/s] with the largest limit as a strip.
+/// [rad] with their limits, and joint speeds [rad/s] with the largest limit as a strip.
 [[nodiscard]] PlotPanel front_panel(std::span<const MeasuredRun> runs);
 [[nodiscard]] PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs);
 [[nodiscard]] PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance);

@@ -3,6 +3,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/program_run.hpp"
+#include "apps/mjarm/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -23,7 +24,7 @@ Result<Report> run_point(const DemoOptions& options) {
   if (!loaded) return fail(loaded.error());
   if (!loaded->plan.ok()) return run_demo_plan(*loaded, options);
   Result<std::unique_ptr<Stage>> opened =
-      Stage::open("point", options, {loaded->robot.model, loaded->robot.arm});
+      Stage::open("point", out_of_sight(options), {loaded->robot.model, loaded->robot.arm});
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const ProgramPlan& plan = loaded->plan;
@@ -44,7 +45,10 @@ Result<Report> run_point(const DemoOptions& options) {
     log_info(text(msg::demo_static_error, name(mode), 1e3 * error.position,
                   error.rotation * 180 / std::numbers::pi));
   }
-  return stage.finish(std::move(report), kTolerance);
+  Result<Report> finished = stage.finish(std::move(report), kTolerance);
+  if (!finished || options.headless) return finished;
+  if (auto shown = show_program(*loaded, options.seconds); !shown) return fail(shown.error());
+  return finished;
 }
 
 }  // namespace mjarm::app

@@ -18,20 +18,18 @@ Result<LoadedProgram> plan_demo(Program program, const DemoOptions& options) {
       load_stage_robot(program.name, options, static_cast<int>(program.start.size()));
   if (!robot) return fail(std::move(robot.error()));
   const std::string file = program.name + ".yaml";
+  if (options.control) program.control = options.control;
   return plan_loaded(file, std::move(program), {std::move(robot->model), std::move(robot->arm)});
 }
 
 Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& options,
                              const std::string& camera) {
   constexpr double kTolerance = 5e-4;  // [m]
+  if (loaded.plan.ok()) return run_and_show(loaded, options, kTolerance, camera);
   const Result<std::unique_ptr<Stage>> stage =
       Stage::open(loaded.program.name, options, {loaded.robot.model, loaded.robot.arm});
   if (!stage) return fail(stage.error());
-  if (!loaded.plan.ok()) {
-    return (*stage)->refuse(loaded.plan.faults.front().reason, first_fault(loaded).what);
-  }
-  (*stage)->set_camera(camera);
-  return run_plan(**stage, loaded, kTolerance);
+  return (*stage)->refuse(loaded.plan.faults.front().reason, first_fault(loaded).what);
 }
 
 Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options) {

@@ -14,7 +14,7 @@ namespace mjarm::app {
 /// @return usage where the program's postures are for another number of joints.
 [[nodiscard]] Result<LoadedProgram> plan_demo(Program program, const DemoOptions& options);
 
-/// Runs it; a plan with faults ends the demo with the first of them.
+/// Runs and shows it; a plan with faults ends the demo with the first of them.
 /// @param camera  of the picture at the end, where the model has it.
 [[nodiscard]] Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& options,
                                            const std::string& camera = "overview");

@@ -19,15 +19,11 @@ constexpr Rgba kGoal = {0.15F, 0.70F, 0.30F, 0.6F};
 
 Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
   Show show(model.timestep());
-  if (headless || !has_display() || !RemoteWindow::is_possible()) return show;
-  Result<RemoteWindow> window = RemoteWindow::open(model, title, {.can_reset = false});
-  if (window) {
-    show.window_ = std::move(*window);
-  } else if (window.error().code == Errc::not_available) {
-    log_info(window.error().what);
-  } else {
-    return fail(std::move(window.error()));
-  }
+  if (headless) return show;
+  Result<std::optional<RemoteWindow>> window =
+      RemoteWindow::open_where_possible(model, title, {.can_reset = false});
+  if (!window) return fail(std::move(window.error()));
+  show.window_ = std::move(*window);
   return show;
 }
 
@@ -52,7 +48,8 @@ Overlay Show::overlay() const {
   return all;
 }
 
-void Show::plot_tool() {
+std::vector<LivePlot> Show::plots() const {
+  if (!plots_tool_) return {};
   LivePlot path{.title = "tool from above [m]", .x_label = "x [m]", .series = {}};
   path.equal_aspect = true;
   path.series.push_back({.name = ""});
@@ -60,27 +57,29 @@ void Show::plot_tool() {
   time.series = {{.name = "x", .color = {0.90F, 0.35F, 0.30F, 1}},
                  {.name = "y", .color = {0.30F, 0.75F, 0.35F, 1}},
                  {.name = "z", .color = {0.35F, 0.55F, 0.95F, 1}}};
-  plots_ = {std::move(path), std::move(time)};
-}
-
-void Show::grow_plots(double time, const Eigen::Vector3d& p_WT) {
-  if (plots_.size() != 2) return;
-  plots_[0].series[0].x.push_back(p_WT.x());
-  plots_[0].series[0].y.push_back(p_WT.y());
-  for (int axis = 0; axis < 3; ++axis) {
-    LiveSeries& series = plots_[1].series[static_cast<std::size_t>(axis)];
-    series.x.push_back(time);
-    series.y.push_back(p_WT[axis]);
+  for (std::size_t i = 0; i < tool_.size(); ++i) {
+    const Eigen::Vector3d& p_W = tool_.at(i);
+    path.series[0].x.push_back(p_W.x());
+    path.series[0].y.push_back(p_W.y());
+    for (int axis = 0; axis < 3; ++axis) {
+      LiveSeries& series = time.series[static_cast<std::size_t>(axis)];
+      series.x.push_back(tool_.time(i));
+      series.y.push_back(p_W[axis]);
+    }
   }
+  return {std::move(path), std::move(time)};
 }
 
 bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   if (interrupted()) return false;
   if (trail_on_) trail_.add(p_WT);
-  grow_plots(sim.time(), p_WT);
   if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
   if (!window_) return true;
   history_.add(sim.snapshot());
+  // A rehearsal has a clock that begins anew.
+  if (!tool_.empty() && sim.time() <= last_time_) tool_.clear();
+  last_time_ = sim.time();
+  if (plots_tool_) tool_.add(last_time_, [&p_WT] { return p_WT; });
   changed_ = true;
   if (due_ > 0) --due_;
   offer();
@@ -140,7 +139,7 @@ void Show::offer() {
   changed_ = false;
   frame_.snapshot = history_.at();
   frame_.overlay = overlay();
-  frame_.plots = plots_;
+  frame_.plots = plots();
   frame_.status =
       history_.is_past() ? "looking back; space goes on from now" : overlay_notice(frame_.overlay);
   frames.post(frame_);

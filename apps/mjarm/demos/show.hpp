@@ -16,6 +16,7 @@
 #include "mjarm/view/history.hpp"
 #include "mjarm/view/live_plot.hpp"
 #include "mjarm/view/playback.hpp"
+#include "mjarm/view/thinned_record.hpp"
 #include "mjarm/view/view_link.hpp"
 
 namespace mjarm::app {
@@ -43,7 +44,7 @@ class Show {
   /// another goal begins, which may set the clock back.
   void begin_goal(const Sim& sim, const Eigen::Vector3d& p_W);
   /// Live plots of the tool: its path from above, and its coordinates over time.
-  void plot_tool();
+  void plot_tool() { plots_tool_ = true; }
 
   /// From now on every step is filmed into `file`, an MP4, in simulated time.
   /// @param camera  of the model; empty = its own view.
@@ -71,8 +72,9 @@ class Show {
   [[nodiscard]] Overlay overlay() const;
 
  private:
+  static constexpr std::size_t kMostToolPoints = 2000;
   explicit Show(double timestep) : playback_(timestep) {}
-  void grow_plots(double time, const Eigen::Vector3d& p_WT);
+  [[nodiscard]] std::vector<LivePlot> plots() const;
   void handle_events();
   void handle(const ViewEvent& event);
   /// Hands a frame to the window where it took the last one.
@@ -91,7 +93,9 @@ class Show {
   Trail trail_{{.most_points = 10000}};
   Overlay planned_;
   std::optional<OverlaySphere> goal_;
-  std::vector<LivePlot> plots_;
+  ThinnedRecord<Eigen::Vector3d> tool_{kMostToolPoints};  ///< [m] what is plotted of it
+  double last_time_ = 0;                                  ///< [s] of the last step
+  bool plots_tool_ = false;
 };
 
 }  // namespace mjarm::app

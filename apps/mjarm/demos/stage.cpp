@@ -69,7 +69,7 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOp
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& demo, const DemoOptions& options,
                                            const Robot& robot) {
-  for (const std::string& warning : robot.model.warnings()) log_info(warning);
+  tell_warnings(robot.model);
   if (task_of(robot.arm) == IkTask::position) {
     log_info(text(msg::demo_position_only, robot.arm.dof()));
   }
