@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "apps/mjarm/share.hpp"
 #include "mjarm/core/messages/motion_program.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -15,9 +16,8 @@ namespace {
 
 /// Folder of the shipped programs; empty where the program's own place is unknown.
 std::filesystem::path shipped_folder() {
-  const Result<std::filesystem::path> self = executable_path();
-  if (!self) return {};
-  return (self->parent_path() / ".." / "share" / "mjarm" / "programs").lexically_normal();
+  const Result<std::filesystem::path> share = share_folder();
+  return share ? *share / "programs" : std::filesystem::path();
 }
 
 }  // namespace

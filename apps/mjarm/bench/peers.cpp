@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "apps/mjarm/json_line.hpp"
+#include "apps/mjarm/share.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/bench.hpp"
 #include "mjarm/core/os.hpp"
@@ -42,11 +43,9 @@ bool is_there(const fs::path& path) {
 }
 
 Result<fs::path> find_script(const std::string& suite) {
-  const Result<fs::path> program = executable_path();
-  if (!program) return fail(program.error());
-  fs::path script =
-      (program->parent_path() / ".." / "share" / "mjarm" / "bench" / "peers" / (suite + ".py"))
-          .lexically_normal();
+  const Result<fs::path> share = share_folder();
+  if (!share) return fail(share.error());
+  fs::path script = *share / "bench" / "peers" / (suite + ".py");
   if (is_there(script)) return script;
   return fail(Errc::not_available, text(msg::bench_no_script, script.string()));
 }
