@@ -117,15 +117,13 @@ Result<TimeCase> read_case(const json& object, Eigen::Index dof, TimeProblem pro
 
 Result<TimeProblem> parse_time_problem(const std::string& name) {
   std::vector<std::string> names;
-  std::string known;
   for (const auto& [word, problem] : kProblems) {
     if (word == name) return problem;
     names.emplace_back(word);
-    known += (known.empty() ? "" : ", ") + names.back();
   }
   const std::optional<std::string> near = nearest_word(name, names);
   const std::string hint = near ? text(msg::app_time_did_you_mean, *near) : std::string();
-  return fail(Errc::usage, text(msg::app_time_unknown_problem, name, known) + hint);
+  return fail(Errc::usage, text(msg::app_time_unknown_problem, name, listed(names)) + hint);
 }
 
 JointLimits unbounded(const JointVec& v, const JointVec& a, const JointVec& j) {

@@ -36,10 +36,8 @@ Result<std::size_t> parse_choice(const std::string& option, const std::string& v
                                  std::span<const std::string> words) {
   const auto word = std::find(words.begin(), words.end(), value);
   if (word != words.end()) return static_cast<std::size_t>(word - words.begin());
-  std::string list;
-  for (const std::string& known : words) list += (list.empty() ? "" : ", ") + known;
-  return fail(Errc::usage,
-              text(msg::app_unknown_choice, option, value, did_you_mean(value, words), list));
+  return fail(Errc::usage, text(msg::app_unknown_choice, option, value, did_you_mean(value, words),
+                                listed(words)));
 }
 
 Result<std::vector<double>> parse_list(const std::string& option, const std::string& value,

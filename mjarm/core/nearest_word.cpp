@@ -49,6 +49,12 @@ std::optional<std::string> nearest_word(std::string_view word, std::span<const s
   return nearest;
 }
 
+std::string listed(std::span<const std::string> words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
   const std::optional<std::string> nearest = nearest_word(word, known);
   return nearest ? text(msg::core_did_you_mean, *nearest) : std::string();

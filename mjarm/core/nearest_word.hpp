@@ -16,6 +16,9 @@ namespace mjarm {
 [[nodiscard]] std::optional<std::string> nearest_word(std::string_view word,
                                                       std::span<const std::string> known);
 
+/// `a, b, c`: words in a message.
+[[nodiscard]] std::string listed(std::span<const std::string> words);
+
 /// ` (did you mean "NAME"?)` in the language in use, or nothing where no known word is near.
 [[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string> known);
 

@@ -20,12 +20,6 @@ std::vector<std::string> names_of(const Map& map) {
   return names;
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
-
 /// The thing of that name; a fault with the nearest name where there is none.
 template <class Thing>
 const Thing& look_up(const std::map<std::string, Thing>& things, const YamlNode& node,

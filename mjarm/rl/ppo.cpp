@@ -45,6 +45,10 @@ Result<void> check_layers(std::string_view name, const std::vector<int>& layers)
 
 }  // namespace
 
+std::string_view name(Schedule schedule) noexcept {
+  return schedule == Schedule::constant ? "constant" : "linear";
+}
+
 Result<void> check(const PpoOptions& options) {
   const NamedOption all[] = {
       {"threads", double(options.threads), {"in [1, 1024]", 1, 1024}},

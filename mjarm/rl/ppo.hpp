@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "mjarm/core/result.hpp"
@@ -13,6 +14,8 @@ enum class Schedule {
   constant,
   linear,  ///< down to 0 at the last step
 };
+/// "constant" or "linear".
+[[nodiscard]] std::string_view name(Schedule schedule) noexcept;
 
 /// How to train by proximal policy optimisation (J. Schulman et al., arXiv:1707.06347). The
 /// defaults suit some dozens of copies of a task of about 50 steps, such as reaching for a point.

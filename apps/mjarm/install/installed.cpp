@@ -24,13 +24,12 @@ Result<Installed> look_up(const MeshSet& set) {
 
 Result<const MeshSet*> find_mesh_set(const std::string& robot) {
   std::vector<std::string> names;
-  std::string list;
   for (const MeshSet& set : mesh_sets()) {
     if (set.robot == robot) return &set;
     names.push_back(set.robot);
-    list += (list.empty() ? "" : ", ") + set.robot;
   }
-  return fail(Errc::usage, text(msg::install_unknown, robot, list) + did_you_mean(robot, names));
+  return fail(Errc::usage,
+              text(msg::install_unknown, robot, listed(names)) + did_you_mean(robot, names));
 }
 
 Result<fs::path> find_mesh_scene(const std::string& robot) {

@@ -18,28 +18,30 @@
 namespace mjarm::app {
 namespace {
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
-}
-
 template <class T>
 inline constexpr bool kIsList = false;
 template <class T>
 inline constexpr bool kIsList<std::vector<T>> = true;
 
+/// The last value of an enumeration.
+constexpr rl::ReachRegion last_of(rl::ReachRegion) { return rl::ReachRegion::wide; }
+constexpr rl::ReachAction last_of(rl::ReachAction) { return rl::ReachAction::torque; }
+constexpr rl::ReachGripper last_of(rl::ReachGripper) { return rl::ReachGripper::as_model; }
+constexpr rl::Schedule last_of(rl::Schedule) { return rl::Schedule::linear; }
+constexpr rl::Activation last_of(rl::Activation) { return rl::Activation::relu; }
+
 /// Names of an enumeration, in its order.
 template <class T>
 std::vector<std::string> words() {
-  if constexpr (std::is_same_v<T, rl::ReachRegion>) return {"tutorial", "wide"};
-  if constexpr (std::is_same_v<T, rl::ReachAction>) {
-    return {"joint_delta", "joint_velocity", "joint_position", "torque"};
+  if constexpr (std::is_same_v<T, bool>) {
+    return {"false", "true"};
+  } else {
+    std::vector<std::string> names;
+    for (int i = 0; i <= static_cast<int>(last_of(T{})); ++i) {
+      names.emplace_back(name(static_cast<T>(i)));
+    }
+    return names;
   }
-  if constexpr (std::is_same_v<T, rl::ReachGripper>) return {"open", "as_model"};
-  if constexpr (std::is_same_v<T, rl::Schedule>) return {"constant", "linear"};
-  if constexpr (std::is_same_v<T, rl::Activation>) return {"tanh", "relu"};
-  if constexpr (std::is_same_v<T, bool>) return {"false", "true"};
 }
 
 template <class T>

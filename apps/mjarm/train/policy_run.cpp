@@ -7,7 +7,6 @@
 
 #include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/demos/show.hpp"
-#include "apps/mjarm/train/config.hpp"
 #include "apps/mjarm/train/outcome.hpp"
 #include "apps/mjarm/train/policy_player.hpp"
 #include "mjarm/core/file.hpp"
@@ -134,13 +133,9 @@ Result<LoadedPolicy> load_policy(const std::filesystem::path& file) {
   if (!policy) {
     return fail(policy.error().code, file.string() + ": " + policy.error().what);
   }
-  rl::ReachOptions task;
-  if (const auto config = set->metadata.find("config"); config != set->metadata.end()) {
-    const Result<rl::TrainingOptions> options = read_config(config->second, file.string());
-    if (!options) return fail(options.error());
-    task = options->task;
-  }
-  return LoadedPolicy{file, std::move(*policy), std::move(task)};
+  const Result<std::optional<rl::TrainingOptions>> config = config_in(*set, file);
+  if (!config) return fail(config.error());
+  return LoadedPolicy{file, std::move(*policy), config->value_or(rl::TrainingOptions{}).task};
 }
 
 Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& trial,

@@ -73,10 +73,16 @@ Result<rl::TrainingOptions> load_config(const std::filesystem::path& file) {
 Result<rl::TrainingOptions> config_of_checkpoint(const std::filesystem::path& file) {
   const Result<rl::TensorSet> set = rl::load_safetensors(file);
   if (!set) return fail(set.error());
-  const auto config = set->metadata.find("config");
-  if (config == set->metadata.end()) {
-    return fail(Errc::bad_input, text(msg::train_no_config, file.string()));
-  }
+  Result<std::optional<rl::TrainingOptions>> config = config_in(*set, file);
+  if (!config) return fail(std::move(config.error()));
+  if (!*config) return fail(Errc::bad_input, text(msg::train_no_config, file.string()));
+  return std::move(**config);
+}
+
+Result<std::optional<rl::TrainingOptions>> config_in(const rl::TensorSet& checkpoint,
+                                                     const std::filesystem::path& file) {
+  const auto config = checkpoint.metadata.find("config");
+  if (config == checkpoint.metadata.end()) return std::nullopt;
   return read_config(config->second, file.string());
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "apps/mjarm/options.hpp"
@@ -31,6 +32,10 @@ void add_task_options(CLI::App& app, TaskArguments& arguments);
 [[nodiscard]] Result<rl::TrainingOptions> load_config(const std::filesystem::path& file);
 /// The one a checkpoint was made with.
 [[nodiscard]] Result<rl::TrainingOptions> config_of_checkpoint(const std::filesystem::path& file);
+/// The same where it is already read; none where it holds none, as those of others.
+/// @param file  for messages.
+[[nodiscard]] Result<std::optional<rl::TrainingOptions>> config_in(
+    const rl::TensorSet& checkpoint, const std::filesystem::path& file);
 
 /// The scene of the task.
 [[nodiscard]] Result<Model> task_model(const rl::ReachOptions& options);
