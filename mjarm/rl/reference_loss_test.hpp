@@ -16,8 +16,8 @@ using namespace rl;
 /// of the gradient.
 class ReferenceLoss {
  public:
-  ReferenceLoss(const Policy& policy, const detail::Samples& samples, std::span<const int> which,
-                const PpoOptions& options)
+  ReferenceLoss(const Policy& policy, const rl::detail::Samples& samples,
+                std::span<const int> which, const PpoOptions& options)
       : policy_(policy), samples_(samples), which_(which), options_(options) {}
 
   /// policy + value_weight value - entropy_weight entropy, for these parameters.
@@ -101,7 +101,7 @@ class ReferenceLoss {
   }
 
   const Policy& policy_;
-  const detail::Samples& samples_;
+  const rl::detail::Samples& samples_;
   std::span<const int> which_;
   const PpoOptions& options_;
 };
