@@ -143,7 +143,9 @@ Result<int> train_seeds(const Options& options, const Model& model,
 
 /// From the defaults, a file or a checkpoint, and then the options of the command line.
 Result<rl::TrainingOptions> wanted(const Options& options) {
-  Result<rl::TrainingOptions> base = rl::TrainingOptions{};
+  // A word that is no region is told of by with_task().
+  Result<rl::TrainingOptions> base =
+      rl::reach_training(rl::reach_region(options.task.region).value_or(rl::ReachRegion::tutorial));
   if (!options.config.empty() && !options.resume.empty()) {
     return fail(Errc::usage, text(msg::train_config_and_resume));
   }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "apps/mjarm/program_test.hpp"
+#include "mjarm/view/turn_test.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -47,6 +48,7 @@ TEST(ViewProgram, WithoutADisplayPointsAtRender) {
 
 TEST(ViewProgram, AWindowOpensDrawsAndCloses) {
   if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "DISPLAY is not set";
+  const testing::Turn turn;
   const auto result = app::mjarm({"view", "movej", "--seconds", "1", "--stats", "--paused"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   int frames = 0;

@@ -13,7 +13,7 @@ import time
 import warnings
 
 SECONDS = 20  # a set gets no more than that: slow peers do fewer rounds, or only its first cases
-LIMIT = 300  # [s] for one peer
+LIMIT = 300  # [s] for one peer, where the job names no other
 
 
 def best_times(arguments, rounds, call, pick):
@@ -58,7 +58,7 @@ def child(peers, run, job_file, name):
     try:
         if version == "?":
             raise NotImplementedError("not installed")
-        rows = run(job, name, maker, {"who": name, "version": version, "timed": "python"})
+        rows = list(run(job, name, maker, {"who": name, "version": version, "timed": "python"}))
     except Exception as error:  # whatever a peer cannot do is its result
         line = str(error).splitlines() or [type(error).__name__]
         rows = [{"who": name, "version": version, "error": line[0][:80]}]
@@ -69,16 +69,18 @@ def child(peers, run, job_file, name):
 
 def parent(peers, job_file, answer_file):
     environment = os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+    with open(job_file, encoding="utf-8") as file:
+        limit = json.load(file).get("seconds", LIMIT)
     with open(answer_file, "w", encoding="utf-8") as file:
         for name in peers:
             command = [sys.executable, os.path.abspath(sys.argv[0]), "--peer", name, job_file]
             try:
-                done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=LIMIT)
+                done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=limit)
                 rows = done.stdout
                 if done.returncode != 0:
                     rows = json.dumps({"who": name, "version": "?", "error": f"ended with {done.returncode}"}) + "\n"
             except subprocess.TimeoutExpired:
-                rows = json.dumps({"who": name, "version": "?", "error": f"more than {LIMIT} s"}) + "\n"
+                rows = json.dumps({"who": name, "version": "?", "error": f"more than {limit:.0f} s"}) + "\n"
             file.write(rows)
 
 

@@ -62,6 +62,16 @@ PpoOptions reach_ppo() {
   return options;
 }
 
+TrainingOptions reach_training(ReachRegion region) {
+  TrainingOptions options;
+  options.task.region = region;
+  if (region == ReachRegion::wide) {
+    options.task.episode_steps = 60;
+    options.ppo.total_steps = 600000;
+  }
+  return options;
+}
+
 double score(const Evaluation& evaluation) noexcept {
   const double shares =
       evaluation.within_5cm + evaluation.within_2cm + evaluation.within_1cm + evaluation.within_5mm;

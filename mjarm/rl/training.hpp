@@ -30,6 +30,9 @@ struct TrainingOptions {
                                         ///< `stop_within`, 0 to 1; 0: never
 };
 
+/// The defaults for a region: a wider one has longer ways and takes more steps to learn.
+[[nodiscard]] TrainingOptions reach_training(ReachRegion region);
+
 /// What one iteration brought.
 struct TrainingStep {
   IterationReport iteration;

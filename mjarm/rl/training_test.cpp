@@ -146,6 +146,23 @@ TEST(TrainingEnds, WhereThePolicyIsGoodEnough) {
   EXPECT_EQ(training->trainer().steps(), options.ppo.total_steps);
 }
 
+TEST(TrainingEnds, SoonWithNineteenOfTwentyGoalsWithin5cm) {
+  const support::TempFolder folder;
+  TrainingOptions options;
+  options.task.threads = options.ppo.threads = 2;
+  options.ppo.total_steps = 100000;
+  options.evaluate_every = 10000;
+  options.stop_within = 0.05;
+  options.stop_share = 0.95;
+  auto training = begin(options, folder);
+  ASSERT_TRUE(training) << training.error().what;
+  train(*training, 1000);
+  ASSERT_TRUE(training->last_evaluation());
+  EXPECT_EQ(training->last_evaluation()->episodes, 200);
+  EXPECT_GE(training->last_evaluation()->within_5cm, 0.95);
+  EXPECT_LT(training->trainer().steps(), 70000);
+}
+
 TEST(Score, OrdersBySharesAndThenByDistance) {
   Evaluation few, more, nearer;
   few.episodes = more.episodes = nearer.episodes = 200;

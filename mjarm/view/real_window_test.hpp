@@ -9,13 +9,10 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "mjarm/core/os.hpp"
-#include "mjarm/core/os_lock.hpp"
+#include "mjarm/view/turn_test.hpp"
 #include "mjarm/view/window.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -45,24 +42,6 @@ inline Model window_scene() {
 </mujoco>)"))
       .value();
 }
-
-/// All tests share one display with one mouse, so they take turns, also those of other processes.
-class Turn {
- public:
-  Turn() {
-    const auto folder = temp_directory() / "mjarm_window_test";
-    std::filesystem::create_directories(folder);
-    while (!lock_) {
-      Result<std::optional<FolderLock>> got = FolderLock::try_lock(folder);
-      if (!got) break;  // nobody to take turns with
-      lock_ = std::move(*got);
-      if (!lock_) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-  }
-
- private:
-  std::optional<FolderLock> lock_;
-};
 
 /// A window that a stand-in for the user drives.
 class RealWindow : public ::testing::Test {

@@ -17,6 +17,7 @@ Run setup(CLI::App& app) {
   suites->push_back(add_bench_time(app));
   suites->push_back(add_bench_control(app));
   suites->push_back(add_bench_sim(app));
+  suites->push_back(add_bench_rl(app));
   return [suites]() -> Result<int> {
     std::string names;
     for (const BenchSuite& suite : *suites) {

@@ -11,6 +11,7 @@ struct BenchSuite {
 };
 [[nodiscard]] BenchSuite add_bench_ik(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_control(CLI::App& bench);
+[[nodiscard]] BenchSuite add_bench_rl(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_sim(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_path(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_time(CLI::App& bench);

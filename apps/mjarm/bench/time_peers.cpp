@@ -12,7 +12,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr std::size_t kLargest = std::size_t{1} << 30;  // [bytes] of a file of states
+constexpr std::size_t kMostStateBytes = std::size_t{1} << 30;  // [bytes] of a file of states
 
 JsonDoc case_json(const TimeSet& set, const TimeCase& entry) {
   if (set.problem == TimeProblem::p2p) {
@@ -68,7 +68,7 @@ std::vector<JointState> states_from(const double* values, int count, Eigen::Inde
 /// Judges the motions of one answer; throws json's exceptions.
 Result<void> judge(const TimeSet& set, const nlohmann::json& line, TimeRun& run) {
   const std::string file = text_in(line, "states");
-  const Result<std::string> content = read_file(file, kLargest);
+  const Result<std::string> content = read_file(file, kMostStateBytes);
   if (!content) return fail(content.error());
   std::vector<double> values(content->size() / sizeof(double));
   std::memcpy(values.data(), content->data(), values.size() * sizeof(double));

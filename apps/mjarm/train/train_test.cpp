@@ -42,6 +42,17 @@ TEST(Train, PrintedConfigurationsAreTakenAgain) {
   }
 }
 
+TEST(Train, AWiderRegionHasLongerEpisodes) {
+  const auto steps = [](const std::string& region) {
+    const auto shown = mjarm({"train", "reach", "--region", region, "--print-config"});
+    EXPECT_EQ(shown.exit_code, 0) << shown.err;
+    EXPECT_THAT(shown.out, HasSubstr("region: " + region));
+    const std::size_t at = shown.out.find("episode_steps: ");
+    return at == std::string::npos ? 0 : std::stoi(shown.out.substr(at + 15));
+  };
+  EXPECT_GT(steps("wide"), steps("tutorial"));
+}
+
 TEST(Train, FaultsOfAConfigurationAreOneLine) {
   const support::TempFolder folder;
   const auto fault = [&](const std::string& yaml) {
@@ -143,6 +154,28 @@ TEST(Train, GoesOnAfterKill) {
     EXPECT_EQ(folder.read(std::string("killed/") + name), folder.read(std::string("whole/") + name))
         << name;
   }
+}
+
+/// A file that may not grow beyond some size fails as a full disk does.
+TEST(Train, AFullDiskIsOneLineAndKeepsTheCheckpoint) {
+  const support::TempFolder folder;
+  const auto config = folder.write("small.yaml", kSmall).string();
+  const std::string out = path_in(folder, "out"), last = out + "/last.safetensors";
+  const auto begun = mjarm({"train", "reach", "--config", config, "--steps", "256", "--out", out});
+  ASSERT_EQ(begun.exit_code, 0) << begun.err;
+  const std::string before = folder.read("out/last.safetensors");
+  const std::string script = "trap '' XFSZ; ulimit -f 8; exec '" MJARM_PROGRAM
+                             "' train reach --resume '" +
+                             last + "' --steps 512";
+  const auto result = support::run_program("/bin/sh", {"-c", script});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("last.safetensors"));
+  EXPECT_EQ(folder.read("out/last.safetensors"), before);
+  for (const auto& entry : std::filesystem::directory_iterator(out)) {
+    EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
+  }
+  const auto resumed = mjarm({"train", "reach", "--resume", last, "--steps", "512"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
 }
 
 TEST(Train, CtrlCLeavesACheckpointThatGoesOn) {
