@@ -1,15 +1,19 @@
 """Brings the tables of docs/benchmarks.md up to date.
 
-Usage: update_docs.py [ik|path|time|control] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
+Usage: update_docs.py [ik|path|time|control|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
 update_docs.py ik build/release/bin/mjarm --data cases --peers .venv
-Without a suite all of them run with the same arguments, where --data SUITE=DIR names a folder for one suite.
+update_docs.py rl build/release/bin/mjarm --peers .venv-rl
+Without a suite all but rl run with the same arguments, where --data SUITE=DIR names a folder for one suite.
 """
 
 import pathlib
+import shutil
 import subprocess
 import sys
+import tempfile
 
 SUITES = ("ik", "path", "time", "control")
+DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 
 
 def arguments_of(suite, arguments):
@@ -28,7 +32,7 @@ def arguments_of(suite, arguments):
 
 def update(suite, program, arguments):
     begin, end = f"<!-- {suite}: begin -->\n", f"<!-- {suite}: end -->\n"
-    page = pathlib.Path(__file__).resolve().parent.parent / "docs" / "benchmarks.md"
+    page = DOCS / "benchmarks.md"
     own = [] if suite == "control" else arguments_of(suite, arguments)  # it takes neither cases nor peers
     command = [program, "--lang", "en", "bench", suite, *own]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
@@ -39,7 +43,16 @@ def update(suite, program, arguments):
     page.write_text(before + begin + "\n" + done.stdout.rstrip("\n") + "\n\n" + end + after, encoding="utf-8")
 
 
+def update_rl(program, arguments):
+    """This suite takes half an hour, has peers of its own and draws a picture."""
+    with tempfile.TemporaryDirectory() as folder:
+        update("rl", program, [*arguments, "--out", folder])
+        shutil.copy(pathlib.Path(folder) / "curves.png", DOCS / "images" / "bench_rl.png")
+
+
 def main(words):
+    if words and words[0] == "rl":
+        return update_rl(words[1], words[2:])
     suites = SUITES
     if words and words[0] in SUITES:
         suites, words = words[:1], words[1:]

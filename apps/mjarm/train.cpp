@@ -11,11 +11,13 @@
 #include "apps/mjarm/train/config.hpp"
 #include "apps/mjarm/train/curve.hpp"
 #include "apps/mjarm/train/outcome.hpp"
+#include "apps/mjarm/train/policy_run.hpp"
 #include "apps/mjarm/train/processes.hpp"
 #include "apps/mjarm/train/task.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
@@ -27,7 +29,7 @@ namespace {
 struct Options {
   TaskArguments task;
   std::string config, resume, out, steps, seeds = "1";
-  bool print_config = false, no_timing = false;
+  bool print_config = false, no_timing = false, video = false;
 };
 
 void add_fact(JsonDoc& doc, const Fact& fact) {
@@ -53,20 +55,33 @@ void tell(const rl::TrainingStep& step, double seconds) {
   log_info(text(msg::train_evaluated, step.iteration.steps, seconds, in_words(*step.evaluation)));
 }
 
+/// True on all processes where it is so on one: alone, one would wait for the others for ever.
+bool on_any(rl::Ranks* ranks, bool here) { return ranks != nullptr ? ranks->any(here) : here; }
+
+/// At its first step, or where the checkpoint left off; `folder` is made.
+Result<rl::Training> begin(const Model& model, const rl::TrainingOptions& options,
+                           const std::filesystem::path& folder,
+                           const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
+  if (auto made = make_folder(folder); !made) return fail(std::move(made.error()));
+  Result<rl::Training> training = rl::Training::create(
+      model, options, folder, {{"task", "reach"}, {"config", config_text(options)}}, ranks);
+  if (!training || checkpoint.empty()) return training;
+  if (auto resumed = training->resume(checkpoint); !resumed) return fail(resumed.error());
+  log_info(text(msg::train_resumed, training->trainer().steps()));
+  return training;
+}
+
 Result<TrainedSeed> train(const Model& model, const rl::TrainingOptions& options,
                           const std::filesystem::path& folder,
                           const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
-  Result<rl::Training> training = rl::Training::create(
-      model, options, folder, {{"task", "reach"}, {"config", config_text(options)}}, ranks);
-  if (!training) return fail(std::move(training.error()));
-  if (!checkpoint.empty()) {
-    if (auto resumed = training->resume(checkpoint); !resumed) return fail(resumed.error());
-    log_info(text(msg::train_resumed, training->trainer().steps()));
-  }
+  Result<rl::Training> training = begin(model, options, folder, checkpoint, ranks);
+  const bool begun = training.has_value();
+  if (on_any(ranks, !begun) && begun) return fail(Errc::impossible, text(msg::rl_failed_rank));
+  if (!begun) return fail(std::move(training.error()));
   TrainedSeed trained{options};
   Progress progress(text(msg::train_progress), static_cast<std::uint64_t>(options.ppo.total_steps));
   progress.advance(static_cast<std::uint64_t>(training->trainer().steps()));
-  while (!training->done() && !(trained.interrupted = interrupted())) {
+  while (!training->done() && !(trained.interrupted = on_any(ranks, interrupted()))) {
     const std::int64_t before = training->trainer().steps();
     const Result<rl::TrainingStep> step = training->advance();
     if (!step) return fail(step.error());
@@ -96,6 +111,19 @@ Result<void> write_report(const std::filesystem::path& folder, const TrainedSeed
   });
 }
 
+/// Shows what was learned, as `mjarm eval --video` does.
+Result<void> film_best(const std::filesystem::path& folder, bool timing) {
+  const Result<LoadedPolicy> best = load_policy(folder / rl::Training::kBest);
+  if (!best) return fail(best.error());
+  DemoOptions options;
+  options.out = folder / "result";
+  options.headless = options.video = true;
+  options.timing = timing;
+  const Result<PolicyOutcome> outcome = run_policy(*best, {.name = "reach"}, options);
+  if (!outcome) return fail(outcome.error());
+  return {};
+}
+
 /// Where all files go: what goes on stays where it is, unless told otherwise.
 std::filesystem::path folder_of(const Options& options) {
   if (!options.out.empty()) return options.out;
@@ -110,18 +138,22 @@ Result<int> train_seeds(const Options& options, const Model& model,
   if (!ranks) return fail(std::move(ranks.error()));
   const bool first = *ranks == nullptr || (*ranks)->rank() == 0;
   std::vector<TrainedSeed> runs;
-  for (std::uint64_t i = 0; i < seeds && !interrupted(); ++i) {
+  for (std::uint64_t i = 0; i < seeds && (runs.empty() || !runs.back().interrupted); ++i) {
     rl::TrainingOptions chosen = wanted;
     chosen.ppo.seed += i;
     const std::filesystem::path out = folder_of(options);
     const std::filesystem::path folder =
         seeds > 1 ? out / ("seed-" + std::to_string(chosen.ppo.seed)) : out;
-    if (auto made = make_folder(folder); !made) return fail(std::move(made.error()));
     Result<TrainedSeed> trained = train(model, chosen, folder, options.resume, ranks->get());
     if (!trained) return fail(std::move(trained.error()));
     if (first) {
       if (auto written = write_report(folder, *trained, !options.no_timing); !written) {
         return fail(std::move(written.error()));
+      }
+      if (options.video && trained->best && !trained->interrupted) {
+        if (auto filmed = film_best(folder, !options.no_timing); !filmed) {
+          return fail(std::move(filmed.error()));
+        }
       }
     }
     runs.push_back(std::move(*trained));
@@ -187,6 +219,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--out", options->out, msg::train_option_out, "DIR");
   add_option(app, "--steps", options->steps, msg::train_option_steps, "N");
   add_option(app, "--seeds", options->seeds, msg::train_option_seeds, "N");
+  add_flag(app, "--video", options->video, msg::train_option_video);
   add_flag(app, "--print-config", options->print_config, msg::train_option_print_config);
   add_flag(app, "--no-timing", options->no_timing, msg::train_option_no_timing);
   return [options] { return run(*options); };

@@ -16,6 +16,13 @@ class Ranks {
   /// Replaces each value by its sum over all ranks: the same bytes on each of them.
   virtual void sum(std::span<double> values) = 0;
   virtual void sum(std::span<float> values) = 0;
+
+  /// Whether it is so on any rank, on each of them.
+  [[nodiscard]] bool any(bool here) {
+    double count[] = {here ? 1.0 : 0.0};
+    sum(std::span<double>(count));
+    return count[0] > 0;
+  }
 };
 
 }  // namespace mjarm::rl

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjarm/core/messages/rl.hpp"
 #include "mjarm/rl/progress_log_internal.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/rl/safetensors.hpp"
@@ -67,7 +68,7 @@ TrainingOptions reach_training(ReachRegion region) {
   options.task.region = region;
   if (region == ReachRegion::wide) {
     options.task.episode_steps = 60;
-    options.ppo.total_steps = 600000;
+    options.ppo.total_steps = 400000;
   }
   return options;
 }
@@ -97,7 +98,7 @@ struct Training::State {
   [[nodiscard]] Result<void> save(const TrainingStep& step);
   [[nodiscard]] Result<void> save_best();
   [[nodiscard]] Result<void> add_row(const TrainingStep& step);
-  [[nodiscard]] bool all_agree_to_stop();
+  [[nodiscard]] bool on_any_rank(bool here) const { return ranks ? ranks->any(here) : here; }
 
   Model model;
   TrainingOptions options;
@@ -165,13 +166,6 @@ Result<void> Training::State::add_row(const TrainingStep& step) {
   return log->add(step);
 }
 
-bool Training::State::all_agree_to_stop() {
-  if (ranks == nullptr) return stopped;
-  std::array<double, 1> stops = {stopped ? 1.0 : 0.0};
-  ranks->sum(std::span<double>(stops));
-  return stops[0] > 0;
-}
-
 Training::Training(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
 Training::~Training() = default;
 Training::Training(Training&&) noexcept = default;
@@ -214,13 +208,15 @@ Result<TrainingStep> Training::advance() {
   Result<IterationReport> iteration = state_->trainer->iterate();
   if (!iteration) return fail(std::move(iteration.error()));
   TrainingStep step{*iteration};
+  Result<void> done;
   if (state_->is_time_to_evaluate(before)) {
-    if (state_->rank() == 0) {
-      if (auto done = state_->evaluate_now(step); !done) return fail(std::move(done.error()));
-    }
-    state_->stopped = state_->all_agree_to_stop();
+    if (state_->rank() == 0) done = state_->evaluate_now(step);
+    state_->stopped = state_->on_any_rank(state_->stopped);
   }
-  if (auto saved = state_->save(step); !saved) return fail(std::move(saved.error()));
+  if (done) done = state_->save(step);
+  // A rank that fails takes the others along: alone, they would wait for it for ever.
+  if (state_->on_any_rank(!done) && done) done = fail(Errc::impossible, text(msg::rl_failed_rank));
+  if (!done) return fail(std::move(done.error()));
   return step;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "apps/mjarm/program_test.hpp"
+#include "mjarm/core/os_child_input.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -120,6 +121,17 @@ TEST(Train, LeavesAPolicyThatEvalTries) {
   EXPECT_EQ(support::lines_of(folder.read("tried/log.csv")).size(), 1U + 6U * (1 + 50 * 20));
 }
 
+TEST(Train, FilmsWhatWasLearned) {
+  if (find_program("ffmpeg").empty()) GTEST_SKIP() << "no ffmpeg (apt-get install ffmpeg)";
+  const support::TempFolder folder;
+  const auto config = folder.write("small.yaml", kSmall).string();
+  const auto trained = mjarm({"train", "reach", "--config", config, "--steps", "256", "--video",
+                              "--out", path_in(folder, "out")});
+  EXPECT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_THAT(folder.read("out/result/video.mp4").substr(0, 12), HasSubstr("ftyp"));
+  EXPECT_TRUE(folder.exists("out/result/report.json"));
+}
+
 TEST(Train, SeedsHaveFoldersOfTheirOwnAndATable) {
   const support::TempFolder folder;
   const auto config = folder.write("small.yaml", kSmall).string();
@@ -229,6 +241,27 @@ TEST(TrainInProcesses, OneIsTheSameAsNoneAndTwoShareTheWork) {
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_THAT(resumed.err, HasSubstr("going on after 1536 steps"));
 }
+
+/// No process waits for one that cannot begin or go on.
+TEST(TrainInProcesses, OneThatFailsTakesTheOthersAlong) {
+  const support::TempFolder folder;
+  const auto config = folder.write("small.yaml", kSmall).string();
+  const std::string out = path_in(folder, "out"), last = out + "/last.safetensors";
+  const auto begun = in_processes(2, {"train", "reach", "--config", config, "--out", out});
+  ASSERT_EQ(begun.exit_code, 0) << begun.err;
+  std::filesystem::rename(out + "/last.rank1.safetensors", out + "/moved");
+  const auto missing = in_processes(2, {"train", "reach", "--resume", last, "--steps", "4096"});
+  EXPECT_NE(missing.exit_code, 0);
+  EXPECT_THAT(missing.err, HasSubstr("last.rank1.safetensors"));
+  EXPECT_THAT(missing.err, HasSubstr("another process"));
+  // A folder stands in the way of a checkpoint that only the second process writes.
+  std::filesystem::create_directories(path_in(folder, "other/last.rank1.safetensors/x"));
+  const auto blocked =
+      in_processes(2, {"train", "reach", "--config", config, "--out", path_in(folder, "other")});
+  EXPECT_NE(blocked.exit_code, 0);
+  EXPECT_THAT(blocked.err, HasSubstr("last.rank1.safetensors"));
+}
+
 #endif
 
 TEST(Train, WhatIsNotReachedIsExitCodeOne) {
