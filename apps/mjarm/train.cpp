@@ -55,9 +55,6 @@ void tell(const rl::TrainingStep& step, double seconds) {
   log_info(text(msg::train_evaluated, step.iteration.steps, seconds, in_words(*step.evaluation)));
 }
 
-/// True on all processes where it is so on one: alone, one would wait for the others for ever.
-bool on_any(rl::Ranks* ranks, bool here) { return ranks != nullptr ? ranks->any(here) : here; }
-
 /// At its first step, or where the checkpoint left off; `folder` is made.
 Result<rl::Training> begin(const Model& model, const rl::TrainingOptions& options,
                            const std::filesystem::path& folder,
@@ -76,12 +73,13 @@ Result<TrainedSeed> train(const Model& model, const rl::TrainingOptions& options
                           const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
   Result<rl::Training> training = begin(model, options, folder, checkpoint, ranks);
   const bool begun = training.has_value();
-  if (on_any(ranks, !begun) && begun) return fail(Errc::impossible, text(msg::rl_failed_rank));
+  if (rl::on_any_rank(ranks, !begun) && begun)
+    return fail(Errc::impossible, text(msg::rl_failed_rank));
   if (!begun) return fail(std::move(training.error()));
   TrainedSeed trained{options};
   Progress progress(text(msg::train_progress), static_cast<std::uint64_t>(options.ppo.total_steps));
   progress.advance(static_cast<std::uint64_t>(training->trainer().steps()));
-  while (!training->done() && !(trained.interrupted = on_any(ranks, interrupted()))) {
+  while (!training->done() && !(trained.interrupted = rl::on_any_rank(ranks, interrupted()))) {
     const std::int64_t before = training->trainer().steps();
     const Result<rl::TrainingStep> step = training->advance();
     if (!step) return fail(step.error());

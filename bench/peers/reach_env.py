@@ -130,6 +130,11 @@ class Reach(VecEnv):
         self.ctrl = (torque - self.bias[0] - self.bias[1] * q - self.bias[2] * v) / self.gain
         self.reference = wanted
 
+    def move(self, actions):
+        """One action of every copy, whatever the time of its episode."""
+        self.command(actions)
+        self.everywhere(self.advance)
+
     def distances(self):
         return np.linalg.norm(self.p - self.goal, axis=1)
 
@@ -150,8 +155,7 @@ class Reach(VecEnv):
         self.actions = np.clip(actions, -1, 1).astype(np.float64)
 
     def step_wait(self):
-        self.command(self.actions)
-        self.everywhere(self.advance)
+        self.move(self.actions)
         self.steps += 1
         rewards, seen = self.rewards(self.actions), self.observations()
         over = self.steps >= self.task["episode_steps"]

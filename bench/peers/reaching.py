@@ -58,7 +58,7 @@ def check_environment(job):
 
 
 def judge_of(job, start):
-    """A callback that judges the policy every so many steps: [steps, seconds, distances [m]]."""
+    """A callback that judges the policy every so many steps; `curve` has steps, seconds and distances [m]."""
     from reach_env import Reach
     from stable_baselines3.common.callbacks import BaseCallback
 
@@ -82,23 +82,18 @@ def judge_of(job, start):
             self.look()
 
         def look(self):
-            if self.curve and self.curve[-1][0] == self.num_timesteps:
+            if self.curve and self.curve[-1]["steps"] == self.num_timesteps:
                 return
             began = time.monotonic()
             env.next_goal = 0
             seen = env.reset()
             for _ in range(job["task"]["episode_steps"]):
                 actions, _ = self.model.predict(self.training_env.normalize_obs(seen), deterministic=True)
-                distances = self.distances_after(actions)
-                seen = self.seen
-            self.curve.append([self.num_timesteps, began - start() - self.paused, distances])
+                env.move(actions.astype("float64"))
+                seen = env.observations()
+            seconds, distances = began - start() - self.paused, env.distances().tolist()
+            self.curve.append({"steps": self.num_timesteps, "seconds": seconds, "distances": distances})
             self.paused += time.monotonic() - began
-
-        def distances_after(self, actions):
-            env.command(actions.astype("float64"))
-            env.everywhere(env.advance)
-            self.seen = env.observations()
-            return env.distances().tolist()
 
     return Judge()
 
@@ -110,8 +105,8 @@ def run(job, name, maker, row):
     judge = judge_of(job, lambda: began[0])
     began.append(time.monotonic())
     model.learn(job["ppo"]["total_steps"], callback=judge)
-    curve = [{"steps": steps, "seconds": seconds, "distances": away} for steps, seconds, away in judge.curve]
-    yield row | {"set": job["set"], "us": [1e6 * curve[-1]["seconds"] / curve[-1]["steps"]], "curve": curve}
+    last = judge.curve[-1]
+    yield row | {"set": job["set"], "us": [1e6 * last["seconds"] / last["steps"]], "curve": judge.curve}
 
 
 PEERS = {"stable-baselines3": (learner, "stable-baselines3")}

@@ -21,9 +21,8 @@ Result<Choice> choice(std::string_view word, std::span<const std::string_view> n
     if (names[i] == word) return static_cast<Choice>(i);
   }
   const std::vector<std::string> words(names.begin(), names.end());
-  std::string list;
-  for (const std::string& known : words) list += (list.empty() ? "" : ", ") + known;
-  return fail(Errc::usage, text(msg::reach_unknown, word, list) + did_you_mean(word, words));
+  return fail(Errc::usage,
+              text(msg::reach_unknown, word, listed(words)) + did_you_mean(word, words));
 }
 
 /// One option and the range it must be in.

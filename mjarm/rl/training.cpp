@@ -98,7 +98,6 @@ struct Training::State {
   [[nodiscard]] Result<void> save(const TrainingStep& step);
   [[nodiscard]] Result<void> save_best();
   [[nodiscard]] Result<void> add_row(const TrainingStep& step);
-  [[nodiscard]] bool on_any_rank(bool here) const { return ranks ? ranks->any(here) : here; }
 
   Model model;
   TrainingOptions options;
@@ -211,11 +210,11 @@ Result<TrainingStep> Training::advance() {
   Result<void> done;
   if (state_->is_time_to_evaluate(before)) {
     if (state_->rank() == 0) done = state_->evaluate_now(step);
-    state_->stopped = state_->on_any_rank(state_->stopped);
+    state_->stopped = on_any_rank(state_->ranks, state_->stopped);
   }
   if (done) done = state_->save(step);
-  // A rank that fails takes the others along: alone, they would wait for it for ever.
-  if (state_->on_any_rank(!done) && done) done = fail(Errc::impossible, text(msg::rl_failed_rank));
+  if (on_any_rank(state_->ranks, !done) && done)
+    done = fail(Errc::impossible, text(msg::rl_failed_rank));
   if (!done) return fail(std::move(done.error()));
   return step;
 }

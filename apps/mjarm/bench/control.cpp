@@ -125,12 +125,9 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestRun>& rests,
 }
 
 Result<int> run_control(const Options& options) {
-  const Result<std::uint64_t> poses = parse_whole("--poses", options.poses);
+  constexpr int kMostPoses = 100'000;
+  const Result<int> poses = parse_count("--poses", options.poses, kMostPoses);
   if (!poses) return fail(poses.error());
-  constexpr std::uint64_t kMostPoses = 100'000;
-  if (*poses < 1 || *poses > kMostPoses) {
-    return fail(Errc::usage, text(msg::control_suite_count, kMostPoses, *poses));
-  }
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
   std::vector<LapRun> runs = laps();
@@ -140,7 +137,7 @@ Result<int> run_control(const Options& options) {
       show_rounds(text(msg::control_suite_progress), std::size(modes) + runs.size());
   std::vector<RestRun> rests;
   for (const ControlMode mode : modes) {
-    const auto rest = rest_errors(robot->model, robot->arm, mode, static_cast<int>(*poses));
+    const auto rest = rest_errors(robot->model, robot->arm, mode, *poses);
     if (!rest) return fail(rest.error());
     rests.push_back({mode, *rest});
     if (!advance()) return fail(stopped());

@@ -15,9 +15,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/bench.hpp"
 #include "mjarm/core/messages/bench_rl.hpp"
-#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 
@@ -31,20 +29,19 @@ struct Options {
 
 /// The sets that are asked for, with so many steps and seeds.
 Result<std::vector<LearningSet>> sets_of(const Options& options, int seeds) {
-  std::vector<LearningSet> sets;
-  std::vector<std::string> names;
-  for (LearningSet& set : learning_sets()) {
-    names.push_back(set.name);
-    if (!options.set.empty() && options.set != set.name) continue;
+  std::vector<LearningSet> sets = learning_sets();
+  if (!options.set.empty()) {
+    std::vector<std::string> names;
+    for (const LearningSet& set : sets) names.push_back(set.name);
+    const Result<std::size_t> asked = parse_choice("--set", options.set, names);
+    if (!asked) return fail(asked.error());
+    sets = {sets[*asked]};
+  }
+  for (LearningSet& set : sets) {
     auto chosen = with_task({.task = "reach"}, std::move(set.options));
     if (!chosen) return fail(std::move(chosen.error()));
     set.options = std::move(*chosen);
     set.peer_seeds = options.peers.empty() ? 0 : std::min(set.peer_seeds, seeds);
-    sets.push_back(std::move(set));
-  }
-  if (sets.empty()) {
-    return fail(Errc::usage,
-                text(msg::bench_rl_unknown_set, options.set) + did_you_mean(options.set, names));
   }
   if (options.steps.empty()) return sets;
   const Result<std::uint64_t> steps = parse_whole("--steps", options.steps);
@@ -93,16 +90,13 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
 }
 
 Result<int> run_rl(const Options& options) {
-  constexpr std::uint64_t kMostSeeds = 100;
-  const Result<std::uint64_t> seeds = parse_whole("--seeds", options.seeds);
+  constexpr int kMostSeeds = 100;
+  const Result<int> seeds = parse_count("--seeds", options.seeds, kMostSeeds);
   if (!seeds) return fail(seeds.error());
-  if (*seeds < 1 || *seeds > kMostSeeds) {
-    return fail(Errc::usage, text(msg::bench_count, "--seeds", 1, kMostSeeds, *seeds));
-  }
-  const auto sets = sets_of(options, static_cast<int>(*seeds));
+  const auto sets = sets_of(options, *seeds);
   if (!sets) return fail(sets.error());
   catch_interrupts();
-  const auto runs = run_all(options, *sets, static_cast<int>(*seeds));
+  const auto runs = run_all(options, *sets, *seeds);
   if (!runs) return fail(runs.error());
   const bool timing = !options.no_timing;
   const std::vector<BenchResult> results{

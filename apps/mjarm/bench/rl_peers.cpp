@@ -53,20 +53,19 @@ Result<Rows> unseen_goals(const Model& model, const LearningSet& set) {
 }
 
 /// An episode of random actions: what was seen before each of them, and the reward after it.
-Result<JsonDoc> trace_of(const Model& model, const LearningSet& set) {
-  auto env = env_of(model, set.options.task, 1);
-  if (!env) return fail(std::move(env.error()));
-  const std::vector<double> goal = values_of(env->goal(0));
+/// @param env  one copy, at the start of an episode.
+Result<JsonDoc> trace_of(rl::ReachEnv& env) {
+  const std::vector<double> goal = values_of(env.goal(0));
   Rows actions, observations;
   std::vector<double> rewards;
   Rng rng(0);
-  for (int step = 0; step < set.options.task.episode_steps; ++step) {
-    std::vector<float> action(env->action_size());
+  for (int step = 0; step < env.options().episode_steps; ++step) {
+    std::vector<float> action(env.action_size());
     for (float& value : action) value = static_cast<float>(rng.uniform(-1, 1));
-    observations.emplace_back(env->observations().begin(), env->observations().end());
+    observations.emplace_back(env.observations().begin(), env.observations().end());
     actions.emplace_back(action.begin(), action.end());
-    if (auto stepped = env->step(action); !stepped) return fail(stepped.error());
-    rewards.push_back(env->rewards()[0]);
+    if (auto stepped = env.step(action); !stepped) return fail(stepped.error());
+    rewards.push_back(env.rewards()[0]);
   }
   return JsonDoc{
       {"goal", goal}, {"actions", actions}, {"observations", observations}, {"rewards", rewards}};
@@ -80,13 +79,12 @@ JsonDoc reward_json(const rl::ReachReward& r) {
 }
 
 /// Everything of the task but its goals.
-Result<JsonDoc> task_json(const Model& model, const LearningSet& set) {
-  auto env = env_of(model, set.options.task, 1);
-  if (!env) return fail(std::move(env.error()));
-  const rl::ReachOptions& options = env->options();
-  const Arm& arm = env->arm();
-  Sim start(model);
-  if (auto restored = start.restore(env->snapshot(0)); !restored) return fail(restored.error());
+/// @param env  at the start of an episode.
+Result<JsonDoc> task_json(const rl::ReachEnv& env) {
+  const rl::ReachOptions& options = env.options();
+  const Arm& arm = env.arm();
+  Sim start(env.model());
+  if (auto restored = start.restore(env.snapshot(0)); !restored) return fail(restored.error());
   std::vector<std::string> joints, actuators;
   for (const ArmJoint& joint : arm.joints) {
     joints.push_back(joint.name);
@@ -96,7 +94,7 @@ Result<JsonDoc> task_json(const Model& model, const LearningSet& set) {
     return std::vector<double>(v.begin(), v.end());
   };
   return JsonDoc{
-      {"model", model.file().string()},
+      {"model", env.model().file().string()},
       {"tool", arm.tip},
       {"joints", joints},
       {"actuators", actuators},
@@ -140,10 +138,12 @@ Result<JsonDoc> job_of(const Model& model, const LearningSet& set, std::uint64_t
   if (!goals) return fail(goals.error());
   const Result<Rows> unseen = unseen_goals(model, set);
   if (!unseen) return fail(unseen.error());
-  Result<JsonDoc> trace = trace_of(model, set);
-  if (!trace) return trace;
-  Result<JsonDoc> task = task_json(model, set);
+  auto env = env_of(model, set.options.task, 1);
+  if (!env) return fail(std::move(env.error()));
+  Result<JsonDoc> task = task_json(*env);
   if (!task) return task;
+  Result<JsonDoc> trace = trace_of(*env);
+  if (!trace) return trace;
   const rl::TrainingOptions& options = set.options;
   return JsonDoc{{"set", set.name},
                  {"seed", static_cast<std::size_t>(seed)},

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/mjarm/bench/suite.hpp"
 #include "apps/mjarm/bench/suites.hpp"
 #include "apps/mjarm/options.hpp"
 #include "apps/mjarm/robot.hpp"
@@ -14,22 +15,13 @@ namespace mjarm::app {
 namespace {
 
 /// More than this takes hours.
-constexpr std::uint64_t kMost = 1'000'000;
+constexpr int kMost = 1'000'000;
 
 struct Options {
   RobotOptions robot{.robot = "ur5e", .tip = {}};
   std::string rounds = "40", steps = "250";
   bool json = false, no_timing = false;
 };
-
-Result<int> parse_count(const std::string& option, const std::string& value) {
-  const Result<std::uint64_t> count = parse_whole(option, value);
-  if (!count) return fail(count.error());
-  if (*count < 1 || *count > kMost) {
-    return fail(Errc::usage, text(msg::sim_bench_count, option, kMost, value));
-  }
-  return static_cast<int>(*count);
-}
 
 std::string to_json(const Robot& robot, const SimBenchOptions& work,
                     const std::vector<SimBenchEntry>& entries, bool timing) {
@@ -63,9 +55,9 @@ std::string to_table(const std::vector<SimBenchEntry>& entries, bool timing) {
 }
 
 Result<int> run_sim(const Options& options) {
-  const Result<int> rounds = parse_count("--rounds", options.rounds);
+  const Result<int> rounds = parse_count("--rounds", options.rounds, kMost);
   if (!rounds) return fail(rounds.error());
-  const Result<int> steps = parse_count("--steps", options.steps);
+  const Result<int> steps = parse_count("--steps", options.steps, kMost);
   if (!steps) return fail(steps.error());
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());

@@ -14,6 +14,15 @@
 
 namespace mjarm::app {
 
+Result<int> parse_count(const std::string& option, const std::string& value, int most) {
+  const Result<std::uint64_t> count = parse_whole(option, value);
+  if (!count) return fail(count.error());
+  if (*count < 1 || *count > static_cast<std::uint64_t>(most)) {
+    return fail(Errc::usage, text(msg::bench_count, option, most, *count));
+  }
+  return static_cast<int>(*count);
+}
+
 void add_bench_options(CLI::App& app, BenchOptions& options, Msg data_help) {
   const auto add = [&app](const char* name, std::string& value, Msg help, const char* type) {
     add_option(app, name, value, help, type);
@@ -49,17 +58,14 @@ bool wants_peers(const BenchOptions& options, const std::string& robot) {
 
 Result<int> run_suite(const BenchOptions& options, const std::vector<std::string>& robots,
                       const std::vector<Msg>& columns, const BenchRobot& measure) {
-  constexpr std::uint64_t kMostRounds = 10'000;
-  const Result<std::uint64_t> rounds = parse_whole("--rounds", options.rounds);
+  constexpr int kMostRounds = 10'000;
+  const Result<int> rounds = parse_count("--rounds", options.rounds, kMostRounds);
   if (!rounds) return fail(rounds.error());
-  if (*rounds < 1 || *rounds > kMostRounds) {
-    return fail(Errc::usage, text(msg::bench_count, "--rounds", 1, kMostRounds, *rounds));
-  }
   std::vector<std::string> asked{options.robot};
   if (options.robot.empty()) asked = robots;
   std::vector<BenchResult> results;
   for (const std::string& robot : asked) {
-    Result<BenchResult> result = measure(robot, static_cast<int>(*rounds));
+    Result<BenchResult> result = measure(robot, *rounds);
     if (!result) return fail(std::move(result.error()));
     results.push_back(std::move(*result));
   }
