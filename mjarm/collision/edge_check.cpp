@@ -199,11 +199,11 @@ Result<EdgeCertificate, EdgeResult> certify_edge(const FastChecker& checker,
     }
   }
   out.step = 2 * half * search.length();
-  std::vector<Clearance> clearances(out.intervals.size());
+  std::vector<SphereClearance> clearances(out.intervals.size());
   checker.clearances(q, clearances);
   const auto least = std::min_element(
       clearances.begin(), clearances.end(),
-      [](const Clearance& a, const Clearance& b) { return a.distance < b.distance; });
+      [](const SphereClearance& a, const SphereClearance& b) { return a.distance < b.distance; });
   out.nearest = *least;
   out.nearest_t = out.intervals[static_cast<std::size_t>(least - clearances.begin())].t;
   return out;

@@ -45,7 +45,7 @@ struct EdgeInterval {
 struct EdgeCertificate {
   std::vector<EdgeInterval> intervals;  ///< in order; together they cover [0, 1]
   double step = 0;                      ///< [rad or m, L2] length of the narrowest
-  Clearance nearest;                    ///< the least clearance in the middle of any interval
+  SphereClearance nearest;              ///< the least clearance in the middle of any interval
   double nearest_t = 0;                 ///< where that is
 };
 

@@ -100,7 +100,8 @@ bool FastChecker::is_free(std::span<const double> q) const noexcept {
   return free != 0;
 }
 
-void FastChecker::clearances(std::span<const double> q, std::span<Clearance> out) const noexcept {
+void FastChecker::clearances(std::span<const double> q,
+                             std::span<SphereClearance> out) const noexcept {
   const auto dof = static_cast<std::size_t>(robot_.dof());
   const auto width = static_cast<std::size_t>(kernels_->width);
   assert(q.size() == out.size() * dof);
@@ -117,7 +118,7 @@ void FastChecker::clearances(std::span<const double> q, std::span<Clearance> out
                          static_cast<float>(detail::kMostClearance), nearest);
     for (std::size_t k = 0; k < count; ++k) {
       const detail::FastNearest& from = nearest[k];
-      Clearance& to = out[first + k];
+      SphereClearance& to = out[first + k];
       to = {from.distance, -1, from.obstacle, -1};
       if (from.sphere >= 0) to.link = link_of(from.sphere);
       if (from.other >= 0) to.other_link = link_of(from.other);
@@ -125,8 +126,8 @@ void FastChecker::clearances(std::span<const double> q, std::span<Clearance> out
   }
 }
 
-Clearance FastChecker::clearance(std::span<const double> q) const noexcept {
-  Clearance out;
+SphereClearance FastChecker::clearance(std::span<const double> q) const noexcept {
+  SphereClearance out;
   clearances(q, {&out, 1});
   return out;
 }

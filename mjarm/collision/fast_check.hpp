@@ -19,7 +19,7 @@ struct FastKernels;
 }  // namespace detail
 
 /// How far a configuration is from its nearest collision, as a lower bound.
-struct Clearance {
+struct SphereClearance {
   /// [m] no sphere is nearer than this to an obstacle or to a sphere it is paired with; negative
   /// where they overlap, at most 1. Links at rest count against moving links only.
   double distance = 1;
@@ -52,8 +52,8 @@ class FastChecker {
 
   /// Lower bounds of the clearance of configurations within the limits.
   /// @param q  shape (n, dof), row by row [rad or m], finite.
-  void clearances(std::span<const double> q, std::span<Clearance> out) const noexcept;
-  [[nodiscard]] Clearance clearance(std::span<const double> q) const noexcept;
+  void clearances(std::span<const double> q, std::span<SphereClearance> out) const noexcept;
+  [[nodiscard]] SphereClearance clearance(std::span<const double> q) const noexcept;
 
   /// The link at rest and the obstacle that overlap, which no configuration can undo.
   struct FixedOverlap {

@@ -63,7 +63,7 @@ void compare(const Arm& arm, const SphereSet& set, const Obstacles& world, SimdL
   const std::vector<double> rows = random_rows(arm, rng, count);
   std::vector<std::uint8_t> free(static_cast<std::size_t>(count));
   checker->check(rows, free);
-  std::vector<Clearance> clearances(free.size());
+  std::vector<SphereClearance> clearances(free.size());
   checker->clearances(rows, clearances);
   const double pad = 2 * robot->padding() + 2e-6 * extent;
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -142,7 +142,7 @@ TEST(FastChecker, WhatIsAskedDoesNotDependOnNeighboursOrRuns) {
     for (std::size_t i = 0; i < 333; ++i) {
       const std::span<const double> q(&rows[7 * i], 7);
       EXPECT_EQ(checker.is_free(q), free[i] != 0);
-      const Clearance a = checker.clearance(q), b = again.clearance(q);
+      const SphereClearance a = checker.clearance(q), b = again.clearance(q);
       EXPECT_EQ(a.distance, b.distance);
       EXPECT_EQ(a.obstacle, b.obstacle);
     }
@@ -160,7 +160,7 @@ TEST(FastChecker, NearestPairIsNamed) {
     const auto checker = FastChecker::make(robot, world, level).value();
     for (std::size_t i = 0; i < 500; ++i) {
       const std::span<const double> q(&rows[7 * i], 7);
-      const Clearance found = checker.clearance(q);
+      const SphereClearance found = checker.clearance(q);
       const double truth = testing::true_clearance(arm, set, world, q, true);
       if (truth < 0 || truth > 0.9) continue;
       EXPECT_NEAR(found.distance, truth, 1e-4);

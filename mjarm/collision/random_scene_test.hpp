@@ -98,8 +98,8 @@ inline double point_distance(const ObstacleShape& shape, const Eigen::Vector3d& 
   return p.z();
 }
 
-/// Clearance of a configuration; negative where something overlaps. `moving_only`: links at rest
-/// are held against other links alone.
+/// SphereClearance of a configuration; negative where something overlaps. `moving_only`: links at
+/// rest are held against other links alone.
 inline double true_clearance(const Arm& arm, const SphereSet& set, const Obstacles& world,
                              std::span<const double> q, bool moving_only = false) {
   std::vector<Pose> X_WJ(static_cast<std::size_t>(arm.dof()));
