@@ -123,6 +123,12 @@ struct Block {
     }
   }
 
+  /// How the point of body `body` that is at the ball of group `g` now moves, and how it turns.
+  Twist twist_at_ball(int g, int body) const {
+    const Twist& twist = twists[body];
+    return {plus_cross(twist.v, twist.w, balls[g] - frames[body].p), twist.w};
+  }
+
   void place_spheres(const FastRobotTables& robot, int g) {
     if (placed[g]) return;
     placed[g] = true;

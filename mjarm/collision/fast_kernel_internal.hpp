@@ -44,8 +44,7 @@ class BlockSearch {
       if (is_done()) return;
     }
     for (int k = 0; k < robot_.pair_count; ++k) {
-      if (kCover) grow_ = half_ * motion_->pair_rate[k];
-      meet_itself(robot_.pairs[k]);
+      meet_itself(k);
       if (is_done()) return;
     }
   }
@@ -53,13 +52,24 @@ class BlockSearch {
   /// By how much a sphere of a group moves at most within the half interval: speed now, and what
   /// the speed can become.
   Floats growth(int g) const {
-    const FastGroup& group = robot_.groups[g];
-    const Twist& twist = block_.twists[group.body];
-    const Point v = plus_cross(twist.v, twist.w, block_.balls[g] - block_.frames[group.body].p);
-    const Floats speed =
-        multiply_add(square_root(squared(twist.w)), splat(group.spread), square_root(squared(v))) +
-        motion_->slack[g];
-    return half_ * multiply_add(half_, splat(motion_->bend[g]), speed) * 1.0001F;
+    const Twist twist = block_.twist_at_ball(g, robot_.groups[g].body);
+    return growth(twist, robot_.groups[g].spread, motion_->slack[g], motion_->bend[g]);
+  }
+
+  /// The same of a pair: how the farther link moves as seen from the other.
+  Floats pair_growth(int k) const {
+    const FastPair& pair = robot_.pairs[k];
+    const Twist b = block_.twist_at_ball(pair.b, robot_.groups[pair.b].body);
+    const Twist a = block_.twist_at_ball(pair.b, robot_.groups[pair.a].body);
+    return growth({b.v - a.v, b.w - a.w}, robot_.groups[pair.b].spread, motion_->pair_slack[k],
+                  motion_->pair_bend[k]);
+  }
+
+  Floats growth(const Twist& twist, float spread, float slack, float bend) const {
+    const Floats speed = multiply_add(square_root(squared(twist.w)), splat(spread),
+                                      square_root(squared(twist.v))) +
+                         slack;
+    return half_ * multiply_add(half_, splat(bend), speed) * 1.0001F;
   }
 
   /// (radius + growth)^2.
@@ -154,16 +164,24 @@ class BlockSearch {
     note(overlaps);
   }
 
-  void meet_itself(const FastPair& pair) {
+  void meet_itself(int k) {
+    const FastPair& pair = robot_.pairs[k];
     const FastGroup& a = robot_.groups[pair.a];
     const FastGroup& b = robot_.groups[pair.b];
     const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
-    if ((less(balls, squared_reach(a.ball.radius + b.ball.radius)) & active_) == 0) return;
+    const float reach = a.ball.radius + b.ball.radius;
+    if constexpr (kCover) {
+      // The bound that costs nothing first: most pairs are far apart.
+      grow_ = half_ * motion_->pair_rate[k];
+      if ((less(balls, squared_reach(reach)) & active_) == 0) return;
+      grow_ = smaller(grow_, pair_growth(k));
+    }
+    if ((less(balls, squared_reach(reach)) & active_) == 0) return;
     block_.place_spheres(robot_, pair.a);
     block_.place_spheres(robot_, pair.b);
     Overlaps overlaps;
-    for (int k = pair.first; k < pair.first + pair.count; ++k) {
-      const FastRow& row = robot_.rows[k];
+    for (int i = pair.first; i < pair.first + pair.count; ++i) {
+      const FastRow& row = robot_.rows[i];
       const float radius = robot_.spheres[row.sphere].radius;
       const Point center = block_.centers[row.sphere];
       const Floats to_ball = squared(center - block_.balls[pair.b]);

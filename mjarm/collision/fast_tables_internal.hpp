@@ -118,7 +118,9 @@ struct FastMotion {
   const float* dq;         ///< (dof,)
   const float* slack;      ///< (groups,) [m] what rounding may hide of the speed
   const float* bend;       ///< (groups,) [m] half of the largest second derivative
-  const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links
+  const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links, wherever they are
+  /// (pairs,) slack and bend of the farther link as seen from the other.
+  const float *pair_slack, *pair_bend;
 };
 
 struct FastVerdict {
