@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mjarm/collision/fast_block_internal.hpp"
+#include "mjarm/collision/fast_walk_internal.hpp"
 
 /// The search for collisions of a block of configurations. Included by one file for each width of
 /// the registers.
@@ -41,6 +42,8 @@ class BlockSearch {
     for (int g = 0; g < robot_.group_count; ++g) {
       if (kCover) grow_ = growth(g);
       meet_world(g);
+      if (is_done()) return;
+      meet_crowd(g);
       if (is_done()) return;
     }
     for (int k = 0; k < robot_.pair_count; ++k) {
@@ -88,10 +91,14 @@ class BlockSearch {
 
   void note(const Overlaps& overlaps) {
     const LaneBits lanes = less(kCover ? overlaps.grown : overlaps.bare, Floats{}) & active_;
-    if (lanes == 0) return;
+    if (lanes != 0) note(lanes, kCover ? less(overlaps.bare, Floats{}) & lanes : lanes);
+  }
+
+  /// Lanes that overlap, and those of them that do without growth.
+  void note(LaneBits lanes, LaneBits bare) {
     if constexpr (kCover) {
       verdict_.blocked |= lanes;
-      verdict_.hit |= less(overlaps.bare, Floats{}) & lanes;
+      verdict_.hit |= bare;
       half_ = zero_where(lanes, half_);  // such a lane goes on as a single configuration
       grow_ = zero_where(lanes, grow_);
     } else {
@@ -152,6 +159,73 @@ class BlockSearch {
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
     note(overlaps);
+  }
+
+  /// What stands in trees.
+  void meet_crowd(int g) {
+    if (robot_.groups[g].body == 0) return;
+    const Point& ball = block_.balls[g];
+    const auto reach2 = [&] { return squared_reach(robot_.groups[g].ball.radius); };
+    const auto meet_items = [&](int node, const Touched& touched) {
+      for (std::uint32_t left = touched.children; left != 0 && !is_done(); left &= left - 1) {
+        meet_item(g, ball, world_.items[node * kFan + __builtin_ctz(left)]);
+      }
+      return is_done();
+    };
+    const auto meet_points = [&](int node, const Touched& touched) {
+      meet_twig(g, node, touched.lanes());
+      return is_done();
+    };
+    if (world_.crowd.levels > 0) walk(world_.crowd, ball, active_, reach2, meet_items);
+    if (is_done()) return;
+    if (world_.clouds.levels > 0) walk(world_.clouds, ball, active_, reach2, meet_points);
+  }
+
+  void meet_item(int g, const Point& ball, const FastItem& item) {
+    const Point at = into_frame(world_, item.frame, ball);
+    switch (item.kind) {
+      case FastKind::box:
+        return meet_run(g, item.frame, at, world_.boxes, {item.index, 1});
+      case FastKind::cylinder:
+        return meet_run(g, item.frame, at, world_.cylinders, {item.index, 1});
+    }
+  }
+
+  /// The leaves of points below a node, sphere by sphere.
+  void meet_twig(int g, int index, LaneBits lanes) {
+    block_.place_spheres(robot_, g);
+    const FastGroup& group = robot_.groups[g];
+    const FastNode& node = world_.clouds.nodes[0][index];
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      const float radius = robot_.spheres[k].radius;
+      const Point& center = block_.centers[k];
+      const Touched touched(node, center, squared_reach(radius), lanes & active_);
+      for (std::uint32_t left = touched.children; left != 0; left &= left - 1) {
+        const int child = __builtin_ctz(left);
+        meet_points(world_.points[index * kFan + child], center, radius, touched.child[child]);
+        if (is_done()) return;
+      }
+    }
+  }
+
+  void meet_points(const FastPoints& points, const Point& center, float radius, LaneBits lanes) {
+    if (__builtin_popcount(lanes) > kFewLanes) {
+      Overlaps overlaps;
+      for (int i = 0; i < kFan; ++i) {
+        const float reach = radius + points.radius[i];
+        look(squared(center - point_of(points, i)), reach, -reach * reach, overlaps);
+      }
+      return note(overlaps);
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      const LaneBits bit = LaneBits{1} << lane;
+      const Point at = lane_of(center, lane);
+      const float grow = kCover ? grow_[lane] : 0;
+      if (any_point_within(points, at, radius + grow)) {
+        note(bit & active_, any_point_within(points, at, radius) ? bit & active_ : 0);
+      }
+    }
   }
 
   void meet_itself(const FastPair& pair) {
