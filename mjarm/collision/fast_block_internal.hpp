@@ -128,9 +128,7 @@ struct Block {
     return plus_cross(twists[body].v, twists[body].w, p - frames[body].p);
   }
   /// How the point of a body that is now at the ball of group `g` moves, and how the body turns.
-  Twist twist_at_ball(int g, int body) const {
-    return {velocity(balls[g], body), twists[body].w};
-  }
+  Twist twist_at_ball(int g, int body) const { return {velocity(balls[g], body), twists[body].w}; }
 
   void place_spheres(const FastRobotTables& robot, int g) {
     if (placed[g]) return;
@@ -167,7 +165,9 @@ inline Point gap_vector(const FastBox& box, const Point& p) {
           p.y - smaller(larger(p.y, splat(box.low[1])), splat(box.high[1])),
           p.z - smaller(larger(p.z, splat(box.low[2])), splat(box.high[2]))};
 }
-inline Floats squared_gap(const FastBox& box, const Point& p) { return squared(gap_vector(box, p)); }
+inline Floats squared_gap(const FastBox& box, const Point& p) {
+  return squared(gap_vector(box, p));
+}
 
 /// The same from a finite cylinder.
 inline Floats squared_gap(const FastCylinder& cylinder, const Point& p) {

@@ -69,9 +69,9 @@ class BlockSearch {
   }
 
   Floats growth(const Twist& twist, float spread, float slack, float bend) const {
-    const Floats speed = multiply_add(square_root(squared(twist.w)), splat(spread),
-                                      square_root(squared(twist.v))) +
-                         slack;
+    const Floats speed =
+        multiply_add(square_root(squared(twist.w)), splat(spread), square_root(squared(twist.v))) +
+        slack;
     return half_ * multiply_add(half_, splat(bend), speed) * 1.0001F;
   }
 
@@ -103,7 +103,8 @@ class BlockSearch {
     note(overlaps, [](LaneBits near) { return near; });
   }
 
-  /// @param refine  which lanes stay blocked when looked at more closely; costs more, so it is asked
+  /// @param refine  which lanes stay blocked when looked at more closely; costs more, so it is
+  /// asked
   ///                only about lanes that do not overlap yet.
   template <class Refine>
   void note(const Overlaps& overlaps, const Refine& refine) {
@@ -195,16 +196,16 @@ class BlockSearch {
       const Point center = into_frame(world_, frame, block_.centers[k]);
       const Point v = into_frame(world_, frame, block_.velocity(block_.centers[k], group.body));
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
-      left |= near & ~cleared(gap_vector(solid, center), v, radius, motion_->slack[g],
-                              motion_->bend[g]);
+      left |= near &
+              ~cleared(gap_vector(solid, center), v, radius, motion_->slack[g], motion_->bend[g]);
     }
     return left;
   }
 
   /// Lanes in which a sphere, whose centre is at `gap` from the nearest point of a convex solid and
-  /// moves by `v`, stays farther from it than `radius`. The distance from a convex solid is a convex
-  /// function of the place, so along its gradient n it changes by n.v and by what the motion bends;
-  /// what goes along the surface does not count.
+  /// moves by `v`, stays farther from it than `radius`. The distance from a convex solid is a
+  /// convex function of the place, so along its gradient n it changes by n.v and by what the motion
+  /// bends; what goes along the surface does not count.
   LaneBits cleared(const Point& gap, const Point& v, float radius, float slack, float bend) const {
     const Floats distance = square_root(squared(gap));
     const Floats along_gap = multiply_add(gap.x, v.x, multiply_add(gap.y, v.y, gap.z * v.z));
