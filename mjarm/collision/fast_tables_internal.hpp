@@ -130,6 +130,15 @@ struct FastPoints {
   float radius[kFan];
 };
 
+/// A coarse grid of lower bounds of the distance to whatever stands in trees, in frame 0.
+struct FastGrid {
+  const std::uint8_t* cells = nullptr;  ///< (side, side, side), z slowest; none: nothing is there
+  int side = 0;
+  float low[3] = {0, 0, 0};  ///< [m] its corner
+  float per_meter = 0;       ///< cells
+  float unit = 0;            ///< [m] of the numbers in the cells
+};
+
 /// What stands round the robot. Everything is seen from frame 0, the orientation most solids share:
 /// the base is turned into it, so that these solids need no turning at all.
 struct FastWorldTables {
@@ -142,6 +151,7 @@ struct FastWorldTables {
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is
   const int* cylinder_ids = nullptr;
+  FastGrid grid;
   FastTree crowd;  ///< of the solids, where they are too many for lists
   const FastItem* items = nullptr;
   FastTree clouds;  ///< of all points

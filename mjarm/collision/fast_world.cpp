@@ -54,6 +54,7 @@ class WorldBuilder {
     if (placed_.size() > kMostListed) add_crowd(all, obstacles);
     add_clouds(obstacles.clouds, frames_[0], frames_[0].transpose() * all.reach_center_W,
                all.reach + kMostClearance, static_cast<int>(obstacles.solids.size()), out_);
+    if (!out_.items.empty() || !out_.point_ids.empty()) build_grid(all);
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
       const bool moves = robot_.groups[g].body > 0;
       out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, obstacles) : FastRun{});
@@ -189,6 +190,34 @@ class WorldBuilder {
     out_.crowd.build(leaves);
   }
 
+  void build_grid(const GroupBounds& all) {
+    const std::size_t leaves = out_.items.size() + out_.point_ids.size();
+    out_.grid = {frames_[0].transpose() * all.reach_center_W, all.reach, leaves};
+    for (const FastItem& item : out_.items) {
+      out_.grid.mark(bounds_of(item), [&](const Eigen::Vector3d& p_F) {
+        return gap_of(item, p_F) <= out_.grid.cell_radius();
+      });
+    }
+    out_.grid.finish(mark_clouds(out_));
+  }
+
+  /// [m] from a point in frame 0 to a leaf.
+  double gap_of(const FastItem& item, const Eigen::Vector3d& p_F) const {
+    const Eigen::Matrix3d& F = frames_[static_cast<std::size_t>(item.frame)];
+    const Eigen::Vector3d p = F.transpose() * (frames_[0] * p_F);
+    if (item.kind == FastKind::box) {
+      const FastBox& box = out_.boxes[static_cast<std::size_t>(item.index)];
+      const Eigen::Vector3d low = Eigen::Map<const Eigen::Vector3f>(box.low).cast<double>();
+      const Eigen::Vector3d high = Eigen::Map<const Eigen::Vector3f>(box.high).cast<double>();
+      return (p - p.cwiseMax(low).cwiseMin(high)).norm() - box.round;
+    }
+    const FastCylinder& cylinder = out_.cylinders[static_cast<std::size_t>(item.index)];
+    Eigen::Vector3d d = p - Eigen::Map<const Eigen::Vector3f>(cylinder.center).cast<double>();
+    const double along = std::max(std::abs(d[cylinder.axis]) - cylinder.half, 0.0);
+    d[cylinder.axis] = 0;
+    return std::hypot(std::max(d.norm() - cylinder.radius, 0.0), along);
+  }
+
   FastItem add_item(const GroupBounds& all, const Placed& placed) {
     if (placed.kind == Kind::cylinder) {
       add_cylinder(placed);
@@ -314,6 +343,7 @@ FastWorld::FastWorld(const FastRobotData& robot, const Obstacles& obstacles) {
   tables.cylinders = cylinders.data();
   tables.box_ids = box_ids.data();
   tables.cylinder_ids = cylinder_ids.data();
+  tables.grid = grid.tables();
   tables.crowd = crowd.tables();
   tables.items = items.data();
   tables.clouds = clouds.tables();
