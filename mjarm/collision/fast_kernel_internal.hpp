@@ -185,14 +185,8 @@ class BlockSearch {
     const auto reach2 = [&] { return squared_reach(radius); };
     walk(world_.crowd, ball, lanes, active_, reach2, [&](int leaf, LaneBits touching) {
       const FastItem& item = world_.items[leaf];
-      switch (item.kind) {
-        case FastKind::box:
-          meet_item(g, item.frame, touching, world_.boxes[item.index]);
-          break;
-        case FastKind::cylinder:
-          meet_item(g, item.frame, touching, world_.cylinders[item.index]);
-          break;
-      }
+      visit_solid(world_, item,
+                  [&](const auto& solid) { meet_item(g, item.frame, touching, solid); });
       return is_done();
     });
   }

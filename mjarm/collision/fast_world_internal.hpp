@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "mjarm/collision/fast_grid_internal.hpp"
 #include "mjarm/collision/fast_robot_internal.hpp"
 #include "mjarm/collision/fast_tree_internal.hpp"
@@ -23,6 +26,9 @@ struct FastWorld {
   std::vector<int> box_ids, cylinder_ids;
   FastTreeNodes crowd, clouds;
   std::vector<FastItem> items;
+  std::vector<FastTriangle> triangles;
+  std::vector<FastPlane> planes;
+  std::vector<FastPolytope> polytopes;
   std::vector<FastPoints> points;
   std::vector<int> point_ids;
   FastGridCells grid;
