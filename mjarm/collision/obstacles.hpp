@@ -86,7 +86,7 @@ inline constexpr std::size_t kMostPoints = 100'000;
 
 /// The solid as few planes round points, each of which touches one of them: the faces of their
 /// convex hull, planes along its edges, and some in all directions. The solid holds all points.
-/// What is D [m] away from their hull is at least 0.8 D away from one of the planes, as long as the
+/// What is D [m] away from their hull is at least 0.9 D away from one of the planes, as long as the
 /// hull has no more than 40 faces; for more the faces of similar direction share planes.
 /// @param points  [m] 1 to 10,000, finite, within 1e4 m; may be on a plane or a line.
 [[nodiscard]] Result<PolytopeShape> make_polytope(std::span<const Eigen::Vector3d> points);

@@ -84,7 +84,7 @@ TEST(Obstacles, PolytopesHoldTheirPointsAndAreTight) {
       if (lower > 1e-3) worst = std::min(worst, distance(solid, p) / lower);
     }
   }
-  EXPECT_GT(worst, 0.8);
+  EXPECT_GT(worst, 0.9);
   RecordProperty("worst", std::to_string(worst));
 }
 

@@ -96,6 +96,18 @@ class Hull {
   double spare_ = 0;
 };
 
+/// What is flat gets a hull of its own by a few points beside it.
+void thicken(std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) middle += p / static_cast<double>(points.size());
+  double size = 0;
+  for (const Eigen::Vector3d& p : points) size = std::max(size, (p - middle).norm());
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    points.push_back(middle + 1e-3 * size * Eigen::Vector3d::Unit(k));
+    points.push_back(middle - 1e-3 * size * Eigen::Vector3d::Unit(k));
+  }
+}
+
 /// Planes in chosen directions.
 class PlaneList {
  public:
@@ -182,9 +194,14 @@ Result<PolytopeShape> make_polytope(std::span<const Eigen::Vector3d> points) {
     return fail(Errc::bad_input,
                 text(msg::collision_polytope_points, points.size(), kMostHullPoints));
   }
-  const std::vector<HullFace> faces = Hull(points).faces();
+  std::vector<Eigen::Vector3d> corners(points.begin(), points.end());
+  std::vector<HullFace> faces = Hull(corners).faces();
+  if (faces.empty()) {
+    thicken(corners);
+    faces = Hull(corners).faces();
+  }
   PlaneList planes(points);
-  add_faces(points, faces, planes);
+  add_faces(corners, faces, planes);
   add_all_round(planes);
   if (faces.size() <= 1000) add_edges(faces, planes);
   PolytopeShape out;
