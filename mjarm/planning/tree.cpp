@@ -27,14 +27,20 @@ Tree::Near Tree::nearest(std::span<const double> q) const {
 }
 
 void Tree::move(int node, int parent, double cost) {
-  const double saved = this->cost(node) - cost;
+  int* link = &children(this->parent(node)).first;
+  while (*link != node) link = &children(*link).next;
+  *link = children(node).next;
   parents_[static_cast<std::size_t>(node)] = parent;
-  const auto below = [&](int n) {
-    while (n >= 0 && n != node) n = this->parent(n);
-    return n == node;
-  };
-  for (int n = 0; n < size(); ++n) {
-    if (below(n)) costs_[static_cast<std::size_t>(n)] -= saved;
+  hang_below(node, parent);
+  const double saved = this->cost(node) - cost;
+  std::vector<int> below{node};
+  while (!below.empty()) {
+    const int n = below.back();
+    below.pop_back();
+    costs_[static_cast<std::size_t>(n)] -= saved;
+    for (int child = children(n).first; child >= 0; child = children(child).next) {
+      below.push_back(child);
+    }
   }
 }
 

@@ -39,6 +39,8 @@ class Tree {
     parents_.push_back(parent);
     costs_.push_back(parent < 0 ? 0 : cost(parent) + length);
     weights_.push_back(1);
+    children_.push_back({});
+    hang_below(size() - 1, parent);
     return size() - 1;
   }
 
@@ -59,10 +61,22 @@ class Tree {
   std::vector<JointVec> branch(int node) const;
 
  private:
+  /// Children of a node form a list: the first, and of each the next.
+  struct Children {
+    int first = -1, next = -1;
+  };
+  Children& children(int node) { return children_[static_cast<std::size_t>(node)]; }
+  void hang_below(int node, int parent) {
+    if (parent < 0) return;
+    children(node).next = children(parent).first;
+    children(parent).first = node;
+  }
+
   std::size_t dof_, stride_;
   std::vector<double> rows_;  // stride_ a node, the rest 0: whole registers
   std::vector<int> parents_;
   std::vector<double> costs_;
+  std::vector<Children> children_;
   std::vector<double> weights_;  // of the squared distance
 };
 
