@@ -26,7 +26,7 @@ Obstacles crowded_world(Rng& rng, int solids, int clouds, int points) {
 TEST(FastCrowd, NeverFreeWhereRandomRobotsCollide) {
   Rng rng(51);
   Tally tally;
-  const int worlds = testing::rounds(60, 3000);
+  const int worlds = testing::rounds(30, 3000);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
     SphereSet set = testing::random_spheres(arm, rng);
@@ -50,7 +50,7 @@ Obstacles composite_world(Rng& rng, int count) {
 TEST(FastCrowd, NeverFreeInMeshesPolytopesAndHeightFields) {
   Rng rng(55);
   Tally tally;
-  const int worlds = testing::rounds(60, 3000);
+  const int worlds = testing::rounds(30, 3000);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
     SphereSet set = testing::random_spheres(arm, rng);
@@ -68,7 +68,7 @@ TEST(FastCrowd, NothingIsFreeInsideOfASolidMesh) {
   Rng rng(56);
   const Arm arm = testing::panda();
   int inside = 0;
-  for (int round = 0; round < 20; ++round) {
+  for (int round = 0; round < 10; ++round) {
     SphereSet set;
     set.links = {{"tip", 6, {{testing::random_vector(rng, 0.1), 1e-5}}}};
     Obstacles world;
@@ -89,13 +89,13 @@ TEST(FastCrowd, NothingIsFreeInsideOfASolidMesh) {
       }
     }
   }
-  EXPECT_GT(inside, 300);
+  EXPECT_GT(inside, 150);
 }
 
 TEST(FastCrowd, NoFalseCertificateOfEdges) {
   Rng rng(52);
   int free = 0, hit = 0;
-  const int worlds = testing::rounds(60, 1500);
+  const int worlds = testing::rounds(45, 1500);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(2 + round % 6, rng);
     SphereSet set = testing::random_spheres(arm, rng);

@@ -27,6 +27,19 @@ struct Placed {
   bool endless = false;                                       // a half-space
   bool piece = false;                                         // of a solid of many
   double distance = 0;  // from where the robot stands: what is near is looked at first
+  FastBox box;  // outwards of low and high; its rounding has what rounding does to its place
+
+  /// From the nearest point, without its rounding; flat ends of a cylinder count as rounded.
+  Eigen::Vector3d apart(const Eigen::Vector3d& p) const {
+    return p - p.cwiseMax(low).cwiseMin(high);
+  }
+};
+
+/// What a group can reach, seen from a frame.
+struct Near {
+  int frame = -1;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double most = 0;  // [m] boxes are cut down to this
 };
 
 /// Index of the entry of `v` that is 1 or -1 while the others vanish; -1 where there is none.
@@ -57,9 +70,9 @@ class WorldBuilder {
     build_crowd(all, obstacles);
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
       const bool moves = robot_.groups[g].body > 0;
-      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, obstacles) : FastRun{});
+      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0) : FastRun{});
     }
-    out_.tables.every_list = add_lists(all, kMostClearance, obstacles);
+    out_.tables.every_list = add_lists(all, kMostClearance);
   }
 
  private:
@@ -102,8 +115,17 @@ class WorldBuilder {
     Placed placed;
     placed.id = id;
     placed.frame = frame;
-    placed.distance = distance(solid, robot_.bounds.front().reach_center_W);
     fill(solid, placed);
+    const Near near = near_in(robot_.bounds.front(), frame);
+    placed.distance = std::max(placed.apart(near.middle).norm() - placed.round, 0.0);
+    for (int k = 0; k < 3; ++k) {
+      placed.box.low[k] = round_down(placed.low[k]);
+      placed.box.high[k] = round_up(placed.high[k]);
+    }
+    if (placed.kind == Kind::round) {
+      const double far = placed.low.norm() + placed.high.norm() + placed.round;
+      placed.box.round = round_up(placed.round + 4 * kFloat * far);
+    }
     placed_.push_back(placed);
     ++used_[static_cast<std::size_t>(frame)];
   }
@@ -219,20 +241,27 @@ class WorldBuilder {
       const int index = static_cast<int>(out_.cylinders.size()) - 1;
       return {FastKind::cylinder, placed.frame, index, placed.id};
     }
-    add_box(all, placed);
+    add_box(near_in(all, placed.frame), placed);
     return {FastKind::box, placed.frame, static_cast<int>(out_.boxes.size()) - 1, placed.id};
   }
 
-  FastRun add_lists(const GroupBounds& bounds, double margin, const Obstacles& obstacles) {
+  FastRun add_lists(const GroupBounds& bounds, double margin) {
     const int first = static_cast<int>(out_.lists.size());
+    Near near;
     for (const Placed& placed : placed_) {
-      const Obstacle& solid = obstacles.solids[static_cast<std::size_t>(placed.id)];
-      if (distance(solid, bounds.reach_center_W) > bounds.reach + margin + 1e-4) continue;
+      if (placed.frame != near.frame) near = near_in(bounds, placed.frame);
+      const double most = bounds.reach + margin + 1e-4 + placed.round;
+      if (placed.apart(near.middle).squaredNorm() > most * most) continue;
       const int lists = static_cast<int>(out_.lists.size());
       if (lists == first || out_.lists.back().frame != placed.frame) start_list(placed.frame);
-      add(bounds, placed);
+      add(near, placed);
     }
     return {first, static_cast<int>(out_.lists.size()) - first};
+  }
+
+  Near near_in(const GroupBounds& bounds, int frame) const {
+    return {frame, frames_[static_cast<std::size_t>(frame)].transpose() * bounds.reach_center_W,
+            bounds.reach + 2 * kMostClearance};
   }
 
   void start_list(int frame) {
@@ -241,14 +270,14 @@ class WorldBuilder {
     out_.lists.push_back({frame, boxes, boxes, cylinders});
   }
 
-  void add(const GroupBounds& bounds, const Placed& placed) {
+  void add(const Near& near, const Placed& placed) {
     FastList& list = out_.lists.back();
     if (placed.kind == Kind::cylinder) {
       add_cylinder(placed);
       ++list.cylinders.count;
       return;
     }
-    add_box(bounds, placed);
+    add_box(near, placed);
     if (placed.kind == Kind::box) {
       ++list.boxes.count;
       ++list.rounds.first;
@@ -257,22 +286,14 @@ class WorldBuilder {
     }
   }
 
-  /// Plain boxes are cut down to what is within reach, where floats are fine enough; what has a
-  /// radius grows by what rounding does to its place.
-  void add_box(const GroupBounds& bounds, const Placed& placed) {
-    const Eigen::Vector3d middle =
-        frames_[static_cast<std::size_t>(placed.frame)].transpose() * bounds.reach_center_W;
-    const double most = bounds.reach + 2 * kMostClearance;
-    const bool plain = placed.kind == Kind::box;
-    FastBox box;
-    for (int k = 0; k < 3; ++k) {
-      const double low = plain ? std::max(placed.low[k], middle[k] - most) : placed.low[k];
-      const double high = plain ? std::min(placed.high[k], middle[k] + most) : placed.high[k];
-      box.low[k] = round_down(low);
-      box.high[k] = round_up(high);
+  /// Plain boxes are cut down to what is within reach, where floats are fine enough.
+  void add_box(const Near& near, const Placed& placed) {
+    FastBox box = placed.box;
+    for (int k = 0; k < 3 && placed.kind == Kind::box; ++k) {
+      const double low = near.middle[k] - near.most, high = near.middle[k] + near.most;
+      if (placed.low[k] < low) box.low[k] = round_down(low);
+      if (placed.high[k] > high) box.high[k] = round_up(high);
     }
-    const double far = placed.low.norm() + placed.high.norm() + placed.round;
-    box.round = plain ? 0 : round_up(placed.round + 4 * kFloat * far);
     out_.boxes.push_back(box);
     out_.box_ids.push_back(placed.id);
   }

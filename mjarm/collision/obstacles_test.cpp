@@ -9,6 +9,7 @@
 
 #include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/collision/sphere_set.hpp"
+#include "mjarm/kinematics/long_tests_test.hpp"
 
 namespace mjarm {
 namespace {
@@ -66,7 +67,7 @@ std::array<double, 2> hull_distance(const std::vector<Eigen::Vector3d>& points,
 TEST(Obstacles, PolytopesHoldTheirPointsAndAreTight) {
   Rng rng(34);
   double worst = 1;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < testing::rounds(105, 3000); ++i) {
     const Eigen::Vector3d half(rng.uniform(0, 1), i % 7 == 0 ? 0 : rng.uniform(0, 1),
                                i % 21 == 0 ? 0 : rng.uniform(0, 1));
     std::vector<Eigen::Vector3d> points;
