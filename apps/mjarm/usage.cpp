@@ -32,6 +32,16 @@ Result<std::uint64_t> parse_whole(const std::string& option, const std::string& 
   return number;
 }
 
+Result<int> parse_threads(const std::string& value) {
+  constexpr std::uint64_t kMostThreads = 1024;
+  const Result<std::uint64_t> threads = parse_whole("--threads", value);
+  if (!threads) return fail(threads.error());
+  if (*threads < 1 || *threads > kMostThreads) {
+    return fail(Errc::usage, text(msg::app_bad_threads, *threads, kMostThreads));
+  }
+  return static_cast<int>(*threads);
+}
+
 Result<std::size_t> parse_choice(const std::string& option, const std::string& value,
                                  std::span<const std::string> words) {
   const auto word = std::find(words.begin(), words.end(), value);

@@ -79,7 +79,7 @@ class SphereModelWriter {
     for (std::size_t i = 0; i < obstacles_.solids.size(); ++i) {
       const Obstacle& solid = obstacles_.solids[i];
       const std::string name = "o" + std::to_string(i);
-      parts_[name] = solid.name;
+      parts_[name] = solid.name.empty() ? std::to_string(i) : solid.name;
       out_ += "<geom name=\"" + name + R"(" contype="0" conaffinity="1")" + place(solid.X_WO) +
               std::visit(ShapeAttributes(), solid.shape) + "/>";
     }

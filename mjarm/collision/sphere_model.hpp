@@ -15,7 +15,8 @@ namespace mjarm {
 struct SphereModel {
   Model model;
   Arm arm;  ///< as given, its joints found in `model`
-  /// The link or obstacle that each geom stands for, by the geom's name.
+  /// The link or obstacle that each geom stands for, by the geom's name; a number for an
+  /// obstacle without a name.
   std::map<std::string, std::string> parts;
 };
 
