@@ -171,8 +171,55 @@ inline Floats squared_gap(const FastCylinder& cylinder, const Point& p) {
   return multiply_add(side, side, beyond * beyond);
 }
 
+inline Floats dot(const float* a, const Point& b) {
+  return multiply_add(splat(a[0]), b.x, multiply_add(splat(a[1]), b.y, splat(a[2]) * b.z));
+}
+
+/// The same from a triangle: from its plane above it, else from the nearest edge.
+inline Floats squared_gap(const FastTriangle& triangle, const Point& p) {
+  Floats beside2 = splat(1e30F), beyond_side = splat(-1e30F);
+  Point d;
+  for (int i = 0; i < 3; ++i) {
+    const float *corner = triangle.corner[i], *edge = triangle.edge[i];
+    d = {p.x - corner[0], p.y - corner[1], p.z - corner[2]};
+    const Floats t = smaller(larger(dot(edge, d) * triangle.per_length2[i], Floats{}), splat(1.0F));
+    const Point off = {multiply_add(t, splat(-edge[0]), d.x), multiply_add(t, splat(-edge[1]), d.y),
+                       multiply_add(t, splat(-edge[2]), d.z)};
+    beside2 = smaller(beside2, squared(off));
+    beyond_side = larger(beyond_side, dot(triangle.side[i], d));
+  }
+  const Floats height = dot(triangle.normal, d);
+  return beyond_side < triangle.slack ? smaller(height * height, beside2) : beside2;
+}
+
+/// Of a polytope the largest distance from a plane, squared.
+inline Floats squared_gap(const FastPolytope& polytope, const Point& p) {
+  Floats gap{};
+  for (int i = 0; i < polytope.count; ++i) {
+    gap = larger(gap, dot(polytope.planes[i].n, p) - polytope.planes[i].d);
+  }
+  return gap * gap;
+}
+
+inline float rounding_of(const FastTriangle& triangle) { return triangle.round; }
+inline float rounding_of(const FastPolytope&) { return 0; }
 inline float rounding_of(const FastBox& box) { return box.round; }
 inline float rounding_of(const FastCylinder&) { return 0; }
+
+/// Calls visit(solid) for a leaf of the tree of solids.
+template <class Visit>
+void visit_solid(const FastWorldTables& world, const FastItem& item, const Visit& visit) {
+  switch (item.kind) {
+    case FastKind::box:
+      return visit(world.boxes[item.index]);
+    case FastKind::cylinder:
+      return visit(world.cylinders[item.index]);
+    case FastKind::triangle:
+      return visit(world.triangles[item.index]);
+    case FastKind::polytope:
+      return visit(world.polytopes[item.index]);
+  }
+}
 
 }  // namespace MJARM_FLOAT_LANES
 }  // namespace mjarm::detail

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mjarm/collision/fast_block_internal.hpp"
+#include "mjarm/collision/fast_walk_internal.hpp"
 
 /// The search for collisions of a block of configurations. Included by one file for each width of
 /// the registers.
@@ -41,6 +42,8 @@ class BlockSearch {
     for (int g = 0; g < robot_.group_count; ++g) {
       if (kCover) grow_ = growth(g);
       meet_world(g);
+      if (is_done()) return;
+      if (world_.grid.cells != nullptr) meet_crowd(g);
       if (is_done()) return;
     }
     for (int k = 0; k < robot_.pair_count; ++k) {
@@ -88,10 +91,14 @@ class BlockSearch {
 
   void note(const Overlaps& overlaps) {
     const LaneBits lanes = less(kCover ? overlaps.grown : overlaps.bare, Floats{}) & active_;
-    if (lanes == 0) return;
+    if (lanes != 0) note(lanes, kCover ? less(overlaps.bare, Floats{}) & lanes : lanes);
+  }
+
+  /// Lanes that overlap, and those of them that do without growth.
+  void note(LaneBits lanes, LaneBits bare) {
     if constexpr (kCover) {
       verdict_.blocked |= lanes;
-      verdict_.hit |= less(overlaps.bare, Floats{}) & lanes;
+      verdict_.hit |= bare;
       half_ = zero_where(lanes, half_);  // such a lane goes on as a single configuration
       grow_ = zero_where(lanes, grow_);
     } else {
@@ -154,6 +161,88 @@ class BlockSearch {
     note(overlaps);
   }
 
+  /// What stands in trees: the grid says which spheres have to look there.
+  void meet_crowd(int g) {
+    const FastGroup& group = robot_.groups[g];
+    if (group.body == 0) return;
+    const Floats bound = distance_bound(world_.grid, block_.balls[g]);
+    if ((less(bound, grow_ + group.ball.radius) & active_) == 0) return;
+    block_.place_spheres(robot_, g);
+    LaneBits together = 0;
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      const Floats reach = grow_ + robot_.spheres[k].radius;
+      near_[k] = less(distance_bound(world_.grid, block_.centers[k]), reach) & active_;
+      together |= near_[k];
+    }
+    if (together == 0) return;
+    if (world_.crowd.levels > 0) meet_items(g, together);
+    if (world_.clouds.levels > 0 && !is_done()) meet_clouds(g);
+  }
+
+  void meet_items(int g, LaneBits lanes) {
+    const float radius = robot_.groups[g].ball.radius;
+    const Point& ball = block_.balls[g];
+    const auto reach2 = [&] { return squared_reach(radius); };
+    walk(world_.crowd, ball, lanes, active_, reach2, [&](int leaf, LaneBits touching) {
+      const FastItem& item = world_.items[leaf];
+      visit_solid(world_, item,
+                  [&](const auto& solid) { meet_item(g, item.frame, touching, solid); });
+      return is_done();
+    });
+  }
+
+  template <class Solid>
+  void meet_item(int g, int frame, LaneBits lanes, const Solid& solid) {
+    const FastGroup& group = robot_.groups[g];
+    const float round = rounding_of(solid);
+    const Point ball = into_frame(world_, frame, block_.balls[g]);
+    lanes &= less(squared_gap(solid, ball), squared_reach(group.ball.radius + round));
+    if (lanes == 0) return;
+    Overlaps overlaps;
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      if ((near_[k] & lanes) == 0) continue;
+      const Point center = into_frame(world_, frame, block_.centers[k]);
+      const float radius = robot_.spheres[k].radius + round;
+      look(squared_gap(solid, center), radius, -radius * radius, overlaps);
+    }
+    note(overlaps);
+  }
+
+  void meet_clouds(int g) {
+    const FastGroup& group = robot_.groups[g];
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      if ((near_[k] & active_) == 0) continue;
+      const float radius = robot_.spheres[k].radius;
+      const Point& center = block_.centers[k];
+      const auto reach2 = [&] { return squared_reach(radius); };
+      walk(world_.clouds, center, near_[k], active_, reach2, [&](int leaf, LaneBits touching) {
+        meet_points(world_.points[leaf], center, radius, touching);
+        return is_done();
+      });
+      if (is_done()) return;
+    }
+  }
+
+  void meet_points(const FastPoints& points, const Point& center, float radius, LaneBits lanes) {
+    if (__builtin_popcount(lanes) > kFewLanes) {
+      Overlaps overlaps;
+      for (int i = 0; i < kFan; ++i) {
+        const float reach = radius + points.radius[i];
+        look(squared(center - point_of(points, i)), reach, -reach * reach, overlaps);
+      }
+      return note(overlaps);
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      const LaneBits bit = LaneBits{1} << lane;
+      const Point at = lane_of(center, lane);
+      const float grow = kCover ? grow_[lane] : 0;
+      if (any_point_within(points, at, radius + grow)) {
+        note(bit & active_, any_point_within(points, at, radius) ? bit & active_ : 0);
+      }
+    }
+  }
+
   void meet_itself(const FastPair& pair) {
     const FastGroup& a = robot_.groups[pair.a];
     const FastGroup& b = robot_.groups[pair.b];
@@ -185,6 +274,7 @@ class BlockSearch {
   const FastMotion* motion_ = nullptr;
   Floats half_{};
   Floats grow_{};
+  LaneBits near_[kFastSpheres];  // lanes of a sphere that may be near what stands in trees
   Block block_;
 };
 

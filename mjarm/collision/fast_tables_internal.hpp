@@ -98,6 +98,70 @@ struct FastList {
   FastRun boxes, rounds, cylinders;  ///< boxes and rounds are both in `boxes` of the world
 };
 
+/// How many children a node of a tree has, and how many levels of nodes there are at most.
+inline constexpr int kFan = 16;
+inline constexpr int kFastLevels = 5;
+
+/// Boxes round the children of a node, in frame 0; those that are not there are far away.
+struct FastNode {
+  float low[3][kFan], high[3][kFan];
+};
+
+/// Boxes round boxes: child c of node i of a level is node kFan * i + c of the level below it, or,
+/// at level 0, that leaf.
+struct FastTree {
+  int levels = 0;  ///< of nodes, the highest of which has one; 0: nothing is there
+  const FastNode* nodes[kFastLevels] = {};
+};
+
+/// A triangle without thickness, in frame 0.
+struct FastTriangle {
+  float corner[3][3];
+  float edge[3][3];      ///< from a corner to the next
+  float per_length2[3];  ///< [1/m^2] one over the squared length of an edge; 0: it has none
+  float side[3][3];      ///< across an edge, outwards, in the plane; length 1
+  float normal[3];       ///< length 1
+  float slack = 0;       ///< [m] as far beyond its sides a place still counts as above it
+  float round = 0;       ///< [m] radius round it
+};
+
+/// n . p <= d.
+struct FastPlane {
+  float n[3];
+  float d;
+};
+
+/// What is below all of its planes, in frame 0.
+struct FastPolytope {
+  int first = 0, count = 0;  ///< of the planes
+  const FastPlane* planes = nullptr;
+};
+
+enum class FastKind { box, cylinder, triangle, polytope };
+
+/// A solid as a leaf of a tree.
+struct FastItem {
+  FastKind kind = FastKind::box;
+  int frame = 0;
+  int index = 0;  ///< among those of its kind
+  int id = 0;     ///< which obstacle it is
+};
+
+/// Balls round points, in frame 0, as a leaf of a tree; those that are not there are far away.
+struct FastPoints {
+  float center[3][kFan];
+  float radius[kFan];
+};
+
+/// A coarse grid of lower bounds of the distance to whatever stands in trees, in frame 0.
+struct FastGrid {
+  const std::uint8_t* cells = nullptr;  ///< (side, side, side), z slowest; none: nothing is there
+  int side = 0;
+  float low[3] = {0, 0, 0};  ///< [m] its corner
+  float per_meter = 0;       ///< cells
+  float unit = 0;            ///< [m] of the numbers in the cells
+};
+
 /// What stands round the robot. Everything is seen from frame 0, the orientation most solids share:
 /// the base is turned into it, so that these solids need no turning at all.
 struct FastWorldTables {
@@ -110,6 +174,14 @@ struct FastWorldTables {
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is
   const int* cylinder_ids = nullptr;
+  FastGrid grid;
+  FastTree crowd;  ///< of the solids, where they are too many for lists
+  const FastItem* items = nullptr;
+  const FastTriangle* triangles = nullptr;
+  const FastPolytope* polytopes = nullptr;
+  FastTree clouds;  ///< of all points
+  const FastPoints* points = nullptr;
+  const int* point_ids = nullptr;  ///< which obstacle each point is, kFan a leaf
 };
 
 /// How the configurations of one edge move: q(t) = q0 + t dq, with what bounds the second

@@ -111,6 +111,23 @@ inline Floats zero_where(LaneBits lanes, Floats x) {
 }
 #endif
 
+/// One byte a lane; three more behind the last may be read.
+#if defined(__AVX512F__)
+inline Ints gather(const std::uint8_t* from, Ints index) {
+  return (Ints)_mm512_mask_i32gather_epi32(__m512i{}, 0xffff, (__m512i)index, from, 1) & 0xff;
+}
+#elif defined(__AVX2__)
+inline Ints gather(const std::uint8_t* from, Ints index) {
+  return (Ints)_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), (__m256i)index, 1) & 0xff;
+}
+#else
+inline Ints gather(const std::uint8_t* from, Ints index) {
+  Ints out;
+  for (int k = 0; k < kWidth; ++k) out[k] = from[index[k]];
+  return out;
+}
+#endif
+
 /// Sine and cosine for |x| <= kMostAngle, to kTrigError: the argument is reduced to a quarter turn
 /// by three parts of pi/2 (W. J. Cody and W. Waite, 1980), then Taylor's series.
 inline void sine_cosine(Floats x, Floats& s, Floats& c) {
