@@ -84,8 +84,7 @@ class PathJudge {
   }
   std::string other_of(const VerifyResult& found) const {
     if (found.obstacle < 0) return name_of(found.other_link);
-    const std::string& name =
-        problem_.obstacles.solids[static_cast<std::size_t>(found.obstacle)].name;
+    const std::string& name = obstacle_name(problem_.obstacles, found.obstacle);
     return name.empty() ? std::to_string(found.obstacle) : name;
   }
 

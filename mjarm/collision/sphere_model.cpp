@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "mjarm/core/messages/collision.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 
@@ -46,21 +47,27 @@ struct ShapeAttributes {
   std::string operator()(const HalfSpaceShape&) const {
     return " type=\"plane\"" + attribute("size", {0, 0, 1});
   }
+  template <class Shape>
+  std::string operator()(const Shape&) const {
+    return "";  // MuJoCo knows none that is exactly this
+  }
 };
 
 std::string sphere_name(int link, std::size_t sphere) {
   return "s" + std::to_string(link) + "_" + std::to_string(sphere);
 }
 
+/// Writes the model as MJCF.
 class SphereModelWriter {
  public:
   SphereModelWriter(const Arm& arm, const SphereSet& set, const Obstacles& obstacles)
       : arm_(arm), set_(set), obstacles_(obstacles) {}
 
-  /// The model as MJCF. Names are numbered: those of links and obstacles need not differ.
-  std::string text() {
+  /// Names are numbered: those of links and obstacles need not differ.
+  std::string write() {
     out_ = R"(<mujoco model="spheres"><compiler angle="radian"/><worldbody>)";
     write_obstacles();
+    write_clouds();
     write_spheres(-1);
     for (int joint = 0; joint < arm_.dof(); ++joint) {
       write_joint(joint);
@@ -82,6 +89,19 @@ class SphereModelWriter {
       parts_[name] = solid.name.empty() ? std::to_string(i) : solid.name;
       out_ += "<geom name=\"" + name + R"(" contype="0" conaffinity="1")" + place(solid.X_WO) +
               std::visit(ShapeAttributes(), solid.shape) + "/>";
+    }
+  }
+
+  void write_clouds() {
+    for (std::size_t i = 0; i < obstacles_.clouds.size(); ++i) {
+      const PointCloud& cloud = obstacles_.clouds[i];
+      const int index = static_cast<int>(obstacles_.solids.size() + i);
+      for (std::size_t k = 0; k < cloud.points_W.size(); ++k) {
+        const std::string name = "c" + std::to_string(i) + "_" + std::to_string(k);
+        parts_[name] = cloud.name.empty() ? std::to_string(index) : cloud.name;
+        out_ += "<geom name=\"" + name + R"(" contype="0" conaffinity="1")" +
+                position(cloud.points_W[k]) + ShapeAttributes()(BallShape{cloud.radius}) + "/>";
+      }
     }
   }
 
@@ -133,8 +153,12 @@ class SphereModelWriter {
 Result<SphereModel> sphere_model(const Arm& arm, const SphereSet& set, const Obstacles& obstacles) {
   if (auto fits = check_sphere_set(set, arm); !fits) return fail(std::move(fits.error()));
   if (auto fits = check_obstacles(obstacles); !fits) return fail(std::move(fits.error()));
+  for (const Obstacle& solid : obstacles.solids) {
+    if (!std::visit(ShapeAttributes(), solid.shape).empty()) continue;
+    return fail(Errc::not_available, text(msg::collision_no_geom, solid.name));
+  }
   SphereModelWriter writer(arm, set, obstacles);
-  Result<Model> model = Model::from_mjcf(writer.text());
+  Result<Model> model = Model::from_mjcf(writer.write());
   if (!model) return fail(std::move(model.error()));
   SphereModel out{std::move(*model), arm, std::move(writer.parts())};
   for (std::size_t i = 0; i < out.arm.joints.size(); ++i) {

@@ -23,7 +23,9 @@ struct SphereModel {
 /// Builds the model: a body a joint, a geom a sphere and an obstacle. What collides are the spheres
 /// with the obstacles, and the spheres of paired links with each other; nothing else. ExactChecker
 /// leaves out pieces at rest against obstacles, which no joint can change.
-/// @return check_sphere_set()'s or check_obstacles()'s error, or what MuJoCo has against the model.
+/// A cloud is a geom a point.
+/// @return not_available for polytopes, meshes and height fields; check_sphere_set()'s or
+/// check_obstacles()'s error, or what MuJoCo has against the model.
 [[nodiscard]] Result<SphereModel> sphere_model(const Arm& arm, const SphereSet& set,
                                                const Obstacles& obstacles);
 

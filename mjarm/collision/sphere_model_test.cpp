@@ -21,7 +21,8 @@ TEST(SphereModel, CollidesWhereTheOracleSaysSo) {
   for (int round = 0; round < scenes; ++round) {
     const Arm arm = testing::random_arm(1 + round % 7, rng);
     const SphereSet set = testing::random_spheres(arm, rng);
-    const Obstacles world = testing::random_world(rng, 3, round % 2 == 0);
+    Obstacles world = testing::random_world(rng, 3, round % 2 == 0);
+    world.clouds = {testing::random_cloud(rng, 10, 0.01)};
     const auto made = sphere_model(arm, set, world);
     ASSERT_TRUE(made.has_value()) << made.error().what;
     ExactChecker checker(made->model, made->arm, {.margin = 0});
@@ -76,6 +77,11 @@ TEST(SphereModel, WhatIsRefused) {
   EXPECT_TRUE(sphere_model(arm, set, {}).has_value());
   const Obstacles bad{{{"dot", Pose(), BallShape{0}}}};
   EXPECT_NE(sphere_model(arm, set, bad).error().what.find("dot"), std::string::npos);
+  const Obstacles hull{{{"hull", Pose(), PolytopeShape{{{0, 0, 1, 0}}, {-1, -1, -1}, {1, 1, 1}}}}};
+  const auto refused = sphere_model(arm, set, hull);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::not_available);
+  EXPECT_NE(refused.error().what.find("hull"), std::string::npos);
 }
 
 TEST(SphereModel, StartsOfThePublicProblems) {

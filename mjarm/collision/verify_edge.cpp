@@ -19,6 +19,16 @@ constexpr double kLeastSpeed = 1e-30;  // [m a unit of t] below which no slope i
 constexpr double kTurnError = 1e-5;    // an obstacle's rotation may be off by 1e-6
 constexpr double kShare = 0.999;       // of a step that is taken, for the rounding of the step
 
+/// Whether the distance to a shape is a convex function of the place.
+struct IsConvex {
+  bool operator()(const MeshShape&) const { return false; }
+  bool operator()(const HeightFieldShape&) const { return false; }
+  template <class Shape>
+  bool operator()(const Shape&) const {
+    return true;
+  }
+};
+
 /// A link against an obstacle or another link: proved to be apart on [0, until].
 struct Watch {
   double until = 0;  // t
@@ -117,7 +127,8 @@ class EdgeMarch {
     const int links = static_cast<int>(set_.links.size());
     for (int link = 0; link < links; ++link) {
       const double bend = bend_of(link, -1);
-      for (int k = 0; k < static_cast<int>(obstacles_.solids.size()); ++k) {
+      const std::size_t count = obstacles_.solids.size() + obstacles_.clouds.size();
+      for (int k = 0; k < static_cast<int>(count); ++k) {
         watches_.push({0, bend, link, -1, k, -1});
       }
     }
@@ -198,10 +209,8 @@ class EdgeMarch {
       const Eigen::Vector3d p = center_of(watch.link, sphere);
       const Eigen::Vector3d v = twist.at(p);
       if (watch.obstacle >= 0) {
-        const Obstacle& solid = obstacles_.solids[static_cast<std::size_t>(watch.obstacle)];
-        const double size = 1 + p.norm() + (p - solid.X_WO.p).norm();
-        look_at([&](const Eigen::Vector3d& x) { return distance(solid, x); }, p, v, sphere.radius,
-                kRounding * size, watch.bend, out);
+        look_at_obstacle(static_cast<std::size_t>(watch.obstacle), p, v, sphere.radius, watch.bend,
+                         out);
         continue;
       }
       for (const Sphere& other : set_.links[static_cast<std::size_t>(watch.other_link)].spheres) {
@@ -214,10 +223,27 @@ class EdgeMarch {
     return out;
   }
 
-  /// Looks at a point `p` that moves with `v` and must stay `radius` away from something convex.
+  void look_at_obstacle(std::size_t index, const Eigen::Vector3d& p, const Eigen::Vector3d& v,
+                        double radius, double bend, Look& out) const {
+    if (index < obstacles_.solids.size()) {
+      const Obstacle& solid = obstacles_.solids[index];
+      const auto distance_to = [&](const Eigen::Vector3d& x) { return distance(solid, x); };
+      const double rounding = kRounding * (1 + p.norm() + (p - solid.X_WO.p).norm());
+      look_at(distance_to, p, v, radius, rounding, bend, out, std::visit(IsConvex(), solid.shape));
+      return;
+    }
+    const PointCloud& cloud = obstacles_.clouds[index - obstacles_.solids.size()];
+    for (const Eigen::Vector3d& point : cloud.points_W) {
+      look_at([&](const Eigen::Vector3d& x) { return (x - point).norm(); }, p, v,
+              radius + cloud.radius, kRounding * (1 + p.norm() + point.norm()), bend, out);
+    }
+  }
+
+  /// Looks at a point `p` that moves with `v` and must stay `radius` away from something.
   template <class Distance>
   void look_at(const Distance& distance_to, const Eigen::Vector3d& p, const Eigen::Vector3d& v,
-               double radius, double rounding, double bend, Look& out) const {
+               double radius, double rounding, double bend, Look& out,
+               bool is_convex = true) const {
     const double d = distance_to(p);
     const double clearance = d - radius;
     out.clearance = std::min(out.clearance, clearance);
@@ -225,7 +251,7 @@ class EdgeMarch {
     if (depth < -rounding) out.overlaps = true;
     const double speed = v.norm();
     double slope = -speed;
-    if (speed > kLeastSpeed) {
+    if (is_convex && speed > kLeastSpeed) {
       // A convex function climbs at least as fast from here on as it did up to here.
       const double back = kSlopeLength / speed;
       slope = (d - rounding - distance_to(p - back * v)) / back;

@@ -42,7 +42,9 @@ struct VerifyResult {
 /// with (conservative advancement; B. Mirtich, Impulse-based dynamic simulation, 1996, ch. 2). The
 /// distance to a convex solid is a convex function of the place, so after a step h it is at least
 /// its value now, plus h times its slope, less h^2 / 2 times a bound of the second derivative of
-/// the place. That bound comes from the lengths of the links, the slope from two distances.
+/// the place. That bound comes from the lengths of the links, the slope from two distances. Meshes
+/// and height fields are not convex: there the slope is taken to be the speed, so that a way close
+/// along them may stay undecided.
 /// @param q0, q1  shape (dof,) [rad or m].
 /// @return check_sphere_set()'s or check_obstacles()'s error, or one about the options or the shape
 /// of q0 and q1.
