@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "mjarm/collision/edge_samples_test.hpp"
 #include "mjarm/collision/problems_test.hpp"
 #include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
@@ -13,23 +14,6 @@ namespace mjarm {
 namespace {
 
 constexpr std::array kEdgeLevels{SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512};
-
-std::vector<double> on_edge(std::span<const double> q0, std::span<const double> q1, double t) {
-  std::vector<double> q;
-  for (std::size_t i = 0; i < q0.size(); ++i) q.push_back(q0[i] + t * (q1[i] - q0[i]));
-  return q;
-}
-
-/// The least clearance of an edge at `samples` places.
-double least_clearance(const Arm& arm, const SphereSet& set, const Obstacles& world,
-                       std::span<const double> q0, std::span<const double> q1, int samples) {
-  double least = 1e9;
-  for (int k = 0; k <= samples; ++k) {
-    const std::vector<double> q = on_edge(q0, q1, static_cast<double>(k) / samples);
-    least = std::min(least, testing::true_clearance(arm, set, world, q));
-  }
-  return least;
-}
 
 struct EdgeTally {
   int free = 0, hit = 0, undecided = 0;
@@ -41,11 +25,11 @@ void compare_edge(const FastChecker& checker, const Obstacles& world, std::span<
   const Arm& arm = checker.robot().arm();
   const SphereSet& set = checker.robot().spheres();
   const EdgeResult result = check_edge(checker, q0, q1);
-  const std::vector<double> at = on_edge(q0, q1, result.t);
+  const std::vector<double> at = testing::on_edge(q0, q1, result.t);
   switch (result.verdict) {
     case EdgeVerdict::free:
       ++tally.free;
-      ASSERT_GT(least_clearance(arm, set, world, q0, q1, testing::rounds(60, 400)), 0)
+      ASSERT_GT(testing::least_clearance(arm, set, world, q0, q1, testing::rounds(60, 400)), 0)
           << "false certificate";
       break;
     case EdgeVerdict::hit:
@@ -108,7 +92,7 @@ TEST(CheckEdge, CertificatesCoverTheEdge) {
       EXPECT_GE(2 * interval.half * (q1 - q0).norm(), proof->step - 1e-12);
     }
     EXPECT_GE(reached, 1);
-    const auto at = on_edge(view(q0), view(q1), proof->nearest_t);
+    const auto at = testing::on_edge(view(q0), view(q1), proof->nearest_t);
     EXPECT_GT(proof->nearest.distance, 0);
     if (proof->nearest.obstacle >= 0) {
       SphereSet link;

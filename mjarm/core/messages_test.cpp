@@ -44,6 +44,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/target.inc"
 #include "mjarm/core/messages/train.inc"
 #include "mjarm/core/messages/trajectory.inc"
+#include "mjarm/core/messages/verify.inc"
 #include "mjarm/core/messages/view.inc"
 #include "mjarm/core/messages/workspace.inc"
 #undef MJARM_MSG

@@ -71,6 +71,9 @@ void finish_urdf(mjSpec* spec, const BodyPairs& apart);
 [[nodiscard]] Result<LoadedModel> compile_here(const SpecSource& source,
                                                const std::function<void(Stage)>& enter);
 
+/// Compiles MJCF that names no other file and that a program of ours has written, in this process.
+[[nodiscard]] Result<LoadedModel> compile_text(const std::string& mjcf);
+
 /// Loads a description whose root element is `robot`.
 [[nodiscard]] Result<LoadedModel> load_urdf(const XmlSources& files, const LoadOptions& options);
 

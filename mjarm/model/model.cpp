@@ -64,6 +64,13 @@ Result<Model> Model::load(const fs::path& file, const LoadOptions& options) {
   return model;
 }
 
+Result<Model> Model::from_mjcf(const std::string& text) {
+  install_mujoco_handler();
+  Result<LoadedModel> loaded = compile_text(text);
+  if (!loaded) return fail(loaded.error().code, one_line(loaded.error().what));
+  return Model(std::make_shared<const Impl>(Impl{{}, ModelFormat::mjcf, std::move(*loaded)}));
+}
+
 Result<Model> Model::load_guarded(const fs::path& file, LoadOptions options) {
   try {
     if (is_shipped(file)) options.trusted = options.allow_outside = true;

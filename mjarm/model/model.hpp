@@ -40,6 +40,10 @@ class Model {
   [[nodiscard]] static Result<Model> load(const std::filesystem::path& file,
                                           const LoadOptions& options = {});
 
+  /// A model that a program has written itself, as MJCF; it may name no other file.
+  /// @return MuJoCo's complaint in one line. Never throws, never ends the process.
+  [[nodiscard]] static Result<Model> from_mjcf(const std::string& text);
+
   /// The same robot with a point mass at the origin of a frame (site or body): a load that the
   /// unchanged model does not know.
   /// @param mass  [kg] > 0

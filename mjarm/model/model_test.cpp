@@ -367,6 +367,22 @@ TEST(ShippedModels, AreFoundByNameAndByEnvironment) {
   EXPECT_EQ(find_model_file("car").value(), folder.path() / "car.xml");
 }
 
+TEST(Model, FromATextThatAProgramWrote) {
+  const auto model = Model::from_mjcf(
+      R"(<mujoco model="made"><worldbody><body><joint/><geom size="0.1"/></body></worldbody></mujoco>)");
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_EQ(model->name(), "made");
+  EXPECT_EQ(model->nq(), 1);
+  for (const char* bad : {"", "<mujoco>", "<robot/>",
+                          R"(<mujoco><worldbody><geom size="-1"/></worldbody></mujoco>)"}) {
+    const auto none = Model::from_mjcf(bad);
+    ASSERT_FALSE(none) << bad;
+    EXPECT_EQ(none.error().code, Errc::bad_input);
+    EXPECT_THAT(none.error().what, HasSubstr("made in memory: "));
+    EXPECT_EQ(none.error().what.find('\n'), std::string::npos);
+  }
+}
+
 TEST(ShippedModels, MissNamesTheNearestAndTheChoices) {
   const auto miss = find_model_file("ur5");
   ASSERT_FALSE(miss);

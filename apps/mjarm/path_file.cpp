@@ -1,0 +1,112 @@
+#include "apps/mjarm/path_file.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "apps/mjarm/json_line.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/verify.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLargestPathFile = std::size_t{1} << 28;  // [bytes]
+
+std::string indexed(const char* list, std::size_t i) {
+  return std::string(list) + '[' + std::to_string(i) + ']';
+}
+
+Result<double> number_at(const json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end()) return fail(Errc::bad_input, text(msg::app_json_missing, key));
+  if (!found->is_number()) return fail(Errc::bad_input, text(msg::verify_no_number, key));
+  return found->get<double>();
+}
+
+Result<void> read_rows(const json& rows, std::size_t dof, GivenPath& out) {
+  if (!rows.is_array()) return fail(Errc::bad_input, text(msg::verify_no_rows));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Result<std::vector<double>> row = numbers_of(rows[i], indexed("path", i), dof);
+    if (!row) return fail(std::move(row.error()));
+    out.rows.push_back(std::move(*row));
+  }
+  return {};
+}
+
+Result<GivenCertificate> certificate_of(const json& entry) {
+  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::app_json_no_object));
+  GivenCertificate out;
+  const std::pair<const char*, double*> members[] = {
+      {"step", &out.step}, {"clearance", &out.clearance}, {"t", &out.t}};
+  for (const auto& [key, target] : members) {
+    const Result<double> value = number_at(entry, key);
+    if (!value) return fail(value.error());
+    *target = *value;
+  }
+  const auto pair = entry.find("pair");
+  if (pair == entry.end()) return out;
+  if (!pair->is_array() || pair->size() != 2 || !(*pair)[0].is_string() ||
+      !(*pair)[1].is_string()) {
+    return fail(Errc::bad_input, text(msg::verify_no_pair));
+  }
+  out.pair = pair->get<std::vector<std::string>>();
+  return out;
+}
+
+Result<void> read_certificates(const json& list, GivenPath& out) {
+  if (!list.is_array()) return fail(Errc::bad_input, text(msg::verify_no_certificates));
+  out.certificate.emplace();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Result<GivenCertificate> entry = certificate_of(list[i]);
+    if (!entry) {
+      return fail(Errc::bad_input, indexed("certificate", i) + ": " + entry.error().what);
+    }
+    out.certificate->push_back(std::move(*entry));
+  }
+  return {};
+}
+
+Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
+  if (entry.is_array()) return read_rows(entry, dof, out);
+  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::verify_no_rows));
+  const auto ok = entry.find("ok");
+  if (ok != entry.end() && !ok->is_boolean()) {
+    return fail(Errc::bad_input, text(msg::verify_no_bool, "ok"));
+  }
+  if (ok != entry.end() && !ok->get<bool>()) return {};
+  const auto path = entry.find("path");
+  if (path == entry.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "path"));
+  if (Result<void> read = read_rows(*path, dof, out); !read) return read;
+  if (entry.contains("cost")) {
+    const Result<double> cost = number_at(entry, "cost");
+    if (!cost) return fail(cost.error());
+    out.cost = *cost;
+  }
+  const auto certificate = entry.find("certificate");
+  return certificate == entry.end() ? Result<void>() : read_certificates(*certificate, out);
+}
+
+}  // namespace
+
+Result<std::vector<GivenPath>> read_path_file(const std::string& path, std::size_t dof) {
+  const Result<std::string> content = read_file(path, kLargestPathFile);
+  if (!content) return fail(content.error());
+  const Result<JsonObject> object = parse_json_object(*content);
+  if (!object) return fail(object.error().code, path + ": " + object.error().what);
+  std::vector<GivenPath> out;
+  for (const auto& item : (*object)->items()) {
+    GivenPath given;
+    given.id = item.key();
+    if (Result<void> read = read_entry(item.value(), dof, given); !read) {
+      return fail(read.error().code, text(msg::verify_in_path, path, given.id, read.error().what));
+    }
+    out.push_back(std::move(given));
+  }
+  return out;
+}
+
+}  // namespace mjarm::app

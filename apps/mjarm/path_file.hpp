@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::app {
+
+/// What a file says of one edge of a path.
+struct GivenCertificate {
+  double step = 0;                ///< [rad or m, L2] of the narrowest interval
+  double clearance = 0;           ///< [m]
+  double t = 0;                   ///< where on the edge
+  std::vector<std::string> pair;  ///< link, and obstacle or link; empty: nothing near
+};
+
+/// One path of a file.
+struct GivenPath {
+  std::string id;
+  std::vector<std::vector<double>> rows;  ///< corners, all of one size; none: no path is given
+  std::optional<double> cost;             ///< [rad or m]
+  std::optional<std::vector<GivenCertificate>> certificate;
+};
+
+/// Reads paths as `mjarm plan` writes them, `{"ID":{"ok":true,"path":[[q],...],...},...}`, or bare,
+/// `{"ID":[[q],...],...}`. What is not ok has no path.
+/// @param dof  how many values a row must have.
+/// @return an error that names the file, the id and the row.
+[[nodiscard]] Result<std::vector<GivenPath>> read_path_file(const std::string& path,
+                                                            std::size_t dof);
+
+}  // namespace mjarm::app

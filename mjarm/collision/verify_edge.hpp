@@ -1,0 +1,57 @@
+#pragma once
+
+#include <span>
+
+#include "mjarm/collision/obstacles.hpp"
+#include "mjarm/collision/sphere_set.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/arm.hpp"
+
+namespace mjarm {
+
+/// How an edge is verified. Every default is usable as is.
+struct VerifyOptions {
+  double allow_depth = 0;        ///< [m] overlap that still counts as free, >= 0
+  double limit_slack = 1e-4;     ///< [rad or m] by which a joint may be past its limit, >= 0
+  double least_step = 1e-6;      ///< [rad or m, L2] shortest step along the edge, > 0
+  long most_looks = 10'000'000;  ///< a link looked at against one obstacle or link, > 0
+};
+
+enum class VerifyVerdict {
+  free,       ///< proved: nothing overlaps anywhere on the edge
+  hit,        ///< something overlaps at `t`
+  outside,    ///< an end of the edge is outside of the limits, or no number
+  undecided,  ///< at `t` something touches (to 1e-12 m) or the looks are used up
+};
+
+struct VerifyResult {
+  VerifyVerdict verdict = VerifyVerdict::free;
+  double t = 0;  ///< where on the edge, 0 to 1; of a free edge: where it is nearest to anything
+  /// [m] clearance of the pair at `t`, allow_depth not counted; negative: overlap. Of a free edge
+  /// the least that was met; infinite where there is nothing to hit.
+  double distance = 0;
+  int link = -1;        ///< of the pair, by index into the sphere set
+  int obstacle = -1;    ///< the other of the pair; -1: a link
+  int other_link = -1;  ///< that link
+  int joint = -1;       ///< outside: the first joint that is
+};
+
+/// Proves or refutes that the straight edge q(t) = q0 + t (q1 - q0), t in [0, 1], is free: the
+/// second opinion on check_edge(), with which it shares nothing but the forward kinematics in
+/// double precision. Each link marches by itself against each obstacle and each link it is paired
+/// with (conservative advancement; B. Mirtich, Impulse-based dynamic simulation, 1996, ch. 2). The
+/// distance to a convex solid is a convex function of the place, so after a step h it is at least
+/// its value now, plus h times its slope, less h^2 / 2 times a bound of the second derivative of
+/// the place. That bound comes from the lengths of the links, the slope from two distances. Meshes
+/// and height fields are not convex: there the slope is taken to be the speed, so that a way close
+/// along them may stay undecided.
+/// @param q0, q1  shape (dof,) [rad or m].
+/// @return check_sphere_set()'s or check_obstacles()'s error, or one about the options or the shape
+/// of q0 and q1.
+[[nodiscard]] Result<VerifyResult> verify_edge(const Arm& arm, const SphereSet& set,
+                                               const Obstacles& obstacles,
+                                               std::span<const double> q0,
+                                               std::span<const double> q1,
+                                               const VerifyOptions& options = {});
+
+}  // namespace mjarm
