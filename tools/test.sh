@@ -103,8 +103,8 @@ run_tests() {
 
 # Tests with random cases, a hundred times as many as usual.
 run_long() {
-  check "build" build_counted dev kinematics_test path_test
-  ((failed)) || MJARM_LONG_TESTS=1 run_ctest dev --tests-regex '^(kinematics|path)\.' --timeout 7200
+  check "build" build_counted dev kinematics_test path_test collision_test
+  ((failed)) || MJARM_LONG_TESTS=1 run_ctest dev --tests-regex '^(kinematics|path|collision)\.' --timeout 7200
   finish
 }
 
