@@ -129,6 +129,9 @@ class EdgeMarch {
       const double bend = bend_of(link, -1);
       const std::size_t count = obstacles_.solids.size() + obstacles_.clouds.size();
       for (int k = 0; k < static_cast<int>(count); ++k) {
+        const auto& ignored = obstacles_.ignored;
+        if (std::find(ignored.begin(), ignored.end(), IgnoredPair{link, k}) != ignored.end())
+          continue;
         watches_.push({0, bend, link, -1, k, -1});
       }
     }

@@ -373,7 +373,7 @@ TEST(Model, FromATextThatAProgramWrote) {
   ASSERT_TRUE(model) << model.error().what;
   EXPECT_EQ(model->name(), "made");
   EXPECT_EQ(model->nq(), 1);
-  for (const char* bad : {"", "<mujoco>", "<robot/>",
+  for (const char* bad : {"", "<mujoco>", "<nothing/>",
                           R"(<mujoco><worldbody><geom size="-1"/></worldbody></mujoco>)"}) {
     const auto none = Model::from_mjcf(bad);
     ASSERT_FALSE(none) << bad;
