@@ -103,8 +103,8 @@ class EdgeSearch {
     }
   }
 
-  static void add_motion(const float* levers, std::size_t count, float rate, float turn,
-                         float* speed, float* bend) {
+  static void add_motion(const float* __restrict levers, std::size_t count, float rate, float turn,
+                         float* __restrict speed, float* __restrict bend) {
     for (std::size_t i = 0; i < count; ++i) {
       speed[i] += levers[i] * rate;
       bend[i] += levers[i] * turn;
@@ -215,13 +215,9 @@ Result<EdgeCertificate, EdgeResult> certify_edge(const FastChecker& checker,
     }
   }
   out.step = 2 * half * search.length();
-  std::vector<SphereClearance> clearances(out.intervals.size());
-  checker.clearances(q, clearances);
-  const auto least = std::min_element(
-      clearances.begin(), clearances.end(),
-      [](const SphereClearance& a, const SphereClearance& b) { return a.distance < b.distance; });
-  out.nearest = *least;
-  out.nearest_t = out.intervals[static_cast<std::size_t>(least - clearances.begin())].t;
+  const FastChecker::LeastClearance least = checker.least_clearance(q);
+  out.nearest = least.nearest;
+  out.nearest_t = out.intervals[least.row].t;
   return out;
 }
 

@@ -116,30 +116,49 @@ bool FastChecker::is_free(std::span<const double> q) const noexcept {
   return free != 0;
 }
 
+SphereClearance FastChecker::clearance_of(const detail::FastNearest& from) const noexcept {
+  const detail::FastRobotData& data = robot_.data();
+  const auto link_of = [&](int sphere) {
+    if (sphere < 0) return -1;
+    const int group = data.group_of_sphere[static_cast<std::size_t>(sphere)];
+    return data.link_of_group[static_cast<std::size_t>(group)];
+  };
+  return {from.distance, link_of(from.sphere), from.obstacle, link_of(from.other)};
+}
+
 void FastChecker::clearances(std::span<const double> q,
                              std::span<SphereClearance> out) const noexcept {
   const auto dof = static_cast<std::size_t>(robot_.dof());
   const auto width = static_cast<std::size_t>(kernels_->width);
   assert(q.size() == out.size() * dof);
-  const detail::FastRobotData& data = robot_.data();
-  const auto link_of = [&](int sphere) {
-    const int group = data.group_of_sphere[static_cast<std::size_t>(sphere)];
-    return data.link_of_group[static_cast<std::size_t>(group)];
-  };
   for (std::size_t first = 0; first < out.size(); first += width) {
     const std::size_t count = std::min(width, out.size() - first);
     const LaneInput input(q.data() + first * dof, count, dof, width);
     detail::FastNearest nearest[kMostLanes];
-    kernels_->clearances(data.tables, world_->tables, input.q,
-                         static_cast<float>(detail::kMostClearance), nearest);
-    for (std::size_t k = 0; k < count; ++k) {
-      const detail::FastNearest& from = nearest[k];
-      SphereClearance& to = out[first + k];
-      to = {from.distance, -1, from.obstacle, -1};
-      if (from.sphere >= 0) to.link = link_of(from.sphere);
-      if (from.other >= 0) to.other_link = link_of(from.other);
+    kernels_->clearances(robot_.data().tables, world_->tables, input.q,
+                         static_cast<float>(detail::kMostClearance), false, nearest);
+    for (std::size_t k = 0; k < count; ++k) out[first + k] = clearance_of(nearest[k]);
+  }
+}
+
+FastChecker::LeastClearance FastChecker::least_clearance(std::span<const double> q) const noexcept {
+  const auto dof = static_cast<std::size_t>(robot_.dof());
+  const auto width = static_cast<std::size_t>(kernels_->width);
+  const std::size_t rows = q.size() / dof;
+  LeastClearance out;
+  out.nearest.distance = detail::kMostClearance;
+  for (std::size_t first = 0; first < rows; first += width) {
+    const std::size_t count = std::min(width, rows - first);
+    const LaneInput input(q.data() + first * dof, count, dof, width);
+    detail::FastNearest nearest[kMostLanes];
+    kernels_->clearances(robot_.data().tables, world_->tables, input.q,
+                         static_cast<float>(out.nearest.distance), true, nearest);
+    for (std::size_t k = 0; k < width; ++k) {
+      if (nearest[k].sphere < 0) continue;
+      out = {clearance_of(nearest[k]), first + std::min(k, count - 1)};
     }
   }
+  return out;
 }
 
 SphereClearance FastChecker::clearance(std::span<const double> q) const noexcept {

@@ -16,6 +16,7 @@ namespace mjarm {
 namespace detail {
 struct FastWorld;
 struct FastKernels;
+struct FastNearest;
 }  // namespace detail
 
 /// How far a configuration is from its nearest collision, as a lower bound.
@@ -55,6 +56,14 @@ class FastChecker {
   void clearances(std::span<const double> q, std::span<SphereClearance> out) const noexcept;
   [[nodiscard]] SphereClearance clearance(std::span<const double> q) const noexcept;
 
+  /// The least clearance of several configurations, several times as fast as all of them.
+  struct LeastClearance {
+    SphereClearance nearest;
+    std::size_t row = 0;  ///< of `q`
+  };
+  /// @param q  as for clearances(), at least one row.
+  [[nodiscard]] LeastClearance least_clearance(std::span<const double> q) const noexcept;
+
   /// The link at rest and the obstacle that overlap, which no configuration can undo.
   struct FixedOverlap {
     int link = -1, obstacle = -1;
@@ -72,6 +81,7 @@ class FastChecker {
 
  private:
   FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel level);
+  [[nodiscard]] SphereClearance clearance_of(const detail::FastNearest& from) const noexcept;
 
   FastRobot robot_;
   std::shared_ptr<const detail::FastWorld> world_;

@@ -11,8 +11,8 @@ inline namespace MJARM_FLOAT_LANES {
 class NearestSearch {
  public:
   NearestSearch(const FastRobotTables& robot, const FastWorldTables& world, const float* q,
-                float most)
-      : robot_(robot), world_(world), best_(splat(most)) {
+                float most, bool together)
+      : robot_(robot), world_(world), together_(together), best_(splat(most)) {
     block_.place(robot, world, q);
   }
 
@@ -22,7 +22,9 @@ class NearestSearch {
     for (int g = 0; g < robot_.group_count; ++g) meet_world(g);
     for (int g = 0; g < robot_.group_count; ++g) meet_crowd(g);
     for (int k = 0; k < robot_.every_pair_count; ++k) meet_itself(robot_.every_pair[k]);
-    for (int k = 0; k < kWidth; ++k) out[k].distance = best_[k];
+    for (int k = 0; k < kWidth; ++k) {
+      if (!together_ || out[k].sphere >= 0) out[k].distance = best_[k];
+    }
   }
 
  private:
@@ -34,10 +36,22 @@ class NearestSearch {
   void note(const Floats& distance, const FastNearest& pair) {
     const LaneBits lanes = less(distance, best_);
     if (lanes == 0) return;
+    if (together_) return note_least(distance, pair);
     best_ = smaller(distance, best_);
     for (int k = 0; k < kWidth; ++k) {
       if (((lanes >> k) & 1) != 0) found_[k] = pair;
     }
+  }
+
+  /// The nearest of all lanes so far, which bounds them all.
+  void note_least(const Floats& distance, const FastNearest& pair) {
+    int lane = 0;
+    for (int k = 1; k < kWidth; ++k) {
+      if (distance[k] < distance[lane]) lane = k;
+    }
+    best_ = splat(distance[lane]);
+    for (int k = 0; k < kWidth; ++k) found_[k].sphere = -1;
+    found_[lane] = pair;
   }
 
   void meet_world(int g) {
@@ -152,13 +166,14 @@ class NearestSearch {
   const FastRobotTables& robot_;
   const FastWorldTables& world_;
   FastNearest* found_ = nullptr;
+  bool together_;
   Floats best_;
   Block block_;
 };
 
 inline void clearances_of_block(const FastRobotTables& robot, const FastWorldTables& world,
-                                const float* q, float most, FastNearest* out) {
-  NearestSearch(robot, world, q, most).run(out);
+                                const float* q, float most, bool together, FastNearest* out) {
+  NearestSearch(robot, world, q, most, together).run(out);
 }
 
 }  // namespace MJARM_FLOAT_LANES

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "mjarm/collision/fast_check.hpp"
@@ -40,6 +41,13 @@ inline void compare(const Arm& arm, const SphereSet& set, const Obstacles& world
   checker->check(rows, free);
   std::vector<SphereClearance> clearances(free.size());
   checker->clearances(rows, clearances);
+  const FastChecker::LeastClearance least = checker->least_clearance(rows);
+  const auto nearest = std::min_element(
+      clearances.begin(), clearances.end(),
+      [](const SphereClearance& a, const SphereClearance& b) { return a.distance < b.distance; });
+  EXPECT_FLOAT_EQ(least.nearest.distance, nearest->distance);
+  EXPECT_EQ(least.nearest.link >= 0, least.nearest.distance < 1);
+  EXPECT_FLOAT_EQ(clearances[least.row].distance, nearest->distance);
   const double pad = 2 * robot->padding() + 2e-6 * extent;
   for (std::size_t i = 0; i < free.size(); ++i) {
     const std::span<const double> q(&rows[i * dof], dof);

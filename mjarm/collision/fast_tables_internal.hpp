@@ -222,9 +222,9 @@ struct FastKernels {
   /// Looks at intervals t +- half[lane] of an edge, where q is at t. Ends with the first hit.
   FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, const float* q,
                        std::uint32_t active, const FastMotion& motion, const float* half);
-  /// Lower bounds of the distance, up to `most`.
+  /// Lower bounds of the distance, up to `most`; with `together` only of the lane where it is least.
   void (*clearances)(const FastRobotTables&, const FastWorldTables&, const float* q, float most,
-                     FastNearest* out);
+                     bool together, FastNearest* out);
 };
 extern const FastKernels kFastBaseline;
 #if defined(__x86_64__)
