@@ -25,7 +25,7 @@ struct SphereClearance {
   /// where they overlap, at most 1. Links at rest count against moving links only.
   double distance = 1;
   int link = -1;        ///< of the nearest pair, by index into the sphere set; -1: none within 1 m
-  int obstacle = -1;    ///< the other of the pair; -1: a link
+  int obstacle = -1;    ///< the other of the pair, by its index among solids and clouds; -1: a link
   int other_link = -1;  ///< that link
 };
 

@@ -118,6 +118,9 @@ void FastGridCells::finish(double lack) {
   tables_.side = static_cast<int>(side_);
   for (int k = 0; k < 3; ++k) tables_.low[k] = static_cast<float>(low_[k]);
   tables_.per_meter = static_cast<float>(1 / size_);
+  // Rounding takes a point into the next cell by less than this.
+  const double size = size_ * static_cast<double>(side_) + low_.cwiseAbs().maxCoeff();
+  tables_.slack = round_up(1e-6 + 0x1p-20 * size);
   tables_.unit = round_down(size_ / kCountsPerCell * (1 - 1e-5));
 }
 

@@ -41,6 +41,7 @@ class Filler {
 
   SolidFill run() {
     for (int cut = 0; cut < kMostCuts && work_ < kMostFillWork && !cells_.empty() &&
+                      out_.cubes.size() + 8 * cells_.size() <= space_.most_cubes &&
                       2 * kRoot3 * half_ > space_.least_radius;
          ++cut) {
       half_ *= 0.5;

@@ -160,6 +160,7 @@ struct FastGrid {
   float low[3] = {0, 0, 0};  ///< [m] its corner
   float per_meter = 0;       ///< cells
   float unit = 0;            ///< [m] of the numbers in the cells
+  float slack = 0;           ///< [m] by which they may be too large
 };
 
 /// What stands round the robot. Everything is seen from frame 0, the orientation most solids share:

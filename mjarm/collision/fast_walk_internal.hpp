@@ -35,8 +35,7 @@ inline Floats distance_bound(const FastGrid& grid, const Point& p) {
   const Ints y = cell_along(p.y, grid.low[1], grid);
   const Ints z = cell_along(p.z, grid.low[2], grid);
   const Ints counts = gather(grid.cells, (z * grid.side + y) * grid.side + x);
-  // Rounding takes a point less than 1e-5 cells into the next one.
-  return multiply_add(__builtin_convertvector(counts, Floats), splat(grid.unit), splat(-2e-6F));
+  return __builtin_convertvector(counts, Floats) * grid.unit - grid.slack;
 }
 
 /// Distance along one axis from an interval.

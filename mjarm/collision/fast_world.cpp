@@ -8,11 +8,12 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kSameTurn = 1e-7;         // [rad] two orientations that count as one
-constexpr std::size_t kMostCompared = 64;  // orientations that a new one is compared with
-constexpr std::size_t kMostListed = 64;    // solids; more go into a tree
-constexpr double kFloat = 0x1p-24;         // relative rounding error
-constexpr double kEverywhere = 1e9;        // [m]
+constexpr double kSameTurn = 1e-7;           // [rad] two orientations that count as one
+constexpr std::size_t kMostCompared = 64;    // orientations that a new one is compared with
+constexpr std::size_t kMostListed = 64;      // solids; more go into a tree
+constexpr std::size_t kMostCubes = 400'000;  // that fill solid meshes
+constexpr double kFloat = 0x1p-24;           // relative rounding error
+constexpr double kEverywhere = 1e9;          // [m]
 
 enum class Kind { box, round, cylinder };
 
@@ -50,6 +51,8 @@ int lone_axis(const Eigen::Vector3d& v) {
   rest[largest] = 0;
   return rest.norm() < kSameTurn ? static_cast<int>(largest) : -1;
 }
+
+static_assert(kMostObstacles + kMostPieces + kMostCubes <= 1'000'000, "kFan^kFastLevels leaves");
 
 class WorldBuilder {
  public:
@@ -220,7 +223,7 @@ class WorldBuilder {
     const bool is_crowd = placed_.size() > kMostListed;
     if (!is_crowd && loose_.empty() && obstacles.clouds.empty()) return;
     const CrowdSpace space{frames_, frames_[0].transpose() * all.reach_center_W, all.reach,
-                           least_radius()};
+                           least_radius(), kMostCubes / std::max<std::size_t>(loose_.size(), 1)};
     CrowdBuilder crowd(space, out_);
     std::erase_if(placed_, [&](const Placed& placed) {
       if (!(is_crowd || placed.piece) || placed.endless) return false;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "mjarm/collision/mesh_internal.hpp"
 
@@ -49,24 +50,41 @@ InsideTest::InsideTest(std::span<const Eigen::Vector3d> vertices,
     low_ = low_.cwiseMin(vertex);
     high_ = high_.cwiseMax(vertex);
   }
+  // Large faces are in many bins: there are fewer where that would be too much.
   bins_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(faces.size()))), 1, 64);
+  while (bins_ > 1 && count_in_bins() > 8 * faces.size() + 10'000) bins_ /= 2;
   faces_of_bin_.resize(static_cast<std::size_t>(bins_ * bins_));
-  const auto bin = [&](double x, int k) {
-    const double at = (x - low_[k]) / std::max(high_[k] - low_[k], 1e-300) * bins_;
-    return static_cast<int>(std::clamp(at, 0.0, bins_ - 1.0));
-  };
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const auto corner = [&](std::size_t i) {
-      return vertices_[static_cast<std::size_t>(faces[f][i])];
-    };
-    const Eigen::Vector3d low = corner(0).cwiseMin(corner(1)).cwiseMin(corner(2));
-    const Eigen::Vector3d high = corner(0).cwiseMax(corner(1)).cwiseMax(corner(2));
-    for (int y = bin(low.y(), 1); y <= bin(high.y(), 1); ++y) {
-      for (int x = bin(low.x(), 0); x <= bin(high.x(), 0); ++x) {
+    const Bins in = bins_of(faces[f]);
+    for (int y = in.first[1]; y <= in.last[1]; ++y) {
+      for (int x = in.first[0]; x <= in.last[0]; ++x) {
         faces_of_bin_[static_cast<std::size_t>(y * bins_ + x)].push_back(static_cast<int>(f));
       }
     }
   }
+}
+
+InsideTest::Bins InsideTest::bins_of(const std::array<int, 3>& face) const {
+  Bins out;
+  for (int k = 0; k < 2; ++k) {
+    const auto bin = [&](int vertex) {
+      const double x = vertices_[static_cast<std::size_t>(vertex)][k];
+      const double at = (x - low_[k]) / std::max(high_[k] - low_[k], 1e-300) * bins_;
+      return static_cast<int>(std::clamp(at, 0.0, bins_ - 1.0));
+    };
+    std::tie(out.first[k], out.last[k]) = std::minmax({bin(face[0]), bin(face[1]), bin(face[2])});
+  }
+  return out;
+}
+
+std::size_t InsideTest::count_in_bins() const {
+  std::size_t count = 0;
+  for (const std::array<int, 3>& face : faces_) {
+    const Bins in = bins_of(face);
+    count += static_cast<std::size_t>(in.last[0] - in.first[0] + 1) *
+             static_cast<std::size_t>(in.last[1] - in.first[1] + 1);
+  }
+  return count;
 }
 
 const std::vector<int>* InsideTest::faces_above(const Eigen::Vector3d& p) const {

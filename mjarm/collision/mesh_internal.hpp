@@ -39,6 +39,11 @@ class InsideTest {
 
  private:
   enum class Crossing { none, one, unclear };
+  struct Bins {
+    int first[2], last[2];
+  };
+  [[nodiscard]] Bins bins_of(const std::array<int, 3>& face) const;
+  [[nodiscard]] std::size_t count_in_bins() const;
   [[nodiscard]] Crossing crossing(const std::array<int, 3>& face, const Eigen::Vector3d& p) const;
   [[nodiscard]] const std::vector<int>* faces_above(const Eigen::Vector3d& p) const;
 

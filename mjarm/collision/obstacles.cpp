@@ -147,6 +147,7 @@ struct PartsFit {
 };
 
 struct CountPieces {
+  std::size_t operator()(const PolytopeShape& polytope) const { return polytope.planes.size(); }
   std::size_t operator()(const MeshShape& mesh) const { return mesh.faces.size(); }
   std::size_t operator()(const HeightFieldShape& field) const { return field.heights.size(); }
   template <class Shape>

@@ -86,8 +86,8 @@ struct Obstacles {
   std::vector<IgnoredPair> ignored{};  ///< of links and solids, in any order
 };
 
-/// Most obstacles that a checker takes, most faces and cells of all of them together, most planes
-/// of one, and most points of all clouds together.
+/// Most obstacles that a checker takes, most faces, planes and cells of all of them together, most
+/// planes of one, and most points of all clouds together.
 inline constexpr std::size_t kMostObstacles = 200'000;
 inline constexpr std::size_t kMostPieces = 200'000;
 inline constexpr std::size_t kMostPlanes = 256;
