@@ -95,7 +95,7 @@ TEST(CoverModel, SameTwice) {
 }
 
 TEST(CoverModel, ShippedRobotsNeedFewSpheres) {
-  for (const auto& [name, most] : {std::pair{"ur5e", 53U}, std::pair{"panda", 123U}}) {
+  for (const auto& [name, most] : {std::pair{"ur5e", 42U}, std::pair{"panda", 95U}}) {
     const ModelCover cover = cover_of(testing::covered_robot(name));
     EXPECT_LE(cover.spheres.size(), most) << name;
     EXPECT_LE(cover.bound, 0.012 + 1e-9) << name;
