@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 constexpr double kSpare = 0.08;       // share of the bound that is left for the seal
 constexpr double kMostPoints = 6000;  // of a grid
-constexpr int kRounds = 150;          // of the set cover, the first time
-constexpr int kMoreRounds = 40;       // after points were added
+constexpr int kRounds = 400;          // of the set cover, the first time
+constexpr int kMoreRounds = 100;      // after points were added
 constexpr int kSearches = 10;         // from then on spheres are only added
 constexpr int kMostSeals = 60;
 
@@ -130,7 +130,7 @@ class CoverFit {
 
   /// Points of the surface, and a few from inside.
   void add_points() {
-    Thinner thinner(0.4 * bound_);
+    Thinner thinner(0.25 * bound_);
     const auto add = [&](const Vector3d& p) {
       if (depth_in(solids_, p) < 0.1 * bound_ && thinner.is_new(p)) add_point(p);
     };

@@ -95,7 +95,7 @@ TEST(CoverModel, SameTwice) {
 }
 
 TEST(CoverModel, ShippedRobotsNeedFewSpheres) {
-  for (const auto& [name, most] : {std::pair{"ur5e", 53U}, std::pair{"panda", 123U}}) {
+  for (const auto& [name, most] : {std::pair{"ur5e", 42U}, std::pair{"panda", 95U}}) {
     const ModelCover cover = cover_of(testing::covered_robot(name));
     EXPECT_LE(cover.spheres.size(), most) << name;
     EXPECT_LE(cover.bound, 0.012 + 1e-9) << name;
@@ -163,14 +163,14 @@ TEST(CoverModel, AGripperIsCoveredInItsPostureOrItsWholeStroke) {
 TEST(CoverModel, ABoundThatTakesTooManySpheresIsWidened) {
   const CoveredRobot robot =
       two_joints(R"(<geom name="wall" type="box" size="0.1 1 1" pos="4 0 0"/>)",
-                 R"(<geom name="board" type="box" size="1 0.8 0.01"/>)");
-  const ModelCover cover = cover_of(robot, {.bound = 0.01});
+                 R"(<geom name="board" type="box" size="0.5 0.4 0.01"/>)");
+  const ModelCover cover = cover_of(robot, {.bound = 0.005});
   EXPECT_LE(cover.spheres.size(), kMostSpheres);
-  EXPECT_GT(cover.bound, 0.01);
+  EXPECT_GT(cover.bound, 0.005);
   const LinkSpheres& board =
       cover.spheres.links[static_cast<std::size_t>(link_named(cover, "hand"))];
-  for (double x = -1; x <= 1; x += 0.02) {
-    for (double y = -0.8; y <= 0.8; y += 0.02) EXPECT_TRUE(contains(board, {x, y, 0.01}));
+  for (double x = -0.5; x <= 0.5; x += 0.02) {
+    for (double y = -0.4; y <= 0.4; y += 0.02) EXPECT_TRUE(contains(board, {x, y, 0.01}));
   }
 }
 
