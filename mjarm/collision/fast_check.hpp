@@ -56,7 +56,8 @@ class FastChecker {
   void clearances(std::span<const double> q, std::span<SphereClearance> out) const noexcept;
   [[nodiscard]] SphereClearance clearance(std::span<const double> q) const noexcept;
 
-  /// The least clearance of several configurations, several times as fast as all of them.
+  /// The least clearance of several configurations, faster than all of them. Where some overlap, it
+  /// is that of one of these.
   struct LeastClearance {
     SphereClearance nearest;
     std::size_t row = 0;  ///< of `q`
