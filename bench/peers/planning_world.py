@@ -1,7 +1,7 @@
 """The arm and the obstacles of a planning problem as MuJoCo sees them, for peers that have no collision checker.
 
-The file of problems gives the robot as a tree of joints with spheres, and which pairs of links must not overlap;
-docs/problem_files.md. Exactly these pairs and every sphere against every obstacle are looked at, by contact bits.
+The file of problems (as `mjarm plan` reads it) gives the robot as a tree of joints with spheres, and which pairs of
+links must not overlap. Exactly these pairs and every sphere against every obstacle are looked at, by contact bits.
 """
 
 

@@ -14,15 +14,6 @@
 
 namespace mjarm::app {
 
-Result<int> parse_count(const std::string& option, const std::string& value, int most) {
-  const Result<std::uint64_t> count = parse_whole(option, value);
-  if (!count) return fail(count.error());
-  if (*count < 1 || *count > static_cast<std::uint64_t>(most)) {
-    return fail(Errc::usage, text(msg::bench_count, option, most, *count));
-  }
-  return static_cast<int>(*count);
-}
-
 void add_bench_options(CLI::App& app, BenchOptions& options, Msg data_help) {
   const auto add = [&app](const char* name, std::string& value, Msg help, const char* type) {
     add_option(app, name, value, help, type);

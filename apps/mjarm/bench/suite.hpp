@@ -13,10 +13,6 @@
 
 namespace mjarm::app {
 
-/// Reads a whole number from 1 to `most`, as `--rounds 5`. @return an error that names `option`.
-[[nodiscard]] Result<int> parse_count(const std::string& option, const std::string& value,
-                                      int most);
-
 /// What all suites against peers can be told.
 struct BenchOptions {
   std::string robot, data, peers, rounds = "5", out;
