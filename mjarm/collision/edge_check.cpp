@@ -76,27 +76,39 @@ class EdgeSearch {
   void bound_motion() {
     const std::size_t dof = static_cast<std::size_t>(data_.arm.dof());
     for (std::size_t g = 0; g < data_.groups.size(); ++g) {
-      const auto& levers = data_.bounds[g].levers;
-      double speed = 0, bend = 0, before = 0;
-      for (std::size_t k = 0; k < dof; ++k) {
-        const double rate = std::abs(way_[k]);
-        speed += levers[k] * rate;
-        bend += levers[k] * rate * (rate + 2 * before);
-        before += rate;
-      }
-      slack_[g] = static_cast<float>(1e-5 * speed);
-      bend_[g] = static_cast<float>(0.5001 * bend);
+      const Motion motion = motion_of(g, 0, dof);
+      slack_[g] = static_cast<float>(1e-5 * motion.speed);
+      bend_[g] = static_cast<float>(0.5001 * motion.bend);
     }
     for (std::size_t p = 0; p < data_.pairs.size(); ++p) {
       const auto a = static_cast<std::size_t>(data_.pairs[p].a);
       const auto b = static_cast<std::size_t>(data_.pairs[p].b);
-      double rate = 0;
-      for (int k = data_.groups[a].body; k < data_.groups[b].body; ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        rate += data_.bounds[b].levers[i] * std::abs(way_[i]);
-      }
-      pair_rate_[p] = static_cast<float>(1.0001 * rate);
+      // What the joints before body a do moves both links alike. The difference of the two twists
+      // is rounded more than either: its slack is that of the whole motion.
+      const Motion motion = motion_of(b, static_cast<std::size_t>(data_.groups[a].body),
+                                      static_cast<std::size_t>(data_.groups[b].body));
+      pair_rate_[p] = static_cast<float>(1.0001 * motion.speed);
+      pair_slack_[p] = 2 * slack_[b];
+      pair_bend_[p] = static_cast<float>(0.5001 * motion.bend);
     }
+  }
+
+  struct Motion {
+    double speed = 0, bend = 0;  // [m], [m] bounds of first and second derivative
+  };
+
+  /// What joints [first, end) do to the spheres of a group at most.
+  Motion motion_of(std::size_t group, std::size_t first, std::size_t end) const {
+    const auto& levers = data_.bounds[group].levers;
+    Motion out;
+    double before = 0;
+    for (std::size_t k = first; k < end; ++k) {
+      const double rate = std::abs(way_[k]);
+      out.speed += levers[k] * rate;
+      out.bend += levers[k] * rate * (rate + 2 * before);
+      before += rate;
+    }
+    return out;
   }
 
   bool split(OpenInterval whole, std::size_t parts, IntervalQueue& to) {
@@ -123,7 +135,8 @@ class EdgeSearch {
             start_[static_cast<std::size_t>(i)] + t * way_[static_cast<std::size_t>(i)]);
       }
     }
-    const detail::FastMotion motion{dq_.data(), slack_.data(), bend_.data(), pair_rate_.data()};
+    const detail::FastMotion motion{dq_.data(),        slack_.data(),      bend_.data(),
+                                    pair_rate_.data(), pair_slack_.data(), pair_bend_.data()};
     const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
     const detail::FastVerdict found =
         checker_.kernels().cover(data_.tables, checker_.world().tables, q, lanes, motion, half);
@@ -163,7 +176,7 @@ class EdgeSearch {
   std::array<double, kMaxDof> start_{}, way_{};
   std::array<float, kMaxDof> dq_{};
   std::array<float, kMostSphereLinks> slack_, bend_;
-  std::array<float, kMostSpherePairs> pair_rate_;
+  std::array<float, kMostSpherePairs> pair_rate_, pair_slack_, pair_bend_;
   double length_ = 0;
   double outside_ = 2;  // where the edge is outside of the limits; 2: nowhere
   float least_half_ = 0;

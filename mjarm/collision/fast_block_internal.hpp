@@ -123,6 +123,15 @@ struct Block {
     }
   }
 
+  /// How the point of body `body` that is now at `p` moves.
+  Point velocity(const Point& p, int body) const {
+    return plus_cross(twists[body].v, twists[body].w, p - frames[body].p);
+  }
+  /// How the point of a body that is now at the ball of group `g` moves, and how the body turns.
+  Twist twist_at_ball(int g, int body) const {
+    return {velocity(balls[g], body), twists[body].w};
+  }
+
   void place_spheres(const FastRobotTables& robot, int g) {
     if (placed[g]) return;
     placed[g] = true;
@@ -152,13 +161,13 @@ inline Point into_frame(const FastWorldTables& world, int frame, const Point& p)
           multiply_add(splat(r[6]), p.x, multiply_add(splat(r[7]), p.y, splat(r[8]) * p.z))};
 }
 
-/// Squared distance from a box without its rounding, in its frame.
-inline Floats squared_gap(const FastBox& box, const Point& p) {
-  const Point out = {p.x - smaller(larger(p.x, splat(box.low[0])), splat(box.high[0])),
-                     p.y - smaller(larger(p.y, splat(box.low[1])), splat(box.high[1])),
-                     p.z - smaller(larger(p.z, splat(box.low[2])), splat(box.high[2]))};
-  return squared(out);
+/// From the nearest point of a box without its rounding, in its frame; its squared length.
+inline Point gap_vector(const FastBox& box, const Point& p) {
+  return {p.x - smaller(larger(p.x, splat(box.low[0])), splat(box.high[0])),
+          p.y - smaller(larger(p.y, splat(box.low[1])), splat(box.high[1])),
+          p.z - smaller(larger(p.z, splat(box.low[2])), splat(box.high[2]))};
 }
+inline Floats squared_gap(const FastBox& box, const Point& p) { return squared(gap_vector(box, p)); }
 
 /// The same from a finite cylinder.
 inline Floats squared_gap(const FastCylinder& cylinder, const Point& p) {
@@ -169,6 +178,19 @@ inline Floats squared_gap(const FastCylinder& cylinder, const Point& p) {
   const Floats side = larger(square_root(multiply_add(u, u, v * v)) - cylinder.radius, Floats{});
   const Floats beyond = larger(larger(w, -w) - cylinder.half, Floats{});
   return multiply_add(side, side, beyond * beyond);
+}
+
+inline Point gap_vector(const FastCylinder& cylinder, const Point& p) {
+  Floats d[3] = {p.x - cylinder.center[0], p.y - cylinder.center[1], p.z - cylinder.center[2]};
+  const int a = cylinder.axis;
+  Floats &u = d[(a + 1) % 3], &v = d[(a + 2) % 3], &w = d[a];
+  const Floats radial = square_root(multiply_add(u, u, v * v));
+  const Floats share =
+      larger(radial - cylinder.radius, Floats{}) / larger(radial, splat(cylinder.radius));
+  u = u * share;
+  v = v * share;
+  w = w - smaller(larger(w, splat(-cylinder.half)), splat(cylinder.half));
+  return {d[0], d[1], d[2]};
 }
 
 inline float rounding_of(const FastBox& box) { return box.round; }

@@ -50,11 +50,17 @@ std::optional<FastChecker::FixedOverlap> find_fixed_overlap(const SphereSet& set
   for (std::size_t l = 0; l < set.links.size(); ++l) {
     if (set.links[l].joint >= 0) continue;
     for (const Sphere& sphere : set.links[l].spheres) {
-      for (std::size_t i = 0; i < obstacles.solids.size(); ++i) {
-        if (distance(obstacles.solids[i], sphere.center) < sphere.radius) {
-          return FastChecker::FixedOverlap{static_cast<int>(l), static_cast<int>(i)};
-        }
-      }
+      const auto overlaps = [&](const auto& obstacle) {
+        return distance(obstacle, sphere.center) < sphere.radius;
+      };
+      const std::vector<Obstacle>& solids = obstacles.solids;
+      const std::vector<PointCloud>& clouds = obstacles.clouds;
+      const auto solid = std::find_if(solids.begin(), solids.end(), overlaps);
+      const auto cloud = std::find_if(clouds.begin(), clouds.end(), overlaps);
+      if (solid == solids.end() && cloud == clouds.end()) continue;
+      const auto index = solid != solids.end() ? solid - solids.begin()
+                                               : cloud - clouds.begin() + std::ssize(solids);
+      return FastChecker::FixedOverlap{static_cast<int>(l), static_cast<int>(index)};
     }
   }
   return std::nullopt;

@@ -2,28 +2,21 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "mjarm/collision/fast_oracle_test.hpp"
 #include "mjarm/collision/float_lanes_internal.hpp"
 #include "mjarm/collision/problems_test.hpp"
-#include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr std::array kLevels{SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512};
-
-std::vector<double> random_rows(const Arm& arm, Rng& rng, int count) {
-  std::vector<double> rows;
-  for (int i = 0; i < count; ++i) {
-    const JointVec q = testing::random_q(arm, rng);
-    rows.insert(rows.end(), q.data(), q.data() + q.size());
-  }
-  return rows;
-}
+using testing::compare;
+using testing::kLevels;
+using testing::random_rows;
+using testing::Tally;
 
 TEST(FloatLanes, SineAndCosineKeepTheirBound) {
   using detail::kWidth;
@@ -44,46 +37,6 @@ TEST(FloatLanes, SineAndCosineKeepTheirBound) {
   }
   EXPECT_LT(worst, detail::kTrigError);
   EXPECT_GT(worst, 1e-8);
-}
-
-struct Tally {
-  int free = 0, blocked = 0, padded = 0;
-};
-
-/// Holds the answers of one level for random configurations against the oracle. `extent` [m]: of
-/// the largest solid and its distance.
-void compare(const Arm& arm, const SphereSet& set, const Obstacles& world, SimdLevel level,
-             Rng& rng, int count, Tally& tally, double extent = 1) {
-  const auto robot = FastRobot::make(arm, set);
-  ASSERT_TRUE(robot.has_value()) << robot.error().what;
-  const auto checker = FastChecker::make(*robot, world, level);
-  ASSERT_TRUE(checker.has_value()) << checker.error().what;
-  EXPECT_LT(robot->padding(), 2e-4);
-  const auto dof = static_cast<std::size_t>(arm.dof());
-  const std::vector<double> rows = random_rows(arm, rng, count);
-  std::vector<std::uint8_t> free(static_cast<std::size_t>(count));
-  checker->check(rows, free);
-  std::vector<SphereClearance> clearances(free.size());
-  checker->clearances(rows, clearances);
-  const double pad = 2 * robot->padding() + 2e-6 * extent;
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const std::span<const double> q(&rows[i * dof], dof);
-    const double truth = testing::true_clearance(arm, set, world, q);
-    if (free[i] != 0) {
-      ++tally.free;
-      ASSERT_GT(truth, 0) << "called free";
-    } else {
-      ++tally.blocked;
-      ASSERT_LT(truth, pad) << "called blocked";
-      tally.padded += truth > 0 ? 1 : 0;
-    }
-    EXPECT_EQ(checker->is_free(q), free[i] != 0);
-    const double gap = testing::true_clearance(arm, set, world, q, true);
-    const double bound = clearances[i].distance;
-    EXPECT_LE(bound, std::max(gap, 0.0) + 1e-9);
-    EXPECT_GT(bound, std::min(gap, 0.99) - pad - 1e-6 - 1e-6 * extent);
-    EXPECT_EQ(clearances[i].link >= 0, bound < 1);
-  }
 }
 
 TEST(FastChecker, NeverFreeWhereRandomRobotsCollide) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mjarm/collision/fast_block_internal.hpp"
+#include "mjarm/collision/fast_walk_internal.hpp"
 
 /// The search for the nearest pair of a block of configurations. Included by one file for each
 /// width of the registers.
@@ -19,6 +20,7 @@ class NearestSearch {
     for (int k = 0; k < kWidth; ++k) out[k] = {best_[k], -1, -1, -1};
     found_ = out;
     for (int g = 0; g < robot_.group_count; ++g) meet_world(g);
+    for (int g = 0; g < robot_.group_count; ++g) meet_crowd(g);
     for (int k = 0; k < robot_.every_pair_count; ++k) meet_itself(robot_.every_pair[k]);
     for (int k = 0; k < kWidth; ++k) out[k].distance = best_[k];
   }
@@ -64,6 +66,71 @@ class NearestSearch {
         note(gap(squared_gap(solid, center), radius + round), {0, k, ids[i], -1});
       }
     }
+  }
+
+  /// What stands in trees, lane by lane; what is found counts for all lanes.
+  void meet_crowd(int g) {
+    if (robot_.groups[g].body == 0) return;
+    if (world_.crowd.levels > 0) meet_tree(g, world_.crowd);
+    if (world_.clouds.levels > 0) meet_tree(g, world_.clouds);
+  }
+
+  void meet_tree(int g, const FastTree& tree) {
+    const FastGroup& group = robot_.groups[g];
+    const Floats far = best_ + group.ball.radius * (1 + 1e-5F);
+    const FastNode& root = tree.nodes[tree.levels - 1][0];
+    if (Touched(root, block_.balls[g], far * far, kAllLanes).children == 0) return;
+    block_.place_spheres(robot_, g);
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      for (int lane = 0; lane < kWidth; ++lane) meet_leaves(tree, k, lane);
+    }
+  }
+
+  void meet_leaves(const FastTree& tree, int sphere, int lane) {
+    const float radius = robot_.spheres[sphere].radius;
+    const Point at = lane_of(block_.centers[sphere], lane);
+    const auto limit2 = [&] {
+      const float far = (best_[lane] + radius) * (1 + 1e-5F);
+      return far > 0 ? far * far : 0.0F;
+    };
+    walk_nearest(tree, at, limit2, [&](int leaf) {
+      if (&tree == &world_.crowd) {
+        meet_item(sphere, world_.items[leaf]);
+      } else {
+        meet_points(sphere, leaf, at);
+      }
+    });
+  }
+
+  void meet_item(int sphere, const FastItem& item) {
+    const Point center = into_frame(world_, item.frame, block_.centers[sphere]);
+    const float radius = robot_.spheres[sphere].radius;
+    const auto meet = [&](const auto& solid) {
+      const float round = rounding_of(solid);
+      note(gap(squared_gap(solid, center), radius + round), {0, sphere, item.id, -1});
+    };
+    switch (item.kind) {
+      case FastKind::box:
+        return meet(world_.boxes[item.index]);
+      case FastKind::cylinder:
+        return meet(world_.cylinders[item.index]);
+    }
+  }
+
+  /// The nearest point of a leaf to where a lane's sphere is.
+  void meet_points(int sphere, int leaf, const Point& at) {
+    const FastPoints& points = world_.points[leaf];
+    const float radius = robot_.spheres[sphere].radius;
+    float distances[kFan];
+    for (int from = 0; from < kFan; from += kWidth) {
+      const Floats distance = square_root(squared_gaps(points, from, at));
+      store(distances + from, distance - load(points.radius + from));
+    }
+    int least = 0;
+    for (int i = 1; i < kFan; ++i) least = distances[i] < distances[least] ? i : least;
+    note(gap(squared(block_.centers[sphere] - point_of(points, least)),
+             radius + points.radius[least]),
+         {0, sphere, world_.point_ids[leaf * kFan + least], -1});
   }
 
   void meet_itself(const FastPair& pair) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mjarm/collision/fast_block_internal.hpp"
+#include "mjarm/collision/fast_walk_internal.hpp"
 
 /// The search for collisions of a block of configurations. Included by one file for each width of
 /// the registers.
@@ -42,10 +43,11 @@ class BlockSearch {
       if (kCover) grow_ = growth(g);
       meet_world(g);
       if (is_done()) return;
+      meet_crowd(g);
+      if (is_done()) return;
     }
     for (int k = 0; k < robot_.pair_count; ++k) {
-      if (kCover) grow_ = half_ * motion_->pair_rate[k];
-      meet_itself(robot_.pairs[k]);
+      meet_itself(k);
       if (is_done()) return;
     }
   }
@@ -53,13 +55,24 @@ class BlockSearch {
   /// By how much a sphere of a group moves at most within the half interval: speed now, and what
   /// the speed can become.
   Floats growth(int g) const {
-    const FastGroup& group = robot_.groups[g];
-    const Twist& twist = block_.twists[group.body];
-    const Point v = plus_cross(twist.v, twist.w, block_.balls[g] - block_.frames[group.body].p);
-    const Floats speed =
-        multiply_add(square_root(squared(twist.w)), splat(group.spread), square_root(squared(v))) +
-        motion_->slack[g];
-    return half_ * multiply_add(half_, splat(motion_->bend[g]), speed) * 1.0001F;
+    const Twist twist = block_.twist_at_ball(g, robot_.groups[g].body);
+    return growth(twist, robot_.groups[g].spread, motion_->slack[g], motion_->bend[g]);
+  }
+
+  /// The same of a pair: how the farther link moves as seen from the other.
+  Floats pair_growth(int k) const {
+    const FastPair& pair = robot_.pairs[k];
+    const Twist b = block_.twist_at_ball(pair.b, robot_.groups[pair.b].body);
+    const Twist a = block_.twist_at_ball(pair.b, robot_.groups[pair.a].body);
+    return growth({b.v - a.v, b.w - a.w}, robot_.groups[pair.b].spread, motion_->pair_slack[k],
+                  motion_->pair_bend[k]);
+  }
+
+  Floats growth(const Twist& twist, float spread, float slack, float bend) const {
+    const Floats speed = multiply_add(square_root(squared(twist.w)), splat(spread),
+                                      square_root(squared(twist.v))) +
+                         slack;
+    return half_ * multiply_add(half_, splat(bend), speed) * 1.0001F;
   }
 
   /// (radius + growth)^2.
@@ -87,11 +100,30 @@ class BlockSearch {
   }
 
   void note(const Overlaps& overlaps) {
-    const LaneBits lanes = less(kCover ? overlaps.grown : overlaps.bare, Floats{}) & active_;
+    note(overlaps, [](LaneBits near) { return near; });
+  }
+
+  /// @param refine  which lanes stay blocked when looked at more closely; costs more, so it is asked
+  ///                only about lanes that do not overlap yet.
+  template <class Refine>
+  void note(const Overlaps& overlaps, const Refine& refine) {
+    LaneBits lanes = less(kCover ? overlaps.grown : overlaps.bare, Floats{}) & active_;
+    if (lanes == 0) return;
+    if constexpr (kCover) {
+      const LaneBits bare = less(overlaps.bare, Floats{}) & lanes;
+      if (bare == 0) lanes = refine(lanes);
+      note(lanes, bare);
+    } else {
+      note(lanes, lanes);
+    }
+  }
+
+  /// Lanes that overlap, and those of them that do without growth.
+  void note(LaneBits lanes, LaneBits bare) {
     if (lanes == 0) return;
     if constexpr (kCover) {
       verdict_.blocked |= lanes;
-      verdict_.hit |= less(overlaps.bare, Floats{}) & lanes;
+      verdict_.hit |= bare;
       half_ = zero_where(lanes, half_);  // such a lane goes on as a single configuration
       grow_ = zero_where(lanes, grow_);
     } else {
@@ -151,19 +183,121 @@ class BlockSearch {
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
-    note(overlaps);
+    note(overlaps, [&](LaneBits near) { return approaching(g, frame, solid, near); });
   }
 
-  void meet_itself(const FastPair& pair) {
+  /// Which of the lanes `near` stay blocked when only motion towards the solid counts.
+  template <class Solid>
+  LaneBits approaching(int g, int frame, const Solid& solid, LaneBits near) const {
+    const FastGroup& group = robot_.groups[g];
+    LaneBits left = 0;
+    for (int k = group.first; k < group.first + group.count && left != near; ++k) {
+      const Point center = into_frame(world_, frame, block_.centers[k]);
+      const Point v = into_frame(world_, frame, block_.velocity(block_.centers[k], group.body));
+      const float radius = robot_.spheres[k].radius + rounding_of(solid);
+      left |= near & ~cleared(gap_vector(solid, center), v, radius, motion_->slack[g],
+                              motion_->bend[g]);
+    }
+    return left;
+  }
+
+  /// Lanes in which a sphere, whose centre is at `gap` from the nearest point of a convex solid and
+  /// moves by `v`, stays farther from it than `radius`. The distance from a convex solid is a convex
+  /// function of the place, so along its gradient n it changes by n.v and by what the motion bends;
+  /// what goes along the surface does not count.
+  LaneBits cleared(const Point& gap, const Point& v, float radius, float slack, float bend) const {
+    const Floats distance = square_root(squared(gap));
+    const Floats along_gap = multiply_add(gap.x, v.x, multiply_add(gap.y, v.y, gap.z * v.z));
+    const Floats speed = larger(along_gap, -along_gap) / distance + slack;
+    const Floats way = half_ * multiply_add(half_, splat(bend), speed) * 1.0001F;
+    return less(way + radius * 1.000001F, distance);
+  }
+
+  /// What stands in trees.
+  void meet_crowd(int g) {
+    if (robot_.groups[g].body == 0) return;
+    const Point& ball = block_.balls[g];
+    const auto reach2 = [&] { return squared_reach(robot_.groups[g].ball.radius); };
+    const auto meet_items = [&](int node, const Touched& touched) {
+      for (std::uint32_t left = touched.children; left != 0 && !is_done(); left &= left - 1) {
+        meet_item(g, ball, world_.items[node * kFan + __builtin_ctz(left)]);
+      }
+      return is_done();
+    };
+    const auto meet_points = [&](int node, const Touched& touched) {
+      meet_twig(g, node, touched.lanes());
+      return is_done();
+    };
+    if (world_.crowd.levels > 0) walk(world_.crowd, ball, active_, reach2, meet_items);
+    if (is_done()) return;
+    if (world_.clouds.levels > 0) walk(world_.clouds, ball, active_, reach2, meet_points);
+  }
+
+  void meet_item(int g, const Point& ball, const FastItem& item) {
+    const Point at = into_frame(world_, item.frame, ball);
+    switch (item.kind) {
+      case FastKind::box:
+        return meet_run(g, item.frame, at, world_.boxes, {item.index, 1});
+      case FastKind::cylinder:
+        return meet_run(g, item.frame, at, world_.cylinders, {item.index, 1});
+    }
+  }
+
+  /// The leaves of points below a node, sphere by sphere.
+  void meet_twig(int g, int index, LaneBits lanes) {
+    block_.place_spheres(robot_, g);
+    const FastGroup& group = robot_.groups[g];
+    const FastNode& node = world_.clouds.nodes[0][index];
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      const float radius = robot_.spheres[k].radius;
+      const Point& center = block_.centers[k];
+      const Touched touched(node, center, squared_reach(radius), lanes & active_);
+      for (std::uint32_t left = touched.children; left != 0; left &= left - 1) {
+        const int child = __builtin_ctz(left);
+        meet_points(world_.points[index * kFan + child], center, radius, touched.child[child]);
+        if (is_done()) return;
+      }
+    }
+  }
+
+  void meet_points(const FastPoints& points, const Point& center, float radius, LaneBits lanes) {
+    if (__builtin_popcount(lanes) > kFewLanes) {
+      Overlaps overlaps;
+      for (int i = 0; i < kFan; ++i) {
+        const float reach = radius + points.radius[i];
+        look(squared(center - point_of(points, i)), reach, -reach * reach, overlaps);
+      }
+      return note(overlaps);
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int lane = __builtin_ctz(lanes);
+      const LaneBits bit = LaneBits{1} << lane;
+      const Point at = lane_of(center, lane);
+      const float grow = kCover ? grow_[lane] : 0;
+      if (any_point_within(points, at, radius + grow)) {
+        note(bit & active_, any_point_within(points, at, radius) ? bit & active_ : 0);
+      }
+    }
+  }
+
+  void meet_itself(int k) {
+    const FastPair& pair = robot_.pairs[k];
     const FastGroup& a = robot_.groups[pair.a];
     const FastGroup& b = robot_.groups[pair.b];
     const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
-    if ((less(balls, squared_reach(a.ball.radius + b.ball.radius)) & active_) == 0) return;
+    const float reach = a.ball.radius + b.ball.radius;
+    if constexpr (kCover) {
+      // The bound that costs nothing first: most pairs are far apart.
+      grow_ = half_ * motion_->pair_rate[k];
+      if ((less(balls, squared_reach(reach)) & active_) == 0) return;
+      grow_ = smaller(grow_, pair_growth(k));
+    }
+    if ((less(balls, squared_reach(reach)) & active_) == 0) return;
     block_.place_spheres(robot_, pair.a);
     block_.place_spheres(robot_, pair.b);
     Overlaps overlaps;
-    for (int k = pair.first; k < pair.first + pair.count; ++k) {
-      const FastRow& row = robot_.rows[k];
+    for (int i = pair.first; i < pair.first + pair.count; ++i) {
+      const FastRow& row = robot_.rows[i];
       const float radius = robot_.spheres[row.sphere].radius;
       const Point center = block_.centers[row.sphere];
       const Floats to_ball = squared(center - block_.balls[pair.b]);
@@ -174,7 +308,26 @@ class BlockSearch {
              overlaps);
       }
     }
-    note(overlaps);
+    note(overlaps, [&](LaneBits near) { return approaching(k, near); });
+  }
+
+  /// The same of a pair of links: how the farther one moves as seen from the other.
+  LaneBits approaching(int k, LaneBits near) const {
+    const FastPair& pair = robot_.pairs[k];
+    const int body_a = robot_.groups[pair.a].body, body_b = robot_.groups[pair.b].body;
+    LaneBits left = 0;
+    for (int i = pair.first; i < pair.first + pair.count; ++i) {
+      const FastRow& row = robot_.rows[i];
+      for (int j = row.first; j < row.first + row.count && left != near; ++j) {
+        const FastPartner& other = robot_.partners[j];
+        const Point& center = block_.centers[other.sphere];
+        const Point gap = center - block_.centers[row.sphere];
+        if ((less(squared(gap), squared_reach(other.reach)) & near) == 0) continue;
+        const Point v = block_.velocity(center, body_b) - block_.velocity(center, body_a);
+        left |= near & ~cleared(gap, v, other.reach, motion_->pair_slack[k], motion_->pair_bend[k]);
+      }
+    }
+    return left;
   }
 
   const FastRobotTables& robot_;

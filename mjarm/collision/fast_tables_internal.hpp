@@ -98,6 +98,38 @@ struct FastList {
   FastRun boxes, rounds, cylinders;  ///< boxes and rounds are both in `boxes` of the world
 };
 
+/// How many children a node of a tree has, and how many levels of nodes there are at most.
+inline constexpr int kFan = 16;
+inline constexpr int kFastLevels = 5;
+
+/// Boxes round the children of a node, in frame 0; those that are not there are far away.
+struct FastNode {
+  float low[3][kFan], high[3][kFan];
+};
+
+/// Boxes round boxes: child c of node i of a level is node kFan * i + c of the level below it, or,
+/// at level 0, that leaf.
+struct FastTree {
+  int levels = 0;  ///< of nodes, the highest of which has one; 0: nothing is there
+  const FastNode* nodes[kFastLevels] = {};
+};
+
+enum class FastKind { box, cylinder };
+
+/// A solid as a leaf of a tree.
+struct FastItem {
+  FastKind kind = FastKind::box;
+  int frame = 0;
+  int index = 0;  ///< among those of its kind
+  int id = 0;     ///< which obstacle it is
+};
+
+/// Balls round points, in frame 0, as a leaf of a tree; those that are not there are far away.
+struct FastPoints {
+  float center[3][kFan];
+  float radius[kFan];
+};
+
 /// What stands round the robot. Everything is seen from frame 0, the orientation most solids share:
 /// the base is turned into it, so that these solids need no turning at all.
 struct FastWorldTables {
@@ -110,6 +142,11 @@ struct FastWorldTables {
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is
   const int* cylinder_ids = nullptr;
+  FastTree crowd;  ///< of the solids, where they are too many for lists
+  const FastItem* items = nullptr;
+  FastTree clouds;  ///< of all points
+  const FastPoints* points = nullptr;
+  const int* point_ids = nullptr;  ///< which obstacle each point is, kFan a leaf
 };
 
 /// How the configurations of one edge move: q(t) = q0 + t dq, with what bounds the second
@@ -118,7 +155,9 @@ struct FastMotion {
   const float* dq;         ///< (dof,)
   const float* slack;      ///< (groups,) [m] what rounding may hide of the speed
   const float* bend;       ///< (groups,) [m] half of the largest second derivative
-  const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links
+  const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links, wherever they are
+  /// (pairs,) slack and bend of the farther link as seen from the other.
+  const float *pair_slack, *pair_bend;
 };
 
 struct FastVerdict {

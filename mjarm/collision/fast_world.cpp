@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSameTurn = 1e-7;         // [rad] two orientations that count as one
 constexpr std::size_t kMostCompared = 64;  // orientations that a new one is compared with
+constexpr std::size_t kMostListed = 64;    // solids; more go into a tree
 constexpr double kFloat = 0x1p-24;         // relative rounding error
 constexpr double kEverywhere = 1e9;        // [m]
 
@@ -49,11 +50,15 @@ class WorldBuilder {
 
   void build(const Obstacles& obstacles) {
     write_frames();
+    const GroupBounds all = everyone();
+    if (placed_.size() > kMostListed) add_crowd(all, obstacles);
+    add_clouds(obstacles.clouds, frames_[0], frames_[0].transpose() * all.reach_center_W,
+               all.reach + kMostClearance, static_cast<int>(obstacles.solids.size()), out_);
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
       const bool moves = robot_.groups[g].body > 0;
       out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, obstacles) : FastRun{});
     }
-    out_.tables.every_list = add_lists(everyone(), kMostClearance, obstacles);
+    out_.tables.every_list = add_lists(all, kMostClearance, obstacles);
   }
 
  private:
@@ -162,6 +167,67 @@ class WorldBuilder {
     return out;
   }
 
+  /// Moves all solids but half-spaces into a tree.
+  void add_crowd(const GroupBounds& all, const Obstacles& obstacles) {
+    std::vector<FastItem> items;
+    std::vector<FastBounds> bounds;
+    std::vector<Eigen::Vector3f> places;
+    std::erase_if(placed_, [&](const Placed& placed) {
+      const Obstacle& solid = obstacles.solids[static_cast<std::size_t>(placed.id)];
+      if (std::holds_alternative<HalfSpaceShape>(solid.shape)) return false;
+      if (distance(solid, all.reach_center_W) > all.reach + kMostClearance) return true;
+      items.push_back(add_item(all, placed));
+      bounds.push_back(bounds_of(items.back()));
+      places.push_back(0.5F * (bounds.back().low + bounds.back().high));
+      return true;
+    });
+    std::vector<FastBounds> leaves;
+    for (const int i : curve_order(places)) {
+      out_.items.push_back(items[static_cast<std::size_t>(i)]);
+      leaves.push_back(bounds[static_cast<std::size_t>(i)]);
+    }
+    out_.crowd.build(leaves);
+  }
+
+  FastItem add_item(const GroupBounds& all, const Placed& placed) {
+    if (placed.kind == Kind::cylinder) {
+      add_cylinder(placed);
+      const int index = static_cast<int>(out_.cylinders.size()) - 1;
+      return {FastKind::cylinder, placed.frame, index, placed.id};
+    }
+    add_box(all, placed);
+    return {FastKind::box, placed.frame, static_cast<int>(out_.boxes.size()) - 1, placed.id};
+  }
+
+  /// Of a leaf, in frame 0.
+  FastBounds bounds_of(const FastItem& item) const {
+    Eigen::Vector3d low, high;
+    if (item.kind == FastKind::cylinder) {
+      const FastCylinder& cylinder = out_.cylinders[static_cast<std::size_t>(item.index)];
+      const Eigen::Vector3d center =
+          Eigen::Map<const Eigen::Vector3f>(cylinder.center).cast<double>();
+      Eigen::Vector3d half = Eigen::Vector3d::Constant(cylinder.radius);
+      half[cylinder.axis] = cylinder.half;
+      low = center - half;
+      high = center + half;
+    } else {
+      const FastBox& box = out_.boxes[static_cast<std::size_t>(item.index)];
+      const Eigen::Vector3d round = Eigen::Vector3d::Constant(box.round);
+      low = Eigen::Map<const Eigen::Vector3f>(box.low).cast<double>() - round;
+      high = Eigen::Map<const Eigen::Vector3f>(box.high).cast<double>() + round;
+    }
+    const Eigen::Matrix3d R =
+        frames_[0].transpose() * frames_[static_cast<std::size_t>(item.frame)];
+    const Eigen::Vector3d center = R * (0.5 * (low + high));
+    const Eigen::Vector3d half = R.cwiseAbs() * (0.5 * (high - low)) * (1 + 1e-12);
+    FastBounds out;
+    for (int k = 0; k < 3; ++k) {
+      out.low[k] = round_down(center[k] - half[k]);
+      out.high[k] = round_up(center[k] + half[k]);
+    }
+    return out;
+  }
+
   FastRun add_lists(const GroupBounds& bounds, double margin, const Obstacles& obstacles) {
     const int first = static_cast<int>(out_.lists.size());
     for (const Placed& placed : placed_) {
@@ -248,6 +314,11 @@ FastWorld::FastWorld(const FastRobotData& robot, const Obstacles& obstacles) {
   tables.cylinders = cylinders.data();
   tables.box_ids = box_ids.data();
   tables.cylinder_ids = cylinder_ids.data();
+  tables.crowd = crowd.tables();
+  tables.items = items.data();
+  tables.clouds = clouds.tables();
+  tables.points = points.data();
+  tables.point_ids = point_ids.data();
 }
 
 }  // namespace mjarm::detail

@@ -1,12 +1,14 @@
 #pragma once
 
 #include "mjarm/collision/fast_robot_internal.hpp"
+#include "mjarm/collision/fast_tree_internal.hpp"
 #include "mjarm/collision/obstacles.hpp"
 
 namespace mjarm::detail {
 
 /// Obstacles (which were checked) sorted by orientation and, for each link, without those that it
-/// never reaches: the arrays behind a FastWorldTables.
+/// never reaches, many solids and the points of clouds in trees: the arrays behind a
+/// FastWorldTables.
 struct FastWorld {
   FastWorld(const FastRobotData& robot, const Obstacles& obstacles);
   FastWorld(const FastWorld&) = delete;  // the tables point into it
@@ -18,7 +20,17 @@ struct FastWorld {
   std::vector<FastBox> boxes;
   std::vector<FastCylinder> cylinders;
   std::vector<int> box_ids, cylinder_ids;
+  FastTreeNodes crowd, clouds;
+  std::vector<FastItem> items;
+  std::vector<FastPoints> points;
+  std::vector<int> point_ids;
   FastWorldTables tables;
 };
+
+/// Puts the points of all clouds within `reach` of `middle_F` into the tree of `out`.
+/// @param R_WF      of frame 0.
+/// @param first_id  of the first cloud.
+void add_clouds(std::span<const PointCloud> clouds, const Eigen::Matrix3d& R_WF,
+                const Eigen::Vector3d& middle_F, double reach, int first_id, FastWorld& out);
 
 }  // namespace mjarm::detail

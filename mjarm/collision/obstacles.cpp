@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mjarm/core/messages/collision.hpp"
 
@@ -53,6 +54,30 @@ bool is_rotation(const Eigen::Matrix3d& R) {
          R.determinant() > 0;
 }
 
+bool place_fits(const Eigen::Vector3d& p) {
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMostSize;
+}
+
+Result<void> check_clouds(const std::vector<PointCloud>& clouds) {
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    const PointCloud& cloud = clouds[i];
+    points += cloud.points_W.size();
+    if (points > kMostPoints) {
+      return fail(Errc::bad_input, text(msg::collision_many_points, i, cloud.name, kMostPoints));
+    }
+    if (!size_fits(cloud.radius)) {
+      return fail(Errc::bad_input, text(msg::collision_cloud_radius, i, cloud.name));
+    }
+    const auto bad = std::find_if_not(cloud.points_W.begin(), cloud.points_W.end(), place_fits);
+    if (bad != cloud.points_W.end()) {
+      return fail(Errc::bad_input,
+                  text(msg::collision_cloud_point, i, cloud.name, bad - cloud.points_W.begin()));
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 double distance(const Obstacle& obstacle, const Eigen::Vector3d& p_W) noexcept {
@@ -60,16 +85,30 @@ double distance(const Obstacle& obstacle, const Eigen::Vector3d& p_W) noexcept {
   return std::visit(DistanceTo{p_O}, obstacle.shape);
 }
 
+double distance(const PointCloud& cloud, const Eigen::Vector3d& p_W) noexcept {
+  double least2 = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& point : cloud.points_W) {
+    least2 = std::min(least2, (point - p_W).squaredNorm());
+  }
+  return std::max(std::sqrt(least2) - cloud.radius, 0.0);
+}
+
+const std::string& obstacle_name(const Obstacles& obstacles, int index) noexcept {
+  const auto i = static_cast<std::size_t>(index);
+  const std::size_t solids = obstacles.solids.size();
+  return i < solids ? obstacles.solids[i].name : obstacles.clouds[i - solids].name;
+}
+
 Result<void> check_obstacles(const Obstacles& obstacles) {
   const std::vector<Obstacle>& solids = obstacles.solids;
-  if (solids.size() > kMostObstacles) {
-    return fail(Errc::bad_input,
-                text(msg::collision_many_obstacles, solids.size(), kMostObstacles));
+  const std::size_t count = solids.size() + obstacles.clouds.size();
+  if (count > kMostObstacles) {
+    return fail(Errc::bad_input, text(msg::collision_many_obstacles, count, kMostObstacles));
   }
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const Obstacle& obstacle = solids[i];
     const Pose& X = obstacle.X_WO;
-    if (!X.p.allFinite() || X.p.cwiseAbs().maxCoeff() > kMostSize) {
+    if (!place_fits(X.p)) {
       return fail(Errc::bad_input, text(msg::collision_obstacle_place, i, obstacle.name));
     }
     if (!is_rotation(X.R)) {
@@ -79,7 +118,7 @@ Result<void> check_obstacles(const Obstacles& obstacles) {
       return fail(Errc::bad_input, text(msg::collision_obstacle_size, i, obstacle.name));
     }
   }
-  return {};
+  return check_clouds(obstacles.clouds);
 }
 
 }  // namespace mjarm

@@ -58,6 +58,31 @@ TEST(Obstacles, WhatIsRefused) {
   EXPECT_FALSE(check_obstacles(many).has_value());
 }
 
+std::string fault_of(const PointCloud& cloud) {
+  Obstacles world;
+  world.clouds = {{"fine", {{1, 2, 3}}, 0.1}, cloud};
+  const Result<void> result = check_obstacles(world);
+  if (result) return "";
+  EXPECT_EQ(result.error().code, Errc::bad_input);
+  EXPECT_NE(result.error().what.find("1 (\"it\")"), std::string::npos);
+  return result.error().what;
+}
+
+TEST(Obstacles, WhatIsRefusedOfClouds) {
+  EXPECT_EQ(fault_of(PointCloud{"it", {}, 0.1}), "");
+  EXPECT_EQ(fault_of(PointCloud{"it", {{0, 0, 0}, {0, 0, 0}}, 0.1}), "");
+  for (const double bad : {0.0, -1.0, kNan, kInf, 1e5}) {
+    EXPECT_NE(fault_of(PointCloud{"it", {{0, 0, 0}}, bad}), "") << bad;
+  }
+  for (const double bad : {kNan, kInf, -1e5}) {
+    EXPECT_NE(fault_of(PointCloud{"it", {{0, 0, 0}, {0, 0, bad}}, 0.1}).find("point 1"),
+              std::string::npos)
+        << bad;
+  }
+  EXPECT_EQ(fault_of(PointCloud{"it", std::vector<Eigen::Vector3d>(kMostPoints - 1), 0.1}), "");
+  EXPECT_NE(fault_of(PointCloud{"it", std::vector<Eigen::Vector3d>(kMostPoints), 0.1}), "");
+}
+
 TEST(SphereSet, BoundingSphereHoldsAllAndIsTight) {
   Rng rng(32);
   for (int i = 0; i < 300; ++i) {

@@ -78,6 +78,19 @@ inline Obstacles random_world(Rng& rng, int count, bool thin = false) {
   return out;
 }
 
+/// Points on a plane, on a line, in a heap or all in one place.
+inline PointCloud random_cloud(Rng& rng, int count, double radius) {
+  PointCloud out{"cloud", {}, radius};
+  const Eigen::Vector3d middle = random_vector(rng, 0.9);
+  const Eigen::Matrix3d R = from_euler(random_vector(rng, 3));
+  Eigen::Vector3d half(rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6), rng.uniform(0.1, 0.6));
+  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(rng.below(4)); ++k) half[k] = 0;
+  for (int i = 0; i < count; ++i) {
+    out.points_W.push_back(middle + R * half.cwiseProduct(random_vector(rng, 1)));
+  }
+  return out;
+}
+
 /// From a point to the nearest point of a solid; the point is in its frame.
 inline double point_distance(const ObstacleShape& shape, const Eigen::Vector3d& p) {
   if (const auto* ball = std::get_if<BallShape>(&shape)) return p.norm() - ball->radius;
@@ -116,6 +129,11 @@ inline double true_clearance(const Arm& arm, const SphereSet& set, const Obstacl
       for (const Obstacle& solid : world.solids) {
         const Eigen::Vector3d p = solid.X_WO.inverse() * center;
         least = std::min(least, point_distance(solid.shape, p) - sphere.radius);
+      }
+      for (const PointCloud& cloud : world.clouds) {
+        for (const Eigen::Vector3d& point : cloud.points_W) {
+          least = std::min(least, (point - center).norm() - cloud.radius - sphere.radius);
+        }
       }
     }
   }

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "mjarm/collision/fast_check.hpp"
+#include "mjarm/collision/random_scene_test.hpp"
+
+/// Holds the answers of the fast checker against the oracle.
+namespace mjarm::testing {
+
+inline constexpr std::array kLevels{SimdLevel::baseline, SimdLevel::avx2, SimdLevel::avx512};
+
+inline std::vector<double> random_rows(const Arm& arm, Rng& rng, int count) {
+  std::vector<double> rows;
+  for (int i = 0; i < count; ++i) {
+    const JointVec q = random_q(arm, rng);
+    rows.insert(rows.end(), q.data(), q.data() + q.size());
+  }
+  return rows;
+}
+
+struct Tally {
+  int free = 0, blocked = 0, padded = 0;
+};
+
+/// Holds the answers of one level for random configurations against the oracle. `extent` [m]: of
+/// the largest solid and its distance.
+inline void compare(const Arm& arm, const SphereSet& set, const Obstacles& world, SimdLevel level,
+                    Rng& rng, int count, Tally& tally, double extent = 1) {
+  const auto robot = FastRobot::make(arm, set);
+  ASSERT_TRUE(robot.has_value()) << robot.error().what;
+  const auto checker = FastChecker::make(*robot, world, level);
+  ASSERT_TRUE(checker.has_value()) << checker.error().what;
+  EXPECT_LT(robot->padding(), 2e-4);
+  const auto dof = static_cast<std::size_t>(arm.dof());
+  const std::vector<double> rows = random_rows(arm, rng, count);
+  std::vector<std::uint8_t> free(static_cast<std::size_t>(count));
+  checker->check(rows, free);
+  std::vector<SphereClearance> clearances(free.size());
+  checker->clearances(rows, clearances);
+  const double pad = 2 * robot->padding() + 2e-6 * extent;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const std::span<const double> q(&rows[i * dof], dof);
+    const double truth = true_clearance(arm, set, world, q);
+    if (free[i] != 0) {
+      ++tally.free;
+      ASSERT_GT(truth, 0) << "called free";
+    } else {
+      ++tally.blocked;
+      ASSERT_LT(truth, pad) << "called blocked";
+      tally.padded += truth > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(checker->is_free(q), free[i] != 0);
+    const double gap = true_clearance(arm, set, world, q, true);
+    const double bound = clearances[i].distance;
+    EXPECT_LE(bound, std::max(gap, 0.0) + 1e-9);
+    EXPECT_GT(bound, std::min(gap, 0.99) - pad - 1e-6 - 1e-6 * extent);
+    EXPECT_EQ(clearances[i].link >= 0, bound < 1);
+  }
+}
+
+}  // namespace mjarm::testing

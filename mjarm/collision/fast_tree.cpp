@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdint>
+
+#include "mjarm/collision/fast_tree_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr int kCurveBits = 16;  // of each coordinate
+constexpr int kDigitBits = 12;  // sorted at once
+constexpr float kNowhere = 1e18F;
+
+struct PlaceKey {
+  std::uint64_t key;
+  int index;
+};
+
+/// The 16 bits of `x`, each followed by two zeros.
+std::uint64_t spread_bits(std::uint64_t x) {
+  x = (x | (x << 16)) & 0x1f0000ff0000ffULL;
+  x = (x | (x << 8)) & 0x100f00f00f00f00fULL;
+  x = (x | (x << 4)) & 0x10c30c30c30c30c3ULL;
+  return (x | (x << 2)) & 0x1249249249249249ULL;
+}
+
+void sort_keys(std::vector<PlaceKey>& keys) {
+  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  if (keys.size() < kDigits) {
+    std::sort(keys.begin(), keys.end(), [](const PlaceKey& a, const PlaceKey& b) {
+      return a.key < b.key || (a.key == b.key && a.index < b.index);
+    });
+    return;
+  }
+  std::vector<PlaceKey> sorted(keys.size());
+  for (int shift = 0; shift < 3 * kCurveBits; shift += kDigitBits) {
+    std::array<std::uint32_t, kDigits + 1> first{};
+    const auto digit = [&](const PlaceKey& key) { return (key.key >> shift) & (kDigits - 1); };
+    for (const PlaceKey& key : keys) ++first[digit(key) + 1];
+    for (std::size_t d = 1; d <= kDigits; ++d) first[d] += first[d - 1];
+    for (const PlaceKey& key : keys) sorted[first[digit(key)]++] = key;
+    keys.swap(sorted);
+  }
+}
+
+FastNode empty_node() {
+  FastNode out;
+  for (int k = 0; k < 3; ++k) {
+    std::fill_n(out.low[k], kFan, kNowhere);
+    std::fill_n(out.high[k], kFan, -kNowhere);
+  }
+  return out;
+}
+
+void set_child(FastNode& node, std::size_t child, const FastBounds& bounds) {
+  for (int k = 0; k < 3; ++k) {
+    node.low[k][child] = bounds.low[k];
+    node.high[k][child] = bounds.high[k];
+  }
+}
+
+FastBounds bounds_of(const FastNode& node) {
+  FastBounds out;
+  for (int k = 0; k < 3; ++k) {
+    out.low[k] = *std::min_element(node.low[k], node.low[k] + kFan);
+    out.high[k] = *std::max_element(node.high[k], node.high[k] + kFan);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<int> curve_order(std::span<const Eigen::Vector3f> places) {
+  std::vector<int> out(places.size());
+  if (places.empty()) return out;
+  Eigen::Vector3f low = places.front(), high = low;
+  for (const Eigen::Vector3f& place : places) {
+    low = low.cwiseMin(place);
+    high = high.cwiseMax(place);
+  }
+  const float most = (1 << kCurveBits) - 1;
+  const float scale = most / std::max((high - low).maxCoeff(), 1e-30F);
+  std::vector<PlaceKey> keys(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    std::uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float at = std::clamp((places[i][k] - low[k]) * scale, 0.0F, most);
+      key |= spread_bits(static_cast<std::uint64_t>(at)) << k;
+    }
+    keys[i] = {key, static_cast<int>(i)};
+  }
+  sort_keys(keys);
+  for (std::size_t i = 0; i < keys.size(); ++i) out[i] = keys[i].index;
+  return out;
+}
+
+void FastTreeNodes::build(std::span<const FastBounds> leaves) {
+  if (leaves.empty()) return;
+  std::size_t below = leaves.size();
+  for (std::size_t level = 0; level == 0 || below > 1; ++level) {
+    assert(level < kFastLevels);
+    levels[level].assign((below + kFan - 1) / kFan, empty_node());
+    for (std::size_t i = 0; i < below; ++i) {
+      set_child(levels[level][i / kFan], i % kFan,
+                level == 0 ? leaves[i] : bounds_of(levels[level - 1][i]));
+    }
+    below = levels[level].size();
+  }
+}
+
+FastTree FastTreeNodes::tables() const {
+  FastTree out;
+  for (; out.levels < kFastLevels && !levels[out.levels].empty(); ++out.levels) {
+    out.nodes[out.levels] = levels[out.levels].data();
+  }
+  return out;
+}
+
+}  // namespace mjarm::detail
