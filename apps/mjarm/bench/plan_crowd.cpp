@@ -11,12 +11,14 @@
 namespace mjarm::app {
 namespace {
 
-constexpr int kPairs = 16;            // of start and goal
-constexpr int kMostTries = 100'000;   // for each pair and for each box
-constexpr double kLeastHalf = 0.005;  // [m] half sides of boxes
-constexpr double kMostHalf = 0.015;   // [m]
-constexpr double kRoom = 0.03;        // [m] left round the arm in all starts and goals
+constexpr int kPairs = 16;               // of start and goal
+constexpr int kMostTries = 100'000;      // for each pair and for each box
+constexpr double kLeastHalf = 0.005;     // [m] half sides of boxes
+constexpr double kMostHalf = 0.015;      // [m]
+constexpr double kRoom = 0.03;           // [m] left round the arm in all starts and goals
+constexpr double kPointRadius = 0.0025;  // [m]
 constexpr std::size_t kBoxes[] = {1, 10, 100, 1000};
+constexpr std::size_t kPoints[] = {1000, 10'000, 100'000};
 
 Eigen::Vector3d random_direction(Rng& rng) {
   return Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized();
@@ -73,6 +75,23 @@ Result<std::vector<Obstacle>> strewn_boxes(const PlanSet& like, std::size_t coun
   return boxes;
 }
 
+/// On a random side of a random box.
+Eigen::Vector3d random_point(const std::vector<Obstacle>& boxes, Rng& rng) {
+  const Obstacle& box = boxes[rng.below(boxes.size())];
+  const Eigen::Vector3d half = std::get<BoxShape>(box.shape).half;
+  Eigen::Vector3d p;
+  for (Eigen::Index i = 0; i < 3; ++i) p[i] = rng.uniform(-half[i], half[i]);
+  const auto axis = static_cast<Eigen::Index>(rng.below(3));
+  p[axis] = rng.below(2) == 0 ? -half[axis] : half[axis];
+  return box.X_WO * p;
+}
+
+PointCloud random_points(const std::vector<Obstacle>& boxes, std::size_t count, Rng& rng) {
+  PointCloud cloud{.name = "points", .radius = kPointRadius};
+  for (std::size_t i = 0; i < count; ++i) cloud.points_W.push_back(random_point(boxes, rng));
+  return cloud;
+}
+
 CrowdedSet crowded(const PlanSet& like, const std::vector<double>& rows, std::size_t count,
                    bool points, const Obstacles& obstacles) {
   CrowdedSet crowd{count, points, {like.name, {}, like.arm, like.spheres, like.robot, {}}};
@@ -101,6 +120,10 @@ Result<std::vector<CrowdedSet>> make_crowded_sets(const PlanSet& like, std::uint
   for (const std::size_t count : kBoxes) {
     const Obstacles some{.solids = {boxes->begin(), boxes->begin() + static_cast<int>(count)}};
     sets.push_back(crowded(like, *rows, count, false, some));
+  }
+  for (const std::size_t count : kPoints) {
+    const Obstacles some{.clouds = {random_points(*boxes, count, rng)}};
+    sets.push_back(crowded(like, *rows, count, true, some));
   }
   return sets;
 }

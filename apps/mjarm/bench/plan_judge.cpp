@@ -43,19 +43,64 @@ struct Clearance {
   double self = std::numeric_limits<double>::infinity();
 };
 
-Clearance clearance_at(const PlanSet& set, const Obstacles& obstacles, const JointVec& q) {
-  const Centres centres = centres_at(set, q);
+/// Points of a cloud from left to right, so that few are looked at for a sphere.
+struct SortedCloud {
+  std::vector<Eigen::Vector3d> points;
+  double radius;
+};
+
+std::vector<SortedCloud> sorted_clouds(const Obstacles& obstacles) {
+  std::vector<SortedCloud> sorted;
+  for (const PointCloud& cloud : obstacles.clouds) {
+    std::vector<Eigen::Vector3d>& points =
+        sorted.emplace_back(SortedCloud{cloud.points_W, cloud.radius}).points;
+    std::sort(points.begin(), points.end(),
+              [](const auto& a, const auto& b) { return a.x() < b.x(); });
+  }
+  return sorted;
+}
+
+/// [m] from a ball to the points that it may overlap; infinite where there are none.
+double distance_to(const SortedCloud& cloud, const Eigen::Vector3d& p_W, double radius) {
+  const double reach = radius + cloud.radius;
+  double least = std::numeric_limits<double>::infinity();
+  auto point = std::lower_bound(cloud.points.begin(), cloud.points.end(), p_W.x() - reach,
+                                [](const auto& p, double x) { return p.x() < x; });
+  for (; point != cloud.points.end() && point->x() <= p_W.x() + reach; ++point) {
+    least = std::min(least, (*point - p_W).norm() - reach);
+  }
+  return least;
+}
+
+/// A problem's obstacles as they are looked at, again and again.
+struct World {
+  const PlanSet& set;
+  const Obstacles& obstacles;
+  std::vector<SortedCloud> clouds;
+};
+
+double obstacle_clearance(const World& world, const Eigen::Vector3d& p_W, double radius) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : world.obstacles.solids) {
+    least = std::min(least, distance(obstacle, p_W) - radius);
+  }
+  for (const SortedCloud& cloud : world.clouds) {
+    least = std::min(least, distance_to(cloud, p_W, radius));
+  }
+  return least;
+}
+
+Clearance clearance_at(const World& world, const JointVec& q) {
+  const Centres centres = centres_at(world.set, q);
   Clearance least;
-  const std::vector<LinkSpheres>& links = set.spheres.links;
+  const std::vector<LinkSpheres>& links = world.set.spheres.links;
   for (std::size_t l = 0; l < links.size(); ++l) {
     for (std::size_t s = 0; s < links[l].spheres.size(); ++s) {
-      for (const Obstacle& obstacle : obstacles.solids) {
-        const double away = distance(obstacle, centres[l][s]) - links[l].spheres[s].radius;
-        least.obstacle = std::min(least.obstacle, away);
-      }
+      least.obstacle = std::min(
+          least.obstacle, obstacle_clearance(world, centres[l][s], links[l].spheres[s].radius));
     }
   }
-  for (const auto& [a, b] : set.spheres.pairs) {
+  for (const auto& [a, b] : world.set.spheres.pairs) {
     const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
     for (std::size_t s = 0; s < centres[i].size(); ++s) {
       for (std::size_t t = 0; t < centres[j].size(); ++t) {
@@ -127,14 +172,15 @@ PathVerdict judge_path(const PlanSet& set, const PlanProblem& problem,
   PathVerdict verdict;
   if (!is_path(set.arm, path)) return {.fault = PathFault::shape};
   verdict.fault = fault_of_corners(set, problem, path);
-  Clearance least = clearance_at(set, problem.obstacles, joint_vec(path.front()));
+  const World world{set, problem.obstacles, sorted_clouds(problem.obstacles)};
+  Clearance least = clearance_at(world, joint_vec(path.front()));
   for (std::size_t i = 1; i < path.size(); ++i) {
     const JointVec from = joint_vec(path[i - 1]), way = joint_vec(path[i]) - from;
     verdict.cost += way.norm();
     const int steps = std::max(1, static_cast<int>(std::ceil(way.norm() / kSpacing)));
     for (int k = 1; k <= steps; ++k) {
       const JointVec q = from + way * (static_cast<double>(k) / steps);
-      const Clearance here = clearance_at(set, problem.obstacles, q);
+      const Clearance here = clearance_at(world, q);
       least.obstacle = std::min(least.obstacle, here.obstacle);
       least.self = std::min(least.self, here.self);
     }

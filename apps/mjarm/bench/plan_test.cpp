@@ -93,6 +93,7 @@ TEST(BenchPlan, PeersAreAskedSceneBySceneAndTheirPathsJudged) {
   const json& two = run_of(bench, "peer", "two");
   EXPECT_EQ(two.at("solved"), 1);
   EXPECT_EQ(two.at("valid"), 0);
+  ASSERT_EQ(two.at("wrong").size(), 1U);
   EXPECT_EQ(two.at("wrong")[0].at("problem"), "p1");
   EXPECT_EQ(two.at("wrong")[0].at("fault"), "obstacle");
   EXPECT_NEAR(two.at("wrong")[0].at("depth"), 0.05, 1e-12);  // of a ball whose centre is inside
@@ -160,7 +161,8 @@ TEST(BenchPlan, MoreTimeAndMoreObstacles) {
   EXPECT_LE(run_of(anytime, "mjarm", "10 ms").at("cost"),
             run_of(anytime, "mjarm", "0 ms").at("cost").get<double>() + 1e-9);
   const json crowds = bench_json(plan(folder, {"--set", "scaling"}));
-  for (const char* crowd : {"boxes: 1", "boxes: 10", "boxes: 100", "boxes: 1000"}) {
+  for (const char* crowd :
+       {"boxes: 1", "boxes: 10", "boxes: 100", "boxes: 1000", "points: 1000", "points: 100000"}) {
     const json& run = run_of(crowds, "mjarm", crowd);
     EXPECT_EQ(run.at("solved"), run.at("valid"));
     EXPECT_GT(run.at("check_ns").at("along"), 0.0);
