@@ -28,6 +28,8 @@ void append_rows(std::string& out, const char* key, std::span<const JointVec> ro
   out += ']';
 }
 
-void append_us(std::string& out, double us) { append_value(out, "us", std::round(us * 10) / 10); }
+void append_us(std::string& out, double us, const char* key) {
+  append_value(out, key, std::round(us * 10) / 10);
+}
 
 }  // namespace mjarm::app

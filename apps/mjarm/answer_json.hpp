@@ -15,7 +15,7 @@ void append_value(std::string& out, const char* key, double value);
 void append_value(std::string& out, const char* key, const JointVec& values);
 /// A list of lists.
 void append_rows(std::string& out, const char* key, std::span<const JointVec> rows);
-/// How long it took, `"us"`, to a tenth of a microsecond.
-void append_us(std::string& out, double us);
+/// How long it took, to a tenth of a microsecond.
+void append_us(std::string& out, double us, const char* key = "us");
 
 }  // namespace mjarm::app

@@ -22,8 +22,6 @@
 namespace mjarm::app {
 namespace {
 
-constexpr std::uint64_t kMostThreads = 1024;
-
 struct Options {
   RobotOptions robot;
   BatchOptions batch;
@@ -179,12 +177,9 @@ Result<int> run(Options options) {
   }
   const Result<std::uint64_t> seed = parse_whole("--seed", options.seed);
   if (!seed) return fail(seed.error());
-  const Result<std::uint64_t> threads = parse_whole("--threads", options.threads);
+  const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
-  if (*threads < 1 || *threads > kMostThreads) {
-    return fail(Errc::usage, text(msg::app_bad_threads, *threads, kMostThreads));
-  }
-  options.batch.threads = static_cast<int>(*threads);
+  options.batch.threads = *threads;
   const Result<IkTask> task = read_task(options.task);
   if (!task) return fail(task.error());
   const auto prefer = read_prefer(options);

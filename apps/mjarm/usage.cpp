@@ -32,6 +32,25 @@ Result<std::uint64_t> parse_whole(const std::string& option, const std::string& 
   return number;
 }
 
+Result<int> parse_count(const std::string& option, const std::string& value, int most) {
+  const Result<std::uint64_t> count = parse_whole(option, value);
+  if (!count) return fail(count.error());
+  if (*count < 1 || *count > static_cast<std::uint64_t>(most)) {
+    return fail(Errc::usage, text(msg::app_count, option, most, *count));
+  }
+  return static_cast<int>(*count);
+}
+
+Result<int> parse_threads(const std::string& value) {
+  constexpr std::uint64_t kMostThreads = 1024;
+  const Result<std::uint64_t> threads = parse_whole("--threads", value);
+  if (!threads) return fail(threads.error());
+  if (*threads < 1 || *threads > kMostThreads) {
+    return fail(Errc::usage, text(msg::app_bad_threads, *threads, kMostThreads));
+  }
+  return static_cast<int>(*threads);
+}
+
 Result<std::size_t> parse_choice(const std::string& option, const std::string& value,
                                  std::span<const std::string> words) {
   const auto word = std::find(words.begin(), words.end(), value);

@@ -16,6 +16,13 @@ namespace mjarm::app {
 [[nodiscard]] Result<std::uint64_t> parse_whole(const std::string& option,
                                                 const std::string& value);
 
+/// Reads a whole number from 1 to `most`, as `--rounds 5`. @return an error that names `option`.
+[[nodiscard]] Result<int> parse_count(const std::string& option, const std::string& value,
+                                      int most);
+
+/// Reads the value of `--threads`, 1 to 1024.
+[[nodiscard]] Result<int> parse_threads(const std::string& value);
+
 /// Reads one of some words, as `--task axis`.
 /// @return its place in `words`, or an error that names `option` and all of them.
 [[nodiscard]] Result<std::size_t> parse_choice(const std::string& option, const std::string& value,

@@ -42,8 +42,8 @@ class EdgeSearch {
       way_[i] = q1[i] - q0[i];
       dq_[i] = static_cast<float>(way_[i]);
       length += way_[i] * way_[i];
-      const detail::FastLimits limits = detail::fast_limits(data_.arm, static_cast<int>(i));
-      const auto fits = [&](double q) { return q > limits.lower && q < limits.upper; };
+      const detail::FastJoint& joint = data_.tables.joints[i];
+      const auto fits = [&](double q) { return q > joint.lower && q < joint.upper; };
       if (!fits(q0[i])) outside_ = 0;
       if (fits(q0[i]) && !fits(q1[i])) outside_ = std::min(outside_, 1.0);
     }
@@ -72,43 +72,43 @@ class EdgeSearch {
   double length() const { return length_; }
 
  private:
-  /// Bounds of speeds and second derivatives along the edge, for every link.
+  /// Bounds of speeds and second derivatives along the edge, for every link and every pair. A point
+  /// moves by at most (lever * rate), summed over the joints; each joint also turns what those
+  /// after it do. What the joints before the nearer link of a pair do moves both links alike.
   void bound_motion() {
-    const std::size_t dof = static_cast<std::size_t>(data_.arm.dof());
-    for (std::size_t g = 0; g < data_.groups.size(); ++g) {
-      const Motion motion = motion_of(g, 0, dof);
-      slack_[g] = static_cast<float>(1e-5 * motion.speed);
-      bend_[g] = static_cast<float>(0.5001 * motion.bend);
+    std::array<float, kMaxDof + 1> before{};  // rates of the joints before, summed
+    const std::size_t groups = data_.groups.size(), pairs = data_.pairs.size();
+    std::fill_n(slack_.begin(), groups, 0.0F);
+    std::fill_n(bend_.begin(), groups, 0.0F);
+    std::fill_n(pair_rate_.begin(), pairs, 0.0F);
+    std::fill_n(pair_bend_.begin(), pairs, 0.0F);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(data_.arm.dof()); ++k) {
+      const float rate = std::abs(dq_[k]), turn = rate * (rate + 2 * before[k]);
+      before[k + 1] = before[k] + rate;
+      add_motion(&data_.group_levers[k * groups], groups, rate, turn, slack_.data(), bend_.data());
+      add_motion(data_.pair_levers.data() + k * pairs, pairs, rate, turn, pair_rate_.data(),
+                 pair_bend_.data());
     }
-    for (std::size_t p = 0; p < data_.pairs.size(); ++p) {
+    for (std::size_t g = 0; g < groups; ++g) {
+      slack_[g] *= 1e-5F;
+      bend_[g] *= 0.5001F;
+    }
+    for (std::size_t p = 0; p < pairs; ++p) {
       const auto a = static_cast<std::size_t>(data_.pairs[p].a);
       const auto b = static_cast<std::size_t>(data_.pairs[p].b);
-      // What the joints before body a do moves both links alike. The difference of the two twists
-      // is rounded more than either: its slack is that of the whole motion.
-      const Motion motion = motion_of(b, static_cast<std::size_t>(data_.groups[a].body),
-                                      static_cast<std::size_t>(data_.groups[b].body));
-      pair_rate_[p] = static_cast<float>(1.0001 * motion.speed);
-      pair_slack_[p] = 2 * slack_[b];
-      pair_bend_[p] = static_cast<float>(0.5001 * motion.bend);
+      const float alike = 2 * before[static_cast<std::size_t>(data_.groups[a].body)];
+      pair_bend_[p] = 0.5001F * (pair_bend_[p] - 0.9999F * alike * pair_rate_[p]);
+      pair_rate_[p] *= 1.0001F;
+      pair_slack_[p] = 2 * slack_[b];  // two twists, each rounded
     }
   }
 
-  struct Motion {
-    double speed = 0, bend = 0;  // [m], [m] bounds of first and second derivative
-  };
-
-  /// What joints [first, end) do to the spheres of a group at most.
-  Motion motion_of(std::size_t group, std::size_t first, std::size_t end) const {
-    const auto& levers = data_.bounds[group].levers;
-    Motion out;
-    double before = 0;
-    for (std::size_t k = first; k < end; ++k) {
-      const double rate = std::abs(way_[k]);
-      out.speed += levers[k] * rate;
-      out.bend += levers[k] * rate * (rate + 2 * before);
-      before += rate;
+  static void add_motion(const float* levers, std::size_t count, float rate, float turn,
+                         float* speed, float* bend) {
+    for (std::size_t i = 0; i < count; ++i) {
+      speed[i] += levers[i] * rate;
+      bend[i] += levers[i] * turn;
     }
-    return out;
   }
 
   bool split(OpenInterval whole, std::size_t parts, IntervalQueue& to) {
@@ -127,12 +127,15 @@ class EdgeSearch {
     const OpenInterval* const open = &queue.open[first];
     alignas(64) float q[kMaxDof * kMostWidth];
     alignas(64) float half[kMostWidth];
-    for (std::size_t k = 0; k < width_; ++k) half[k] = open[std::min(k, count - 1)].half;
-    for (int i = 0; i < data_.arm.dof(); ++i) {
+    double t[kMostWidth];
+    for (std::size_t k = 0; k < width_; ++k) {
+      const OpenInterval& interval = open[std::min(k, count - 1)];
+      half[k] = interval.half;
+      t[k] = interval.t;
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(data_.tables.dof); ++i) {
       for (std::size_t k = 0; k < width_; ++k) {
-        const double t = open[std::min(k, count - 1)].t;
-        q[static_cast<std::size_t>(i) * width_ + k] = static_cast<float>(
-            start_[static_cast<std::size_t>(i)] + t * way_[static_cast<std::size_t>(i)]);
+        q[i * width_ + k] = static_cast<float>(start_[i] + t[k] * way_[i]);
       }
     }
     const detail::FastMotion motion{dq_.data(),        slack_.data(),      bend_.data(),

@@ -128,9 +128,7 @@ struct Block {
     return plus_cross(twists[body].v, twists[body].w, p - frames[body].p);
   }
   /// How the point of a body that is now at the ball of group `g` moves, and how the body turns.
-  Twist twist_at_ball(int g, int body) const {
-    return {velocity(balls[g], body), twists[body].w};
-  }
+  Twist twist_at_ball(int g, int body) const { return {velocity(balls[g], body), twists[body].w}; }
 
   void place_spheres(const FastRobotTables& robot, int g) {
     if (placed[g]) return;
@@ -167,7 +165,9 @@ inline Point gap_vector(const FastBox& box, const Point& p) {
           p.y - smaller(larger(p.y, splat(box.low[1])), splat(box.high[1])),
           p.z - smaller(larger(p.z, splat(box.low[2])), splat(box.high[2]))};
 }
-inline Floats squared_gap(const FastBox& box, const Point& p) { return squared(gap_vector(box, p)); }
+inline Floats squared_gap(const FastBox& box, const Point& p) {
+  return squared(gap_vector(box, p));
+}
 
 /// The same from a finite cylinder.
 inline Floats squared_gap(const FastCylinder& cylinder, const Point& p) {
@@ -180,6 +180,7 @@ inline Floats squared_gap(const FastCylinder& cylinder, const Point& p) {
   return multiply_add(side, side, beyond * beyond);
 }
 
+/// From its nearest point, as of a box.
 inline Point gap_vector(const FastCylinder& cylinder, const Point& p) {
   Floats d[3] = {p.x - cylinder.center[0], p.y - cylinder.center[1], p.z - cylinder.center[2]};
   const int a = cylinder.axis;
@@ -193,8 +194,84 @@ inline Point gap_vector(const FastCylinder& cylinder, const Point& p) {
   return {d[0], d[1], d[2]};
 }
 
+inline Floats dot(const float* a, const Point& b) {
+  return multiply_add(splat(a[0]), b.x, multiply_add(splat(a[1]), b.y, splat(a[2]) * b.z));
+}
+
+/// Of a polytope the largest distance from a plane, squared.
+inline Floats squared_gap(const FastPolytope& polytope, const Point& p) {
+  Floats gap{};
+  for (int i = 0; i < polytope.count; ++i) {
+    gap = larger(gap, dot(polytope.planes[i].n, p) - polytope.planes[i].d);
+  }
+  return gap * gap;
+}
+
+inline void take_where(const Floats& shorter, const Floats& than, const Point& from, Point& to) {
+  to.x = shorter < than ? from.x : to.x;
+  to.y = shorter < than ? from.y : to.y;
+  to.z = shorter < than ? from.z : to.z;
+}
+
+/// From the nearest point of a triangle: above it of its plane, else of an edge.
+inline Point gap_vector(const FastTriangle& triangle, const Point& p) {
+  Floats beside2 = splat(1e30F), beyond_side = splat(-1e30F);
+  Point d, out;
+  for (int i = 0; i < 3; ++i) {
+    const float *corner = triangle.corner[i], *edge = triangle.edge[i];
+    d = {p.x - corner[0], p.y - corner[1], p.z - corner[2]};
+    const Floats t = smaller(larger(dot(edge, d) * triangle.per_length2[i], Floats{}), splat(1.0F));
+    const Point off = {multiply_add(t, splat(-edge[0]), d.x), multiply_add(t, splat(-edge[1]), d.y),
+                       multiply_add(t, splat(-edge[2]), d.z)};
+    const Floats off2 = squared(off);
+    take_where(off2, beside2, off, out);
+    beside2 = smaller(beside2, off2);
+    beyond_side = larger(beyond_side, dot(triangle.side[i], d));
+  }
+  const Floats height = dot(triangle.normal, d);
+  const Floats least2 = beyond_side < triangle.slack ? height * height : splat(1e30F);
+  take_where(
+      least2, beside2,
+      {height * triangle.normal[0], height * triangle.normal[1], height * triangle.normal[2]}, out);
+  return out;
+}
+
+inline Floats squared_gap(const FastTriangle& triangle, const Point& p) {
+  return squared(gap_vector(triangle, p));
+}
+
+/// From the plane that is farthest away.
+inline Point gap_vector(const FastPolytope& polytope, const Point& p) {
+  Floats gap{};
+  Point n{};
+  for (int i = 0; i < polytope.count; ++i) {
+    const auto& plane = polytope.planes[i];
+    const Floats from_plane = dot(plane.n, p) - plane.d;
+    take_where(gap, from_plane, {splat(plane.n[0]), splat(plane.n[1]), splat(plane.n[2])}, n);
+    gap = larger(gap, from_plane);
+  }
+  return {gap * n.x, gap * n.y, gap * n.z};
+}
+
+inline float rounding_of(const FastTriangle& triangle) { return triangle.round; }
+inline float rounding_of(const FastPolytope&) { return 0; }
 inline float rounding_of(const FastBox& box) { return box.round; }
 inline float rounding_of(const FastCylinder&) { return 0; }
+
+/// Calls visit(solid) for a leaf of the tree of solids.
+template <class Visit>
+void visit_solid(const FastWorldTables& world, const FastItem& item, const Visit& visit) {
+  switch (item.kind) {
+    case FastKind::box:
+      return visit(world.boxes[item.index]);
+    case FastKind::cylinder:
+      return visit(world.cylinders[item.index]);
+    case FastKind::triangle:
+      return visit(world.triangles[item.index]);
+    case FastKind::polytope:
+      return visit(world.polytopes[item.index]);
+  }
+}
 
 }  // namespace MJARM_FLOAT_LANES
 }  // namespace mjarm::detail

@@ -105,16 +105,10 @@ class NearestSearch {
   void meet_item(int sphere, const FastItem& item) {
     const Point center = into_frame(world_, item.frame, block_.centers[sphere]);
     const float radius = robot_.spheres[sphere].radius;
-    const auto meet = [&](const auto& solid) {
+    visit_solid(world_, item, [&](const auto& solid) {
       const float round = rounding_of(solid);
       note(gap(squared_gap(solid, center), radius + round), {0, sphere, item.id, -1});
-    };
-    switch (item.kind) {
-      case FastKind::box:
-        return meet(world_.boxes[item.index]);
-      case FastKind::cylinder:
-        return meet(world_.cylinders[item.index]);
-    }
+    });
   }
 
   /// The nearest point of a leaf to where a lane's sphere is.

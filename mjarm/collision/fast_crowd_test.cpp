@@ -41,6 +41,57 @@ TEST(FastCrowd, NeverFreeWhereRandomRobotsCollide) {
   EXPECT_GT(tally.blocked, worlds * 10);
 }
 
+Obstacles composite_world(Rng& rng, int count) {
+  Obstacles out;
+  for (int i = 0; i < count; ++i) out.solids.push_back(testing::random_composite(rng));
+  return out;
+}
+
+TEST(FastCrowd, NeverFreeInMeshesPolytopesAndHeightFields) {
+  Rng rng(55);
+  Tally tally;
+  const int worlds = testing::rounds(60, 3000);
+  for (int round = 0; round < worlds; ++round) {
+    const Arm arm = testing::random_arm(1 + round % 9, rng);
+    SphereSet set = testing::random_spheres(arm, rng);
+    set.pairs.resize(std::min<std::size_t>(set.pairs.size(), 1));
+    const Obstacles world = composite_world(rng, 1 + static_cast<int>(rng.below(4)));
+    for (const SimdLevel level : kLevels) compare(arm, set, world, level, rng, 40, tally);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.free, worlds * 10);
+  EXPECT_GT(tally.blocked, worlds * 10);
+}
+
+/// Also for spheres that are small against the mesh, which is then a little thicker.
+TEST(FastCrowd, NothingIsFreeInsideOfASolidMesh) {
+  Rng rng(56);
+  const Arm arm = testing::panda();
+  int inside = 0;
+  for (int round = 0; round < 20; ++round) {
+    SphereSet set;
+    set.links = {{"tip", 6, {{testing::random_vector(rng, 0.1), 1e-5}}}};
+    Obstacles world;
+    world.solids = {{"mesh", {}, testing::random_closed_mesh(rng, round % 2 == 0 ? 1 : 3)}};
+    world.solids[0].X_WO.p = testing::random_vector(rng, 0.5);
+    const auto robot = FastRobot::make(arm, set).value();
+    const auto checker = FastChecker::make(robot, world, kLevels[round % 3]).value();
+    const double thick = round % 2 == 0 ? 0.03 : 0.09;
+    for (int k = 0; k < 500; ++k) {
+      const JointVec q = testing::random_q(arm, rng);
+      const double truth = testing::true_clearance(arm, set, world, view(q));
+      if (truth <= 0) {
+        ++inside;
+        ASSERT_FALSE(checker.is_free(view(q)));
+        ASSERT_LT(checker.clearance(view(q)).distance, 1e-4);
+      } else if (truth > thick) {
+        ASSERT_TRUE(checker.is_free(view(q)));
+      }
+    }
+  }
+  EXPECT_GT(inside, 300);
+}
+
 TEST(FastCrowd, NoFalseCertificateOfEdges) {
   Rng rng(52);
   int free = 0, hit = 0;
@@ -51,7 +102,9 @@ TEST(FastCrowd, NoFalseCertificateOfEdges) {
     for (LinkSpheres& link : set.links) {
       for (Sphere& sphere : link.spheres) sphere.radius *= 0.3;
     }
-    const Obstacles world = crowded_world(rng, round % 2 == 0 ? 70 : 0, 1, round % 2 == 0 ? 0 : 60);
+    const Obstacles world = round % 3 == 0   ? crowded_world(rng, 70, 0, 0)
+                            : round % 3 == 1 ? crowded_world(rng, 0, 1, 60)
+                                             : composite_world(rng, 1);
     const auto robot = FastRobot::make(arm, set).value();
     const auto checker = FastChecker::make(robot, world, kLevels[round % 3]).value();
     if (checker.fixed_overlap()) continue;

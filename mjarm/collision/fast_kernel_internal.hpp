@@ -43,7 +43,7 @@ class BlockSearch {
       if (kCover) grow_ = growth(g);
       meet_world(g);
       if (is_done()) return;
-      meet_crowd(g);
+      if (world_.grid.cells != nullptr) meet_crowd(g);
       if (is_done()) return;
     }
     for (int k = 0; k < robot_.pair_count; ++k) {
@@ -69,9 +69,9 @@ class BlockSearch {
   }
 
   Floats growth(const Twist& twist, float spread, float slack, float bend) const {
-    const Floats speed = multiply_add(square_root(squared(twist.w)), splat(spread),
-                                      square_root(squared(twist.v))) +
-                         slack;
+    const Floats speed =
+        multiply_add(square_root(squared(twist.w)), splat(spread), square_root(squared(twist.v))) +
+        slack;
     return half_ * multiply_add(half_, splat(bend), speed) * 1.0001F;
   }
 
@@ -103,7 +103,8 @@ class BlockSearch {
     note(overlaps, [](LaneBits near) { return near; });
   }
 
-  /// @param refine  which lanes stay blocked when looked at more closely; costs more, so it is asked
+  /// @param refine  which lanes stay blocked when looked at more closely; costs more, so it is
+  /// asked
   ///                only about lanes that do not overlap yet.
   template <class Refine>
   void note(const Overlaps& overlaps, const Refine& refine) {
@@ -195,16 +196,16 @@ class BlockSearch {
       const Point center = into_frame(world_, frame, block_.centers[k]);
       const Point v = into_frame(world_, frame, block_.velocity(block_.centers[k], group.body));
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
-      left |= near & ~cleared(gap_vector(solid, center), v, radius, motion_->slack[g],
-                              motion_->bend[g]);
+      left |= near &
+              ~cleared(gap_vector(solid, center), v, radius, motion_->slack[g], motion_->bend[g]);
     }
     return left;
   }
 
   /// Lanes in which a sphere, whose centre is at `gap` from the nearest point of a convex solid and
-  /// moves by `v`, stays farther from it than `radius`. The distance from a convex solid is a convex
-  /// function of the place, so along its gradient n it changes by n.v and by what the motion bends;
-  /// what goes along the surface does not count.
+  /// moves by `v`, stays farther from it than `radius`. The distance from a convex solid is a
+  /// convex function of the place, so along its gradient n it changes by n.v and by what the motion
+  /// bends; what goes along the surface does not count.
   LaneBits cleared(const Point& gap, const Point& v, float radius, float slack, float bend) const {
     const Floats distance = square_root(squared(gap));
     const Floats along_gap = multiply_add(gap.x, v.x, multiply_add(gap.y, v.y, gap.z * v.z));
@@ -213,50 +214,65 @@ class BlockSearch {
     return less(way + radius * 1.000001F, distance);
   }
 
-  /// What stands in trees.
+  /// What stands in trees: the grid says which spheres have to look there.
   void meet_crowd(int g) {
-    if (robot_.groups[g].body == 0) return;
-    const Point& ball = block_.balls[g];
-    const auto reach2 = [&] { return squared_reach(robot_.groups[g].ball.radius); };
-    const auto meet_items = [&](int node, const Touched& touched) {
-      for (std::uint32_t left = touched.children; left != 0 && !is_done(); left &= left - 1) {
-        meet_item(g, ball, world_.items[node * kFan + __builtin_ctz(left)]);
-      }
-      return is_done();
-    };
-    const auto meet_points = [&](int node, const Touched& touched) {
-      meet_twig(g, node, touched.lanes());
-      return is_done();
-    };
-    if (world_.crowd.levels > 0) walk(world_.crowd, ball, active_, reach2, meet_items);
-    if (is_done()) return;
-    if (world_.clouds.levels > 0) walk(world_.clouds, ball, active_, reach2, meet_points);
-  }
-
-  void meet_item(int g, const Point& ball, const FastItem& item) {
-    const Point at = into_frame(world_, item.frame, ball);
-    switch (item.kind) {
-      case FastKind::box:
-        return meet_run(g, item.frame, at, world_.boxes, {item.index, 1});
-      case FastKind::cylinder:
-        return meet_run(g, item.frame, at, world_.cylinders, {item.index, 1});
-    }
-  }
-
-  /// The leaves of points below a node, sphere by sphere.
-  void meet_twig(int g, int index, LaneBits lanes) {
-    block_.place_spheres(robot_, g);
     const FastGroup& group = robot_.groups[g];
-    const FastNode& node = world_.clouds.nodes[0][index];
+    if (group.body == 0) return;
+    const Floats bound = distance_bound(world_.grid, block_.balls[g]);
+    if ((less(bound, grow_ + group.ball.radius) & active_) == 0) return;
+    block_.place_spheres(robot_, g);
+    LaneBits together = 0;
     for (int k = group.first; k < group.first + group.count; ++k) {
+      const Floats reach = grow_ + robot_.spheres[k].radius;
+      near_[k] = less(distance_bound(world_.grid, block_.centers[k]), reach) & active_;
+      together |= near_[k];
+    }
+    if (together == 0) return;
+    if (world_.crowd.levels > 0) meet_items(g, together);
+    if (world_.clouds.levels > 0 && !is_done()) meet_clouds(g);
+  }
+
+  void meet_items(int g, LaneBits lanes) {
+    const float radius = robot_.groups[g].ball.radius;
+    const Point& ball = block_.balls[g];
+    const auto reach2 = [&] { return squared_reach(radius); };
+    walk(world_.crowd, ball, lanes, active_, reach2, [&](int leaf, LaneBits touching) {
+      const FastItem& item = world_.items[leaf];
+      visit_solid(world_, item,
+                  [&](const auto& solid) { meet_item(g, item.frame, touching, solid); });
+      return is_done();
+    });
+  }
+
+  template <class Solid>
+  void meet_item(int g, int frame, LaneBits lanes, const Solid& solid) {
+    const FastGroup& group = robot_.groups[g];
+    const float round = rounding_of(solid);
+    const Point ball = into_frame(world_, frame, block_.balls[g]);
+    lanes &= less(squared_gap(solid, ball), squared_reach(group.ball.radius + round));
+    if (lanes == 0) return;
+    Overlaps overlaps;
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      if ((near_[k] & lanes) == 0) continue;
+      const Point center = into_frame(world_, frame, block_.centers[k]);
+      const float radius = robot_.spheres[k].radius + round;
+      look(squared_gap(solid, center), radius, -radius * radius, overlaps);
+    }
+    note(overlaps, [&](LaneBits near) { return approaching(g, frame, solid, near); });
+  }
+
+  void meet_clouds(int g) {
+    const FastGroup& group = robot_.groups[g];
+    for (int k = group.first; k < group.first + group.count; ++k) {
+      if ((near_[k] & active_) == 0) continue;
       const float radius = robot_.spheres[k].radius;
       const Point& center = block_.centers[k];
-      const Touched touched(node, center, squared_reach(radius), lanes & active_);
-      for (std::uint32_t left = touched.children; left != 0; left &= left - 1) {
-        const int child = __builtin_ctz(left);
-        meet_points(world_.points[index * kFan + child], center, radius, touched.child[child]);
-        if (is_done()) return;
-      }
+      const auto reach2 = [&] { return squared_reach(radius); };
+      walk(world_.clouds, center, near_[k], active_, reach2, [&](int leaf, LaneBits touching) {
+        meet_points(world_.points[leaf], center, radius, touching);
+        return is_done();
+      });
+      if (is_done()) return;
     }
   }
 
@@ -338,6 +354,7 @@ class BlockSearch {
   const FastMotion* motion_ = nullptr;
   Floats half_{};
   Floats grow_{};
+  LaneBits near_[kFastSpheres];  // lanes of a sphere that may be near what stands in trees
   Block block_;
 };
 

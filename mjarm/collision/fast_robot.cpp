@@ -121,6 +121,23 @@ void add_groups(FastRobotData& data, const LinkChain& chain) {
   }
 }
 
+void add_levers(FastRobotData& data) {
+  const auto lever = [&](int group, int k) {
+    return detail::round_up(
+        data.bounds[static_cast<std::size_t>(group)].levers[static_cast<std::size_t>(k)]);
+  };
+  const auto body = [&](int group) { return data.groups[static_cast<std::size_t>(group)].body; };
+  for (int k = 0; k < data.arm.dof(); ++k) {
+    for (int g = 0; g < static_cast<int>(data.groups.size()); ++g) {
+      data.group_levers.push_back(lever(g, k));
+    }
+    for (const detail::FastPair& pair : data.pairs) {
+      const bool between = k >= body(pair.a) && k < body(pair.b);
+      data.pair_levers.push_back(between ? lever(pair.b, k) : 0);
+    }
+  }
+}
+
 }  // namespace
 
 Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
@@ -138,6 +155,7 @@ Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   data->R_WB = link_frame(links, 0).R;
   add_groups(*data, links);
   detail::add_pairs(*data, links);
+  add_levers(*data);
   data->tables.group_count = static_cast<int>(data->groups.size());
   data->tables.pair_count = static_cast<int>(data->pairs.size());
   data->tables.every_pair_count = static_cast<int>(data->every_pair.size());

@@ -44,6 +44,9 @@ struct FastRobotData {
   std::vector<int> group_of_sphere;                    ///< of the tables
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
   double padding = 0;                                  ///< [m] largest of the groups
+  /// Levers of every group and, of every pair, those of group b for the joints between both; 0 for
+  /// all others. Rounded up, joint by joint: shape (dof, groups), (dof, pairs).
+  std::vector<float> group_levers, pair_levers;
 };
 
 /// The next float towards infinity, or towards minus infinity.

@@ -114,7 +114,30 @@ struct FastTree {
   const FastNode* nodes[kFastLevels] = {};
 };
 
-enum class FastKind { box, cylinder };
+/// A triangle without thickness, in frame 0.
+struct FastTriangle {
+  float corner[3][3];
+  float edge[3][3];      ///< from a corner to the next
+  float per_length2[3];  ///< [1/m^2] one over the squared length of an edge; 0: it has none
+  float side[3][3];      ///< across an edge, outwards, in the plane; length 1
+  float normal[3];       ///< length 1
+  float slack = 0;       ///< [m] as far beyond its sides a place still counts as above it
+  float round = 0;       ///< [m] radius round it
+};
+
+/// n . p <= d.
+struct FastPlane {
+  float n[3];
+  float d;
+};
+
+/// What is below all of its planes, in frame 0.
+struct FastPolytope {
+  int first = 0, count = 0;  ///< of the planes
+  const FastPlane* planes = nullptr;
+};
+
+enum class FastKind { box, cylinder, triangle, polytope };
 
 /// A solid as a leaf of a tree.
 struct FastItem {
@@ -130,6 +153,15 @@ struct FastPoints {
   float radius[kFan];
 };
 
+/// A coarse grid of lower bounds of the distance to whatever stands in trees, in frame 0.
+struct FastGrid {
+  const std::uint8_t* cells = nullptr;  ///< (side, side, side), z slowest; none: nothing is there
+  int side = 0;
+  float low[3] = {0, 0, 0};  ///< [m] its corner
+  float per_meter = 0;       ///< cells
+  float unit = 0;            ///< [m] of the numbers in the cells
+};
+
 /// What stands round the robot. Everything is seen from frame 0, the orientation most solids share:
 /// the base is turned into it, so that these solids need no turning at all.
 struct FastWorldTables {
@@ -142,8 +174,11 @@ struct FastWorldTables {
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is
   const int* cylinder_ids = nullptr;
+  FastGrid grid;
   FastTree crowd;  ///< of the solids, where they are too many for lists
   const FastItem* items = nullptr;
+  const FastTriangle* triangles = nullptr;
+  const FastPolytope* polytopes = nullptr;
   FastTree clouds;  ///< of all points
   const FastPoints* points = nullptr;
   const int* point_ids = nullptr;  ///< which obstacle each point is, kFan a leaf

@@ -8,25 +8,24 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kCurveBits = 16;  // of each coordinate
-constexpr int kDigitBits = 12;  // sorted at once
+constexpr int kCurveBits = 10;  // of each coordinate, and sorted at once
 constexpr float kNowhere = 1e18F;
 
 struct PlaceKey {
-  std::uint64_t key;
+  std::uint32_t key;
   int index;
 };
 
-/// The 16 bits of `x`, each followed by two zeros.
-std::uint64_t spread_bits(std::uint64_t x) {
-  x = (x | (x << 16)) & 0x1f0000ff0000ffULL;
-  x = (x | (x << 8)) & 0x100f00f00f00f00fULL;
-  x = (x | (x << 4)) & 0x10c30c30c30c30c3ULL;
-  return (x | (x << 2)) & 0x1249249249249249ULL;
+/// The 10 bits of `x`, each followed by two zeros.
+std::uint32_t spread_bits(std::uint32_t x) {
+  x = (x | (x << 16)) & 0x30000ffU;
+  x = (x | (x << 8)) & 0x300f00fU;
+  x = (x | (x << 4)) & 0x30c30c3U;
+  return (x | (x << 2)) & 0x9249249U;
 }
 
 void sort_keys(std::vector<PlaceKey>& keys) {
-  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  constexpr std::size_t kDigits = std::size_t{1} << kCurveBits;
   if (keys.size() < kDigits) {
     std::sort(keys.begin(), keys.end(), [](const PlaceKey& a, const PlaceKey& b) {
       return a.key < b.key || (a.key == b.key && a.index < b.index);
@@ -34,7 +33,7 @@ void sort_keys(std::vector<PlaceKey>& keys) {
     return;
   }
   std::vector<PlaceKey> sorted(keys.size());
-  for (int shift = 0; shift < 3 * kCurveBits; shift += kDigitBits) {
+  for (int shift = 0; shift < 3 * kCurveBits; shift += kCurveBits) {
     std::array<std::uint32_t, kDigits + 1> first{};
     const auto digit = [&](const PlaceKey& key) { return (key.key >> shift) & (kDigits - 1); };
     for (const PlaceKey& key : keys) ++first[digit(key) + 1];
@@ -83,12 +82,10 @@ std::vector<int> curve_order(std::span<const Eigen::Vector3f> places) {
   const float scale = most / std::max((high - low).maxCoeff(), 1e-30F);
   std::vector<PlaceKey> keys(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
-    std::uint64_t key = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float at = std::clamp((places[i][k] - low[k]) * scale, 0.0F, most);
-      key |= spread_bits(static_cast<std::uint64_t>(at)) << k;
-    }
-    keys[i] = {key, static_cast<int>(i)};
+    // Rounding may take the highest place a little too far.
+    const Eigen::Array3f at = ((places[i] - low) * scale).array().min(most);
+    const auto bits = [&](int k) { return spread_bits(static_cast<std::uint32_t>(at[k])) << k; };
+    keys[i] = {bits(0) | bits(1) | bits(2), static_cast<int>(i)};
   }
   sort_keys(keys);
   for (std::size_t i = 0; i < keys.size(); ++i) out[i] = keys[i].index;

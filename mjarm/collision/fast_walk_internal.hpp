@@ -22,6 +22,23 @@ inline Point point_of(const FastPoints& points, int i) {
   return {splat(points.center[0][i]), splat(points.center[1][i]), splat(points.center[2][i])};
 }
 
+/// Cells along one axis of a grid; NaN gives one as well.
+inline Ints cell_along(const Floats& x, float low, const FastGrid& grid) {
+  const Floats at = (x - low) * grid.per_meter;
+  const Floats last = splat(static_cast<float>(grid.side - 1));
+  return __builtin_convertvector(smaller(larger(at, Floats{}), last), Ints);
+}
+
+/// Lower bound of the distance from a point to all that the grid knows [m].
+inline Floats distance_bound(const FastGrid& grid, const Point& p) {
+  const Ints x = cell_along(p.x, grid.low[0], grid);
+  const Ints y = cell_along(p.y, grid.low[1], grid);
+  const Ints z = cell_along(p.z, grid.low[2], grid);
+  const Ints counts = gather(grid.cells, (z * grid.side + y) * grid.side + x);
+  // Rounding takes a point less than 1e-5 cells into the next one.
+  return multiply_add(__builtin_convertvector(counts, Floats), splat(grid.unit), splat(-2e-6F));
+}
+
 /// Distance along one axis from an interval.
 inline Floats beyond(const Floats& x, const Floats& low, const Floats& high) {
   return x - smaller(larger(x, low), high);
@@ -63,14 +80,6 @@ struct Touched {
     }
   }
 
-  LaneBits lanes() const {
-    LaneBits out = 0;
-    for (std::uint32_t left = children; left != 0; left &= left - 1) {
-      out |= child[__builtin_ctz(left)];
-    }
-    return out;
-  }
-
  private:
   void together(const FastNode& node, const Point& ball, const Floats& reach2, LaneBits lanes) {
     for (int c = 0; c < kFan; ++c) {
@@ -97,30 +106,31 @@ struct Touched {
   }
 };
 
-/// Visits every lowest node of which a ball touches a child: visit(node, touched) returns whether
-/// the walk is over.
-/// @param active  lanes that take part; may shrink on the way.
+/// Visits every leaf that a ball touches: visit(leaf, lanes) returns whether the walk is over.
+/// @param lanes   that take part.
+/// @param active  those that still do; may shrink on the way.
 /// @param reach2  reach2(): squared radii of the balls, which may shrink as well.
 template <class Reach, class Visit>
-void walk(const FastTree& tree, const Point& ball, const LaneBits& active, const Reach& reach2,
-          const Visit& visit) {
+void walk(const FastTree& tree, const Point& ball, LaneBits lanes, const LaneBits& active,
+          const Reach& reach2, const Visit& visit) {
   struct Open {
     int level, node;
     LaneBits lanes;
   };
   Open open[kFan * kFastLevels];
-  open[0] = {tree.levels - 1, 0, active};
+  open[0] = {tree.levels - 1, 0, lanes};
   for (int count = 1; count > 0;) {
     const Open now = open[--count];
     if ((now.lanes & active) == 0) continue;
     const Touched touched(tree.nodes[now.level][now.node], ball, reach2(), now.lanes & active);
-    if (now.level == 0) {
-      if (touched.children != 0 && visit(now.node, touched)) return;
-      continue;
-    }
     for (std::uint32_t left = touched.children; left != 0; left &= left - 1) {
       const int c = __builtin_ctz(left);
-      open[count++] = {now.level - 1, now.node * kFan + c, touched.child[c]};
+      const int child = now.node * kFan + c;
+      if (now.level > 0) {
+        open[count++] = {now.level - 1, child, touched.child[c]};
+      } else if (visit(child, touched.child[c])) {
+        return;
+      }
     }
   }
 }

@@ -2,7 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "mjarm/collision/fast_world_internal.hpp"
+#include "mjarm/collision/fast_crowd_internal.hpp"
+#include "mjarm/collision/mesh_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
@@ -23,6 +24,8 @@ struct Placed {
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;  // box without its rounding
   double round = 0;                                           // of a round; radius of a cylinder
   int axis = 2;                                               // of a cylinder
+  bool endless = false;                                       // a half-space
+  bool piece = false;                                         // of a solid of many
   double distance = 0;  // from where the robot stands: what is near is looked at first
 };
 
@@ -51,9 +54,7 @@ class WorldBuilder {
   void build(const Obstacles& obstacles) {
     write_frames();
     const GroupBounds all = everyone();
-    if (placed_.size() > kMostListed) add_crowd(all, obstacles);
-    add_clouds(obstacles.clouds, frames_[0], frames_[0].transpose() * all.reach_center_W,
-               all.reach + kMostClearance, static_cast<int>(obstacles.solids.size()), out_);
+    build_crowd(all, obstacles);
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
       const bool moves = robot_.groups[g].body > 0;
       out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, obstacles) : FastRun{});
@@ -63,35 +64,54 @@ class WorldBuilder {
 
  private:
   void place(const Obstacles& obstacles) {
-    const Eigen::Vector3d middle = robot_.bounds.front().reach_center_W;
     std::vector<int> balls;
     for (std::size_t i = 0; i < obstacles.solids.size(); ++i) {
-      const Obstacle& solid = obstacles.solids[i];
-      Placed placed;
-      placed.id = static_cast<int>(i);
-      placed.distance = distance(solid, middle);
-      if (std::holds_alternative<BallShape>(solid.shape)) {
-        balls.push_back(placed.id);
+      const ObstacleShape& shape = obstacles.solids[i].shape;
+      const int id = static_cast<int>(i);
+      if (std::holds_alternative<BallShape>(shape)) {
+        balls.push_back(id);
+      } else if (std::holds_alternative<PolytopeShape>(shape) ||
+                 std::holds_alternative<MeshShape>(shape)) {
+        loose_.push_back(id);
       } else {
-        placed.frame = frame_for(solid);
-        ++used_[static_cast<std::size_t>(placed.frame)];
+        place_solid(obstacles.solids[i], id);
       }
-      placed_.push_back(placed);
     }
     if (frames_.empty()) {
       frames_.push_back(Eigen::Matrix3d::Identity());
       used_.push_back(0);
     }
     main_ = static_cast<int>(std::max_element(used_.begin(), used_.end()) - used_.begin());
-    for (const int i : balls) placed_[static_cast<std::size_t>(i)].frame = main_;
-    for (Placed& placed : placed_) {
-      fill(obstacles.solids[static_cast<std::size_t>(placed.id)], placed);
+    for (const int i : balls) add_placed(obstacles.solids[static_cast<std::size_t>(i)], i, main_);
+  }
+
+  void place_solid(const Obstacle& solid, int id) {
+    const int frame = frame_for(solid);
+    if (const auto* field = std::get_if<HeightFieldShape>(&solid.shape)) {
+      for_each_column(*field, [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+        const Pose X_WC = solid.X_WO * Pose{0.5 * (low + high), Eigen::Matrix3d::Identity()};
+        add_placed({"", X_WC, BoxShape{0.5 * (high - low)}}, id, frame);
+        placed_.back().piece = true;
+      });
+    } else {
+      add_placed(solid, id, frame);
     }
+  }
+
+  void add_placed(const Obstacle& solid, int id, int frame) {
+    Placed placed;
+    placed.id = id;
+    placed.frame = frame;
+    placed.distance = distance(solid, robot_.bounds.front().reach_center_W);
+    fill(solid, placed);
+    placed_.push_back(placed);
+    ++used_[static_cast<std::size_t>(frame)];
   }
 
   /// The frame whose axes a solid shares, a new one where there is none.
   int frame_for(const Obstacle& solid) {
-    const bool box = std::holds_alternative<BoxShape>(solid.shape);
+    const bool box = std::holds_alternative<BoxShape>(solid.shape) ||
+                     std::holds_alternative<HeightFieldShape>(solid.shape);
     for (std::size_t f = 0; f < std::min(frames_.size(), kMostCompared); ++f) {
       const Eigen::Matrix3d R = frames_[f].transpose() * solid.X_WO.R;
       if (lone_axis(R.col(2)) >= 0 && (!box || lone_axis(R.col(0)) >= 0)) {
@@ -129,6 +149,7 @@ class WorldBuilder {
       span(Eigen::Vector3d::Constant(kEverywhere));
       const int axis = lone_axis(R.col(2));
       (R(axis, 2) > 0 ? out.high : out.low)[axis] = p[axis];
+      out.endless = true;
     }
   }
 
@@ -167,26 +188,29 @@ class WorldBuilder {
     return out;
   }
 
-  /// Moves all solids but half-spaces into a tree.
-  void add_crowd(const GroupBounds& all, const Obstacles& obstacles) {
-    std::vector<FastItem> items;
-    std::vector<FastBounds> bounds;
-    std::vector<Eigen::Vector3f> places;
+  /// What is in lists stays in placed_.
+  void build_crowd(const GroupBounds& all, const Obstacles& obstacles) {
+    const bool is_crowd = placed_.size() > kMostListed;
+    if (!is_crowd && loose_.empty() && obstacles.clouds.empty()) return;
+    const CrowdSpace space{frames_, frames_[0].transpose() * all.reach_center_W, all.reach,
+                           least_radius()};
+    CrowdBuilder crowd(space, out_);
     std::erase_if(placed_, [&](const Placed& placed) {
-      const Obstacle& solid = obstacles.solids[static_cast<std::size_t>(placed.id)];
-      if (std::holds_alternative<HalfSpaceShape>(solid.shape)) return false;
-      if (distance(solid, all.reach_center_W) > all.reach + kMostClearance) return true;
-      items.push_back(add_item(all, placed));
-      bounds.push_back(bounds_of(items.back()));
-      places.push_back(0.5F * (bounds.back().low + bounds.back().high));
+      if (!(is_crowd || placed.piece) || placed.endless) return false;
+      crowd.add(add_item(all, placed));
       return true;
     });
-    std::vector<FastBounds> leaves;
-    for (const int i : curve_order(places)) {
-      out_.items.push_back(items[static_cast<std::size_t>(i)]);
-      leaves.push_back(bounds[static_cast<std::size_t>(i)]);
+    for (const int i : loose_) crowd.add(obstacles.solids[static_cast<std::size_t>(i)], i);
+    crowd.build(obstacles.clouds, static_cast<int>(obstacles.solids.size()));
+  }
+
+  double least_radius() const {
+    double least = kEverywhere;
+    for (const LinkSpheres& link : robot_.set.links) {
+      if (link.joint < 0) continue;
+      for (const Sphere& sphere : link.spheres) least = std::min(least, sphere.radius);
     }
-    out_.crowd.build(leaves);
+    return least;
   }
 
   FastItem add_item(const GroupBounds& all, const Placed& placed) {
@@ -197,35 +221,6 @@ class WorldBuilder {
     }
     add_box(all, placed);
     return {FastKind::box, placed.frame, static_cast<int>(out_.boxes.size()) - 1, placed.id};
-  }
-
-  /// Of a leaf, in frame 0.
-  FastBounds bounds_of(const FastItem& item) const {
-    Eigen::Vector3d low, high;
-    if (item.kind == FastKind::cylinder) {
-      const FastCylinder& cylinder = out_.cylinders[static_cast<std::size_t>(item.index)];
-      const Eigen::Vector3d center =
-          Eigen::Map<const Eigen::Vector3f>(cylinder.center).cast<double>();
-      Eigen::Vector3d half = Eigen::Vector3d::Constant(cylinder.radius);
-      half[cylinder.axis] = cylinder.half;
-      low = center - half;
-      high = center + half;
-    } else {
-      const FastBox& box = out_.boxes[static_cast<std::size_t>(item.index)];
-      const Eigen::Vector3d round = Eigen::Vector3d::Constant(box.round);
-      low = Eigen::Map<const Eigen::Vector3f>(box.low).cast<double>() - round;
-      high = Eigen::Map<const Eigen::Vector3f>(box.high).cast<double>() + round;
-    }
-    const Eigen::Matrix3d R =
-        frames_[0].transpose() * frames_[static_cast<std::size_t>(item.frame)];
-    const Eigen::Vector3d center = R * (0.5 * (low + high));
-    const Eigen::Vector3d half = R.cwiseAbs() * (0.5 * (high - low)) * (1 + 1e-12);
-    FastBounds out;
-    for (int k = 0; k < 3; ++k) {
-      out.low[k] = round_down(center[k] - half[k]);
-      out.high[k] = round_up(center[k] + half[k]);
-    }
-    return out;
   }
 
   FastRun add_lists(const GroupBounds& bounds, double margin, const Obstacles& obstacles) {
@@ -300,6 +295,7 @@ class WorldBuilder {
   std::vector<int> used_;                // solids of each frame
   int main_ = 0;                         // the frame that most solids share
   std::vector<Placed> placed_;
+  std::vector<int> loose_;  // solids that need no frame of their own
   FastWorld& out_;
 };
 
@@ -314,8 +310,12 @@ FastWorld::FastWorld(const FastRobotData& robot, const Obstacles& obstacles) {
   tables.cylinders = cylinders.data();
   tables.box_ids = box_ids.data();
   tables.cylinder_ids = cylinder_ids.data();
+  tables.grid = grid.tables();
   tables.crowd = crowd.tables();
   tables.items = items.data();
+  tables.triangles = triangles.data();
+  for (FastPolytope& polytope : polytopes) polytope.planes = planes.data() + polytope.first;
+  tables.polytopes = polytopes.data();
   tables.clouds = clouds.tables();
   tables.points = points.data();
   tables.point_ids = point_ids.data();

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
+#include "mjarm/collision/fast_grid_internal.hpp"
 #include "mjarm/collision/fast_robot_internal.hpp"
 #include "mjarm/collision/fast_tree_internal.hpp"
 #include "mjarm/collision/obstacles.hpp"
@@ -22,8 +26,12 @@ struct FastWorld {
   std::vector<int> box_ids, cylinder_ids;
   FastTreeNodes crowd, clouds;
   std::vector<FastItem> items;
+  std::vector<FastTriangle> triangles;
+  std::vector<FastPlane> planes;
+  std::vector<FastPolytope> polytopes;
   std::vector<FastPoints> points;
   std::vector<int> point_ids;
+  FastGridCells grid;
   FastWorldTables tables;
 };
 
@@ -32,5 +40,9 @@ struct FastWorld {
 /// @param first_id  of the first cloud.
 void add_clouds(std::span<const PointCloud> clouds, const Eigen::Matrix3d& R_WF,
                 const Eigen::Vector3d& middle_F, double reach, int first_id, FastWorld& out);
+
+/// Marks these points in the grid of `out`.
+/// @return [m] by how much some are larger than their marks.
+double mark_clouds(FastWorld& out);
 
 }  // namespace mjarm::detail

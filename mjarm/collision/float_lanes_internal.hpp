@@ -39,8 +39,6 @@ typedef std::int32_t Ints __attribute__((vector_size(4 * kWidth)));
 using LaneBits = std::uint32_t;
 inline constexpr LaneBits kAllLanes = (LaneBits{1} << kWidth) - 1;
 
-inline Floats splat(float x) { return Floats{} + x; }
-
 inline Floats load(const float* from) {
   Floats out;
   __builtin_memcpy(&out, from, sizeof out);
@@ -49,7 +47,9 @@ inline Floats load(const float* from) {
 
 inline void store(float* to, const Floats& x) { __builtin_memcpy(to, &x, sizeof x); }
 
+// Splats by intrinsics read memory as they spread it; a sum with zero would be worked out.
 #if defined(__AVX512F__)
+inline Floats splat(float x) { return (Floats)_mm512_set1_ps(x); }
 inline Floats multiply_add(Floats a, Floats b, Floats c) {
   return (Floats)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
 }
@@ -68,6 +68,7 @@ inline Floats zero_where(LaneBits lanes, Floats x) {
   return (Floats)_mm512_maskz_mov_ps(static_cast<__mmask16>(~lanes), (__m512)x);
 }
 #elif defined(__AVX2__)
+inline Floats splat(float x) { return (Floats)_mm256_set1_ps(x); }
 inline Floats multiply_add(Floats a, Floats b, Floats c) {
   return (Floats)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
 }
@@ -78,6 +79,7 @@ inline LaneBits less(Floats a, Floats b) {
   return static_cast<LaneBits>(_mm256_movemask_ps(_mm256_cmp_ps((__m256)a, (__m256)b, _CMP_LT_OQ)));
 }
 #elif defined(__SSE2__)
+inline Floats splat(float x) { return (Floats)_mm_set1_ps(x); }
 inline Floats multiply_add(Floats a, Floats b, Floats c) { return a * b + c; }
 inline Floats smaller(Floats a, Floats b) { return (Floats)_mm_min_ps((__m128)a, (__m128)b); }
 inline Floats larger(Floats a, Floats b) { return (Floats)_mm_max_ps((__m128)a, (__m128)b); }
@@ -86,6 +88,7 @@ inline LaneBits less(Floats a, Floats b) {
   return static_cast<LaneBits>(_mm_movemask_ps(_mm_cmplt_ps((__m128)a, (__m128)b)));
 }
 #else
+inline Floats splat(float x) { return Floats{} + x; }
 inline Floats multiply_add(Floats a, Floats b, Floats c) { return a * b + c; }
 inline Floats smaller(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats larger(Floats a, Floats b) { return a > b ? a : b; }
@@ -108,6 +111,23 @@ inline Floats zero_where(LaneBits lanes, Floats x) {
   for (int k = 0; k < kWidth; ++k) bit[k] = 1 << k;
   const Ints chosen = (Ints{} + static_cast<std::int32_t>(lanes)) & bit;
   return chosen == 0 ? x : Floats{};
+}
+#endif
+
+/// One byte a lane; three more behind the last may be read.
+#if defined(__AVX512F__)
+inline Ints gather(const std::uint8_t* from, Ints index) {
+  return (Ints)_mm512_mask_i32gather_epi32(__m512i{}, 0xffff, (__m512i)index, from, 1) & 0xff;
+}
+#elif defined(__AVX2__)
+inline Ints gather(const std::uint8_t* from, Ints index) {
+  return (Ints)_mm256_i32gather_epi32(reinterpret_cast<const int*>(from), (__m256i)index, 1) & 0xff;
+}
+#else
+inline Ints gather(const std::uint8_t* from, Ints index) {
+  Ints out;
+  for (int k = 0; k < kWidth; ++k) out[k] = from[index[k]];
+  return out;
 }
 #endif
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mjarm/collision/mesh_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
 
 namespace mjarm {
@@ -30,9 +31,36 @@ struct DistanceTo {
     return std::hypot(side, beyond);
   }
   double operator()(const HalfSpaceShape&) const { return std::max(p.z(), 0.0); }
+  double operator()(const PolytopeShape& polytope) const {
+    double gap = (p - p.cwiseMax(polytope.low).cwiseMin(polytope.high)).cwiseAbs().maxCoeff();
+    for (const Eigen::Vector4d& plane : polytope.planes) {
+      gap = std::max(gap, plane.head<3>().dot(p) - plane.w());
+    }
+    return gap;
+  }
+  double operator()(const MeshShape& mesh) const {
+    const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [a, b, c] : mesh.faces) {
+      least = std::min(least, detail::distance_to_triangle(p, corner(a), corner(b), corner(c)));
+    }
+    if (!mesh.solid) return least;
+    return detail::InsideTest(mesh.vertices, mesh.faces).is_inside(p) ? 0 : least;
+  }
+  double operator()(const HeightFieldShape& field) const {
+    double least = std::numeric_limits<double>::infinity();
+    detail::for_each_column(field, [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+      least = std::min(least, (p - p.cwiseMax(low).cwiseMin(high)).norm());
+    });
+    return least;
+  }
 };
 
 bool size_fits(double size) { return size >= kLeastSize && size <= kMostSize; }
+
+bool place_fits(const Eigen::Vector3d& p) {
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMostSize;
+}
 
 struct SizesFit {
   bool operator()(const BallShape& ball) const { return size_fits(ball.radius); }
@@ -46,16 +74,90 @@ struct SizesFit {
   bool operator()(const CylinderShape& cylinder) const {
     return size_fits(cylinder.radius) && size_fits(cylinder.half_length);
   }
-  bool operator()(const HalfSpaceShape&) const { return true; }
+  bool operator()(const HeightFieldShape& field) const {
+    return size_fits(field.half.x()) && size_fits(field.half.y());
+  }
+  template <class Shape>
+  bool operator()(const Shape&) const {
+    return true;
+  }
+};
+
+/// Looks at what a shape is made of. Obstacle `i` is its owner.
+struct PartsFit {
+  std::size_t i;
+  const std::string& name;
+
+  Result<void> operator()(const PolytopeShape& polytope) const {
+    const auto fits = [](const Eigen::Vector4d& plane) {
+      return plane.allFinite() && std::abs(plane.head<3>().norm() - 1) < 1e-6 &&
+             std::abs(plane.w()) <= 2 * kMostSize;
+    };
+    const auto& planes = polytope.planes;
+    if (!place_fits(polytope.low) || !place_fits(polytope.high) ||
+        (polytope.low.array() > polytope.high.array()).any() || planes.empty() ||
+        planes.size() > kMostPlanes || !std::all_of(planes.begin(), planes.end(), fits)) {
+      return fail(Errc::bad_input, text(msg::collision_polytope, i, name, kMostPlanes));
+    }
+    return {};
+  }
+  Result<void> operator()(const MeshShape& mesh) const {
+    const auto& vertices = mesh.vertices;
+    const auto bad = std::find_if_not(vertices.begin(), vertices.end(), place_fits);
+    if (bad != vertices.end()) {
+      return fail(Errc::bad_input,
+                  text(msg::collision_mesh_vertex, i, name, bad - vertices.begin()));
+    }
+    const auto is_vertex = [&](int v) { return v >= 0 && v < std::ssize(vertices); };
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const auto& face = mesh.faces[f];
+      if (!std::all_of(face.begin(), face.end(), is_vertex)) {
+        return fail(Errc::bad_input, text(msg::collision_mesh_face, i, name, f, vertices.size()));
+      }
+    }
+    if (mesh.faces.empty()) return fail(Errc::bad_input, text(msg::collision_mesh_empty, i, name));
+    if (mesh.solid && !is_closed(mesh)) {
+      return fail(Errc::bad_input, text(msg::collision_mesh_open, i, name));
+    }
+    return {};
+  }
+  Result<void> operator()(const HeightFieldShape& field) const {
+    const auto fits = [&](double height) {
+      return std::isfinite(height) && std::abs(height) <= kMostSize && height > field.bottom;
+    };
+    const auto& heights = field.heights;
+    const auto bad = std::find_if_not(heights.begin(), heights.end(), fits);
+    if (field.rows < 2 || field.cols < 2 || !(std::abs(field.bottom) <= kMostSize) ||
+        heights.size() / static_cast<std::size_t>(field.cols) !=
+            static_cast<std::size_t>(field.rows) ||
+        heights.size() % static_cast<std::size_t>(field.cols) != 0) {
+      return fail(Errc::bad_input,
+                  text(msg::collision_field_size, i, name, field.rows, field.cols, heights.size()));
+    }
+    if (bad != heights.end()) {
+      return fail(Errc::bad_input,
+                  text(msg::collision_field_height, i, name, bad - heights.begin()));
+    }
+    return {};
+  }
+  template <class Shape>
+  Result<void> operator()(const Shape&) const {
+    return {};
+  }
+};
+
+struct CountPieces {
+  std::size_t operator()(const MeshShape& mesh) const { return mesh.faces.size(); }
+  std::size_t operator()(const HeightFieldShape& field) const { return field.heights.size(); }
+  template <class Shape>
+  std::size_t operator()(const Shape&) const {
+    return 1;
+  }
 };
 
 bool is_rotation(const Eigen::Matrix3d& R) {
   return R.allFinite() && (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
          R.determinant() > 0;
-}
-
-bool place_fits(const Eigen::Vector3d& p) {
-  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMostSize;
 }
 
 Result<void> check_clouds(const std::vector<PointCloud>& clouds) {
@@ -105,6 +207,7 @@ Result<void> check_obstacles(const Obstacles& obstacles) {
   if (count > kMostObstacles) {
     return fail(Errc::bad_input, text(msg::collision_many_obstacles, count, kMostObstacles));
   }
+  std::size_t pieces = 0;
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const Obstacle& obstacle = solids[i];
     const Pose& X = obstacle.X_WO;
@@ -117,6 +220,12 @@ Result<void> check_obstacles(const Obstacles& obstacles) {
     if (!std::visit(SizesFit{}, obstacle.shape)) {
       return fail(Errc::bad_input, text(msg::collision_obstacle_size, i, obstacle.name));
     }
+    pieces += std::visit(CountPieces{}, obstacle.shape);
+    if (pieces > kMostPieces) {
+      return fail(Errc::bad_input, text(msg::collision_many_pieces, i, obstacle.name, kMostPieces));
+    }
+    const Result<void> fine = std::visit(PartsFit{i, obstacle.name}, obstacle.shape);
+    if (!fine) return fine;
   }
   return check_clouds(obstacles.clouds);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <string>
 #include <variant>
@@ -27,8 +28,33 @@ struct CylinderShape {
   double half_length = 0;  ///< [m] > 0, flat ends
 };
 struct HalfSpaceShape {};  ///< all points with z <= 0
-using ObstacleShape =
-    std::variant<BallShape, CapsuleShape, BoxShape, CylinderShape, HalfSpaceShape>;
+/// A convex solid: the points that are below every plane. See make_polytope().
+struct PolytopeShape {
+  /// (n, d): n . p <= d [m], n of length 1; 1 to kMostPlanes
+  std::vector<Eigen::Vector4d> planes{};
+  /// [m] box round it, with sides along the axes; cuts off what the planes leave open
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
+};
+/// Triangles without thickness. Where they close a solid its inside can count as well.
+struct MeshShape {
+  std::vector<Eigen::Vector3d> vertices{};  ///< [m]
+  std::vector<std::array<int, 3>> faces{};  ///< indices of vertices; at least one face
+  bool solid = false;                       ///< what is inside counts; only where is_closed()
+};
+/// Ground whose height is given at the crossings of a grid: a column for each cell, as high as the
+/// highest of its four corners. So it covers what triangles between the corners would make, and is
+/// higher by at most the range of a cell's corners.
+struct HeightFieldShape {
+  int rows = 0, cols = 0;                          ///< crossings along y and x, >= 2
+  Eigen::Vector2d half = Eigen::Vector2d::Zero();  ///< [m] > 0, half extents along x and y
+  double bottom = 0;                               ///< [m] where the columns begin
+  std::vector<double> heights{};                   ///< [m] (rows, cols), row by row, > bottom
+};
+using ObstacleShape = std::variant<BallShape, CapsuleShape, BoxShape, CylinderShape, HalfSpaceShape,
+                                   PolytopeShape, MeshShape, HeightFieldShape>;
+
+/// Whether every edge belongs to an even number of faces; corners in one place count as one.
+[[nodiscard]] bool is_closed(const MeshShape& mesh);
 
 /// A solid that stands still.
 struct Obstacle {
@@ -51,11 +77,22 @@ struct Obstacles {
   std::vector<PointCloud> clouds{};
 };
 
-/// Most obstacles that a checker takes, and most points of all clouds together.
+/// Most obstacles that a checker takes, most faces and cells of all of them together, most planes
+/// of one, and most points of all clouds together.
 inline constexpr std::size_t kMostObstacles = 200'000;
+inline constexpr std::size_t kMostPieces = 200'000;
+inline constexpr std::size_t kMostPlanes = 256;
 inline constexpr std::size_t kMostPoints = 100'000;
 
-/// [m] from point `p_W` to the surface of the solid; 0 inside of it. Exact to rounding.
+/// The solid as few planes round points, each of which touches one of them: the faces of their
+/// convex hull, planes along its edges, and some in all directions. The solid holds all points.
+/// What is D [m] away from their hull is at least 0.9 D away from one of the planes, as long as the
+/// hull has no more than 40 faces; for more the faces of similar direction share planes.
+/// @param points  [m] 1 to 10,000, finite, within 1e4 m; may be on a plane or a line.
+[[nodiscard]] Result<PolytopeShape> make_polytope(std::span<const Eigen::Vector3d> points);
+
+/// [m] from point `p_W` to the surface of the solid; 0 inside of it. Exact to rounding, but for a
+/// polytope: there the largest distance from a plane, which is less beyond edges and corners.
 [[nodiscard]] double distance(const Obstacle& obstacle, const Eigen::Vector3d& p_W) noexcept;
 /// The same of the balls round all points of a cloud; infinite where it has none.
 [[nodiscard]] double distance(const PointCloud& cloud, const Eigen::Vector3d& p_W) noexcept;
@@ -64,9 +101,9 @@ inline constexpr std::size_t kMostPoints = 100'000;
 [[nodiscard]] const std::string& obstacle_name(const Obstacles& obstacles, int index) noexcept;
 
 /// Looks whether every number is finite, every size in range (1e-9 to 1e4 m, places up to 1e4 m),
-/// every rotation one (to 1e-6), and that there are at most kMostObstacles and kMostPoints.
-/// @return bad_input: one line that names the first faulty obstacle or point and what is wrong with
-/// it.
+/// every rotation one (to 1e-6), and that nothing is more than the numbers above.
+/// @return bad_input: one line that names the first faulty obstacle, its faulty part, and what is
+/// wrong with it.
 [[nodiscard]] Result<void> check_obstacles(const Obstacles& obstacles);
 
 }  // namespace mjarm

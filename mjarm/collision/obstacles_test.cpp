@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +24,103 @@ TEST(Obstacles, DistanceIsThatOfTheTextbook) {
     const double truth = testing::point_distance(solid.shape, solid.X_WO.inverse() * p);
     EXPECT_NEAR(distance(solid, p), std::max(truth, 0.0), 1e-12);
   }
+}
+
+TEST(Obstacles, DistanceToCompositesIsThatOfTheTextbook) {
+  Rng rng(33);
+  int inside = 0;
+  for (int i = 0; i < 600; ++i) {
+    const Obstacle solid = testing::random_composite(rng);
+    Obstacles world;
+    world.solids = {solid};
+    ASSERT_TRUE(check_obstacles(world).has_value()) << check_obstacles(world).error().what;
+    for (int k = 0; k < 20; ++k) {
+      const Eigen::Vector3d p = solid.X_WO.p + testing::random_vector(rng, k < 10 ? 0.1 : 0.7);
+      const double truth = testing::point_distance(solid.shape, solid.X_WO.inverse() * p);
+      EXPECT_NEAR(distance(solid, p), truth, 1e-9);
+      inside += truth == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(inside, 1000);
+}
+
+/// Bounds of the distance to the convex hull of points: from above by a point of the hull, from
+/// below by the plane across the way there (E. Gilbert, 1966).
+std::array<double, 2> hull_distance(const std::vector<Eigen::Vector3d>& points,
+                                    const Eigen::Vector3d& p) {
+  Eigen::Vector3d at = points.front();
+  double lower = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const Eigen::Vector3d way = p - at;
+    const auto& far = *std::max_element(points.begin(), points.end(),
+                                        [&](auto& a, auto& b) { return way.dot(a) < way.dot(b); });
+    if (way.norm() < 1e-9) break;
+    lower = std::max(lower, way.dot(p - far) / way.norm());
+    const Eigen::Vector3d step = far - at;
+    if (step.norm() < 1e-12) break;
+    at += std::clamp(step.dot(way) / step.squaredNorm(), 0.0, 1.0) * step;
+  }
+  return {lower, (p - at).norm()};
+}
+
+TEST(Obstacles, PolytopesHoldTheirPointsAndAreTight) {
+  Rng rng(34);
+  double worst = 1;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d half(rng.uniform(0, 1), i % 7 == 0 ? 0 : rng.uniform(0, 1),
+                               i % 21 == 0 ? 0 : rng.uniform(0, 1));
+    std::vector<Eigen::Vector3d> points;
+    for (std::uint64_t k = i % 35 == 0 ? 1 : 4 + rng.below(14); k > 0; --k) {
+      points.push_back(half.cwiseProduct(testing::random_vector(rng, 0.5)));
+    }
+    const PolytopeShape shape = make_polytope(points).value();
+    EXPECT_LE(shape.planes.size(), kMostPlanes);
+    const Obstacle solid{"", {}, shape};
+    for (const Eigen::Vector3d& point : points) EXPECT_LT(distance(solid, point), 1e-12);
+    for (int k = 0; k < 20; ++k) {
+      const Eigen::Vector3d p = testing::random_vector(rng, k % 2 == 0 ? 0.6 : 2);
+      const auto [lower, upper] = hull_distance(points, p);
+      EXPECT_LE(distance(solid, p), upper + 1e-9);
+      if (lower > 1e-3) worst = std::min(worst, distance(solid, p) / lower);
+    }
+  }
+  EXPECT_GT(worst, 0.9);
+  RecordProperty("worst", std::to_string(worst));
+}
+
+TEST(Obstacles, PolytopesOfManyPointsHoldThem) {
+  Rng rng(35);
+  for (const int count : {50, 500, 5000}) {
+    std::vector<Eigen::Vector3d> points;
+    for (int k = 0; k < count; ++k) {
+      points.push_back(testing::random_vector(rng, 1).normalized() * rng.uniform(0.9, 1));
+    }
+    const Obstacle solid{"", {}, make_polytope(points).value()};
+    for (const Eigen::Vector3d& point : points) EXPECT_LT(distance(solid, point), 1e-12);
+    EXPECT_GT(distance(solid, {0, 0, 2}), 0.9);
+  }
+  EXPECT_FALSE(make_polytope({}).has_value());
+  const std::vector<Eigen::Vector3d> bad{{0, 0, 0}, {0, kNan, 0}};
+  EXPECT_FALSE(make_polytope(bad).has_value());
+  const std::vector<Eigen::Vector3d> same(10'000, {1, 2, 3});
+  EXPECT_TRUE(make_polytope(same).has_value());
+  EXPECT_FALSE(make_polytope(std::vector<Eigen::Vector3d>(10'001)).has_value());
+}
+
+TEST(Obstacles, ClosedMeshes) {
+  Rng rng(36);
+  MeshShape mesh = testing::random_closed_mesh(rng, 1);
+  EXPECT_TRUE(is_closed(mesh));
+  MeshShape soup;  // the same, each face with corners of its own
+  for (const auto& face : mesh.faces) {
+    const int first = static_cast<int>(soup.vertices.size());
+    for (const int v : face) soup.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+    soup.faces.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_TRUE(is_closed(soup));
+  mesh.faces.pop_back();
+  EXPECT_FALSE(is_closed(mesh));
+  EXPECT_FALSE(is_closed({}));
 }
 
 std::string fault_of(const Obstacle& obstacle) {
@@ -56,6 +155,62 @@ TEST(Obstacles, WhatIsRefused) {
   Obstacles many;
   many.solids.resize(kMostObstacles + 1, {"it", {}, BallShape{1}});
   EXPECT_FALSE(check_obstacles(many).has_value());
+}
+
+TEST(Obstacles, WhatIsRefusedOfComposites) {
+  const MeshShape triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, false};
+  EXPECT_EQ(fault_of({"it", {}, triangle}), "");
+  MeshShape mesh = triangle;
+  mesh.solid = true;
+  EXPECT_NE(fault_of({"it", {}, mesh}), "");
+  for (const int bad : {-1, 3}) {
+    mesh = triangle;
+    mesh.faces.push_back({0, bad, 2});
+    EXPECT_NE(fault_of({"it", {}, mesh}).find("face 1"), std::string::npos);
+  }
+  mesh = triangle;
+  mesh.faces.resize(kMostPieces, mesh.faces[0]);
+  EXPECT_NE(fault_of({"it", {}, mesh}), "");  // with the obstacle before it
+  mesh.faces.clear();
+  EXPECT_NE(fault_of({"it", {}, mesh}), "");
+  const HeightFieldShape field{2, 3, {1, 1}, 0, {1, 1, 1, 1, 1, 1}};
+  EXPECT_EQ(fault_of({"it", {}, field}), "");
+  const PolytopeShape cube =
+      make_polytope(std::vector<Eigen::Vector3d>{{0, 0, 0}, {1, 1, 1}}).value();
+  EXPECT_EQ(fault_of({"it", {}, cube}), "");
+  for (const double bad : {kNan, kInf, -1e5}) {
+    mesh = triangle;
+    mesh.vertices[2].y() = bad;
+    EXPECT_NE(fault_of({"it", {}, mesh}).find("vertex 2"), std::string::npos);
+    HeightFieldShape rough = field;
+    rough.heights[4] = bad;
+    EXPECT_NE(fault_of({"it", {}, rough}).find("height 4"), std::string::npos);
+    rough = field;
+    rough.half.x() = bad;
+    EXPECT_NE(fault_of({"it", {}, rough}), "");
+    rough = field;
+    rough.bottom = bad;
+    EXPECT_NE(fault_of({"it", {}, rough}), "");
+    PolytopeShape cut = cube;
+    cut.planes[0].x() = bad;
+    EXPECT_NE(fault_of({"it", {}, cut}), "");
+    cut = cube;
+    cut.low.x() = bad;
+    EXPECT_NE(fault_of({"it", {}, cut}), "");
+  }
+  for (const int rows : {0, 1, 3, -2, 1 << 30}) {
+    HeightFieldShape rough = field;
+    rough.rows = rows;
+    EXPECT_NE(fault_of({"it", {}, rough}), "") << rows;
+    rough = field;
+    rough.cols = rows == 3 ? 2 : rows;
+    EXPECT_NE(fault_of({"it", {}, rough}), "") << rows;
+  }
+  PolytopeShape open = cube;
+  open.planes.clear();
+  EXPECT_NE(fault_of({"it", {}, open}), "");
+  open.planes.resize(kMostPlanes + 1, cube.planes[0]);
+  EXPECT_NE(fault_of({"it", {}, open}), "");
 }
 
 std::string fault_of(const PointCloud& cloud) {

@@ -32,6 +32,8 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/motion_program.inc"
 #include "mjarm/core/messages/path.inc"
 #include "mjarm/core/messages/path_command.inc"
+#include "mjarm/core/messages/plan.inc"
+#include "mjarm/core/messages/planning.inc"
 #include "mjarm/core/messages/policy_file.inc"
 #include "mjarm/core/messages/program.inc"
 #include "mjarm/core/messages/reach.inc"

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+
+#include "mjarm/planning/search_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+bool all_finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+/// The first joint outside of its limits; -1 where there is none.
+int outside_joint(const Arm& arm, std::span<const double> q) {
+  constexpr double kSlack = 1e-4;  // [rad or m]; rounded digits of a file
+  for (int k = 0; k < arm.dof(); ++k) {
+    const double value = q[static_cast<std::size_t>(k)];
+    if (!(value >= arm.limits.lower[k] - kSlack && value <= arm.limits.upper[k] + kSlack)) return k;
+  }
+  return -1;
+}
+
+tl::unexpected<PlanFailure> no_path(PlanErrc reason) {
+  PlanFailure failure;
+  failure.reason = reason;
+  return tl::unexpected(failure);
+}
+
+tl::unexpected<PlanFailure> outside(PlanErrc reason, std::span<const double> q, int joint) {
+  PlanFailure failure;
+  failure.reason = reason;
+  failure.joint = joint;
+  failure.value = q[static_cast<std::size_t>(joint)];
+  return tl::unexpected(failure);
+}
+
+tl::unexpected<PlanFailure> hit(PlanErrc reason, const FastChecker& checker,
+                                std::span<const double> q) {
+  PlanFailure failure;
+  failure.reason = reason;
+  failure.pair = checker.clearance(q);
+  return tl::unexpected(failure);
+}
+
+}  // namespace
+
+Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
+                                                   std::span<const double> start,
+                                                   std::span<const double> goals) {
+  const Arm& arm = checker.robot().arm();
+  const auto dof = static_cast<std::size_t>(arm.dof());
+  if (start.size() != dof || goals.empty() || goals.size() % dof != 0 || !all_finite(start) ||
+      !all_finite(goals)) {
+    return no_path(PlanErrc::bad_input);
+  }
+  if (checker.fixed_overlap()) {
+    PlanFailure failure;
+    failure.reason = PlanErrc::base_hit;
+    failure.pair = {0, checker.fixed_overlap()->link, checker.fixed_overlap()->obstacle, -1};
+    return tl::unexpected(failure);
+  }
+  if (const int k = outside_joint(arm, start); k >= 0) {
+    return outside(PlanErrc::start_outside, start, k);
+  }
+  if (!checker.is_free(start)) return hit(PlanErrc::start_hit, checker, start);
+  SearchProblem out{checker, start, {}, {}};
+  std::vector<int> inside;
+  for (std::size_t g = 0; g * dof < goals.size(); ++g) {
+    const std::span<const double> goal = goals.subspan(g * dof, dof);
+    if (outside_joint(arm, goal) >= 0) continue;
+    inside.push_back(static_cast<int>(g));
+    if (checker.is_free(goal)) out.goal_index.push_back(static_cast<int>(g));
+  }
+  if (inside.empty()) {
+    const std::span<const double> goal = goals.first(dof);
+    return outside(PlanErrc::goals_outside, goal, outside_joint(arm, goal));
+  }
+  if (out.goal_index.empty()) {
+    const auto g = static_cast<std::size_t>(inside.front());
+    return hit(PlanErrc::goals_hit, checker, goals.subspan(g * dof, dof));
+  }
+  const auto goal_of = [&](int g) { return goals.subspan(static_cast<std::size_t>(g) * dof, dof); };
+  std::stable_sort(out.goal_index.begin(), out.goal_index.end(), [&](int a, int b) {
+    return distance(start, goal_of(a)) < distance(start, goal_of(b));
+  });
+  for (const int g : out.goal_index) out.goals.push_back(goal_of(g));
+  return out;
+}
+
+double least_cost_through(const SearchProblem& problem, std::span<const double> q) {
+  double least = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(problem.most_cost)) return 0;
+  for (const std::span<const double> goal : problem.goals) {
+    least = std::min(least, distance(q, goal));
+  }
+  return distance(problem.start, q) + least;
+}
+
+}  // namespace mjarm::detail

@@ -1,0 +1,62 @@
+#include "mjarm/core/messages/planning.hpp"
+#include "mjarm/planning/plan_path.hpp"
+
+namespace mjarm {
+namespace {
+
+std::string link_name(const FastRobot& robot, int link) {
+  if (link < 0) return "?";
+  return robot.spheres().links[static_cast<std::size_t>(link)].name;
+}
+
+std::string obstacle_text(const Obstacles& obstacles, int obstacle) {
+  const std::string& name = obstacle_name(obstacles, obstacle);
+  if (name.empty()) return text(msg::planning_obstacle_number, obstacle);
+  return text(msg::planning_obstacle, name);
+}
+
+std::string other_name(const SphereClearance& pair, const FastRobot& robot,
+                       const Obstacles& obstacles) {
+  if (pair.obstacle >= 0) return obstacle_text(obstacles, pair.obstacle);
+  return text(msg::planning_link, link_name(robot, pair.other_link));
+}
+
+std::string outside(const Msg& message, const PlanFailure& failure, const Arm& arm) {
+  const auto joint = static_cast<std::size_t>(failure.joint);
+  return text(message, arm.joints[joint].name, failure.value, arm.limits.lower[failure.joint],
+              arm.limits.upper[failure.joint]);
+}
+
+std::string overlap(const Msg& message, const SphereClearance& pair, const FastRobot& robot,
+                    const Obstacles& obstacles) {
+  return text(message, text(msg::planning_link, link_name(robot, pair.link)),
+              other_name(pair, robot, obstacles), -1e3 * pair.distance);
+}
+
+}  // namespace
+
+std::string describe(const PlanFailure& failure, const FastRobot& robot,
+                     const Obstacles& obstacles) {
+  switch (failure.reason) {
+    case PlanErrc::bad_input:
+      break;
+    case PlanErrc::base_hit:
+      return text(msg::planning_base_hit, link_name(robot, failure.pair.link),
+                  obstacle_text(obstacles, failure.pair.obstacle));
+    case PlanErrc::start_outside:
+      return outside(msg::planning_start_outside, failure, robot.arm());
+    case PlanErrc::goals_outside:
+      return outside(msg::planning_goals_outside, failure, robot.arm());
+    case PlanErrc::start_hit:
+      return overlap(msg::planning_start_hit, failure.pair, robot, obstacles);
+    case PlanErrc::goals_hit:
+      return overlap(msg::planning_goals_hit, failure.pair, robot, obstacles);
+    case PlanErrc::budget_spent:
+      return text(msg::planning_budget, failure.samples, failure.nearest);
+    case PlanErrc::unproved:
+      return text(msg::planning_unproved);
+  }
+  return text(msg::planning_bad_input, robot.dof());
+}
+
+}  // namespace mjarm

@@ -1,0 +1,76 @@
+#include "mjarm/planning/plan_path.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/planning/search_internal.hpp"
+
+namespace mjarm {
+namespace {
+
+/// Certificates of all edges; false where one is not proved.
+bool prove(const FastChecker& checker, std::span<const JointVec> q, double resolution,
+           std::vector<EdgeCertificate>& out) {
+  out.clear();
+  for (std::size_t i = 1; i < q.size(); ++i) {
+    auto proof = certify_edge(checker, view(q[i - 1]), view(q[i]), {resolution});
+    if (!proof) return false;
+    out.push_back(std::move(*proof));
+  }
+  return true;
+}
+
+}  // namespace
+
+double path_length(std::span<const JointVec> q) noexcept {
+  double sum = 0;
+  for (std::size_t i = 1; i < q.size(); ++i) sum += (q[i] - q[i - 1]).norm();
+  return sum;
+}
+
+Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<const double> start,
+                                       std::span<const double> goals, const PlanOptions& options) {
+  const auto problem = detail::look_at_problem(checker, start, goals);
+  if (!problem) return tl::unexpected(problem.error());
+  if (options.planner == Planner::rrt_star) return detail::rrt_star(*problem, options);
+  return detail::rrt_connect(*problem, options);
+}
+
+Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath path,
+                                             const PlanOptions& options) {
+  PlannedPath out;
+  out.goal = path.goal;
+  std::vector<JointVec> found = path.q;
+  detail::shorten(checker, options, options.shortcuts, path);
+  // Parts of proved edges are free, but the proof of a part is another one and may need more.
+  for (std::vector<JointVec>* q : {&path.q, &found}) {
+    for (const double share : {1.0, 0x1p-3, 0x1p-6}) {
+      if (!prove(checker, *q, share * options.resolution, out.proof)) continue;
+      out.q = std::move(*q);
+      out.cost = path_length(out.q);
+      out.counts = path.counts;
+      return out;
+    }
+  }
+  PlanFailure failure;
+  failure.reason = PlanErrc::unproved;
+  return tl::unexpected(failure);
+}
+
+Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
+                                           std::span<const double> start,
+                                           std::span<const double> goals,
+                                           const PlanOptions& options) {
+  const Stopwatch watch;
+  Result<RawPath, PlanFailure> raw = find_path(checker, start, goals, options);
+  if (!raw) return tl::unexpected(raw.error());
+  if (options.rounds > 0 || options.time_budget > 0) {
+    const double left_us = 1e6 * options.time_budget - watch.us();
+    *raw = improve_path(checker, start, goals, std::move(*raw), options, left_us);
+  }
+  return finish_path(checker, std::move(*raw), options);
+}
+
+}  // namespace mjarm

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mjarm/collision/edge_check.hpp"
+#include "mjarm/collision/fast_check.hpp"
+#include "mjarm/core/joint_vec.hpp"
+#include "mjarm/core/result.hpp"
+
+namespace mjarm {
+
+/// Which algorithm searches.
+enum class Planner {
+  rrt_connect,  ///< two trees that grow towards each other (Kuffner and LaValle, ICRA 2000)
+  rrt_star,     ///< one tree that is rewired while it grows (Karaman and Frazzoli, IJRR 2011)
+};
+
+/// How a path is searched. Every default is usable as is.
+struct PlanOptions {
+  Planner planner = Planner::rrt_connect;
+  std::uint64_t seed = 1;  ///< same problem and seed, same path
+  double range = 1.5;      ///< [rad or m, L2] longest edge that is grown at once, > 0
+  /// Budget: configurations that are drawn at most until there is a path, and as many that rrt_star
+  /// draws after that; 0: 100,000 and 3,000.
+  int samples = 0;
+  int shortcuts = 24;        ///< attempts to cut corners of what was found, >= 0
+  double resolution = 1e-3;  ///< [rad or m, L2] narrowest interval of the proof of an edge, > 0
+  /// More searches, each only for what is shorter than the best path so far, >= 0.
+  int rounds = 0;
+  /// [s] > 0: as many rounds as there is time for. What is found then depends on the machine.
+  double time_budget = 0;
+};
+
+enum class PlanErrc {
+  bad_input,      ///< no goal, a wrong size, a number that is not finite
+  base_hit,       ///< a link at rest overlaps an obstacle
+  start_outside,  ///< the start is outside of the joint limits
+  start_hit,      ///< the start is in collision
+  goals_outside,  ///< every goal is outside of the joint limits
+  goals_hit,      ///< no goal within the limits is free of collisions
+  budget_spent,   ///< PlanOptions::samples did not do
+  unproved,       ///< a path was found, but an edge of it could not be proved (never seen)
+};
+
+/// Why there is no path.
+struct PlanFailure {
+  PlanErrc reason = PlanErrc::bad_input;
+  SphereClearance pair;  ///< what overlaps: start_hit, goals_hit (of the first such goal), base_hit
+  int joint = -1;        ///< the first outside of its limits: start_outside, goals_outside
+  double value = 0;      ///< [rad or m] where that joint is
+  double nearest = 0;    ///< [rad or m, L2] budget_spent: how near the trees came to each other
+  int samples = 0;       ///< drawn
+};
+
+/// What a search did.
+struct PlanCounts {
+  int samples = 0;  ///< configurations drawn
+  int nodes = 0;    ///< of all trees
+  int edges = 0;    ///< edges that were looked at, those of shortcuts included
+};
+
+/// A path of straight edges in joint space.
+struct RawPath {
+  std::vector<JointVec> q;  ///< corners, start and goal included, at least two
+  int goal = 0;             ///< index of the goal reached
+  PlanCounts counts;
+};
+
+/// A path whose every edge is proved to be free.
+struct PlannedPath {
+  std::vector<JointVec> q;             ///< corners, start and goal included, at least two
+  int goal = 0;                        ///< index of the goal reached
+  double cost = 0;                     ///< [rad or m] sum of the L2 lengths of the edges
+  std::vector<EdgeCertificate> proof;  ///< one an edge
+  PlanCounts counts;
+};
+
+/// Searches a path from `start` to any of `goals`. Every edge of it is proved free by check_edge().
+/// @param start  shape (dof,) [rad or m].
+/// @param goals  shape (n, dof), row by row, n >= 1; those in collision are left out.
+[[nodiscard]] Result<RawPath, PlanFailure> find_path(const FastChecker& checker,
+                                                     std::span<const double> start,
+                                                     std::span<const double> goals,
+                                                     const PlanOptions& options = {});
+
+/// Shortens a path of find_path() and proves it again.
+/// @return PlanErrc::unproved, where even a much finer resolution proves neither the shortened path
+/// nor the one given.
+[[nodiscard]] Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath path,
+                                                           const PlanOptions& options = {});
+
+/// Searches shorter paths: again and again rrt_connect with other samples, only in the ellipsoid of
+/// what can be shorter than `best` (as J. D. Gammell, S. S. Srinivasa and T. D. Barfoot, IROS 2014,
+/// and T. S. Wilson et al., AORRTC, 2025), each result and the best one shortened further.
+/// @param left_us  [us] of PlanOptions::time_budget that are left; without one, the rounds count.
+[[nodiscard]] RawPath improve_path(const FastChecker& checker, std::span<const double> start,
+                                   std::span<const double> goals, RawPath best,
+                                   const PlanOptions& options, double left_us);
+
+/// find_path(), finish_path() and, where rounds or a time budget are given, improve_path().
+[[nodiscard]] Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
+                                                         std::span<const double> start,
+                                                         std::span<const double> goals,
+                                                         const PlanOptions& options = {});
+
+/// [rad or m] sum of the L2 lengths of the edges.
+[[nodiscard]] double path_length(std::span<const JointVec> q) noexcept;
+
+/// One line for people, in their language: why there is no path, with names of links and obstacles.
+/// @param obstacles  names of the obstacles by index; missing or empty ones are shown as numbers.
+[[nodiscard]] std::string describe(const PlanFailure& failure, const FastRobot& robot,
+                                   const Obstacles& obstacles);
+
+}  // namespace mjarm

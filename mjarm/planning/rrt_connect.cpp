@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "mjarm/planning/sampler_internal.hpp"
+#include "mjarm/planning/search_internal.hpp"
+#include "mjarm/planning/tree_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr int kMostSamples = 100'000;  // where nothing else is said
+constexpr double kBeside = 0.5;        // share of samples that are drawn beside a node
+constexpr int kEvenOnly = 8;           // samples before that begins
+constexpr double kBlocked = 1.2;     // a node looks so much farther (squared) after a blocked way,
+constexpr double kUnmet = 1.1;       // and after one towards the other tree
+constexpr double kFreePart = 0.5;    // of what lies before a hit is tried once more
+constexpr double kLeastPart = 0.3;   // [rad or m, L2] if it is as long as this
+constexpr double kSamePlace = 1e-9;  // [rad or m, L2]
+
+/// RRT-Connect (J. J. Kuffner and S. M. LaValle, ICRA 2000), with three changes: every edge is
+/// proved; half of the samples are drawn beside nodes, which gets out of narrow places (as D. Hsu,
+/// J.-C. Latombe and R. Motwani, ICRA 1997, do); nodes whose ways were blocked are chosen less
+/// often, as in the dynamic domain of A. Yershova et al., ICRA 2005.
+class Connector {
+ public:
+  Connector(const SearchProblem& problem, const PlanOptions& options)
+      : problem_(problem),
+        options_(options),
+        dof_(problem.start.size()),
+        prover_(problem.checker, options, path_.counts),
+        rng_(options.seed),
+        box_(problem, rng_),
+        from_start_(dof_),
+        from_goals_(dof_) {}
+
+  Result<RawPath, PlanFailure> run() {
+    from_start_.add(problem_.start, -1, 0);
+    for (const std::span<const double> goal : problem_.goals) from_goals_.add(goal, -1, 0);
+    for (int g = 0; g < from_goals_.size(); ++g) {
+      if (!(distance(problem_.start, from_goals_.q(g)) < problem_.most_cost)) continue;
+      if (prover_.is_free(problem_.start, from_goals_.q(g))) return join(0, g);
+    }
+    Tree* grown = &from_start_;
+    Tree* other = &from_goals_;
+    const int most = options_.samples > 0 ? options_.samples : kMostSamples;
+    while (path_.counts.samples < most && !problem_.deadline.passed()) {
+      const int node = grow(*grown);
+      if (node >= 0) {
+        const int met = connect(*other, grown->q(node));
+        if (met >= 0 && grown->cost(node) + other->cost(met) < problem_.most_cost)
+          return grown == &from_start_ ? join(node, met) : join(met, node);
+      }
+      if (other->size() < grown->size() || node < 0) std::swap(grown, other);
+    }
+    PlanFailure failure;
+    failure.reason = PlanErrc::budget_spent;
+    failure.nearest = nearest_;
+    failure.samples = path_.counts.samples;
+    return tl::unexpected(failure);
+  }
+
+ private:
+  using Row = std::array<double, kMaxDof>;
+
+  /// A new node towards a new sample, or -1.
+  int grow(Tree& tree) {
+    ++path_.counts.samples;
+    Row row;
+    const std::span<double> q(row.data(), dof_);
+    Tree::Near near;
+    if (path_.counts.samples > kEvenOnly && rng_.uniform() < kBeside) {
+      near.node = static_cast<int>(rng_.below(static_cast<std::uint64_t>(tree.size())));
+      near.distance = draw_beside(tree.q(near.node), rng_, q);
+    } else {
+      box_.next(q);
+      near = tree.nearest(q);
+    }
+    if (near.distance < kSamePlace) return -1;
+    if (least_cost_through(problem_, q) >= problem_.most_cost) return -1;
+    return step(tree, near, q, kBlocked).node;
+  }
+
+  /// Grows `tree` to `goal`, a node of the other tree; the node there, or -1.
+  int connect(Tree& tree, std::span<const double> goal) {
+    Tree::Near near = tree.nearest(goal);
+    for (;;) {
+      nearest_ = std::min(nearest_, near.distance);
+      if (near.distance < kSamePlace) return near.node;
+      const Step made = step(tree, near, goal, kUnmet);
+      if (made.arrived) return made.node;
+      if (!made.whole) return -1;
+      near = {made.node, near.distance - options_.range};
+    }
+  }
+
+  struct Step {
+    int node = -1;         ///< new, -1: none
+    bool whole = false;    ///< as far as it was to go
+    bool arrived = false;  ///< at its end
+  };
+  /// Goes from a node towards `to`, at most PlanOptions::range far; where that is blocked, a part
+  /// of the way.
+  Step step(Tree& tree, const Tree::Near& near, std::span<const double> to, double push) {
+    const bool arrives = near.distance <= options_.range;
+    const double length = std::min(near.distance, options_.range);
+    Row row;
+    const std::span<double> end(row.data(), dof_);
+    std::copy(to.begin(), to.end(), end.begin());  // to the last bit: the trees meet there
+    if (!arrives) between(tree.q(near.node), to, length / near.distance, end);
+    const EdgeResult found = prover_.look(tree.q(near.node), end);
+    if (found.verdict == EdgeVerdict::free)
+      return {tree.add(end, near.node, length), true, arrives};
+    tree.push_away(near.node, push);
+    const double part = kFreePart * found.t;
+    if (part * length < kLeastPart) return {};
+    between(tree.q(near.node), to, part * length / near.distance, end);
+    if (!prover_.is_free(tree.q(near.node), end)) return {};
+    return {tree.add(end, near.node, part * length), false, false};
+  }
+
+  RawPath join(int start_node, int goal_node) {
+    path_.q = from_start_.branch(start_node);
+    std::reverse(path_.q.begin(), path_.q.end());
+    const std::vector<JointVec> rest = from_goals_.branch(goal_node);
+    // The node where both trees meet is in both.
+    const bool twice =
+        path_.q.size() + rest.size() > 2 && (path_.q.back() - rest.front()).norm() < kSamePlace;
+    path_.q.insert(path_.q.end(), rest.begin() + (twice ? 1 : 0), rest.end());
+    path_.goal = problem_.goal_index[static_cast<std::size_t>(from_goals_.root(goal_node))];
+    path_.counts.nodes = from_start_.size() + from_goals_.size();
+    return std::move(path_);
+  }
+
+  const SearchProblem& problem_;
+  const PlanOptions& options_;
+  std::size_t dof_;
+  RawPath path_;
+  EdgeProver prover_;
+  Rng rng_;
+  WideningBox box_;
+  Tree from_start_, from_goals_;
+  double nearest_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+Result<RawPath, PlanFailure> rrt_connect(const SearchProblem& problem, const PlanOptions& options) {
+  return Connector(problem, options).run();
+}
+
+}  // namespace mjarm::detail

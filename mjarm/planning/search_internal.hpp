@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/planning/plan_path.hpp"
+
+namespace mjarm::detail {
+
+/// Says when a search has to end. Asks the clock only now and then.
+class Deadline {
+ public:
+  Deadline() = default;
+  explicit Deadline(double us) : left_us_(us) {}
+  bool passed() const { return left_us_ > 0 && watch_.us() > left_us_; }
+
+ private:
+  Stopwatch watch_;
+  double left_us_ = 0;  // 0: never
+};
+
+/// A problem whose start and goals were looked at.
+struct SearchProblem {
+  const FastChecker& checker;
+  std::span<const double> start;
+  std::vector<std::span<const double>> goals;  ///< free ones, nearest first
+  std::vector<int> goal_index;                 ///< of each in what the user gave
+  /// [rad or m] only shorter paths count.
+  double most_cost = std::numeric_limits<double>::infinity();
+  Deadline deadline{};
+};
+
+/// Proves edges and counts them.
+class EdgeProver {
+ public:
+  EdgeProver(const FastChecker& checker, const PlanOptions& options, PlanCounts& counts)
+      : checker_(checker), edge_{options.resolution}, counts_(counts) {}
+
+  EdgeResult look(std::span<const double> a, std::span<const double> b) {
+    ++counts_.edges;
+    return check_edge(checker_, a, b, edge_);
+  }
+  bool is_free(std::span<const double> a, std::span<const double> b) {
+    return look(a, b).verdict == EdgeVerdict::free;
+  }
+
+ private:
+  const FastChecker& checker_;
+  EdgeOptions edge_;
+  PlanCounts& counts_;
+};
+
+/// [rad or m] no path through `q` is shorter.
+[[nodiscard]] double least_cost_through(const SearchProblem& problem, std::span<const double> q);
+
+inline double distance(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(sum);
+}
+
+/// a + share * (b - a).
+inline void between(std::span<const double> a, std::span<const double> b, double share,
+                    std::span<double> out) {
+  for (std::size_t k = 0; k < a.size(); ++k) out[k] = a[k] + share * (b[k] - a[k]);
+}
+
+/// The planners. A path from start to a goal, or how near it came.
+[[nodiscard]] Result<RawPath, PlanFailure> rrt_connect(const SearchProblem& problem,
+                                                       const PlanOptions& options);
+[[nodiscard]] Result<RawPath, PlanFailure> rrt_star(const SearchProblem& problem,
+                                                    const PlanOptions& options);
+
+/// Shortens `path` in place by so many attempts to cut corners; its edges stay proved.
+void shorten(const FastChecker& checker, const PlanOptions& options, int attempts, RawPath& path);
+
+/// Looks at the start and at every goal.
+[[nodiscard]] Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
+                                                                 std::span<const double> start,
+                                                                 std::span<const double> goals);
+
+}  // namespace mjarm::detail

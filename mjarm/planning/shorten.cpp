@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <array>
+
+#include "mjarm/planning/search_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+constexpr int kMostFailed = 30;      // cuts in a row that did not work: enough
+constexpr int kPulls = 1;            // rounds over all corners at most
+constexpr double kLeastPull = 0.4;   // share of the way to the straight line
+constexpr double kLeastGain = 1e-3;  // share of the length that a cut must save
+
+class Shortener {
+ public:
+  Shortener(const FastChecker& checker, const PlanOptions& options, RawPath& path)
+      : q_(path.q), prover_(checker, options, path.counts), rng_(options.seed, 1) {}
+
+  void run(int attempts) {
+    skip_corners();
+    int failed = 0;
+    for (int k = 0; k < attempts && q_.size() > 2 && failed < kMostFailed; ++k) {
+      failed = cut() ? 0 : failed + 1;
+    }
+    for (int round = 0; round < kPulls && pull_corners(); ++round) continue;
+  }
+
+ private:
+  /// Leaves out corners as long as that works, the most at once first.
+  void skip_corners() {
+    for (std::size_t i = 0; i + 2 < q_.size(); ++i) {
+      for (std::size_t j = q_.size() - 1; j > i + 1; --j) {
+        if (!prover_.is_free(view(q_[i]), view(q_[j]))) continue;
+        q_.erase(at(i + 1), at(j));
+        break;
+      }
+    }
+  }
+
+  /// Replaces what is between two random places of different edges by a straight edge.
+  bool cut() {
+    std::array<double, 64> ends;
+    double length = 0;
+    const std::size_t edges = std::min(q_.size() - 1, ends.size());
+    for (std::size_t i = 0; i < edges; ++i) {
+      length += (q_[i + 1] - q_[i]).norm();
+      ends[i] = length;
+    }
+    double a = rng_.uniform() * length, b = rng_.uniform() * length;
+    if (a > b) std::swap(a, b);
+    const std::size_t i = edge_at({ends.data(), edges}, a), j = edge_at({ends.data(), edges}, b);
+    if (i == j) return false;
+    const JointVec from = place(i, a - (i > 0 ? ends[i - 1] : 0));
+    const JointVec to = place(j, b - (j > 0 ? ends[j - 1] : 0));
+    if ((to - from).norm() > (1 - kLeastGain) * (b - a)) return false;
+    if (!prover_.is_free(view(from), view(to))) return false;
+    // The halves of a proved edge are proved again at the end.
+    q_.erase(at(i + 1), at(j + 1));
+    q_.insert(at(i + 1), {from, to});
+    return true;
+  }
+
+  /// Moves every corner towards the straight line between its neighbours.
+  bool pull_corners() {
+    bool moved = false;
+    for (std::size_t i = 1; i + 1 < q_.size(); ++i) moved = pull(i) || moved;
+    return moved;
+  }
+
+  bool pull(std::size_t i) {
+    const JointVec a = q_[i - 1], b = q_[i + 1];
+    const double to_a = (q_[i] - a).norm(), to_b = (q_[i] - b).norm();
+    const JointVec straight = a + to_a / (to_a + to_b) * (b - a);
+    for (double share = 1; share > kLeastPull; share *= 0.5) {
+      const JointVec moved = q_[i] + share * (straight - q_[i]);
+      if (!prover_.is_free(view(a), view(moved)) || !prover_.is_free(view(moved), view(b))) {
+        continue;
+      }
+      q_[i] = moved;
+      return true;
+    }
+    return false;
+  }
+
+  static std::size_t edge_at(std::span<const double> ends, double length) {
+    const auto found = std::upper_bound(ends.begin(), ends.end() - 1, length);
+    return static_cast<std::size_t>(found - ends.begin());
+  }
+  JointVec place(std::size_t edge, double along) const {
+    const double length = (q_[edge + 1] - q_[edge]).norm();
+    return q_[edge] + along / length * (q_[edge + 1] - q_[edge]);
+  }
+  std::vector<JointVec>::iterator at(std::size_t i) {
+    return q_.begin() + static_cast<std::ptrdiff_t>(i);
+  }
+
+  std::vector<JointVec>& q_;
+  EdgeProver prover_;
+  Rng rng_;
+};
+
+}  // namespace
+
+void shorten(const FastChecker& checker, const PlanOptions& options, int attempts, RawPath& path) {
+  if (path.q.size() > 2) Shortener(checker, options, path).run(attempts);
+}
+
+}  // namespace mjarm::detail

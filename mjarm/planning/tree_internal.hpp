@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "mjarm/core/joint_vec.hpp"
+
+namespace mjarm::detail {
+
+/// Configurations that are joined by proved edges, each with the one it was reached from.
+class Tree {
+ public:
+  explicit Tree(std::size_t dof) : dof_(dof), stride_((dof + 3) / 4 * 4) {
+    rows_.reserve(64 * stride_);
+    parents_.reserve(64);
+    weights_.reserve(64);
+  }
+
+  int size() const { return static_cast<int>(parents_.size()); }
+  std::span<const double> q(int node) const {
+    return {rows_.data() + static_cast<std::size_t>(node) * stride_, dof_};
+  }
+  int parent(int node) const { return parents_[static_cast<std::size_t>(node)]; }
+  /// [rad or m] length of the way from the root.
+  double cost(int node) const { return costs_[static_cast<std::size_t>(node)]; }
+  int root(int node) const {
+    while (parent(node) >= 0) node = parent(node);
+    return node;
+  }
+
+  /// @param parent  -1: a root.
+  /// @param length  [rad or m] of the edge from there.
+  int add(std::span<const double> q, int parent, double length) {
+    rows_.insert(rows_.end(), q.begin(), q.end());
+    rows_.resize(rows_.size() + stride_ - dof_, 0.0);
+    parents_.push_back(parent);
+    costs_.push_back(parent < 0 ? 0 : cost(parent) + length);
+    weights_.push_back(1);
+    return size() - 1;
+  }
+
+  /// Gives a node another parent, and all below it their new costs.
+  void move(int node, int parent, double cost);
+
+  /// Makes a node from which a way was blocked look farther away, so that others have their turn.
+  void push_away(int node, double factor) { weights_[static_cast<std::size_t>(node)] *= factor; }
+
+  struct Near {
+    int node = -1;
+    double distance = std::numeric_limits<double>::infinity();  ///< [rad or m, L2] the true one
+  };
+  /// The node that looks nearest to `q`, the first of equals.
+  Near nearest(std::span<const double> q) const;
+
+  /// Nodes from `node` to its root.
+  std::vector<JointVec> branch(int node) const;
+
+ private:
+  std::size_t dof_, stride_;
+  std::vector<double> rows_;  // stride_ a node, the rest 0: whole registers
+  std::vector<int> parents_;
+  std::vector<double> costs_;
+  std::vector<double> weights_;  // of the squared distance
+};
+
+}  // namespace mjarm::detail
