@@ -1,9 +1,10 @@
 """Brings the tables of docs/benchmarks.md up to date.
 
-Usage: update_docs.py [ik|path|time|control|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
+Usage: update_docs.py [ik|path|plan|time|control|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
 update_docs.py ik build/release/bin/mjarm --data cases --peers .venv
+update_docs.py plan build/release/bin/mjarm --data motionbenchmaker --peers .venv
 update_docs.py rl build/release/bin/mjarm --peers .venv-rl
-Without a suite all but rl run with the same arguments, where --data SUITE=DIR names a folder for one suite.
+Without a suite all but plan and rl run with the same arguments, where --data SUITE=DIR names a folder for one suite.
 """
 
 import pathlib
@@ -13,6 +14,7 @@ import sys
 import tempfile
 
 SUITES = ("ik", "path", "time", "control")
+PICTURES = {"plan": "bench_plan", "rl": "curves"}  # drawn by suites that run by themselves only
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 
 
@@ -43,16 +45,17 @@ def update(suite, program, arguments):
     page.write_text(before + begin + "\n" + done.stdout.rstrip("\n") + "\n\n" + end + after, encoding="utf-8")
 
 
-def update_rl(program, arguments):
-    """This suite takes half an hour, has peers of its own and draws a picture."""
+def update_with_picture(suite, program, arguments):
+    """These suites take minutes, write a folder and draw a picture there."""
     with tempfile.TemporaryDirectory() as folder:
-        update("rl", program, [*arguments, "--out", folder])
-        shutil.copy(pathlib.Path(folder) / "curves.png", DOCS / "images" / "bench_rl.png")
+        update(suite, program, [*arguments, "--out", folder])
+        drawn = pathlib.Path(folder) / f"{PICTURES[suite]}.png"
+        shutil.copy(drawn, DOCS / "images" / f"bench_{suite}.png")
 
 
 def main(words):
-    if words and words[0] == "rl":
-        return update_rl(words[1], words[2:])
+    if words and words[0] in PICTURES:
+        return update_with_picture(words[0], words[1], words[2:])
     suites = SUITES
     if words and words[0] in SUITES:
         suites, words = words[:1], words[1:]

@@ -17,6 +17,7 @@ constexpr Msg kCatalogue[] = {
 #define MJARM_MSG(id, english, chinese) {english, chinese},
 #include "mjarm/core/messages/app.inc"
 #include "mjarm/core/messages/bench.inc"
+#include "mjarm/core/messages/bench_plan.inc"
 #include "mjarm/core/messages/bench_rl.inc"
 #include "mjarm/core/messages/check.inc"
 #include "mjarm/core/messages/collision.inc"

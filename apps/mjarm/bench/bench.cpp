@@ -14,6 +14,7 @@ Run setup(CLI::App& app) {
   auto suites = std::make_shared<std::vector<BenchSuite>>();
   suites->push_back(add_bench_ik(app));
   suites->push_back(add_bench_path(app));
+  suites->push_back(add_bench_plan(app));
   suites->push_back(add_bench_time(app));
   suites->push_back(add_bench_control(app));
   suites->push_back(add_bench_sim(app));

@@ -48,6 +48,7 @@ const BenchEntry* ours(const BenchResult& result, const std::string& set) {
 
 /// How many times as long as ours; 0 where that cannot be told.
 double ratio_of(const BenchResult& result, const BenchEntry& entry) {
+  if (entry.ratio > 0) return entry.ratio;
   const BenchEntry* mine = ours(result, entry.set);
   if (mine == nullptr || entry.us.empty()) return 0;
   const double us = times_of(mine->us).median;

@@ -19,6 +19,7 @@ struct BenchEntry {
   std::vector<std::string> cells = {};  ///< of the suite's own columns
   JsonDoc details = {};                 ///< members of the JSON document
   std::vector<double> us = {};          ///< [us] of each call
+  double ratio = 0;  ///< how many times as long as ours; 0: as the medians of both tell
 };
 
 /// A robot and what all contestants did on it.

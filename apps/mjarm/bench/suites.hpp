@@ -14,6 +14,7 @@ struct BenchSuite {
 [[nodiscard]] BenchSuite add_bench_rl(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_sim(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_path(CLI::App& bench);
+[[nodiscard]] BenchSuite add_bench_plan(CLI::App& bench);
 [[nodiscard]] BenchSuite add_bench_time(CLI::App& bench);
 
 }  // namespace mjarm::app

@@ -1,0 +1,101 @@
+#include "apps/mjarm/bench/plan_run.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "apps/mjarm/bench/robots.hpp"
+#include "apps/mjarm/plan/plan_answer.hpp"
+#include "mjarm/collision/fast_check.hpp"
+#include "mjarm/core/stopwatch.hpp"
+
+namespace mjarm::app {
+namespace {
+
+/// [us] to take in the obstacles of a problem.
+double world_us(const PlanSet& set, const PlanProblem& problem) {
+  const Stopwatch watch;
+  const Result<FastChecker> checker = FastChecker::make(set.robot, problem.obstacles);
+  return watch.us();
+}
+
+SolvedProblem solve(const PlanSet& set, std::size_t index, const PlanOptions& options) {
+  const PlanProblem& problem = set.cases[index];
+  const PlanAnswer answer = answer_problem(set.robot, problem, options);
+  SolvedProblem solved{.problem = index, .us = answer.us + answer.simplify_us};
+  solved.world_us = world_us(set, problem);
+  if (!answer.path) return solved;
+  for (const JointVec& q : answer.path->q) solved.path.emplace_back(q.data(), q.data() + q.size());
+  solved.verdict = judge_path(set, problem, solved.path);
+  return solved;
+}
+
+void add_row(std::vector<double>& rows, const JointVec& q) {
+  rows.insert(rows.end(), q.data(), q.data() + q.size());
+}
+
+std::vector<double> random_states(const Arm& arm, std::size_t count, Rng& rng) {
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < count; ++i) add_row(rows, random_q(arm, rng));
+  return rows;
+}
+
+std::vector<double> states_along(const Arm& arm, std::size_t count, Rng& rng) {
+  constexpr int kOnEdge = 16;
+  constexpr double kLength = 1;  // [rad or m, L2]
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < count; i += kOnEdge) {
+    const JointVec from = random_q(arm, rng), way = random_q(arm, rng) - from;
+    const double share = std::min(1.0, kLength / std::max(way.norm(), 1e-9));
+    for (int k = 0; k < kOnEdge; ++k) add_row(rows, from + way * (share * k / (kOnEdge - 1)));
+  }
+  return rows;
+}
+
+/// A checker and the states it is asked about.
+struct CheckJob {
+  FastChecker checker;
+  std::vector<double> random, along;
+};
+
+double mean_ns(const std::vector<CheckJob>& jobs, std::vector<double> CheckJob::* rows,
+               std::size_t states) {
+  constexpr double kEnough = 3e5;  // [us] of rounds, where they are long
+  constexpr int kRounds = 50;
+  std::vector<std::uint8_t> free(states);
+  double best = std::numeric_limits<double>::infinity(), spent = 0;
+  for (int round = 0; round < kRounds && spent < kEnough; ++round) {
+    const Stopwatch watch;
+    for (const CheckJob& job : jobs) job.checker.check(job.*rows, free);
+    const double us = watch.us();
+    best = std::min(best, us);
+    spent += us;
+  }
+  return 1e3 * best / static_cast<double>(states * jobs.size());
+}
+
+}  // namespace
+
+PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
+                 const PlanOptions& options) {
+  PlanRun run{{.who = "mjarm", .timed = "c++"}};
+  for (const std::size_t index : problems) run.answers.push_back(solve(set, index, options));
+  return run;
+}
+
+Result<CheckTimes> run_checks(const PlanSet& set, std::uint64_t seed) {
+  constexpr std::size_t kWorlds = 50, kStates = 1024;
+  const std::size_t every = (set.cases.size() + kWorlds - 1) / kWorlds;
+  Rng rng(seed);
+  std::vector<CheckJob> jobs;
+  for (std::size_t i = 0; i < set.cases.size(); i += every) {
+    Result<FastChecker> checker = FastChecker::make(set.robot, set.cases[i].obstacles);
+    if (!checker) return fail(std::move(checker.error()));
+    jobs.push_back({std::move(*checker), random_states(set.arm, kStates, rng),
+                    states_along(set.arm, kStates, rng)});
+  }
+  return CheckTimes{mean_ns(jobs, &CheckJob::random, kStates),
+                    mean_ns(jobs, &CheckJob::along, kStates)};
+}
+
+}  // namespace mjarm::app

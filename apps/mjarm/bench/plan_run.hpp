@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/mjarm/bench/plan_judge.hpp"
+#include "apps/mjarm/bench/plan_sets.hpp"
+#include "apps/mjarm/bench/report.hpp"
+#include "mjarm/planning/plan_path.hpp"
+
+namespace mjarm::app {
+
+/// What became of one problem.
+struct SolvedProblem {
+  std::size_t problem = 0;                     ///< index into PlanSet::cases
+  std::vector<std::vector<double>> path = {};  ///< corners; empty: none
+  double us = 0;                               ///< [us] from the obstacles to the finished path
+  double world_us = 0;                         ///< [us] of it, to take in the obstacles
+  PathVerdict verdict = {};
+};
+
+/// What one contestant did on some problems of one set.
+struct PlanRun : BenchEntry {
+  std::vector<SolvedProblem> answers = {};
+};
+
+/// Solves each of these problems once, in this thread, by answer_problem(), as `mjarm plan` does;
+/// the time is that of the obstacles taken in, the search, the shortening and the proof.
+[[nodiscard]] PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
+                               const PlanOptions& options);
+
+/// [ns] of one state check, the mean over many states: configurations anywhere within the limits,
+/// and 16 along each of many straight edges of 1 rad.
+struct CheckTimes {
+  double random_ns = 0;
+  double along_ns = 0;
+};
+/// Measures FastChecker::check() in the worlds of up to 50 problems, all over the set; the fastest
+/// of some rounds counts.
+[[nodiscard]] Result<CheckTimes> run_checks(const PlanSet& set, std::uint64_t seed);
+
+}  // namespace mjarm::app
