@@ -76,38 +76,29 @@ class EdgeSearch {
   /// moves by at most (lever * rate), summed over the joints; each joint also turns what those
   /// after it do. What the joints before the nearer link of a pair do moves both links alike.
   void bound_motion() {
+    std::array<float, kMaxDof> rate, turn;
     std::array<float, kMaxDof + 1> before{};  // rates of the joints before, summed
-    const std::size_t groups = data_.groups.size(), pairs = data_.pairs.size();
-    std::fill_n(slack_.begin(), groups, 0.0F);
-    std::fill_n(bend_.begin(), groups, 0.0F);
-    std::fill_n(pair_rate_.begin(), pairs, 0.0F);
-    std::fill_n(pair_bend_.begin(), pairs, 0.0F);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(data_.arm.dof()); ++k) {
-      const float rate = std::abs(dq_[k]), turn = rate * (rate + 2 * before[k]);
-      before[k + 1] = before[k] + rate;
-      add_motion(&data_.group_levers[k * groups], groups, rate, turn, slack_.data(), bend_.data());
-      add_motion(data_.pair_levers.data() + k * pairs, pairs, rate, turn, pair_rate_.data(),
-                 pair_bend_.data());
+    for (std::size_t k = 0; k < static_cast<std::size_t>(data_.tables.dof); ++k) {
+      rate[k] = std::abs(dq_[k]);
+      turn[k] = rate[k] * (rate[k] + 2 * before[k]);
+      before[k + 1] = before[k] + rate[k];
     }
-    for (std::size_t g = 0; g < groups; ++g) {
+    const detail::FastRates rates{data_.tables.dof, rate.data(), turn.data()};
+    checker_.kernels().bound_motion(rates, data_.group_levers.data(), data_.group_stride,
+                                    slack_.data(), bend_.data());
+    checker_.kernels().bound_motion(rates, data_.pair_levers.data(), data_.pair_stride,
+                                    pair_rate_.data(), pair_bend_.data());
+    for (std::size_t g = 0; g < data_.groups.size(); ++g) {
       slack_[g] *= 1e-5F;
       bend_[g] *= 0.5001F;
     }
-    for (std::size_t p = 0; p < pairs; ++p) {
+    for (std::size_t p = 0; p < data_.pairs.size(); ++p) {
       const auto a = static_cast<std::size_t>(data_.pairs[p].a);
       const auto b = static_cast<std::size_t>(data_.pairs[p].b);
       const float alike = 2 * before[static_cast<std::size_t>(data_.groups[a].body)];
       pair_bend_[p] = 0.5001F * (pair_bend_[p] - 0.9999F * alike * pair_rate_[p]);
       pair_rate_[p] *= 1.0001F;
       pair_slack_[p] = 2 * slack_[b];  // two twists, each rounded
-    }
-  }
-
-  static void add_motion(const float* __restrict levers, std::size_t count, float rate, float turn,
-                         float* __restrict speed, float* __restrict bend) {
-    for (std::size_t i = 0; i < count; ++i) {
-      speed[i] += levers[i] * rate;
-      bend[i] += levers[i] * turn;
     }
   }
 

@@ -10,7 +10,8 @@
 namespace mjarm {
 namespace detail {
 
-const FastKernels kFastBaseline = {kWidth, collide_block, cover_block, clearances_of_block};
+const FastKernels kFastBaseline = {kWidth, collide_block, cover_block, bound_motion,
+                                   clearances_of_block};
 
 }  // namespace detail
 

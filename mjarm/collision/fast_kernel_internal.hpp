@@ -370,5 +370,19 @@ inline FastVerdict cover_block(const FastRobotTables& robot, const FastWorldTabl
   return BlockSearch<true>(robot, world, active, true).cover(q, motion, half);
 }
 
+inline void bound_motion(const FastRates& rates, const float* levers, std::size_t stride,
+                         float* speed, float* bend) {
+  for (std::size_t i = 0; i < stride; i += kWidth) {
+    Floats v{}, a{};
+    for (int k = 0; k < rates.dof; ++k) {
+      const Floats lever = load(levers + static_cast<std::size_t>(k) * stride + i);
+      v = multiply_add(lever, splat(rates.rate[k]), v);
+      a = multiply_add(lever, splat(rates.turn[k]), a);
+    }
+    store(speed + i, v);
+    store(bend + i, a);
+  }
+}
+
 }  // namespace MJARM_FLOAT_LANES
 }  // namespace mjarm::detail

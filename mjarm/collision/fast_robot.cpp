@@ -111,14 +111,19 @@ void add_levers(FastRobotData& data) {
         data.bounds[static_cast<std::size_t>(group)].levers[static_cast<std::size_t>(k)]);
   };
   const auto body = [&](int group) { return data.groups[static_cast<std::size_t>(group)].body; };
+  const auto whole = [](std::size_t n) { return (n + 15) / 16 * 16; };
+  data.group_stride = whole(data.groups.size());
+  data.pair_stride = whole(data.pairs.size());
   for (int k = 0; k < data.arm.dof(); ++k) {
     for (int g = 0; g < static_cast<int>(data.groups.size()); ++g) {
       data.group_levers.push_back(lever(g, k));
     }
+    data.group_levers.resize(data.group_stride * static_cast<std::size_t>(k + 1));
     for (const detail::FastPair& pair : data.pairs) {
       const bool between = k >= body(pair.a) && k < body(pair.b);
       data.pair_levers.push_back(between ? lever(pair.b, k) : 0);
     }
+    data.pair_levers.resize(data.pair_stride * static_cast<std::size_t>(k + 1));
   }
 }
 

@@ -45,8 +45,10 @@ struct FastRobotData {
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
   double padding = 0;                                  ///< [m] largest of the groups
   /// Levers of every group and, of every pair, those of group b for the joints between both; 0 for
-  /// all others. Rounded up, joint by joint: shape (dof, groups), (dof, pairs).
+  /// all others. Rounded up, joint by joint: shape (dof, group_stride), (dof, pair_stride), rows
+  /// filled up with zeros to whole registers.
   std::vector<float> group_levers, pair_levers;
+  std::size_t group_stride = 0, pair_stride = 0;
 };
 
 /// The next float towards infinity, or towards minus infinity.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 /// What the kernels of the fast checker read: a robot and its world as flat arrays of floats.
@@ -200,6 +201,12 @@ struct FastMotion {
   const float *pair_slack, *pair_bend;
 };
 
+/// How fast the joints of an edge move: |dq|, and how much each bends what it moves.
+struct FastRates {
+  int dof;
+  const float *rate, *turn;  ///< (dof,)
+};
+
 struct FastVerdict {
   std::uint32_t hit = 0;      ///< lanes that may be in collision
   std::uint32_t blocked = 0;  ///< lanes whose interval is not proved (cover() only)
@@ -223,7 +230,11 @@ struct FastKernels {
   /// Looks at intervals t +- half[lane] of an edge, where q is at t. Ends with the first hit.
   FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, const float* q,
                        std::uint32_t active, const FastMotion& motion, const float* half);
-  /// Lower bounds of the distance, up to `most`; with `together` only of the lane where it is least.
+  /// Sums of levers (dof, stride) times rates and turns, into speed and bend (stride,).
+  void (*bound_motion)(const FastRates&, const float* levers, std::size_t stride, float* speed,
+                       float* bend);
+  /// Lower bounds of the distance, up to `most`; with `together` only of the lane where it is
+  /// least.
   void (*clearances)(const FastRobotTables&, const FastWorldTables&, const float* q, float most,
                      bool together, FastNearest* out);
 };

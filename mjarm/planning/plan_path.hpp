@@ -26,7 +26,7 @@ struct PlanOptions {
   /// Budget: configurations that are drawn at most until there is a path, and as many that rrt_star
   /// draws after that; 0: 100,000 and 3,000.
   int samples = 0;
-  int shortcuts = 24;        ///< attempts to cut corners of what was found, >= 0
+  int shortcuts = 12;        ///< attempts to cut corners of what was found, >= 0
   double resolution = 1e-3;  ///< [rad or m, L2] narrowest interval of the proof of an edge, > 0
   /// More searches, each only for what is shorter than the best path so far, >= 0.
   int rounds = 0;

@@ -17,6 +17,8 @@ constexpr double kBlocked = 1.2;     // a node looks so much farther (squared) a
 constexpr double kUnmet = 1.1;       // and after one towards the other tree
 constexpr double kFreePart = 0.5;    // of what lies before a hit is tried once more
 constexpr double kLeastPart = 0.3;   // [rad or m, L2] if it is as long as this
+constexpr int kCoarse = 60;
+constexpr double kLeastPartFirst = 0.6;
 constexpr double kSamePlace = 1e-9;  // [rad or m, L2]
 
 /// RRT-Connect (J. J. Kuffner and S. M. LaValle, ICRA 2000), with three changes: every edge is
@@ -114,7 +116,7 @@ class Connector {
       return {tree.add(end, near.node, length), true, arrives};
     tree.push_away(near.node, push);
     const double part = kFreePart * found.t;
-    if (part * length < kLeastPart) return {};
+    if (part * length < (path_.counts.samples < kCoarse ? kLeastPartFirst : kLeastPart)) return {};
     between(tree.q(near.node), to, part * length / near.distance, end);
     if (!prover_.is_free(tree.q(near.node), end)) return {};
     return {tree.add(end, near.node, part * length), false, false};
