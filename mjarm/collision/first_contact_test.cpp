@@ -25,7 +25,7 @@ SphereModel ball_and_plate() {
   return sphere_model(arm, set, world).value();
 }
 
-TEST(FirstContact, FindsAPlateThatTheSpacingDoesNotPass) {
+TEST(EdgeContact, FindsAPlateThatTheSpacingDoesNotPass) {
   const SphereModel made = ball_and_plate();
   ExactChecker checker(made.model, made.arm, {.margin = 0});
   const std::vector<double> q0{-1}, q1{1};
@@ -41,7 +41,7 @@ TEST(FirstContact, FindsAPlateThatTheSpacingDoesNotPass) {
   EXPECT_FALSE(coarse->has_value());
 }
 
-TEST(FirstContact, LooksAtBothEnds) {
+TEST(EdgeContact, LooksAtBothEnds) {
   const SphereModel made = ball_and_plate();
   ExactChecker checker(made.model, made.arm, {.margin = 0});
   const std::vector<double> away{-0.5}, in{0.1234};
@@ -53,7 +53,7 @@ TEST(FirstContact, LooksAtBothEnds) {
   EXPECT_EQ(t_of(in, in), 0);
 }
 
-TEST(FirstContact, WhatItRefuses) {
+TEST(EdgeContact, WhatItRefuses) {
   const SphereModel made = ball_and_plate();
   ExactChecker checker(made.model, made.arm, {.margin = 0});
   const std::vector<double> q{0}, two{0, 0}, none{std::nan("")};
@@ -72,7 +72,7 @@ TEST(FirstContact, WhatItRefuses) {
 
 /// MuJoCo's word against ours: an edge that is proved free has no contact, and where MuJoCo touches
 /// something the edge is hit, not later.
-TEST(FirstContact, AgreesWithVerifyEdge) {
+TEST(EdgeContact, AgreesWithVerifyEdge) {
   Rng rng(61);
   std::array<int, 4> count{};
   int contacts = 0;
