@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "mjarm/collision/exact_arm_bodies_internal.hpp"
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/core/rng.hpp"
@@ -23,34 +24,17 @@ struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-/// Index of the joint whose value stands at `qpos` of the model's qpos; -1 where there is none.
-int joint_at(const mjModel& m, int qpos) {
-  for (int j = 0; j < static_cast<int>(m.njnt); ++j) {
-    const bool single = m.jnt_type[j] == mjJNT_HINGE || m.jnt_type[j] == mjJNT_SLIDE;
-    if (single && m.jnt_qposadr[j] == qpos) return j;
-  }
-  return -1;
-}
-
-/// The keyframe `home`, else the initial configuration.
-std::vector<double> rest_configuration(const mjModel& m) {
-  const int key = mj_name2id(&m, mjOBJ_KEY, "home");
-  const mjtNum* q = key >= 0 ? m.key_qpos + key * m.nq : m.qpos0;
-  return {q, q + m.nq};
-}
-
-std::string name_of(const mjModel& m, int type, int id) {
-  const char* const name = mj_id2name(&m, type, id);
-  return name == nullptr ? std::string() : std::string(name);
-}
-
 Eigen::Vector3d vector(const mjtNum* v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 
 struct ExactChecker::Impl {
   Impl(const Model& model_in, const Arm& arm, const ExactOptions& options_in)
-      : model(model_in), options(options_in), m(*model.raw()), m_wide(*model.raw()) {
+      : model(model_in),
+        options(options_in),
+        m(*model.raw()),
+        m_wide(*model.raw()),
+        bodies(m, arm) {
     // The arrays are those of the shared model; only the options of these two heads differ.
     for (mjModel* head : {&m, &m_wide}) {
       head->opt.disableflags &= ~(mjDSBL_CONTACT | mjDSBL_CONSTRAINT | mjDSBL_NATIVECCD);
@@ -58,10 +42,9 @@ struct ExactChecker::Impl {
     }
     m_wide.opt.enableflags |= mjENBL_OVERRIDE;
     m_wide.opt.o_margin = options.margin;
-    q_rest = rest_configuration(m);
-    mark_moving(arm);
+    q_rest = detail::rest_configuration(m);
     std::vector<bool> moves;
-    for (const int joints : pieces) moves.push_back(joints > 0);
+    for (const int joints : bodies.pieces) moves.push_back(joints > 0);
     capsule_boxes = detail::capsule_box_pairs(m, moves);
     std::erase_if(capsule_boxes, [&](GeomIds ids) { return are_rigid(ids.geom1, ids.geom2); });
     make_data();
@@ -71,12 +54,10 @@ struct ExactChecker::Impl {
         options(other.options),
         m(other.m),
         m_wide(other.m_wide),
+        bodies(other.bodies),
         q_rest(other.q_rest),
-        addresses(other.addresses),
-        pieces(other.pieces),
         capsule_boxes(other.capsule_boxes),
-        constant_pairs(other.constant_pairs),
-        matches(other.matches) {
+        constant_pairs(other.constant_pairs) {
     make_data();
   }
 
@@ -85,42 +66,22 @@ struct ExactChecker::Impl {
     if (d) std::copy(q_rest.begin(), q_rest.end(), d->qpos);
   }
 
-  /// Fills `addresses` and `pieces`.
-  void mark_moving(const Arm& arm) {
-    pieces.assign(static_cast<std::size_t>(m.nbody), 0);
-    matches = true;
-    for (const ArmJoint& joint : arm.joints) {
-      const int id = joint_at(m, joint.qpos);
-      if (id < 0) {
-        matches = false;
-        continue;
-      }
-      addresses.push_back(joint.qpos);
-      pieces[static_cast<std::size_t>(m.jnt_bodyid[id])] = static_cast<int>(addresses.size());
-    }
-    for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
-      const auto parent = static_cast<std::size_t>(m.body_parentid[b]);
-      int& piece = pieces[static_cast<std::size_t>(b)];
-      piece = std::max(piece, pieces[parent]);
-    }
-  }
-
   /// True where no joint of the arm is between two geoms: both are at rest, or both on one link or
   /// in its hand (closed fingers touch each other, wherever the arm is).
   bool are_rigid(int geom1, int geom2) const {
     const auto piece = [&](int geom) {
-      return pieces[static_cast<std::size_t>(m.geom_bodyid[geom])];
+      return bodies.pieces[static_cast<std::size_t>(m.geom_bodyid[geom])];
     };
     return piece(geom1) == piece(geom2);
   }
 
   bool accepts(std::span<const double> q) const {
-    return matches && d && q.size() == addresses.size() &&
+    return bodies.matches && d && q.size() == bodies.addresses.size() &&
            std::all_of(q.begin(), q.end(), [](double value) { return std::isfinite(value); });
   }
 
   void place(std::span<const double> q) {
-    for (std::size_t i = 0; i < q.size(); ++i) d->qpos[addresses[i]] = q[i];
+    for (std::size_t i = 0; i < q.size(); ++i) d->qpos[bodies.addresses[i]] = q[i];
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     if (m.nflex > 0) mj_flex(&m, d.get());
@@ -153,14 +114,9 @@ struct ExactChecker::Impl {
   }
 
   GeomPair name_pair(GeomIds ids) const {
-    const auto geom = [&](int id) {
-      std::string name = name_of(m, mjOBJ_GEOM, id);
-      if (!name.empty()) return name;
-      const int body = m.geom_bodyid[id];
-      return name_of(m, mjOBJ_BODY, body) + "[" + std::to_string(id - m.body_geomadr[body]) + "]";
-    };
-    return {geom(ids.geom1), geom(ids.geom2), name_of(m, mjOBJ_BODY, m.geom_bodyid[ids.geom1]),
-            name_of(m, mjOBJ_BODY, m.geom_bodyid[ids.geom2])};
+    return {detail::geom_name(m, ids.geom1), detail::geom_name(m, ids.geom2),
+            detail::body_name(m, m.geom_bodyid[ids.geom1]),
+            detail::body_name(m, m.geom_bodyid[ids.geom2])};
   }
 
   /// The deepest contact of each pair that overlaps, deepest first.
@@ -197,13 +153,7 @@ struct ExactChecker::Impl {
   }
 
   /// Up to the margin.
-  double distance(GeomIds ids) {
-    if (!detail::is_capsule_box(m, ids.geom1, ids.geom2)) {
-      return mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, nullptr);
-    }
-    const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
-    return gap ? gap->distance : options.margin;
-  }
+  double distance(GeomIds ids) { return detail::geom_distance(m, d.get(), ids, options.margin); }
 
   /// Pairs that are equally far apart in every posture, found by drawing some.
   void find_constant_pairs() {
@@ -213,7 +163,7 @@ struct ExactChecker::Impl {
     std::map<GeomIds, double> same;
     Rng rng(1);
     for (int k = 0; k < kPostures && (k == 0 || !same.empty()); ++k) {
-      std::vector<double> q(addresses.size());
+      std::vector<double> q(bodies.addresses.size());
       for (double& value : q) value = rng.uniform(-1.5, 1.5);
       place(q);
       if (k == 0) {
@@ -264,12 +214,10 @@ struct ExactChecker::Impl {
   ExactOptions options;
   mjModel m;       // head of the model for contacts
   mjModel m_wide;  // the same with `margin` round every geom
+  detail::ArmBodies bodies;
   std::vector<double> q_rest;
-  std::vector<int> addresses;  // of the arm's joints in qpos
-  std::vector<int> pieces;     // per body: how many joints of the arm move it
   std::vector<GeomIds> capsule_boxes;
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
-  bool matches = false;                             // the arm is one of this model
   std::unique_ptr<mjData, DeleteData> d;
 };
 
@@ -287,7 +235,8 @@ ExactChecker& ExactChecker::operator=(ExactChecker&&) noexcept = default;
 
 Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
   if (!impl_->accepts(q)) {
-    return fail(Errc::bad_input, text(msg::collision_bad_q, impl_->addresses.size(), q.size()));
+    return fail(Errc::bad_input,
+                text(msg::collision_bad_q, impl_->bodies.addresses.size(), q.size()));
   }
   impl_->place(q);
   CollisionReport report;

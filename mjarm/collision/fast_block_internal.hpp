@@ -258,6 +258,13 @@ inline float rounding_of(const FastPolytope&) { return 0; }
 inline float rounding_of(const FastBox& box) { return box.round; }
 inline float rounding_of(const FastCylinder&) { return 0; }
 
+/// Whether a group is not held against an obstacle.
+inline bool is_ignored(const FastWorldTables& world, int g, int obstacle) {
+  if (world.ignored_words == 0) return false;
+  const std::uint64_t word = world.ignored[g * world.ignored_words + obstacle / 64];
+  return ((word >> (obstacle % 64)) & 1) != 0;
+}
+
 /// Calls visit(solid) for a leaf of the tree of solids.
 template <class Visit>
 void visit_solid(const FastWorldTables& world, const FastItem& item, const Visit& visit) {

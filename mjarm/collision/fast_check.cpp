@@ -53,9 +53,15 @@ std::optional<FastChecker::FixedOverlap> find_fixed_overlap(const SphereSet& set
       const auto overlaps = [&](const auto& obstacle) {
         return distance(obstacle, sphere.center) < sphere.radius;
       };
+      const auto counts = [&](const Obstacle& solid) {
+        const auto index = static_cast<int>(&solid - obstacles.solids.data());
+        const IgnoredPair pair{static_cast<int>(l), index};
+        const auto& ignored = obstacles.ignored;
+        return overlaps(solid) && std::find(ignored.begin(), ignored.end(), pair) == ignored.end();
+      };
       const std::vector<Obstacle>& solids = obstacles.solids;
       const std::vector<PointCloud>& clouds = obstacles.clouds;
-      const auto solid = std::find_if(solids.begin(), solids.end(), overlaps);
+      const auto solid = std::find_if(solids.begin(), solids.end(), counts);
       const auto cloud = std::find_if(clouds.begin(), clouds.end(), overlaps);
       if (solid == solids.end() && cloud == clouds.end()) continue;
       const auto index = solid != solids.end() ? solid - solids.begin()
@@ -76,7 +82,11 @@ FastChecker::FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel 
 
 Result<FastChecker> FastChecker::make(FastRobot robot, const Obstacles& obstacles,
                                       SimdLevel level) {
-  if (const Result<void> fine = check_obstacles(obstacles); !fine) return fail(fine.error());
+  if (const Result<void> fine =
+          check_obstacles(obstacles, static_cast<int>(robot.spheres().links.size()));
+      !fine) {
+    return fail(fine.error());
+  }
   return FastChecker(std::move(robot), obstacles, level);
 }
 

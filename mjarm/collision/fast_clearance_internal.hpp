@@ -42,7 +42,7 @@ class NearestSearch {
 
   void meet_world(int g) {
     if (robot_.groups[g].body == 0) return;
-    const FastRun& lists = world_.every_list;
+    const FastRun& lists = world_.every_list_of_group[g];
     for (int k = lists.first; k < lists.first + lists.count; ++k) {
       const FastList& list = world_.lists[k];
       meet_run(g, list.frame, world_.boxes, list.boxes, world_.box_ids);
@@ -82,11 +82,11 @@ class NearestSearch {
     if (Touched(root, block_.balls[g], far * far, kAllLanes).children == 0) return;
     block_.place_spheres(robot_, g);
     for (int k = group.first; k < group.first + group.count; ++k) {
-      for (int lane = 0; lane < kWidth; ++lane) meet_leaves(tree, k, lane);
+      for (int lane = 0; lane < kWidth; ++lane) meet_leaves(g, tree, k, lane);
     }
   }
 
-  void meet_leaves(const FastTree& tree, int sphere, int lane) {
+  void meet_leaves(int g, const FastTree& tree, int sphere, int lane) {
     const float radius = robot_.spheres[sphere].radius;
     const Point at = lane_of(block_.centers[sphere], lane);
     const auto limit2 = [&] {
@@ -95,7 +95,8 @@ class NearestSearch {
     };
     walk_nearest(tree, at, limit2, [&](int leaf) {
       if (&tree == &world_.crowd) {
-        meet_item(sphere, world_.items[leaf]);
+        const FastItem& item = world_.items[leaf];
+        if (!is_ignored(world_, g, item.id)) meet_item(sphere, item);
       } else {
         meet_points(sphere, leaf, at);
       }

@@ -238,6 +238,7 @@ class BlockSearch {
     const auto reach2 = [&] { return squared_reach(radius); };
     walk(world_.crowd, ball, lanes, active_, reach2, [&](int leaf, LaneBits touching) {
       const FastItem& item = world_.items[leaf];
+      if (is_ignored(world_, g, item.id)) return false;
       visit_solid(world_, item,
                   [&](const auto& solid) { meet_item(g, item.frame, touching, solid); });
       return is_done();

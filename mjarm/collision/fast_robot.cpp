@@ -56,22 +56,6 @@ Pose link_frame(const LinkChain& chain, int n) {
   return X;
 }
 
-/// The spheres of every link in the frame of its body.
-std::vector<std::vector<Sphere>> in_bodies(const SphereSet& set, const Arm& arm,
-                                           const LinkChain& chain) {
-  const std::vector<double> zero(static_cast<std::size_t>(arm.dof()), 0.0);
-  std::vector<Pose> X_WJ(zero.size());
-  fk_all(arm, zero, X_WJ);
-  std::vector<std::vector<Sphere>> out;
-  for (const LinkSpheres& link : set.links) {
-    Pose X_BJ = link_frame(chain, link.joint + 1).inverse();
-    if (link.joint >= 0) X_BJ = X_BJ * X_WJ[static_cast<std::size_t>(link.joint)];
-    out.push_back(link.spheres);
-    for (Sphere& sphere : out.back()) sphere.center = X_BJ * sphere.center;
-  }
-  return out;
-}
-
 FastSphere fast_sphere(const Sphere& sphere, double padding) {
   const auto snapped = [](double x) {
     return std::abs(x) < kNothing ? 0.0F : static_cast<float>(x);
@@ -98,7 +82,7 @@ FastGroup fast_group(FastRobotData& data, int body, const std::vector<Sphere>& s
 }
 
 void add_groups(FastRobotData& data, const LinkChain& chain) {
-  const auto bodies = in_bodies(data.set, data.arm, chain);
+  const auto bodies = detail::spheres_in_bodies(data.set, data.arm, chain);
   std::vector<int> order(bodies.size());
   std::iota(order.begin(), order.end(), 0);
   const auto joint = [&](int link) { return data.set.links[static_cast<std::size_t>(link)].joint; };
@@ -139,6 +123,25 @@ void add_levers(FastRobotData& data) {
 }
 
 }  // namespace
+
+namespace detail {
+
+std::vector<std::vector<Sphere>> spheres_in_bodies(const SphereSet& set, const Arm& arm,
+                                                   const LinkChain& chain) {
+  const std::vector<double> zero(static_cast<std::size_t>(arm.dof()), 0.0);
+  std::vector<Pose> X_WJ(zero.size());
+  fk_all(arm, zero, X_WJ);
+  std::vector<std::vector<Sphere>> out;
+  for (const LinkSpheres& link : set.links) {
+    Pose X_BJ = link_frame(chain, link.joint + 1).inverse();
+    if (link.joint >= 0) X_BJ = X_BJ * X_WJ[static_cast<std::size_t>(link.joint)];
+    out.push_back(link.spheres);
+    for (Sphere& sphere : out.back()) sphere.center = X_BJ * sphere.center;
+  }
+  return out;
+}
+
+}  // namespace detail
 
 Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   const Chain chain(arm);

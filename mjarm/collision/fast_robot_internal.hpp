@@ -62,6 +62,11 @@ struct FastLimits {
 };
 [[nodiscard]] FastLimits fast_limits(const Arm& arm, int joint);
 
+/// The spheres of every link in the frame of its body, as LinkChain has it.
+[[nodiscard]] std::vector<std::vector<Sphere>> spheres_in_bodies(const SphereSet& set,
+                                                                 const Arm& arm,
+                                                                 const LinkChain& chain);
+
 /// Bounds for points fixed to body `body` (from 1), the centres of spheres `spheres` in its frame.
 [[nodiscard]] GroupBounds group_bounds(const Arm& arm, const LinkChain& chain, int body,
                                        std::span<const Sphere> spheres);

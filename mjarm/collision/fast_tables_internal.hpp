@@ -169,7 +169,11 @@ struct FastWorldTables {
   const float* frames = nullptr;                ///< 9 a frame, by rows: into that frame
   const FastList* lists = nullptr;
   const FastRun* lists_of_group = nullptr;
-  FastRun every_list;  ///< what is within 1 m of the reach of any group, for distances
+  /// For distances: what is within 1 m of the reach of any group, and not ignored by this one.
+  const FastRun* every_list_of_group = nullptr;
+  /// Obstacles that a group is not held against: a bit for each, group by group. No words: none is.
+  const std::uint64_t* ignored = nullptr;
+  int ignored_words = 0;  ///< of a group
   const FastBox* boxes = nullptr;
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is

@@ -54,7 +54,8 @@ int lone_axis(const Eigen::Vector3d& v) {
 class WorldBuilder {
  public:
   WorldBuilder(const FastRobotData& robot, const Obstacles& obstacles, FastWorld& out)
-      : robot_(robot), out_(out) {
+      : robot_(robot), ignored_(obstacles.ignored), out_(out) {
+    std::sort(ignored_.begin(), ignored_.end());
     place(obstacles);
     move_largest_frame_first();
     std::sort(placed_.begin(), placed_.end(), [](const Placed& a, const Placed& b) {
@@ -68,11 +69,15 @@ class WorldBuilder {
     write_frames();
     const GroupBounds all = everyone();
     build_crowd(all, obstacles);
+    const FastRun every_list = add_lists(all, kMostClearance, -1);
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
+      const int link = robot_.link_of_group[g];
       const bool moves = robot_.groups[g].body > 0;
-      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0) : FastRun{});
+      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, link) : FastRun{});
+      out_.every_list_of_group.push_back(
+          moves && ignores(link) ? add_lists(all, kMostClearance, link) : every_list);
     }
-    out_.tables.every_list = add_lists(all, kMostClearance);
+    if (!ignored_.empty()) write_ignored(obstacles.solids.size());
   }
 
  private:
@@ -245,10 +250,35 @@ class WorldBuilder {
     return {FastKind::box, placed.frame, static_cast<int>(out_.boxes.size()) - 1, placed.id};
   }
 
-  FastRun add_lists(const GroupBounds& bounds, double margin) {
+  /// Whether a link is not held against some obstacle.
+  bool ignores(int link) const {
+    const auto first = std::lower_bound(ignored_.begin(), ignored_.end(), IgnoredPair{link, 0});
+    return first != ignored_.end() && first->link == link;
+  }
+
+  /// What trees are asked about.
+  void write_ignored(std::size_t solids) {
+    const std::size_t words = solids / 64 + 1;
+    out_.ignored.assign(words * robot_.groups.size(), 0);
+    for (std::size_t g = 0; g < robot_.groups.size(); ++g) {
+      const IgnoredPair from{robot_.link_of_group[g], 0};
+      for (auto pair = std::lower_bound(ignored_.begin(), ignored_.end(), from);
+           pair != ignored_.end() && pair->link == from.link; ++pair) {
+        const auto solid = static_cast<std::size_t>(pair->obstacle);
+        out_.ignored[g * words + solid / 64] |= std::uint64_t{1} << (solid % 64);
+      }
+    }
+    out_.tables.ignored_words = static_cast<int>(words);
+  }
+
+  /// `link`: of the sphere set, -1 for any.
+  FastRun add_lists(const GroupBounds& bounds, double margin, int link) {
     const int first = static_cast<int>(out_.lists.size());
     Near near;
     for (const Placed& placed : placed_) {
+      if (std::binary_search(ignored_.begin(), ignored_.end(), IgnoredPair{link, placed.id})) {
+        continue;
+      }
       if (placed.frame != near.frame) near = near_in(bounds, placed.frame);
       const double most = bounds.reach + margin + 1e-4 + placed.round;
       if (placed.apart(near.middle).squaredNorm() > most * most) continue;
@@ -312,6 +342,7 @@ class WorldBuilder {
   }
 
   const FastRobotData& robot_;
+  std::vector<IgnoredPair> ignored_;
   std::vector<Eigen::Matrix3d> frames_;  // R_WF
   std::vector<int> used_;                // solids of each frame
   int main_ = 0;                         // the frame that most solids share
@@ -327,6 +358,8 @@ FastWorld::FastWorld(const FastRobotData& robot, const Obstacles& obstacles) {
   tables.frames = frames.data();
   tables.lists = lists.data();
   tables.lists_of_group = lists_of_group.data();
+  tables.every_list_of_group = every_list_of_group.data();
+  tables.ignored = ignored.data();
   tables.boxes = boxes.data();
   tables.cylinders = cylinders.data();
   tables.box_ids = box_ids.data();

@@ -20,10 +20,11 @@ struct FastWorld {
 
   std::vector<float> frames;
   std::vector<FastList> lists;
-  std::vector<FastRun> lists_of_group;
+  std::vector<FastRun> lists_of_group, every_list_of_group;
   std::vector<FastBox> boxes;
   std::vector<FastCylinder> cylinders;
   std::vector<int> box_ids, cylinder_ids;
+  std::vector<std::uint64_t> ignored;
   FastTreeNodes crowd, clouds;
   std::vector<FastItem> items;
   std::vector<FastTriangle> triangles;

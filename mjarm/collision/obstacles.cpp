@@ -201,7 +201,7 @@ const std::string& obstacle_name(const Obstacles& obstacles, int index) noexcept
   return i < solids ? obstacles.solids[i].name : obstacles.clouds[i - solids].name;
 }
 
-Result<void> check_obstacles(const Obstacles& obstacles) {
+Result<void> check_obstacles(const Obstacles& obstacles, int links) {
   const std::vector<Obstacle>& solids = obstacles.solids;
   const std::size_t count = solids.size() + obstacles.clouds.size();
   if (count > kMostObstacles) {
@@ -226,6 +226,12 @@ Result<void> check_obstacles(const Obstacles& obstacles) {
     }
     const Result<void> fine = std::visit(PartsFit{i, obstacle.name}, obstacle.shape);
     if (!fine) return fine;
+  }
+  for (std::size_t i = 0; i < obstacles.ignored.size(); ++i) {
+    const auto& [link, obstacle] = obstacles.ignored[i];
+    if (link < 0 || link >= links || obstacle < 0 || obstacle >= std::ssize(solids)) {
+      return fail(Errc::bad_input, text(msg::collision_ignored, i, link, obstacle));
+    }
   }
   return check_clouds(obstacles.clouds);
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <span>
 #include <string>
 #include <variant>
@@ -70,11 +71,19 @@ struct PointCloud {
   double radius = 0;                        ///< [m] > 0, round every point
 };
 
+/// A link and an obstacle that are not held against each other.
+struct IgnoredPair {
+  int link = -1;      ///< index into the sphere set
+  int obstacle = -1;  ///< index into the obstacles
+  auto operator<=>(const IgnoredPair&) const = default;
+};
+
 /// What stands round an arm. A plain value. Where an obstacle is named by an index, the clouds
 /// follow the solids.
 struct Obstacles {
   std::vector<Obstacle> solids{};
   std::vector<PointCloud> clouds{};
+  std::vector<IgnoredPair> ignored{};  ///< of links and solids, in any order
 };
 
 /// Most obstacles that a checker takes, most faces and cells of all of them together, most planes
@@ -101,9 +110,11 @@ inline constexpr std::size_t kMostPoints = 100'000;
 [[nodiscard]] const std::string& obstacle_name(const Obstacles& obstacles, int index) noexcept;
 
 /// Looks whether every number is finite, every size in range (1e-9 to 1e4 m, places up to 1e4 m),
-/// every rotation one (to 1e-6), and that nothing is more than the numbers above.
+/// every rotation one (to 1e-6), that nothing is more than the numbers above, and that ignored
+/// pairs are of solids that are there and of one of `links` links.
 /// @return bad_input: one line that names the first faulty obstacle, its faulty part, and what is
 /// wrong with it.
-[[nodiscard]] Result<void> check_obstacles(const Obstacles& obstacles);
+[[nodiscard]] Result<void> check_obstacles(const Obstacles& obstacles,
+                                           int links = std::numeric_limits<int>::max());
 
 }  // namespace mjarm

@@ -293,5 +293,19 @@ TEST(SphereSet, WhatIsRefused) {
   EXPECT_NE(fault(many), "");
 }
 
+TEST(CheckObstacles, IgnoredPairsMustExist) {
+  Obstacles world{{{"ball", {}, BallShape{0.1}}}};
+  world.ignored = {{0, 0}, {2, 0}};
+  EXPECT_TRUE(check_obstacles(world).has_value());
+  EXPECT_TRUE(check_obstacles(world, 3).has_value());
+  EXPECT_FALSE(check_obstacles(world, 2).has_value());
+  for (const IgnoredPair pair : {IgnoredPair{0, 1}, IgnoredPair{-1, 0}, IgnoredPair{0, -1}}) {
+    world.ignored = {pair};
+    const Result<void> result = check_obstacles(world);
+    ASSERT_FALSE(result.has_value());
+    EXPECT_NE(result.error().what.find("ignored pair 0"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mjarm/collision/obstacles.hpp"
+#include "mjarm/collision/sphere_set.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/arm.hpp"
+#include "mjarm/model/model.hpp"
+
+namespace mjarm {
+
+/// How a model is covered. Every default is usable as is.
+struct CoverOptions {
+  double bound = 0.012;  ///< [m] spheres stick out of the geoms of their link by at most this, > 0
+  /// (nq,) [rad or m] where joints off the arm stand; empty: keyframe `home`, else initial values.
+  std::vector<double> qpos = {};
+  /// Cover what the joints of a gripper can do within their limits, instead of one posture.
+  bool whole_stroke = false;
+};
+
+/// A robot and what stands round it, as the fast checker takes them: made from the geoms of a model
+/// by MuJoCo's rules about what collides (contype and conaffinity, parent and child, excludes,
+/// explicit pairs). Pairs that are proved never to meet, in exact geometry and for all joint values
+/// within the limits, are left out.
+struct ModelCover {
+  /// The links that the arm moves, with all that hangs on them (hand, attached things). Links whose
+  /// geoms collide with different things come apart. Their spheres contain the geoms.
+  SphereSet spheres;
+  /// All other geoms that can meet the arm. Boxes, spheres, capsules, cylinders and planes are
+  /// exact; a mesh is a polytope round its hull, a height field its columns, an ellipsoid its box.
+  Obstacles scene;
+  std::vector<int> standing;  ///< obstacles (by index) that belong to the robot itself: its foot
+  std::vector<int> larger;    ///< obstacles that are a simpler solid round the geom
+  double bound = 0;           ///< [m] by how much a sphere really sticks out of its link at most
+  int pairs_apart = 0;  ///< pairs of links (links and obstacles) that were proved never to meet
+};
+
+/// Covers the geoms of `model` that can collide with something. A bound that needs more spheres
+/// than kMostSpheres is widened; ModelCover::bound says to what.
+/// @return bad_input: one line, where the arm is not of the model, nothing on it can collide, or an
+/// option is out of range.
+[[nodiscard]] Result<ModelCover> cover_model(const Model& model, const Arm& arm,
+                                             const CoverOptions& options = {});
+
+}  // namespace mjarm

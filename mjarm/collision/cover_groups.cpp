@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <set>
+
+#include "mjarm/collision/cover_geoms_internal.hpp"
+#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/core/messages/collision.hpp"
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kMostPostures = 64;  // of a gripper, for each geom
+
+struct DeletePoses {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+/// A joint that is not the arm's but moves a geom of it.
+struct StrokeJoint {
+  int qpos = 0;
+  double lower = 0, upper = 0;
+  double lever = 1;  ///< [m/rad or 1] what it moves a point of the geom by at most
+  int steps = 1;
+};
+
+class GeomSorter {
+ public:
+  GeomSorter(const Model& model, const Arm& arm, const CoverOptions& options)
+      : m_(*model.raw()), arm_(arm), options_(options), bodies_(m_, arm) {}
+
+  Result<GeomGroups> run() {
+    if (const Result<void> fine = check(); !fine) return fail(fine.error());
+    for (int g = 0; g < static_cast<int>(m_.ngeom); ++g) add(g);
+    if (out_.links.empty()) return fail(Errc::bad_input, text(msg::collision_no_geoms, arm_.name));
+    return std::move(out_);
+  }
+
+ private:
+  Result<void> check() {
+    if (!(options_.bound > 0 && options_.bound <= 1)) {
+      return fail(Errc::bad_input, text(msg::collision_cover_bound, options_.bound));
+    }
+    const bool fits =
+        options_.qpos.empty() || options_.qpos.size() == static_cast<std::size_t>(m_.nq);
+    if (!fits || !std::all_of(options_.qpos.begin(), options_.qpos.end(),
+                              [](double q) { return std::isfinite(q); })) {
+      return fail(Errc::bad_input, text(msg::collision_cover_qpos, m_.nq));
+    }
+    d_.reset(mj_makeData(&m_));
+    if (!d_ || !bodies_.matches || arm_.joints.empty()) return not_of_the_model();
+    rest_ = options_.qpos.empty() ? rest_configuration(m_) : options_.qpos;
+    place(rest_);
+    for (int b = 1; b < static_cast<int>(m_.nbody) && out_.root == 0; ++b) {
+      if (bodies_.pieces[static_cast<std::size_t>(b)] > 0) out_.root = m_.body_rootid[b];
+    }
+    // A wrong arm, or a base that `qpos` puts somewhere else.
+    for (std::size_t j = 0; j < X_WJ_.size(); ++j) {
+      const int qpos = arm_.joints[j].qpos;
+      int id = 0;
+      while (m_.jnt_qposadr[id] != qpos) ++id;
+      const Vector3d anchor(d_->xanchor + 3 * id), axis(d_->xaxis + 3 * id);
+      const bool hinge = arm_.joints[j].type == JointType::hinge;
+      if ((X_WJ_[j].R * arm_.joints[j].axis - axis).norm() > 1e-6 ||
+          (hinge && (X_WJ_[j].p - anchor).norm() > 1e-6)) {
+        return not_of_the_model();
+      }
+    }
+    return {};
+  }
+
+  tl::unexpected<Error> not_of_the_model() const {
+    return fail(Errc::bad_input, text(msg::collision_cover_arm, arm_.name));
+  }
+
+  /// Places the model; the arm's joints as well, which matters to nothing but this frame.
+  void place(const std::vector<double>& qpos) {
+    std::copy(qpos.begin(), qpos.end(), d_->qpos);
+    std::vector<double> q;
+    for (const int address : bodies_.addresses)
+      q.push_back(qpos[static_cast<std::size_t>(address)]);
+    X_WJ_.resize(q.size());
+    fk_all(arm_, q, X_WJ_);
+    mj_kinematics(&m_, d_.get());
+  }
+
+  int piece(int geom) const {
+    return bodies_.pieces[static_cast<std::size_t>(m_.geom_bodyid[geom])];
+  }
+
+  void add(int geom) {
+    std::vector<bool> meets(static_cast<std::size_t>(m_.ngeom));
+    for (int other = 0; other < static_cast<int>(m_.ngeom); ++other) {
+      meets[static_cast<std::size_t>(other)] =
+          piece(other) != piece(geom) && may_collide(m_, geom, other);
+    }
+    if (std::find(meets.begin(), meets.end(), true) == meets.end()) return;
+    if (piece(geom) == 0) {
+      out_.obstacles.push_back({geom_name(m_, geom), -1, {{geom, pose_of_geom(geom), 0}}});
+      return;
+    }
+    const auto [known, fresh] = groups_.try_emplace({piece(geom), meets}, out_.links.size());
+    if (fresh) out_.links.push_back({free_name(geom), piece(geom) - 1, {}});
+    for (const PlacedGeom& placed : placed_on_link(geom)) {
+      out_.links[known->second].geoms.push_back(placed);
+    }
+  }
+
+  /// Name of the geom's body; of the geom where another group has it.
+  std::string free_name(int geom) {
+    std::string name = body_name(m_, m_.geom_bodyid[geom]);
+    if (name.empty() || !names_.insert(name).second) name = geom_name(m_, geom);
+    names_.insert(name);
+    return name;
+  }
+
+  Pose pose_of_geom(int geom) const {
+    using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    const Pose X_WG{Vector3d(d_->geom_xpos + 3 * geom),
+                    Eigen::Map<const Rows>(d_->geom_xmat + 9 * geom)};
+    const int joint = piece(geom) - 1;
+    return joint < 0 ? X_WG : X_WJ_[static_cast<std::size_t>(joint)].inverse() * X_WG;
+  }
+
+  /// Once, or in each of a number of postures of the joints between the arm and the geom.
+  std::vector<PlacedGeom> placed_on_link(int geom) {
+    std::vector<StrokeJoint> joints;
+    if (options_.whole_stroke) joints = stroke_joints(geom);
+    std::vector<PlacedGeom> out;
+    double grow = 0;
+    std::size_t count = 1;
+    for (const StrokeJoint& joint : joints) {
+      grow += joint.lever * (joint.upper - joint.lower) / (2 * joint.steps);
+      count *= static_cast<std::size_t>(joint.steps);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      std::vector<double> qpos = rest_;
+      std::size_t left = k;
+      for (const StrokeJoint& joint : joints) {
+        const auto steps = static_cast<std::size_t>(joint.steps);
+        const double share = (static_cast<double>(left % steps) + 0.5) / joint.steps;
+        qpos[static_cast<std::size_t>(joint.qpos)] =
+            joint.lower + share * (joint.upper - joint.lower);
+        left /= steps;
+      }
+      if (!joints.empty()) place(qpos);
+      out.push_back({geom, pose_of_geom(geom), grow});
+    }
+    if (!joints.empty()) place(rest_);
+    return out;
+  }
+
+  std::vector<StrokeJoint> stroke_joints(int geom) const {
+    std::vector<StrokeJoint> out;
+    double lever = m_.geom_rbound[geom] + Vector3d(m_.geom_pos + 3 * geom).norm();
+    for (int b = m_.geom_bodyid[geom]; b > 0; b = m_.body_parentid[b]) {
+      bool last = false;
+      for (int j = m_.body_jntadr[b]; j < m_.body_jntadr[b] + m_.body_jntnum[b]; ++j) {
+        const auto is_ours = [&](int address) { return address == m_.jnt_qposadr[j]; };
+        last |= std::any_of(bodies_.addresses.begin(), bodies_.addresses.end(), is_ours);
+        const bool hinge = m_.jnt_type[j] == mjJNT_HINGE;
+        if (last || (!hinge && m_.jnt_type[j] != mjJNT_SLIDE)) continue;
+        if (!hinge && !m_.jnt_limited[j]) continue;  // endless: it stays where it is
+        StrokeJoint joint{m_.jnt_qposadr[j], -std::numbers::pi, std::numbers::pi};
+        if (m_.jnt_limited[j]) {
+          joint.lower = m_.jnt_range[2 * j];
+          joint.upper = m_.jnt_range[2 * j + 1];
+        }
+        joint.lever = hinge ? lever + Vector3d(m_.jnt_pos + 3 * j).norm() : 1;
+        out.push_back(joint);
+      }
+      if (last) break;
+      lever += Vector3d(m_.body_pos + 3 * b).norm();
+    }
+    // The joint that moves the geom most is cut first.
+    const auto step = [](const StrokeJoint& joint) {
+      return joint.lever * (joint.upper - joint.lower) / joint.steps;
+    };
+    for (int count = 1; !out.empty();) {
+      StrokeJoint& widest = *std::max_element(
+          out.begin(), out.end(), [&](const auto& a, const auto& b) { return step(a) < step(b); });
+      count = count / widest.steps * (widest.steps + 1);
+      if (count > kMostPostures || step(widest) <= 0.25 * options_.bound) break;
+      ++widest.steps;
+    }
+    return out;
+  }
+
+  const mjModel& m_;
+  const Arm& arm_;
+  const CoverOptions& options_;
+  ArmBodies bodies_;
+  std::unique_ptr<mjData, DeletePoses> d_;
+  std::vector<double> rest_;
+  std::vector<Pose> X_WJ_;
+  std::map<std::pair<int, std::vector<bool>>, std::size_t> groups_;
+  std::set<std::string> names_;
+  GeomGroups out_;
+};
+
+}  // namespace
+
+Result<GeomGroups> group_geoms(const Model& model, const Arm& arm, const CoverOptions& options) {
+  return GeomSorter(model, arm, options).run();
+}
+
+}  // namespace mjarm::detail

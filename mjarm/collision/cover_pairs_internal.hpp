@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "mjarm/collision/cover_geoms_internal.hpp"
+#include "mjarm/collision/fast_robot_internal.hpp"
+
+namespace mjarm::detail {
+
+/// Which links can meet each other or an obstacle at all: by the model's rules and, with few joints
+/// between the two, by a proof in exact geometry. Over a box of joint values the distance of two
+/// geoms changes by at most (lever * half width), summed over the joints, so a box is cut until it
+/// is clear, or its middle is too near.
+class MeetingProof {
+ public:
+  MeetingProof(const Model& model, const Arm& arm, const GeomGroups& groups);
+
+  /// Whether the model's rules let geoms of the two collide; all geoms of a group are alike.
+  [[nodiscard]] bool is_allowed(const GeomGroup& a, const GeomGroup& b) const;
+  /// True where it is proved that the two never meet; `b` is link `index`, on the joint farther
+  /// from the base.
+  [[nodiscard]] bool never_meet(const GeomGroup& a, const GeomGroup& b, std::size_t index);
+
+ private:
+  struct Search;
+  struct DeletePlaces {
+    void operator()(mjData* data) const { mj_deleteData(data); }
+  };
+
+  const mjModel& m_;
+  const Arm& arm_;
+  std::unique_ptr<mjData, DeletePlaces> d_;
+  std::vector<std::array<double, kMaxDof>> levers_;  // per link
+};
+
+}  // namespace mjarm::detail

@@ -1,0 +1,55 @@
+#include <algorithm>
+
+#include "mjarm/collision/exact_arm_bodies_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+/// Index of the joint whose value stands at `qpos` of the model's qpos; -1 where there is none.
+int joint_at(const mjModel& m, int qpos) {
+  for (int j = 0; j < static_cast<int>(m.njnt); ++j) {
+    const bool single = m.jnt_type[j] == mjJNT_HINGE || m.jnt_type[j] == mjJNT_SLIDE;
+    if (single && m.jnt_qposadr[j] == qpos) return j;
+  }
+  return -1;
+}
+
+std::string name_of(const mjModel& m, int type, int id) {
+  const char* const name = mj_id2name(&m, type, id);
+  return name == nullptr ? std::string() : std::string(name);
+}
+
+}  // namespace
+
+ArmBodies::ArmBodies(const mjModel& m, const Arm& arm) : pieces(static_cast<std::size_t>(m.nbody)) {
+  for (const ArmJoint& joint : arm.joints) {
+    const int id = joint_at(m, joint.qpos);
+    if (id < 0) {
+      matches = false;
+      continue;
+    }
+    addresses.push_back(joint.qpos);
+    pieces[static_cast<std::size_t>(m.jnt_bodyid[id])] = static_cast<int>(addresses.size());
+  }
+  for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
+    int& piece = pieces[static_cast<std::size_t>(b)];
+    piece = std::max(piece, pieces[static_cast<std::size_t>(m.body_parentid[b])]);
+  }
+}
+
+std::vector<double> rest_configuration(const mjModel& m) {
+  const int key = mj_name2id(&m, mjOBJ_KEY, "home");
+  const mjtNum* q = key >= 0 ? m.key_qpos + key * m.nq : m.qpos0;
+  return {q, q + m.nq};
+}
+
+std::string geom_name(const mjModel& m, int geom) {
+  std::string name = name_of(m, mjOBJ_GEOM, geom);
+  if (!name.empty()) return name;
+  const int body = m.geom_bodyid[geom];
+  return body_name(m, body) + "[" + std::to_string(geom - m.body_geomadr[body]) + "]";
+}
+
+std::string body_name(const mjModel& m, int body) { return name_of(m, mjOBJ_BODY, body); }
+
+}  // namespace mjarm::detail
