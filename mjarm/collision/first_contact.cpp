@@ -9,8 +9,8 @@
 
 namespace mjarm {
 
-Result<std::optional<FirstContact>> first_contact(ExactChecker& checker, std::span<const double> q0,
-                                                  std::span<const double> q1, double step) {
+Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker, std::span<const double> q0,
+                                                 std::span<const double> q1, double step) {
   constexpr double kMostSteps = 1e8;
   // The ends are looked at first of all: a wrong size or number shows here.
   for (const std::span<const double> end : {q0, q1}) {
@@ -30,7 +30,7 @@ Result<std::optional<FirstContact>> first_contact(ExactChecker& checker, std::sp
     Result<CollisionReport> report = checker.check(q);
     if (!report) return fail(std::move(report.error()));
     if (report->free) continue;
-    return FirstContact{t, std::move(report->contacts.front())};
+    return EdgeContact{t, std::move(report->contacts.front())};
   }
   return std::nullopt;
 }

@@ -9,7 +9,7 @@
 namespace mjarm {
 
 /// Where an edge first touches something.
-struct FirstContact {
+struct EdgeContact {
   double t = 0;          ///< on the edge, 0 to 1
   ContactPoint contact;  ///< the deepest there
 };
@@ -20,9 +20,9 @@ struct FirstContact {
 /// @param step    [rad or m, L2] largest spacing, > 0.
 /// @return nothing where every sample is free; bad_input for a wrong size, a number that is not
 /// finite, or a step that cuts the edge into more than 1e8 pieces.
-[[nodiscard]] Result<std::optional<FirstContact>> first_contact(ExactChecker& checker,
-                                                                std::span<const double> q0,
-                                                                std::span<const double> q1,
-                                                                double step = 0.005);
+[[nodiscard]] Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker,
+                                                               std::span<const double> q0,
+                                                               std::span<const double> q1,
+                                                               double step = 0.005);
 
 }  // namespace mjarm
