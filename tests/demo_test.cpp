@@ -64,7 +64,7 @@ TEST_P(EveryDemo, EndsWellAndLeavesWholeFiles) {
 
 INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo,
                          ::testing::Values("car", "ur5e", "ur5e_vision", "point", "movej", "movel",
-                                           "ellipse", "letters", "singularity", "flip"),
+                                           "ellipse", "letters", "singularity", "flip", "avoid"),
                          [](const auto& demo) { return std::string(demo.param); });
 
 TEST(DemoEllipse, WholeCurveWithinHalfAMillimetre) {
@@ -172,6 +172,30 @@ TEST(DemoFlip, NearestAnswersChangeBranchAndTheWholePathBranchDoesNot) {
   EXPECT_LT(run.report["path_error_max"].get<double>(), 5e-4);
   EXPECT_TRUE(folder.exists("out/comparison.png"));
   EXPECT_NE(run.result.err.find("branch_flip"), std::string::npos) << run.result.err;
+}
+
+TEST(DemoAvoid, TellsWhatTheStraightWayHitsAndGoesRound) {
+  const TempFolder folder, again;
+  const DemoRun run = run_demo(folder, {"avoid"});
+  ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+  EXPECT_EQ(run.report["straight_reason"], "collision");
+  EXPECT_NE(run.report["straight_hits"].get<std::string>().find("wall"), std::string::npos);
+  EXPECT_GT(run.report["straight_free"].get<double>(), 0.05);
+  EXPECT_LT(run.report["straight_free"].get<double>(), 0.6);
+  EXPECT_GE(run.report["edges"].get<double>(), 2);
+  EXPECT_GT(run.report["clearance"].get<double>(), 0);
+  EXPECT_TRUE(run.report["first_contact"].is_null());
+  EXPECT_LT(run.report["static_error"]["position"].get<double>(), 1e-6);
+  EXPECT_NE(run.result.err.find("would touch after"), std::string::npos) << run.result.err;
+  EXPECT_NE(run.result.err.find("proved free"), std::string::npos) << run.result.err;
+  EXPECT_EQ(run_demo(again, {"avoid"}).report, run.report);
+}
+
+TEST(DemoAvoid, HasItsOwnScene) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"avoid", "--robot", "panda"});
+  EXPECT_EQ(run.result.exit_code, 2) << run.result.err;
+  EXPECT_NE(run.result.err.find("scene of its own"), std::string::npos) << run.result.err;
 }
 
 TEST(DemoFlip, StopsBeforeTheLineWhereAsked) {

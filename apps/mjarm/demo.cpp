@@ -113,6 +113,7 @@ std::span<const Demo> demos() {
       {"letters", msg::demo_about_letters, run_letters},
       {"singularity", msg::demo_about_singularity, run_singularity},
       {"flip", msg::demo_about_flip, run_flip},
+      {"avoid", msg::demo_about_avoid, run_avoid},
       {"square", msg::demo_about_square, run_square},
       {"reach", msg::train_about_reach, run_reach},
   };

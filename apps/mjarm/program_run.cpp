@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "apps/mjarm/program_scene.hpp"
 #include "apps/mjarm/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/motion_program.hpp"
@@ -20,8 +21,7 @@ bool is_measured(const ProgramPlan& plan, std::size_t i) {
 }
 
 /// What there is to be told of a plan before it runs.
-Report planned_report(const ProgramPlan& plan) {
-  Report report;
+Report planned_report(const ProgramPlan& plan, Report report) {
   report.facts.push_back({"cycle_time", plan.duration()});
   for (const PlannedMove& move : plan.moves) {
     const Arm& arm = plan.arms[move.tool];
@@ -79,15 +79,16 @@ Result<void> execute(Stage& stage, const ProgramPlan& plan, ControlMode mode, do
   });
 }
 
-Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolerance) {
+Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolerance, Report begun) {
   const ProgramPlan& plan = loaded.plan;
   const double steps = (plan.duration() + kSettle) / loaded.robot.model.timestep();
   Progress progress(text(msg::motion_program_running), static_cast<std::uint64_t>(steps));
   stage.set_tick([&progress] { progress.advance(); });
   for (const PlannedMove& move : plan.moves) {
-    if (move.curve) stage.show().add_line(move.curve->poses(move.curve->stations(0.01, 0.1)));
+    if (!move.curve && move.corners.empty()) continue;
+    stage.show().add_line(planned_tool_path(move, plan.arms[move.tool]));
   }
-  Report report = planned_report(plan);
+  Report report = planned_report(plan, std::move(begun));
   const ControlMode mode =
       stage.control(loaded.program.control.value_or(ControlMode::computed_torque));
   if (auto done = execute(stage, plan, mode, kSettle); !done) return fail(std::move(done.error()));

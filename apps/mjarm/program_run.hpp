@@ -21,7 +21,9 @@ namespace mjarm::app {
 
 /// Runs a plan without faults by the control the user or the program chose, with a progress bar,
 /// and writes its files; `ok` is withdrawn where a curve was left by more than `tolerance` [m].
-[[nodiscard]] Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolerance);
+/// @param begun  what is known already.
+[[nodiscard]] Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolerance,
+                                      Report begun = {});
 
 /// The same with a stage of its own, out of sight, since nobody could look as fast as that; then
 /// `show_program`, unless there is to be no window.

@@ -11,8 +11,9 @@ namespace {
 constexpr int kJointMovePieces = 60;
 constexpr Rgba kJointMoveColor = {0.55F, 0.55F, 0.60F, 1};
 
-/// Where the tool goes in a motion; fewer than two poses where it rests.
-std::vector<Pose> tool_path(const PlannedMove& move, const Arm& arm) {
+}  // namespace
+
+std::vector<Pose> planned_tool_path(const PlannedMove& move, const Arm& arm) {
   if (move.curve) return move.curve->poses(move.curve->stations(0.01, 0.1));
   std::vector<Pose> out;
   if (!move.measures && !move.is_approach()) return out;
@@ -23,14 +24,12 @@ std::vector<Pose> tool_path(const PlannedMove& move, const Arm& arm) {
   return out;
 }
 
-}  // namespace
-
 ProgramScene::ProgramScene(const LoadedProgram& loaded, int first_figure)
     : loaded_(&loaded), figures_(loaded.robot.arm, first_figure, {true, true}) {
   for (const PlannedMove& move : loaded.plan.moves) {
     PathLook look;
     if (!move.curve) look.color = kJointMoveColor;
-    const std::vector<Pose> X_WT = tool_path(move, loaded.plan.arms[move.tool]);
+    const std::vector<Pose> X_WT = planned_tool_path(move, loaded.plan.arms[move.tool]);
     if (X_WT.size() > 1) add_planned_path(paths_, X_WT, look);
   }
 }

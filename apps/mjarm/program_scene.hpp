@@ -12,6 +12,9 @@
 
 namespace mjarm::app {
 
+/// Where the tool goes in a motion; fewer than two poses where it rests.
+[[nodiscard]] std::vector<Pose> planned_tool_path(const PlannedMove& move, const Arm& arm);
+
 /// What a window shows of a program besides the arm: planned paths, the trail of the tool, the goal
 /// of a motion, figures.
 class ProgramScene {

@@ -80,7 +80,13 @@ std::string plan_text(const LoadedProgram& loaded) {
              "\n";
     }
   }
-  for (const ProgramFault& fault : plan.faults) out += line_of(loaded, fault) + "\n";
+  for (const ProgramFault& fault : plan.faults) {
+    out += line_of(loaded, fault) + "\n";
+    if (!fault.detour) continue;
+    out += text(msg::motion_program_detour, fault.place.line, fault.word, fault.detour->edges,
+                fault.detour->duration) +
+           "\n";
+  }
   if (plan.ok()) out += text(msg::motion_program_total, plan.duration()) + "\n";
   return out;
 }
@@ -90,11 +96,18 @@ JsonDoc plan_json(const LoadedProgram& loaded) {
   std::vector<JsonDoc> moves, faults;
   for (const PlannedMove& move : plan.moves) moves.push_back(move_json(plan, move));
   for (const ProgramFault& fault : plan.faults) {
-    faults.push_back({{"line", fault.place.line},
-                      {"column", fault.place.column},
-                      {"instruction", fault.word},
-                      {"reason", fault.reason},
-                      {"detail", fault.what}});
+    JsonDoc& told = faults.emplace_back(JsonDoc{{"line", fault.place.line},
+                                                {"column", fault.place.column},
+                                                {"instruction", fault.word},
+                                                {"reason", fault.reason},
+                                                {"detail", fault.what}});
+    if (!fault.detour) continue;
+    JsonDoc fix = {{"kind", "detour"},
+                   {"instruction", "plan"},
+                   {"edges", fault.detour->edges},
+                   {"duration", fault.detour->duration}};
+    if (std::isfinite(fault.detour->clearance)) fix.set("clearance", fault.detour->clearance);
+    told.set("fix", std::move(fix));
   }
   return {{"ok", plan.ok()},
           {"cycle_time", plan.duration()},

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "apps/mjarm/program_run.hpp"
+#include "apps/mjarm/program_scene.hpp"
 #include "apps/mjarm/render_video.hpp"
 #include "mjarm/core/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
@@ -25,8 +26,8 @@ class ProgramRun {
   explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
     sim_.place(loaded.robot.arm, view(loaded.plan.q_start));
     for (const PlannedMove& move : loaded.plan.moves) {
-      if (!move.curve) continue;
-      add_planned_path(planned_, move.curve->poses(move.curve->stations(0.01, 0.1)));
+      if (!move.curve && move.corners.empty()) continue;
+      add_planned_path(planned_, planned_tool_path(move, loaded.plan.arms[move.tool]));
     }
   }
 

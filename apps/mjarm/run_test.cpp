@@ -75,6 +75,25 @@ TEST(Run, DoesWhatItPlannedAndWritesItDown) {
   EXPECT_NE(read_file(out / "plot.svg").value().find(">limits<"), std::string::npos);
 }
 
+TEST(Check, BlockedMovesTellTheDetour) {
+  const support::TempFolder folder;
+  const auto file = folder
+                        .write("cell.yaml",
+                               "robot: ur5e\nscene: universal_robots_ur5e/wall.xml\nprogram:\n"
+                               "  - plan: {pos: [0.3, -0.45, 0.2], euler: [180deg, 0, 0]}\n"
+                               "  - movel: {pos: [-0.3, -0.45, 0.2], euler: [180deg, 0, 0]}\n")
+                        .string();
+  const auto told = mjarm({"check", file});
+  EXPECT_EQ(told.exit_code, 1);
+  EXPECT_THAT(told.out, HasSubstr("line 5 with \"plan\" in place of \"movel\""));
+  EXPECT_THAT(only_line(told), HasSubstr("wall"));
+  const auto fault = nlohmann::json::parse(mjarm({"check", file, "--json"}).out).at("faults").at(0);
+  EXPECT_EQ(fault.at("reason"), "collision");
+  EXPECT_EQ(fault.at("fix").at("kind"), "detour");
+  EXPECT_GE(fault.at("fix").at("edges"), 1);
+  EXPECT_GT(fault.at("fix").at("clearance"), 0);
+}
+
 class ShippedProgram : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedProgram, IsFollowedToAThousandthOfAMillimetre) {

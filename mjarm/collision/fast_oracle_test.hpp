@@ -34,7 +34,7 @@ inline void compare(const Arm& arm, const SphereSet& set, const Obstacles& world
   ASSERT_TRUE(robot.has_value()) << robot.error().what;
   const auto checker = FastChecker::make(*robot, world, level);
   ASSERT_TRUE(checker.has_value()) << checker.error().what;
-  EXPECT_LT(robot->padding(), 2e-4);
+  EXPECT_LT(robot->padding(), 4e-4);
   const auto dof = static_cast<std::size_t>(arm.dof());
   const std::vector<double> rows = random_rows(arm, rng, count);
   std::vector<std::uint8_t> free(static_cast<std::size_t>(count));
@@ -46,12 +46,9 @@ inline void compare(const Arm& arm, const SphereSet& set, const Obstacles& world
       clearances.begin(), clearances.end(),
       [](const SphereClearance& a, const SphereClearance& b) { return a.distance < b.distance; });
   EXPECT_EQ(least.nearest.link >= 0, least.nearest.distance < 1);
-  if (nearest->distance > 0) {
-    EXPECT_EQ(least.nearest.distance, nearest->distance);
-    EXPECT_EQ(clearances[least.row].distance, nearest->distance);
-  } else {
-    EXPECT_LE(least.nearest.distance, 0);
-  }
+  // Where the box round a solid says more than its planes, the bound of all is the better one.
+  EXPECT_GE(least.nearest.distance, nearest->distance);
+  double least_gap = 1;
   const double pad = 2 * robot->padding() + 2e-6 * extent;
   for (std::size_t i = 0; i < free.size(); ++i) {
     const std::span<const double> q(&rows[i * dof], dof);
@@ -66,11 +63,13 @@ inline void compare(const Arm& arm, const SphereSet& set, const Obstacles& world
     }
     EXPECT_EQ(checker->is_free(q), free[i] != 0);
     const double gap = true_clearance(arm, set, world, q, true);
+    least_gap = std::min(least_gap, gap);
     const double bound = clearances[i].distance;
     EXPECT_LE(bound, std::max(gap, 0.0) + 1e-9);
     EXPECT_GT(bound, std::min(gap, 0.99) - pad - 1e-6 - 1e-6 * extent);
     EXPECT_EQ(clearances[i].link >= 0, bound < 1);
   }
+  EXPECT_LE(least.nearest.distance, std::max(least_gap, 0.0) + 1e-9);
 }
 
 }  // namespace mjarm::testing

@@ -11,6 +11,7 @@
 #include "mjarm/program/motion.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
+#include "mjarm/program/way_round_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -39,6 +40,7 @@ struct Tool {
   IkSolver reach;  ///< geometry alone
   IkSolver ik;     ///< without contact
   MoveJudge judge;
+  detail::WayRoundPlanner round;
 };
 
 class Planner {
@@ -55,8 +57,10 @@ class Planner {
       std::optional<ExactChecker> checker;
       if (options.collision) checker.emplace(model, arm);
       if (checker) ik.valid = checker->predicate();
-      tools_.push_back(
-          {arm, IkSolver(arm, {.task = ik.task}), IkSolver(arm, ik), MoveJudge(arm, checker)});
+      const IkSolver solver(arm, ik);
+      const MoveJudge judge(arm, checker);
+      tools_.push_back({arm, IkSolver(arm, {.task = ik.task}), solver, judge,
+                        detail::WayRoundPlanner(model, arm, solver, judge)});
     }
   }
 
@@ -75,8 +79,9 @@ class Planner {
       i = attempt.next;
       q = std::move(attempt.q);
       if (!attempt.fault) continue;
-      note(*attempt.fault);
-      known = recover(steps_[attempt.fault->step], q);
+      const std::optional<Detour> detour = find_detour(*attempt.fault, q);
+      note(*attempt.fault, detour);
+      known = detour || recover(steps_[attempt.fault->step], q);
       i = attempt.fault->step + 1;
     }
     std::ranges::stable_sort(plan_.faults, [](const ProgramFault& a, const ProgramFault& b) {
@@ -99,10 +104,25 @@ class Planner {
     }
   }
 
-  void note(const PlanFault& fault) {
+  void note(const PlanFault& fault, const std::optional<Detour>& detour) {
     const Step& step = steps_[fault.step];
-    detail::add_fault(plan_.faults,
-                      {step.place, std::string(step.word), fault.reason, fault.what, fault.code});
+    detail::add_fault(plan_.faults, {step.place, std::string(step.word), fault.reason, fault.what,
+                                     fault.code, detour});
+  }
+
+  /// What `plan` would do in the place of a move that something blocks; `q` is then where it ends.
+  std::optional<Detour> find_detour(const PlanFault& fault, JointVec& q) {
+    const Step& step = steps_[fault.step];
+    const bool one = step.kind == Step::Kind::joints || step.kind == Step::Kind::pose ||
+                     (step.kind == Step::Kind::line && !blended(fault.step));
+    if (!one || fault.reason != "collision") return std::nullopt;
+    detail::WayRoundPlanner& planner = tools_[step.tool].round;
+    const auto goals = goals_of(planner, step, q);
+    if (!goals) return std::nullopt;
+    const auto way = planner.plan(q, *goals, step.share);
+    if (!way) return std::nullopt;
+    q = way->corners.back();
+    return Detour{way->corners.size() - 1, way->trajectory.duration(), way->measures.clearance};
   }
 
   /// After a fault the arm is taken to be where the step should have ended.
@@ -149,7 +169,7 @@ class Planner {
       case Step::Kind::plan:
         break;
     }
-    return failed(i, q, {i, "not_available", text(msg::program_no_planner), Errc::not_available});
+    return round(i, q);
   }
 
   static Attempt failed(std::size_t i, const JointVec& q, PlanFault fault) {
@@ -237,6 +257,36 @@ class Planner {
       }
       if (!attempt.fault) return attempt;
       if (!best || attempt.next > best->next) best = std::move(attempt);
+    }
+    return std::move(*best);
+  }
+
+  /// Where a `plan` may end: its joint values, or every answer to its pose.
+  static Result<std::vector<JointVec>, detail::WayRoundFault> goals_of(
+      const detail::WayRoundPlanner& planner, const Step& step, const JointVec& q) {
+    return step.q.size() > 0 ? planner.goals(q, step.q) : planner.goals(q, step.X_WT);
+  }
+
+  /// Round what stands in the way, to a goal from which the tool moves that follow go farthest.
+  Attempt round(std::size_t i, const JointVec& q) {
+    const Step& step = steps_[i];
+    Tool& with = tools_[step.tool];
+    auto goals = goals_of(with.round, step, q);
+    if (!goals) return failed(i, q, {i, goals.error().reason, goals.error().what});
+    std::optional<Attempt> best;
+    for (std::size_t k = 0; k < kMostAnswers && !goals->empty(); ++k) {
+      auto found = with.round.plan(q, *goals, step.share);
+      if (!found && best) break;
+      if (!found) return failed(i, q, {i, found.error().reason, found.error().what});
+      Attempt attempt{{begun(step)}, i + 1, found->corners.back(), {}};
+      PlannedMove& move = attempt.moves.back();
+      move.measures = std::move(found->measures);
+      move.trajectory = std::move(found->trajectory);
+      move.corners = std::move(found->corners);
+      tool_moves(attempt);
+      if (!attempt.fault) return attempt;
+      if (!best || attempt.next > best->next) best = std::move(attempt);
+      goals->erase(goals->begin() + static_cast<std::ptrdiff_t>(found->goal));
     }
     return std::move(*best);
   }

@@ -60,11 +60,22 @@ struct PlannedMove {
   /// Curve::blends()) or the two poses of one arc; empty where arcs are blended and for curves that
   /// have a center.
   std::vector<PlannedPoint> points;
+  /// Of a way round obstacles: the joint values that its edges run between, start and goal
+  /// included. Every edge is proved free of contact; the trajectory cuts the corners where that is
+  /// as well.
+  std::vector<JointVec> corners;
   std::optional<bool> close;             ///< the gripper closes or opens
   std::vector<SpeedDip> dips;            ///< where the tool is slower than asked
   std::optional<MoveMeasures> measures;  ///< none for rests
 
   [[nodiscard]] bool is_approach() const { return word == "approach"; }
+};
+
+/// What `plan` would do in the place of a move that something blocks: tried, and free of contact.
+struct Detour {
+  std::size_t edges = 0;  ///< straight in joint space
+  double duration = 0;    ///< [s]
+  double clearance = 0;   ///< [m] as in MoveMeasures
 };
 
 /// What cannot be done, and where it stands in the file.
@@ -75,6 +86,7 @@ struct ProgramFault {
       reason;        ///< word: "out_of_reach", "joint_limit", "blend_overlap", "unknown_name", ...
   std::string what;  ///< one line for people, without the place
   Errc code = Errc::impossible;
+  std::optional<Detour> detour = {};  ///< of a blocked movej or movel, where there is one
 };
 
 /// A program that was thought through, before anything moves.
@@ -99,9 +111,11 @@ struct ProgramPlanOptions {
 
 /// Plans every motion of `program`: the arm begins at `start`; goals of `movej` get the answer from
 /// which the straight moves that follow can be done; straight moves and curves the branch that goes
-/// all the way (solve_path.hpp); curves that begin elsewhere are approached by a joint move. After
-/// a fault it goes on from where the faulty instruction should have ended, so that one call finds
-/// all faults. A speed that is asked for by name must be one the joints can keep.
+/// all the way (solve_path.hpp); `plan` goes round obstacles (plan_path.hpp) to whichever answer
+/// the moves that follow can go on from; curves that begin elsewhere are approached by a joint
+/// move. After a fault it goes on from where the faulty instruction should have ended, so that one
+/// call finds all faults; of moves that something blocks they tell the detour that `plan` would
+/// take. A speed that is asked for by name must be one the joints can keep.
 [[nodiscard]] ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& program,
                                        const ProgramPlanOptions& options = {});
 

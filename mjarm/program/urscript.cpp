@@ -134,6 +134,8 @@ class UrscriptWriter {
     set_tool(move.tool);
     if (move.curve) {
       tool_move(move);
+    } else if (!move.corners.empty()) {
+      way_round(move);
     } else if (move.measures) {
       joint_move(move);
     } else {
@@ -155,8 +157,26 @@ class UrscriptWriter {
 
   void joint_move(const PlannedMove& move) {
     comment(move.place, move.word == "approach" ? "to where the curve begins" : move.word);
-    const double seconds = move.trajectory.duration();
-    const JointVec q0 = move.trajectory.at(0).q, q1 = move.trajectory.at(seconds).q;
+    joint_move(move.trajectory);
+  }
+
+  /// Edge by edge with a stop at each corner: what is proved free is the edges.
+  void way_round(const PlannedMove& move) {
+    comment(move.place, move.word);
+    const JointLimits& limits = plan_.arms[move.tool].limits;
+    constexpr double kLeastShare = 0.01;
+    const double share = check_limits(move.trajectory, limits).velocity.maxCoeff();
+    for (std::size_t i = 1; i < move.corners.size(); ++i) {
+      const auto edge = time_joint_move(view(move.corners[i - 1]), view(move.corners[i]), limits,
+                                        {.joint_share = std::clamp(share, kLeastShare, 1.0)});
+      if (edge) joint_move(*edge);
+    }
+    if (move.corners.size() == 1) comment("the arm is there already");
+  }
+
+  void joint_move(const Trajectory& trajectory) {
+    const double seconds = trajectory.duration();
+    const JointVec q0 = trajectory.at(0).q, q1 = trajectory.at(seconds).q;
     Eigen::Index leading = 0;
     const double way = (q1 - q0).cwiseAbs().maxCoeff(&leading);
     if (!(seconds > 0) || !(way > 0)) {
@@ -166,7 +186,7 @@ class UrscriptWriter {
     constexpr int kSamples = 4000;
     double peak = 0;
     for (int i = 0; i <= kSamples; ++i) {
-      peak = std::max(peak, std::abs(move.trajectory.at(seconds * i / kSamples).v[leading]));
+      peak = std::max(peak, std::abs(trajectory.at(seconds * i / kSamples).v[leading]));
     }
     const detail::Trapezoid pace = detail::trapezoid(way, seconds, peak);
     line(fmt::format("movej({}, {})", list_of(view(q1)), pace_of(pace.accel, pace.speed)));

@@ -77,6 +77,23 @@ TEST(Urscript, IsTheSameMotion) {
   }
 }
 
+TEST(Urscript, WaysRoundObstaclesStopAtTheirCorners) {
+  const Exported all = exported("  - plan: {pos: [-0.2, -0.45, 0.3], euler: [180deg, 0, 0]}\n");
+  ASSERT_TRUE(all.text.has_value()) << all.text.error().what;
+  const std::vector<JointVec>& corners = all.plan.moves.back().corners;
+  const UrScript script = all.script();
+  std::vector<testing::UrStatement> moves;
+  for (const testing::UrStatement& statement : script.statements) {
+    if (statement.word == "movej") moves.push_back(statement);
+  }
+  ASSERT_EQ(moves.size(), corners.size());  // the first goes to where the program begins
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      EXPECT_NEAR(moves[i].lists[0][k], corners[i][static_cast<Eigen::Index>(k)], 1e-6) << i;
+    }
+  }
+}
+
 TEST(Urscript, TheCheckSeesEveryNumberThatIsWrong) {
   const Exported all = exported(
       "  - movej: {pos: [0.2, -0.45, 0.4], euler: [180deg, 0, 0]}\n"

@@ -40,6 +40,8 @@ class Show {
   void set_balls(bool on) { trail_.set_balls(on); }
   /// The way of the tool as it is planned, dashed.
   void add_line(std::span<const Pose> X_WT);
+  /// More that is drawn all the time.
+  void add(const Overlay& overlay) { append(planned_, overlay); }
   /// A green ball at `p_W` [m], in the place of the one before, and a new trail: another run to
   /// another goal begins, which may set the clock back.
   void begin_goal(const Sim& sim, const Eigen::Vector3d& p_W);
