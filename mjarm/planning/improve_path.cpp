@@ -39,7 +39,8 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
   round.samples = kSamplesOfRound;
   settle(checker, round, path_length(best.q), best);
   double cost = path_length(best.q);
-  for (int k = 0; timed ? !problem->deadline.passed() : k < options.rounds; ++k) {
+  const double least = detail::distance(start, problem->goals.front()) * (1 + 1e-12);
+  for (int k = 0; cost > least && (timed ? !problem->deadline.passed() : k < options.rounds); ++k) {
     ++round.seed;
     problem->most_cost = kShare * cost;
     Result<RawPath, PlanFailure> found = detail::rrt_connect(*problem, round);

@@ -216,6 +216,20 @@ TEST(PlanPath, RoundsNeverLengthenAndTheBestWayIsNearlyFound) {
   EXPECT_LT(before, first);
 }
 
+TEST(PlanPath, RoundsLookBeyondAGoalThatIsStraightAhead) {
+  // The far goal can be reached straight; the near one, round a post, is still nearer.
+  Obstacles world = post();
+  world.solids.front().X_WO.p.x() = 0.9;
+  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), world);
+  const std::array<double, 2> start{0.35, 0};
+  const std::vector<double> goals{-0.35, 0, 2.9, 2.79};
+  ASSERT_EQ(check_edge(checker, start, {goals.data(), 2}).verdict, EdgeVerdict::hit);
+  PlanOptions options;
+  EXPECT_EQ(plan_path(checker, start, goals, options).value().goal, 1);
+  options.rounds = 20;
+  EXPECT_EQ(plan_path(checker, start, goals, options).value().goal, 0);
+}
+
 TEST(PlanPath, ATimeBudgetIsKept) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
   PlanOptions options;

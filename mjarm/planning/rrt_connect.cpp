@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -13,10 +14,10 @@ namespace {
 constexpr int kMostSamples = 100'000;  // where nothing else is said
 constexpr double kBeside = 0.5;        // share of samples that are drawn beside a node
 constexpr int kEvenOnly = 8;           // samples before that begins
-constexpr double kBlocked = 1.2;     // a node looks so much farther (squared) after a blocked way,
-constexpr double kUnmet = 1.1;       // and after one towards the other tree
-constexpr double kFreePart = 0.5;    // of what lies before a hit is tried once more
-constexpr double kLeastPart = 0.3;   // [rad or m, L2] if it is as long as this
+constexpr double kBlocked = 1.2;    // a node looks so much farther (squared) after a blocked way,
+constexpr double kUnmet = 1.1;      // and after one towards the other tree
+constexpr double kFreePart = 0.5;   // of what lies before a hit is tried once more
+constexpr double kLeastPart = 0.3;  // [rad or m, L2] if it is as long as this
 constexpr int kCoarse = 60;
 constexpr double kLeastPartFirst = 0.6;
 constexpr double kSamePlace = 1e-9;  // [rad or m, L2]
@@ -40,8 +41,8 @@ class Connector {
   Result<RawPath, PlanFailure> run() {
     from_start_.add(problem_.start, -1, 0);
     for (const std::span<const double> goal : problem_.goals) from_goals_.add(goal, -1, 0);
-    for (int g = 0; g < from_goals_.size(); ++g) {
-      if (!(distance(problem_.start, from_goals_.q(g)) < problem_.most_cost)) continue;
+    // Once there is a path, the straight ways are known.
+    for (int g = 0; g < from_goals_.size() && std::isinf(problem_.most_cost); ++g) {
       if (prover_.is_free(problem_.start, from_goals_.q(g))) return join(0, g);
     }
     Tree* grown = &from_start_;
