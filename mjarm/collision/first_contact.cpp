@@ -10,7 +10,7 @@
 namespace mjarm {
 
 Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker, std::span<const double> q0,
-                                                  std::span<const double> q1, double step) {
+                                                 std::span<const double> q1, double step) {
   constexpr double kMostSteps = 1e8;
   // The ends are looked at first of all: a wrong size or number shows here.
   for (const std::span<const double> end : {q0, q1}) {

@@ -21,8 +21,8 @@ struct EdgeContact {
 /// @return nothing where every sample is free; bad_input for a wrong size, a number that is not
 /// finite, or a step that cuts the edge into more than 1e8 pieces.
 [[nodiscard]] Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker,
-                                                                std::span<const double> q0,
-                                                                std::span<const double> q1,
-                                                                double step = 0.005);
+                                                               std::span<const double> q0,
+                                                               std::span<const double> q1,
+                                                               double step = 0.005);
 
 }  // namespace mjarm
