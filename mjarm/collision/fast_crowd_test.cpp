@@ -23,22 +23,30 @@ Obstacles crowded_world(Rng& rng, int solids, int clouds, int points) {
   return out;
 }
 
-TEST(FastCrowd, NeverFreeWhereRandomRobotsCollide) {
-  Rng rng(51);
+/// Random robots in the worlds that `make(rng, round)` makes, on every level of SIMD.
+template <class Make>
+void compare_in_worlds(std::uint64_t seed, int states, const Make& make) {
+  Rng rng(seed);
   Tally tally;
   const int worlds = testing::rounds(30, 3000);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
     SphereSet set = testing::random_spheres(arm, rng);
     set.pairs.resize(std::min<std::size_t>(set.pairs.size(), 1));
-    const int solids = round % 3 == 0 ? 0 : static_cast<int>(rng.below(300));
-    const int points = round % 3 == 1 ? 0 : 1 + static_cast<int>(rng.below(400));
-    const Obstacles world = crowded_world(rng, solids, static_cast<int>(rng.below(3)), points);
-    for (const SimdLevel level : kLevels) compare(arm, set, world, level, rng, 50, tally);
+    const Obstacles world = make(rng, round);
+    for (const SimdLevel level : kLevels) compare(arm, set, world, level, rng, states, tally);
     if (::testing::Test::HasFatalFailure()) return;
   }
   EXPECT_GT(tally.free, worlds * 10);
   EXPECT_GT(tally.blocked, worlds * 10);
+}
+
+TEST(FastCrowd, NeverFreeWhereRandomRobotsCollide) {
+  compare_in_worlds(51, 50, [](Rng& rng, int round) {
+    const int solids = round % 3 == 0 ? 0 : static_cast<int>(rng.below(300));
+    const int points = round % 3 == 1 ? 0 : 1 + static_cast<int>(rng.below(400));
+    return crowded_world(rng, solids, static_cast<int>(rng.below(3)), points);
+  });
 }
 
 Obstacles composite_world(Rng& rng, int count) {
@@ -48,19 +56,9 @@ Obstacles composite_world(Rng& rng, int count) {
 }
 
 TEST(FastCrowd, NeverFreeInMeshesPolytopesAndHeightFields) {
-  Rng rng(55);
-  Tally tally;
-  const int worlds = testing::rounds(30, 3000);
-  for (int round = 0; round < worlds; ++round) {
-    const Arm arm = testing::random_arm(1 + round % 9, rng);
-    SphereSet set = testing::random_spheres(arm, rng);
-    set.pairs.resize(std::min<std::size_t>(set.pairs.size(), 1));
-    const Obstacles world = composite_world(rng, 1 + static_cast<int>(rng.below(4)));
-    for (const SimdLevel level : kLevels) compare(arm, set, world, level, rng, 40, tally);
-    if (::testing::Test::HasFatalFailure()) return;
-  }
-  EXPECT_GT(tally.free, worlds * 10);
-  EXPECT_GT(tally.blocked, worlds * 10);
+  compare_in_worlds(55, 40, [](Rng& rng, int) {
+    return composite_world(rng, 1 + static_cast<int>(rng.below(4)));
+  });
 }
 
 /// Also for spheres that are small against the mesh, which is then a little thicker.

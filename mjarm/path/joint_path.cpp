@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/path.hpp"
 
 namespace mjarm {
@@ -16,11 +17,8 @@ double JointPath::max_step() const {
 }
 
 Result<JointPath> joint_line(std::span<const double> q0, std::span<const double> q1, int n) {
-  const auto finite = [](std::span<const double> q) {
-    return std::all_of(q.begin(), q.end(), [](double x) { return std::isfinite(x); });
-  };
   if (n < 2 || q0.empty() || q0.size() != q1.size() ||
-      q0.size() > static_cast<std::size_t>(kMaxDof) || !finite(q0) || !finite(q1)) {
+      q0.size() > static_cast<std::size_t>(kMaxDof) || !all_finite(q0) || !all_finite(q1)) {
     return fail(Errc::bad_input, text(msg::path_bad_call));
   }
   const JointVec from = joint_vec(q0), to = joint_vec(q1);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mjarm/core/finite.hpp"
 #include "mjarm/path/path_cause_internal.hpp"
 #include "mjarm/path/track_search_internal.hpp"
 
@@ -13,10 +14,6 @@ namespace mjarm {
 namespace {
 
 constexpr double kMostTilt = std::numbers::pi / 2;  // [rad]
-
-bool all_finite(std::span<const double> values) {
-  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-}
 
 bool is_sound(const IkSolver& ik, std::span<const Pose> poses, std::span<const double> s,
               std::span<const double> q_start, const PathOptions& options) {

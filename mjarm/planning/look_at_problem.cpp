@@ -1,14 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mjarm/core/finite.hpp"
 #include "mjarm/planning/search_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
-
-bool all_finite(std::span<const double> values) {
-  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-}
 
 /// The first joint outside of its limits; -1 where there is none.
 int outside_joint(const Arm& arm, std::span<const double> q) {
@@ -64,19 +61,19 @@ Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
   }
   if (!checker.is_free(start)) return hit(PlanErrc::start_hit, checker, start);
   SearchProblem out{checker, start, {}, {}};
-  std::vector<int> inside;
+  int first_inside = -1;
   for (std::size_t g = 0; g * dof < goals.size(); ++g) {
     const std::span<const double> goal = goals.subspan(g * dof, dof);
     if (outside_joint(arm, goal) >= 0) continue;
-    inside.push_back(static_cast<int>(g));
+    if (first_inside < 0) first_inside = static_cast<int>(g);
     if (checker.is_free(goal)) out.goal_index.push_back(static_cast<int>(g));
   }
-  if (inside.empty()) {
+  if (first_inside < 0) {
     const std::span<const double> goal = goals.first(dof);
     return outside(PlanErrc::goals_outside, goal, outside_joint(arm, goal));
   }
   if (out.goal_index.empty()) {
-    const auto g = static_cast<std::size_t>(inside.front());
+    const auto g = static_cast<std::size_t>(first_inside);
     return hit(PlanErrc::goals_hit, checker, goals.subspan(g * dof, dof));
   }
   const auto goal_of = [&](int g) { return goals.subspan(static_cast<std::size_t>(g) * dof, dof); };

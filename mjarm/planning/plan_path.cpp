@@ -1,7 +1,5 @@
 #include "mjarm/planning/plan_path.hpp"
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "mjarm/core/stopwatch.hpp"

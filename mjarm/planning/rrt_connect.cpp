@@ -17,10 +17,10 @@ constexpr int kEvenOnly = 8;           // samples before that begins
 constexpr double kBlocked = 1.2;    // a node looks so much farther (squared) after a blocked way,
 constexpr double kUnmet = 1.1;      // and after one towards the other tree
 constexpr double kFreePart = 0.5;   // of what lies before a hit is tried once more
-constexpr double kLeastPart = 0.3;  // [rad or m, L2] if it is as long as this
-constexpr int kCoarse = 60;
-constexpr double kLeastPartFirst = 0.6;
-constexpr double kSamePlace = 1e-9;  // [rad or m, L2]
+constexpr double kLeastPart = 0.3;  // [rad or m, L2] if it is as long as this,
+constexpr double kLeastPartFirst = 0.6;  // or as this at first: easy ways need no short parts,
+constexpr int kCoarse = 60;              // for so many samples
+constexpr double kSamePlace = 1e-9;      // [rad or m, L2]
 
 /// RRT-Connect (J. J. Kuffner and S. M. LaValle, ICRA 2000), with three changes: every edge is
 /// proved; half of the samples are drawn beside nodes, which gets out of narrow places (as D. Hsu,

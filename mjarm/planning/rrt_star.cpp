@@ -91,12 +91,13 @@ class Rewirer {
     path_.goal = problem_.goal_index[goal];
   }
 
-  /// Fills near_ with the nodes within the radius, cheapest way to `q` first.
+  /// Fills near_ with the nodes within the radius, cheapest way to `q` first. The constant in the
+  /// radius is as if what is searched were a cube as wide as the best way is long.
   void find_near(std::span<const double> q) {
     near_.clear();
     const double n = tree_.size();
     const double radius = std::min(
-        options_.range, kNeighbourhood * unit_radius() *
+        options_.range, kNeighbourhood * problem_.most_cost *
                             std::pow(std::log(n + 1) / n, 1.0 / static_cast<double>(dof_)));
     for (int node = 0; node < tree_.size(); ++node) {
       const double length = distance(tree_.q(node), q);
@@ -113,10 +114,6 @@ class Rewirer {
     });
     near_.resize(std::min(near_.size(), kMostNear));
   }
-
-  /// [rad or m] of the constant in the radius: as if what is searched were a cube round the best
-  /// way.
-  double unit_radius() const { return problem_.most_cost; }
 
   /// A new node with the cheapest parent that a proved edge leads from, or -1.
   int attach(std::span<const double> q) {

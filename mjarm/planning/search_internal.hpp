@@ -10,7 +10,7 @@
 
 namespace mjarm::detail {
 
-/// Says when a search has to end. Asks the clock only now and then.
+/// Says when a search has to end; asks the clock each time, if there is an end at all.
 class Deadline {
  public:
   Deadline() = default;

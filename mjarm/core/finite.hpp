@@ -1,0 +1,14 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace mjarm {
+
+/// False where one is infinite or no number.
+[[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace mjarm
