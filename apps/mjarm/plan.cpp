@@ -12,6 +12,7 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/options.hpp"
 #include "apps/mjarm/plan/plan_answer.hpp"
+#include "apps/mjarm/plan/plan_robot.hpp"
 #include "apps/mjarm/plan/problem_file.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
@@ -31,6 +32,7 @@ constexpr int kMostSamples = 10'000'000;
 struct Options {
   BatchOptions batch;
   std::string planner = "rrtc", seed = "1", threads = "1", samples = "100000", budget, problem;
+  RobotRequest request;
   bool no_timing = false;
 };
 
@@ -110,9 +112,14 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
 }
 
 Result<int> run(const Options& options) {
-  if (options.batch.in.empty()) return fail(Errc::usage, text(msg::plan_need_file));
+  if (options.batch.in.empty() != is_given(options.request)) {
+    return fail(Errc::usage, text(msg::app_need_one_of, "--in", "--robot"));
+  }
   const Result<PlanOptions> plan = read_options(options);
   if (!plan) return fail(plan.error());
+  if (is_given(options.request)) {
+    return plan_for_robot(options.request, *plan, options.batch.out, !options.no_timing);
+  }
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   Result<ProblemFile> file = read_problem_file(options.batch.in);
@@ -127,6 +134,7 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "--in", options->batch.in, msg::plan_option_in, "FILE");
   add_option(app, "--out", options->batch.out, msg::app_option_out, "FILE");
+  add_robot_request(app, options->request);
   add_option(app, "--problem", options->problem, msg::plan_option_problem, "ID");
   add_option(app, "--planner", options->planner, msg::plan_option_planner, "NAME");
   add_option(app, "--time-budget", options->budget, msg::plan_option_budget, "S");

@@ -14,12 +14,12 @@ constexpr double kPromise = 1.15;  // and the path is not longer than the best o
 constexpr double kProofShare = 0.93;  // of the time; the rest is for the last cuts and the proof
 
 /// Shortens a path as long as that pays and it may become shorter than `cost`.
-void settle(const FastChecker& checker, PlanOptions options, double cost, RawPath& path) {
+void settle(const detail::SearchProblem& problem, PlanOptions options, double cost, RawPath& path) {
   double length = path_length(path.q);
   for (int k = 0; k < kTurns; ++k) {
     const double before = length;
     options.seed += 1000003;
-    detail::shorten(checker, options, kCuts, path);
+    detail::shorten(problem.checker, problem.tilt ? &*problem.tilt : nullptr, options, kCuts, path);
     length = path_length(path.q);
     if (length > kPromise * cost || length > (1 - kPays) * before) return;
   }
@@ -30,14 +30,14 @@ void settle(const FastChecker& checker, PlanOptions options, double cost, RawPat
 RawPath improve_path(const FastChecker& checker, std::span<const double> start,
                      std::span<const double> goals, RawPath best, const PlanOptions& options,
                      double left_us) {
-  auto problem = detail::look_at_problem(checker, start, goals);
+  auto problem = detail::look_at_problem(checker, start, goals, options);
   if (!problem) return best;
   const bool timed = options.time_budget > 0;
   if (timed && left_us <= 0) return best;
   if (timed) problem->deadline = detail::Deadline(kProofShare * left_us);
   PlanOptions round = options;
   round.samples = kSamplesOfRound;
-  settle(checker, round, path_length(best.q), best);
+  settle(*problem, round, path_length(best.q), best);
   double cost = path_length(best.q);
   const double least = detail::distance(start, problem->goals.front()) * (1 + 1e-12);
   for (int k = 0; cost > least && (timed ? !problem->deadline.passed() : k < options.rounds); ++k) {
@@ -45,7 +45,7 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
     problem->most_cost = kShare * cost;
     Result<RawPath, PlanFailure> found = detail::rrt_connect(*problem, round);
     if (!found) continue;
-    settle(checker, round, cost, *found);
+    settle(*problem, round, cost, *found);
     const double length = path_length(found->q);
     if (!(length < cost)) continue;
     best = std::move(*found);

@@ -39,17 +39,28 @@ tl::unexpected<PlanFailure> hit(PlanErrc reason, const FastChecker& checker,
   return tl::unexpected(failure);
 }
 
+tl::unexpected<PlanFailure> tilted(PlanErrc reason, const TiltLimit& limit, const Arm& arm,
+                                   std::span<const double> q) {
+  PlanFailure failure;
+  failure.reason = reason;
+  failure.value = tilt(limit, arm, q);
+  failure.limit = limit.most;
+  return tl::unexpected(failure);
+}
+
 }  // namespace
 
 Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
                                                    std::span<const double> start,
-                                                   std::span<const double> goals) {
+                                                   std::span<const double> goals,
+                                                   const PlanOptions& options) {
   const Arm& arm = checker.robot().arm();
   const auto dof = static_cast<std::size_t>(arm.dof());
   if (start.size() != dof || goals.empty() || goals.size() % dof != 0 || !all_finite(start) ||
       !all_finite(goals)) {
     return no_path(PlanErrc::bad_input);
   }
+  if (options.tilt && !is_sound(*options.tilt)) return no_path(PlanErrc::bad_tilt);
   if (checker.fixed_overlap()) {
     PlanFailure failure;
     failure.reason = PlanErrc::base_hit;
@@ -60,23 +71,28 @@ Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
     return outside(PlanErrc::start_outside, start, k);
   }
   if (!checker.is_free(start)) return hit(PlanErrc::start_hit, checker, start);
-  SearchProblem out{checker, start, {}, {}};
-  int first_inside = -1;
+  SearchProblem out{checker, start, {}, {}, TiltKeeper::make(options.tilt, arm)};
+  if (out.tilt && !out.tilt->keeps(start)) {
+    return tilted(PlanErrc::start_tilted, *options.tilt, arm, start);
+  }
+  int first_inside = -1, first_free = -1;
   for (std::size_t g = 0; g * dof < goals.size(); ++g) {
     const std::span<const double> goal = goals.subspan(g * dof, dof);
     if (outside_joint(arm, goal) >= 0) continue;
     if (first_inside < 0) first_inside = static_cast<int>(g);
-    if (checker.is_free(goal)) out.goal_index.push_back(static_cast<int>(g));
+    if (!checker.is_free(goal)) continue;
+    if (first_free < 0) first_free = static_cast<int>(g);
+    if (!out.tilt || out.tilt->keeps(goal)) out.goal_index.push_back(static_cast<int>(g));
   }
   if (first_inside < 0) {
     const std::span<const double> goal = goals.first(dof);
     return outside(PlanErrc::goals_outside, goal, outside_joint(arm, goal));
   }
-  if (out.goal_index.empty()) {
-    const auto g = static_cast<std::size_t>(first_inside);
-    return hit(PlanErrc::goals_hit, checker, goals.subspan(g * dof, dof));
-  }
   const auto goal_of = [&](int g) { return goals.subspan(static_cast<std::size_t>(g) * dof, dof); };
+  if (first_free < 0) return hit(PlanErrc::goals_hit, checker, goal_of(first_inside));
+  if (out.goal_index.empty()) {
+    return tilted(PlanErrc::goals_tilted, *options.tilt, arm, goal_of(first_free));
+  }
   std::stable_sort(out.goal_index.begin(), out.goal_index.end(), [&](int a, int b) {
     return distance(start, goal_of(a)) < distance(start, goal_of(b));
   });

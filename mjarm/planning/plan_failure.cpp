@@ -51,6 +51,12 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return overlap(msg::planning_start_hit, failure.pair, robot, obstacles);
     case PlanErrc::goals_hit:
       return overlap(msg::planning_goals_hit, failure.pair, robot, obstacles);
+    case PlanErrc::bad_tilt:
+      return text(msg::planning_bad_tilt, kLeastTilt);
+    case PlanErrc::start_tilted:
+      return text(msg::planning_start_tilted, failure.value, failure.limit);
+    case PlanErrc::goals_tilted:
+      return text(msg::planning_goals_tilted, failure.value, failure.limit);
     case PlanErrc::budget_spent:
       return text(msg::planning_budget, failure.samples, failure.nearest);
     case PlanErrc::unproved:

@@ -1,5 +1,6 @@
 #include "mjarm/planning/plan_path.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mjarm/core/stopwatch.hpp"
@@ -20,6 +21,17 @@ bool prove(const FastChecker& checker, std::span<const JointVec> q, double resol
   return true;
 }
 
+/// The largest tilt on all edges; false where one is not proved to keep the limit.
+bool prove(const detail::TiltKeeper& tilt, std::span<const JointVec> q, double& largest) {
+  largest = 0;
+  for (std::size_t i = 1; i < q.size(); ++i) {
+    const auto edge = tilt.look(view(q[i - 1]), view(q[i]));
+    if (!edge.kept) return false;
+    largest = std::max(largest, edge.largest);
+  }
+  return true;
+}
+
 }  // namespace
 
 double path_length(std::span<const JointVec> q) noexcept {
@@ -30,7 +42,7 @@ double path_length(std::span<const JointVec> q) noexcept {
 
 Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<const double> start,
                                        std::span<const double> goals, const PlanOptions& options) {
-  const auto problem = detail::look_at_problem(checker, start, goals);
+  const auto problem = detail::look_at_problem(checker, start, goals, options);
   if (!problem) return tl::unexpected(problem.error());
   if (options.planner == Planner::rrt_star) return detail::rrt_star(*problem, options);
   return detail::rrt_connect(*problem, options);
@@ -41,11 +53,13 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
   PlannedPath out;
   out.goal = path.goal;
   std::vector<JointVec> found = path.q;
-  detail::shorten(checker, options, options.shortcuts, path);
+  const auto tilt = detail::TiltKeeper::make(options.tilt, checker.robot().arm());
+  detail::shorten(checker, tilt ? &*tilt : nullptr, options, options.shortcuts, path);
   // Parts of proved edges are free, but the proof of a part is another one and may need more.
   for (std::vector<JointVec>* q : {&path.q, &found}) {
     for (const double share : {1.0, 0x1p-3, 0x1p-6}) {
       if (!prove(checker, *q, share * options.resolution, out.proof)) continue;
+      if (tilt && !prove(*tilt, *q, out.tilt)) continue;
       out.q = std::move(*q);
       out.cost = path_length(out.q);
       out.counts = path.counts;

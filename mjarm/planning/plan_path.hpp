@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm {
 
@@ -32,15 +34,21 @@ struct PlanOptions {
   int rounds = 0;
   /// [s] > 0: as many rounds as there is time for. What is found then depends on the machine.
   double time_budget = 0;
+  /// Keeps the tool within a cone, proved for every edge to 1e-8 of the limit. Paths have many
+  /// corners then.
+  std::optional<TiltLimit> tilt = {};
 };
 
 enum class PlanErrc {
   bad_input,      ///< no goal, a wrong size, a number that is not finite
+  bad_tilt,       ///< PlanOptions::tilt is out of range
   base_hit,       ///< a link at rest overlaps an obstacle
   start_outside,  ///< the start is outside of the joint limits
   start_hit,      ///< the start is in collision
   goals_outside,  ///< every goal is outside of the joint limits
   goals_hit,      ///< no goal within the limits is free of collisions
+  start_tilted,   ///< the tool leans too far at the start
+  goals_tilted,   ///< the tool leans too far at every goal that is free of collisions
   budget_spent,   ///< PlanOptions::samples did not do
   unproved,       ///< a path was found, but an edge of it could not be proved (never seen)
 };
@@ -50,7 +58,8 @@ struct PlanFailure {
   PlanErrc reason = PlanErrc::bad_input;
   SphereClearance pair;  ///< what overlaps: start_hit, goals_hit (of the first such goal), base_hit
   int joint = -1;        ///< the first outside of its limits: start_outside, goals_outside
-  double value = 0;      ///< [rad or m] where that joint is
+  double value = 0;      ///< [rad or m] where that joint is; start_tilted, goals_tilted: the tilt
+  double limit = 0;      ///< [rad] start_tilted, goals_tilted: the largest that is allowed
   double nearest = 0;    ///< [rad or m, L2] budget_spent: how near the trees came to each other
   int samples = 0;       ///< drawn
 };
@@ -75,6 +84,7 @@ struct PlannedPath {
   int goal = 0;                        ///< index of the goal reached
   double cost = 0;                     ///< [rad or m] sum of the L2 lengths of the edges
   std::vector<EdgeCertificate> proof;  ///< one an edge
+  double tilt = 0;                     ///< [rad] with a limit: the tool leans by no more anywhere
   PlanCounts counts;
 };
 

@@ -32,7 +32,9 @@ class Connector {
       : problem_(problem),
         options_(options),
         dof_(problem.start.size()),
-        prover_(problem.checker, options, path_.counts),
+        tilt_(problem.tilt ? &*problem.tilt : nullptr),
+        range_(tilt_ != nullptr ? std::min(options.range, kTiltRange) : options.range),
+        prover_(problem.checker, tilt_, options, path_.counts),
         rng_(options.seed),
         box_(problem, rng_),
         from_start_(dof_),
@@ -80,9 +82,26 @@ class Connector {
       box_.next(q);
       near = tree.nearest(q);
     }
+    if (tilt_ != nullptr) {
+      if (!tilt_->project(q)) return -1;
+      near.distance = distance(tree.q(near.node), q);
+    }
     if (near.distance < kSamePlace) return -1;
     if (least_cost_through(problem_, q) >= problem_.most_cost) return -1;
-    return step(tree, near, q, kBlocked).node;
+    return advance(tree, near, q);
+  }
+
+  /// Goes towards `q`, as far as PlanOptions::range: in one step, within a limit of the tilt in
+  /// several. The last new node, or -1.
+  int advance(Tree& tree, Tree::Near near, std::span<const double> q) {
+    int last = -1;
+    for (double left = options_.range; left > 0; left -= range_) {
+      const Step made = step(tree, near, q, kBlocked);
+      if (made.node >= 0) last = made.node;
+      if (!made.whole || made.arrived) break;
+      near = {made.node, distance(tree.q(made.node), q)};
+    }
+    return last;
   }
 
   /// Grows `tree` to `goal`, a node of the other tree; the node there, or -1.
@@ -94,7 +113,7 @@ class Connector {
       const Step made = step(tree, near, goal, kUnmet);
       if (made.arrived) return made.node;
       if (!made.whole) return -1;
-      near = {made.node, near.distance - options_.range};
+      near = {made.node, distance(tree.q(made.node), goal)};
     }
   }
 
@@ -103,19 +122,25 @@ class Connector {
     bool whole = false;    ///< as far as it was to go
     bool arrived = false;  ///< at its end
   };
-  /// Goes from a node towards `to`, at most PlanOptions::range far; where that is blocked, a part
-  /// of the way.
+  /// Goes from a node towards `to`, at most range_ far; where that is blocked, a part of the way.
   Step step(Tree& tree, const Tree::Near& near, std::span<const double> to, double push) {
-    const bool arrives = near.distance <= options_.range;
-    const double length = std::min(near.distance, options_.range);
+    const bool arrives = near.distance <= range_;
+    double length = std::min(near.distance, range_);
     Row row;
     const std::span<double> end(row.data(), dof_);
     std::copy(to.begin(), to.end(), end.begin());  // to the last bit: the trees meet there
-    if (!arrives) between(tree.q(near.node), to, length / near.distance, end);
+    if (!arrives && tilt_ != nullptr) {
+      const auto made = tilt_->step(tree.q(near.node), to, range_, end);
+      if (!made) return {};
+      length = *made;
+    } else if (!arrives) {
+      between(tree.q(near.node), to, length / near.distance, end);
+    }
     const EdgeResult found = prover_.look(tree.q(near.node), end);
     if (found.verdict == EdgeVerdict::free)
       return {tree.add(end, near.node, length), true, arrives};
     tree.push_away(near.node, push);
+    if (tilt_ != nullptr) return {};  // steps are short already
     const double part = kFreePart * found.t;
     if (part * length < (path_.counts.samples < kCoarse ? kLeastPartFirst : kLeastPart)) return {};
     between(tree.q(near.node), to, part * length / near.distance, end);
@@ -140,6 +165,8 @@ class Connector {
   const PlanOptions& options_;
   std::size_t dof_;
   RawPath path_;
+  const TiltKeeper* tilt_;  // null: no limit
+  double range_;            // [rad or m, L2] of one edge
   EdgeProver prover_;
   Rng rng_;
   WideningBox box_;

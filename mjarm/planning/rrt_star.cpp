@@ -25,7 +25,8 @@ class Rewirer {
         options_(options),
         dof_(problem.start.size()),
         path_(std::move(path)),
-        prover_(problem.checker, options, path_.counts),
+        range_(problem.tilt ? std::min(options.range, kTiltRange) : options.range),
+        prover_(problem.checker, problem.tilt ? &*problem.tilt : nullptr, options, path_.counts),
         rng_(options.seed, 2),
         box_(problem, rng_),
         tree_(dof_) {
@@ -70,11 +71,12 @@ class Rewirer {
     }
     const Tree::Near nearest = tree_.nearest(q);
     if (nearest.distance == 0) return;
-    const bool whole = nearest.distance <= options_.range;
+    const bool whole = nearest.distance <= range_;
     if (!whole) {
       const Row to = row;
-      between(tree_.q(nearest.node), {to.data(), dof_}, options_.range / nearest.distance, q);
+      between(tree_.q(nearest.node), {to.data(), dof_}, range_ / nearest.distance, q);
     }
+    if (problem_.tilt && !problem_.tilt->project(q)) return;
     if (least_cost_through(problem_, q) >= problem_.most_cost) return;
     find_near(q);
     const int node = attach(q);
@@ -96,9 +98,9 @@ class Rewirer {
   void find_near(std::span<const double> q) {
     near_.clear();
     const double n = tree_.size();
-    const double radius = std::min(
-        options_.range, kNeighbourhood * problem_.most_cost *
-                            std::pow(std::log(n + 1) / n, 1.0 / static_cast<double>(dof_)));
+    const double radius =
+        std::min(range_, kNeighbourhood * problem_.most_cost *
+                             std::pow(std::log(n + 1) / n, 1.0 / static_cast<double>(dof_)));
     for (int node = 0; node < tree_.size(); ++node) {
       const double length = distance(tree_.q(node), q);
       if (length <= std::max(radius, 1e-9))
@@ -136,6 +138,7 @@ class Rewirer {
   const PlanOptions& options_;
   std::size_t dof_;
   RawPath path_;
+  double range_;
   EdgeProver prover_;
   Rng rng_;
   WideningBox box_;

@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/planning/plan_path.hpp"
+#include "mjarm/planning/tilt_keeper_internal.hpp"
 
 namespace mjarm::detail {
 
@@ -28,6 +30,7 @@ struct SearchProblem {
   std::span<const double> start;
   std::vector<std::span<const double>> goals;  ///< free ones, nearest first
   std::vector<int> goal_index;                 ///< of each in what the user gave
+  std::optional<TiltKeeper> tilt = {};         ///< of PlanOptions::tilt
   /// [rad or m] only shorter paths count.
   double most_cost = std::numeric_limits<double>::infinity();
   Deadline deadline{};
@@ -36,11 +39,17 @@ struct SearchProblem {
 /// Proves edges and counts them.
 class EdgeProver {
  public:
-  EdgeProver(const FastChecker& checker, const PlanOptions& options, PlanCounts& counts)
-      : checker_(checker), edge_{options.resolution}, counts_(counts) {}
+  /// @param tilt  may be null.
+  EdgeProver(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+             PlanCounts& counts)
+      : checker_(checker), tilt_(tilt), edge_{options.resolution}, counts_(counts) {}
 
   EdgeResult look(std::span<const double> a, std::span<const double> b) {
     ++counts_.edges;
+    if (tilt_ != nullptr) {
+      const TiltKeeper::EdgeTilt found = tilt_->look(a, b);
+      if (!found.kept) return {EdgeVerdict::undecided, found.t};
+    }
     return check_edge(checker_, a, b, edge_);
   }
   bool is_free(std::span<const double> a, std::span<const double> b) {
@@ -49,6 +58,7 @@ class EdgeProver {
 
  private:
   const FastChecker& checker_;
+  const TiltKeeper* tilt_;
   EdgeOptions edge_;
   PlanCounts& counts_;
 };
@@ -75,11 +85,14 @@ inline void between(std::span<const double> a, std::span<const double> b, double
                                                     const PlanOptions& options);
 
 /// Shortens `path` in place by so many attempts to cut corners; its edges stay proved.
-void shorten(const FastChecker& checker, const PlanOptions& options, int attempts, RawPath& path);
+/// @param tilt  may be null.
+void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+             int attempts, RawPath& path);
 
-/// Looks at the start and at every goal.
+/// Looks at the options, the start and every goal.
 [[nodiscard]] Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
                                                                  std::span<const double> start,
-                                                                 std::span<const double> goals);
+                                                                 std::span<const double> goals,
+                                                                 const PlanOptions& options);
 
 }  // namespace mjarm::detail

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
+#include "mjarm/core/rng.hpp"
 #include "mjarm/planning/search_internal.hpp"
 
 namespace mjarm::detail {
@@ -10,19 +13,27 @@ constexpr int kMostFailed = 30;      // cuts in a row that did not work: enough
 constexpr int kPulls = 1;            // rounds over all corners at most
 constexpr double kLeastPull = 0.4;   // share of the way to the straight line
 constexpr double kLeastGain = 1e-3;  // share of the length that a cut must save
+constexpr int kTiltCuts = 8;         // times as many attempts, and
+constexpr int kTiltPulls = 12;       // so many rounds, where a limit of the tilt needs many corners
 
 class Shortener {
  public:
-  Shortener(const FastChecker& checker, const PlanOptions& options, RawPath& path)
-      : q_(path.q), prover_(checker, options, path.counts), rng_(options.seed, 1) {}
+  Shortener(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+            RawPath& path)
+      : q_(path.q),
+        tilt_(tilt),
+        prover_(checker, tilt, options, path.counts),
+        rng_(options.seed, 1) {}
 
   void run(int attempts) {
     skip_corners();
     int failed = 0;
+    if (tilt_ != nullptr) attempts *= kTiltCuts;
     for (int k = 0; k < attempts && q_.size() > 2 && failed < kMostFailed; ++k) {
       failed = cut() ? 0 : failed + 1;
     }
-    for (int round = 0; round < kPulls && pull_corners(); ++round) continue;
+    const int pulls = tilt_ != nullptr ? kTiltPulls : kPulls;
+    for (int round = 0; round < pulls && pull_corners(); ++round) continue;
   }
 
  private:
@@ -52,11 +63,34 @@ class Shortener {
     if (i == j) return false;
     const JointVec from = place(i, a - (i > 0 ? ends[i - 1] : 0));
     const JointVec to = place(j, b - (j > 0 ? ends[j - 1] : 0));
-    if ((to - from).norm() > (1 - kLeastGain) * (b - a)) return false;
-    if (!prover_.is_free(view(from), view(to))) return false;
+    const double most = (1 - kLeastGain) * (b - a);
+    if ((to - from).norm() > most) return false;
+    std::vector<JointVec> way{from, to};
+    if (!prover_.is_free(view(from), view(to)) && !walk(most, way)) return false;
     // The halves of a proved edge are proved again at the end.
     q_.erase(at(i + 1), at(j + 1));
-    q_.insert(at(i + 1), {from, to});
+    q_.insert(at(i + 1), way.begin(), way.end());
+    return true;
+  }
+
+  /// Within a limit of the tilt: fills in short steps between both ends of `way`, which may become
+  /// as long as `most`.
+  bool walk(double most, std::vector<JointVec>& way) {
+    if (tilt_ == nullptr) return false;
+    const JointVec to = way.back();
+    way.pop_back();
+    double left = (to - way.back()).norm();
+    for (; left > kTiltRange; left = (to - way.back()).norm()) {
+      JointVec next(to.size());
+      const std::span<double> out(next.data(), static_cast<std::size_t>(next.size()));
+      const auto length = tilt_->step(view(way.back()), view(to), kTiltRange, out);
+      if (!length || *length + left > most) return false;
+      most -= *length;
+      if (!prover_.is_free(view(way.back()), view(next))) return false;
+      way.push_back(next);
+    }
+    if (left > most || !prover_.is_free(view(way.back()), view(to))) return false;
+    way.push_back(to);
     return true;
   }
 
@@ -72,7 +106,8 @@ class Shortener {
     const double to_a = (q_[i] - a).norm(), to_b = (q_[i] - b).norm();
     const JointVec straight = a + to_a / (to_a + to_b) * (b - a);
     for (double share = 1; share > kLeastPull; share *= 0.5) {
-      const JointVec moved = q_[i] + share * (straight - q_[i]);
+      JointVec moved = q_[i] + share * (straight - q_[i]);
+      if (tilt_ != nullptr && !put_back(a, b, to_a + to_b, moved)) continue;
       if (!prover_.is_free(view(a), view(moved)) || !prover_.is_free(view(moved), view(b))) {
         continue;
       }
@@ -80,6 +115,12 @@ class Shortener {
       return true;
     }
     return false;
+  }
+
+  /// Puts a corner back within the limit of the tilt, if the way over it is still shorter.
+  bool put_back(const JointVec& a, const JointVec& b, double length, JointVec& corner) const {
+    if (!tilt_->project({corner.data(), static_cast<std::size_t>(corner.size())})) return false;
+    return (corner - a).norm() + (corner - b).norm() < (1 - kLeastGain) * length;
   }
 
   static std::size_t edge_at(std::span<const double> ends, double length) {
@@ -95,14 +136,16 @@ class Shortener {
   }
 
   std::vector<JointVec>& q_;
+  const TiltKeeper* tilt_;
   EdgeProver prover_;
   Rng rng_;
 };
 
 }  // namespace
 
-void shorten(const FastChecker& checker, const PlanOptions& options, int attempts, RawPath& path) {
-  if (path.q.size() > 2) Shortener(checker, options, path).run(attempts);
+void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+             int attempts, RawPath& path) {
+  if (path.q.size() > 2) Shortener(checker, tilt, options, path).run(attempts);
 }
 
 }  // namespace mjarm::detail

@@ -17,7 +17,7 @@ namespace {
 constexpr double kBounds[] = {0.012, 0.003};  // [m] of the spheres, coarse ones first
 constexpr double kWayStep = 5e-3;             // [rad or m]
 constexpr int kMostGoals = 64;                // answers to a pose
-constexpr PlanOptions kSearch{.samples = 20'000, .rounds = 16};
+const PlanOptions kSearch{.samples = 20'000, .rounds = 16};
 
 /// Whether finer spheres may do better.
 bool is_coarse(PlanErrc reason) {
@@ -37,6 +37,10 @@ const char* name_of(PlanErrc reason) {
     case PlanErrc::budget_spent:
     case PlanErrc::unproved:
       return "no_path";
+    case PlanErrc::start_tilted:
+    case PlanErrc::goals_tilted:
+      return "tilt";
+    case PlanErrc::bad_tilt:
     case PlanErrc::bad_input:
       break;
   }

@@ -35,11 +35,20 @@ void append_proof(std::string& out, const EdgeCertificate& proof, const FastRobo
   out += '}';
 }
 
+void append_tilt(std::string& out, const TiltLimit& limit, double largest) {
+  append_key(out, "tilt");
+  out += "{\"limit\":" + number(limit.most);
+  append_value(out, "largest", largest);
+  append_value(out, "tool", JointVec(limit.axis_T));
+  append_value(out, "world", JointVec(limit.axis_W));
+  out += '}';
+}
+
 }  // namespace
 
 PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
                           const PlanOptions& options) {
-  PlanAnswer out;
+  PlanAnswer out{.path = {}, .tilt = options.tilt};
   const Stopwatch watch;
   const Result<FastChecker> checker = FastChecker::make(robot, problem.obstacles);
   assert(checker);  // the obstacles were checked when they were read
@@ -72,6 +81,8 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
       append_proof(out, answer.path->proof[i], robot, obstacles);
     }
     out += ']';
+    if (answer.tilt) append_tilt(out, *answer.tilt, answer.path->tilt);
+    if (answer.spheres) append_value(out, "spheres", *answer.spheres);
   } else {
     out += "{\"ok\":false";
     append_key(out, "reason");

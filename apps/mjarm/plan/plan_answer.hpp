@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "apps/mjarm/plan/problem_file.hpp"
@@ -10,8 +11,10 @@ namespace mjarm::app {
 /// What came of one problem, and how long it took.
 struct PlanAnswer {
   Result<PlannedPath, PlanFailure> path;
-  double us = 0;           ///< [us] the world made ready and a path found
-  double simplify_us = 0;  ///< [us] the path shortened and proved
+  double us = 0;                       ///< [us] the world made ready and a path found
+  double simplify_us = 0;              ///< [us] the path shortened and proved
+  std::optional<TiltLimit> tilt = {};  ///< that the path keeps
+  std::optional<double> spheres = {};  ///< [m] bound of the cover, where the robot is a model
 };
 
 /// Solves one problem. Both times together cover everything, allocation included; with a time

@@ -1,0 +1,235 @@
+#include "apps/mjarm/plan/plan_robot.hpp"
+
+#include <array>
+#include <iterator>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "apps/mjarm/batch.hpp"
+#include "apps/mjarm/options.hpp"
+#include "apps/mjarm/orientation.hpp"
+#include "apps/mjarm/plan/plan_answer.hpp"
+#include "apps/mjarm/plan/robot_world.hpp"
+#include "apps/mjarm/usage.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/plan.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/core/units.hpp"
+#include "mjarm/planning/goal_region.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kWidestSpheres = 0.1;  // [m]
+constexpr double kNarrowestSpheres = 1e-4;
+
+/// What the tool is to reach.
+struct ToolGoal {
+  GoalRegion region;
+  IkTask task = IkTask::pose;
+};
+
+/// A request whose words were read.
+struct Way {
+  std::vector<double> start;
+  std::vector<double> goal;      ///< joint values, or
+  std::optional<ToolGoal> tool;  ///< a pose
+  std::vector<double> bounds;    ///< [m] of covers, to be tried one after the other
+};
+
+Result<double> angle_of(const char* option, const std::string& value) {
+  if (value.empty()) return 0.0;
+  const Result<double> angle = parse_quantity(value, Quantity::angle);
+  if (!angle) return fail(in_option(option, angle.error()));
+  return angle;
+}
+
+Result<IkTask> task_of(const std::string& word) {
+  constexpr IkTask kTasks[] = {IkTask::pose, IkTask::position, IkTask::axis};
+  if (word.empty()) return IkTask::pose;
+  const auto choice =
+      parse_choice("--task", word, std::vector<std::string>{"pose", "position", "axis"});
+  if (!choice) return fail(choice.error());
+  return kTasks[*choice];
+}
+
+Result<ToolGoal> read_tool_goal(const RobotRequest& request) {
+  ToolGoal out;
+  const auto pos = parse_list("--pos", request.pos, Quantity::length, 3);
+  if (!pos) return fail(pos.error());
+  const Result<IkTask> task = task_of(request.task);
+  if (!task) return fail(task.error());
+  out.task = *task;
+  GoalRegion& region = out.region;
+  region.X_WR.p = {(*pos)[0], (*pos)[1], (*pos)[2]};
+  if (out.task != IkTask::position || !(request.euler + request.quat).empty()) {
+    const Result<Eigen::Matrix3d> R = parse_rotation(request.euler, request.quat);
+    if (!R) return fail(R.error());
+    region.X_WR.R = *R;
+  }
+  if (!request.within.empty()) {
+    const auto half = parse_list("--within", request.within, Quantity::length, 3);
+    if (!half) return fail(half.error());
+    region.half = {(*half)[0], (*half)[1], (*half)[2]};
+  }
+  const Result<double> lean = angle_of("--lean", request.lean);
+  if (!lean) return fail(lean.error());
+  region.lean = *lean;
+  const Result<double> turn = angle_of("--turn", request.turn);
+  if (!turn) return fail(turn.error());
+  region.turn = *turn;
+  if (!is_sound(region)) return fail(Errc::usage, text(msg::plan_bad_region));
+  return out;
+}
+
+Result<std::vector<double>> read_bounds(const std::string& value) {
+  if (value.empty()) return std::vector<double>(std::begin(kCoverBounds), std::end(kCoverBounds));
+  const Result<double> bound = parse_quantity(value, Quantity::length);
+  if (!bound) return fail(in_option("--spheres", bound.error()));
+  if (!(*bound >= kNarrowestSpheres && *bound <= kWidestSpheres)) {
+    return fail(Errc::usage, text(msg::plan_bad_spheres, value));
+  }
+  return std::vector<double>{*bound};
+}
+
+/// What only makes sense with `--pos`.
+Result<void> no_tool_options(const RobotRequest& request) {
+  const std::pair<const char*, const std::string*> options[] = {
+      {"--pos", &request.pos},   {"--euler", &request.euler},   {"--quat", &request.quat},
+      {"--task", &request.task}, {"--within", &request.within}, {"--lean", &request.lean},
+      {"--turn", &request.turn}};
+  for (const auto& [name, value] : options) {
+    if (!value->empty()) return fail(Errc::usage, text(msg::app_exclusive_options, "--goal", name));
+  }
+  return {};
+}
+
+Result<Way> read_way(const RobotRequest& request, const Arm& arm) {
+  Way out;
+  out.start.assign(arm.home.begin(), arm.home.end());
+  if (!request.start.empty()) {
+    Result<std::vector<double>> start = parse_joints("--start", request.start, arm);
+    if (!start) return fail(std::move(start.error()));
+    out.start = std::move(*start);
+  }
+  if (request.goal.empty() && request.pos.empty()) {
+    return fail(Errc::usage, text(msg::app_need_one_of, "--goal", "--pos"));
+  }
+  if (!request.goal.empty()) {
+    if (Result<void> none = no_tool_options(request); !none) return fail(std::move(none.error()));
+    Result<std::vector<double>> goal = parse_joints("--goal", request.goal, arm);
+    if (!goal) return fail(std::move(goal.error()));
+    out.goal = std::move(*goal);
+  } else {
+    const Result<ToolGoal> tool = read_tool_goal(request);
+    if (!tool) return fail(tool.error());
+    out.tool = *tool;
+  }
+  Result<std::vector<double>> bounds = read_bounds(request.spheres);
+  if (!bounds) return fail(std::move(bounds.error()));
+  out.bounds = std::move(*bounds);
+  return out;
+}
+
+/// Puts the limit of the tilt into the options.
+Result<void> read_upright(const RobotRequest& request, const Arm& arm, const Way& way,
+                          PlanOptions& options) {
+  if (request.upright.empty()) return {};
+  const Result<double> most = angle_of("--keep-upright", request.upright);
+  if (!most) return fail(most.error());
+  options.tilt = keep_upright(arm, way.start, *most);
+  if (is_sound(*options.tilt)) return {};
+  return fail(Errc::usage, text(msg::plan_bad_upright, request.upright));
+}
+
+/// Rows of joint values; or why the pose has none.
+Result<std::vector<double>, std::string> goals_of(const Way& way, const Arm& arm,
+                                                  const FastChecker& checker, std::uint64_t seed) {
+  if (!way.tool) return way.goal;
+  const IkSolver ik(arm, {.rng_seed = seed, .task = way.tool->task});
+  const auto goals = goals_in(checker, ik, way.tool->region, way.start, {.seed = seed});
+  if (!goals) return tl::unexpected(describe(goals.error(), arm));
+  std::vector<double> rows;
+  for (const JointVec& q : *goals) rows.insert(rows.end(), q.begin(), q.end());
+  return rows;
+}
+
+/// Whether finer spheres may do better.
+bool is_coarse(PlanErrc reason) {
+  return reason == PlanErrc::start_hit || reason == PlanErrc::goals_hit ||
+         reason == PlanErrc::base_hit || reason == PlanErrc::budget_spent;
+}
+
+/// An answer as text, and why there is no path.
+struct Told {
+  std::string json;
+  std::optional<std::string> why;
+};
+
+Result<Told> answer(const Robot& robot, const Way& way, const PlanOptions& options, bool timing) {
+  Told out;
+  for (const double bound : way.bounds) {
+    Result<RobotWorld> world = cover_robot(robot, bound);
+    if (!world) return fail(std::move(world.error()));
+    const FastRobot& fast = world->checker.robot();
+    PlanProblem problem{.start = way.start, .obstacles = std::move(world->cover.scene)};
+    Result<std::vector<double>, std::string> goals =
+        goals_of(way, robot.arm, world->checker, options.seed);
+    if (!goals) {
+      std::string json = "{\"ok\":false,\"reason\":";
+      append_json_string(json, goals.error());
+      return Told{json + '}', goals.error()};
+    }
+    problem.goals = std::move(*goals);
+    PlanAnswer found = answer_problem(fast, problem, options);
+    found.spheres = world->cover.bound;
+    out = {};
+    append_answer(out.json, found, fast, problem.obstacles, timing);
+    if (found.path) return out;
+    out.why = describe(found.path.error(), fast, problem.obstacles);
+    if (!is_coarse(found.path.error().reason)) return out;
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_robot_request(CLI::App& app, RobotRequest& request) {
+  add_robot_options(app, request.robot);
+  add_option(app, "--start", request.start, msg::plan_option_start, "Q1,Q2,...");
+  add_option(app, "--goal", request.goal, msg::plan_option_goal, "Q1,Q2,...");
+  add_option(app, "--pos", request.pos, msg::plan_option_pos, "X,Y,Z");
+  add_option(app, "--euler", request.euler, msg::app_option_euler, "A,B,C");
+  add_option(app, "--quat", request.quat, msg::app_option_quat, "W,X,Y,Z");
+  add_option(app, "--task", request.task, msg::app_option_task, "TASK");
+  add_option(app, "--within", request.within, msg::plan_option_within, "X,Y,Z");
+  add_option(app, "--lean", request.lean, msg::plan_option_lean, "ANGLE");
+  add_option(app, "--turn", request.turn, msg::plan_option_turn, "ANGLE");
+  add_option(app, "--keep-upright", request.upright, msg::plan_option_upright, "ANGLE");
+  add_option(app, "--spheres", request.spheres, msg::plan_option_spheres, "M");
+}
+
+bool is_given(const RobotRequest& request) {
+  return !(request.robot.robot + request.start + request.goal + request.pos + request.upright)
+              .empty();
+}
+
+Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
+                           const std::string& out, bool timing) {
+  const Result<Robot> robot = load_robot(request.robot);
+  if (!robot) return fail(robot.error());
+  const Result<Way> way = read_way(request, robot->arm);
+  if (!way) return fail(way.error());
+  PlanOptions how = options;
+  if (Result<void> read = read_upright(request, robot->arm, *way, how); !read) {
+    return fail(std::move(read.error()));
+  }
+  const Result<Told> told = answer(*robot, *way, how, timing);
+  if (!told) return fail(told.error());
+  std::string json = "{";
+  append_json_string(json, robot->arm.name);
+  return finish_one(out, json + ':' + told->json + '}', told->why, msg::plan_no_path);
+}
+
+}  // namespace mjarm::app

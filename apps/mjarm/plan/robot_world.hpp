@@ -1,0 +1,23 @@
+#pragma once
+
+#include "apps/mjarm/robot.hpp"
+#include "mjarm/collision/cover.hpp"
+#include "mjarm/collision/fast_check.hpp"
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::app {
+
+/// A robot and what stands round it, covered with spheres and ready for the planner.
+struct RobotWorld {
+  ModelCover cover;
+  FastChecker checker;
+};
+
+/// [m] of the spheres where nothing else is asked for: coarse ones first.
+inline constexpr double kCoverBounds[] = {0.012, 0.003};
+
+/// Covers a robot; what its gripper can do counts.
+/// @param bound  [m] by which spheres may stick out, > 0.
+[[nodiscard]] Result<RobotWorld> cover_robot(const Robot& robot, double bound);
+
+}  // namespace mjarm::app
