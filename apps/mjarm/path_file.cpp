@@ -70,6 +70,23 @@ Result<void> read_certificates(const json& list, GivenPath& out) {
   return {};
 }
 
+Result<void> read_tilt(const json& entry, GivenPath& out) {
+  if (!entry.is_object()) return fail(Errc::bad_input, "tilt: " + text(msg::app_json_no_object));
+  GivenTilt tilt;
+  const Result<double> largest = number_at(entry, "largest");
+  if (!largest) return fail(largest.error().code, "tilt: " + largest.error().what);
+  tilt.largest = *largest;
+  const std::pair<const char*, std::vector<double>*> members[] = {{"tool", &tilt.tool},
+                                                                  {"world", &tilt.world}};
+  for (const auto& [key, target] : members) {
+    Result<std::vector<double>> axis = number_list(entry, key, 3);
+    if (!axis) return fail(axis.error().code, "tilt: " + axis.error().what);
+    *target = std::move(*axis);
+  }
+  out.tilt = std::move(tilt);
+  return {};
+}
+
 Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
   if (entry.is_array()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::verify_no_rows));
@@ -85,6 +102,14 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
     const Result<double> cost = number_at(entry, "cost");
     if (!cost) return fail(cost.error());
     out.cost = *cost;
+  }
+  if (entry.contains("spheres")) {
+    const Result<double> spheres = number_at(entry, "spheres");
+    if (!spheres) return fail(spheres.error());
+    out.spheres = *spheres;
+  }
+  if (const auto tilt = entry.find("tilt"); tilt != entry.end()) {
+    if (Result<void> read = read_tilt(*tilt, out); !read) return read;
   }
   const auto certificate = entry.find("certificate");
   return certificate == entry.end() ? Result<void>() : read_certificates(*certificate, out);

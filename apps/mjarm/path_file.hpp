@@ -16,12 +16,20 @@ struct GivenCertificate {
   std::vector<std::string> pair;  ///< link, and obstacle or link; empty: nothing near
 };
 
+/// What a file says of how the tool leans.
+struct GivenTilt {
+  double largest = 0;               ///< [rad]
+  std::vector<double> tool, world;  ///< (3,) directions of the tool and of the world
+};
+
 /// One path of a file.
 struct GivenPath {
   std::string id;
   std::vector<std::vector<double>> rows;  ///< corners, all of one size; none: no path is given
   std::optional<double> cost;             ///< [rad or m]
   std::optional<std::vector<GivenCertificate>> certificate;
+  std::optional<GivenTilt> tilt;
+  std::optional<double> spheres;  ///< [m] bound of the cover it was planned with
 };
 
 /// Reads paths as `mjarm plan` writes them, `{"ID":{"ok":true,"path":[[q],...],...},...}`, or bare,

@@ -15,6 +15,7 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/json_doc.hpp"
 #include "apps/mjarm/options.hpp"
+#include "apps/mjarm/plan/robot_world.hpp"
 #include "apps/mjarm/table.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "apps/mjarm/verify_path.hpp"
@@ -32,12 +33,14 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Options {
+  RobotOptions robot;
   std::string paths, in, step = "0.005", tol = "0", cylinders = "replaced", threads = "1";
   bool json = false;
 };
 
 /// A problem and the path that is given for it.
 struct Job {
+  const ProblemFile* file = nullptr;
   const PlanProblem* problem = nullptr;
   GivenPath given;
   Result<PathVerdict> verdict;
@@ -88,7 +91,7 @@ Result<std::vector<Job>> match(const ProblemFile& file, std::vector<GivenPath> p
   std::vector<std::string> ids;
   for (const PlanProblem& problem : file.problems) {
     ids.push_back(problem.id);
-    Job job{&problem, {}, PathVerdict{}};
+    Job job{&file, &problem, {}, PathVerdict{}};
     const auto found = by_id.find(problem.id);
     if (found != by_id.end()) {
       job.given = std::move(*found->second);
@@ -102,14 +105,55 @@ Result<std::vector<Job>> match(const ProblemFile& file, std::vector<GivenPath> p
               text(msg::verify_unknown_id, options.paths, id, options.in, did_you_mean(id, ids)));
 }
 
-Result<void> judge_all(const ProblemFile& file, std::vector<Job>& jobs, const VerifyRules& rules,
+/// The paths for the problems of a file, which is put into `files`.
+Result<std::vector<Job>> file_jobs(const Options& options, Cylinders cylinders,
+                                   std::vector<ProblemFile>& files) {
+  Result<ProblemFile> file = read_problem_file(options.in, cylinders);
+  if (!file) return fail(std::move(file.error()));
+  files.push_back(std::move(*file));
+  Result<std::vector<GivenPath>> paths =
+      read_path_file(options.paths, static_cast<std::size_t>(files[0].arm.dof()));
+  if (!paths) return fail(std::move(paths.error()));
+  return match(files[0], std::move(*paths), options);
+}
+
+/// The paths for a robot, each among the spheres that it names.
+Result<std::vector<Job>> robot_jobs(const Options& options, std::optional<Robot>& robot,
+                                    std::vector<ProblemFile>& files) {
+  Result<Robot> loaded = load_robot(options.robot);
+  if (!loaded) return fail(std::move(loaded.error()));
+  robot = std::move(*loaded);
+  Result<std::vector<GivenPath>> paths =
+      read_path_file(options.paths, static_cast<std::size_t>(robot->arm.dof()));
+  if (!paths) return fail(std::move(paths.error()));
+  std::map<double, std::vector<GivenPath>> by_bound;
+  for (GivenPath& path : *paths) {
+    by_bound[path.spheres.value_or(kCoverBounds[1])].push_back(std::move(path));
+  }
+  files.reserve(by_bound.size());  // jobs point to them
+  std::vector<Job> jobs;
+  for (auto& [bound, of_bound] : by_bound) {
+    Result<RobotWorld> world = cover_robot(*robot, bound);
+    if (!world) return fail(std::move(world.error()));
+    files.push_back(as_problems(*robot, std::move(*world), of_bound));
+    for (std::size_t i = 0; i < of_bound.size(); ++i) {
+      jobs.push_back(
+          {&files.back(), &files.back().problems[i], std::move(of_bound[i]), PathVerdict{}});
+    }
+  }
+  return jobs;
+}
+
+/// @param robot  null: of spheres.
+Result<void> judge_all(std::vector<Job>& jobs, const Robot* robot, const VerifyRules& rules,
                        int threads) {
   Progress progress(text(msg::verify_progress), jobs.size());
   std::atomic<std::size_t> next = 0;
   run_in_threads(threads, [&](int) {
     for (std::size_t i = next++; i < jobs.size() && !interrupted(); i = next++) {
       Job& job = jobs[i];
-      if (job.is_given()) job.verdict = verify_path(file, *job.problem, job.given, rules);
+      if (job.is_given())
+        job.verdict = verify_path(*job.file, *job.problem, job.given, rules, robot);
       progress.advance();
     }
   });
@@ -201,7 +245,10 @@ int exit_code_of(const std::vector<Job>& jobs, const Options& options) {
     if (!job.is_given() || job.is_valid()) continue;
     if (faulty++ == 0) first = &job;
   }
-  if (given == 0) log_error(text(msg::verify_none, options.paths, options.in));
+  if (given == 0) {
+    const std::string& whose = options.in.empty() ? options.robot.robot : options.in;
+    log_error(text(msg::verify_none, options.paths, whose));
+  }
   if (first != nullptr) {
     log_error(text(msg::verify_some_faulty, options.paths, faulty, given, first->problem->id,
                    first->verdict->faults.front().what));
@@ -211,7 +258,9 @@ int exit_code_of(const std::vector<Job>& jobs, const Options& options) {
 
 Result<int> run(const Options& options) {
   if (options.paths.empty()) return fail(Errc::usage, text(msg::verify_need_paths));
-  if (options.in.empty()) return fail(Errc::usage, text(msg::verify_need_problems));
+  if (options.in.empty() == options.robot.robot.empty()) {
+    return fail(Errc::usage, text(msg::app_need_one_of, "--in", "--robot"));
+  }
   const Result<VerifyRules> rules = read_rules(options);
   if (!rules) return fail(rules.error());
   const Result<Cylinders> cylinders = read_cylinders(options);
@@ -219,14 +268,12 @@ Result<int> run(const Options& options) {
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   catch_interrupts();
-  const Result<ProblemFile> file = read_problem_file(options.in, *cylinders);
-  if (!file) return fail(file.error());
-  Result<std::vector<GivenPath>> paths =
-      read_path_file(options.paths, static_cast<std::size_t>(file->arm.dof()));
-  if (!paths) return fail(paths.error());
-  Result<std::vector<Job>> jobs = match(*file, std::move(*paths), options);
+  std::vector<ProblemFile> files;
+  std::optional<Robot> robot;
+  Result<std::vector<Job>> jobs = options.in.empty() ? robot_jobs(options, robot, files)
+                                                     : file_jobs(options, *cylinders, files);
   if (!jobs) return fail(jobs.error());
-  if (Result<void> done = judge_all(*file, *jobs, *rules, *threads); !done) {
+  if (Result<void> done = judge_all(*jobs, robot ? &*robot : nullptr, *rules, *threads); !done) {
     return fail(done.error());
   }
   const std::string out = options.json ? report_json(*jobs) : report_text(*jobs);
@@ -237,6 +284,7 @@ Result<int> run(const Options& options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "paths", options->paths, msg::verify_option_paths, "PATHS.json");
+  add_robot_options(app, options->robot);
   add_option(app, "--in", options->in, msg::verify_option_in, "PROBLEMS.json");
   add_option(app, "--step", options->step, msg::verify_option_step, "RAD");
   add_option(app, "--tol", options->tol, msg::verify_option_tol, "M");

@@ -11,6 +11,7 @@
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
 #include "mjarm/core/messages/verify.hpp"
+#include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr double kEndSlack = 1e-4;        // [rad or m] of start, goal and limits
 constexpr double kAnywhere = 1e9;         // slack with which limits and overlaps do not matter
 constexpr double kCostSlack = 1e-6;       // relative
+constexpr double kTiltSlack = 1e-6;       // [rad]
 constexpr double kClearanceAbove = 1e-6;  // [m] by which a stated clearance may be too large
 constexpr double kClearanceBelow = 1e-3;  // [m] and too small: it is a lower bound
 
@@ -39,13 +41,19 @@ double length_of(Row a, Row b) {
 class PathJudge {
  public:
   PathJudge(const ProblemFile& file, const PlanProblem& problem, const GivenPath& path,
-            const VerifyRules& rules)
-      : arm_(file.arm), set_(file.spheres), problem_(problem), path_(path), rules_(rules) {}
+            const VerifyRules& rules, const Robot* robot)
+      : arm_(file.arm),
+        set_(file.spheres),
+        problem_(problem),
+        path_(path),
+        rules_(rules),
+        robot_(robot) {}
 
   Result<PathVerdict> run() {
     check_ends();
     if (Result<void> done = prove_edges(); !done) return fail(std::move(done.error()));
     if (Result<void> done = walk_edges(); !done) return fail(std::move(done.error()));
+    check_tilt();
     check_cost();
     if (Result<void> done = check_certificates(); !done) return fail(std::move(done.error()));
     return std::move(out_);
@@ -141,20 +149,47 @@ class PathJudge {
   }
 
   Result<void> walk_edges() {
+    const ExactOptions options{.margin = 0, .allow_depth = rules_.allow_depth};
+    if (robot_ != nullptr) {
+      return walk_edges(ExactChecker(robot_->model, robot_->arm, options),
+                        [](const std::string& geom) { return geom; });
+    }
     const Result<SphereModel> made = sphere_model(arm_, set_, problem_.obstacles);
     if (!made) return fail(made.error());
-    ExactChecker checker(made->model, made->arm, {.margin = 0, .allow_depth = rules_.allow_depth});
+    return walk_edges(ExactChecker(made->model, made->arm, options),
+                      [&](const std::string& geom) { return made->parts.at(geom); });
+  }
+
+  template <typename NameOf>
+  Result<void> walk_edges(ExactChecker checker, const NameOf& name_of) {
     for (int edge = 0; edge < edges(); ++edge) {
       const auto found = first_contact(checker, row(edge), row(edge + 1), rules_.step);
       if (!found) return fail(found.error());
       if (!found->has_value()) continue;
       const ContactPoint& contact = (*found)->contact;
       add("contact", edge,
-          text(msg::verify_contact, edge, (*found)->t, made->parts.at(contact.pair.geom1),
-               made->parts.at(contact.pair.geom2), contact.depth));
+          text(msg::verify_contact, edge, (*found)->t, name_of(contact.pair.geom1),
+               name_of(contact.pair.geom2), contact.depth));
       return {};
     }
     return {};
+  }
+
+  /// At samples: the tool leans by no more than is stated.
+  void check_tilt() {
+    if (!path_.tilt) return;
+    const TiltLimit stated{path_.tilt->largest,
+                           Eigen::Map<const Eigen::Vector3d>(path_.tilt->tool.data()),
+                           Eigen::Map<const Eigen::Vector3d>(path_.tilt->world.data())};
+    for (int edge = 0; edge < edges(); ++edge) {
+      const double pieces = std::ceil(length_of(row(edge), row(edge + 1)) / rules_.step);
+      for (double k = 0; k <= pieces; ++k) {
+        const double t = k / std::max(pieces, 1.0), leans = tilt(stated, arm_, on_edge(edge, t));
+        if (leans <= stated.most + kTiltSlack) continue;
+        add("tilt", edge, text(msg::verify_tilt, edge, t, leans, stated.most));
+        return;
+      }
+    }
   }
 
   void check_cost() {
@@ -166,23 +201,48 @@ class PathJudge {
     }
   }
 
+  /// What is left of the problem where only a link and an obstacle, or two links, of these names
+  /// count. A link may be in several pieces.
+  std::pair<SphereSet, Obstacles> pieces_named(const std::string& link,
+                                               const std::string& other) const {
+    std::pair<SphereSet, Obstacles> out;
+    auto& [links, solids] = out;
+    std::vector<int> new_link(set_.links.size(), -1);
+    std::vector<int> new_solid(problem_.obstacles.solids.size(), -1);
+    for (std::size_t i = 0; i < set_.links.size(); ++i) {
+      if (set_.links[i].name != link && set_.links[i].name != other) continue;
+      new_link[i] = static_cast<int>(links.links.size());
+      links.links.push_back(set_.links[i]);
+    }
+    for (std::size_t i = 0; i < problem_.obstacles.solids.size(); ++i) {
+      if (problem_.obstacles.solids[i].name != other) continue;
+      new_solid[i] = static_cast<int>(solids.solids.size());
+      solids.solids.push_back(problem_.obstacles.solids[i]);
+    }
+    for (const auto& [a, b] : set_.pairs) {
+      const int first = new_link[static_cast<std::size_t>(a)];
+      const int second = new_link[static_cast<std::size_t>(b)];
+      if (first < 0 || second < 0) continue;
+      if (links.links[static_cast<std::size_t>(first)].name ==
+          links.links[static_cast<std::size_t>(second)].name) {
+        continue;
+      }
+      links.pairs.push_back({first, second});
+    }
+    for (const IgnoredPair& pair : problem_.obstacles.ignored) {
+      const int first = new_link[static_cast<std::size_t>(pair.link)];
+      const auto solid = static_cast<std::size_t>(pair.obstacle);
+      const int second = solid < new_solid.size() ? new_solid[solid] : -1;
+      if (first >= 0 && second >= 0) solids.ignored.push_back({first, second});
+    }
+    return out;
+  }
+
   /// Clearance of the pair that a certificate names, at its place; none where no such pair is.
   Result<std::optional<double>> clearance_of(const GivenCertificate& given, int edge) const {
-    SphereSet links;
-    Obstacles solids;
-    for (const LinkSpheres& link : set_.links) {
-      if (link.name == given.pair[0]) links.links.push_back(link);
-    }
-    const std::size_t first = links.links.size();
-    for (const Obstacle& solid : problem_.obstacles.solids) {
-      if (solid.name == given.pair[1]) solids.solids.push_back(solid);
-    }
-    for (const LinkSpheres& link : set_.links) {
-      if (link.name != given.pair[1] || first == 0 || link.joint == links.links[0].joint) continue;
-      links.links.push_back(link);
-      links.pairs.push_back({0, static_cast<int>(links.links.size()) - 1});
-    }
-    if (first == 0 || (solids.solids.empty() && links.pairs.empty())) return std::nullopt;
+    const auto [links, solids] = pieces_named(given.pair[0], given.pair[1]);
+    const auto count = links.links.size() * solids.solids.size();
+    if (count <= solids.ignored.size() && links.pairs.empty()) return std::nullopt;
     const std::vector<double> q = on_edge(edge, given.t);
     const Result<VerifyResult> found =
         verify_edge(arm_, links, solids, q, q, {.limit_slack = kAnywhere});
@@ -229,14 +289,16 @@ class PathJudge {
   const PlanProblem& problem_;
   const GivenPath& path_;
   const VerifyRules& rules_;
+  const Robot* robot_;
   PathVerdict out_;
 };
 
 }  // namespace
 
 Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
-                                const GivenPath& path, const VerifyRules& rules) {
-  return PathJudge(file, problem, path, rules).run();
+                                const GivenPath& path, const VerifyRules& rules,
+                                const Robot* robot) {
+  return PathJudge(file, problem, path, rules, robot).run();
 }
 
 }  // namespace mjarm::app

@@ -6,6 +6,7 @@
 
 #include "apps/mjarm/path_file.hpp"
 #include "apps/mjarm/plan/problem_file.hpp"
+#include "apps/mjarm/robot.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm::app {
@@ -18,7 +19,7 @@ struct VerifyRules {
 
 /// What is wrong with a path.
 struct PathFault {
-  const char* kind;  ///< start, goal, limits, hit, undecided, contact, cost or certificate
+  const char* kind;  ///< start, goal, limits, hit, undecided, contact, tilt, cost or certificate
   int edge = -1;     ///< from 0; -1: none in particular
   std::string what;  ///< one line
 };
@@ -34,8 +35,10 @@ struct PathVerdict {
 /// Judges a path with at least one row: its ends, its limits and edges by verify_edge(), MuJoCo's
 /// own collision detection, and what the file says of it. Of the edges the first that is faulty
 /// counts.
+/// @param robot  whose exact geometry MuJoCo looks at; null: that of the spheres.
 /// @return an error where MuJoCo cannot make a model of the problem.
 [[nodiscard]] Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
-                                              const GivenPath& path, const VerifyRules& rules);
+                                              const GivenPath& path, const VerifyRules& rules,
+                                              const Robot* robot = nullptr);
 
 }  // namespace mjarm::app

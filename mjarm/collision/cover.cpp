@@ -92,7 +92,7 @@ Result<ModelCover> cover_model(const Model& model, const Arm& arm, const CoverOp
     return fail(Errc::bad_input,
                 text(msg::collision_cover_spheres, arm.name, kMostSpheres, kMostSphereLinks));
   }
-  detail::MeetingProof proof(model, arm, *groups);
+  detail::MeetingProof proof(model, arm, *groups, options.rules);
   add_pairs(proof, *groups, out);
   add_scene(*model.raw(), proof, *groups, out);
   if (const Result<void> fine = check_sphere_set(out.spheres, arm); !fine)

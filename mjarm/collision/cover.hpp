@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
 #include "mjarm/core/result.hpp"
@@ -18,6 +19,7 @@ struct CoverOptions {
   std::vector<double> qpos = {};
   /// Cover what the joints of a gripper can do within their limits, instead of one posture.
   bool whole_stroke = false;
+  ContactRules rules = {};  ///< what hangs on the tool, what may touch
 };
 
 /// A robot and what stands round it, as the fast checker takes them: made from the geoms of a model

@@ -32,7 +32,11 @@ struct StrokeJoint {
 class GeomSorter {
  public:
   GeomSorter(const Model& model, const Arm& arm, const CoverOptions& options)
-      : m_(*model.raw()), arm_(arm), options_(options), bodies_(m_, arm) {}
+      : m_(*model.raw()),
+        arm_(arm),
+        options_(options),
+        bodies_(m_, arm, options.rules.held),
+        filter_(m_, options.rules) {}
 
   Result<GeomGroups> run() {
     if (const Result<void> fine = check(); !fine) return fail(fine.error());
@@ -85,7 +89,7 @@ class GeomSorter {
     for (const int address : bodies_.addresses)
       q.push_back(qpos[static_cast<std::size_t>(address)]);
     X_WJ_.resize(q.size());
-    fk_all(arm_, q, X_WJ_);
+    bodies_.place_held(fk_all(arm_, q, X_WJ_), d_->qpos);
     mj_kinematics(&m_, d_.get());
   }
 
@@ -96,8 +100,9 @@ class GeomSorter {
   void add(int geom) {
     std::vector<bool> meets(static_cast<std::size_t>(m_.ngeom));
     for (int other = 0; other < static_cast<int>(m_.ngeom); ++other) {
-      meets[static_cast<std::size_t>(other)] =
-          piece(other) != piece(geom) && may_collide(m_, geom, other);
+      meets[static_cast<std::size_t>(other)] = piece(other) != piece(geom) &&
+                                               may_collide(m_, geom, other) &&
+                                               !filter_.may_touch(geom, other);
     }
     if (std::find(meets.begin(), meets.end(), true) == meets.end()) return;
     if (piece(geom) == 0) {
@@ -195,6 +200,7 @@ class GeomSorter {
   const Arm& arm_;
   const CoverOptions& options_;
   ArmBodies bodies_;
+  ContactFilter filter_;
   std::unique_ptr<mjData, DeletePoses> d_;
   std::vector<double> rest_;
   std::vector<Pose> X_WJ_;
@@ -206,6 +212,9 @@ class GeomSorter {
 }  // namespace
 
 Result<GeomGroups> group_geoms(const Model& model, const Arm& arm, const CoverOptions& options) {
+  if (Result<void> fine = check_contact_rules(model, arm, options.rules); !fine) {
+    return fail(std::move(fine.error()));
+  }
   return GeomSorter(model, arm, options).run();
 }
 

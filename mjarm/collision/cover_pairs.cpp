@@ -100,8 +100,9 @@ struct MeetingProof::Search {
   }
 };
 
-MeetingProof::MeetingProof(const Model& model, const Arm& arm, const GeomGroups& groups)
-    : m_(*model.raw()), arm_(arm), d_(mj_makeData(&m_)) {
+MeetingProof::MeetingProof(const Model& model, const Arm& arm, const GeomGroups& groups,
+                           const ContactRules& rules)
+    : m_(*model.raw()), arm_(arm), filter_(m_, rules), d_(mj_makeData(&m_)) {
   SphereSet skeletons;
   for (const GeomGroup& link : groups.links) skeletons.links.push_back(skeleton_of(m_, link));
   const LinkChain chain{Chain(arm)};
@@ -112,7 +113,8 @@ MeetingProof::MeetingProof(const Model& model, const Arm& arm, const GeomGroups&
 }
 
 bool MeetingProof::is_allowed(const GeomGroup& a, const GeomGroup& b) const {
-  return a.joint != b.joint && may_collide(m_, a.geoms.front().geom, b.geoms.front().geom);
+  const int first = a.geoms.front().geom, second = b.geoms.front().geom;
+  return a.joint != b.joint && may_collide(m_, first, second) && !filter_.may_touch(first, second);
 }
 
 bool MeetingProof::never_meet(const GeomGroup& a, const GeomGroup& b, std::size_t index) {

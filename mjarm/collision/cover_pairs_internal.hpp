@@ -13,9 +13,11 @@ namespace mjarm::detail {
 /// is clear, or its middle is too near.
 class MeetingProof {
  public:
-  MeetingProof(const Model& model, const Arm& arm, const GeomGroups& groups);
+  MeetingProof(const Model& model, const Arm& arm, const GeomGroups& groups,
+               const ContactRules& rules);
 
-  /// Whether the model's rules let geoms of the two collide; all geoms of a group are alike.
+  /// Whether the model's rules, and the user's, let geoms of the two collide; all geoms of a group
+  /// are alike.
   [[nodiscard]] bool is_allowed(const GeomGroup& a, const GeomGroup& b) const;
   /// True where it is proved that the two never meet; `b` is link `index`, on the joint farther
   /// from the base.
@@ -29,6 +31,7 @@ class MeetingProof {
 
   const mjModel& m_;
   const Arm& arm_;
+  ContactFilter filter_;
   std::unique_ptr<mjData, DeletePlaces> d_;
   std::vector<std::array<double, kMaxDof>> levers_;  // per link
 };

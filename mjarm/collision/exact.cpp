@@ -13,6 +13,7 @@
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/core/rng.hpp"
+#include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
 namespace {
@@ -29,12 +30,15 @@ Eigen::Vector3d vector(const mjtNum* v) { return {v[0], v[1], v[2]}; }
 }  // namespace
 
 struct ExactChecker::Impl {
-  Impl(const Model& model_in, const Arm& arm, const ExactOptions& options_in)
+  Impl(const Model& model_in, const Arm& arm_in, const ExactOptions& options_in)
       : model(model_in),
+        arm(arm_in),
         options(options_in),
         m(*model.raw()),
         m_wide(*model.raw()),
-        bodies(m, arm) {
+        sound(check_contact_rules(model, arm, options.rules)),
+        bodies(m, arm, sound ? options.rules.held : std::vector<HeldBody>()),
+        filter(m, options.rules) {
     // The arrays are those of the shared model; only the options of these two heads differ.
     for (mjModel* head : {&m, &m_wide}) {
       head->opt.disableflags &= ~(mjDSBL_CONTACT | mjDSBL_CONSTRAINT | mjDSBL_NATIVECCD);
@@ -46,15 +50,18 @@ struct ExactChecker::Impl {
     std::vector<bool> moves;
     for (const int joints : bodies.pieces) moves.push_back(joints > 0);
     capsule_boxes = detail::capsule_box_pairs(m, moves);
-    std::erase_if(capsule_boxes, [&](GeomIds ids) { return are_rigid(ids.geom1, ids.geom2); });
+    std::erase_if(capsule_boxes, [&](GeomIds ids) { return is_left_out(ids.geom1, ids.geom2); });
     make_data();
   }
   Impl(const Impl& other)
       : model(other.model),
+        arm(other.arm),
         options(other.options),
         m(other.m),
         m_wide(other.m_wide),
+        sound(other.sound),
         bodies(other.bodies),
+        filter(other.filter),
         q_rest(other.q_rest),
         capsule_boxes(other.capsule_boxes),
         constant_pairs(other.constant_pairs) {
@@ -75,25 +82,30 @@ struct ExactChecker::Impl {
     return piece(geom1) == piece(geom2);
   }
 
+  bool is_left_out(int geom1, int geom2) const {
+    return are_rigid(geom1, geom2) || filter.may_touch(geom1, geom2);
+  }
+
   bool accepts(std::span<const double> q) const {
-    return bodies.matches && d && q.size() == bodies.addresses.size() &&
+    return sound && bodies.matches && d && q.size() == bodies.addresses.size() &&
            std::all_of(q.begin(), q.end(), [](double value) { return std::isfinite(value); });
   }
 
   void place(std::span<const double> q) {
     for (std::size_t i = 0; i < q.size(); ++i) d->qpos[bodies.addresses[i]] = q[i];
+    if (!bodies.held.empty()) bodies.place_held(fk(arm, q), d->qpos);
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     if (m.nflex > 0) mj_flex(&m, d.get());
   }
 
-  /// True for a contact between two geoms that the arm moves against each other, but for those that
-  /// are measured by capsule_box_gap().
+  /// True for a contact between two geoms that the arm moves against each other and no rule lets
+  /// touch, but for those that are measured by capsule_box_gap().
   bool counts(const mjContact& contact) const {
     const int geom1 = contact.geom[0];
     const int geom2 = contact.geom[1];
     if (geom1 < 0 || geom2 < 0 || detail::is_capsule_box(m, geom1, geom2)) return false;
-    return !are_rigid(geom1, geom2);
+    return !is_left_out(geom1, geom2);
   }
 
   std::span<const mjContact> detect(const mjModel& head) {
@@ -211,10 +223,13 @@ struct ExactChecker::Impl {
   }
 
   Model model;  // keeps the arrays alive
+  Arm arm;
   ExactOptions options;
-  mjModel m;       // head of the model for contacts
-  mjModel m_wide;  // the same with `margin` round every geom
+  mjModel m;           // head of the model for contacts
+  mjModel m_wide;      // the same with `margin` round every geom
+  Result<void> sound;  // the rules
   detail::ArmBodies bodies;
+  detail::ContactFilter filter;
   std::vector<double> q_rest;
   std::vector<GeomIds> capsule_boxes;
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
@@ -234,6 +249,7 @@ ExactChecker::ExactChecker(ExactChecker&&) noexcept = default;
 ExactChecker& ExactChecker::operator=(ExactChecker&&) noexcept = default;
 
 Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
+  if (!impl_->sound) return fail(impl_->sound.error());
   if (!impl_->accepts(q)) {
     return fail(Errc::bad_input,
                 text(msg::collision_bad_q, impl_->bodies.addresses.size(), q.size()));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
@@ -16,8 +17,9 @@ namespace mjarm {
 
 /// How a configuration is checked. Every default is usable as is.
 struct ExactOptions {
-  double margin = 0.1;     ///< [m] up to where check() looks for the nearest pair, >= 0; 0 = never
-  double allow_depth = 0;  ///< [m] overlap that still counts as free, >= 0
+  double margin = 0.1;      ///< [m] up to where check() looks for the nearest pair, >= 0; 0 = never
+  double allow_depth = 0;   ///< [m] overlap that still counts as free, >= 0
+  ContactRules rules = {};  ///< what hangs on the tool, what may touch
 };
 
 /// Two geoms and the bodies they belong to, by name. A geom without a name is called BODY[k], the
@@ -63,7 +65,7 @@ struct CollisionReport {
 /// from another thread.
 class ExactChecker {
  public:
-  /// `arm` must come from `model`; else every check answers with an error.
+  /// `arm` must come from `model`, and the rules be sound; else every check answers with an error.
   ExactChecker(const Model& model, const Arm& arm, const ExactOptions& options = {});
   ~ExactChecker();
   ExactChecker(const ExactChecker& other);
@@ -72,7 +74,7 @@ class ExactChecker {
   ExactChecker& operator=(ExactChecker&&) noexcept;
 
   /// Looks at `q`, shape (dof,) [rad or m]; limits are not looked at.
-  /// @return bad_input for a wrong size or a number that is not finite.
+  /// @return bad_input for a wrong size, a number that is not finite, or rules that are not sound.
   [[nodiscard]] Result<CollisionReport> check(std::span<const double> q);
 
   /// The short way: true where check(q) would be free; false where it would fail.

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <iterator>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
+#include "mjarm/core/rotation.hpp"
 
 namespace mjarm::detail {
 namespace {
@@ -21,7 +23,8 @@ std::string name_of(const mjModel& m, int type, int id) {
 
 }  // namespace
 
-ArmBodies::ArmBodies(const mjModel& m, const Arm& arm) : pieces(static_cast<std::size_t>(m.nbody)) {
+ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<HeldBody>& held_in)
+    : pieces(static_cast<std::size_t>(m.nbody)) {
   for (const ArmJoint& joint : arm.joints) {
     const int id = joint_at(m, joint.qpos);
     if (id < 0) {
@@ -29,11 +32,27 @@ ArmBodies::ArmBodies(const mjModel& m, const Arm& arm) : pieces(static_cast<std:
       continue;
     }
     addresses.push_back(joint.qpos);
+    bodies.push_back(m.jnt_bodyid[id]);
     pieces[static_cast<std::size_t>(m.jnt_bodyid[id])] = static_cast<int>(addresses.size());
+  }
+  for (const HeldBody& one : held_in) {
+    const int body = mj_name2id(&m, mjOBJ_BODY, one.body.c_str());
+    held.push_back({m.jnt_qposadr[m.body_jntadr[body]], one.X_TB});
+    pieces[static_cast<std::size_t>(body)] = static_cast<int>(addresses.size());
   }
   for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
     int& piece = pieces[static_cast<std::size_t>(b)];
     piece = std::max(piece, pieces[static_cast<std::size_t>(m.body_parentid[b])]);
+  }
+}
+
+void ArmBodies::place_held(const Pose& X_WT, mjtNum* qpos) const {
+  for (const Held& one : held) {
+    const Pose X_WB = X_WT * one.X_TB;
+    const Quat turn = to_quat(X_WB.R);
+    const double values[] = {X_WB.p.x(), X_WB.p.y(), X_WB.p.z(), turn.w(),
+                             turn.x(),   turn.y(),   turn.z()};
+    std::copy(std::begin(values), std::end(values), qpos + one.address);
   }
 }
 

@@ -2,20 +2,43 @@
 
 #include <mujoco/mujoco.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/model/arm.hpp"
 
 namespace mjarm::detail {
 
-/// Which bodies of a model an arm moves.
+/// Which bodies of a model an arm moves, those it holds included.
 struct ArmBodies {
-  ArmBodies(const mjModel& m, const Arm& arm);
+  /// @param held  sound by check_contact_rules().
+  ArmBodies(const mjModel& m, const Arm& arm, const std::vector<HeldBody>& held = {});
 
+  /// Writes where the held bodies are to the model's qpos.
+  void place_held(const Pose& X_WT, mjtNum* qpos) const;
+
+  /// A free body that hangs on the tool.
+  struct Held {
+    int address = 0;  ///< of its free joint in qpos
+    Pose X_TB;
+  };
   std::vector<int> addresses;  ///< of the arm's joints in qpos
-  std::vector<int> pieces;     ///< per body: how many joints of the arm move it
-  bool matches = true;         ///< the arm is one of this model
+  std::vector<int> bodies;     ///< that these joints are of
+  std::vector<Held> held;
+  std::vector<int> pieces;  ///< per body: how many joints of the arm move it
+  bool matches = true;      ///< the arm is one of this model
+};
+
+/// Pairs of geoms that ContactRules let touch.
+class ContactFilter {
+ public:
+  ContactFilter(const mjModel& m, const ContactRules& rules);
+  [[nodiscard]] bool may_touch(int geom1, int geom2) const;
+
+ private:
+  std::vector<std::array<std::vector<bool>, 2>> pairs_;  // per geom
 };
 
 /// The keyframe `home`, else the initial configuration; shape (nq,).

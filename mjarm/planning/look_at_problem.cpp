@@ -31,11 +31,26 @@ tl::unexpected<PlanFailure> outside(PlanErrc reason, std::span<const double> q, 
   return tl::unexpected(failure);
 }
 
-tl::unexpected<PlanFailure> hit(PlanErrc reason, const FastChecker& checker,
-                                std::span<const double> q) {
+tl::unexpected<PlanFailure> start_hit(const FastChecker& checker, std::span<const double> q) {
   PlanFailure failure;
-  failure.reason = reason;
+  failure.reason = PlanErrc::start_hit;
   failure.pair = checker.clearance(q);
+  return tl::unexpected(failure);
+}
+
+/// Of the goals within the limits, the one that overlaps least.
+tl::unexpected<PlanFailure> all_hit(const FastChecker& checker, std::span<const double> goals) {
+  PlanFailure failure;
+  failure.reason = PlanErrc::goals_hit;
+  failure.pair.distance = -std::numeric_limits<double>::infinity();
+  const Arm& arm = checker.robot().arm();
+  const auto dof = static_cast<std::size_t>(arm.dof());
+  for (std::size_t g = 0; g < goals.size(); g += dof) {
+    const std::span<const double> goal = goals.subspan(g, dof);
+    if (outside_joint(arm, goal) >= 0) continue;
+    const SphereClearance pair = checker.clearance(goal);
+    if (pair.distance > failure.pair.distance) failure.pair = pair;
+  }
   return tl::unexpected(failure);
 }
 
@@ -70,26 +85,27 @@ Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
   if (const int k = outside_joint(arm, start); k >= 0) {
     return outside(PlanErrc::start_outside, start, k);
   }
-  if (!checker.is_free(start)) return hit(PlanErrc::start_hit, checker, start);
+  if (!checker.is_free(start)) return start_hit(checker, start);
   SearchProblem out{checker, start, {}, {}, TiltKeeper::make(options.tilt, arm)};
   if (out.tilt && !out.tilt->keeps(start)) {
     return tilted(PlanErrc::start_tilted, *options.tilt, arm, start);
   }
-  int first_inside = -1, first_free = -1;
+  bool any_inside = false;
+  int first_free = -1;
   for (std::size_t g = 0; g * dof < goals.size(); ++g) {
     const std::span<const double> goal = goals.subspan(g * dof, dof);
     if (outside_joint(arm, goal) >= 0) continue;
-    if (first_inside < 0) first_inside = static_cast<int>(g);
+    any_inside = true;
     if (!checker.is_free(goal)) continue;
     if (first_free < 0) first_free = static_cast<int>(g);
     if (!out.tilt || out.tilt->keeps(goal)) out.goal_index.push_back(static_cast<int>(g));
   }
-  if (first_inside < 0) {
+  if (!any_inside) {
     const std::span<const double> goal = goals.first(dof);
     return outside(PlanErrc::goals_outside, goal, outside_joint(arm, goal));
   }
   const auto goal_of = [&](int g) { return goals.subspan(static_cast<std::size_t>(g) * dof, dof); };
-  if (first_free < 0) return hit(PlanErrc::goals_hit, checker, goal_of(first_inside));
+  if (first_free < 0) return all_hit(checker, goals);
   if (out.goal_index.empty()) {
     return tilted(PlanErrc::goals_tilted, *options.tilt, arm, goal_of(first_free));
   }

@@ -56,12 +56,13 @@ enum class PlanErrc {
 /// Why there is no path.
 struct PlanFailure {
   PlanErrc reason = PlanErrc::bad_input;
-  SphereClearance pair;  ///< what overlaps: start_hit, goals_hit (of the first such goal), base_hit
-  int joint = -1;        ///< the first outside of its limits: start_outside, goals_outside
-  double value = 0;      ///< [rad or m] where that joint is; start_tilted, goals_tilted: the tilt
-  double limit = 0;      ///< [rad] start_tilted, goals_tilted: the largest that is allowed
-  double nearest = 0;    ///< [rad or m, L2] budget_spent: how near the trees came to each other
-  int samples = 0;       ///< drawn
+  SphereClearance
+      pair;            ///< what overlaps: start_hit, goals_hit (least deep of all goals), base_hit
+  int joint = -1;      ///< the first outside of its limits: start_outside, goals_outside
+  double value = 0;    ///< [rad or m] where that joint is; start_tilted, goals_tilted: the tilt
+  double limit = 0;    ///< [rad] start_tilted, goals_tilted: the largest that is allowed
+  double nearest = 0;  ///< [rad or m, L2] budget_spent: how near the trees came to each other
+  int samples = 0;     ///< drawn
 };
 
 /// What a search did.

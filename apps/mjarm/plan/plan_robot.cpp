@@ -163,7 +163,7 @@ bool is_coarse(PlanErrc reason) {
 
 /// An answer as text, and why there is no path.
 struct Told {
-  std::string json;
+  std::string line;  ///< JSON
   std::optional<std::string> why;
 };
 
@@ -173,19 +173,21 @@ Result<Told> answer(const Robot& robot, const Way& way, const PlanOptions& optio
     Result<RobotWorld> world = cover_robot(robot, bound);
     if (!world) return fail(std::move(world.error()));
     const FastRobot& fast = world->checker.robot();
-    PlanProblem problem{.start = way.start, .obstacles = std::move(world->cover.scene)};
+    PlanProblem problem;
+    problem.start = way.start;
+    problem.obstacles = std::move(world->cover.scene);
     Result<std::vector<double>, std::string> goals =
         goals_of(way, robot.arm, world->checker, options.seed);
     if (!goals) {
-      std::string json = "{\"ok\":false,\"reason\":";
-      append_json_string(json, goals.error());
-      return Told{json + '}', goals.error()};
+      std::string line = "{\"ok\":false,\"reason\":";
+      append_json_string(line, goals.error());
+      return Told{line + '}', goals.error()};
     }
     problem.goals = std::move(*goals);
     PlanAnswer found = answer_problem(fast, problem, options);
-    found.spheres = world->cover.bound;
+    found.spheres = bound;
     out = {};
-    append_answer(out.json, found, fast, problem.obstacles, timing);
+    append_answer(out.line, found, fast, problem.obstacles, timing);
     if (found.path) return out;
     out.why = describe(found.path.error(), fast, problem.obstacles);
     if (!is_coarse(found.path.error().reason)) return out;
@@ -227,9 +229,9 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   }
   const Result<Told> told = answer(*robot, *way, how, timing);
   if (!told) return fail(told.error());
-  std::string json = "{";
-  append_json_string(json, robot->arm.name);
-  return finish_one(out, json + ':' + told->json + '}', told->why, msg::plan_no_path);
+  std::string line = "{";
+  append_json_string(line, robot->arm.name);
+  return finish_one(out, line + ':' + told->line + '}', told->why, msg::plan_no_path);
 }
 
 }  // namespace mjarm::app

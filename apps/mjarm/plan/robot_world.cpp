@@ -15,4 +15,19 @@ Result<RobotWorld> cover_robot(const Robot& robot, double bound) {
   return RobotWorld{std::move(*cover), std::move(*checker)};
 }
 
+ProblemFile as_problems(const Robot& robot, RobotWorld world, std::span<const GivenPath> paths) {
+  ProblemFile out{robot.arm, std::move(world.cover.spheres), {}};
+  for (const GivenPath& path : paths) {
+    PlanProblem problem;
+    problem.id = path.id;
+    problem.obstacles = world.cover.scene;
+    if (!path.rows.empty()) {
+      problem.start = path.rows.front();
+      problem.goals = path.rows.back();
+    }
+    out.problems.push_back(std::move(problem));
+  }
+  return out;
+}
+
 }  // namespace mjarm::app

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <span>
+
+#include "apps/mjarm/path_file.hpp"
+#include "apps/mjarm/plan/problem_file.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "mjarm/collision/cover.hpp"
 #include "mjarm/collision/fast_check.hpp"
@@ -19,5 +23,9 @@ inline constexpr double kCoverBounds[] = {0.012, 0.003};
 /// Covers a robot; what its gripper can do counts.
 /// @param bound  [m] by which spheres may stick out, > 0.
 [[nodiscard]] Result<RobotWorld> cover_robot(const Robot& robot, double bound);
+
+/// The same as a file of problems, each the way from the first to the last row of a path.
+[[nodiscard]] ProblemFile as_problems(const Robot& robot, RobotWorld world,
+                                      std::span<const GivenPath> paths);
 
 }  // namespace mjarm::app

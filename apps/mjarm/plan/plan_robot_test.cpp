@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "apps/mjarm/program_test.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kWalled = "universal_robots_ur5e/wall.xml";
+// Before and behind the wall, the tool pointing down.
+constexpr const char* kBefore = "-4.375,-1.2456,1.9905,-2.3157,-1.5708,0";
+constexpr const char* kBehind = "-5.551,-1.2456,1.9905,-2.3157,-1.5708,0";
+constexpr const char* kPlaceBehind = "-0.3,-0.45,0.2";
+
+class PlanRobot : public ::testing::Test {
+ protected:
+  using Words = std::vector<std::string>;
+
+  std::string paths() const { return (folder_.path() / "path.json").string(); }
+  support::ProgramResult plan(const Words& more, const char* robot = kWalled) {
+    Words words{"plan", "--robot", robot, "--out", paths()};
+    words.insert(words.end(), more.begin(), more.end());
+    return mjarm(words);
+  }
+  json answer() const { return json::parse(folder_.read("path.json")).front(); }
+  support::ProgramResult verify(const char* robot = kWalled) {
+    return mjarm({"verify", paths(), "--robot", robot, "--json"});
+  }
+
+  support::TempFolder folder_;
+};
+
+TEST_F(PlanRobot, GoesRoundTheWallAndIsVerifiedWithExactGeometry) {
+  const auto planned = plan({"--start", kBefore, "--goal", kBehind});
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  const json path = answer();
+  EXPECT_GT(path.at("path").size(), 2u);
+  EXPECT_EQ(path.at("spheres"), 0.012);
+  EXPECT_FALSE(path.contains("tilt"));
+  const auto verified = verify();
+  EXPECT_EQ(verified.exit_code, 0) << verified.err;
+  EXPECT_EQ(json::parse(verified.out).at("valid"), 1);
+}
+
+TEST_F(PlanRobot, AStraightWayThroughTheWallIsNotVerified) {
+  folder_.write("path.json", std::string("{\"straight\":[[") + kBefore + "],[" + kBehind + "]]}");
+  const auto verified = verify();
+  EXPECT_EQ(verified.exit_code, 1);
+  const json faults = json::parse(verified.out).at("paths").at("straight").at("faults");
+  std::vector<std::string> kinds;
+  for (const json& fault : faults) kinds.push_back(fault.at("kind"));
+  EXPECT_EQ(kinds, (std::vector<std::string>{"hit", "contact"}));
+  EXPECT_NE(faults[1].at("what").get<std::string>().find("\"wall\""), std::string::npos);
+}
+
+TEST_F(PlanRobot, KeepsTheToolUprightAndSaysByHowMuch) {
+  const Words way{"--start", kBefore, "--goal", kBehind, "--keep-upright"};
+  Words words = way;
+  words.push_back("5deg");
+  ASSERT_EQ(plan(words).exit_code, 0);
+  const json path = answer();
+  const double five = 5 * std::numbers::pi / 180;
+  EXPECT_NEAR(path.at("tilt").at("limit"), five, 1e-12);
+  EXPECT_LE(path.at("tilt").at("largest"), five);
+  EXPECT_EQ(verify().exit_code, 0);
+  // A smaller one than is true is found out.
+  json file = json::parse(folder_.read("path.json"));
+  file.front()["tilt"]["largest"] = 1e-4;
+  file.front().erase("certificate");
+  folder_.write("path.json", file.dump());
+  const auto verified = verify();
+  EXPECT_EQ(verified.exit_code, 1);
+  EXPECT_NE(verified.err.find("leans"), std::string::npos) << verified.err;
+}
+
+TEST_F(PlanRobot, ARegionIsReachedWhereThePoseIsNot) {
+  const Words far{"--pos", "-0.95,-0.3,0.2", "--euler", "180deg,0,0"};
+  const auto none = plan(far);
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(only_line(none).find("out of reach"), std::string::npos);
+  EXPECT_EQ(answer().at("ok"), false);
+  Words near = far;
+  near.insert(near.end(), {"--within", "400mm,0,0", "--turn", "180deg"});
+  ASSERT_EQ(plan(near).exit_code, 0);
+  EXPECT_EQ(verify().exit_code, 0);
+}
+
+TEST_F(PlanRobot, SevenAxesAndAToolWhoseTurnIsFree) {
+  ASSERT_EQ(plan({"--pos", "0.4,-0.3,0.4", "--task", "position"}, "panda").exit_code, 0);
+  EXPECT_EQ(verify("panda").exit_code, 0);
+  ASSERT_EQ(
+      plan({"--pos", "0.4,-0.3,0.4", "--euler", "180deg,0,0", "--task", "axis"}, "panda").exit_code,
+      0);
+  EXPECT_EQ(verify("panda").exit_code, 0);
+}
+
+TEST_F(PlanRobot, SaysWhatIsHitAtTheGoal) {
+  const auto result = plan({"--pos", "0,-0.45,0.2", "--euler", "180deg,0,0"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(only_line(result).find("every goal is in collision"), std::string::npos);
+}
+
+TEST_F(PlanRobot, SameBytesEveryTime) {
+  const Words words{"--pos", kPlaceBehind,       "--euler", "180deg,0,0", "--keep-upright",
+                    "10deg", "--no-timing", "--start", kBefore};
+  ASSERT_EQ(plan(words).exit_code, 0);
+  const std::string first = folder_.read("path.json");
+  ASSERT_EQ(plan(words).exit_code, 0);
+  EXPECT_EQ(folder_.read("path.json"), first);
+}
+
+TEST_F(PlanRobot, WrongWordsGetOneLine) {
+  const std::pair<Words, const char*> wrong[] = {
+      {{}, "exactly one of --goal and --pos"},
+      {{"--goal", "1,2"}, "--goal: 6 values"},
+      {{"--goal", "0,0,0,0,0,0", "--within", "1,1,1"}, "--goal and --within exclude"},
+      {{"--pos", "1,2,3"}, "--euler and --quat"},
+      {{"--pos", "1,2,3", "--task", "pos"}, "--task"},
+      {{"--pos", "1,2,3", "--task", "position", "--within", "0,0,-1"}, "--within"},
+      {{"--pos", "1,2,3", "--task", "position", "--lean", "181deg"}, "--lean"},
+      {{"--goal", "0,0,0,0,0,0", "--keep-upright", "90deg"}, "--keep-upright"},
+      {{"--goal", "0,0,0,0,0,0", "--keep-upright", "0"}, "--keep-upright"},
+      {{"--goal", "0,0,0,0,0,0", "--spheres", "0"}, "--spheres"},
+      {{"--goal", "0,0,0,0,0,nan"}, "--goal"},
+      {{"--goal", "0,0,0,0,0,0", "--in", "x.json"}, "--in and --robot"}};
+  for (const auto& [words, says] : wrong) {
+    const auto result = plan(words);
+    EXPECT_EQ(result.exit_code, 2) << says;
+    EXPECT_NE(only_line(result).find(says), std::string::npos) << result.err;
+  }
+  const auto both = mjarm({"verify", paths(), "--robot", "ur5e", "--in", "x.json"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_NE(only_line(both).find("--in and --robot"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mjarm::app

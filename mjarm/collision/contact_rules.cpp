@@ -1,0 +1,120 @@
+#include "mjarm/collision/contact_rules.hpp"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "mjarm/collision/exact_arm_bodies_internal.hpp"
+#include "mjarm/core/messages/collision.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm {
+namespace {
+
+struct DeleteRest {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+std::vector<std::string> names_of(const mjModel& m, bool geoms) {
+  std::vector<std::string> out;
+  for (int b = 1; b < static_cast<int>(m.nbody); ++b) out.push_back(detail::body_name(m, b));
+  for (int g = 0; geoms && g < static_cast<int>(m.ngeom); ++g) {
+    out.push_back(detail::geom_name(m, g));
+  }
+  std::erase(out, std::string());
+  return out;
+}
+
+tl::unexpected<Error> unknown(const Msg& message, const mjModel& m, const std::string& word,
+                              bool geoms) {
+  return fail(Errc::bad_input, text(message, word, did_you_mean(word, names_of(m, geoms))));
+}
+
+bool is_pose(const Pose& X) {
+  return X.p.allFinite() && X.R.allFinite() &&
+         (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).norm() < 1e-6 &&
+         X.R.determinant() > 0;
+}
+
+Result<void> check_held(const mjModel& m, const detail::ArmBodies& bodies, const HeldBody& held,
+                        std::set<int>& known) {
+  const int body = mj_name2id(&m, mjOBJ_BODY, held.body.c_str());
+  if (body < 0) return unknown(msg::collision_held_unknown, m, held.body, false);
+  const int joint = m.body_jntadr[body];
+  if (joint < 0 || m.jnt_type[joint] != mjJNT_FREE) {
+    return fail(Errc::bad_input, text(msg::collision_held_fixed, held.body));
+  }
+  const bool carries_arm = std::any_of(bodies.bodies.begin(), bodies.bodies.end(),
+                                       [&](int moved) { return m.body_rootid[moved] == body; });
+  if (carries_arm || !known.insert(body).second) {
+    return fail(Errc::bad_input, text(msg::collision_held_twice, held.body));
+  }
+  if (!is_pose(held.X_TB)) return fail(Errc::bad_input, text(msg::collision_held_pose, held.body));
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_contact_rules(const Model& model, const Arm& arm, const ContactRules& rules) {
+  const mjModel& m = *model.raw();
+  const detail::ArmBodies bodies(m, arm);
+  std::set<int> known;
+  for (const HeldBody& held : rules.held) {
+    if (Result<void> fine = check_held(m, bodies, held, known); !fine) return fine;
+  }
+  const std::vector<std::string> words = names_of(m, true);
+  for (const auto& pair : rules.allowed) {
+    for (const std::string& word : pair) {
+      if (std::find(words.begin(), words.end(), word) != words.end()) continue;
+      return unknown(msg::collision_allowed_unknown, m, word, true);
+    }
+  }
+  return {};
+}
+
+Result<HeldBody> hold_where_it_is(const Model& model, const Arm& arm, const std::string& body,
+                                  std::span<const double> q) {
+  HeldBody held{body, {}};
+  if (Result<void> fine = check_contact_rules(model, arm, {.held = {held}}); !fine) {
+    return fail(std::move(fine.error()));
+  }
+  const mjModel& m = *model.raw();
+  const std::unique_ptr<mjData, DeleteRest> d(mj_makeData(&m));
+  const std::vector<double> rest = detail::rest_configuration(m);
+  std::copy(rest.begin(), rest.end(), d->qpos);
+  mj_kinematics(&m, d.get());
+  using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const int id = mj_name2id(&m, mjOBJ_BODY, body.c_str());
+  const Pose X_WB{Eigen::Vector3d(d->xpos + 3 * id), Eigen::Map<const Rows>(d->xmat + 9 * id)};
+  held.X_TB = fk(arm, q).inverse() * X_WB;
+  return held;
+}
+
+namespace detail {
+
+ContactFilter::ContactFilter(const mjModel& m, const ContactRules& rules) {
+  const auto geoms_of = [&](const std::string& name) {
+    std::vector<bool> out(static_cast<std::size_t>(m.ngeom));
+    for (int g = 0; g < static_cast<int>(m.ngeom); ++g) {
+      out[static_cast<std::size_t>(g)] =
+          geom_name(m, g) == name || body_name(m, m.geom_bodyid[g]) == name;
+    }
+    return out;
+  };
+  for (const auto& [first, second] : rules.allowed) {
+    pairs_.push_back({geoms_of(first), geoms_of(second)});
+  }
+}
+
+bool ContactFilter::may_touch(int geom1, int geom2) const {
+  const auto i = static_cast<std::size_t>(geom1), j = static_cast<std::size_t>(geom2);
+  return std::any_of(pairs_.begin(), pairs_.end(), [&](const auto& pair) {
+    return (pair[0][i] && pair[1][j]) || (pair[0][j] && pair[1][i]);
+  });
+}
+
+}  // namespace detail
+}  // namespace mjarm

@@ -1,0 +1,201 @@
+#include "mjarm/collision/contact_rules.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "mjarm/collision/cover.hpp"
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/collision/fast_check.hpp"
+#include "mjarm/core/language_scope.hpp"
+#include "mjarm/core/rng.hpp"
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/find_arm.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace mjarm {
+namespace {
+
+/// Three links, a hand of two fingers, a table, and the XML of a bar, in the hand or in the world.
+/// Neighbours collide as well: else a bar that is a part of the hand could not hit the forearm.
+std::string crane(const std::string& in_hand, const std::string& in_world) {
+  return R"(<mujoco><compiler angle="radian"/><option>
+    <flag filterparent="disable"/></option><worldbody>
+    <geom name="table" type="box" size="0.5 0.5 0.02" pos="0.6 0 -0.3"/>
+    <geom name="post" type="capsule" size="0.03 0.3" pos="0.5 0.5 0.1"/>
+    <body name="upper"><joint name="j1" axis="0 0 1" range="-3 3" limited="true"/>
+      <geom name="upper" type="capsule" fromto="0.05 0 0 0.3 0 0" size="0.03"/>
+      <body name="fore" pos="0.35 0 0"><joint name="j2" axis="0 1 0" range="-2.5 2.5" limited="true"/>
+        <geom name="fore" type="capsule" fromto="0.05 0 0 0.25 0 0" size="0.03"/>
+        <body name="hand" pos="0.3 0 0"><joint name="j3" axis="0 1 0" range="-2.5 2.5" limited="true"/>
+          <geom name="palm" type="box" size="0.02 0.06 0.03" pos="0.03 0 0"/>
+          <geom name="finger1" type="box" size="0.04 0.01 0.02" pos="0.09 0.05 0"/>
+          <geom name="finger2" type="box" size="0.04 0.01 0.02" pos="0.09 -0.05 0"/>
+          <site name="tcp" pos="0.1 0 0"/>)" +
+         in_hand + "</body></body></body>" + in_world +
+         R"(</worldbody><actuator><position joint="j1"/><position joint="j2"/><position joint="j3"/>
+  </actuator></mujoco>)";
+}
+
+constexpr const char* kBar = R"(<geom name="bar" type="box" size="0.02 0.045 0.15"/>)";
+
+struct Crane {
+  Model model;
+  Arm arm;
+};
+
+Crane load(const std::string& xml) {
+  const support::TempFolder folder;
+  Model model = Model::load(folder.write("crane.xml", xml)).value();
+  Arm arm = find_arm(model, {.tip = "tcp"}).value();
+  return {std::move(model), std::move(arm)};
+}
+
+/// The bar stands on the table, and can be taken.
+const Crane& free_bar() {
+  static const Crane kCrane = load(crane(
+      "", std::string(R"(<body name="bar" pos="0.9 0.2 -0.13"><freejoint/>)") + kBar + "</body>"));
+  return kCrane;
+}
+
+/// The bar is a part of the hand, as MuJoCo itself would have it.
+const Crane& grown_bar() {
+  static const Crane kCrane = load(crane(
+      std::string(R"(<body name="bar" pos="0.1 0 0.03" euler="0.2 0 0.1">)") + kBar + "</body>",
+      ""));
+  return kCrane;
+}
+
+/// As in grown_bar(); MuJoCo turns about x, then y, then z of the moved frame.
+ContactRules held_bar() {
+  const Eigen::Matrix3d R = rotation_exp({0.2, 0, 0}) * rotation_exp(Eigen::Vector3d(0, 0, 0.1));
+  return {.held = {{"bar", {{0, 0, 0.03}, R}}}};
+}
+
+JointVec draw(const Arm& arm, Rng& rng) {
+  JointVec q(arm.dof());
+  for (int k = 0; k < arm.dof(); ++k) q[k] = rng.uniform(arm.limits.lower[k], arm.limits.upper[k]);
+  return q;
+}
+
+TEST(ContactRules, AHeldBodyCollidesAsAPartOfTheHandDoes) {
+  const Crane &free = free_bar(), &grown = grown_bar();
+  ExactChecker held(free.model, free.arm, {.rules = held_bar()});
+  ExactChecker part(grown.model, grown.arm);
+  ExactChecker empty(free.model, free.arm);
+  Rng rng(3);
+  int hits = 0, by_bar = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const JointVec q = draw(free.arm, rng);
+    const auto a = held.check(view(q)), b = part.check(view(q));
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ(a->free, b->free);
+    ASSERT_EQ(held.is_free(view(q)), b->free);
+    hits += !b->free;
+    by_bar += !b->free && empty.is_free(view(q));
+    ASSERT_EQ(a->contacts.size(), b->contacts.size());
+    for (std::size_t i = 0; i < a->contacts.size(); ++i) {
+      EXPECT_NEAR(a->contacts[i].depth, b->contacts[i].depth, 1e-6);
+    }
+    ASSERT_EQ(a->nearest.has_value(), b->nearest.has_value());
+    if (!b->nearest) continue;
+    EXPECT_NEAR(a->nearest->distance, b->nearest->distance, 1e-5);
+  }
+  EXPECT_GT(hits, 200);
+  EXPECT_GT(by_bar, 50);
+}
+
+TEST(ContactRules, TheCoverHoldsTheBodyToo) {
+  const Crane& crane = free_bar();
+  const ModelCover cover = cover_model(crane.model, crane.arm, {.rules = held_bar()}).value();
+  for (const Obstacle& solid : cover.scene.solids) EXPECT_NE(solid.name, "bar");
+  const auto is_bar = [](const LinkSpheres& link) { return link.name == "bar"; };
+  ASSERT_TRUE(std::any_of(cover.spheres.links.begin(), cover.spheres.links.end(), is_bar));
+  const FastChecker fast =
+      FastChecker::make(FastRobot::make(crane.arm, cover.spheres).value(), cover.scene).value();
+  ExactChecker exact(crane.model, crane.arm, {.rules = held_bar()});
+  Rng rng(5);
+  int free = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const JointVec q = draw(crane.arm, rng);
+    if (!fast.is_free(view(q))) continue;
+    ++free;
+    ASSERT_TRUE(exact.is_free(view(q)));
+  }
+  EXPECT_GT(free, 2000);
+}
+
+TEST(ContactRules, PairsThatMayTouchDoNotCount) {
+  const Crane& crane = free_bar();
+  // The bar held so that it cuts into the forearm, wherever the arm is.
+  ContactRules rules{.held = {{"bar", {{-0.25, 0, 0.05}, Eigen::Matrix3d::Identity()}}}};
+  const std::vector<double> q{0, 0, 0.1};
+  const auto names = [&] {
+    std::vector<std::string> out;
+    const auto report = ExactChecker(crane.model, crane.arm, {.rules = rules}).check(q);
+    for (const ContactPoint& contact : report.value().contacts) {
+      out.push_back(contact.pair.geom1 + "-" + contact.pair.geom2);
+    }
+    return out;
+  };
+  const auto fast_free = [&] {
+    const ModelCover cover = cover_model(crane.model, crane.arm, {.rules = rules}).value();
+    return FastChecker::make(FastRobot::make(crane.arm, cover.spheres).value(), cover.scene)
+        .value()
+        .is_free(q);
+  };
+  ASSERT_EQ(names(), std::vector<std::string>{"fore-bar"});
+  EXPECT_FALSE(fast_free());
+  rules.allowed = {{"bar", "upper"}};
+  EXPECT_EQ(names().size(), 1u);
+  rules.allowed = {{"bar", "fore"}};
+  EXPECT_TRUE(names().empty());
+  EXPECT_TRUE(fast_free());
+  rules.allowed = {{"fore", "bar"}};  // in either order
+  EXPECT_TRUE(names().empty());
+}
+
+TEST(ContactRules, HeldWhereItIsItStaysThere) {
+  const Crane& crane = free_bar();
+  const std::vector<double> q{0.2, 0.3, 0.1};
+  const auto held = hold_where_it_is(crane.model, crane.arm, "bar", q);
+  ASSERT_TRUE(held);
+  const Pose X_WB = fk(crane.arm, q) * held->X_TB;
+  EXPECT_LT((X_WB.p - Eigen::Vector3d(0.9, 0.2, -0.13)).norm(), 1e-9);
+  EXPECT_LT((X_WB.R - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+}
+
+TEST(ContactRules, WordsAndPosesThatAreNoneAreNamed) {
+  const LanguageScope english(Language::english);
+  const Crane& crane = free_bar();
+  const auto why = [&](const ContactRules& rules) {
+    const Result<void> fine = check_contact_rules(crane.model, crane.arm, rules);
+    const std::string what = fine ? std::string() : fine.error().what;
+    // The checkers say the same.
+    const std::vector<double> q{0, 0, 0};
+    ExactChecker exact(crane.model, crane.arm, {.rules = rules});
+    const auto report = exact.check(q);
+    EXPECT_EQ(report ? std::string() : report.error().what, what);
+    EXPECT_TRUE(fine || !exact.is_free(q));
+    const auto cover = cover_model(crane.model, crane.arm, {.rules = rules});
+    EXPECT_EQ(cover ? std::string() : cover.error().what, what);
+    return what;
+  };
+  const Pose here;
+  EXPECT_EQ(why({}), "");
+  EXPECT_EQ(why({.held = {{"baar", here}}}),
+            "there is no body \"baar\" to be held (did you mean \"bar\"?)");
+  EXPECT_EQ(why({.held = {{"fore", here}}}),
+            "the body \"fore\" has no free joint: it cannot be held");
+  EXPECT_EQ(why({.held = {{"bar", here}, {"bar", here}}}),
+            "the body \"bar\" carries the arm, or is held twice");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(why({.held = {{"bar", {{nan, 0, 0}, here.R}}}}).find("pose"), std::string::npos);
+  EXPECT_NE(why({.held = {{"bar", {here.p, 2 * here.R}}}}).find("pose"), std::string::npos);
+  EXPECT_EQ(why({.allowed = {{"tabel", "bar"}}}),
+            "there is no body or geom \"tabel\" that may touch (did you mean \"table\"?)");
+}
+
+}  // namespace
+}  // namespace mjarm
