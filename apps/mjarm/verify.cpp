@@ -34,15 +34,17 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Options {
   RobotOptions robot;
+  RuleWords rules;
   std::string paths, in, step = "0.005", tol = "0", cylinders = "replaced", threads = "1";
   bool json = false;
 };
 
 /// A problem and the path that is given for it.
 struct Job {
-  const ProblemFile* file = nullptr;
+  std::shared_ptr<const ProblemFile> file;
   const PlanProblem* problem = nullptr;
   GivenPath given;
+  std::optional<ExactChecker> exact;  ///< of a robot's own geometry
   Result<PathVerdict> verdict;
 
   [[nodiscard]] bool is_given() const { return !given.rows.empty(); }
@@ -83,15 +85,15 @@ Result<Cylinders> read_cylinders(const Options& options) {
 
 /// The problems that count, in the order of their file: those that the file calls valid, and any
 /// other for which there is a path.
-Result<std::vector<Job>> match(const ProblemFile& file, std::vector<GivenPath> paths,
-                               const Options& options) {
+Result<std::vector<Job>> match(const std::shared_ptr<const ProblemFile>& file,
+                               std::vector<GivenPath> paths, const Options& options) {
   std::map<std::string, GivenPath*> by_id;
   for (GivenPath& path : paths) by_id[path.id] = &path;
   std::vector<Job> jobs;
   std::vector<std::string> ids;
-  for (const PlanProblem& problem : file.problems) {
+  for (const PlanProblem& problem : file->problems) {
     ids.push_back(problem.id);
-    Job job{&file, &problem, {}, PathVerdict{}};
+    Job job{file, &problem, {}, {}, PathVerdict{}};
     const auto found = by_id.find(problem.id);
     if (found != by_id.end()) {
       job.given = std::move(*found->second);
@@ -105,55 +107,54 @@ Result<std::vector<Job>> match(const ProblemFile& file, std::vector<GivenPath> p
               text(msg::verify_unknown_id, options.paths, id, options.in, did_you_mean(id, ids)));
 }
 
-/// The paths for the problems of a file, which is put into `files`.
-Result<std::vector<Job>> file_jobs(const Options& options, Cylinders cylinders,
-                                   std::vector<ProblemFile>& files) {
+Result<std::vector<Job>> file_jobs(const Options& options, Cylinders cylinders) {
   Result<ProblemFile> file = read_problem_file(options.in, cylinders);
   if (!file) return fail(std::move(file.error()));
-  files.push_back(std::move(*file));
   Result<std::vector<GivenPath>> paths =
-      read_path_file(options.paths, static_cast<std::size_t>(files[0].arm.dof()));
+      read_path_file(options.paths, static_cast<std::size_t>(file->arm.dof()));
   if (!paths) return fail(std::move(paths.error()));
-  return match(files[0], std::move(*paths), options);
+  return match(std::make_shared<const ProblemFile>(std::move(*file)), std::move(*paths), options);
 }
 
-/// The paths for a robot, each among the spheres that it names.
-Result<std::vector<Job>> robot_jobs(const Options& options, std::optional<Robot>& robot,
-                                    std::vector<ProblemFile>& files) {
-  Result<Robot> loaded = load_robot(options.robot);
-  if (!loaded) return fail(std::move(loaded.error()));
-  robot = std::move(*loaded);
+/// The way of a robot from the first to the last row of a path, among the spheres that it names.
+Result<Job> robot_job(const Options& options, const Robot& robot, const VerifyRules& how,
+                      GivenPath path) {
+  const std::vector<double> none(robot.arm.home.begin(), robot.arm.home.end());
+  const std::vector<double>& start = path.rows.empty() ? none : path.rows.front();
+  const Result<ContactRules> rules = rules_of(options.rules, robot, start);
+  if (!rules) return fail(rules.error());
+  Result<RobotWorld> world = cover_robot(robot, path.spheres.value_or(kCoverBounds[1]), *rules);
+  if (!world) return fail(std::move(world.error()));
+  auto file = std::make_shared<const ProblemFile>(as_problem(robot, std::move(*world), path));
+  const ExactOptions exact{.margin = 0, .allow_depth = how.allow_depth, .rules = *rules};
+  const PlanProblem* problem = &file->problems.front();
+  return Job{std::move(file), problem, std::move(path), ExactChecker(robot.model, robot.arm, exact),
+             PathVerdict{}};
+}
+
+Result<std::vector<Job>> robot_jobs(const Options& options, const VerifyRules& rules) {
+  const Result<Robot> robot = load_robot(options.robot);
+  if (!robot) return fail(robot.error());
   Result<std::vector<GivenPath>> paths =
       read_path_file(options.paths, static_cast<std::size_t>(robot->arm.dof()));
   if (!paths) return fail(std::move(paths.error()));
-  std::map<double, std::vector<GivenPath>> by_bound;
-  for (GivenPath& path : *paths) {
-    by_bound[path.spheres.value_or(kCoverBounds[1])].push_back(std::move(path));
-  }
-  files.reserve(by_bound.size());  // jobs point to them
   std::vector<Job> jobs;
-  for (auto& [bound, of_bound] : by_bound) {
-    Result<RobotWorld> world = cover_robot(*robot, bound);
-    if (!world) return fail(std::move(world.error()));
-    files.push_back(as_problems(*robot, std::move(*world), of_bound));
-    for (std::size_t i = 0; i < of_bound.size(); ++i) {
-      jobs.push_back(
-          {&files.back(), &files.back().problems[i], std::move(of_bound[i]), PathVerdict{}});
-    }
+  for (GivenPath& path : *paths) {
+    Result<Job> job = robot_job(options, *robot, rules, std::move(path));
+    if (!job) return fail(std::move(job.error()));
+    jobs.push_back(std::move(*job));
   }
   return jobs;
 }
 
-/// @param robot  null: of spheres.
-Result<void> judge_all(std::vector<Job>& jobs, const Robot* robot, const VerifyRules& rules,
-                       int threads) {
+Result<void> judge_all(std::vector<Job>& jobs, const VerifyRules& rules, int threads) {
   Progress progress(text(msg::verify_progress), jobs.size());
   std::atomic<std::size_t> next = 0;
   run_in_threads(threads, [&](int) {
     for (std::size_t i = next++; i < jobs.size() && !interrupted(); i = next++) {
       Job& job = jobs[i];
       if (job.is_given())
-        job.verdict = verify_path(*job.file, *job.problem, job.given, rules, robot);
+        job.verdict = verify_path(*job.file, *job.problem, job.given, rules, job.exact);
       progress.advance();
     }
   });
@@ -268,12 +269,10 @@ Result<int> run(const Options& options) {
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   catch_interrupts();
-  std::vector<ProblemFile> files;
-  std::optional<Robot> robot;
-  Result<std::vector<Job>> jobs = options.in.empty() ? robot_jobs(options, robot, files)
-                                                     : file_jobs(options, *cylinders, files);
+  Result<std::vector<Job>> jobs =
+      options.in.empty() ? robot_jobs(options, *rules) : file_jobs(options, *cylinders);
   if (!jobs) return fail(jobs.error());
-  if (Result<void> done = judge_all(*jobs, robot ? &*robot : nullptr, *rules, *threads); !done) {
+  if (Result<void> done = judge_all(*jobs, *rules, *threads); !done) {
     return fail(done.error());
   }
   const std::string out = options.json ? report_json(*jobs) : report_text(*jobs);
@@ -285,6 +284,7 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "paths", options->paths, msg::verify_option_paths, "PATHS.json");
   add_robot_options(app, options->robot);
+  add_rule_options(app, options->rules);
   add_option(app, "--in", options->in, msg::verify_option_in, "PROBLEMS.json");
   add_option(app, "--step", options->step, msg::verify_option_step, "RAD");
   add_option(app, "--tol", options->tol, msg::verify_option_tol, "M");

@@ -41,13 +41,13 @@ double length_of(Row a, Row b) {
 class PathJudge {
  public:
   PathJudge(const ProblemFile& file, const PlanProblem& problem, const GivenPath& path,
-            const VerifyRules& rules, const Robot* robot)
+            const VerifyRules& rules, const std::optional<ExactChecker>& exact)
       : arm_(file.arm),
         set_(file.spheres),
         problem_(problem),
         path_(path),
         rules_(rules),
-        robot_(robot) {}
+        exact_(exact) {}
 
   Result<PathVerdict> run() {
     check_ends();
@@ -149,13 +149,10 @@ class PathJudge {
   }
 
   Result<void> walk_edges() {
-    const ExactOptions options{.margin = 0, .allow_depth = rules_.allow_depth};
-    if (robot_ != nullptr) {
-      return walk_edges(ExactChecker(robot_->model, robot_->arm, options),
-                        [](const std::string& geom) { return geom; });
-    }
+    if (exact_) return walk_edges(*exact_, [](const std::string& geom) { return geom; });
     const Result<SphereModel> made = sphere_model(arm_, set_, problem_.obstacles);
     if (!made) return fail(made.error());
+    const ExactOptions options{.margin = 0, .allow_depth = rules_.allow_depth};
     return walk_edges(ExactChecker(made->model, made->arm, options),
                       [&](const std::string& geom) { return made->parts.at(geom); });
   }
@@ -289,7 +286,7 @@ class PathJudge {
   const PlanProblem& problem_;
   const GivenPath& path_;
   const VerifyRules& rules_;
-  const Robot* robot_;
+  const std::optional<ExactChecker>& exact_;
   PathVerdict out_;
 };
 
@@ -297,8 +294,8 @@ class PathJudge {
 
 Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
                                 const GivenPath& path, const VerifyRules& rules,
-                                const Robot* robot) {
-  return PathJudge(file, problem, path, rules, robot).run();
+                                const std::optional<ExactChecker>& exact) {
+  return PathJudge(file, problem, path, rules, exact).run();
 }
 
 }  // namespace mjarm::app

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/mjarm/path_file.hpp"
 #include "apps/mjarm/plan/problem_file.hpp"
-#include "apps/mjarm/robot.hpp"
+#include "mjarm/collision/exact.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm::app {
@@ -35,10 +36,10 @@ struct PathVerdict {
 /// Judges a path with at least one row: its ends, its limits and edges by verify_edge(), MuJoCo's
 /// own collision detection, and what the file says of it. Of the edges the first that is faulty
 /// counts.
-/// @param robot  whose exact geometry MuJoCo looks at; null: that of the spheres.
+/// @param exact  whose geometry MuJoCo looks at; none: that of the spheres.
 /// @return an error where MuJoCo cannot make a model of the problem.
 [[nodiscard]] Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
                                               const GivenPath& path, const VerifyRules& rules,
-                                              const Robot* robot = nullptr);
+                                              const std::optional<ExactChecker>& exact = {});
 
 }  // namespace mjarm::app

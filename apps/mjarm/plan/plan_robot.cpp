@@ -35,7 +35,8 @@ struct Way {
   std::vector<double> start;
   std::vector<double> goal;      ///< joint values, or
   std::optional<ToolGoal> tool;  ///< a pose
-  std::vector<double> bounds;    ///< [m] of covers, to be tried one after the other
+  ContactRules rules;
+  std::vector<double> bounds;  ///< [m] of covers, to be tried one after the other
 };
 
 Result<double> angle_of(const char* option, const std::string& value) {
@@ -105,7 +106,8 @@ Result<void> no_tool_options(const RobotRequest& request) {
   return {};
 }
 
-Result<Way> read_way(const RobotRequest& request, const Arm& arm) {
+Result<Way> read_way(const RobotRequest& request, const Robot& robot) {
+  const Arm& arm = robot.arm;
   Way out;
   out.start.assign(arm.home.begin(), arm.home.end());
   if (!request.start.empty()) {
@@ -113,6 +115,9 @@ Result<Way> read_way(const RobotRequest& request, const Arm& arm) {
     if (!start) return fail(std::move(start.error()));
     out.start = std::move(*start);
   }
+  Result<ContactRules> rules = rules_of(request.rules, robot, out.start);
+  if (!rules) return fail(std::move(rules.error()));
+  out.rules = std::move(*rules);
   if (request.goal.empty() && request.pos.empty()) {
     return fail(Errc::usage, text(msg::app_need_one_of, "--goal", "--pos"));
   }
@@ -170,7 +175,7 @@ struct Told {
 Result<Told> answer(const Robot& robot, const Way& way, const PlanOptions& options, bool timing) {
   Told out;
   for (const double bound : way.bounds) {
-    Result<RobotWorld> world = cover_robot(robot, bound);
+    Result<RobotWorld> world = cover_robot(robot, bound, way.rules);
     if (!world) return fail(std::move(world.error()));
     const FastRobot& fast = world->checker.robot();
     PlanProblem problem;
@@ -209,6 +214,7 @@ void add_robot_request(CLI::App& app, RobotRequest& request) {
   add_option(app, "--lean", request.lean, msg::plan_option_lean, "ANGLE");
   add_option(app, "--turn", request.turn, msg::plan_option_turn, "ANGLE");
   add_option(app, "--keep-upright", request.upright, msg::plan_option_upright, "ANGLE");
+  add_rule_options(app, request.rules);
   add_option(app, "--spheres", request.spheres, msg::plan_option_spheres, "M");
 }
 
@@ -221,7 +227,7 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
                            const std::string& out, bool timing) {
   const Result<Robot> robot = load_robot(request.robot);
   if (!robot) return fail(robot.error());
-  const Result<Way> way = read_way(request, robot->arm);
+  const Result<Way> way = read_way(request, *robot);
   if (!way) return fail(way.error());
   PlanOptions how = options;
   if (Result<void> read = read_upright(request, robot->arm, *way, how); !read) {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "apps/mjarm/plan/robot_world.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/planning/plan_path.hpp"
@@ -17,7 +18,8 @@ struct RobotRequest {
   std::string task;                ///< pose, position or axis
   std::string within, lean, turn;  ///< how far off the pose will do
   std::string upright;             ///< angle by which the tool may lean on its way
-  std::string spheres;             ///< bound of the cover
+  RuleWords rules;
+  std::string spheres;  ///< bound of the cover
 };
 
 /// Adds `--robot` and all that belongs to it.

@@ -105,12 +105,54 @@ TEST_F(PlanRobot, SaysWhatIsHitAtTheGoal) {
 }
 
 TEST_F(PlanRobot, SameBytesEveryTime) {
-  const Words words{"--pos", kPlaceBehind,       "--euler", "180deg,0,0", "--keep-upright",
+  const Words words{"--pos", kPlaceBehind,  "--euler", "180deg,0,0", "--keep-upright",
                     "10deg", "--no-timing", "--start", kBefore};
   ASSERT_EQ(plan(words).exit_code, 0);
   const std::string first = folder_.read("path.json");
   ASSERT_EQ(plan(words).exit_code, 0);
   EXPECT_EQ(folder_.read("path.json"), first);
+}
+
+/// The walled UR5e with a rod that stands where the tool begins.
+std::string with_rod(const support::TempFolder& folder) {
+  const std::string file = model_file("universal_robots_ur5e/wall.xml");
+  return folder
+      .write("rod.xml", "<mujoco><include file=\"" + file + R"("/><worldbody>
+        <body name="rod" pos="0.3 -0.45 0.06"><freejoint/>
+          <geom name="rod" type="capsule" size="0.01 0.04"/></body>
+        </worldbody></mujoco>)")
+      .string();
+}
+
+TEST_F(PlanRobot, CarriesWhatItHoldsOverTheWall) {
+  const std::string robot = with_rod(folder_);
+  Words words{"--start", kBefore, "--goal", kBehind, "--allow-outside"};
+  const auto clearance_of_top = [&] {
+    double least = 10;
+    const json path = answer();
+    for (const json& edge : path.at("certificate")) {
+      least = std::min(least, edge.at("clearance").get<double>());
+    }
+    return least;
+  };
+  ASSERT_EQ(plan(words, robot.c_str()).exit_code, 0);
+  EXPECT_GT(clearance_of_top(), 0);
+  const std::string bare = folder_.read("path.json");
+  words.insert(words.end(), {"--hold", "rod"});
+  ASSERT_EQ(plan(words, robot.c_str()).exit_code, 0);
+  EXPECT_NE(folder_.read("path.json"), bare);
+  const auto held =
+      mjarm({"verify", paths(), "--robot", robot, "--allow-outside", "--hold", "rod"});
+  EXPECT_EQ(held.exit_code, 0) << held.err;
+
+  words.back() = "rood";
+  const auto wrong = plan(words, robot.c_str());
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(only_line(wrong).find("--hold: there is no body \"rood\""), std::string::npos);
+  words[words.size() - 2] = "--allow";
+  const auto lone = plan(words, robot.c_str());
+  EXPECT_EQ(lone.exit_code, 2);
+  EXPECT_NE(only_line(lone).find("--allow"), std::string::npos);
 }
 
 TEST_F(PlanRobot, WrongWordsGetOneLine) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "apps/mjarm/path_file.hpp"
 #include "apps/mjarm/plan/problem_file.hpp"
@@ -20,12 +22,27 @@ struct RobotWorld {
 /// [m] of the spheres where nothing else is asked for: coarse ones first.
 inline constexpr double kCoverBounds[] = {0.012, 0.003};
 
+/// What a user adds to the model's rules about contacts.
+struct RuleWords {
+  std::vector<std::string> hold;   ///< bodies that hang on the tool
+  std::vector<std::string> allow;  ///< `A,B`: bodies or geoms that may touch
+
+  [[nodiscard]] bool any() const { return !hold.empty() || !allow.empty(); }
+};
+
+/// Adds `--hold BODY` and `--allow A,B`.
+void add_rule_options(CLI::App& app, RuleWords& words);
+
+/// The rules, where bodies are held as they stand while the arm is at `q`, shape (dof,).
+[[nodiscard]] Result<ContactRules> rules_of(const RuleWords& words, const Robot& robot,
+                                            std::span<const double> q);
+
 /// Covers a robot; what its gripper can do counts.
 /// @param bound  [m] by which spheres may stick out, > 0.
-[[nodiscard]] Result<RobotWorld> cover_robot(const Robot& robot, double bound);
+[[nodiscard]] Result<RobotWorld> cover_robot(const Robot& robot, double bound,
+                                             const ContactRules& rules);
 
-/// The same as a file of problems, each the way from the first to the last row of a path.
-[[nodiscard]] ProblemFile as_problems(const Robot& robot, RobotWorld world,
-                                      std::span<const GivenPath> paths);
+/// The same as a file of one problem, the way from the first to the last row of a path.
+[[nodiscard]] ProblemFile as_problem(const Robot& robot, RobotWorld world, const GivenPath& path);
 
 }  // namespace mjarm::app
