@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjarm/collision/edge_check.hpp"
@@ -16,6 +17,7 @@ namespace mjarm {
 enum class Planner {
   rrt_connect,  ///< two trees that grow towards each other (Kuffner and LaValle, ICRA 2000)
   rrt_star,     ///< one tree that is rewired while it grows (Karaman and Frazzoli, IJRR 2011)
+  ompl,         ///< PlanOptions::ompl_planner, where OMPL is built in (ompl_planners.hpp)
 };
 
 /// How a path is searched. Every default is usable as is.
@@ -32,6 +34,10 @@ struct PlanOptions {
   int rounds = 0;
   /// [s] > 0: as many rounds as there is time for. What is found then depends on the machine.
   double time_budget = 0;
+  /// For Planner::ompl: one of ompl_planner_names(); must outlive the options. `samples` count as
+  /// above; planners that go on after their first path do so for `time_budget` where one is given,
+  /// and there are no rounds.
+  std::string_view ompl_planner = "RRTConnect";
 };
 
 enum class PlanErrc {
@@ -43,6 +49,8 @@ enum class PlanErrc {
   goals_hit,      ///< no goal within the limits is free of collisions
   budget_spent,   ///< PlanOptions::samples did not do
   unproved,       ///< a path was found, but an edge of it could not be proved (never seen)
+  not_available,  ///< OMPL is not built in, or it is and has no PlanOptions::ompl_planner
+  back_end,       ///< OMPL stopped with an error
 };
 
 /// Why there is no path.
@@ -58,7 +66,7 @@ struct PlanFailure {
 /// What a search did.
 struct PlanCounts {
   int samples = 0;  ///< configurations drawn
-  int nodes = 0;    ///< of all trees
+  int nodes = 0;    ///< of all trees; those of OMPL are not counted
   int edges = 0;    ///< edges that were looked at, those of shortcuts included
 };
 

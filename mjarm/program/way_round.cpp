@@ -36,6 +36,8 @@ const char* name_of(PlanErrc reason) {
       return "joint_limit";
     case PlanErrc::budget_spent:
     case PlanErrc::unproved:
+    case PlanErrc::not_available:
+    case PlanErrc::back_end:
       return "no_path";
     case PlanErrc::bad_input:
       break;
