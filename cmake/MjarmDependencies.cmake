@@ -23,6 +23,17 @@ if(MJARM_MPI)
   find_package(MPI REQUIRED COMPONENTS CXX)
 endif()
 
+# The planners of OMPL are a choice.
+set(MJARM_HAS_OMPL OFF)
+if(MJARM_OMPL STREQUAL "AUTO")
+  find_package(OMPL 1.5...<2 QUIET)
+elseif(MJARM_OMPL)
+  find_package(OMPL 1.5...<2 REQUIRED)
+endif()
+if(MJARM_OMPL AND OMPL_FOUND)
+  set(MJARM_HAS_OMPL ON)
+endif()
+
 # Debian 12 names the target of yaml-cpp 0.7 without a namespace.
 if(NOT TARGET yaml-cpp::yaml-cpp)
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)

@@ -45,6 +45,11 @@ if(MJARM_SANITIZE)
   target_compile_options(mjarm_options INTERFACE -fsanitize=${MJARM_SANITIZE}
                                                  -fno-omit-frame-pointer)
   target_link_options(mjarm_options INTERFACE -fsanitize=${MJARM_SANITIZE})
+  if(MJARM_SANITIZE MATCHES "address")
+    # Else Eigen would allocate in another way than in libraries that are built without sanitizers,
+    # and each free what the other has allocated.
+    target_compile_definitions(mjarm_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
+  endif()
   if(MJARM_SANITIZE MATCHES "undefined")
     target_compile_options(mjarm_options INTERFACE -fno-sanitize-recover=undefined)
   endif()

@@ -1,6 +1,7 @@
 # Part of ./dev: brings the machine to where mjarm can be built. Sourced, never run.
 
-# What a run needs, and what the tests need besides. Optional ones: not every release has them.
+# What a run needs, and what the tests need besides. Optional ones: not every release has them, and
+# nothing asks for them alone.
 run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libexpected-dev
   libfmt-dev libspdlog-dev nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libcli11-dev
   libpng-dev libcairo2-dev libglfw3-dev libegl-dev libgl-dev libopengl-dev libgl1-mesa-dri
@@ -8,6 +9,7 @@ run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libe
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev ccache xvfb xauth xdotool ffmpeg
   libopenmpi-dev openmpi-bin"
 optional_packages="libosmesa6"
+optional_test_packages="libompl-dev"
 
 # One process at a time sets up or builds in this folder.
 lock() {
@@ -182,7 +184,10 @@ clang_tool() {
 # set_up_machine run|test: packages and MuJoCo. Does nothing where all is there.
 set_up_machine() {
   local packages=$run_packages
-  [[ $1 == test ]] && packages="$packages $test_packages"
+  if [[ $1 == test ]]; then
+    packages="$packages $test_packages"
+    optional_packages="$optional_packages $optional_test_packages"
+  fi
   set_up_packages $packages
   if [[ -z ${MUJOCO_ROOT:-} && ! -e $mujoco ]]; then
     step "MuJoCo 4.0.1: downloading" fetch_mujoco || exit

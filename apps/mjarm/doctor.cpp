@@ -17,6 +17,7 @@
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/model/mujoco_library.hpp"
+#include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/render/gl_context.hpp"
 
 namespace mjarm::app {
@@ -87,6 +88,12 @@ void look_at_ffmpeg(Findings& findings) {
       file.empty() ? text(msg::render_command_doctor_none) : file);
 }
 
+/// Only users of its planners need it.
+void look_at_ompl(Findings& findings) {
+  const std::string version(ompl_version());
+  add(findings, "ompl", "OMPL", version, version.empty() ? text(msg::app_doctor_no_ompl) : version);
+}
+
 void look_at_models(Findings& findings) {
   std::vector<JsonDoc> found;
   std::string names;
@@ -130,6 +137,7 @@ Result<int> run(bool json) {
   look_at_machine(findings);
   look_at_graphics(findings);
   look_at_ffmpeg(findings);
+  look_at_ompl(findings);
   look_at_models(findings);
   look_at_meshes(findings);
   const bool fine = findings.problems.empty();

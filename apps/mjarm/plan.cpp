@@ -17,12 +17,14 @@
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/threads.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/planning/ompl_planners.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -31,23 +33,39 @@ constexpr int kMostSamples = 10'000'000;
 
 struct Options {
   BatchOptions batch;
-  std::string planner = "rrtc", seed = "1", threads = "1", samples = "100000", budget, problem;
+  std::string planner = "rrtc", seed = "1", threads = "1", samples, budget, problem;
   RobotRequest request;
   bool no_timing = false;
 };
 
+/// `rrtc`, `rrtstar`, `ompl` or `ompl:NAME`.
+Result<void> choose_planner(const std::string& word, PlanOptions& out) {
+  static const std::vector<Planner> kKinds{Planner::rrt_connect, Planner::rrt_star, Planner::ompl};
+  std::vector<std::string> words{"rrtc", "rrtstar", "ompl"};
+  for (const std::string& name : ompl_planner_names()) words.push_back("ompl:" + name);
+  const Result<std::size_t> chosen = parse_choice("--planner", word, words);
+  if (!chosen) return fail(chosen.error());
+  out.planner = kKinds[std::min(*chosen, kKinds.size() - 1)];
+  if (*chosen >= kKinds.size()) out.ompl_planner = ompl_planner_names()[*chosen - kKinds.size()];
+  if (out.planner == Planner::ompl && ompl_version().empty()) {
+    return fail(Errc::not_available, text(msg::planning_no_ompl));
+  }
+  return {};
+}
+
 Result<PlanOptions> read_options(const Options& options) {
   PlanOptions out;
-  static const std::vector<std::string> kPlanners{"rrtc", "rrtstar"};
-  const Result<std::size_t> planner = parse_choice("--planner", options.planner, kPlanners);
-  if (!planner) return fail(planner.error());
-  out.planner = *planner == 0 ? Planner::rrt_connect : Planner::rrt_star;
+  if (Result<void> chosen = choose_planner(options.planner, out); !chosen) {
+    return fail(std::move(chosen.error()));
+  }
   const Result<std::uint64_t> seed = parse_whole("--seed", options.seed);
   if (!seed) return fail(seed.error());
   out.seed = *seed;
-  const Result<int> samples = parse_count("--samples", options.samples, kMostSamples);
-  if (!samples) return fail(samples.error());
-  out.samples = *samples;
+  if (!options.samples.empty()) {
+    const Result<int> samples = parse_count("--samples", options.samples, kMostSamples);
+    if (!samples) return fail(samples.error());
+    out.samples = *samples;
+  }
   if (!options.budget.empty()) {
     const Result<double> budget = parse_quantity(options.budget, Quantity::time);
     if (!budget) return fail(in_option("--time-budget", budget.error()));

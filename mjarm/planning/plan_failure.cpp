@@ -1,4 +1,6 @@
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/plan_path.hpp"
 
 namespace mjarm {
@@ -61,6 +63,13 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return text(msg::planning_budget, failure.samples, failure.nearest);
     case PlanErrc::unproved:
       return text(msg::planning_unproved);
+    case PlanErrc::not_available:
+      if (ompl_version().empty()) return text(msg::planning_no_ompl);
+      return text(msg::planning_unknown_ompl, listed(ompl_planner_names()));
+    case PlanErrc::tilt_with_ompl:
+      return text(msg::planning_tilt_with_ompl);
+    case PlanErrc::back_end:
+      return text(msg::planning_ompl_failed);
   }
   return text(msg::planning_bad_input, robot.dof());
 }

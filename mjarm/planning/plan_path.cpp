@@ -45,6 +45,7 @@ Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<con
   const auto problem = detail::look_at_problem(checker, start, goals, options);
   if (!problem) return tl::unexpected(problem.error());
   if (options.planner == Planner::rrt_star) return detail::rrt_star(*problem, options);
+  if (options.planner == Planner::ompl) return detail::ompl_search(*problem, options);
   return detail::rrt_connect(*problem, options);
 }
 
@@ -78,7 +79,8 @@ Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
   const Stopwatch watch;
   Result<RawPath, PlanFailure> raw = find_path(checker, start, goals, options);
   if (!raw) return tl::unexpected(raw.error());
-  if (options.rounds > 0 || options.time_budget > 0) {
+  const bool again = options.rounds > 0 || options.time_budget > 0;
+  if (again && options.planner != Planner::ompl) {
     const double left_us = 1e6 * options.time_budget - watch.us();
     *raw = improve_path(checker, start, goals, std::move(*raw), options, left_us);
   }

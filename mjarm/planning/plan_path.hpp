@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjarm/collision/edge_check.hpp"
@@ -18,6 +19,7 @@ namespace mjarm {
 enum class Planner {
   rrt_connect,  ///< two trees that grow towards each other (Kuffner and LaValle, ICRA 2000)
   rrt_star,     ///< one tree that is rewired while it grows (Karaman and Frazzoli, IJRR 2011)
+  ompl,         ///< PlanOptions::ompl_planner, where OMPL is built in (ompl_planners.hpp)
 };
 
 /// How a path is searched. Every default is usable as is.
@@ -37,20 +39,27 @@ struct PlanOptions {
   /// Keeps the tool within a cone, proved for every edge to 1e-8 of the limit. Paths have many
   /// corners then.
   std::optional<TiltLimit> tilt = {};
+  /// For Planner::ompl: one of ompl_planner_names(); must outlive the options. `samples` count as
+  /// above; planners that go on after their first path do so for `time_budget` where one is given,
+  /// and there are no rounds.
+  std::string_view ompl_planner = "RRTConnect";
 };
 
 enum class PlanErrc {
-  bad_input,      ///< no goal, a wrong size, a number that is not finite
-  bad_tilt,       ///< PlanOptions::tilt is out of range
-  base_hit,       ///< a link at rest overlaps an obstacle
-  start_outside,  ///< the start is outside of the joint limits
-  start_hit,      ///< the start is in collision
-  goals_outside,  ///< every goal is outside of the joint limits
-  goals_hit,      ///< no goal within the limits is free of collisions
-  start_tilted,   ///< the tool leans too far at the start
-  goals_tilted,   ///< the tool leans too far at every goal that is free of collisions
-  budget_spent,   ///< PlanOptions::samples did not do
-  unproved,       ///< a path was found, but an edge of it could not be proved (never seen)
+  bad_input,       ///< no goal, a wrong size, a number that is not finite
+  bad_tilt,        ///< PlanOptions::tilt is out of range
+  base_hit,        ///< a link at rest overlaps an obstacle
+  start_outside,   ///< the start is outside of the joint limits
+  start_hit,       ///< the start is in collision
+  goals_outside,   ///< every goal is outside of the joint limits
+  goals_hit,       ///< no goal within the limits is free of collisions
+  start_tilted,    ///< the tool leans too far at the start
+  goals_tilted,    ///< the tool leans too far at every goal that is free of collisions
+  budget_spent,    ///< PlanOptions::samples did not do
+  unproved,        ///< a path was found, but an edge of it could not be proved (never seen)
+  not_available,   ///< OMPL is not built in, or it is and has no PlanOptions::ompl_planner
+  tilt_with_ompl,  ///< PlanOptions::tilt is for our own planners
+  back_end,        ///< OMPL stopped with an error
 };
 
 /// Why there is no path.
@@ -68,7 +77,7 @@ struct PlanFailure {
 /// What a search did.
 struct PlanCounts {
   int samples = 0;  ///< configurations drawn
-  int nodes = 0;    ///< of all trees
+  int nodes = 0;    ///< of all trees; those of OMPL are not counted
   int edges = 0;    ///< edges that were looked at, those of shortcuts included
 };
 

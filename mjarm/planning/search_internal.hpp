@@ -83,6 +83,8 @@ inline void between(std::span<const double> a, std::span<const double> b, double
                                                        const PlanOptions& options);
 [[nodiscard]] Result<RawPath, PlanFailure> rrt_star(const SearchProblem& problem,
                                                     const PlanOptions& options);
+[[nodiscard]] Result<RawPath, PlanFailure> ompl_search(const SearchProblem& problem,
+                                                       const PlanOptions& options);
 
 /// Shortens `path` in place by so many attempts to cut corners; its edges stay proved.
 /// @param tilt  may be null.

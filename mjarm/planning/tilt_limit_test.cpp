@@ -10,6 +10,7 @@
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/planning/covered_arm_test.hpp"
 #include "mjarm/planning/goal_region.hpp"
+#include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/tilt_keeper_internal.hpp"
 
 namespace mjarm {
@@ -169,6 +170,10 @@ TEST(TiltPlan, SaysWhoLeansAndRefusesLimitsThatAreNone) {
     EXPECT_NE(why(start, start, {.tilt = TiltLimit{.most = most}}).find("expected a tilt"),
               std::string::npos);
   }
+  PlanOptions ompl = options;
+  ompl.planner = Planner::ompl;
+  const bool built_in = !ompl_version().empty();
+  EXPECT_NE(why(start, start, ompl).find(built_in ? "upright" : "libompl-dev"), std::string::npos);
   const TiltLimit longer{.most = 0.1, .axis_T = {0, 0, 2}};
   EXPECT_NE(why(start, start, {.tilt = longer}).find("length 1"), std::string::npos);
 }

@@ -36,11 +36,14 @@ const char* name_of(PlanErrc reason) {
       return "joint_limit";
     case PlanErrc::budget_spent:
     case PlanErrc::unproved:
+    case PlanErrc::not_available:
+    case PlanErrc::back_end:
       return "no_path";
     case PlanErrc::start_tilted:
     case PlanErrc::goals_tilted:
       return "tilt";
     case PlanErrc::bad_tilt:
+    case PlanErrc::tilt_with_ompl:
     case PlanErrc::bad_input:
       break;
   }

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "apps/mjarm/plan/two_problems_test.hpp"
+#include "mjarm/planning/ompl_planners.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -102,6 +103,37 @@ TEST_F(Plan, ATimeBudgetGivesAPathNoLonger) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_LE(json::parse(result.out).at("round").at("cost").get<double>(),
             fast.at("round").at("cost").get<double>() + 1e-9);
+}
+
+TEST_F(Plan, PlannersOfOmplSolveWhatOursSolve) {
+  if (ompl_version().empty()) GTEST_SKIP() << "built without OMPL (libompl-dev)";
+  for (const char* planner : {"ompl", "ompl:RRTConnect", "ompl:BITstar"}) {
+    const auto one =
+        plan(two_problems(), {"--no-timing", "--samples", "500", "--planner", planner});
+    ASSERT_EQ(one.exit_code, 0) << one.err;
+    EXPECT_TRUE(one.err.empty()) << one.err;  // OMPL itself says nothing
+    EXPECT_GT(json::parse(one.out).at("round").at("path").size(), 2u);
+    EXPECT_EQ(json::parse(one.out).at("straight").at("path").size(), 2u);
+    const auto two = plan(two_problems(), {"--no-timing", "--samples", "500", "--planner", planner,
+                                           "--threads", "2"});
+    EXPECT_EQ(two.out, one.out);
+  }
+}
+
+TEST_F(Plan, PlannersOfOmplThatAreNotBuiltInSayHowToGetThem) {
+  if (!ompl_version().empty()) GTEST_SKIP() << "OMPL is built in";
+  const auto result = plan(two_problems(), {"--planner", "ompl"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(only_line(result).find("libompl-dev"), std::string::npos);
+}
+
+TEST_F(Plan, MisspeltPlannersGetTheNearestWord) {
+  for (const auto& [given, meant] : std::vector<std::pair<std::string, std::string>>{
+           {"rrtcc", "\"rrtc\""}, {"ompl:BITstra", "\"ompl:BITstar\""}, {"omlp", "\"ompl\""}}) {
+    const auto result = plan(two_problems(), {"--planner", given});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(only_line(result).find("did you mean " + meant), std::string::npos) << result.err;
+  }
 }
 
 struct Fault {
