@@ -32,6 +32,7 @@ struct PlanOptions {
   int rounds = 0;
   /// [s] > 0: as many rounds as there is time for. What is found then depends on the machine.
   double time_budget = 0;
+  bool keep_trees = false;  ///< hand over what was searched, to be drawn, say
 };
 
 enum class PlanErrc {
@@ -62,11 +63,20 @@ struct PlanCounts {
   int edges = 0;    ///< edges that were looked at, those of shortcuts included
 };
 
+/// A tree of a search: configurations that are joined by proved edges.
+struct SearchTree {
+  std::vector<JointVec> q;   ///< nodes, each after the one it was reached from, but for rrt_star
+  std::vector<int> parents;  ///< (n,) the node that each was reached from; -1: a root
+};
+
 /// A path of straight edges in joint space.
 struct RawPath {
   std::vector<JointVec> q;  ///< corners, start and goal included, at least two
   int goal = 0;             ///< index of the goal reached
   PlanCounts counts;
+  /// With PlanOptions::keep_trees those of the search that found it: from the start and from the
+  /// goals for rrt_connect, from the start for rrt_star.
+  std::vector<SearchTree> trees;
 };
 
 /// A path whose every edge is proved to be free.
@@ -76,6 +86,7 @@ struct PlannedPath {
   double cost = 0;                     ///< [rad or m] sum of the L2 lengths of the edges
   std::vector<EdgeCertificate> proof;  ///< one an edge
   PlanCounts counts;
+  std::vector<SearchTree> trees;  ///< as in RawPath
 };
 
 /// Searches a path from `start` to any of `goals`. Every edge of it is proved free by check_edge().
