@@ -12,10 +12,12 @@
 #include "apps/mjarm/command.hpp"
 #include "apps/mjarm/options.hpp"
 #include "apps/mjarm/plan/plan_answer.hpp"
+#include "apps/mjarm/plan/plan_show.hpp"
 #include "apps/mjarm/plan/problem_file.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/plan_show.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
@@ -32,6 +34,7 @@ struct Options {
   BatchOptions batch;
   std::string planner = "rrtc", seed = "1", threads = "1", samples = "100000", budget, problem;
   bool no_timing = false;
+  PlanShowArguments show;
 };
 
 Result<PlanOptions> read_options(const Options& options) {
@@ -74,8 +77,9 @@ Result<void> select(const Options& options, ProblemFile& file) {
                                     did_you_mean(options.problem, ids)));
 }
 
+/// @param show  how the only problem is shown, after its answer is written.
 Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const PlanOptions& plan,
-                       int threads, const Options& options) {
+                       int threads, const Options& options, const std::optional<PlanShow>& show) {
   const std::size_t count = file.problems.size();
   std::vector<PlanAnswer> answers(count);
   Progress progress(text(msg::plan_progress), count);
@@ -104,6 +108,10 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
   if (Result<void> written = write_answer(options.batch.out, out); !written) {
     return fail(std::move(written.error()));
   }
+  if (failed == 0 && show) {
+    const auto shown = show_plan_of_spheres(*show, robot, file.problems[0], *answers[0].path);
+    if (!shown) return fail(shown.error());
+  }
   if (failed == 0) return 0;
   log_error(text(msg::plan_some_failed, options.batch.in, first_id, first_why, failed, count));
   return 1;
@@ -111,16 +119,24 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
 
 Result<int> run(const Options& options) {
   if (options.batch.in.empty()) return fail(Errc::usage, text(msg::plan_need_file));
-  const Result<PlanOptions> plan = read_options(options);
+  Result<PlanOptions> plan = read_options(options);
   if (!plan) return fail(plan.error());
+  const Result<std::optional<PlanShow>> show = read_plan_show(options.show);
+  if (!show) return fail(show.error());
+  plan->keep_trees = show->has_value();
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   Result<ProblemFile> file = read_problem_file(options.batch.in);
   if (!file) return fail(std::move(file.error()));
   if (Result<void> found = select(options, *file); !found) return fail(std::move(found.error()));
+  if (*show && file->problems.size() != 1) {
+    const std::string first = file->problems.empty() ? "" : file->problems.front().id;
+    return fail(Errc::usage,
+                text(msg::plan_show_one, options.batch.in, file->problems.size(), first));
+  }
   const Result<FastRobot> robot = FastRobot::make(file->arm, file->spheres);
   if (!robot) return fail(robot.error().code, options.batch.in + ": " + robot.error().what);
-  return answer_all(*file, *robot, *plan, *threads, options);
+  return answer_all(*file, *robot, *plan, *threads, options, *show);
 }
 
 Run setup(CLI::App& app) {
@@ -134,6 +150,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--seed", options->seed, msg::plan_option_seed, "N");
   add_option(app, "--threads", options->threads, msg::plan_option_threads, "N");
   add_flag(app, "--no-timing", options->no_timing, msg::app_option_no_timing);
+  add_plan_show_options(app, options->show);
   return [options] { return run(*options); };
 }
 
