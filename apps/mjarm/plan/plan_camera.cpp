@@ -21,10 +21,11 @@ constexpr std::size_t kMostWatched = 120;             // points
 constexpr double kReachShare = 1.5;  // what is so much farther than the arm gets need not be seen
 constexpr double kLittle = 0.03;     // of arm and path may be hidden by a solid
 // What a view is worth, beside the share of what it shows:
-constexpr double kBroad = 0.25;   // a way of the tool that is seen from its broad side
-constexpr double kNear = 0.15;    // all things large
-constexpr double kSteep = 0.08;   // less, where it looks steeply up or down [1/rad]
-constexpr double kUsual = -0.45;  // [rad] elevation that needs no reason
+constexpr double kBehindArm = 0.6;  // less, where the arm is before the way of the tool
+constexpr double kBroad = 0.25;     // a way of the tool that is seen from its broad side
+constexpr double kNear = 0.15;      // all things large
+constexpr double kSteep = 0.08;     // less, where it looks steeply up or down [1/rad]
+constexpr double kUsual = -0.45;    // [rad] elevation that needs no reason
 
 /// The corners of what a solid fills, in its frame.
 struct CornersOf {
@@ -132,8 +133,20 @@ std::span<const Obstacle> blocking_solids(const PlanSubject& subject) {
   return solids.first(std::min(solids.size(), kMostBlocking));
 }
 
+/// Whether the arm itself, where it is drawn, hides a point that is not beside it.
+bool arm_hides(std::span<const PlacedSphere> arm, const Vector3d& from_W, const Vector3d& to_W) {
+  constexpr double kBeside = 0.05;  // [m]
+  const Vector3d way = to_W - from_W;
+  return std::ranges::any_of(arm, [&](const PlacedSphere& sphere) {
+    const double share = way.dot(sphere.p_W - from_W) / way.squaredNorm();
+    return share < 1 && (from_W + share * way - sphere.p_W).norm() < sphere.radius &&
+           (to_W - sphere.p_W).norm() > sphere.radius + kBeside;
+  });
+}
+
 double value_of(const PlanSubject& subject, const PlanDrawing& drawing,
-                std::span<const Vector3d> watched, const CameraView& view, double nearest) {
+                std::span<const Vector3d> watched, std::span<const PlacedSphere> arm,
+                const CameraView& view, double nearest) {
   const Vector3d place = camera_place(view);
   double seen = 0;
   for (const Vector3d& p_W : watched) {
@@ -142,14 +155,16 @@ double value_of(const PlanSubject& subject, const PlanDrawing& drawing,
     seen += hidden ? 0 : 1;
   }
   const Vector3d forward = (view.lookat_W - place).normalized();
-  double across = 0, all = 1e-9;
+  double across = 0, all = 1e-9, behind = 0;
   const std::vector<Vector3d>& way = drawing.tool_way();
+  for (const Vector3d& p_W : way) behind += arm_hides(arm, place, p_W) ? 1 : 0;
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Vector3d piece = way[i] - way[i - 1];
     across += (piece - forward.dot(piece) * forward).norm();
     all += piece.norm();
   }
-  return seen / static_cast<double>(watched.size()) + kBroad * across / all +
+  return seen / static_cast<double>(watched.size()) -
+         kBehindArm * behind / static_cast<double>(way.size()) + kBroad * across / all +
          kNear * nearest / view.distance - kSteep * std::abs(view.elevation - kUsual);
 }
 
@@ -158,6 +173,8 @@ double value_of(const PlanSubject& subject, const PlanDrawing& drawing,
 CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing, double aspect) {
   const std::vector<FramedBall> balls = balls_of(subject, drawing);
   const std::vector<Vector3d> watched = watched_of(subject, drawing);
+  const std::vector<PlacedSphere> arm = place_spheres(
+      subject.checker.robot(), mjarm::view(drawing.way().at(drawing.way().tightest())));
   std::vector<CameraView> views;
   for (const double elevation : kElevations) {
     for (int k = 0; k < kAzimuths; ++k) {
@@ -170,7 +187,7 @@ CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing, dou
   const CameraView* best = nullptr;
   double most = 0;
   for (const CameraView& view : views) {
-    const double value = value_of(subject, drawing, watched, view, nearest);
+    const double value = value_of(subject, drawing, watched, arm, view, nearest);
     if (best != nullptr && value <= most) continue;
     best = &view;
     most = value;

@@ -18,8 +18,9 @@ constexpr Rgba kStart = {0.15F, 0.60F, 0.30F, 1};
 constexpr Rgba kGoal = {0.15F, 0.35F, 0.85F, 1};
 constexpr Rgba kCorner = {0.15F, 0.15F, 0.18F, 1};
 constexpr Rgba kUnknown = {0.55F, 0.60F, 0.66F, 1};
-constexpr float kGhost = 0.45F;  // how dense ghosts are
-constexpr float kCornerGhost = 0.14F;
+constexpr float kEndPosture = 0.6F;  // how dense they are
+constexpr float kCornerPosture = 0.2F;
+constexpr std::size_t kMostPostures = 8;  // of corners
 constexpr float kSphere = 0.45F;
 constexpr float kPairSphere = 0.85F;
 constexpr double kPathStep = 0.02;      // [rad or m, L2] between places of the path
@@ -48,6 +49,16 @@ double work_of(const SphereSet& set, const Obstacles& obstacles) {
     parts += static_cast<double>(cloud.points_W.size());
   }
   return parts * static_cast<double>(set.size());
+}
+
+/// Where the arm stands, its joints and its tool, in the world.
+std::vector<Eigen::Vector3d> chain_of(const Arm& arm, const JointVec& q) {
+  std::vector<Pose> X_WJ(arm.joints.size());
+  const Pose X_WT = fk_all(arm, view(q), X_WJ);
+  std::vector<Eigen::Vector3d> out;
+  for (const Pose& X : X_WJ) out.push_back(X.p);
+  out.push_back(X_WT.p);
+  return out;
 }
 
 bool has_obstacles(const Obstacles& obstacles) {
@@ -140,7 +151,7 @@ Rgba clearance_color(double clearance) {
 PlanDrawing::PlanDrawing(const PlanSubject& subject) : subject_(&subject), way_(subject.path) {
   draw_path();
   draw_trees();
-  draw_ghosts();
+  draw_postures();
 }
 
 void PlanDrawing::draw_path() {
@@ -210,18 +221,22 @@ void PlanDrawing::draw_trees() {
   });
 }
 
-void PlanDrawing::draw_ghosts() {
-  const auto ghost = [this](const JointVec& q, const Rgba& color, float alpha) {
-    OverlayGhost out = ghost_of(subject_->arm, view(q));
-    out.color = with_alpha(color, alpha);
-    return out;
+/// Rods rather than the arm once more: it would hide what it passes.
+void PlanDrawing::draw_postures() {
+  const auto add = [this](Overlay& overlay, const JointVec& q, const Rgba& color, double radius) {
+    const std::vector<Eigen::Vector3d> chain = chain_of(subject_->arm, q);
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      overlay.capsules.push_back(
+          {.from_W = chain[i - 1], .to_W = chain[i], .radius = radius, .color = color});
+    }
   };
   const std::vector<JointVec>& q = subject_->path.q;
-  ends_.ghosts = {ghost(q.front(), kStart, kGhost), ghost(q.back(), kGoal, kGhost)};
-  // As many as are drawn, evenly.
-  const std::size_t corners = q.size() - 2, most = std::min(corners, kMostGhosts - 2);
+  add(ends_, q.front(), with_alpha(kStart, kEndPosture), 0.016);
+  add(ends_, q.back(), with_alpha(kGoal, kEndPosture), 0.016);
+  // Evenly some of them, where there are many.
+  const std::size_t corners = q.size() - 2, most = std::min(corners, kMostPostures);
   for (std::size_t i = 0; i < most; ++i) {
-    corners_.ghosts.push_back(ghost(q[1 + i * corners / most], kCorner, kCornerGhost));
+    add(corners_, q[1 + i * corners / most], with_alpha(kCorner, kCornerPosture), 0.012);
   }
 }
 

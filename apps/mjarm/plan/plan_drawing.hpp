@@ -86,7 +86,7 @@ class PlanDrawing {
  private:
   void draw_path();
   void draw_trees();
-  void draw_ghosts();
+  void draw_postures();
   void add_spheres(Overlay& overlay, const Look& look) const;
   void add_pair(Overlay& overlay, const Look& look) const;
 
