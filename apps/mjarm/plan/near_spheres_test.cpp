@@ -34,11 +34,12 @@ TEST(NearSpheres, TheClosestPairIsTheOraclesWithPointsOnBoth) {
     const Found found = find_pair(robot, world, q);
     ASSERT_TRUE(found.pair);
     const double truth = testing::true_clearance(arm, robot.spheres(), world, view(q), true);
-    ASSERT_NEAR(found.pair->to.distance, truth, 1e-9) << "round " << round;
-    if (truth < 1e-4) {
+    if (truth < 1e-4) {  // how deep, is told from the surface of the solid at most
       ++overlapping;
+      EXPECT_LT(found.pair->to.distance, 1e-4);
       continue;
     }
+    ASSERT_NEAR(found.pair->to.distance, truth, 1e-9) << "round " << round;
     ++apart;
     const ClosestPair& pair = *found.pair;
     const PlacedSphere& sphere = found.placed[static_cast<std::size_t>(pair.sphere)];

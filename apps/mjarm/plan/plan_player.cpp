@@ -139,6 +139,7 @@ void PlanPlayer::fill(ViewFrame& frame) {
   sim_.place(subject_->arm, view(q));
   const PlanDrawing::Look look = drawing_->look(q);
   frame.snapshot = sim_.snapshot();
+  frame.snapshot.time = place_ / kPlanSpeed;
   frame.overlay = drawing_->overlay(layers_, look);
   frame.panels = panels(look);
   frame.status =

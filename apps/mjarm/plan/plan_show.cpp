@@ -25,10 +25,11 @@ namespace {
 constexpr double kFilmSpeed = 1;   // [rad/s or m/s, L2]
 constexpr double kFilmRest = 0.5;  // [s] at the end
 
-/// Width by height of what is drawn.
+/// Width by height of what is drawn; in a window, of what its panel leaves.
 double aspect_of(const PlanShow& show) {
-  return show.picture ? static_cast<double>(show.picture->width) / show.picture->height
-                      : static_cast<double>(show.width) / show.height;
+  constexpr int kPanel = 300, kLeast = 200;  // [px]
+  if (show.picture) return static_cast<double>(show.picture->width) / show.picture->height;
+  return static_cast<double>(std::max(show.width - kPanel, kLeast)) / show.height;
 }
 
 /// The camera asked for; without one, that of the path.
