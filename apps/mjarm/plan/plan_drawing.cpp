@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <utility>
@@ -204,7 +205,7 @@ void PlanDrawing::draw_trees() {
   const std::array colors{kStart, kGoal};
   for (std::size_t t = 0; t < subject_->path.trees.size(); ++t) {
     tree_.segments.push_back({.ends_W = {},
-                              .width = 0.002,
+                              .width = 0.003,
                               .color = with_alpha(colors[t % 2], 0.8F),
                               .look = LineLook::thin});
   }
@@ -251,22 +252,26 @@ PlanDrawing::Look PlanDrawing::look(const JointVec& q) const {
                                        all ? nullptr : &nearest);
   SphereNeighbours links = link_neighbours(robot.spheres(), out.placed);
   out.pair = closest_pair(subject_->obstacles, out.placed, out.neighbours, links);
+  if (out.pair && out.pair->to.obstacle < 0) {
+    out.obstacle_pair = closest_pair(subject_->obstacles, out.placed, out.neighbours, {});
+  }
   if (!has_obstacles(subject_->obstacles)) out.neighbours = std::move(links);
   return out;
 }
 
-std::string PlanDrawing::pair_names(const Look& look) const {
-  if (!look.pair) return {};
+std::string PlanDrawing::pair_line(const Look& look, const ClosestPair& pair) const {
   const SphereSet& set = subject_->checker.robot().spheres();
   const auto link_of = [&](int sphere) {
     const int link = look.placed[static_cast<std::size_t>(sphere)].link;
     return set.links[static_cast<std::size_t>(link)].name;
   };
-  const int obstacle = look.pair->to.obstacle;
+  const int obstacle = pair.to.obstacle;
   std::string other =
-      obstacle < 0 ? link_of(look.pair->to.sphere) : obstacle_name(subject_->obstacles, obstacle);
+      obstacle < 0 ? link_of(pair.to.sphere) : obstacle_name(subject_->obstacles, obstacle);
   if (other.empty()) other = std::to_string(obstacle);
-  return link_of(look.pair->sphere) + " - " + other;
+  char distance[40];
+  std::snprintf(distance, sizeof(distance), ": %.1f mm", 1e3 * pair.to.distance);
+  return link_of(pair.sphere) + " - " + other + distance;
 }
 
 void PlanDrawing::add_spheres(Overlay& overlay, const Look& look) const {
@@ -279,15 +284,14 @@ void PlanDrawing::add_spheres(Overlay& overlay, const Look& look) const {
   }
 }
 
-void PlanDrawing::add_pair(Overlay& overlay, const Look& look) const {
-  if (!look.pair) return;
-  const Rgba color = with_alpha(clearance_color(look.pair->to.distance), kPairSphere);
-  for (const int sphere : {look.pair->sphere, look.pair->to.sphere}) {
+void PlanDrawing::add_pair(Overlay& overlay, const Look& look, const ClosestPair& pair) const {
+  const Rgba color = with_alpha(clearance_color(pair.to.distance), kPairSphere);
+  for (const int sphere : {pair.sphere, pair.to.sphere}) {
     if (sphere < 0) continue;
     const PlacedSphere& placed = look.placed[static_cast<std::size_t>(sphere)];
     overlay.spheres.push_back({.p_W = placed.p_W, .radius = 1.01 * placed.radius, .color = color});
   }
-  add_closest_pair(overlay, look.pair->p1_W, look.pair->p2_W, look.pair->to.distance, kPairRed);
+  add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.to.distance, kPairRed);
 }
 
 Overlay PlanDrawing::overlay(const PlanLayers& layers, const Look& look) const {
@@ -297,7 +301,8 @@ Overlay PlanDrawing::overlay(const PlanLayers& layers, const Look& look) const {
   if (layers.ends) append(out, ends_);
   if (layers.corners) append(out, corners_);
   if (layers.spheres) add_spheres(out, look);
-  if (layers.pair) add_pair(out, look);
+  if (layers.pair && look.pair) add_pair(out, look, *look.pair);
+  if (layers.pair && look.obstacle_pair) add_pair(out, look, *look.obstacle_pair);
   return out;
 }
 

@@ -71,13 +71,15 @@ class PlanDrawing {
     /// By which the spheres have their colours: obstacles, or links where there are none.
     SphereNeighbours neighbours;
     std::optional<ClosestPair> pair;
+    /// The closest with an obstacle, where `pair` is of two links: these may be as near everywhere.
+    std::optional<ClosestPair> obstacle_pair;
   };
   /// @param q  shape (dof,).
   [[nodiscard]] Look look(const JointVec& q) const;
   /// @param look  where the arm stands.
   [[nodiscard]] Overlay overlay(const PlanLayers& layers, const Look& look) const;
-  /// "link - obstacle", for people.
-  [[nodiscard]] std::string pair_names(const Look& look) const;
+  /// "link - obstacle: 12.3 mm", for people.
+  [[nodiscard]] std::string pair_line(const Look& look, const ClosestPair& pair) const;
 
   [[nodiscard]] const PathWay& way() const { return way_; }
   /// [m] the tool along the path, at even steps, in the world.
@@ -88,7 +90,7 @@ class PlanDrawing {
   void draw_trees();
   void draw_postures();
   void add_spheres(Overlay& overlay, const Look& look) const;
-  void add_pair(Overlay& overlay, const Look& look) const;
+  void add_pair(Overlay& overlay, const Look& look, const ClosestPair& pair) const;
 
   const PlanSubject* subject_;
   PathWay way_;

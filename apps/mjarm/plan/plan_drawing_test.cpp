@@ -97,7 +97,7 @@ TEST_F(WallPlan, EveryLayerAddsWhatItSays) {
   layers = none;
   layers.pair = true;
   const Overlay pair = drawing().overlay(layers, look);
-  ASSERT_EQ(pair.labels.size(), 1U);
+  ASSERT_EQ(pair.labels.size(), look.obstacle_pair ? 2U : 1U);
   EXPECT_NE(pair.labels[0].text.find(" mm"), std::string::npos);
   layers = none;
   layers.path = true;
@@ -125,7 +125,12 @@ TEST_F(WallPlan, TheTightestPlaceIsToldByName) {
   const PlanDrawing::Look look = tightest();
   ASSERT_TRUE(look.pair);
   EXPECT_GT(look.pair->to.distance, 0);
-  EXPECT_NE(drawing().pair_names(look).find(" - "), std::string::npos);
+  const std::string line = drawing().pair_line(look, *look.pair);
+  EXPECT_NE(line.find(" - "), std::string::npos) << line;
+  EXPECT_NE(line.find(" mm"), std::string::npos) << line;
+  if (look.obstacle_pair) {
+    EXPECT_GE(look.obstacle_pair->to.distance, look.pair->to.distance);
+  }
 }
 
 TEST(PlanColors, GoFromRedToBlue) {

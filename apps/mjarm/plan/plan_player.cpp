@@ -118,6 +118,10 @@ std::vector<PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look) cons
     place.items.push_back(
         plan_line("Closest now", plan_words("%.1f mm", 1e3 * look.pair->to.distance)));
   }
+  if (look.obstacle_pair) {
+    place.items.push_back(
+        plan_line("To obstacles", plan_words("%.1f mm", 1e3 * look.obstacle_pair->to.distance)));
+  }
   return {std::move(place),
           {"Show",
            {plan_checkbox(kPlanSpheres, "Spheres", layers_.spheres),
@@ -142,9 +146,8 @@ void PlanPlayer::fill(ViewFrame& frame) {
   frame.snapshot.time = place_ / kPlanSpeed;
   frame.overlay = drawing_->overlay(layers_, look);
   frame.panels = panels(look);
-  frame.status =
-      look.pair ? drawing_->pair_names(look) + plan_words(": %.1f mm", 1e3 * look.pair->to.distance)
-                : std::string();
+  frame.status = look.pair ? drawing_->pair_line(look, *look.pair) : std::string();
+  if (look.obstacle_pair) frame.status += "; " + drawing_->pair_line(look, *look.obstacle_pair);
 }
 
 }  // namespace mjarm::app

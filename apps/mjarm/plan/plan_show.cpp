@@ -13,7 +13,6 @@
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/plan_show.hpp"
-#include "mjarm/core/messages/render_command.hpp"
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
@@ -90,7 +89,6 @@ Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject,
 
 Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
                               const PlanDrawing& drawing) {
-  if (!has_display()) return fail(Errc::impossible, text(msg::plan_show_no_display));
   Result<Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
   PlanPlayer player(subject, drawing);
@@ -127,7 +125,7 @@ void add_plan_show_options(CLI::App& app, PlanShowArguments& arguments) {
   add_flag(app, "--view", arguments.view, msg::plan_show_option_view);
   add_option(app, "--size", arguments.size, msg::plan_show_option_size, "WxH");
   add_option(app, "--camera", arguments.camera, msg::plan_show_option_camera, "C");
-  add_option(app, "--quality", arguments.quality, msg::render_command_option_quality, "Q");
+  add_option(app, "--quality", arguments.quality, msg::plan_show_option_quality, "Q");
   add_option(app, "--seconds", arguments.seconds, msg::plan_show_option_seconds, "S");
 }
 
@@ -175,11 +173,14 @@ Result<std::optional<PlanShow>> read_plan_show(const PlanShowArguments& argument
 }
 
 Result<void> show_plan(const PlanShow& show, const PlanSubject& subject) {
+  if (!show.picture && !has_display()) {
+    return fail(Errc::impossible, text(msg::plan_show_no_display));
+  }
   const PlanDrawing drawing(subject);
   const PlanDrawing::Look look = drawing.look(drawing.way().at(drawing.way().tightest()));
   if (look.pair) {
-    log_info(text(msg::plan_show_tightest, subject.path.q.size() - 1, 1e3 * look.pair->to.distance,
-                  drawing.pair_names(look)));
+    log_info(text(msg::plan_show_tightest, subject.path.q.size() - 1,
+                  drawing.pair_line(look, *look.pair)));
   }
   return show.picture ? show_in_file(show, subject, drawing)
                       : show_in_a_window(show, subject, drawing);

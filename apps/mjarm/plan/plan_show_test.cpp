@@ -91,7 +91,7 @@ TEST_F(PlanShown, WhatMakesNoSenseIsOneLine) {
 }
 
 TEST_F(PlanShown, WithoutADisplayPointsAtPictures) {
-  const auto result = plan({"--problem", "round", "--view", "--quiet"},
+  const auto result = plan({"--problem", "round", "--view"},
                            {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(only_line(result).find("--picture"), std::string::npos) << result.err;
