@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMargin = 0.95;        // of the picture is used
+constexpr double kFramedShare = 0.95;   // of the picture is used
 constexpr double kLeastDistance = 0.1;  // [m]
 
 Vector3d forward_of(const CameraView& view) {
@@ -55,7 +55,7 @@ CameraView framing_view(const Model& model, std::span<const FramedBall> balls,
   const Vector3d right(std::sin(view.azimuth), -std::cos(view.azimuth), 0);
   const Vector3d up = right.cross(forward);
   const double tangent =
-      kMargin * std::tan(0.5 * model.raw()->vis.global.fovy * std::numbers::pi / 180);
+      kFramedShare * std::tan(0.5 * model.raw()->vis.global.fovy * std::numbers::pi / 180);
   const Fit wide = fit(balls, right, forward, tangent * sight.aspect);
   const Fit high = fit(balls, up, forward, tangent);
   const double along = std::min(wide.along, high.along);

@@ -23,7 +23,7 @@ constexpr double kLittle = 0.03;     // of arm and path may be hidden by a solid
 // What a view is worth, beside the share of what it shows:
 constexpr double kBehindArm = 0.6;  // less, where the arm is before the way of the tool
 constexpr double kBroad = 0.25;     // a way of the tool that is seen from its broad side
-constexpr double kNear = 0.15;      // all things large
+constexpr double kNearness = 0.15;  // all things large
 constexpr double kSteep = 0.08;     // less, where it looks steeply up or down [1/rad]
 constexpr double kUsual = -0.45;    // [rad] elevation that needs no reason
 
@@ -165,7 +165,7 @@ double value_of(const PlanSubject& subject, const PlanDrawing& drawing,
   }
   return seen / static_cast<double>(watched.size()) -
          kBehindArm * behind / static_cast<double>(way.size()) + kBroad * across / all +
-         kNear * nearest / view.distance - kSteep * std::abs(view.elevation - kUsual);
+         kNearness * nearest / view.distance - kSteep * std::abs(view.elevation - kUsual);
 }
 
 }  // namespace

@@ -15,21 +15,21 @@
 namespace mjarm::app {
 namespace {
 
-constexpr Rgba kStart = {0.15F, 0.60F, 0.30F, 1};
-constexpr Rgba kGoal = {0.15F, 0.35F, 0.85F, 1};
-constexpr Rgba kCorner = {0.15F, 0.15F, 0.18F, 1};
-constexpr Rgba kUnknown = {0.55F, 0.60F, 0.66F, 1};
+constexpr Rgba kStartColor = {0.15F, 0.60F, 0.30F, 1};
+constexpr Rgba kGoalColor = {0.15F, 0.35F, 0.85F, 1};
+constexpr Rgba kCornerColor = {0.15F, 0.15F, 0.18F, 1};
+constexpr Rgba kUnknownColor = {0.55F, 0.60F, 0.66F, 1};
 constexpr float kEndPosture = 0.6F;  // how dense they are
 constexpr float kCornerPosture = 0.2F;
 constexpr std::size_t kMostPostures = 8;  // of corners
 constexpr float kSphere = 0.45F;
 constexpr float kPairSphere = 0.85F;
-constexpr double kPathStep = 0.02;      // [rad or m, L2] between places of the path
-constexpr double kPathPieces = 300;     // at most
-constexpr double kTreeStep = 0.15;      // [rad or m, L2] between places of an edge of a tree
-constexpr double kTreePieces = 12'000;  // of all edges, about
-constexpr double kMostWork = 2e6;       // distances that are computed for one look
-constexpr double kPairRed = 0.01;       // [m]
+constexpr double kDrawnPathStep = 0.02;  // [rad or m, L2] between places of the path
+constexpr double kPathPieces = 300;      // at most
+constexpr double kTreeStep = 0.15;       // [rad or m, L2] between places of an edge of a tree
+constexpr double kTreePieces = 12'000;   // of all edges, about
+constexpr double kMostWork = 2e6;        // distances that are computed for one look
+constexpr double kPairRed = 0.01;        // [m]
 
 Rgba with_alpha(Rgba color, float alpha) {
   color.a = alpha;
@@ -157,7 +157,7 @@ PlanDrawing::PlanDrawing(const PlanSubject& subject) : subject_(&subject), way_(
 
 void PlanDrawing::draw_path() {
   const FastChecker obstacles = against_obstacles(*subject_);
-  const double step = std::max(kPathStep, way_.length() / kPathPieces);
+  const double step = std::max(kDrawnPathStep, way_.length() / kPathPieces);
   const int pieces = std::max(1, static_cast<int>(std::ceil(way_.length() / step)));
   constexpr double kShades = 24;
   std::map<int, OverlaySegments> shades;  // pieces of one colour are one
@@ -179,9 +179,9 @@ void PlanDrawing::draw_path() {
     const bool end = i == 0 || i + 1 == q.size();
     path_.spheres.push_back({.p_W = fk(subject_->arm, view(q[i])).p,
                              .radius = end ? 0.018 : 0.011,
-                             .color = i == 0 ? kStart
-                                      : end  ? kGoal
-                                             : kCorner});
+                             .color = i == 0 ? kStartColor
+                                      : end  ? kGoalColor
+                                             : kCornerColor});
   }
 }
 
@@ -202,7 +202,7 @@ void PlanDrawing::draw_trees() {
   });
   if (edges == 0) return;
   const double step = std::max(kTreeStep, length / std::max(kTreePieces - edges, 1.0));
-  const std::array colors{kStart, kGoal};
+  const std::array colors{kStartColor, kGoalColor};
   for (std::size_t t = 0; t < subject_->path.trees.size(); ++t) {
     tree_.segments.push_back({.ends_W = {},
                               .width = 0.003,
@@ -232,12 +232,12 @@ void PlanDrawing::draw_postures() {
     }
   };
   const std::vector<JointVec>& q = subject_->path.q;
-  add(ends_, q.front(), with_alpha(kStart, kEndPosture), 0.016);
-  add(ends_, q.back(), with_alpha(kGoal, kEndPosture), 0.016);
+  add(ends_, q.front(), with_alpha(kStartColor, kEndPosture), 0.016);
+  add(ends_, q.back(), with_alpha(kGoalColor, kEndPosture), 0.016);
   // Evenly some of them, where there are many.
   const std::size_t corners = q.size() - 2, most = std::min(corners, kMostPostures);
   for (std::size_t i = 0; i < most; ++i) {
-    add(corners_, q[1 + i * corners / most], with_alpha(kCorner, kCornerPosture), 0.012);
+    add(corners_, q[1 + i * corners / most], with_alpha(kCornerColor, kCornerPosture), 0.012);
   }
 }
 
@@ -277,7 +277,7 @@ std::string PlanDrawing::pair_line(const Look& look, const ClosestPair& pair) co
 void PlanDrawing::add_spheres(Overlay& overlay, const Look& look) const {
   for (std::size_t i = 0; i < look.placed.size(); ++i) {
     const auto& neighbour = look.neighbours[i];
-    const Rgba color = neighbour ? clearance_color(neighbour->distance) : kUnknown;
+    const Rgba color = neighbour ? clearance_color(neighbour->distance) : kUnknownColor;
     overlay.spheres.push_back({.p_W = look.placed[i].p_W,
                                .radius = look.placed[i].radius,
                                .color = with_alpha(color, kSphere)});
