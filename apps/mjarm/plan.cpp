@@ -13,10 +13,12 @@
 #include "apps/mjarm/options.hpp"
 #include "apps/mjarm/plan/plan_answer.hpp"
 #include "apps/mjarm/plan/plan_robot.hpp"
+#include "apps/mjarm/plan/plan_show.hpp"
 #include "apps/mjarm/plan/problem_file.hpp"
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/plan_show.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
@@ -36,6 +38,7 @@ struct Options {
   std::string planner = "rrtc", seed = "1", threads = "1", samples, budget, problem;
   RobotRequest request;
   bool no_timing = false;
+  PlanShowArguments show;
 };
 
 /// `rrtc`, `rrtstar`, `ompl` or `ompl:NAME`.
@@ -94,8 +97,9 @@ Result<void> select(const Options& options, ProblemFile& file) {
                                     did_you_mean(options.problem, ids)));
 }
 
+/// @param show  how the only problem is shown, after its answer is written.
 Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const PlanOptions& plan,
-                       int threads, const Options& options) {
+                       int threads, const Options& options, const std::optional<PlanShow>& show) {
   const std::size_t count = file.problems.size();
   std::vector<PlanAnswer> answers(count);
   Progress progress(text(msg::plan_progress), count);
@@ -124,6 +128,10 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
   if (Result<void> written = write_answer(options.batch.out, out); !written) {
     return fail(std::move(written.error()));
   }
+  if (failed == 0 && show) {
+    const auto shown = show_plan_of_spheres(*show, robot, file.problems[0], *answers[0].path);
+    if (!shown) return fail(shown.error());
+  }
   if (failed == 0) return 0;
   log_error(text(msg::plan_some_failed, options.batch.in, first_id, first_why, failed, count));
   return 1;
@@ -133,19 +141,27 @@ Result<int> run(const Options& options) {
   if (options.batch.in.empty() != is_given(options.request)) {
     return fail(Errc::usage, text(msg::app_need_one_of, "--in", "--robot"));
   }
-  const Result<PlanOptions> plan = read_options(options);
+  Result<PlanOptions> plan = read_options(options);
   if (!plan) return fail(plan.error());
+  const Result<std::optional<PlanShow>> show = read_plan_show(options.show);
+  if (!show) return fail(show.error());
+  plan->keep_trees = show->has_value();
   if (is_given(options.request)) {
-    return plan_for_robot(options.request, *plan, options.batch.out, !options.no_timing);
+    return plan_for_robot(options.request, *plan, *show, options.batch.out, !options.no_timing);
   }
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   Result<ProblemFile> file = read_problem_file(options.batch.in);
   if (!file) return fail(std::move(file.error()));
   if (Result<void> found = select(options, *file); !found) return fail(std::move(found.error()));
+  if (*show && file->problems.size() != 1) {
+    const std::string first = file->problems.empty() ? "" : file->problems.front().id;
+    return fail(Errc::usage,
+                text(msg::plan_show_one, options.batch.in, file->problems.size(), first));
+  }
   const Result<FastRobot> robot = FastRobot::make(file->arm, file->spheres);
   if (!robot) return fail(robot.error().code, options.batch.in + ": " + robot.error().what);
-  return answer_all(*file, *robot, *plan, *threads, options);
+  return answer_all(*file, *robot, *plan, *threads, options, *show);
 }
 
 Run setup(CLI::App& app) {
@@ -160,6 +176,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--seed", options->seed, msg::plan_option_seed, "N");
   add_option(app, "--threads", options->threads, msg::plan_option_threads, "N");
   add_flag(app, "--no-timing", options->no_timing, msg::app_option_no_timing);
+  add_plan_show_options(app, options->show);
   return [options] { return run(*options); };
 }
 

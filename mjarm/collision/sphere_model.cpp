@@ -1,5 +1,6 @@
 #include "mjarm/collision/sphere_model.hpp"
 
+#include <algorithm>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
@@ -57,25 +58,62 @@ std::string sphere_name(int link, std::size_t sphere) {
   return "s" + std::to_string(link) + "_" + std::to_string(sphere);
 }
 
+/// Sky and light of pictures. Two lights from different sides tell the faces of a box apart.
+constexpr std::string_view kStudio = R"(
+<visual><global fovy="42" offwidth="1920" offheight="1080"/>
+<quality shadowsize="4096" offsamples="8" numslices="40" numstacks="24"/>
+<headlight ambient="0.36 0.37 0.39" diffuse="0.30 0.30 0.30" specular="0.05 0.05 0.05"/>
+<map znear="0.01" zfar="40" shadowclip="2"/></visual>
+<asset><texture type="skybox" builtin="gradient" rgb1="0.80 0.85 0.90" rgb2="0.95 0.96 0.97"
+ width="64" height="384"/></asset>)";
+constexpr std::string_view kLights = R"(
+<light type="directional" pos="0.6 -0.9 2.5" dir="-0.35 0.5 -0.9" diffuse="0.5 0.49 0.47"
+ specular="0.1 0.1 0.1" castshadow="true"/>
+<light type="directional" pos="-2 -1 2" dir="0.75 0.3 -0.5" diffuse="0.2 0.21 0.24"
+ specular="0 0 0" castshadow="false"/>)";
+
+constexpr double kSeeThrough = 0.3;  // how dense what hides something is
+
+/// Colour of a solid in pictures: furniture is of boxes, what stands on it is round.
+struct ShapeColor {
+  double alpha = 1;
+  std::string operator()(const BoxShape&) const {
+    return attribute("rgba", {0.72, 0.60, 0.47, alpha});
+  }
+  std::string operator()(const HalfSpaceShape&) const {
+    return attribute("rgba", {0.62, 0.65, 0.68, alpha});
+  }
+  template <class Shape>
+  std::string operator()(const Shape&) const {
+    return attribute("rgba", {0.45, 0.56, 0.60, alpha});
+  }
+};
+
 /// Writes the model as MJCF.
 class SphereModelWriter {
  public:
-  SphereModelWriter(const Arm& arm, const SphereSet& set, const Obstacles& obstacles)
-      : arm_(arm), set_(set), obstacles_(obstacles) {}
+  SphereModelWriter(const Arm& arm, const SphereSet& set, const Obstacles& obstacles,
+                    const SphereModelLook* look)
+      : arm_(arm), set_(set), obstacles_(obstacles), look_(look) {}
 
   /// Names are numbered: those of links and obstacles need not differ.
   std::string write() {
-    out_ = R"(<mujoco model="spheres"><compiler angle="radian"/><worldbody>)";
+    out_ = R"(<mujoco model="spheres"><compiler angle="radian"/>)";
+    if (look_ != nullptr) out_ += kStudio;
+    out_ += "<worldbody>";
+    if (look_ != nullptr) out_ += kLights;
     write_obstacles();
     write_clouds();
     write_spheres(-1);
+    write_chain(-1);
     for (int joint = 0; joint < arm_.dof(); ++joint) {
       write_joint(joint);
       write_spheres(joint);
+      write_chain(joint);
     }
     for (int joint = 0; joint < arm_.dof(); ++joint) out_ += "</body>";
     out_ += "</worldbody>";
-    write_pairs();
+    if (look_ == nullptr) write_pairs();
     return out_ + "</mujoco>";
   }
 
@@ -87,9 +125,15 @@ class SphereModelWriter {
       const Obstacle& solid = obstacles_.solids[i];
       const std::string name = "o" + std::to_string(i);
       parts_[name] = solid.name.empty() ? std::to_string(i) : solid.name;
-      out_ += "<geom name=\"" + name + R"(" contype="0" conaffinity="1")" + place(solid.X_WO) +
-              std::visit(ShapeAttributes(), solid.shape) + "/>";
+      out_ += "<geom name=\"" + name + "\"" + collides(0, 1) + place(solid.X_WO) +
+              std::visit(ShapeAttributes(), solid.shape) + color_of(i) + "/>";
     }
+  }
+
+  [[nodiscard]] std::string color_of(std::size_t solid) const {
+    if (look_ == nullptr) return "";
+    const bool hides = std::ranges::count(look_->see_through, static_cast<int>(solid)) > 0;
+    return std::visit(ShapeColor{hides ? kSeeThrough : 1.0}, obstacles_.solids[solid].shape);
   }
 
   void write_clouds() {
@@ -99,8 +143,9 @@ class SphereModelWriter {
       for (std::size_t k = 0; k < cloud.points_W.size(); ++k) {
         const std::string name = "c" + std::to_string(i) + "_" + std::to_string(k);
         parts_[name] = cloud.name.empty() ? std::to_string(index) : cloud.name;
-        out_ += "<geom name=\"" + name + R"(" contype="0" conaffinity="1")" +
-                position(cloud.points_W[k]) + ShapeAttributes()(BallShape{cloud.radius}) + "/>";
+        out_ += "<geom name=\"" + name + "\"" + collides(0, 1) + position(cloud.points_W[k]) +
+                ShapeAttributes()(BallShape{cloud.radius}) +
+                (look_ != nullptr ? ShapeColor()(BallShape()) : "") + "/>";
       }
     }
   }
@@ -122,11 +167,31 @@ class SphereModelWriter {
       for (std::size_t k = 0; k < link.spheres.size(); ++k) {
         const std::string name = sphere_name(i, k);
         parts_[name] = link.name;
-        out_ += "<geom name=\"" + name + R"(" contype="1" conaffinity="0")" +
-                position(link.spheres[k].center) +
+        out_ += "<geom name=\"" + name + "\"" + collides(1, 0) +
+                (look_ != nullptr ? R"( group="3")" : "") + position(link.spheres[k].center) +
                 ShapeAttributes()(BallShape{link.spheres[k].radius}) + "/>";
       }
     }
+  }
+
+  [[nodiscard]] std::string collides(int type, int affinity) const {
+    if (look_ != nullptr) return R"( contype="0" conaffinity="0")";
+    return " contype=\"" + std::to_string(type) + "\" conaffinity=\"" + std::to_string(affinity) +
+           "\"";
+  }
+
+  /// A rod from a joint (-1: from where the arm stands) to the next one or to the tool.
+  void write_chain(int joint) {
+    if (look_ == nullptr) return;
+    const bool last = joint + 1 == arm_.dof();
+    const Eigen::Vector3d end =
+        last ? arm_.X_JT.p : arm_.joints[static_cast<std::size_t>(joint + 1)].X_PJ.p;
+    constexpr double kShortest = 1e-3;  // [m]
+    if (!(end.norm() > kShortest)) return;
+    out_ +=
+        R"(<geom type="capsule" contype="0" conaffinity="0" group="1" rgba="0.22 0.26 0.32 1")" +
+        attribute("fromto", {0, 0, 0, end.x(), end.y(), end.z()}) +
+        attribute("size", {last ? 0.012 : 0.018}) + "/>";
   }
 
   void write_pairs() {
@@ -144,20 +209,22 @@ class SphereModelWriter {
   const Arm& arm_;
   const SphereSet& set_;
   const Obstacles& obstacles_;
+  const SphereModelLook* look_;  // null: for checks
   std::string out_;
   std::map<std::string, std::string> parts_;
 };
 
 }  // namespace
 
-Result<SphereModel> sphere_model(const Arm& arm, const SphereSet& set, const Obstacles& obstacles) {
+Result<SphereModel> sphere_model(const Arm& arm, const SphereSet& set, const Obstacles& obstacles,
+                                 const SphereModelLook* look) {
   if (auto fits = check_sphere_set(set, arm); !fits) return fail(std::move(fits.error()));
   if (auto fits = check_obstacles(obstacles); !fits) return fail(std::move(fits.error()));
   for (const Obstacle& solid : obstacles.solids) {
     if (!std::visit(ShapeAttributes(), solid.shape).empty()) continue;
     return fail(Errc::not_available, text(msg::collision_no_geom, solid.name));
   }
-  SphereModelWriter writer(arm, set, obstacles);
+  SphereModelWriter writer(arm, set, obstacles, look);
   Result<Model> model = Model::from_mjcf(writer.write());
   if (!model) return fail(std::move(model.error()));
   SphereModel out{std::move(*model), arm, std::move(writer.parts())};

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
@@ -20,13 +21,21 @@ struct SphereModel {
   std::map<std::string, std::string> parts;
 };
 
+/// A sphere model to be looked at: with light and colours, and nothing in it collides. The arm is a
+/// thin chain from joint to joint and on to the tool; its spheres are in group 3.
+struct SphereModelLook {
+  std::vector<int> see_through = {};  ///< solids (by index) that hide something
+};
+
 /// Builds the model: a body a joint, a geom a sphere and an obstacle. What collides are the spheres
 /// with the obstacles, and the spheres of paired links with each other; nothing else. ExactChecker
 /// leaves out pieces at rest against obstacles, which no joint can change.
 /// A cloud is a geom a point.
+/// @param look  where given, it is for pictures and not for ExactChecker.
 /// @return not_available for polytopes, meshes and height fields; check_sphere_set()'s or
 /// check_obstacles()'s error, or what MuJoCo has against the model.
 [[nodiscard]] Result<SphereModel> sphere_model(const Arm& arm, const SphereSet& set,
-                                               const Obstacles& obstacles);
+                                               const Obstacles& obstacles,
+                                               const SphereModelLook* look = nullptr);
 
 }  // namespace mjarm

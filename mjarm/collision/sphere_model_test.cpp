@@ -1,6 +1,7 @@
 #include "mjarm/collision/sphere_model.hpp"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +40,38 @@ TEST(SphereModel, CollidesWhereTheOracleSaysSo) {
   }
   EXPECT_GT(free, scenes);
   EXPECT_GT(hit, scenes);
+}
+
+/// The same places, but nothing collides, and the arm can be seen without its spheres.
+TEST(SphereModel, ForPicturesNothingCollides) {
+  Rng rng(52);
+  for (int dof = 1; dof <= 7; ++dof) {
+    const Arm arm = testing::random_arm(dof, rng);
+    const SphereSet set = testing::random_spheres(arm, rng);
+    Obstacles world = testing::random_world(rng, 4);
+    world.clouds = {testing::random_cloud(rng, 10, 0.01)};
+    const auto plain = sphere_model(arm, set, world);
+    const SphereModelLook look{.see_through = {1}};
+    const auto made = sphere_model(arm, set, world, &look);
+    ASSERT_TRUE(made.has_value()) << made.error().what;
+    EXPECT_EQ(made->parts, plain->parts);
+    const mjModel& m = *made->model.raw();
+    EXPECT_EQ(m.npair, 0);
+    for (int solid = 0; solid < 4; ++solid) {
+      const int geom = mj_name2id(&m, mjOBJ_GEOM, ("o" + std::to_string(solid)).c_str());
+      EXPECT_EQ(m.geom_rgba[4 * geom + 3] < 1, solid == 1);
+    }
+    EXPECT_GT(m.nlight, 0);
+    int spheres = 0, rods = 0;
+    for (int geom = 0; geom < m.ngeom; ++geom) {
+      EXPECT_EQ(m.geom_contype[geom] | m.geom_conaffinity[geom], 0);
+      spheres += m.geom_group[geom] == 3 ? 1 : 0;
+      rods += m.geom_group[geom] == 1 ? 1 : 0;
+    }
+    EXPECT_EQ(spheres, static_cast<int>(set.size()));
+    EXPECT_GT(rods, 0);
+    EXPECT_LE(rods, dof + 1);
+  }
 }
 
 TEST(SphereModel, ContactsAreTracedToLinkAndObstacle) {

@@ -33,6 +33,7 @@ constexpr Msg kCatalogue[] = {
 #include "mjarm/core/messages/path.inc"
 #include "mjarm/core/messages/path_command.inc"
 #include "mjarm/core/messages/plan.inc"
+#include "mjarm/core/messages/plan_show.inc"
 #include "mjarm/core/messages/planning.inc"
 #include "mjarm/core/messages/policy_file.inc"
 #include "mjarm/core/messages/program.inc"

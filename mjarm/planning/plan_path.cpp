@@ -64,6 +64,7 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
       out.q = std::move(*q);
       out.cost = path_length(out.q);
       out.counts = path.counts;
+      out.trees = std::move(path.trees);
       return out;
     }
   }

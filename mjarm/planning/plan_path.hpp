@@ -43,6 +43,7 @@ struct PlanOptions {
   /// above; planners that go on after their first path do so for `time_budget` where one is given,
   /// and there are no rounds.
   std::string_view ompl_planner = "RRTConnect";
+  bool keep_trees = false;  ///< hand over what was searched, to be drawn, say
 };
 
 enum class PlanErrc {
@@ -81,11 +82,20 @@ struct PlanCounts {
   int edges = 0;    ///< edges that were looked at, those of shortcuts included
 };
 
+/// A tree of a search: configurations that are joined by proved edges.
+struct SearchTree {
+  std::vector<JointVec> q;   ///< nodes, each after the one it was reached from, but for rrt_star
+  std::vector<int> parents;  ///< (n,) the node that each was reached from; -1: a root
+};
+
 /// A path of straight edges in joint space.
 struct RawPath {
   std::vector<JointVec> q;  ///< corners, start and goal included, at least two
   int goal = 0;             ///< index of the goal reached
   PlanCounts counts;
+  /// With PlanOptions::keep_trees those of the search that found it: from the start and from the
+  /// goals for rrt_connect, from the start for rrt_star.
+  std::vector<SearchTree> trees;
 };
 
 /// A path whose every edge is proved to be free.
@@ -96,6 +106,7 @@ struct PlannedPath {
   std::vector<EdgeCertificate> proof;  ///< one an edge
   double tilt = 0;                     ///< [rad] with a limit: the tool leans by no more anywhere
   PlanCounts counts;
+  std::vector<SearchTree> trees;  ///< as in RawPath
 };
 
 /// Searches a path from `start` to any of `goals`. Every edge of it is proved free by check_edge().

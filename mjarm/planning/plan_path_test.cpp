@@ -98,6 +98,51 @@ TEST(PlanPath, AStartThatIsTheGoalIsAPathOfNoLength) {
   EXPECT_EQ(path->cost, 0);
 }
 
+/// The tree is one: every node but the roots hangs on another by an edge that is proved.
+void expect_tree(const FastChecker& checker, const SearchTree& tree) {
+  ASSERT_FALSE(tree.q.empty());
+  ASSERT_EQ(tree.parents.size(), tree.q.size());
+  for (std::size_t i = 0; i < tree.q.size(); ++i) {
+    std::size_t node = i, steps = 0;
+    for (; tree.parents[node] >= 0 && steps <= tree.q.size(); ++steps) {
+      ASSERT_LT(tree.parents[node], static_cast<int>(tree.q.size()));
+      node = static_cast<std::size_t>(tree.parents[node]);
+    }
+    EXPECT_LE(steps, tree.q.size());
+    if (tree.parents[i] < 0) continue;
+    const JointVec& from = tree.q[static_cast<std::size_t>(tree.parents[i])];
+    EXPECT_EQ(check_edge(checker, view(from), view(tree.q[i])).verdict, EdgeVerdict::free);
+  }
+}
+
+TEST(PlanPath, HandsOverItsTreesWhereTheyAreAskedFor) {
+  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
+  for (const Planner planner : {Planner::rrt_connect, Planner::rrt_star}) {
+    PlanOptions options{.planner = planner, .samples = 300};
+    const auto without = plan_path(checker, kLeft, kRight, options);
+    options.keep_trees = true;
+    const auto with = plan_path(checker, kLeft, kRight, options);
+    ASSERT_TRUE(without);
+    ASSERT_TRUE(with);
+    EXPECT_TRUE(without->trees.empty());
+    EXPECT_EQ(rows(with->q), rows(without->q));
+    ASSERT_EQ(with->trees.size(), planner == Planner::rrt_connect ? 2U : 1U);
+    for (const SearchTree& tree : with->trees) expect_tree(checker, tree);
+    EXPECT_EQ(with->trees.front().q.front(), joint_vec(kLeft));
+    EXPECT_EQ(with->trees.front().parents.front(), -1);
+    const JointVec root = joint_vec(planner == Planner::rrt_connect ? kRight : kLeft);
+    EXPECT_EQ(with->trees.back().q.front(), root);
+  }
+}
+
+TEST(PlanPath, RoundsHandOverTheTreesOfTheSearchThatFoundThePath) {
+  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
+  const auto path = plan_path(checker, kLeft, kRight, {.rounds = 5, .keep_trees = true});
+  ASSERT_TRUE(path);
+  ASSERT_EQ(path->trees.size(), 2U);
+  for (const SearchTree& tree : path->trees) expect_tree(checker, tree);
+}
+
 TEST(PlanPath, EndsAtOneOfTheGoalsAndSaysWhich) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
   // In collision, outside of the limits, behind the post, near.

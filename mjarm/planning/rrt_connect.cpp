@@ -158,6 +158,7 @@ class Connector {
     path_.q.insert(path_.q.end(), rest.begin() + (twice ? 1 : 0), rest.end());
     path_.goal = problem_.goal_index[static_cast<std::size_t>(from_goals_.root(goal_node))];
     path_.counts.nodes = from_start_.size() + from_goals_.size();
+    if (options_.keep_trees) path_.trees = {from_start_.copy(), from_goals_.copy()};
     return std::move(path_);
   }
 

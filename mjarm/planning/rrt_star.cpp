@@ -48,6 +48,7 @@ class Rewirer {
     path_.q = tree_.branch(best_);
     std::reverse(path_.q.begin(), path_.q.end());
     path_.counts.nodes += tree_.size();
+    if (options_.keep_trees) path_.trees = {tree_.copy()};
     return std::move(path_);
   }
 

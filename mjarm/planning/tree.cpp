@@ -50,4 +50,11 @@ std::vector<JointVec> Tree::branch(int node) const {
   return out;
 }
 
+SearchTree Tree::copy() const {
+  SearchTree out;
+  for (int node = 0; node < size(); ++node) out.q.push_back(joint_vec(q(node)));
+  out.parents = parents_;
+  return out;
+}
+
 }  // namespace mjarm::detail

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mjarm/core/joint_vec.hpp"
+#include "mjarm/planning/plan_path.hpp"
 
 namespace mjarm::detail {
 
@@ -59,6 +60,8 @@ class Tree {
 
   /// Nodes from `node` to its root.
   std::vector<JointVec> branch(int node) const;
+  /// All nodes.
+  SearchTree copy() const;
 
  private:
   /// Children of a node form a list: the first, and of each the next.

@@ -166,36 +166,44 @@ bool is_coarse(PlanErrc reason) {
          reason == PlanErrc::base_hit || reason == PlanErrc::budget_spent;
 }
 
-/// An answer as text, and why there is no path.
-struct Told {
-  std::string line;  ///< JSON
-  std::optional<std::string> why;
+/// An answer, and the world it was found in.
+struct Found {
+  std::string line;                ///< JSON
+  std::optional<std::string> why;  ///< there is no path
+  std::optional<RobotWorld> world = {};
+  std::optional<PlannedPath> path = {};
 };
 
-Result<Told> answer(const Robot& robot, const Way& way, const PlanOptions& options, bool timing) {
-  Told out;
+Found not_found(const std::string& why) {
+  Found out{"{\"ok\":false,\"reason\":", why};
+  append_json_string(out.line, why);
+  out.line += '}';
+  return out;
+}
+
+/// Tries one cover after the other, until there is a path or finer spheres are no help.
+Result<Found> answer(const Robot& robot, const Way& way, const PlanOptions& options, bool timing) {
+  Found out;
   for (const double bound : way.bounds) {
     Result<RobotWorld> world = cover_robot(robot, bound, way.rules);
     if (!world) return fail(std::move(world.error()));
     const FastRobot& fast = world->checker.robot();
-    PlanProblem problem;
-    problem.start = way.start;
-    problem.obstacles = std::move(world->cover.scene);
     Result<std::vector<double>, std::string> goals =
         goals_of(way, robot.arm, world->checker, options.seed);
-    if (!goals) {
-      std::string line = "{\"ok\":false,\"reason\":";
-      append_json_string(line, goals.error());
-      return Told{line + '}', goals.error()};
-    }
+    if (!goals) return not_found(goals.error());
+    PlanProblem problem;
+    problem.start = way.start;
     problem.goals = std::move(*goals);
+    problem.obstacles = world->cover.scene;
     PlanAnswer found = answer_problem(fast, problem, options);
     found.spheres = bound;
     out = {};
     append_answer(out.line, found, fast, problem.obstacles, timing);
-    if (found.path) return out;
-    out.why = describe(found.path.error(), fast, problem.obstacles);
-    if (!is_coarse(found.path.error().reason)) return out;
+    if (!found.path) out.why = describe(found.path.error(), fast, problem.obstacles);
+    const bool is_last = found.path || !is_coarse(found.path.error().reason);
+    out.world = std::move(*world);
+    if (found.path) out.path = std::move(*found.path);
+    if (is_last) break;
   }
   return out;
 }
@@ -224,7 +232,8 @@ bool is_given(const RobotRequest& request) {
 }
 
 Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
-                           const std::string& out, bool timing) {
+                           const std::optional<PlanShow>& show, const std::string& out,
+                           bool timing) {
   const Result<Robot> robot = load_robot(request.robot);
   if (!robot) return fail(robot.error());
   const Result<Way> way = read_way(request, *robot);
@@ -233,11 +242,18 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   if (Result<void> read = read_upright(request, robot->arm, *way, how); !read) {
     return fail(std::move(read.error()));
   }
-  const Result<Told> told = answer(*robot, *way, how, timing);
-  if (!told) return fail(told.error());
+  const Result<Found> found = answer(*robot, *way, how, timing);
+  if (!found) return fail(found.error());
+  const std::string& name = robot->arm.name;
   std::string line = "{";
-  append_json_string(line, robot->arm.name);
-  return finish_one(out, line + ':' + told->line + '}', told->why, msg::plan_no_path);
+  append_json_string(line, name);
+  line += ':' + found->line + '}';
+  const Result<int> code = finish_one(out, line, found->why, msg::plan_no_path);
+  if (!code || !show || !found->path) return code;
+  const auto shown = show_plan(*show, {robot->model, robot->arm, found->world->checker,
+                                       found->world->cover.scene, *found->path, name});
+  if (!shown) return fail(shown.error());
+  return code;
 }
 
 }  // namespace mjarm::app

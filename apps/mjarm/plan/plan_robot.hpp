@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "apps/mjarm/plan/plan_show.hpp"
 #include "apps/mjarm/plan/robot_world.hpp"
 #include "apps/mjarm/robot.hpp"
 #include "mjarm/core/result.hpp"
@@ -30,8 +32,10 @@ void add_robot_request(CLI::App& app, RobotRequest& request);
 
 /// Plans the way and writes it to `out` (a file, `-` or empty) as a problem file's answers are
 /// written; its id is the robot's name.
+/// @param show  how it is shown then.
 /// @return the exit code, or what is wrong with the request.
 [[nodiscard]] Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
+                                         const std::optional<PlanShow>& show,
                                          const std::string& out, bool timing);
 
 }  // namespace mjarm::app
