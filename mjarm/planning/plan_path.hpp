@@ -76,7 +76,7 @@ struct RawPath {
   PlanCounts counts;
   /// With PlanOptions::keep_trees those of the search that found it: from the start and from the
   /// goals for rrt_connect, from the start for rrt_star.
-  std::vector<SearchTree> trees;
+  std::vector<SearchTree> trees = {};
 };
 
 /// A path whose every edge is proved to be free.
@@ -86,7 +86,7 @@ struct PlannedPath {
   double cost = 0;                     ///< [rad or m] sum of the L2 lengths of the edges
   std::vector<EdgeCertificate> proof;  ///< one an edge
   PlanCounts counts;
-  std::vector<SearchTree> trees;  ///< as in RawPath
+  std::vector<SearchTree> trees = {};  ///< as in RawPath
 };
 
 /// Searches a path from `start` to any of `goals`. Every edge of it is proved free by check_edge().
