@@ -95,7 +95,7 @@ struct RawPath {
   PlanCounts counts;
   /// With PlanOptions::keep_trees those of the search that found it: from the start and from the
   /// goals for rrt_connect, from the start for rrt_star.
-  std::vector<SearchTree> trees;
+  std::vector<SearchTree> trees = {};
 };
 
 /// A path whose every edge is proved to be free.
@@ -106,7 +106,7 @@ struct PlannedPath {
   std::vector<EdgeCertificate> proof;  ///< one an edge
   double tilt = 0;                     ///< [rad] with a limit: the tool leans by no more anywhere
   PlanCounts counts;
-  std::vector<SearchTree> trees;  ///< as in RawPath
+  std::vector<SearchTree> trees = {};  ///< as in RawPath
 };
 
 /// Searches a path from `start` to any of `goals`. Every edge of it is proved free by check_edge().
