@@ -31,6 +31,7 @@ ALLOWED = {
 MUJOCO = [
     "mjarm/model/*.cpp", "mjarm/model/*_internal.hpp",
     "mjarm/collision/exact*.cpp", "mjarm/collision/exact*_internal.hpp",
+    "mjarm/collision/contact_rules.cpp",
     "mjarm/collision/cover*.cpp", "mjarm/collision/cover*_internal.hpp",
     "mjarm/sim/*.cpp", "mjarm/sim/*_internal.hpp", "mjarm/sim/raw.hpp",
     "mjarm/render/*.cpp", "mjarm/render/*_internal.hpp",
