@@ -35,8 +35,9 @@ struct PlanOptions {
   /// [s] > 0: as many rounds as there is time for. What is found then depends on the machine.
   double time_budget = 0;
   /// For Planner::ompl: one of ompl_planner_names(); must outlive the options. `samples` count as
-  /// above; planners that go on after their first path do so for `time_budget` where one is given,
-  /// and there are no rounds.
+  /// above, but planners that go on after their first path draw 10,000 at most until they have it,
+  /// and then go on for `time_budget` where one is given. No search takes longer than that, so
+  /// there may be no path in time. There are no rounds.
   std::string_view ompl_planner = "RRTConnect";
 };
 
