@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "mjarm/core/os.hpp"
 #include "mjarm/planning/ompl_space_internal.hpp"
 
 namespace mjarm::detail {
@@ -191,7 +192,7 @@ void OmplBudget::found() {
 
 bool OmplBudget::spent() {
   ++steps_;
-  if (deadline_.passed()) return true;
+  if (deadline_.passed() || interrupted()) return true;
   if (found_ && timed_) return false;
   const int draws = found_ ? more_ : most_;
   return counts_.samples >= draws || steps_ >= kStepsOfDraw * draws;
