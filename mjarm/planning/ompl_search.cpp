@@ -37,7 +37,8 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 
 constexpr std::uint64_t kPlannerStream = 0;  // the samplers have those above
-constexpr unsigned int kBatch = 1000;        // that FMT draws at first, at most
+constexpr int kBatch = 1000;                 // that FMT draws before it looks, at most
+constexpr int kFreeShare = 10;               // of what it draws, at least one in so many is free
 
 /// The first pivot of a tree of neighbours, which OMPL draws from a generator of the whole process.
 template <class T>
@@ -114,7 +115,7 @@ tl::unexpected<PlanFailure> failed(PlanErrc reason) {
 class OmplSearch {
  public:
   OmplSearch(const SearchProblem& problem, const PlanOptions& options, const Offer& offer)
-      : problem_(problem), options_(options), offer_(offer), budget_(options) {}
+      : problem_(problem), options_(options), offer_(offer), budget_(options, offer.improves) {}
 
   Result<RawPath, PlanFailure> run() {
     const std::span<const double> nearest = problem_.goals.front();
@@ -174,7 +175,8 @@ class OmplSearch {
       planner->params().setParam("range", std::to_string(options_.range));
     }
     if (const auto fmt = std::dynamic_pointer_cast<og::FMT>(planner)) {
-      fmt->setNumSamples(std::min(kBatch, static_cast<unsigned int>(budget_.most() / 2)));
+      fmt->setNumSamples(static_cast<unsigned int>(std::min(kBatch, budget_.most() / kFreeShare)));
+      fmt->setExtendedFMT(false);  // it takes minutes where there is no path
     }
     return planner;
   }

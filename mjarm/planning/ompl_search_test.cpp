@@ -227,6 +227,22 @@ TEST_F(Ompl, PlannersThatImproveUseTheirTimeAndTheOthersDoNot) {
   }
 }
 
+TEST_F(Ompl, TimeEndsASearchThatFindsNothing) {
+  PostWorld flat;
+  flat.world = {};
+  for (const double angle : {-1.1, -0.5}) {
+    flat.add_post(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0.03);
+  }
+  PlanOptions options = ompl_options("RRTstar", 1'000'000);
+  options.time_budget = 0.05;
+  const Stopwatch watch;
+  const auto path = plan_path(flat.checker(), kHere, kThere, options);
+  ASSERT_FALSE(path);
+  EXPECT_EQ(path.error().reason, PlanErrc::budget_spent);
+  EXPECT_LT(path.error().samples, 1'000'000);
+  EXPECT_LT(watch.us(), 10e6);
+}
+
 TEST_F(Ompl, UnknownPlannersAreNotAvailable) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "mjarm/core/os.hpp"
 #include "mjarm/planning/ompl_space_internal.hpp"
 
 namespace mjarm::detail {
@@ -16,10 +17,11 @@ namespace {
 
 namespace ob = ompl::base;
 
-constexpr int kMostDraws = 100'000;                     // where nothing else is said: until a path,
-constexpr int kMoreDraws = 3000;                        // and after it
-constexpr std::int64_t kStepsOfDraw = 30;               // edges and questions whether to end
-constexpr double kTimeShare = 0.9;                      // the rest is for shortening and proof
+constexpr int kMostDraws = 100'000;         // where nothing else is said: until a path;
+constexpr int kMostWhereImproved = 10'000;  // by planners that go on: their samples cost more,
+constexpr int kMoreDraws = 3000;            // and after it
+constexpr std::int64_t kStepsOfDraw = 30;   // edges and questions whether to end
+constexpr double kTimeShare = 0.9;          // the rest is for shortening and proof
 constexpr double kEndlessJoint = 4 * std::numbers::pi;  // [rad or m] stands for no limit
 constexpr double kProvedPart = 0.9;                     // of the way up to where it is blocked
 
@@ -174,10 +176,12 @@ class EllipsoidSampler : public ob::InformedSampler {
 
 }  // namespace
 
-OmplBudget::OmplBudget(const PlanOptions& options)
+OmplBudget::OmplBudget(const PlanOptions& options, bool improves)
     : deadline_(1e6 * kTimeShare * options.time_budget),
       timed_(options.time_budget > 0),
-      most_(options.samples > 0 ? options.samples : kMostDraws),
+      most_(options.samples > 0 ? options.samples
+            : improves          ? kMostWhereImproved
+                                : kMostDraws),
       more_(options.samples > 0 ? options.samples : kMoreDraws) {}
 
 void OmplBudget::found() {
@@ -188,7 +192,8 @@ void OmplBudget::found() {
 
 bool OmplBudget::spent() {
   ++steps_;
-  if (found_ && timed_) return deadline_.passed();
+  if (deadline_.passed() || interrupted()) return true;
+  if (found_ && timed_) return false;
   const int draws = found_ ? more_ : most_;
   return counts_.samples >= draws || steps_ >= kStepsOfDraw * draws;
 }

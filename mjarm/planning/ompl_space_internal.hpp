@@ -16,7 +16,8 @@ namespace mjarm::detail {
 class OmplBudget {
  public:
   /// Starts the clock, if a time is given.
-  explicit OmplBudget(const PlanOptions& options);
+  /// @param improves  whether the planner goes on after its first path.
+  OmplBudget(const PlanOptions& options, bool improves);
 
   /// A configuration was drawn.
   void draw() { ++counts_.samples; }

@@ -40,8 +40,9 @@ struct PlanOptions {
   /// corners then.
   std::optional<TiltLimit> tilt = {};
   /// For Planner::ompl: one of ompl_planner_names(); must outlive the options. `samples` count as
-  /// above; planners that go on after their first path do so for `time_budget` where one is given,
-  /// and there are no rounds.
+  /// above, but planners that go on after their first path draw 10,000 at most until they have it,
+  /// and then go on for `time_budget` where one is given. No search takes longer than that, so
+  /// there may be no path in time. There are no rounds.
   std::string_view ompl_planner = "RRTConnect";
   bool keep_trees = false;  ///< hand over what was searched, to be drawn, say
 };
