@@ -120,7 +120,7 @@ void add_option(CLI::App& app, const char* name, std::string& value, Msg help, c
 
 void add_option(CLI::App& app, const char* name, std::vector<std::string>& values, Msg help,
                 const char* type) {
-  app.add_option(name, values, text(help))->type_name(type)->take_all();
+  app.add_option(name, values, text(help))->type_name(type)->allow_extra_args(false)->take_all();
 }
 
 void add_flag(CLI::App& app, const char* name, bool& value, Msg help) {

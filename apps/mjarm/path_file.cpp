@@ -1,7 +1,9 @@
 #include "apps/mjarm/path_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <utility>
 
 #include "apps/mjarm/json_line.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double kTiltSlack = 1e-6;                             // relative
 constexpr std::size_t kLargestPathFile = std::size_t{1} << 28;  // [bytes]
 
 std::string indexed(const char* list, std::size_t i) {
@@ -73,9 +76,13 @@ Result<void> read_certificates(const json& list, GivenPath& out) {
 Result<void> read_tilt(const json& entry, GivenPath& out) {
   if (!entry.is_object()) return fail(Errc::bad_input, "tilt: " + text(msg::app_json_no_object));
   GivenTilt tilt;
-  const Result<double> largest = number_at(entry, "largest");
-  if (!largest) return fail(largest.error().code, "tilt: " + largest.error().what);
-  tilt.largest = *largest;
+  const std::pair<const char*, double*> numbers[] = {{"limit", &tilt.limit},
+                                                     {"largest", &tilt.largest}};
+  for (const auto& [key, target] : numbers) {
+    const Result<double> value = number_at(entry, key);
+    if (!value) return fail(value.error().code, "tilt: " + value.error().what);
+    *target = *value;
+  }
   const std::pair<const char*, std::vector<double>*> members[] = {{"tool", &tilt.tool},
                                                                   {"world", &tilt.world}};
   for (const auto& [key, target] : members) {
@@ -83,7 +90,26 @@ Result<void> read_tilt(const json& entry, GivenPath& out) {
     if (!axis) return fail(axis.error().code, "tilt: " + axis.error().what);
     *target = std::move(*axis);
   }
+  const auto is_unit = [](const std::vector<double>& v) {
+    return std::abs(std::hypot(v[0], v[1], v[2]) - 1) < kTiltSlack;
+  };
+  const bool is_sound = tilt.limit > 0 && tilt.limit < std::numbers::pi / 2 && tilt.largest >= 0 &&
+                        tilt.largest <= tilt.limit * (1 + kTiltSlack) && is_unit(tilt.tool) &&
+                        is_unit(tilt.world);
+  if (!is_sound) return fail(Errc::bad_input, text(msg::verify_bad_tilt));
   out.tilt = std::move(tilt);
+  return {};
+}
+
+/// A list of strings, or none.
+Result<void> read_words(const json& entry, const char* key, std::vector<std::string>& out) {
+  const auto list = entry.find(key);
+  if (list == entry.end()) return {};
+  const auto is_word = [](const json& word) { return word.is_string(); };
+  if (!list->is_array() || !std::all_of(list->begin(), list->end(), is_word)) {
+    return fail(Errc::bad_input, text(msg::verify_no_words, key));
+  }
+  out = list->get<std::vector<std::string>>();
   return {};
 }
 
@@ -106,8 +132,14 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
   if (entry.contains("spheres")) {
     const Result<double> spheres = number_at(entry, "spheres");
     if (!spheres) return fail(spheres.error());
+    if (!(*spheres >= kNarrowestSpheres && *spheres <= kWidestSpheres)) {
+      return fail(Errc::bad_input,
+                  text(msg::verify_bad_spheres, kNarrowestSpheres, kWidestSpheres));
+    }
     out.spheres = *spheres;
   }
+  if (Result<void> read = read_words(entry, "hold", out.rules.hold); !read) return read;
+  if (Result<void> read = read_words(entry, "allow", out.rules.allow); !read) return read;
   if (const auto tilt = entry.find("tilt"); tilt != entry.end()) {
     if (Result<void> read = read_tilt(*tilt, out); !read) return read;
   }

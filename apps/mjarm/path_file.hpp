@@ -16,11 +16,23 @@ struct GivenCertificate {
   std::vector<std::string> pair;  ///< link, and obstacle or link; empty: nothing near
 };
 
+/// What a user or a file adds to a model's rules about contacts.
+struct RuleWords {
+  std::vector<std::string> hold;   ///< bodies that hang on the tool
+  std::vector<std::string> allow;  ///< `A,B`: bodies or geoms that may touch
+
+  [[nodiscard]] bool any() const { return !hold.empty() || !allow.empty(); }
+};
+
 /// What a file says of how the tool leans.
 struct GivenTilt {
-  double largest = 0;               ///< [rad]
+  double limit = 0;                 ///< [rad] 0 to pi/2
+  double largest = 0;               ///< [rad] 0 to limit
   std::vector<double> tool, world;  ///< (3,) directions of the tool and of the world
 };
+
+/// [m] what spheres may stick out of a robot by.
+inline constexpr double kNarrowestSpheres = 1e-4, kWidestSpheres = 0.1;
 
 /// One path of a file.
 struct GivenPath {
@@ -29,7 +41,8 @@ struct GivenPath {
   std::optional<double> cost;             ///< [rad or m]
   std::optional<std::vector<GivenCertificate>> certificate;
   std::optional<GivenTilt> tilt;
-  std::optional<double> spheres;  ///< [m] bound of the cover it was planned with
+  std::optional<double> spheres;  ///< [m] bound of the cover it was planned with, as plan has it
+  RuleWords rules;
 };
 
 /// Reads paths as `mjarm plan` writes them, `{"ID":{"ok":true,"path":[[q],...],...},...}`, or bare,

@@ -147,6 +147,9 @@ Result<int> run(const Options& options) {
   if (!show) return fail(show.error());
   plan->keep_trees = show->has_value();
   if (is_given(options.request)) {
+    if (!options.problem.empty()) {
+      return fail(Errc::usage, text(msg::app_exclusive_options, "--robot", "--problem"));
+    }
     return plan_for_robot(options.request, *plan, *show, options.batch.out, !options.no_timing);
   }
   const Result<int> threads = parse_threads(options.threads);

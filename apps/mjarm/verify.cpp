@@ -121,7 +121,10 @@ Result<Job> robot_job(const Options& options, const Robot& robot, const VerifyRu
                       GivenPath path) {
   const std::vector<double> none(robot.arm.home.begin(), robot.arm.home.end());
   const std::vector<double>& start = path.rows.empty() ? none : path.rows.front();
-  const Result<ContactRules> rules = rules_of(options.rules, robot, start);
+  RuleWords words = options.rules;
+  words.hold.insert(words.hold.end(), path.rules.hold.begin(), path.rules.hold.end());
+  words.allow.insert(words.allow.end(), path.rules.allow.begin(), path.rules.allow.end());
+  const Result<ContactRules> rules = rules_of(words, robot, start);
   if (!rules) return fail(rules.error());
   Result<RobotWorld> world = cover_robot(robot, path.spheres.value_or(kCoverBounds[1]), *rules);
   if (!world) return fail(std::move(world.error()));
@@ -140,6 +143,7 @@ Result<std::vector<Job>> robot_jobs(const Options& options, const VerifyRules& r
   if (!paths) return fail(std::move(paths.error()));
   std::vector<Job> jobs;
   for (GivenPath& path : *paths) {
+    if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
     Result<Job> job = robot_job(options, *robot, rules, std::move(path));
     if (!job) return fail(std::move(job.error()));
     jobs.push_back(std::move(*job));
@@ -261,6 +265,10 @@ Result<int> run(const Options& options) {
   if (options.paths.empty()) return fail(Errc::usage, text(msg::verify_need_paths));
   if (options.in.empty() == options.robot.robot.empty()) {
     return fail(Errc::usage, text(msg::app_need_one_of, "--in", "--robot"));
+  }
+  if (!options.in.empty() && options.rules.any()) {
+    const char* const rule = options.rules.hold.empty() ? "--allow" : "--hold";
+    return fail(Errc::usage, text(msg::app_exclusive_options, "--in", rule));
   }
   const Result<VerifyRules> rules = read_rules(options);
   if (!rules) return fail(rules.error());

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
+#include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -18,19 +19,25 @@ struct DeleteRest {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-std::vector<std::string> names_of(const mjModel& m, bool geoms) {
+bool is_free_body(const mjModel& m, int body) {
+  const int joint = m.body_jntadr[body];
+  return joint >= 0 && m.jnt_type[joint] == mjJNT_FREE;
+}
+
+std::vector<std::string> free_bodies(const mjModel& m) {
   std::vector<std::string> out;
-  for (int b = 1; b < static_cast<int>(m.nbody); ++b) out.push_back(detail::body_name(m, b));
-  for (int g = 0; geoms && g < static_cast<int>(m.ngeom); ++g) {
-    out.push_back(detail::geom_name(m, g));
+  for (int b = 1; b < static_cast<int>(m.nbody); ++b) {
+    if (is_free_body(m, b)) out.push_back(detail::body_name(m, b));
   }
-  std::erase(out, std::string());
   return out;
 }
 
-tl::unexpected<Error> unknown(const Msg& message, const mjModel& m, const std::string& word,
-                              bool geoms) {
-  return fail(Errc::bad_input, text(message, word, did_you_mean(word, names_of(m, geoms))));
+std::vector<std::string> bodies_and_geoms(const mjModel& m) {
+  std::vector<std::string> out;
+  for (int b = 0; b < static_cast<int>(m.nbody); ++b) out.push_back(detail::body_name(m, b));
+  for (int g = 0; g < static_cast<int>(m.ngeom); ++g) out.push_back(detail::geom_name(m, g));
+  std::erase(out, std::string());
+  return out;
 }
 
 bool is_pose(const Pose& X) {
@@ -42,9 +49,11 @@ bool is_pose(const Pose& X) {
 Result<void> check_held(const mjModel& m, const detail::ArmBodies& bodies, const HeldBody& held,
                         std::set<int>& known) {
   const int body = mj_name2id(&m, mjOBJ_BODY, held.body.c_str());
-  if (body < 0) return unknown(msg::collision_held_unknown, m, held.body, false);
-  const int joint = m.body_jntadr[body];
-  if (joint < 0 || m.jnt_type[joint] != mjJNT_FREE) {
+  if (body < 0) {
+    return fail(Errc::bad_input, text(msg::collision_held_unknown, held.body,
+                                      did_you_mean(held.body, free_bodies(m))));
+  }
+  if (!is_free_body(m, body)) {
     return fail(Errc::bad_input, text(msg::collision_held_fixed, held.body));
   }
   const bool carries_arm = std::any_of(bodies.bodies.begin(), bodies.bodies.end(),
@@ -65,11 +74,12 @@ Result<void> check_contact_rules(const Model& model, const Arm& arm, const Conta
   for (const HeldBody& held : rules.held) {
     if (Result<void> fine = check_held(m, bodies, held, known); !fine) return fine;
   }
-  const std::vector<std::string> words = names_of(m, true);
+  const std::vector<std::string> words = bodies_and_geoms(m);
   for (const auto& pair : rules.allowed) {
     for (const std::string& word : pair) {
       if (std::find(words.begin(), words.end(), word) != words.end()) continue;
-      return unknown(msg::collision_allowed_unknown, m, word, true);
+      return fail(Errc::bad_input,
+                  text(msg::collision_allowed_unknown, word, did_you_mean(word, words)));
     }
   }
   return {};
@@ -77,6 +87,9 @@ Result<void> check_contact_rules(const Model& model, const Arm& arm, const Conta
 
 Result<HeldBody> hold_where_it_is(const Model& model, const Arm& arm, const std::string& body,
                                   std::span<const double> q) {
+  if (q.size() != static_cast<std::size_t>(arm.dof()) || !all_finite(q)) {
+    return fail(Errc::bad_input, text(msg::collision_bad_q, arm.dof(), q.size()));
+  }
   HeldBody held{body, {}};
   if (Result<void> fine = check_contact_rules(model, arm, {.held = {held}}); !fine) {
     return fail(std::move(fine.error()));

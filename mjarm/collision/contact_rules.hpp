@@ -36,7 +36,7 @@ struct ContactRules {
 /// A body held as it stands in the model (keyframe `home`, else initial values) while the arm is at
 /// `q`.
 /// @param q  shape (dof,) [rad or m], finite.
-/// @return check_contact_rules()'s error.
+/// @return check_contact_rules()'s error, or one about `q`.
 [[nodiscard]] Result<HeldBody> hold_where_it_is(const Model& model, const Arm& arm,
                                                 const std::string& body, std::span<const double> q);
 

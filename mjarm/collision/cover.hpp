@@ -14,7 +14,8 @@ namespace mjarm {
 
 /// How a model is covered. Every default is usable as is.
 struct CoverOptions {
-  double bound = 0.012;  ///< [m] spheres stick out of the geoms of their link by at most this, > 0
+  double bound = 0.012;  ///< [m] spheres stick out of the geoms of their link by at most this,
+                         ///< 1e-5 to 1
   /// (nq,) [rad or m] where joints off the arm stand; empty: keyframe `home`, else initial values.
   std::vector<double> qpos = {};
   /// Cover what the joints of a gripper can do within their limits, instead of one posture.

@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostPostures = 64;  // of a gripper, for each geom
+constexpr double kLeastBound = 1e-5;  // [m] finer ones need more points than memory has
+constexpr int kMostPostures = 64;     // of a gripper, for each geom
 
 struct DeletePoses {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -47,7 +48,7 @@ class GeomSorter {
 
  private:
   Result<void> check() {
-    if (!(options_.bound > 0 && options_.bound <= 1)) {
+    if (!(options_.bound >= kLeastBound && options_.bound <= 1)) {
       return fail(Errc::bad_input, text(msg::collision_cover_bound, options_.bound));
     }
     const bool fits =
@@ -60,9 +61,7 @@ class GeomSorter {
     if (!d_ || !bodies_.matches || arm_.joints.empty()) return not_of_the_model();
     rest_ = options_.qpos.empty() ? rest_configuration(m_) : options_.qpos;
     place(rest_);
-    for (int b = 1; b < static_cast<int>(m_.nbody) && out_.root == 0; ++b) {
-      if (bodies_.pieces[static_cast<std::size_t>(b)] > 0) out_.root = m_.body_rootid[b];
-    }
+    out_.root = m_.body_rootid[bodies_.bodies.front()];
     // A wrong arm, or a base that `qpos` puts somewhere else.
     for (std::size_t j = 0; j < X_WJ_.size(); ++j) {
       const int qpos = arm_.joints[j].qpos;

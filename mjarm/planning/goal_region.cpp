@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjarm/core/finite.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
@@ -35,18 +36,21 @@ Pose draw(const GoalRegion& region, Rng& rng) {
 /// Configurations, and what they are sorted by.
 class Goals {
  public:
-  Goals(const FastChecker& checker, std::span<const double> q_near)
-      : checker_(checker), near_(joint_vec(q_near)) {}
+  Goals(const FastChecker& checker, const std::optional<TiltLimit>& tilt,
+        std::span<const double> q_near)
+      : checker_(checker), tilt_(tilt), near_(joint_vec(q_near)) {}
 
   void add(std::span<const IkSolution> answers) {
     for (const IkSolution& answer : answers) {
       const bool free = checker_.is_free(view(answer.q));
-      (free ? free_ : hit_).push_back(answer.q);
+      const bool upright =
+          !tilt_ || tilt(*tilt_, checker_.robot().arm(), view(answer.q)) <= tilt_->most;
+      (!free ? hit_ : upright ? good_ : leaning_).push_back(answer.q);
     }
   }
 
   std::vector<JointVec> take(int most) {
-    std::vector<JointVec>& out = free_.empty() ? hit_ : free_;
+    std::vector<JointVec>& out = !good_.empty() ? good_ : !leaning_.empty() ? leaning_ : hit_;
     const auto far = [&](const JointVec& q) { return (q - near_).norm(); };
     std::ranges::stable_sort(out, {}, far);
     if (out.size() > static_cast<std::size_t>(most)) out.resize(static_cast<std::size_t>(most));
@@ -55,8 +59,9 @@ class Goals {
 
  private:
   const FastChecker& checker_;
+  const std::optional<TiltLimit>& tilt_;
   JointVec near_;
-  std::vector<JointVec> free_, hit_;
+  std::vector<JointVec> good_, leaning_, hit_;
 };
 
 }  // namespace
@@ -72,10 +77,12 @@ Result<std::vector<JointVec>, IkFailure> goals_in(const FastChecker& checker, co
                                                   const GoalRegion& region,
                                                   std::span<const double> q_near,
                                                   const GoalOptions& options) {
-  if (!is_sound(region) || options.poses < 0 || options.most <= 0) {
+  const bool fits = q_near.size() == static_cast<std::size_t>(checker.robot().dof()) &&
+                    all_finite(q_near) && ik.arm().dof() == checker.robot().dof();
+  if (!fits || !is_sound(region) || options.poses < 0 || options.most <= 0) {
     return tl::unexpected(IkFailure{.code = IkErrc::bad_input, .best = {}});
   }
-  Goals goals(checker, q_near);
+  Goals goals(checker, options.tilt, q_near);
   Rng rng(options.seed, 3);
   const int poses = is_point(region) ? 0 : options.poses;
   std::optional<IkFailure> why;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm {
 
@@ -18,8 +20,9 @@ namespace mjarm {
 struct GoalRegion {
   Pose X_WR;                                       ///< the middle R
   Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< [m] 0 to 10: p_RT lies in +-half
-  double lean = 0;                                 ///< [rad] 0 to pi: between z of T and of R
-  double turn = 0;                                 ///< [rad] 0 to pi: of T about its own z
+  /// `lean` and `turn` are nothing to a solver whose task is a position.
+  double lean = 0;  ///< [rad] 0 to pi: between z of T and of R
+  double turn = 0;  ///< [rad] 0 to pi: of T about its own z
 };
 
 /// Whether its tolerances are in their ranges.
@@ -30,6 +33,8 @@ struct GoalOptions {
   int poses = 16;          ///< drawn in the region besides its middle, >= 0
   int most = 64;           ///< configurations at most, the nearest to `q_near` are kept, > 0
   std::uint64_t seed = 1;  ///< same input and seed, same goals
+  /// Goals that lean farther are left out, where there are others.
+  std::optional<TiltLimit> tilt = {};
 };
 
 /// Goals for plan_path(): all branches of inverse kinematics, in every winding, of the region's
@@ -39,7 +44,7 @@ struct GoalOptions {
 /// will do.
 /// @param q_near  shape (dof,) [rad or m].
 /// @return shape (n,), n >= 1, nearest to `q_near` first; or why the middle has no answer, where
-/// no drawn pose has one either (bad_input: also a tolerance out of range).
+/// no drawn pose has one either (bad_input: also an option out of range).
 [[nodiscard]] Result<std::vector<JointVec>, IkFailure> goals_in(const FastChecker& checker,
                                                                 const IkSolver& ik,
                                                                 const GoalRegion& region,

@@ -60,7 +60,7 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
   for (std::vector<JointVec>* q : {&path.q, &found}) {
     for (const double share : {1.0, 0x1p-3, 0x1p-6}) {
       if (!prove(checker, *q, share * options.resolution, out.proof)) continue;
-      if (tilt && !prove(*tilt, *q, out.tilt)) continue;
+      if (tilt && !prove(*tilt, *q, out.tilt)) break;  // no resolution helps
       out.q = std::move(*q);
       out.cost = path_length(out.q);
       out.counts = path.counts;

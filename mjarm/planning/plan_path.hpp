@@ -36,8 +36,8 @@ struct PlanOptions {
   int rounds = 0;
   /// [s] > 0: as many rounds as there is time for. What is found then depends on the machine.
   double time_budget = 0;
-  /// Keeps the tool within a cone, proved for every edge to 1e-8 of the limit. Paths have many
-  /// corners then.
+  /// Keeps the tool within a cone, proved for every edge to 1e-8 of the limit. Edges are grown by
+  /// 0.3 at most then, and paths have many corners.
   std::optional<TiltLimit> tilt = {};
   /// For Planner::ompl: one of ompl_planner_names(); must outlive the options. `samples` count as
   /// above, but planners that go on after their first path draw 10,000 at most until they have it,

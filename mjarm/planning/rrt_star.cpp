@@ -77,14 +77,15 @@ class Rewirer {
       const Row to = row;
       between(tree_.q(nearest.node), {to.data(), dof_}, range_ / nearest.distance, q);
     }
-    if (problem_.tilt && !problem_.tilt->project(q)) return;
+    const bool is_goal = to_goal && whole;  // which keeps the limit as it is
+    if (problem_.tilt && !is_goal && !problem_.tilt->project(q)) return;
     if (least_cost_through(problem_, q) >= problem_.most_cost) return;
     find_near(q);
     const int node = attach(q);
     if (node < 0) return;
     rewire(node);
     for (std::size_t g = 0; g < problem_.goals.size(); ++g) {
-      if (to_goal && whole && distance(q, problem_.goals[g]) == 0) take(node, g);
+      if (is_goal && distance(q, problem_.goals[g]) == 0) take(node, g);
     }
   }
 

@@ -84,7 +84,7 @@ class Shortener {
       JointVec next(to.size());
       const std::span<double> out(next.data(), static_cast<std::size_t>(next.size()));
       const auto length = tilt_->step(view(way.back()), view(to), kTiltRange, out);
-      if (!length || *length + left > most) return false;
+      if (!length || *length + (to - next).norm() > most) return false;
       most -= *length;
       if (!prover_.is_free(view(way.back()), view(next))) return false;
       way.push_back(next);

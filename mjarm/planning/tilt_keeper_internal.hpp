@@ -34,7 +34,7 @@ class TiltKeeper {
   /// Writes to `out` the place a step of `range` from `from` towards `to`, put back within the
   /// limit.
   /// @param range  [rad or m, L2] > 0, less than what is between both.
-  /// @return [rad or m, L2] length of the step; none where it leads nowhere.
+  /// @return [rad or m, L2] length of the step, up to twice `range`; none where it leads nowhere.
   [[nodiscard]] std::optional<double> step(std::span<const double> from, std::span<const double> to,
                                            double range, std::span<double> out) const;
 

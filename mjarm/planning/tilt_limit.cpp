@@ -14,15 +14,16 @@ namespace mjarm {
 namespace detail {
 namespace {
 
-constexpr double kInner = 0.3;      // share of the limit that is aimed at
-constexpr int kMostSteps = 16;      // of Newton's method,
-constexpr double kMostTurn = 0.5;   // [rad] each
-constexpr double kDamping = 1e-6;   // of its normal equations
-constexpr double kParallel = 1e-9;  // |a x b| of axes that are one
-constexpr double kFinest = 1e-4;    // [rad] L: narrower parts of an edge are not cut again
-constexpr double kLeastWay = 0.1;   // share of a step by which the end must come nearer
-constexpr double kMostWay = 2;      // a step that is put back may be so many times as long
-constexpr double kRounding = 1e-8;  // share of the limit
+constexpr double kInner = 0.3;       // share of the limit that is aimed at
+constexpr int kMostSteps = 16;       // of Newton's method,
+constexpr double kMostTurn = 0.5;    // [rad] each
+constexpr double kDamping = 1e-6;    // of its normal equations
+constexpr double kParallel = 1e-12;  // |a x b| of axes that are one
+constexpr int kMostParts = 4096;     // of an edge that are looked at
+constexpr double kFinest = 1e-4;     // [rad] L: narrower parts of an edge are not cut again
+constexpr double kLeastWay = 0.1;    // share of a step by which the end must come nearer
+constexpr double kMostWay = 2;       // a step that is put back may be so many times as long
+constexpr double kRounding = 1e-8;   // share of the limit
 
 }  // namespace
 
@@ -118,7 +119,7 @@ TiltKeeper::EdgeTilt TiltKeeper::look(std::span<const double> q0,
   std::array<double, kMaxDof> row;
   const std::span<double> q(row.data(), q0.size());
   // From the left, each part as wide as it can be proved, at most twice the one before.
-  while (done < 1) {
+  for (int parts = 0; done < 1; ++parts) {
     const double end = std::min(1.0, done + part);
     between(q0, q1, end, q);
     const Lean to = lean(end < 1 ? q : q1);
@@ -129,7 +130,7 @@ TiltKeeper::EdgeTilt TiltKeeper::look(std::span<const double> q0,
       done = end;
       from = to;
       part *= 2;
-    } else if (L > kFinest) {
+    } else if (L > kFinest && parts < kMostParts) {
       part = 0.5 * (end - done);
     } else {
       out.t = done;

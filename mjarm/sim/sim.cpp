@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/sim/raw_internal.hpp"
 
@@ -137,6 +139,20 @@ void Sim::place(const Arm& arm, std::span<const double> q) {
       d.ctrl[joint.actuator->id] = ctrl_for_torque(*joint.actuator, 0, q[i], 0);
     }
   }
+  impl_->refresh();
+}
+
+void Sim::place_free(std::string_view body, const Pose& X_WB) {
+  mjData& d = impl_->d();
+  const mjModel& m = impl_->m();
+  const int id = mj_name2id(&m, mjOBJ_BODY, std::string(body).c_str());
+  const int joint = id < 0 ? -1 : m.body_jntadr[id];
+  if (joint < 0 || m.jnt_type[joint] != mjJNT_FREE) return;
+  const Quat turn = to_quat(X_WB.R);
+  const double values[] = {X_WB.p.x(), X_WB.p.y(), X_WB.p.z(), turn.w(),
+                           turn.x(),   turn.y(),   turn.z()};
+  std::copy(std::begin(values), std::end(values), d.qpos + m.jnt_qposadr[joint]);
+  std::fill_n(d.qvel + m.jnt_dofadr[joint], 6, 0.0);
   impl_->refresh();
 }
 

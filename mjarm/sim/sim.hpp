@@ -45,6 +45,8 @@ class Sim {
   /// Puts the arm's joints at `q` (dof,), at rest, with matching ctrl where its actuators are
   /// servos. All else stays.
   void place(const Arm& arm, std::span<const double> q);
+  /// Puts a body that has a free joint, at rest. All else stays; a body without one does too.
+  void place_free(std::string_view body, const Pose& X_WB);
   /// Puts the whole model at `qpos` (nq,), `qvel` (nv,). All else stays.
   void set_state(std::span<const double> qpos, std::span<const double> qvel);
   /// Back to a snapshot of the same model; what follows is the same to the last bit.

@@ -44,6 +44,17 @@ void append_tilt(std::string& out, const TiltLimit& limit, double largest) {
   out += '}';
 }
 
+/// A list of strings; nothing for an empty one.
+void append_words(std::string& out, const char* key, const std::vector<std::string>& words) {
+  if (words.empty()) return;
+  append_key(out, key);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    out += i == 0 ? '[' : ',';
+    append_json_string(out, words[i]);
+  }
+  out += ']';
+}
+
 }  // namespace
 
 PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
@@ -82,6 +93,8 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
     }
     out += ']';
     if (answer.tilt) append_tilt(out, *answer.tilt, answer.path->tilt);
+    append_words(out, "hold", answer.rules.hold);
+    append_words(out, "allow", answer.rules.allow);
     if (answer.spheres) append_value(out, "spheres", *answer.spheres);
   } else {
     out += "{\"ok\":false";

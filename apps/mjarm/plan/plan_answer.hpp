@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/mjarm/path_file.hpp"
 #include "apps/mjarm/plan/problem_file.hpp"
 #include "mjarm/planning/plan_path.hpp"
 
@@ -14,6 +15,7 @@ struct PlanAnswer {
   double us = 0;                       ///< [us] the world made ready and a path found
   double simplify_us = 0;              ///< [us] the path shortened and proved
   std::optional<TiltLimit> tilt = {};  ///< that the path keeps
+  RuleWords rules = {};                ///< likewise
   std::optional<double> spheres = {};  ///< [m] bound of the cover, where the robot is a model
 };
 

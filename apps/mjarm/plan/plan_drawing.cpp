@@ -80,6 +80,12 @@ FastChecker against_obstacles(const PlanSubject& subject) {
 
 }  // namespace
 
+void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q) {
+  sim.place(subject.arm, view(q));
+  const Pose X_WT = fk(subject.arm, view(q));
+  for (const HeldBody& held : subject.held) sim.place_free(held.body, X_WT * held.X_TB);
+}
+
 PathWay::PathWay(const PlannedPath& path) : q_(path.q), ends_{0} {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < q_.size(); ++i) {

@@ -5,24 +5,30 @@
 #include <vector>
 
 #include "apps/mjarm/plan/near_spheres.hpp"
+#include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/render/overlay.hpp"
+#include "mjarm/sim/sim.hpp"
 
 namespace mjarm::app {
 
 /// A planned path and all that it was planned for. What it refers to outlives it.
 struct PlanSubject {
-  const Model& model;          ///< that is drawn
-  const Arm& arm;              ///< of `model`, with its tool
-  const FastChecker& checker;  ///< with the spheres; of an arm of the same joints
-  const Obstacles& obstacles;  ///< of `checker`
-  const PlannedPath& path;     ///< with its trees
-  std::string title;           ///< of the problem
+  const Model& model;               ///< that is drawn
+  const Arm& arm;                   ///< of `model`, with its tool
+  const FastChecker& checker;       ///< with the spheres; of an arm of the same joints
+  const Obstacles& obstacles;       ///< of `checker`
+  const PlannedPath& path;          ///< with its trees
+  std::string title;                ///< of the problem
+  std::vector<HeldBody> held = {};  ///< by the tool
 };
+
+/// Puts the arm at `q`, shape (dof,), and what it holds.
+void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q);
 
 /// A path by the length travelled along it [rad or m, L2].
 class PathWay {

@@ -140,7 +140,7 @@ std::vector<PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look) cons
 
 void PlanPlayer::fill(ViewFrame& frame) {
   const JointVec q = drawing_->way().at(place_);
-  sim_.place(subject_->arm, view(q));
+  place_subject(sim_, *subject_, q);
   const PlanDrawing::Look look = drawing_->look(q);
   frame.snapshot = sim_.snapshot();
   frame.snapshot.time = place_ / kPlanSpeed;

@@ -1,6 +1,6 @@
 #include "apps/mjarm/plan/plan_robot.hpp"
 
-#include <array>
+#include <algorithm>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -14,15 +14,13 @@
 #include "apps/mjarm/usage.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/plan.hpp"
+#include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/goal_region.hpp"
 
 namespace mjarm::app {
 namespace {
-
-constexpr double kWidestSpheres = 0.1;  // [m]
-constexpr double kNarrowestSpheres = 1e-4;
 
 /// What the tool is to reach.
 struct ToolGoal {
@@ -35,7 +33,8 @@ struct Way {
   std::vector<double> start;
   std::vector<double> goal;      ///< joint values, or
   std::optional<ToolGoal> tool;  ///< a pose
-  ContactRules rules;
+  RuleWords words;
+  ContactRules rules;          ///< of these
   std::vector<double> bounds;  ///< [m] of covers, to be tried one after the other
 };
 
@@ -118,6 +117,7 @@ Result<Way> read_way(const RobotRequest& request, const Robot& robot) {
   Result<ContactRules> rules = rules_of(request.rules, robot, out.start);
   if (!rules) return fail(std::move(rules.error()));
   out.rules = std::move(*rules);
+  out.words = request.rules;
   if (request.goal.empty() && request.pos.empty()) {
     return fail(Errc::usage, text(msg::app_need_one_of, "--goal", "--pos"));
   }
@@ -141,6 +141,12 @@ Result<Way> read_way(const RobotRequest& request, const Robot& robot) {
 Result<void> read_upright(const RobotRequest& request, const Arm& arm, const Way& way,
                           PlanOptions& options) {
   if (request.upright.empty()) return {};
+  if (options.planner == Planner::ompl) {
+    return fail(Errc::usage, text(msg::planning_tilt_with_ompl));
+  }
+  if (way.tool && way.tool->task == IkTask::position) {
+    return fail(Errc::usage, text(msg::plan_upright_position));
+  }
   const Result<double> most = angle_of("--keep-upright", request.upright);
   if (!most) return fail(most.error());
   options.tilt = keep_upright(arm, way.start, *most);
@@ -150,10 +156,12 @@ Result<void> read_upright(const RobotRequest& request, const Arm& arm, const Way
 
 /// Rows of joint values; or why the pose has none.
 Result<std::vector<double>, std::string> goals_of(const Way& way, const Arm& arm,
-                                                  const FastChecker& checker, std::uint64_t seed) {
+                                                  const FastChecker& checker,
+                                                  const PlanOptions& options) {
   if (!way.tool) return way.goal;
-  const IkSolver ik(arm, {.rng_seed = seed, .task = way.tool->task});
-  const auto goals = goals_in(checker, ik, way.tool->region, way.start, {.seed = seed});
+  const IkSolver ik(arm, {.rng_seed = options.seed, .task = way.tool->task});
+  const auto goals = goals_in(checker, ik, way.tool->region, way.start,
+                              {.seed = options.seed, .tilt = options.tilt});
   if (!goals) return tl::unexpected(describe(goals.error(), arm));
   std::vector<double> rows;
   for (const JointVec& q : *goals) rows.insert(rows.end(), q.begin(), q.end());
@@ -163,7 +171,8 @@ Result<std::vector<double>, std::string> goals_of(const Way& way, const Arm& arm
 /// Whether finer spheres may do better.
 bool is_coarse(PlanErrc reason) {
   return reason == PlanErrc::start_hit || reason == PlanErrc::goals_hit ||
-         reason == PlanErrc::base_hit || reason == PlanErrc::budget_spent;
+         reason == PlanErrc::goals_tilted || reason == PlanErrc::base_hit ||
+         reason == PlanErrc::budget_spent;
 }
 
 /// An answer, and the world it was found in.
@@ -189,13 +198,14 @@ Result<Found> answer(const Robot& robot, const Way& way, const PlanOptions& opti
     if (!world) return fail(std::move(world.error()));
     const FastRobot& fast = world->checker.robot();
     Result<std::vector<double>, std::string> goals =
-        goals_of(way, robot.arm, world->checker, options.seed);
+        goals_of(way, robot.arm, world->checker, options);
     if (!goals) return not_found(goals.error());
     PlanProblem problem;
     problem.start = way.start;
     problem.goals = std::move(*goals);
     problem.obstacles = world->cover.scene;
     PlanAnswer found = answer_problem(fast, problem, options);
+    found.rules = way.words;
     found.spheres = bound;
     out = {};
     append_answer(out.line, found, fast, problem.obstacles, timing);
@@ -227,8 +237,12 @@ void add_robot_request(CLI::App& app, RobotRequest& request) {
 }
 
 bool is_given(const RobotRequest& request) {
-  return !(request.robot.robot + request.start + request.goal + request.pos + request.upright)
-              .empty();
+  const std::string* const words[] = {
+      &request.robot.robot, &request.robot.tip, &request.start,  &request.goal,   &request.pos,
+      &request.euler,       &request.quat,      &request.task,   &request.within, &request.lean,
+      &request.turn,        &request.upright,   &request.spheres};
+  return request.rules.any() ||
+         std::ranges::any_of(words, [](const std::string* word) { return !word->empty(); });
 }
 
 Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
@@ -250,8 +264,9 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   line += ':' + found->line + '}';
   const Result<int> code = finish_one(out, line, found->why, msg::plan_no_path);
   if (!code || !show || !found->path) return code;
-  const auto shown = show_plan(*show, {robot->model, robot->arm, found->world->checker,
-                                       found->world->cover.scene, *found->path, name});
+  const auto shown =
+      show_plan(*show, {robot->model, robot->arm, found->world->checker, found->world->cover.scene,
+                        *found->path, name, way->rules.held});
   if (!shown) return fail(shown.error());
   return code;
 }

@@ -40,7 +40,7 @@ Result<Camera> camera_of(const PlanShow& show, const PlanSubject& subject,
 
 Snapshot standing(const PlanSubject& subject, const JointVec& q) {
   Sim sim(subject.model);
-  sim.place(subject.arm, view(q));
+  place_subject(sim, subject, q);
   return sim.snapshot();
 }
 

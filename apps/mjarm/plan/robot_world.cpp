@@ -21,13 +21,16 @@ Result<ContactRules> rules_of(const RuleWords& words, const Robot& robot,
     if (!held) return fail(in_option("--hold", held.error()));
     out.held.push_back(std::move(*held));
   }
+  if (Result<void> fine = check_contact_rules(robot.model, robot.arm, out); !fine) {
+    return fail(in_option("--hold", fine.error()));
+  }
   for (const std::string& pair : words.allow) {
     const std::size_t comma = pair.find(',');
     if (comma == std::string::npos) return fail(Errc::usage, text(msg::plan_bad_allow, pair));
     out.allowed.push_back({pair.substr(0, comma), pair.substr(comma + 1)});
   }
   if (Result<void> fine = check_contact_rules(robot.model, robot.arm, out); !fine) {
-    return fail(in_option(words.allow.empty() ? "--hold" : "--allow", fine.error()));
+    return fail(in_option("--allow", fine.error()));
   }
   return out;
 }

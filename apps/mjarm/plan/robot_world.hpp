@@ -22,14 +22,6 @@ struct RobotWorld {
 /// [m] of the spheres where nothing else is asked for: coarse ones first.
 inline constexpr double kCoverBounds[] = {0.012, 0.003};
 
-/// What a user adds to the model's rules about contacts.
-struct RuleWords {
-  std::vector<std::string> hold;   ///< bodies that hang on the tool
-  std::vector<std::string> allow;  ///< `A,B`: bodies or geoms that may touch
-
-  [[nodiscard]] bool any() const { return !hold.empty() || !allow.empty(); }
-};
-
 /// Adds `--hold BODY` and `--allow A,B`.
 void add_rule_options(CLI::App& app, RuleWords& words);
 
