@@ -89,7 +89,7 @@ TEST_P(OmplPlanner, GoesRoundAPostToTheGoalThatCanBeReached) {
   const FastChecker checker = flat.checker();
   ASSERT_EQ(check_edge(checker, kHere, kThere).verdict, EdgeVerdict::hit);
   const std::vector<double> goals{0, 0, 0, 5, -0.8, 0};  // in collision, outside, behind the post
-  const PlanOptions options = ompl_options(GetParam(), 3000);
+  const PlanOptions options = ompl_options(GetParam(), 700);
   const auto raw = find_path(checker, kHere, goals, options);
   ASSERT_TRUE(raw) << describe(raw.error(), checker.robot(), flat.world);
   EXPECT_EQ(raw->q.front(), joint_vec(kHere));
@@ -109,7 +109,7 @@ TEST_P(OmplPlanner, SameBytesWhateverElseRuns) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
   const std::vector<double> goals{-0.8, 0, -0.8, 1, -2.4, -0.5};
-  const PlanOptions options = ompl_options(GetParam(), 1500);
+  const PlanOptions options = ompl_options(GetParam(), 700);
   const auto search = [&] { return numbers_of(find_path(checker, kHere, goals, options)); };
   const std::vector<double> alone = search();
   ASSERT_FALSE(alone.empty());
@@ -131,7 +131,7 @@ TEST_P(OmplPlanner, SameBytesWhateverElseRuns) {
 TEST_P(OmplPlanner, SeedsDiffer) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
-  PlanOptions options = ompl_options(GetParam(), 1500);
+  PlanOptions options = ompl_options(GetParam(), 700);
   const auto one = numbers_of(find_path(checker, kHere, kThere, options));
   options.seed = 2;
   EXPECT_NE(numbers_of(find_path(checker, kHere, kThere, options)), one);
