@@ -14,6 +14,11 @@ namespace {
 constexpr std::size_t kMostOpen = 2048;  // intervals that wait; more means: undecided
 constexpr int kMostWidth = 16;
 
+/// So many floats fill whole registers.
+constexpr std::size_t kWhole(int n) {
+  return static_cast<std::size_t>((n + kMostWidth - 1) / kMostWidth * kMostWidth);
+}
+
 /// t and half are sums of powers of two, which floats hold exactly.
 struct OpenInterval {
   float t, half;
@@ -169,8 +174,8 @@ class EdgeSearch {
   std::size_t width_;
   std::array<double, kMaxDof> start_{}, way_{};
   std::array<float, kMaxDof> dq_{};
-  std::array<float, kMostSphereLinks> slack_, bend_;
-  std::array<float, kMostSpherePairs> pair_rate_, pair_slack_, pair_bend_;
+  std::array<float, kWhole(detail::kFastGroups)> slack_, bend_;
+  std::array<float, kWhole(detail::kFastPairs)> pair_rate_, pair_slack_, pair_bend_;
   double length_ = 0;
   double outside_ = 2;  // where the edge is outside of the limits; 2: nowhere
   float least_half_ = 0;

@@ -120,9 +120,7 @@ bool FastChecker::is_free(std::span<const double> q) const noexcept {
 SphereClearance FastChecker::clearance_of(const detail::FastNearest& from) const noexcept {
   const detail::FastRobotData& data = robot_.data();
   const auto link_of = [&](int sphere) {
-    if (sphere < 0) return -1;
-    const int group = data.group_of_sphere[static_cast<std::size_t>(sphere)];
-    return data.link_of_group[static_cast<std::size_t>(group)];
+    return sphere < 0 ? -1 : data.link_of_sphere[static_cast<std::size_t>(sphere)];
   };
   return {from.distance, link_of(from.sphere), from.obstacle, link_of(from.other)};
 }

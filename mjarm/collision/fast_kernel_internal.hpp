@@ -139,8 +139,8 @@ class BlockSearch {
       const FastList& list = world_.lists[k];
       const Point ball = into_frame(world_, list.frame, block_.balls[g]);
       meet_boxes(g, list, ball);
-      meet_run(g, list.frame, ball, world_.boxes, list.rounds);
-      meet_run(g, list.frame, ball, world_.cylinders, list.cylinders);
+      meet_run(g, list.frame, ball, world_.boxes, list.rounds, world_.box_ids);
+      meet_run(g, list.frame, ball, world_.cylinders, list.cylinders, world_.cylinder_ids);
       if (is_done()) return;
     }
   }
@@ -157,42 +157,62 @@ class BlockSearch {
         near |= static_cast<std::uint64_t>(any) << i;
       }
       for (; near != 0; near &= near - 1) {
-        meet_spheres(g, list.frame, boxes[__builtin_ctzll(near)]);
+        const int i = list.boxes.first + first + __builtin_ctzll(near);
+        meet_solid(g, list.frame, world_.boxes[i], world_.box_ids[i]);
         if (is_done()) return;
       }
     }
   }
 
   template <class Solid>
-  void meet_run(int g, int frame, const Point& ball, const Solid* solids, const FastRun& run) {
+  void meet_run(int g, int frame, const Point& ball, const Solid* solids, const FastRun& run,
+                const int* ids) {
     const float radius = robot_.groups[g].ball.radius;
-    for (const Solid* solid = solids + run.first; solid != solids + run.first + run.count;
-         ++solid) {
-      const Floats reach = squared_reach(radius + rounding_of(*solid));
-      if ((less(squared_gap(*solid, ball), reach) & active_) == 0) continue;
-      meet_spheres(g, frame, *solid);
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      const Solid& solid = solids[i];
+      const Floats reach = squared_reach(radius + rounding_of(solid));
+      if ((less(squared_gap(solid, ball), reach) & active_) == 0) continue;
+      meet_solid(g, frame, solid, ids[i]);
+    }
+  }
+
+  /// A solid that the ball of a group touches.
+  template <class Solid>
+  void meet_solid(int g, int frame, const Solid& solid, int id) {
+    const FastGroup& group = robot_.groups[g];
+    if (group.parts.count == 1) return meet_part(g, group.parts.first, frame, solid, id);
+    block_.place_part_balls(robot_, g);
+    for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
+      const Point ball = into_frame(world_, frame, block_.part_balls[p]);
+      const Floats reach = squared_reach(robot_.parts[p].ball.radius + rounding_of(solid));
+      if ((less(squared_gap(solid, ball), reach) & active_) != 0) meet_part(g, p, frame, solid, id);
     }
   }
 
   template <class Solid>
-  void meet_spheres(int g, int frame, const Solid& solid) {
-    block_.place_spheres(robot_, g);
-    const FastGroup& group = robot_.groups[g];
+  void meet_part(int g, int p, int frame, const Solid& solid, int id) {
+    const FastPart& part = robot_.parts[p];
+    block_.place_spheres(robot_, robot_.groups[g].body, p);
     Overlaps overlaps;
-    for (int k = group.first; k < group.first + group.count; ++k) {
+    for (int k = part.first; k < part.first + part.count; ++k) {
+      if (is_ignored(robot_, world_, k, id)) continue;
       const Point center = into_frame(world_, frame, block_.centers[k]);
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
-    note(overlaps, [&](LaneBits near) { return approaching(g, frame, solid, near); });
+    const FastRun spheres{part.first, part.count};
+    note(overlaps,
+         [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
   }
 
   /// Which of the lanes `near` stay blocked when only motion towards the solid counts.
   template <class Solid>
-  LaneBits approaching(int g, int frame, const Solid& solid, LaneBits near) const {
+  LaneBits approaching(int g, const FastRun& spheres, int frame, const Solid& solid, int id,
+                       LaneBits near) const {
     const FastGroup& group = robot_.groups[g];
     LaneBits left = 0;
-    for (int k = group.first; k < group.first + group.count && left != near; ++k) {
+    for (int k = spheres.first; k < spheres.first + spheres.count && left != near; ++k) {
+      if (is_ignored(robot_, world_, k, id)) continue;
       const Point center = into_frame(world_, frame, block_.centers[k]);
       const Point v = into_frame(world_, frame, block_.velocity(block_.centers[k], group.body));
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
@@ -238,15 +258,14 @@ class BlockSearch {
     const auto reach2 = [&] { return squared_reach(radius); };
     walk(world_.crowd, ball, lanes, active_, reach2, [&](int leaf, LaneBits touching) {
       const FastItem& item = world_.items[leaf];
-      if (is_ignored(world_, g, item.id)) return false;
       visit_solid(world_, item,
-                  [&](const auto& solid) { meet_item(g, item.frame, touching, solid); });
+                  [&](const auto& solid) { meet_item(g, item.frame, touching, solid, item.id); });
       return is_done();
     });
   }
 
   template <class Solid>
-  void meet_item(int g, int frame, LaneBits lanes, const Solid& solid) {
+  void meet_item(int g, int frame, LaneBits lanes, const Solid& solid, int id) {
     const FastGroup& group = robot_.groups[g];
     const float round = rounding_of(solid);
     const Point ball = into_frame(world_, frame, block_.balls[g]);
@@ -254,12 +273,14 @@ class BlockSearch {
     if (lanes == 0) return;
     Overlaps overlaps;
     for (int k = group.first; k < group.first + group.count; ++k) {
-      if ((near_[k] & lanes) == 0) continue;
+      if ((near_[k] & lanes) == 0 || is_ignored(robot_, world_, k, id)) continue;
       const Point center = into_frame(world_, frame, block_.centers[k]);
       const float radius = robot_.spheres[k].radius + round;
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
-    note(overlaps, [&](LaneBits near) { return approaching(g, frame, solid, near); });
+    const FastRun spheres{group.first, group.count};
+    note(overlaps,
+         [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
   }
 
   void meet_clouds(int g) {
@@ -310,39 +331,40 @@ class BlockSearch {
       grow_ = smaller(grow_, pair_growth(k));
     }
     if ((less(balls, squared_reach(reach)) & active_) == 0) return;
-    block_.place_spheres(robot_, pair.a);
-    block_.place_spheres(robot_, pair.b);
-    Overlaps overlaps;
+    block_.place_part_balls(robot_, pair.a);
+    block_.place_part_balls(robot_, pair.b);
     for (int i = pair.first; i < pair.first + pair.count; ++i) {
-      const FastRow& row = robot_.rows[i];
-      const float radius = robot_.spheres[row.sphere].radius;
-      const Point center = block_.centers[row.sphere];
-      const Floats to_ball = squared(center - block_.balls[pair.b]);
-      if ((less(to_ball, squared_reach(radius + b.ball.radius)) & active_) == 0) continue;
-      for (int j = row.first; j < row.first + row.count; ++j) {
-        const FastPartner& other = robot_.partners[j];
-        look(squared(center - block_.centers[other.sphere]), other.reach, other.minus_reach2,
-             overlaps);
-      }
+      const FastPartPair& parts = robot_.part_pairs[i];
+      const Floats gap2 = squared(block_.part_balls[parts.a] - block_.part_balls[parts.b]);
+      if ((less(gap2, squared_reach(parts.reach)) & active_) != 0) meet_parts(k, parts);
     }
-    note(overlaps, [&](LaneBits near) { return approaching(k, near); });
+  }
+
+  void meet_parts(int k, const FastPartPair& parts) {
+    const FastPair& pair = robot_.pairs[k];
+    block_.place_spheres(robot_, robot_.groups[pair.a].body, parts.a);
+    block_.place_spheres(robot_, robot_.groups[pair.b].body, parts.b);
+    Overlaps overlaps;
+    for (int i = parts.first; i < parts.first + parts.count; ++i) {
+      const FastPartners& both = robot_.partners[i];
+      look(squared(block_.centers[both.a] - block_.centers[both.b]), both.reach, both.minus_reach2,
+           overlaps);
+    }
+    note(overlaps, [&](LaneBits near) { return approaching(k, parts, near); });
   }
 
   /// The same of a pair of links: how the farther one moves as seen from the other.
-  LaneBits approaching(int k, LaneBits near) const {
+  LaneBits approaching(int k, const FastPartPair& parts, LaneBits near) const {
     const FastPair& pair = robot_.pairs[k];
     const int body_a = robot_.groups[pair.a].body, body_b = robot_.groups[pair.b].body;
     LaneBits left = 0;
-    for (int i = pair.first; i < pair.first + pair.count; ++i) {
-      const FastRow& row = robot_.rows[i];
-      for (int j = row.first; j < row.first + row.count && left != near; ++j) {
-        const FastPartner& other = robot_.partners[j];
-        const Point& center = block_.centers[other.sphere];
-        const Point gap = center - block_.centers[row.sphere];
-        if ((less(squared(gap), squared_reach(other.reach)) & near) == 0) continue;
-        const Point v = block_.velocity(center, body_b) - block_.velocity(center, body_a);
-        left |= near & ~cleared(gap, v, other.reach, motion_->pair_slack[k], motion_->pair_bend[k]);
-      }
+    for (int i = parts.first; i < parts.first + parts.count && left != near; ++i) {
+      const FastPartners& both = robot_.partners[i];
+      const Point& center = block_.centers[both.b];
+      const Point gap = center - block_.centers[both.a];
+      if ((less(squared(gap), squared_reach(both.reach)) & near) == 0) continue;
+      const Point v = block_.velocity(center, body_b) - block_.velocity(center, body_a);
+      left |= near & ~cleared(gap, v, both.reach, motion_->pair_slack[k], motion_->pair_bend[k]);
     }
     return left;
   }

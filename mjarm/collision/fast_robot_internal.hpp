@@ -34,14 +34,14 @@ struct FastRobotData {
   Arm arm;
   SphereSet set;
   std::vector<FastGroup> groups;
+  std::vector<FastPart> parts;
   std::vector<FastSphere> spheres;
   std::vector<FastPair> pairs, every_pair;
-  std::vector<FastRow> rows;
-  std::vector<FastPartner> partners;
+  std::vector<FastPartPair> part_pairs;
+  std::vector<FastPartners> partners;
   FastRobotTables tables;                              ///< of the above
   std::vector<GroupBounds> bounds;                     ///< one a group
-  std::vector<int> link_of_group;                      ///< index into the set
-  std::vector<int> group_of_sphere;                    ///< of the tables
+  std::vector<int> link_of_sphere;                     ///< index into the set
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
   double padding = 0;                                  ///< [m] largest of the groups
   /// Levers of every group and, of every pair, those of group b for the joints between both; 0 for
@@ -73,7 +73,7 @@ struct FastLimits {
 [[nodiscard]] GroupBounds group_bounds(const Arm& arm, const LinkChain& chain, int body,
                                        std::span<const Sphere> spheres);
 
-/// Fills the pairs, rows and partners of a robot whose groups are there.
+/// Fills all kinds of pairs of a robot whose groups are there.
 void add_pairs(FastRobotData& data, const LinkChain& chain);
 
 }  // namespace mjarm::detail

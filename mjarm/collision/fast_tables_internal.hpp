@@ -10,8 +10,10 @@
 namespace mjarm::detail {
 
 inline constexpr int kFastJoints = 16;    ///< most joints (kMaxDof)
-inline constexpr int kFastGroups = 128;   ///< most links (kMostSphereLinks)
+inline constexpr int kFastGroups = kFastJoints + 1;
 inline constexpr int kFastSpheres = 512;  ///< most spheres (kMostSpheres)
+/// Most pairs of groups, each with itself included.
+inline constexpr int kFastPairs = kFastGroups * (kFastGroups + 1) / 2;
 
 /// How the frame of a joint is tilted about x against the one before, by 0 to pi. A quarter turn
 /// only swaps axes.
@@ -32,31 +34,45 @@ struct FastSphere {
   float radius = 0;
 };
 
-/// The spheres of one link. Bodies are counted from 1; body 0 is what stands still.
+/// A run of entries of one kind: [first, first + count).
+struct FastRun {
+  int first = 0, count = 0;
+};
+
+/// Some spheres of a group that are near each other.
+struct FastPart {
+  int first = 0, count = 0;  ///< of the spheres
+  FastSphere ball;           ///< contains them
+};
+
+/// The spheres of all links that one joint moves. Bodies are counted from 1; body 0 is what stands
+/// still.
 struct FastGroup {
   int body = 0;
   int first = 0, count = 0;  ///< of the spheres
+  FastRun parts;             ///< that the spheres are in, in the same order
   FastSphere ball;           ///< contains them all
   float spread = 0;          ///< [m] farthest centre of a sphere from that of the ball
 };
 
-/// A sphere that another must not overlap.
-struct FastPartner {
-  int sphere = 0;
+/// Two spheres that must not overlap.
+struct FastPartners {
+  int a = 0, b = 0;
   float reach = 0;         ///< [m] sum of both radii
   float minus_reach2 = 0;  ///< [m^2] minus its square
 };
 
-/// One sphere of a link against some of another.
-struct FastRow {
-  int sphere = 0;
+/// A part of a group against one of another.
+struct FastPartPair {
+  int a = 0, b = 0;
+  float reach = 0;           ///< [m] sum of the radii of both balls
   int first = 0, count = 0;  ///< of the partners
 };
 
-/// Two links that must not overlap; `b` is on the body farther from the base.
+/// Two groups with links that must not overlap; `b` is farther from the base.
 struct FastPair {
   int a = 0, b = 0;          ///< groups
-  int first = 0, count = 0;  ///< of the rows
+  int first = 0, count = 0;  ///< of the pairs of parts
 };
 
 /// A robot, whatever stands round it.
@@ -64,14 +80,17 @@ struct FastRobotTables {
   int dof = 0;
   FastJoint joints[kFastJoints];
   int group_count = 0;
+  int part_count = 0;
   int pair_count = 0;
   int every_pair_count = 0;
   const FastGroup* groups = nullptr;  ///< farthest body first
+  const FastPart* parts = nullptr;
   const FastSphere* spheres = nullptr;
+  const int* link_of_sphere = nullptr;   ///< index into the sphere set
   const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
   const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
-  const FastRow* rows = nullptr;
-  const FastPartner* partners = nullptr;  ///< spheres of group b
+  const FastPartPair* part_pairs = nullptr;
+  const FastPartners* partners = nullptr;
 };
 
 /// A box, or what a radius put round it makes: a ball has no extent, a capsule one. Bounds in the
@@ -86,11 +105,6 @@ struct FastCylinder {
   float center[3];
   float radius = 0, half = 0;
   int axis = 2;
-};
-
-/// A run of entries of one kind: [first, first + count).
-struct FastRun {
-  int first = 0, count = 0;
 };
 
 /// What a group can meet, of one orientation.
@@ -171,11 +185,10 @@ struct FastWorldTables {
   const float* frames = nullptr;                ///< 9 a frame, by rows: into that frame
   const FastList* lists = nullptr;
   const FastRun* lists_of_group = nullptr;
-  /// For distances: what is within 1 m of the reach of any group, and not ignored by this one.
-  const FastRun* every_list_of_group = nullptr;
-  /// Obstacles that a group is not held against: a bit for each, group by group. No words: none is.
+  FastRun every_list;  ///< for distances: what is within 1 m of the reach of any group
+  /// Obstacles that a link is not held against: a bit for each, link by link. No words: none is.
   const std::uint64_t* ignored = nullptr;
-  int ignored_words = 0;  ///< of a group
+  int ignored_words = 0;  ///< of a link
   const FastBox* boxes = nullptr;
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is
