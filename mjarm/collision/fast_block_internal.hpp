@@ -40,11 +40,7 @@ struct Twist {
 };
 
 inline Point in_world(const Frame& f, const FastSphere& s) {
-  Point out = f.p;
-  if (s.x != 0) out = along(out, splat(s.x), f.x);
-  if (s.y != 0) out = along(out, splat(s.y), f.y);
-  if (s.z != 0) out = along(out, splat(s.z), f.z);
-  return out;
+  return along(along(along(f.p, splat(s.x), f.x), splat(s.y), f.y), splat(s.z), f.z);
 }
 
 inline void tilt(const FastJoint& joint, Frame& f) {
@@ -130,8 +126,6 @@ struct Block {
   Point velocity(const Point& p, int body) const {
     return plus_cross(twists[body].v, twists[body].w, p - frames[body].p);
   }
-  /// How the point of a body that is now at the ball of group `g` moves, and how the body turns.
-  Twist twist_at_ball(int g, int body) const { return {velocity(balls[g], body), twists[body].w}; }
 
   void place_part_balls(const FastRobotTables& robot, int g) {
     if (placed_balls[g]) return;
@@ -169,13 +163,15 @@ inline LaneBits outside_limits(const FastRobotTables& robot, const float* q) {
   return ~inside & kAllLanes;
 }
 
-/// Turns a point from frame 0 into another.
-inline Point into_frame(const FastWorldTables& world, int frame, const Point& p) {
+/// Turns a point from frame 0 into another: into `turned`, where it has to be turned at all.
+inline const Point& into_frame(const FastWorldTables& world, int frame, const Point& p,
+                               Point& turned) {
   if (frame == 0) return p;
   const float* r = world.frames + 9 * frame;
-  return {multiply_add(splat(r[0]), p.x, multiply_add(splat(r[1]), p.y, splat(r[2]) * p.z)),
+  turned = {multiply_add(splat(r[0]), p.x, multiply_add(splat(r[1]), p.y, splat(r[2]) * p.z)),
           multiply_add(splat(r[3]), p.x, multiply_add(splat(r[4]), p.y, splat(r[5]) * p.z)),
           multiply_add(splat(r[6]), p.x, multiply_add(splat(r[7]), p.y, splat(r[8]) * p.z))};
+  return turned;
 }
 
 /// From the nearest point of a box without its rounding, in its frame; its squared length.

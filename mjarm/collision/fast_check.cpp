@@ -38,6 +38,14 @@ struct LaneInput {
   alignas(64) float q[kMaxDof * kMostLanes];
 
   LaneInput(const double* rows, std::size_t count, std::size_t dof, std::size_t width) {
+    if (count == width) {
+      for (std::size_t k = 0; k < width; ++k) {
+        for (std::size_t i = 0; i < dof; ++i) {
+          q[i * width + k] = static_cast<float>(rows[k * dof + i]);
+        }
+      }
+      return;
+    }
     for (std::size_t i = 0; i < dof; ++i) {
       for (std::size_t k = 0; k < width; ++k) {
         q[i * width + k] = static_cast<float>(rows[std::min(k, count - 1) * dof + i]);

@@ -68,14 +68,16 @@ class NearestSearch {
   template <class Solid>
   void meet_run(int g, int frame, const Solid* solids, const FastRun& run, const int* ids) {
     const FastGroup& group = robot_.groups[g];
-    const Point ball = into_frame(world_, frame, block_.balls[g]);
+    Point turned_ball;
+    const Point& ball = into_frame(world_, frame, block_.balls[g], turned_ball);
     for (int i = run.first; i < run.first + run.count; ++i) {
       const Solid& solid = solids[i];
       const float round = rounding_of(solid);
       if (less(gap(squared_gap(solid, ball), group.ball.radius + round), best_) == 0) continue;
       block_.place_part_balls(robot_, g);
       for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
-        const Point part = into_frame(world_, frame, block_.part_balls[p]);
+        Point turned;
+        const Point& part = into_frame(world_, frame, block_.part_balls[p], turned);
         const float radius = robot_.parts[p].ball.radius + round;
         if (less(gap(squared_gap(solid, part), radius), best_) == 0) continue;
         block_.place_spheres(robot_, group.body, p);
@@ -88,7 +90,8 @@ class NearestSearch {
   void meet_part(const FastPart& part, int frame, const Solid& solid, int id) {
     for (int k = part.first; k < part.first + part.count; ++k) {
       if (is_ignored(robot_, world_, k, id)) continue;
-      const Point center = into_frame(world_, frame, block_.centers[k]);
+      Point turned;
+      const Point& center = into_frame(world_, frame, block_.centers[k], turned);
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
       note(gap(squared_gap(solid, center), radius), {0, k, id, -1});
     }
@@ -130,7 +133,8 @@ class NearestSearch {
   }
 
   void meet_item(int sphere, const FastItem& item) {
-    const Point center = into_frame(world_, item.frame, block_.centers[sphere]);
+    Point turned;
+    const Point& center = into_frame(world_, item.frame, block_.centers[sphere], turned);
     const float radius = robot_.spheres[sphere].radius;
     visit_solid(world_, item, [&](const auto& solid) {
       const float round = rounding_of(solid);
@@ -158,15 +162,23 @@ class NearestSearch {
     const FastGroup& a = robot_.groups[pair.a];
     const FastGroup& b = robot_.groups[pair.b];
     const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
-    if (less(gap(balls, a.ball.radius + b.ball.radius), best_) == 0) return;
+    if (less(gap(balls, pair.reach), best_) == 0) return;
     block_.place_part_balls(robot_, pair.a);
     block_.place_part_balls(robot_, pair.b);
     for (int k = pair.first; k < pair.first + pair.count; ++k) {
+      const FastRow& row = robot_.rows[k];
+      const Floats to_ball = squared(block_.part_balls[row.part] - block_.balls[pair.b]);
+      if (less(gap(to_ball, row.reach), best_) != 0) meet_row(a.body, b.body, row);
+    }
+  }
+
+  void meet_row(int body_a, int body_b, const FastRow& row) {
+    for (int k = row.first; k < row.first + row.count; ++k) {
       const FastPartPair& parts = robot_.part_pairs[k];
       const Floats apart = squared(block_.part_balls[parts.a] - block_.part_balls[parts.b]);
       if (less(gap(apart, parts.reach), best_) == 0) continue;
-      block_.place_spheres(robot_, a.body, parts.a);
-      block_.place_spheres(robot_, b.body, parts.b);
+      block_.place_spheres(robot_, body_a, parts.a);
+      block_.place_spheres(robot_, body_b, parts.b);
       for (int j = parts.first; j < parts.first + parts.count; ++j) {
         const FastPartners& both = robot_.partners[j];
         note(gap(squared(block_.centers[both.a] - block_.centers[both.b]), both.reach),

@@ -103,37 +103,45 @@ class LinkPairs {
   std::vector<bool> paired_;
 };
 
+float reach_of(const FastSphere& a, const FastSphere& b) {
+  return round_up(static_cast<double>(a.radius) + b.radius);
+}
+
 /// The spheres of two parts that `meets` keeps; without any the parts are left out.
 template <class Meets>
-void add_part_pair(FastRobotData& data, FastPair& pair, int a, int b, const Meets& meets) {
+void add_part_pair(FastRobotData& data, FastRow& row, int a, int b, const Meets& meets) {
   const FastPart& from = data.parts[static_cast<std::size_t>(a)];
   const FastPart& to = data.parts[static_cast<std::size_t>(b)];
-  const auto reach = [](const FastSphere& one, const FastSphere& other) {
-    return round_up(static_cast<double>(one.radius) + other.radius);
-  };
-  FastPartPair parts{a, b, reach(from.ball, to.ball), static_cast<int>(data.partners.size()), 0};
+  const int first = static_cast<int>(data.partners.size());
   for (int i = from.first; i < from.first + from.count; ++i) {
     for (int j = to.first; j < to.first + to.count; ++j) {
       if (!meets(i, j)) continue;
-      const float far = reach(data.spheres[static_cast<std::size_t>(i)],
-                              data.spheres[static_cast<std::size_t>(j)]);
-      data.partners.push_back({i, j, far, -round_up(static_cast<double>(far) * far)});
-      ++parts.count;
+      const float reach = reach_of(data.spheres[static_cast<std::size_t>(i)],
+                                   data.spheres[static_cast<std::size_t>(j)]);
+      data.partners.push_back({i, j, reach, -round_up(static_cast<double>(reach) * reach)});
     }
   }
-  if (parts.count == 0) return;
-  data.part_pairs.push_back(parts);
-  ++pair.count;
+  const int count = static_cast<int>(data.partners.size()) - first;
+  if (count == 0) return;
+  data.part_pairs.push_back({a, b, reach_of(from.ball, to.ball), first, count});
+  ++row.count;
 }
 
 /// The pair of groups a and b; without any spheres it is left out.
 template <class Meets>
 void add_pair(FastRobotData& data, std::vector<FastPair>& pairs, int a, int b, const Meets& meets) {
-  const FastRun& from = data.groups[static_cast<std::size_t>(a)].parts;
-  const FastRun& to = data.groups[static_cast<std::size_t>(b)].parts;
-  FastPair pair{a, b, static_cast<int>(data.part_pairs.size()), 0};
-  for (int i = from.first; i < from.first + from.count; ++i) {
-    for (int j = to.first; j < to.first + to.count; ++j) add_part_pair(data, pair, i, j, meets);
+  const FastGroup& from = data.groups[static_cast<std::size_t>(a)];
+  const FastGroup& to = data.groups[static_cast<std::size_t>(b)];
+  FastPair pair{a, b, static_cast<int>(data.rows.size()), 0, reach_of(from.ball, to.ball)};
+  for (int i = from.parts.first; i < from.parts.first + from.parts.count; ++i) {
+    FastRow row{i, reach_of(data.parts[static_cast<std::size_t>(i)].ball, to.ball),
+                static_cast<int>(data.part_pairs.size()), 0};
+    for (int j = to.parts.first; j < to.parts.first + to.parts.count; ++j) {
+      add_part_pair(data, row, i, j, meets);
+    }
+    if (row.count == 0) continue;
+    data.rows.push_back(row);
+    ++pair.count;
   }
   if (pair.count > 0) pairs.push_back(pair);
 }

@@ -143,25 +143,37 @@ void add_groups(FastRobotData& data, const LinkChain& chain) {
   }
 }
 
+/// The levers of `group` for the joints between two bodies, as column `column` of a table.
+struct LeverColumn {
+  int column, group, from_body, to_body;
+};
+
+void set_levers(const FastRobotData& data, const LeverColumn& at, detail::LeverTable& out) {
+  const auto column = static_cast<std::size_t>(at.column);
+  out.from[column] = at.from_body;
+  for (auto k = static_cast<std::size_t>(at.from_body); k < static_cast<std::size_t>(at.to_body);
+       ++k) {
+    const double lever = data.bounds[static_cast<std::size_t>(at.group)].levers[k];
+    out.levers[k * out.from.size() + column] = detail::round_up(lever);
+  }
+}
+
 void add_levers(FastRobotData& data) {
-  const auto lever = [&](int group, int k) {
-    return detail::round_up(
-        data.bounds[static_cast<std::size_t>(group)].levers[static_cast<std::size_t>(k)]);
+  const auto make = [&](std::size_t n) {
+    const std::size_t whole = (n + 15) / 16 * 16;
+    return detail::LeverTable{
+        std::vector<float>(whole * static_cast<std::size_t>(data.arm.dof()), 0.0F),
+        std::vector<int>(whole, 0)};
   };
   const auto body = [&](int group) { return data.groups[static_cast<std::size_t>(group)].body; };
-  const auto whole = [](std::size_t n) { return (n + 15) / 16 * 16; };
-  data.group_stride = whole(data.groups.size());
-  data.pair_stride = whole(data.pairs.size());
-  for (int k = 0; k < data.arm.dof(); ++k) {
-    for (int g = 0; g < static_cast<int>(data.groups.size()); ++g) {
-      data.group_levers.push_back(lever(g, k));
-    }
-    data.group_levers.resize(data.group_stride * static_cast<std::size_t>(k + 1));
-    for (const detail::FastPair& pair : data.pairs) {
-      const bool between = k >= body(pair.a) && k < body(pair.b);
-      data.pair_levers.push_back(between ? lever(pair.b, k) : 0);
-    }
-    data.pair_levers.resize(data.pair_stride * static_cast<std::size_t>(k + 1));
+  data.group_levers = make(data.groups.size());
+  for (int g = 0; g < static_cast<int>(data.groups.size()); ++g) {
+    set_levers(data, {g, g, 0, body(g)}, data.group_levers);
+  }
+  data.pair_levers = make(data.pairs.size());
+  for (int p = 0; p < static_cast<int>(data.pairs.size()); ++p) {
+    const detail::FastPair& pair = data.pairs[static_cast<std::size_t>(p)];
+    set_levers(data, {p, pair.b, body(pair.a), body(pair.b)}, data.pair_levers);
   }
 }
 
@@ -212,6 +224,7 @@ Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   data->tables.link_of_sphere = data->link_of_sphere.data();
   data->tables.pairs = data->pairs.data();
   data->tables.every_pair = data->every_pair.data();
+  data->tables.rows = data->rows.data();
   data->tables.part_pairs = data->part_pairs.data();
   data->tables.partners = data->partners.data();
   return FastRobot(std::move(data));

@@ -69,10 +69,18 @@ struct FastPartPair {
   int first = 0, count = 0;  ///< of the partners
 };
 
+/// A part of a group against all of another.
+struct FastRow {
+  int part = 0;
+  float reach = 0;           ///< [m] sum of the radii of both balls
+  int first = 0, count = 0;  ///< of the pairs of parts
+};
+
 /// Two groups with links that must not overlap; `b` is farther from the base.
 struct FastPair {
   int a = 0, b = 0;          ///< groups
-  int first = 0, count = 0;  ///< of the pairs of parts
+  int first = 0, count = 0;  ///< of the rows
+  float reach = 0;           ///< [m] sum of the radii of both balls
 };
 
 /// A robot, whatever stands round it.
@@ -89,6 +97,7 @@ struct FastRobotTables {
   const int* link_of_sphere = nullptr;   ///< index into the sphere set
   const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
   const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
+  const FastRow* rows = nullptr;
   const FastPartPair* part_pairs = nullptr;
   const FastPartners* partners = nullptr;
 };
@@ -110,7 +119,7 @@ struct FastCylinder {
 /// What a group can meet, of one orientation.
 struct FastList {
   int frame = 0;
-  FastRun boxes, rounds, cylinders;  ///< boxes and rounds are both in `boxes` of the world
+  FastRun boxes, rounds, cylinders;  ///< boxes (at most 64) and rounds are in `boxes` of the world
 };
 
 /// How many children a node of a tree has, and how many levels of nodes there are at most.
@@ -206,18 +215,30 @@ struct FastWorldTables {
 /// How the configurations of one edge move: q(t) = q0 + t dq, with what bounds the second
 /// derivative, for each group.
 struct FastMotion {
+  const double *start, *way;  ///< (dof,) q0 and dq
   const float* dq;         ///< (dof,)
-  const float* slack;      ///< (groups,) [m] what rounding may hide of the speed
+  const float* rate;       ///< (groups,) [m] fastest motion, wherever they are
   const float* bend;       ///< (groups,) [m] half of the largest second derivative
   const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links, wherever they are
-  /// (pairs,) slack and bend of the farther link as seen from the other.
-  const float *pair_slack, *pair_bend;
+  const float* pair_bend;  ///< (pairs,) bend of the farther link as seen from the other
 };
+
+/// [m] what rounding may hide of a speed, by the fastest motion of the group; two twists are each
+/// rounded.
+inline constexpr float kHiddenSpeed = 1e-5F;
 
 /// How fast the joints of an edge move: |dq|, and how much each bends what it moves.
 struct FastRates {
   int dof;
   const float *rate, *turn;  ///< (dof,)
+  const float* before;       ///< (dof + 1,) rates of all joints before, summed
+};
+
+/// How far groups, or of pairs the farther group, are from the axes of joints.
+struct FastLevers {
+  int stride;           ///< whole registers
+  const float* levers;  ///< (dof, stride) [m], 0 for joints that do not count
+  const int* from;      ///< (stride,) the first joint that counts
 };
 
 struct FastVerdict {
@@ -240,12 +261,13 @@ struct FastKernels {
   /// found end the search.
   std::uint32_t (*collide)(const FastRobotTables&, const FastWorldTables&, const float* q,
                            std::uint32_t active, bool any);
-  /// Looks at intervals t +- half[lane] of an edge, where q is at t. Ends with the first hit.
-  FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, const float* q,
-                       std::uint32_t active, const FastMotion& motion, const float* half);
-  /// Sums of levers (dof, stride) times rates and turns, into speed and bend (stride,).
-  void (*bound_motion)(const FastRates&, const float* levers, std::size_t stride, float* speed,
-                       float* bend);
+  /// Looks at intervals t[lane] +- half[lane] of an edge. Ends with the first hit.
+  FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, std::uint32_t active,
+                       const FastMotion& motion, const float* t, const float* half);
+  /// Bounds of speeds and of half of the second derivatives along the edge, (stride,) each. A point
+  /// moves by at most (lever * rate), summed over the joints; each joint also turns what those after
+  /// it do. What the joints before the first that counts do moves both links of a pair alike.
+  void (*bound_motion)(const FastRates&, const FastLevers&, float* speed, float* bend);
   /// Lower bounds of the distance, up to `most`; with `together` only of the lane where it is
   /// least.
   void (*clearances)(const FastRobotTables&, const FastWorldTables&, const float* q, float most,

@@ -11,6 +11,7 @@ namespace {
 constexpr double kSameTurn = 1e-7;           // [rad] two orientations that count as one
 constexpr std::size_t kMostCompared = 64;    // orientations that a new one is compared with
 constexpr std::size_t kMostListed = 64;      // solids; more go into a tree
+constexpr int kMostOfList = 64;               // of a list: bits of a word
 constexpr std::size_t kMostCubes = 400'000;  // that fill solid meshes
 constexpr double kFloat = 0x1p-24;           // relative rounding error
 constexpr double kEverywhere = 1e9;          // [m]
@@ -289,7 +290,10 @@ class WorldBuilder {
       const double most = bounds.reach + margin + 1e-4 + placed.round;
       if (placed.apart(near.middle).squaredNorm() > most * most) continue;
       const int lists = static_cast<int>(out_.lists.size());
-      if (lists == first || out_.lists.back().frame != placed.frame) start_list(placed.frame);
+      if (lists == first || out_.lists.back().frame != placed.frame ||
+          out_.lists.back().boxes.count == kMostOfList) {
+        start_list(placed.frame);
+      }
       add(near, placed);
     }
     return {first, static_cast<int>(out_.lists.size()) - first};
