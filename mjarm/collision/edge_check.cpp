@@ -113,8 +113,8 @@ class EdgeSearch {
       half[k] = interval.half;
       t[k] = interval.t;
     }
-    const detail::FastMotion motion{start_.data(),      way_.data(),       dq_.data(),
-                                    rate_.data(),      bend_.data(),      pair_rate_.data(),
+    const detail::FastMotion motion{start_.data(),    way_.data(),  dq_.data(),
+                                    rate_.data(),     bend_.data(), pair_rate_.data(),
                                     pair_bend_.data()};
     const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
     const detail::FastVerdict found =

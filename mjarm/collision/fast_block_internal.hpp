@@ -87,8 +87,8 @@ struct Block {
   Point balls[kFastGroups];
   Point part_balls[kFastSpheres];
   Point centers[kFastSpheres];
-  bool placed_balls[kFastGroups];   // those of the parts
-  bool placed[kFastSpheres];        // the spheres of a part
+  bool placed_balls[kFastGroups];  // those of the parts
+  bool placed[kFastSpheres];       // the spheres of a part
 
   /// Frames of all bodies and the balls round the links; no sphere yet.
   void place(const FastRobotTables& robot, const FastWorldTables& world, const float* q) {
@@ -169,8 +169,8 @@ inline const Point& into_frame(const FastWorldTables& world, int frame, const Po
   if (frame == 0) return p;
   const float* r = world.frames + 9 * frame;
   turned = {multiply_add(splat(r[0]), p.x, multiply_add(splat(r[1]), p.y, splat(r[2]) * p.z)),
-          multiply_add(splat(r[3]), p.x, multiply_add(splat(r[4]), p.y, splat(r[5]) * p.z)),
-          multiply_add(splat(r[6]), p.x, multiply_add(splat(r[7]), p.y, splat(r[8]) * p.z))};
+            multiply_add(splat(r[3]), p.x, multiply_add(splat(r[4]), p.y, splat(r[5]) * p.z)),
+            multiply_add(splat(r[6]), p.x, multiply_add(splat(r[7]), p.y, splat(r[8]) * p.z))};
   return turned;
 }
 

@@ -214,8 +214,7 @@ class BlockSearch {
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
     const FastRun spheres{part.first, part.count};
-    note(overlaps,
-         [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
+    note(overlaps, [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
   }
 
   /// Which of the lanes `near` stay blocked when only motion towards the solid counts.
@@ -232,8 +231,7 @@ class BlockSearch {
       Point turned_velocity;
       const Point& v = into_frame(world_, frame, velocity, turned_velocity);
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
-      left |= near &
-              ~cleared(gap_vector(solid, center), v, radius, slack(g), motion_->bend[g]);
+      left |= near & ~cleared(gap_vector(solid, center), v, radius, slack(g), motion_->bend[g]);
     }
     return left;
   }
@@ -297,8 +295,7 @@ class BlockSearch {
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
     const FastRun spheres{group.first, group.count};
-    note(overlaps,
-         [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
+    note(overlaps, [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
   }
 
   void meet_clouds(int g) {

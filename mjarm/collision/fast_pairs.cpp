@@ -168,9 +168,8 @@ void add_pairs(FastRobotData& data, const LinkChain& chain) {
         return (a != b || one < other) && paired(one, other) &&
                search.may_meet(center_of(from), center_of(to), from.radius + to.radius);
       });
-      add_pair(data, data.every_pair, a, b, [&](int one, int other) {
-        return (a != b || one < other) && paired(one, other);
-      });
+      add_pair(data, data.every_pair, a, b,
+               [&](int one, int other) { return (a != b || one < other) && paired(one, other); });
     }
   }
 }

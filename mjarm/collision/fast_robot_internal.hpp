@@ -31,9 +31,7 @@ struct LeverTable {
   std::vector<float> levers;
   std::vector<int> from;
 
-  FastLevers tables() const {
-    return {static_cast<int>(from.size()), levers.data(), from.data()};
-  }
+  FastLevers tables() const { return {static_cast<int>(from.size()), levers.data(), from.data()}; }
 };
 
 struct FastRobotData {

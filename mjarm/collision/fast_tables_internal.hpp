@@ -9,7 +9,7 @@
 /// no inline function of a library may come from the wrong one.
 namespace mjarm::detail {
 
-inline constexpr int kFastJoints = 16;    ///< most joints (kMaxDof)
+inline constexpr int kFastJoints = 16;  ///< most joints (kMaxDof)
 inline constexpr int kFastGroups = kFastJoints + 1;
 inline constexpr int kFastSpheres = 512;  ///< most spheres (kMostSpheres)
 /// Most pairs of groups, each with itself included.
@@ -216,11 +216,11 @@ struct FastWorldTables {
 /// derivative, for each group.
 struct FastMotion {
   const double *start, *way;  ///< (dof,) q0 and dq
-  const float* dq;         ///< (dof,)
-  const float* rate;       ///< (groups,) [m] fastest motion, wherever they are
-  const float* bend;       ///< (groups,) [m] half of the largest second derivative
-  const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links, wherever they are
-  const float* pair_bend;  ///< (pairs,) bend of the farther link as seen from the other
+  const float* dq;            ///< (dof,)
+  const float* rate;          ///< (groups,) [m] fastest motion, wherever they are
+  const float* bend;          ///< (groups,) [m] half of the largest second derivative
+  const float* pair_rate;     ///< (pairs,) [m] fastest approach of the two links, wherever they are
+  const float* pair_bend;     ///< (pairs,) bend of the farther link as seen from the other
 };
 
 /// [m] what rounding may hide of a speed, by the fastest motion of the group; two twists are each
@@ -265,8 +265,8 @@ struct FastKernels {
   FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, std::uint32_t active,
                        const FastMotion& motion, const float* t, const float* half);
   /// Bounds of speeds and of half of the second derivatives along the edge, (stride,) each. A point
-  /// moves by at most (lever * rate), summed over the joints; each joint also turns what those after
-  /// it do. What the joints before the first that counts do moves both links of a pair alike.
+  /// moves by at most (lever * rate), summed over the joints; each joint also turns what those
+  /// after it do. What the joints before the first that counts do moves both links of a pair alike.
   void (*bound_motion)(const FastRates&, const FastLevers&, float* speed, float* bend);
   /// Lower bounds of the distance, up to `most`; with `together` only of the lane where it is
   /// least.

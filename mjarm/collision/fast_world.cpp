@@ -11,7 +11,7 @@ namespace {
 constexpr double kSameTurn = 1e-7;           // [rad] two orientations that count as one
 constexpr std::size_t kMostCompared = 64;    // orientations that a new one is compared with
 constexpr std::size_t kMostListed = 64;      // solids; more go into a tree
-constexpr int kMostOfList = 64;               // of a list: bits of a word
+constexpr int kMostOfList = 64;              // of a list: bits of a word
 constexpr std::size_t kMostCubes = 400'000;  // that fill solid meshes
 constexpr double kFloat = 0x1p-24;           // relative rounding error
 constexpr double kEverywhere = 1e9;          // [m]
@@ -76,7 +76,8 @@ class WorldBuilder {
     out_.tables.every_list = add_lists(all, kMostClearance, {});
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
       const bool moves = robot_.groups[g].body > 0;
-      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, links_of(g)) : FastRun{});
+      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, links_of(g))
+                                          : FastRun{});
     }
     if (!ignored_.empty()) write_ignored(obstacles.solids.size());
   }

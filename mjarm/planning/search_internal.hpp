@@ -77,6 +77,10 @@ inline void between(std::span<const double> a, std::span<const double> b, double
 /// Shortens `path` in place by so many attempts to cut corners; its edges stay proved.
 void shorten(const FastChecker& checker, const PlanOptions& options, int attempts, RawPath& path);
 
+/// Shortens `path` in place by so many attempts to move one of its corners a little.
+void slide_corners(const FastChecker& checker, const PlanOptions& options, int attempts,
+                   RawPath& path);
+
 /// Looks at the start and at every goal.
 [[nodiscard]] Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
                                                                  std::span<const double> start,

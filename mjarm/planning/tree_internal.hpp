@@ -78,7 +78,8 @@ class Tree {
 
   static constexpr std::size_t kLanes = 8;  // nodes that are compared at once
   static constexpr float kMostWeight = 1e6F;
-  static constexpr float kNowhere = 1e9F;  // [rad or m] where lanes without a node are: out of reach
+  static constexpr float kNowhere =
+      1e9F;  // [rad or m] where lanes without a node are: out of reach
 
   /// Writes the next node where nearest() looks for it.
   void place(std::span<const double> q);
