@@ -14,6 +14,11 @@ namespace {
 constexpr std::size_t kMostOpen = 2048;  // intervals that wait; more means: undecided
 constexpr int kMostWidth = 16;
 
+/// So many floats fill whole registers.
+constexpr std::size_t kWhole(int n) {
+  return static_cast<std::size_t>((n + kMostWidth - 1) / kMostWidth * kMostWidth);
+}
+
 /// t and half are sums of powers of two, which floats hold exactly.
 struct OpenInterval {
   float t, half;
@@ -72,34 +77,20 @@ class EdgeSearch {
   double length() const { return length_; }
 
  private:
-  /// Bounds of speeds and second derivatives along the edge, for every link and every pair. A point
-  /// moves by at most (lever * rate), summed over the joints; each joint also turns what those
-  /// after it do. What the joints before the nearer link of a pair do moves both links alike.
+  /// Bounds of speeds and second derivatives along the edge, for every group and every pair.
   void bound_motion() {
     std::array<float, kMaxDof> rate, turn;
-    std::array<float, kMaxDof + 1> before{};  // rates of the joints before, summed
+    std::array<float, kMaxDof + 1> before;  // rates of the joints before, summed
+    before[0] = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(data_.tables.dof); ++k) {
       rate[k] = std::abs(dq_[k]);
       turn[k] = rate[k] * (rate[k] + 2 * before[k]);
       before[k + 1] = before[k] + rate[k];
     }
-    const detail::FastRates rates{data_.tables.dof, rate.data(), turn.data()};
-    checker_.kernels().bound_motion(rates, data_.group_levers.data(), data_.group_stride,
-                                    slack_.data(), bend_.data());
-    checker_.kernels().bound_motion(rates, data_.pair_levers.data(), data_.pair_stride,
-                                    pair_rate_.data(), pair_bend_.data());
-    for (std::size_t g = 0; g < data_.groups.size(); ++g) {
-      slack_[g] *= 1e-5F;
-      bend_[g] *= 0.5001F;
-    }
-    for (std::size_t p = 0; p < data_.pairs.size(); ++p) {
-      const auto a = static_cast<std::size_t>(data_.pairs[p].a);
-      const auto b = static_cast<std::size_t>(data_.pairs[p].b);
-      const float alike = 2 * before[static_cast<std::size_t>(data_.groups[a].body)];
-      pair_bend_[p] = 0.5001F * (pair_bend_[p] - 0.9999F * alike * pair_rate_[p]);
-      pair_rate_[p] *= 1.0001F;
-      pair_slack_[p] = 2 * slack_[b];  // two twists, each rounded
-    }
+    const detail::FastRates rates{data_.tables.dof, rate.data(), turn.data(), before.data()};
+    const auto bound = checker_.kernels().bound_motion;
+    bound(rates, data_.group_levers.tables(), rate_.data(), bend_.data());
+    bound(rates, data_.pair_levers.tables(), pair_rate_.data(), pair_bend_.data());
   }
 
   bool split(OpenInterval whole, std::size_t parts, IntervalQueue& to) {
@@ -116,24 +107,18 @@ class EdgeSearch {
             std::vector<EdgeInterval>* proof) {
     const std::size_t count = std::min(width_, queue.size - first);
     const OpenInterval* const open = &queue.open[first];
-    alignas(64) float q[kMaxDof * kMostWidth];
-    alignas(64) float half[kMostWidth];
-    double t[kMostWidth];
+    alignas(64) float t[kMostWidth], half[kMostWidth];
     for (std::size_t k = 0; k < width_; ++k) {
       const OpenInterval& interval = open[std::min(k, count - 1)];
       half[k] = interval.half;
       t[k] = interval.t;
     }
-    for (std::size_t i = 0; i < static_cast<std::size_t>(data_.tables.dof); ++i) {
-      for (std::size_t k = 0; k < width_; ++k) {
-        q[i * width_ + k] = static_cast<float>(start_[i] + t[k] * way_[i]);
-      }
-    }
-    const detail::FastMotion motion{dq_.data(),        slack_.data(),      bend_.data(),
-                                    pair_rate_.data(), pair_slack_.data(), pair_bend_.data()};
+    const detail::FastMotion motion{start_.data(),    way_.data(),  dq_.data(),
+                                    rate_.data(),     bend_.data(), pair_rate_.data(),
+                                    pair_bend_.data()};
     const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
     const detail::FastVerdict found =
-        checker_.kernels().cover(data_.tables, checker_.world().tables, q, lanes, motion, half);
+        checker_.kernels().cover(data_.tables, checker_.world().tables, lanes, motion, t, half);
     result_.stations += static_cast<int>(count);
     if (found.hit != 0) return end(EdgeVerdict::hit, open[__builtin_ctz(found.hit)].t);
     for (std::size_t k = 0; k < count; ++k) {
@@ -167,10 +152,10 @@ class EdgeSearch {
   const FastChecker& checker_;
   const detail::FastRobotData& data_;
   std::size_t width_;
-  std::array<double, kMaxDof> start_{}, way_{};
-  std::array<float, kMaxDof> dq_{};
-  std::array<float, kMostSphereLinks> slack_, bend_;
-  std::array<float, kMostSpherePairs> pair_rate_, pair_slack_, pair_bend_;
+  std::array<double, kMaxDof> start_, way_;
+  std::array<float, kMaxDof> dq_;
+  std::array<float, kWhole(detail::kFastGroups)> rate_, bend_;
+  std::array<float, kWhole(detail::kFastPairs)> pair_rate_, pair_bend_;
   double length_ = 0;
   double outside_ = 2;  // where the edge is outside of the limits; 2: nowhere
   float least_half_ = 0;

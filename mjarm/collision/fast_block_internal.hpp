@@ -40,11 +40,7 @@ struct Twist {
 };
 
 inline Point in_world(const Frame& f, const FastSphere& s) {
-  Point out = f.p;
-  if (s.x != 0) out = along(out, splat(s.x), f.x);
-  if (s.y != 0) out = along(out, splat(s.y), f.y);
-  if (s.z != 0) out = along(out, splat(s.z), f.z);
-  return out;
+  return along(along(along(f.p, splat(s.x), f.x), splat(s.y), f.y), splat(s.z), f.z);
 }
 
 inline void tilt(const FastJoint& joint, Frame& f) {
@@ -89,8 +85,10 @@ struct Block {
   Frame frames[kFastJoints + 1];
   Twist twists[kFastJoints + 1];
   Point balls[kFastGroups];
+  Point part_balls[kFastSpheres];
   Point centers[kFastSpheres];
-  bool placed[kFastGroups];
+  bool placed_balls[kFastGroups];  // those of the parts
+  bool placed[kFastSpheres];       // the spheres of a part
 
   /// Frames of all bodies and the balls round the links; no sphere yet.
   void place(const FastRobotTables& robot, const FastWorldTables& world, const float* q) {
@@ -107,8 +105,9 @@ struct Block {
     }
     for (int g = 0; g < robot.group_count; ++g) {
       balls[g] = in_world(frames[robot.groups[g].body], robot.groups[g].ball);
-      placed[g] = false;
+      placed_balls[g] = false;
     }
+    for (int p = 0; p < robot.part_count; ++p) placed[p] = false;
   }
 
   /// Velocities of all bodies, whose frames are placed.
@@ -127,15 +126,29 @@ struct Block {
   Point velocity(const Point& p, int body) const {
     return plus_cross(twists[body].v, twists[body].w, p - frames[body].p);
   }
-  /// How the point of a body that is now at the ball of group `g` moves, and how the body turns.
-  Twist twist_at_ball(int g, int body) const { return {velocity(balls[g], body), twists[body].w}; }
 
-  void place_spheres(const FastRobotTables& robot, int g) {
-    if (placed[g]) return;
-    placed[g] = true;
+  void place_part_balls(const FastRobotTables& robot, int g) {
+    if (placed_balls[g]) return;
+    placed_balls[g] = true;
     const FastGroup& group = robot.groups[g];
-    for (int k = group.first; k < group.first + group.count; ++k) {
-      centers[k] = in_world(frames[group.body], robot.spheres[k]);
+    for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
+      part_balls[p] = in_world(frames[group.body], robot.parts[p].ball);
+    }
+  }
+
+  /// The spheres of part `p`, which belongs to body `body`.
+  void place_spheres(const FastRobotTables& robot, int body, int p) {
+    if (placed[p]) return;
+    placed[p] = true;
+    const FastPart& part = robot.parts[p];
+    for (int k = part.first; k < part.first + part.count; ++k) {
+      centers[k] = in_world(frames[body], robot.spheres[k]);
+    }
+  }
+  void place_spheres(const FastRobotTables& robot, int g) {
+    const FastGroup& group = robot.groups[g];
+    for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
+      place_spheres(robot, group.body, p);
     }
   }
 };
@@ -150,13 +163,15 @@ inline LaneBits outside_limits(const FastRobotTables& robot, const float* q) {
   return ~inside & kAllLanes;
 }
 
-/// Turns a point from frame 0 into another.
-inline Point into_frame(const FastWorldTables& world, int frame, const Point& p) {
+/// Turns a point from frame 0 into another: into `turned`, where it has to be turned at all.
+inline const Point& into_frame(const FastWorldTables& world, int frame, const Point& p,
+                               Point& turned) {
   if (frame == 0) return p;
   const float* r = world.frames + 9 * frame;
-  return {multiply_add(splat(r[0]), p.x, multiply_add(splat(r[1]), p.y, splat(r[2]) * p.z)),
-          multiply_add(splat(r[3]), p.x, multiply_add(splat(r[4]), p.y, splat(r[5]) * p.z)),
-          multiply_add(splat(r[6]), p.x, multiply_add(splat(r[7]), p.y, splat(r[8]) * p.z))};
+  turned = {multiply_add(splat(r[0]), p.x, multiply_add(splat(r[1]), p.y, splat(r[2]) * p.z)),
+            multiply_add(splat(r[3]), p.x, multiply_add(splat(r[4]), p.y, splat(r[5]) * p.z)),
+            multiply_add(splat(r[6]), p.x, multiply_add(splat(r[7]), p.y, splat(r[8]) * p.z))};
+  return turned;
 }
 
 /// From the nearest point of a box without its rounding, in its frame; its squared length.
@@ -258,10 +273,12 @@ inline float rounding_of(const FastPolytope&) { return 0; }
 inline float rounding_of(const FastBox& box) { return box.round; }
 inline float rounding_of(const FastCylinder&) { return 0; }
 
-/// Whether a group is not held against an obstacle.
-inline bool is_ignored(const FastWorldTables& world, int g, int obstacle) {
+/// Whether the link of a sphere is not held against an obstacle.
+inline bool is_ignored(const FastRobotTables& robot, const FastWorldTables& world, int sphere,
+                       int obstacle) {
   if (world.ignored_words == 0) return false;
-  const std::uint64_t word = world.ignored[g * world.ignored_words + obstacle / 64];
+  const int link = robot.link_of_sphere[sphere];
+  const std::uint64_t word = world.ignored[link * world.ignored_words + obstacle / 64];
   return ((word >> (obstacle % 64)) & 1) != 0;
 }
 

@@ -38,6 +38,14 @@ struct LaneInput {
   alignas(64) float q[kMaxDof * kMostLanes];
 
   LaneInput(const double* rows, std::size_t count, std::size_t dof, std::size_t width) {
+    if (count == width) {
+      for (std::size_t k = 0; k < width; ++k) {
+        for (std::size_t i = 0; i < dof; ++i) {
+          q[i * width + k] = static_cast<float>(rows[k * dof + i]);
+        }
+      }
+      return;
+    }
     for (std::size_t i = 0; i < dof; ++i) {
       for (std::size_t k = 0; k < width; ++k) {
         q[i * width + k] = static_cast<float>(rows[std::min(k, count - 1) * dof + i]);
@@ -120,9 +128,7 @@ bool FastChecker::is_free(std::span<const double> q) const noexcept {
 SphereClearance FastChecker::clearance_of(const detail::FastNearest& from) const noexcept {
   const detail::FastRobotData& data = robot_.data();
   const auto link_of = [&](int sphere) {
-    if (sphere < 0) return -1;
-    const int group = data.group_of_sphere[static_cast<std::size_t>(sphere)];
-    return data.link_of_group[static_cast<std::size_t>(group)];
+    return sphere < 0 ? -1 : data.link_of_sphere[static_cast<std::size_t>(sphere)];
   };
   return {from.distance, link_of(from.sphere), from.obstacle, link_of(from.other)};
 }

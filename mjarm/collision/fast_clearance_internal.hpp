@@ -56,7 +56,7 @@ class NearestSearch {
 
   void meet_world(int g) {
     if (robot_.groups[g].body == 0) return;
-    const FastRun& lists = world_.every_list_of_group[g];
+    const FastRun& lists = world_.every_list;
     for (int k = lists.first; k < lists.first + lists.count; ++k) {
       const FastList& list = world_.lists[k];
       meet_run(g, list.frame, world_.boxes, list.boxes, world_.box_ids);
@@ -68,17 +68,32 @@ class NearestSearch {
   template <class Solid>
   void meet_run(int g, int frame, const Solid* solids, const FastRun& run, const int* ids) {
     const FastGroup& group = robot_.groups[g];
-    const Point ball = into_frame(world_, frame, block_.balls[g]);
+    Point turned_ball;
+    const Point& ball = into_frame(world_, frame, block_.balls[g], turned_ball);
     for (int i = run.first; i < run.first + run.count; ++i) {
       const Solid& solid = solids[i];
       const float round = rounding_of(solid);
       if (less(gap(squared_gap(solid, ball), group.ball.radius + round), best_) == 0) continue;
-      block_.place_spheres(robot_, g);
-      for (int k = group.first; k < group.first + group.count; ++k) {
-        const Point center = into_frame(world_, frame, block_.centers[k]);
-        const float radius = robot_.spheres[k].radius;
-        note(gap(squared_gap(solid, center), radius + round), {0, k, ids[i], -1});
+      block_.place_part_balls(robot_, g);
+      for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
+        Point turned;
+        const Point& part = into_frame(world_, frame, block_.part_balls[p], turned);
+        const float radius = robot_.parts[p].ball.radius + round;
+        if (less(gap(squared_gap(solid, part), radius), best_) == 0) continue;
+        block_.place_spheres(robot_, group.body, p);
+        meet_part(robot_.parts[p], frame, solid, ids[i]);
       }
+    }
+  }
+
+  template <class Solid>
+  void meet_part(const FastPart& part, int frame, const Solid& solid, int id) {
+    for (int k = part.first; k < part.first + part.count; ++k) {
+      if (is_ignored(robot_, world_, k, id)) continue;
+      Point turned;
+      const Point& center = into_frame(world_, frame, block_.centers[k], turned);
+      const float radius = robot_.spheres[k].radius + rounding_of(solid);
+      note(gap(squared_gap(solid, center), radius), {0, k, id, -1});
     }
   }
 
@@ -96,11 +111,11 @@ class NearestSearch {
     if (Touched(root, block_.balls[g], far * far, kAllLanes).children == 0) return;
     block_.place_spheres(robot_, g);
     for (int k = group.first; k < group.first + group.count; ++k) {
-      for (int lane = 0; lane < kWidth; ++lane) meet_leaves(g, tree, k, lane);
+      for (int lane = 0; lane < kWidth; ++lane) meet_leaves(tree, k, lane);
     }
   }
 
-  void meet_leaves(int g, const FastTree& tree, int sphere, int lane) {
+  void meet_leaves(const FastTree& tree, int sphere, int lane) {
     const float radius = robot_.spheres[sphere].radius;
     const Point at = lane_of(block_.centers[sphere], lane);
     const auto limit2 = [&] {
@@ -110,7 +125,7 @@ class NearestSearch {
     walk_nearest(tree, at, limit2, [&](int leaf) {
       if (&tree == &world_.crowd) {
         const FastItem& item = world_.items[leaf];
-        if (!is_ignored(world_, g, item.id)) meet_item(sphere, item);
+        if (!is_ignored(robot_, world_, sphere, item.id)) meet_item(sphere, item);
       } else {
         meet_points(sphere, leaf, at);
       }
@@ -118,7 +133,8 @@ class NearestSearch {
   }
 
   void meet_item(int sphere, const FastItem& item) {
-    const Point center = into_frame(world_, item.frame, block_.centers[sphere]);
+    Point turned;
+    const Point& center = into_frame(world_, item.frame, block_.centers[sphere], turned);
     const float radius = robot_.spheres[sphere].radius;
     visit_solid(world_, item, [&](const auto& solid) {
       const float round = rounding_of(solid);
@@ -146,19 +162,27 @@ class NearestSearch {
     const FastGroup& a = robot_.groups[pair.a];
     const FastGroup& b = robot_.groups[pair.b];
     const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
-    if (less(gap(balls, a.ball.radius + b.ball.radius), best_) == 0) return;
-    block_.place_spheres(robot_, pair.a);
-    block_.place_spheres(robot_, pair.b);
+    if (less(gap(balls, pair.reach), best_) == 0) return;
+    block_.place_part_balls(robot_, pair.a);
+    block_.place_part_balls(robot_, pair.b);
     for (int k = pair.first; k < pair.first + pair.count; ++k) {
       const FastRow& row = robot_.rows[k];
-      const float radius = robot_.spheres[row.sphere].radius;
-      const Point center = block_.centers[row.sphere];
-      const Floats to_ball = squared(center - block_.balls[pair.b]);
-      if (less(gap(to_ball, radius + b.ball.radius), best_) == 0) continue;
-      for (int j = row.first; j < row.first + row.count; ++j) {
-        const FastPartner& other = robot_.partners[j];
-        note(gap(squared(center - block_.centers[other.sphere]), other.reach),
-             {0, row.sphere, -1, other.sphere});
+      const Floats to_ball = squared(block_.part_balls[row.part] - block_.balls[pair.b]);
+      if (less(gap(to_ball, row.reach), best_) != 0) meet_row(a.body, b.body, row);
+    }
+  }
+
+  void meet_row(int body_a, int body_b, const FastRow& row) {
+    for (int k = row.first; k < row.first + row.count; ++k) {
+      const FastPartPair& parts = robot_.part_pairs[k];
+      const Floats apart = squared(block_.part_balls[parts.a] - block_.part_balls[parts.b]);
+      if (less(gap(apart, parts.reach), best_) == 0) continue;
+      block_.place_spheres(robot_, body_a, parts.a);
+      block_.place_spheres(robot_, body_b, parts.b);
+      for (int j = parts.first; j < parts.first + parts.count; ++j) {
+        const FastPartners& both = robot_.partners[j];
+        note(gap(squared(block_.centers[both.a] - block_.centers[both.b]), both.reach),
+             {0, both.a, -1, both.b});
       }
     }
   }

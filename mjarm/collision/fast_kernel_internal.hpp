@@ -20,13 +20,20 @@ class BlockSearch {
     const LaneBits outside = outside_limits(robot_, q) & active_;
     verdict_.hit = outside;
     active_ &= ~outside;
-    if (is_done()) return verdict_;
+    if (active_ == 0 || (any_ && outside != 0)) return verdict_;
     block_.place(robot_, world_, q);
     search();
     return verdict_;
   }
 
-  FastVerdict cover(const float* q, const FastMotion& motion, const float* half) {
+  FastVerdict cover(const FastMotion& motion, const float* t, const float* half) {
+    float q[kFastJoints * kWidth];
+    for (int i = 0; i < robot_.dof; ++i) {
+      for (int k = 0; k < kWidth; ++k) {
+        const double value = motion.start[i] + static_cast<double>(t[k]) * motion.way[i];
+        q[i * kWidth + k] = static_cast<float>(value);
+      }
+    }
     block_.place(robot_, world_, q);
     block_.move(robot_, motion.dq);
     motion_ = &motion;
@@ -36,7 +43,8 @@ class BlockSearch {
   }
 
  private:
-  bool is_done() const { return active_ == 0 || (any_ && verdict_.hit != 0); }
+  /// Nothing is left to look at.
+  bool is_done() const { return done_; }
 
   void search() {
     for (int g = 0; g < robot_.group_count; ++g) {
@@ -52,26 +60,29 @@ class BlockSearch {
     }
   }
 
+  float slack(int g) const { return kHiddenSpeed * motion_->rate[g]; }
+
   /// By how much a sphere of a group moves at most within the half interval: speed now, and what
   /// the speed can become.
   Floats growth(int g) const {
-    const Twist twist = block_.twist_at_ball(g, robot_.groups[g].body);
-    return growth(twist, robot_.groups[g].spread, motion_->slack[g], motion_->bend[g]);
+    const int body = robot_.groups[g].body;
+    return growth(block_.velocity(block_.balls[g], body), block_.twists[body].w,
+                  robot_.groups[g].spread, slack(g), motion_->bend[g]);
   }
 
   /// The same of a pair: how the farther link moves as seen from the other.
   Floats pair_growth(int k) const {
     const FastPair& pair = robot_.pairs[k];
-    const Twist b = block_.twist_at_ball(pair.b, robot_.groups[pair.b].body);
-    const Twist a = block_.twist_at_ball(pair.b, robot_.groups[pair.a].body);
-    return growth({b.v - a.v, b.w - a.w}, robot_.groups[pair.b].spread, motion_->pair_slack[k],
-                  motion_->pair_bend[k]);
+    const Point& ball = block_.balls[pair.b];
+    const int body_a = robot_.groups[pair.a].body, body_b = robot_.groups[pair.b].body;
+    const Point v = block_.velocity(ball, body_b) - block_.velocity(ball, body_a);
+    return growth(v, block_.twists[body_b].w - block_.twists[body_a].w,
+                  robot_.groups[pair.b].spread, 2 * slack(pair.b), motion_->pair_bend[k]);
   }
 
-  Floats growth(const Twist& twist, float spread, float slack, float bend) const {
+  Floats growth(const Point& v, const Point& w, float spread, float slack, float bend) const {
     const Floats speed =
-        multiply_add(square_root(squared(twist.w)), splat(spread), square_root(squared(twist.v))) +
-        slack;
+        multiply_add(square_root(squared(w)), splat(spread), square_root(squared(v))) + slack;
     return half_ * multiply_add(half_, splat(bend), speed) * 1.0001F;
   }
 
@@ -125,11 +136,13 @@ class BlockSearch {
     if constexpr (kCover) {
       verdict_.blocked |= lanes;
       verdict_.hit |= bare;
+      done_ = verdict_.hit != 0;
       half_ = zero_where(lanes, half_);  // such a lane goes on as a single configuration
       grow_ = zero_where(lanes, grow_);
     } else {
       verdict_.hit |= lanes;
       active_ &= ~lanes;
+      done_ = any_ || active_ == 0;
     }
   }
 
@@ -137,10 +150,11 @@ class BlockSearch {
     const FastRun& lists = world_.lists_of_group[g];
     for (int k = lists.first; k < lists.first + lists.count; ++k) {
       const FastList& list = world_.lists[k];
-      const Point ball = into_frame(world_, list.frame, block_.balls[g]);
+      Point turned;
+      const Point& ball = into_frame(world_, list.frame, block_.balls[g], turned);
       meet_boxes(g, list, ball);
-      meet_run(g, list.frame, ball, world_.boxes, list.rounds);
-      meet_run(g, list.frame, ball, world_.cylinders, list.cylinders);
+      meet_run(g, list.frame, ball, world_.boxes, list.rounds, world_.box_ids);
+      meet_run(g, list.frame, ball, world_.cylinders, list.cylinders, world_.cylinder_ids);
       if (is_done()) return;
     }
   }
@@ -148,56 +162,76 @@ class BlockSearch {
   /// As meet_run(), the radius being the same for all.
   void meet_boxes(int g, const FastList& list, const Point& ball) {
     const Floats reach = squared_reach(robot_.groups[g].ball.radius);
-    for (int first = 0; first < list.boxes.count; first += 64) {
-      const FastBox* const boxes = world_.boxes + list.boxes.first + first;
-      const int count = list.boxes.count - first < 64 ? list.boxes.count - first : 64;
-      std::uint64_t near = 0;
-      for (int i = 0; i < count; ++i) {
-        const bool any = (less(squared_gap(boxes[i], ball), reach) & active_) != 0;
-        near |= static_cast<std::uint64_t>(any) << i;
-      }
-      for (; near != 0; near &= near - 1) {
-        meet_spheres(g, list.frame, boxes[__builtin_ctzll(near)]);
-        if (is_done()) return;
-      }
+    const FastBox* const boxes = world_.boxes + list.boxes.first;
+    std::uint64_t near = 0;
+    for (int i = 0; i < list.boxes.count; ++i) {
+      const bool any = (less(squared_gap(boxes[i], ball), reach) & active_) != 0;
+      near |= static_cast<std::uint64_t>(any) << i;
+    }
+    for (; near != 0; near &= near - 1) {
+      const int i = __builtin_ctzll(near);
+      meet_solid(g, list.frame, boxes[i], world_.box_ids[list.boxes.first + i]);
+      if (is_done()) return;
     }
   }
 
   template <class Solid>
-  void meet_run(int g, int frame, const Point& ball, const Solid* solids, const FastRun& run) {
+  void meet_run(int g, int frame, const Point& ball, const Solid* solids, const FastRun& run,
+                const int* ids) {
     const float radius = robot_.groups[g].ball.radius;
-    for (const Solid* solid = solids + run.first; solid != solids + run.first + run.count;
-         ++solid) {
-      const Floats reach = squared_reach(radius + rounding_of(*solid));
-      if ((less(squared_gap(*solid, ball), reach) & active_) == 0) continue;
-      meet_spheres(g, frame, *solid);
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      const Solid& solid = solids[i];
+      const Floats reach = squared_reach(radius + rounding_of(solid));
+      if ((less(squared_gap(solid, ball), reach) & active_) == 0) continue;
+      meet_solid(g, frame, solid, ids[i]);
+    }
+  }
+
+  /// A solid that the ball of a group touches.
+  template <class Solid>
+  void meet_solid(int g, int frame, const Solid& solid, int id) {
+    const FastGroup& group = robot_.groups[g];
+    if (group.parts.count == 1) return meet_part(g, group.parts.first, frame, solid, id);
+    block_.place_part_balls(robot_, g);
+    for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
+      Point turned;
+      const Point& ball = into_frame(world_, frame, block_.part_balls[p], turned);
+      const Floats reach = squared_reach(robot_.parts[p].ball.radius + rounding_of(solid));
+      if ((less(squared_gap(solid, ball), reach) & active_) != 0) meet_part(g, p, frame, solid, id);
     }
   }
 
   template <class Solid>
-  void meet_spheres(int g, int frame, const Solid& solid) {
-    block_.place_spheres(robot_, g);
-    const FastGroup& group = robot_.groups[g];
+  void meet_part(int g, int p, int frame, const Solid& solid, int id) {
+    const FastPart& part = robot_.parts[p];
+    block_.place_spheres(robot_, robot_.groups[g].body, p);
     Overlaps overlaps;
-    for (int k = group.first; k < group.first + group.count; ++k) {
-      const Point center = into_frame(world_, frame, block_.centers[k]);
+    for (int k = part.first; k < part.first + part.count; ++k) {
+      if (is_ignored(robot_, world_, k, id)) continue;
+      Point turned;
+      const Point& center = into_frame(world_, frame, block_.centers[k], turned);
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
-    note(overlaps, [&](LaneBits near) { return approaching(g, frame, solid, near); });
+    const FastRun spheres{part.first, part.count};
+    note(overlaps, [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
   }
 
   /// Which of the lanes `near` stay blocked when only motion towards the solid counts.
   template <class Solid>
-  LaneBits approaching(int g, int frame, const Solid& solid, LaneBits near) const {
+  LaneBits approaching(int g, const FastRun& spheres, int frame, const Solid& solid, int id,
+                       LaneBits near) const {
     const FastGroup& group = robot_.groups[g];
     LaneBits left = 0;
-    for (int k = group.first; k < group.first + group.count && left != near; ++k) {
-      const Point center = into_frame(world_, frame, block_.centers[k]);
-      const Point v = into_frame(world_, frame, block_.velocity(block_.centers[k], group.body));
+    for (int k = spheres.first; k < spheres.first + spheres.count && left != near; ++k) {
+      if (is_ignored(robot_, world_, k, id)) continue;
+      Point turned;
+      const Point& center = into_frame(world_, frame, block_.centers[k], turned);
+      const Point velocity = block_.velocity(block_.centers[k], group.body);
+      Point turned_velocity;
+      const Point& v = into_frame(world_, frame, velocity, turned_velocity);
       const float radius = robot_.spheres[k].radius + rounding_of(solid);
-      left |= near &
-              ~cleared(gap_vector(solid, center), v, radius, motion_->slack[g], motion_->bend[g]);
+      left |= near & ~cleared(gap_vector(solid, center), v, radius, slack(g), motion_->bend[g]);
     }
     return left;
   }
@@ -238,28 +272,30 @@ class BlockSearch {
     const auto reach2 = [&] { return squared_reach(radius); };
     walk(world_.crowd, ball, lanes, active_, reach2, [&](int leaf, LaneBits touching) {
       const FastItem& item = world_.items[leaf];
-      if (is_ignored(world_, g, item.id)) return false;
       visit_solid(world_, item,
-                  [&](const auto& solid) { meet_item(g, item.frame, touching, solid); });
+                  [&](const auto& solid) { meet_item(g, item.frame, touching, solid, item.id); });
       return is_done();
     });
   }
 
   template <class Solid>
-  void meet_item(int g, int frame, LaneBits lanes, const Solid& solid) {
+  void meet_item(int g, int frame, LaneBits lanes, const Solid& solid, int id) {
     const FastGroup& group = robot_.groups[g];
     const float round = rounding_of(solid);
-    const Point ball = into_frame(world_, frame, block_.balls[g]);
+    Point turned_ball;
+    const Point& ball = into_frame(world_, frame, block_.balls[g], turned_ball);
     lanes &= less(squared_gap(solid, ball), squared_reach(group.ball.radius + round));
     if (lanes == 0) return;
     Overlaps overlaps;
     for (int k = group.first; k < group.first + group.count; ++k) {
-      if ((near_[k] & lanes) == 0) continue;
-      const Point center = into_frame(world_, frame, block_.centers[k]);
+      if ((near_[k] & lanes) == 0 || is_ignored(robot_, world_, k, id)) continue;
+      Point turned;
+      const Point& center = into_frame(world_, frame, block_.centers[k], turned);
       const float radius = robot_.spheres[k].radius + round;
       look(squared_gap(solid, center), radius, -radius * radius, overlaps);
     }
-    note(overlaps, [&](LaneBits near) { return approaching(g, frame, solid, near); });
+    const FastRun spheres{group.first, group.count};
+    note(overlaps, [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
   }
 
   void meet_clouds(int g) {
@@ -299,50 +335,58 @@ class BlockSearch {
 
   void meet_itself(int k) {
     const FastPair& pair = robot_.pairs[k];
-    const FastGroup& a = robot_.groups[pair.a];
-    const FastGroup& b = robot_.groups[pair.b];
-    const Floats balls = squared(block_.balls[pair.a] - block_.balls[pair.b]);
-    const float reach = a.ball.radius + b.ball.radius;
+    const Point& ball = block_.balls[pair.b];
+    const Floats balls = squared(block_.balls[pair.a] - ball);
     if constexpr (kCover) {
       // The bound that costs nothing first: most pairs are far apart.
       grow_ = half_ * motion_->pair_rate[k];
-      if ((less(balls, squared_reach(reach)) & active_) == 0) return;
+      if ((less(balls, squared_reach(pair.reach)) & active_) == 0) return;
       grow_ = smaller(grow_, pair_growth(k));
     }
-    if ((less(balls, squared_reach(reach)) & active_) == 0) return;
-    block_.place_spheres(robot_, pair.a);
-    block_.place_spheres(robot_, pair.b);
-    Overlaps overlaps;
+    if ((less(balls, squared_reach(pair.reach)) & active_) == 0) return;
+    block_.place_part_balls(robot_, pair.a);
     for (int i = pair.first; i < pair.first + pair.count; ++i) {
       const FastRow& row = robot_.rows[i];
-      const float radius = robot_.spheres[row.sphere].radius;
-      const Point center = block_.centers[row.sphere];
-      const Floats to_ball = squared(center - block_.balls[pair.b]);
-      if ((less(to_ball, squared_reach(radius + b.ball.radius)) & active_) == 0) continue;
-      for (int j = row.first; j < row.first + row.count; ++j) {
-        const FastPartner& other = robot_.partners[j];
-        look(squared(center - block_.centers[other.sphere]), other.reach, other.minus_reach2,
-             overlaps);
-      }
+      const Floats gap2 = squared(block_.part_balls[row.part] - ball);
+      if ((less(gap2, squared_reach(row.reach)) & active_) != 0) meet_row(k, row);
     }
-    note(overlaps, [&](LaneBits near) { return approaching(k, near); });
+  }
+
+  void meet_row(int k, const FastRow& row) {
+    block_.place_part_balls(robot_, robot_.pairs[k].b);
+    const Point ball = block_.part_balls[row.part];
+    for (int i = row.first; i < row.first + row.count; ++i) {
+      const FastPartPair& parts = robot_.part_pairs[i];
+      const Floats gap2 = squared(ball - block_.part_balls[parts.b]);
+      if ((less(gap2, squared_reach(parts.reach)) & active_) != 0) meet_parts(k, parts);
+    }
+  }
+
+  void meet_parts(int k, const FastPartPair& parts) {
+    const FastPair& pair = robot_.pairs[k];
+    block_.place_spheres(robot_, robot_.groups[pair.a].body, parts.a);
+    block_.place_spheres(robot_, robot_.groups[pair.b].body, parts.b);
+    Overlaps overlaps;
+    for (int i = parts.first; i < parts.first + parts.count; ++i) {
+      const FastPartners& both = robot_.partners[i];
+      look(squared(block_.centers[both.a] - block_.centers[both.b]), both.reach, both.minus_reach2,
+           overlaps);
+    }
+    note(overlaps, [&](LaneBits near) { return approaching(k, parts, near); });
   }
 
   /// The same of a pair of links: how the farther one moves as seen from the other.
-  LaneBits approaching(int k, LaneBits near) const {
+  LaneBits approaching(int k, const FastPartPair& parts, LaneBits near) const {
     const FastPair& pair = robot_.pairs[k];
     const int body_a = robot_.groups[pair.a].body, body_b = robot_.groups[pair.b].body;
     LaneBits left = 0;
-    for (int i = pair.first; i < pair.first + pair.count; ++i) {
-      const FastRow& row = robot_.rows[i];
-      for (int j = row.first; j < row.first + row.count && left != near; ++j) {
-        const FastPartner& other = robot_.partners[j];
-        const Point& center = block_.centers[other.sphere];
-        const Point gap = center - block_.centers[row.sphere];
-        if ((less(squared(gap), squared_reach(other.reach)) & near) == 0) continue;
-        const Point v = block_.velocity(center, body_b) - block_.velocity(center, body_a);
-        left |= near & ~cleared(gap, v, other.reach, motion_->pair_slack[k], motion_->pair_bend[k]);
-      }
+    for (int i = parts.first; i < parts.first + parts.count && left != near; ++i) {
+      const FastPartners& both = robot_.partners[i];
+      const Point& center = block_.centers[both.b];
+      const Point gap = center - block_.centers[both.a];
+      if ((less(squared(gap), squared_reach(both.reach)) & near) == 0) continue;
+      const Point v = block_.velocity(center, body_b) - block_.velocity(center, body_a);
+      left |= near & ~cleared(gap, v, both.reach, 2 * slack(pair.b), motion_->pair_bend[k]);
     }
     return left;
   }
@@ -351,6 +395,7 @@ class BlockSearch {
   const FastWorldTables& world_;
   LaneBits active_;
   bool any_;
+  bool done_ = false;
   FastVerdict verdict_;
   const FastMotion* motion_ = nullptr;
   Floats half_{};
@@ -365,22 +410,24 @@ inline std::uint32_t collide_block(const FastRobotTables& robot, const FastWorld
 }
 
 inline FastVerdict cover_block(const FastRobotTables& robot, const FastWorldTables& world,
-                               const float* q, std::uint32_t active, const FastMotion& motion,
+                               std::uint32_t active, const FastMotion& motion, const float* t,
                                const float* half) {
-  return BlockSearch<true>(robot, world, active, true).cover(q, motion, half);
+  return BlockSearch<true>(robot, world, active, true).cover(motion, t, half);
 }
 
-inline void bound_motion(const FastRates& rates, const float* levers, std::size_t stride,
-                         float* speed, float* bend) {
-  for (std::size_t i = 0; i < stride; i += kWidth) {
+inline void bound_motion(const FastRates& rates, const FastLevers& levers, float* speed,
+                         float* bend) {
+  for (int i = 0; i < levers.stride; i += kWidth) {
     Floats v{}, a{};
     for (int k = 0; k < rates.dof; ++k) {
-      const Floats lever = load(levers + static_cast<std::size_t>(k) * stride + i);
+      const Floats lever = load(levers.levers + k * levers.stride + i);
       v = multiply_add(lever, splat(rates.rate[k]), v);
       a = multiply_add(lever, splat(rates.turn[k]), a);
     }
-    store(speed + i, v);
-    store(bend + i, a);
+    Floats alike{};
+    for (int k = 0; k < kWidth; ++k) alike[k] = rates.before[levers.from[i + k]];
+    store(speed + i, v * 1.0001F);
+    store(bend + i, 0.5001F * multiply_add(alike * v, splat(-2 * 0.9999F), a));
   }
 }
 

@@ -86,21 +86,58 @@ class MeetingSearch {
 
 Eigen::Vector3d center_of(const FastSphere& sphere) { return {sphere.x, sphere.y, sphere.z}; }
 
-/// The pair with the partners that `meets` keeps; rows and pairs without any are left out.
+/// Links that must not overlap, both ways round, by their indices.
+class LinkPairs {
+ public:
+  explicit LinkPairs(const SphereSet& set)
+      : count_(set.links.size()), paired_(count_ * count_, false) {
+    for (const auto& [a, b] : set.pairs) paired_[at(a, b)] = paired_[at(b, a)] = true;
+  }
+  bool has(int a, int b) const { return paired_[at(a, b)]; }
+
+ private:
+  std::size_t at(int a, int b) const {
+    return static_cast<std::size_t>(a) * count_ + static_cast<std::size_t>(b);
+  }
+  std::size_t count_;
+  std::vector<bool> paired_;
+};
+
+float reach_of(const FastSphere& a, const FastSphere& b) {
+  return round_up(static_cast<double>(a.radius) + b.radius);
+}
+
+/// The spheres of two parts that `meets` keeps; without any the parts are left out.
 template <class Meets>
-void add_pair(FastRobotData& data, std::vector<FastPair>& pairs, int a, int b, Meets meets) {
+void add_part_pair(FastRobotData& data, FastRow& row, int a, int b, const Meets& meets) {
+  const FastPart& from = data.parts[static_cast<std::size_t>(a)];
+  const FastPart& to = data.parts[static_cast<std::size_t>(b)];
+  const int first = static_cast<int>(data.partners.size());
+  for (int i = from.first; i < from.first + from.count; ++i) {
+    for (int j = to.first; j < to.first + to.count; ++j) {
+      if (!meets(i, j)) continue;
+      const float reach = reach_of(data.spheres[static_cast<std::size_t>(i)],
+                                   data.spheres[static_cast<std::size_t>(j)]);
+      data.partners.push_back({i, j, reach, -round_up(static_cast<double>(reach) * reach)});
+    }
+  }
+  const int count = static_cast<int>(data.partners.size()) - first;
+  if (count == 0) return;
+  data.part_pairs.push_back({a, b, reach_of(from.ball, to.ball), first, count});
+  ++row.count;
+}
+
+/// The pair of groups a and b; without any spheres it is left out.
+template <class Meets>
+void add_pair(FastRobotData& data, std::vector<FastPair>& pairs, int a, int b, const Meets& meets) {
   const FastGroup& from = data.groups[static_cast<std::size_t>(a)];
   const FastGroup& to = data.groups[static_cast<std::size_t>(b)];
-  FastPair pair{a, b, static_cast<int>(data.rows.size()), 0};
-  for (int k = from.first; k < from.first + from.count; ++k) {
-    FastRow row{k, static_cast<int>(data.partners.size()), 0};
-    for (int j = to.first; j < to.first + to.count; ++j) {
-      const FastSphere& one = data.spheres[static_cast<std::size_t>(k)];
-      const FastSphere& other = data.spheres[static_cast<std::size_t>(j)];
-      if (!meets(one, other)) continue;
-      const float reach = round_up(static_cast<double>(one.radius) + other.radius);
-      data.partners.push_back({j, reach, -round_up(static_cast<double>(reach) * reach)});
-      ++row.count;
+  FastPair pair{a, b, static_cast<int>(data.rows.size()), 0, reach_of(from.ball, to.ball)};
+  for (int i = from.parts.first; i < from.parts.first + from.parts.count; ++i) {
+    FastRow row{i, reach_of(data.parts[static_cast<std::size_t>(i)].ball, to.ball),
+                static_cast<int>(data.part_pairs.size()), 0};
+    for (int j = to.parts.first; j < to.parts.first + to.parts.count; ++j) {
+      add_part_pair(data, row, i, j, meets);
     }
     if (row.count == 0) continue;
     data.rows.push_back(row);
@@ -112,23 +149,28 @@ void add_pair(FastRobotData& data, std::vector<FastPair>& pairs, int a, int b, M
 }  // namespace
 
 void add_pairs(FastRobotData& data, const LinkChain& chain) {
-  std::vector<int> group_of_link(data.set.links.size());
-  for (std::size_t g = 0; g < data.link_of_group.size(); ++g) {
-    group_of_link[static_cast<std::size_t>(data.link_of_group[g])] = static_cast<int>(g);
-  }
-  for (const auto& [first, second] : data.set.pairs) {
-    int a = group_of_link[static_cast<std::size_t>(first)];
-    int b = group_of_link[static_cast<std::size_t>(second)];
-    const auto body = [&](int g) { return data.groups[static_cast<std::size_t>(g)].body; };
-    if (body(a) > body(b)) std::swap(a, b);
-    MeetingSearch search(data.arm, chain, body(a), body(b),
-                         data.bounds[static_cast<std::size_t>(b)].levers);
-    add_pair(data, data.pairs, a, b, [&](const FastSphere& one, const FastSphere& other) {
-      // Radii are padded, which covers that centres are rounded to floats.
-      return search.may_meet(center_of(one), center_of(other), one.radius + other.radius);
-    });
-    add_pair(data, data.every_pair, a, b,
-             [](const FastSphere&, const FastSphere&) { return true; });
+  const LinkPairs links(data.set);
+  const auto paired = [&](int one, int other) {
+    return links.has(data.link_of_sphere[static_cast<std::size_t>(one)],
+                     data.link_of_sphere[static_cast<std::size_t>(other)]);
+  };
+  const auto body = [&](int g) { return data.groups[static_cast<std::size_t>(g)].body; };
+  // Groups begin with the farthest; b is never nearer to the base than a.
+  const int count = static_cast<int>(data.groups.size());
+  for (int a = count - 1; a >= 0; --a) {
+    for (int b = a; b >= 0; --b) {
+      MeetingSearch search(data.arm, chain, body(a), body(b),
+                           data.bounds[static_cast<std::size_t>(b)].levers);
+      add_pair(data, data.pairs, a, b, [&](int one, int other) {
+        const FastSphere& from = data.spheres[static_cast<std::size_t>(one)];
+        const FastSphere& to = data.spheres[static_cast<std::size_t>(other)];
+        // Radii are padded, which covers that centres are rounded to floats.
+        return (a != b || one < other) && paired(one, other) &&
+               search.may_meet(center_of(from), center_of(to), from.radius + to.radius);
+      });
+      add_pair(data, data.every_pair, a, b,
+               [&](int one, int other) { return (a != b || one < other) && paired(one, other); });
+    }
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "mjarm/collision/fast_robot_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
@@ -17,10 +16,10 @@ using detail::FastRobotData;
 using detail::FastSphere;
 using detail::Tilt;
 
-static_assert(detail::kFastJoints == kMaxDof && detail::kFastGroups == kMostSphereLinks &&
-              detail::kFastSpheres == kMostSpheres);
+static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMostSpheres);
 
-constexpr double kNothing = 1e-9;  // [m], [rad] counts as 0; the padding knows
+constexpr double kNothing = 1e-9;          // [m], [rad] counts as 0; the padding knows
+constexpr std::ptrdiff_t kMostOfPart = 4;  // spheres; more are cut in two
 
 FastJoint fast_joint(const Arm& arm, const LinkChain& chain, int i) {
   const Link& link = chain.links[i];
@@ -64,66 +63,117 @@ FastSphere fast_sphere(const Sphere& sphere, double padding) {
           detail::round_up(sphere.radius + padding)};
 }
 
-FastGroup fast_group(FastRobotData& data, int body, const std::vector<Sphere>& spheres,
-                     double padding) {
+/// A sphere in the frame of its body, and the link of the set it belongs to.
+struct LinkSphere {
+  Sphere sphere;
+  int link;
+};
+
+std::vector<Sphere> only_spheres(std::span<const LinkSphere> from) {
+  std::vector<Sphere> out;
+  for (const LinkSphere& of_link : from) out.push_back(of_link.sphere);
+  return out;
+}
+
+/// Cuts spheres across where they spread most until few are left in each part.
+void add_parts(FastRobotData& data, std::span<LinkSphere> from, double padding) {
+  if (std::ssize(from) > kMostOfPart) {
+    Eigen::Vector3d low = from.front().sphere.center, high = low;
+    for (const LinkSphere& one : from) {
+      low = low.cwiseMin(one.sphere.center);
+      high = high.cwiseMax(one.sphere.center);
+    }
+    Eigen::Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    std::stable_sort(from.begin(), from.end(), [&](const LinkSphere& a, const LinkSphere& b) {
+      return a.sphere.center[axis] < b.sphere.center[axis];
+    });
+    add_parts(data, from.first(from.size() / 2), padding);
+    add_parts(data, from.subspan(from.size() / 2), padding);
+    return;
+  }
+  const int first = static_cast<int>(data.spheres.size());
+  for (const LinkSphere& one : from) {
+    data.spheres.push_back(fast_sphere(one.sphere, padding));
+    data.link_of_sphere.push_back(one.link);
+  }
+  data.parts.push_back({first, static_cast<int>(from.size()),
+                        fast_sphere(bounding_sphere(only_spheres(from)), padding * 1.001 + 1e-9)});
+}
+
+void add_group(FastRobotData& data, int body, std::vector<LinkSphere> from, double padding) {
   FastGroup group;
   group.body = body;
   group.first = static_cast<int>(data.spheres.size());
-  group.count = static_cast<int>(spheres.size());
-  const Sphere ball = bounding_sphere(spheres);
+  group.count = static_cast<int>(from.size());
+  group.parts.first = static_cast<int>(data.parts.size());
+  const Sphere ball = bounding_sphere(only_spheres(from));
   group.ball = fast_sphere(ball, padding * 1.001 + 1e-9);
   double spread = 0;
-  for (const Sphere& sphere : spheres) {
-    data.spheres.push_back(fast_sphere(sphere, padding));
-    spread = std::max(spread, (sphere.center - ball.center).norm());
+  for (const LinkSphere& one : from) {
+    spread = std::max(spread, (one.sphere.center - ball.center).norm());
   }
   group.spread = detail::round_up(spread + 1e-7);
-  return group;
+  add_parts(data, from, padding);
+  group.parts.count = static_cast<int>(data.parts.size()) - group.parts.first;
+  data.groups.push_back(group);
 }
 
+/// What one joint moves stays together, whatever links it is made of.
 void add_groups(FastRobotData& data, const LinkChain& chain) {
-  const auto bodies = detail::spheres_in_bodies(data.set, data.arm, chain);
-  std::vector<int> order(bodies.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto joint = [&](int link) { return data.set.links[static_cast<std::size_t>(link)].joint; };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return joint(a) > joint(b); });
-  for (const int link : order) {
-    const std::vector<Sphere>& spheres = bodies[static_cast<std::size_t>(link)];
+  const auto in_bodies = detail::spheres_in_bodies(data.set, data.arm, chain);
+  for (int body = data.arm.dof(); body >= 0; --body) {
+    std::vector<LinkSphere> from;
+    for (std::size_t l = 0; l < in_bodies.size(); ++l) {
+      if (data.set.links[l].joint + 1 != body) continue;
+      for (const Sphere& s : in_bodies[l]) from.push_back({s, static_cast<int>(l)});
+    }
+    if (from.empty()) continue;
     detail::GroupBounds bounds;
-    if (joint(link) >= 0) {
-      bounds = detail::group_bounds(data.arm, chain, joint(link) + 1, spheres);
+    if (body > 0) {
+      bounds = detail::group_bounds(data.arm, chain, body, only_spheres(from));
     } else {
       double far = 0;
-      for (const Sphere& s : spheres) far = std::max(far, s.center.norm() + s.radius);
+      for (const auto& [s, link] : from) far = std::max(far, s.center.norm() + s.radius);
       bounds.padding = 0x1p-24 * 80 * far;
     }
     data.padding = std::max(data.padding, bounds.padding);
-    data.groups.push_back(fast_group(data, joint(link) + 1, spheres, bounds.padding));
     data.bounds.push_back(bounds);
-    data.link_of_group.push_back(link);
-    data.group_of_sphere.resize(data.spheres.size(), static_cast<int>(data.groups.size()) - 1);
+    add_group(data, body, std::move(from), bounds.padding);
+  }
+}
+
+/// The levers of `group` for the joints between two bodies, as column `column` of a table.
+struct LeverColumn {
+  int column, group, from_body, to_body;
+};
+
+void set_levers(const FastRobotData& data, const LeverColumn& at, detail::LeverTable& out) {
+  const auto column = static_cast<std::size_t>(at.column);
+  out.from[column] = at.from_body;
+  for (auto k = static_cast<std::size_t>(at.from_body); k < static_cast<std::size_t>(at.to_body);
+       ++k) {
+    const double lever = data.bounds[static_cast<std::size_t>(at.group)].levers[k];
+    out.levers[k * out.from.size() + column] = detail::round_up(lever);
   }
 }
 
 void add_levers(FastRobotData& data) {
-  const auto lever = [&](int group, int k) {
-    return detail::round_up(
-        data.bounds[static_cast<std::size_t>(group)].levers[static_cast<std::size_t>(k)]);
+  const auto make = [&](std::size_t n) {
+    const std::size_t whole = (n + 15) / 16 * 16;
+    return detail::LeverTable{
+        std::vector<float>(whole * static_cast<std::size_t>(data.arm.dof()), 0.0F),
+        std::vector<int>(whole, 0)};
   };
   const auto body = [&](int group) { return data.groups[static_cast<std::size_t>(group)].body; };
-  const auto whole = [](std::size_t n) { return (n + 15) / 16 * 16; };
-  data.group_stride = whole(data.groups.size());
-  data.pair_stride = whole(data.pairs.size());
-  for (int k = 0; k < data.arm.dof(); ++k) {
-    for (int g = 0; g < static_cast<int>(data.groups.size()); ++g) {
-      data.group_levers.push_back(lever(g, k));
-    }
-    data.group_levers.resize(data.group_stride * static_cast<std::size_t>(k + 1));
-    for (const detail::FastPair& pair : data.pairs) {
-      const bool between = k >= body(pair.a) && k < body(pair.b);
-      data.pair_levers.push_back(between ? lever(pair.b, k) : 0);
-    }
-    data.pair_levers.resize(data.pair_stride * static_cast<std::size_t>(k + 1));
+  data.group_levers = make(data.groups.size());
+  for (int g = 0; g < static_cast<int>(data.groups.size()); ++g) {
+    set_levers(data, {g, g, 0, body(g)}, data.group_levers);
+  }
+  data.pair_levers = make(data.pairs.size());
+  for (int p = 0; p < static_cast<int>(data.pairs.size()); ++p) {
+    const detail::FastPair& pair = data.pairs[static_cast<std::size_t>(p)];
+    set_levers(data, {p, pair.b, body(pair.a), body(pair.b)}, data.pair_levers);
   }
 }
 
@@ -165,13 +215,17 @@ Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   detail::add_pairs(*data, links);
   add_levers(*data);
   data->tables.group_count = static_cast<int>(data->groups.size());
+  data->tables.part_count = static_cast<int>(data->parts.size());
   data->tables.pair_count = static_cast<int>(data->pairs.size());
   data->tables.every_pair_count = static_cast<int>(data->every_pair.size());
   data->tables.groups = data->groups.data();
+  data->tables.parts = data->parts.data();
   data->tables.spheres = data->spheres.data();
+  data->tables.link_of_sphere = data->link_of_sphere.data();
   data->tables.pairs = data->pairs.data();
   data->tables.every_pair = data->every_pair.data();
   data->tables.rows = data->rows.data();
+  data->tables.part_pairs = data->part_pairs.data();
   data->tables.partners = data->partners.data();
   return FastRobot(std::move(data));
 }

@@ -26,6 +26,14 @@ struct GroupBounds {
   double padding = 0;  ///< [m] of the radii
 };
 
+/// The arrays behind FastLevers, rounded up, rows filled up with zeros.
+struct LeverTable {
+  std::vector<float> levers;
+  std::vector<int> from;
+
+  FastLevers tables() const { return {static_cast<int>(from.size()), levers.data(), from.data()}; }
+};
+
 struct FastRobotData {
   FastRobotData() = default;
   FastRobotData(const FastRobotData&) = delete;  // the tables point into it
@@ -34,21 +42,19 @@ struct FastRobotData {
   Arm arm;
   SphereSet set;
   std::vector<FastGroup> groups;
+  std::vector<FastPart> parts;
   std::vector<FastSphere> spheres;
   std::vector<FastPair> pairs, every_pair;
   std::vector<FastRow> rows;
-  std::vector<FastPartner> partners;
+  std::vector<FastPartPair> part_pairs;
+  std::vector<FastPartners> partners;
   FastRobotTables tables;                              ///< of the above
   std::vector<GroupBounds> bounds;                     ///< one a group
-  std::vector<int> link_of_group;                      ///< index into the set
-  std::vector<int> group_of_sphere;                    ///< of the tables
+  std::vector<int> link_of_sphere;                     ///< index into the set
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
   double padding = 0;                                  ///< [m] largest of the groups
-  /// Levers of every group and, of every pair, those of group b for the joints between both; 0 for
-  /// all others. Rounded up, joint by joint: shape (dof, group_stride), (dof, pair_stride), rows
-  /// filled up with zeros to whole registers.
-  std::vector<float> group_levers, pair_levers;
-  std::size_t group_stride = 0, pair_stride = 0;
+  /// Of every group and, of every pair, those of group b for the joints between both.
+  LeverTable group_levers, pair_levers;
 };
 
 /// The next float towards infinity, or towards minus infinity.
@@ -73,7 +79,7 @@ struct FastLimits {
 [[nodiscard]] GroupBounds group_bounds(const Arm& arm, const LinkChain& chain, int body,
                                        std::span<const Sphere> spheres);
 
-/// Fills the pairs, rows and partners of a robot whose groups are there.
+/// Fills all kinds of pairs of a robot whose groups are there.
 void add_pairs(FastRobotData& data, const LinkChain& chain);
 
 }  // namespace mjarm::detail

@@ -9,9 +9,11 @@
 /// no inline function of a library may come from the wrong one.
 namespace mjarm::detail {
 
-inline constexpr int kFastJoints = 16;    ///< most joints (kMaxDof)
-inline constexpr int kFastGroups = 128;   ///< most links (kMostSphereLinks)
+inline constexpr int kFastJoints = 16;  ///< most joints (kMaxDof)
+inline constexpr int kFastGroups = kFastJoints + 1;
 inline constexpr int kFastSpheres = 512;  ///< most spheres (kMostSpheres)
+/// Most pairs of groups, each with itself included.
+inline constexpr int kFastPairs = kFastGroups * (kFastGroups + 1) / 2;
 
 /// How the frame of a joint is tilted about x against the one before, by 0 to pi. A quarter turn
 /// only swaps axes.
@@ -32,31 +34,53 @@ struct FastSphere {
   float radius = 0;
 };
 
-/// The spheres of one link. Bodies are counted from 1; body 0 is what stands still.
+/// A run of entries of one kind: [first, first + count).
+struct FastRun {
+  int first = 0, count = 0;
+};
+
+/// Some spheres of a group that are near each other.
+struct FastPart {
+  int first = 0, count = 0;  ///< of the spheres
+  FastSphere ball;           ///< contains them
+};
+
+/// The spheres of all links that one joint moves. Bodies are counted from 1; body 0 is what stands
+/// still.
 struct FastGroup {
   int body = 0;
   int first = 0, count = 0;  ///< of the spheres
+  FastRun parts;             ///< that the spheres are in, in the same order
   FastSphere ball;           ///< contains them all
   float spread = 0;          ///< [m] farthest centre of a sphere from that of the ball
 };
 
-/// A sphere that another must not overlap.
-struct FastPartner {
-  int sphere = 0;
+/// Two spheres that must not overlap.
+struct FastPartners {
+  int a = 0, b = 0;
   float reach = 0;         ///< [m] sum of both radii
   float minus_reach2 = 0;  ///< [m^2] minus its square
 };
 
-/// One sphere of a link against some of another.
-struct FastRow {
-  int sphere = 0;
+/// A part of a group against one of another.
+struct FastPartPair {
+  int a = 0, b = 0;
+  float reach = 0;           ///< [m] sum of the radii of both balls
   int first = 0, count = 0;  ///< of the partners
 };
 
-/// Two links that must not overlap; `b` is on the body farther from the base.
+/// A part of a group against all of another.
+struct FastRow {
+  int part = 0;
+  float reach = 0;           ///< [m] sum of the radii of both balls
+  int first = 0, count = 0;  ///< of the pairs of parts
+};
+
+/// Two groups with links that must not overlap; `b` is farther from the base.
 struct FastPair {
   int a = 0, b = 0;          ///< groups
   int first = 0, count = 0;  ///< of the rows
+  float reach = 0;           ///< [m] sum of the radii of both balls
 };
 
 /// A robot, whatever stands round it.
@@ -64,14 +88,18 @@ struct FastRobotTables {
   int dof = 0;
   FastJoint joints[kFastJoints];
   int group_count = 0;
+  int part_count = 0;
   int pair_count = 0;
   int every_pair_count = 0;
   const FastGroup* groups = nullptr;  ///< farthest body first
+  const FastPart* parts = nullptr;
   const FastSphere* spheres = nullptr;
+  const int* link_of_sphere = nullptr;   ///< index into the sphere set
   const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
   const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
   const FastRow* rows = nullptr;
-  const FastPartner* partners = nullptr;  ///< spheres of group b
+  const FastPartPair* part_pairs = nullptr;
+  const FastPartners* partners = nullptr;
 };
 
 /// A box, or what a radius put round it makes: a ball has no extent, a capsule one. Bounds in the
@@ -88,15 +116,10 @@ struct FastCylinder {
   int axis = 2;
 };
 
-/// A run of entries of one kind: [first, first + count).
-struct FastRun {
-  int first = 0, count = 0;
-};
-
 /// What a group can meet, of one orientation.
 struct FastList {
   int frame = 0;
-  FastRun boxes, rounds, cylinders;  ///< boxes and rounds are both in `boxes` of the world
+  FastRun boxes, rounds, cylinders;  ///< boxes (at most 64) and rounds are in `boxes` of the world
 };
 
 /// How many children a node of a tree has, and how many levels of nodes there are at most.
@@ -171,11 +194,10 @@ struct FastWorldTables {
   const float* frames = nullptr;                ///< 9 a frame, by rows: into that frame
   const FastList* lists = nullptr;
   const FastRun* lists_of_group = nullptr;
-  /// For distances: what is within 1 m of the reach of any group, and not ignored by this one.
-  const FastRun* every_list_of_group = nullptr;
-  /// Obstacles that a group is not held against: a bit for each, group by group. No words: none is.
+  FastRun every_list;  ///< for distances: what is within 1 m of the reach of any group
+  /// Obstacles that a link is not held against: a bit for each, link by link. No words: none is.
   const std::uint64_t* ignored = nullptr;
-  int ignored_words = 0;  ///< of a group
+  int ignored_words = 0;  ///< of a link
   const FastBox* boxes = nullptr;
   const FastCylinder* cylinders = nullptr;
   const int* box_ids = nullptr;  ///< which obstacle each of them is
@@ -193,18 +215,30 @@ struct FastWorldTables {
 /// How the configurations of one edge move: q(t) = q0 + t dq, with what bounds the second
 /// derivative, for each group.
 struct FastMotion {
-  const float* dq;         ///< (dof,)
-  const float* slack;      ///< (groups,) [m] what rounding may hide of the speed
-  const float* bend;       ///< (groups,) [m] half of the largest second derivative
-  const float* pair_rate;  ///< (pairs,) [m] fastest approach of the two links, wherever they are
-  /// (pairs,) slack and bend of the farther link as seen from the other.
-  const float *pair_slack, *pair_bend;
+  const double *start, *way;  ///< (dof,) q0 and dq
+  const float* dq;            ///< (dof,)
+  const float* rate;          ///< (groups,) [m] fastest motion, wherever they are
+  const float* bend;          ///< (groups,) [m] half of the largest second derivative
+  const float* pair_rate;     ///< (pairs,) [m] fastest approach of the two links, wherever they are
+  const float* pair_bend;     ///< (pairs,) bend of the farther link as seen from the other
 };
+
+/// [m] what rounding may hide of a speed, by the fastest motion of the group; two twists are each
+/// rounded.
+inline constexpr float kHiddenSpeed = 1e-5F;
 
 /// How fast the joints of an edge move: |dq|, and how much each bends what it moves.
 struct FastRates {
   int dof;
   const float *rate, *turn;  ///< (dof,)
+  const float* before;       ///< (dof + 1,) rates of all joints before, summed
+};
+
+/// How far groups, or of pairs the farther group, are from the axes of joints.
+struct FastLevers {
+  int stride;           ///< whole registers
+  const float* levers;  ///< (dof, stride) [m], 0 for joints that do not count
+  const int* from;      ///< (stride,) the first joint that counts
 };
 
 struct FastVerdict {
@@ -227,12 +261,13 @@ struct FastKernels {
   /// found end the search.
   std::uint32_t (*collide)(const FastRobotTables&, const FastWorldTables&, const float* q,
                            std::uint32_t active, bool any);
-  /// Looks at intervals t +- half[lane] of an edge, where q is at t. Ends with the first hit.
-  FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, const float* q,
-                       std::uint32_t active, const FastMotion& motion, const float* half);
-  /// Sums of levers (dof, stride) times rates and turns, into speed and bend (stride,).
-  void (*bound_motion)(const FastRates&, const float* levers, std::size_t stride, float* speed,
-                       float* bend);
+  /// Looks at intervals t[lane] +- half[lane] of an edge. Ends with the first hit.
+  FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, std::uint32_t active,
+                       const FastMotion& motion, const float* t, const float* half);
+  /// Bounds of speeds and of half of the second derivatives along the edge, (stride,) each. A point
+  /// moves by at most (lever * rate), summed over the joints; each joint also turns what those
+  /// after it do. What the joints before the first that counts do moves both links of a pair alike.
+  void (*bound_motion)(const FastRates&, const FastLevers&, float* speed, float* bend);
   /// Lower bounds of the distance, up to `most`; with `together` only of the lane where it is
   /// least.
   void (*clearances)(const FastRobotTables&, const FastWorldTables&, const float* q, float most,

@@ -11,6 +11,7 @@ namespace {
 constexpr double kSameTurn = 1e-7;           // [rad] two orientations that count as one
 constexpr std::size_t kMostCompared = 64;    // orientations that a new one is compared with
 constexpr std::size_t kMostListed = 64;      // solids; more go into a tree
+constexpr int kMostOfList = 64;              // of a list: bits of a word
 constexpr std::size_t kMostCubes = 400'000;  // that fill solid meshes
 constexpr double kFloat = 0x1p-24;           // relative rounding error
 constexpr double kEverywhere = 1e9;          // [m]
@@ -72,13 +73,11 @@ class WorldBuilder {
     write_frames();
     const GroupBounds all = everyone();
     build_crowd(all, obstacles);
-    const FastRun every_list = add_lists(all, kMostClearance, -1);
+    out_.tables.every_list = add_lists(all, kMostClearance, {});
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
-      const int link = robot_.link_of_group[g];
       const bool moves = robot_.groups[g].body > 0;
-      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, link) : FastRun{});
-      out_.every_list_of_group.push_back(
-          moves && ignores(link) ? add_lists(all, kMostClearance, link) : every_list);
+      out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, links_of(g))
+                                          : FastRun{});
     }
     if (!ignored_.empty()) write_ignored(obstacles.solids.size());
   }
@@ -253,40 +252,49 @@ class WorldBuilder {
     return {FastKind::box, placed.frame, static_cast<int>(out_.boxes.size()) - 1, placed.id};
   }
 
-  /// Whether a link is not held against some obstacle.
-  bool ignores(int link) const {
-    const auto first = std::lower_bound(ignored_.begin(), ignored_.end(), IgnoredPair{link, 0});
-    return first != ignored_.end() && first->link == link;
+  /// Links of a group, by index into the sphere set; left empty where nothing is ignored.
+  std::vector<int> links_of(std::size_t g) const {
+    if (ignored_.empty()) return {};
+    const FastGroup& group = robot_.groups[g];
+    const auto first = robot_.link_of_sphere.begin() + group.first;
+    std::vector<int> out(first, first + group.count);
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
   }
 
-  /// What trees are asked about.
+  /// Whether all of some links are not held against an obstacle.
+  bool ignored_by_all(std::span<const int> links, int obstacle) const {
+    return !links.empty() && std::all_of(links.begin(), links.end(), [&](int link) {
+      return std::binary_search(ignored_.begin(), ignored_.end(), IgnoredPair{link, obstacle});
+    });
+  }
+
   void write_ignored(std::size_t solids) {
     const std::size_t words = solids / 64 + 1;
-    out_.ignored.assign(words * robot_.groups.size(), 0);
-    for (std::size_t g = 0; g < robot_.groups.size(); ++g) {
-      const IgnoredPair from{robot_.link_of_group[g], 0};
-      for (auto pair = std::lower_bound(ignored_.begin(), ignored_.end(), from);
-           pair != ignored_.end() && pair->link == from.link; ++pair) {
-        const auto solid = static_cast<std::size_t>(pair->obstacle);
-        out_.ignored[g * words + solid / 64] |= std::uint64_t{1} << (solid % 64);
-      }
+    out_.ignored.assign(words * robot_.set.links.size(), 0);
+    for (const IgnoredPair& pair : ignored_) {
+      const auto link = static_cast<std::size_t>(pair.link);
+      const auto solid = static_cast<std::size_t>(pair.obstacle);
+      out_.ignored[link * words + solid / 64] |= std::uint64_t{1} << (solid % 64);
     }
     out_.tables.ignored_words = static_cast<int>(words);
   }
 
-  /// `link`: of the sphere set, -1 for any.
-  FastRun add_lists(const GroupBounds& bounds, double margin, int link) {
+  /// What all of `links` ignore is left out.
+  FastRun add_lists(const GroupBounds& bounds, double margin, const std::vector<int>& links) {
     const int first = static_cast<int>(out_.lists.size());
     Near near;
     for (const Placed& placed : placed_) {
-      if (std::binary_search(ignored_.begin(), ignored_.end(), IgnoredPair{link, placed.id})) {
-        continue;
-      }
+      if (ignored_by_all(links, placed.id)) continue;
       if (placed.frame != near.frame) near = near_in(bounds, placed.frame);
       const double most = bounds.reach + margin + 1e-4 + placed.round;
       if (placed.apart(near.middle).squaredNorm() > most * most) continue;
       const int lists = static_cast<int>(out_.lists.size());
-      if (lists == first || out_.lists.back().frame != placed.frame) start_list(placed.frame);
+      if (lists == first || out_.lists.back().frame != placed.frame ||
+          out_.lists.back().boxes.count == kMostOfList) {
+        start_list(placed.frame);
+      }
       add(near, placed);
     }
     return {first, static_cast<int>(out_.lists.size()) - first};
@@ -361,7 +369,6 @@ FastWorld::FastWorld(const FastRobotData& robot, const Obstacles& obstacles) {
   tables.frames = frames.data();
   tables.lists = lists.data();
   tables.lists_of_group = lists_of_group.data();
-  tables.every_list_of_group = every_list_of_group.data();
   tables.ignored = ignored.data();
   tables.boxes = boxes.data();
   tables.cylinders = cylinders.data();

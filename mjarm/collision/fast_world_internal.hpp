@@ -20,7 +20,7 @@ struct FastWorld {
 
   std::vector<float> frames;
   std::vector<FastList> lists;
-  std::vector<FastRun> lists_of_group, every_list_of_group;
+  std::vector<FastRun> lists_of_group;
   std::vector<FastBox> boxes;
   std::vector<FastCylinder> cylinders;
   std::vector<int> box_ids, cylinder_ids;

@@ -6,24 +6,49 @@ namespace mjarm {
 namespace {
 
 constexpr int kSamplesOfRound = 1000;  // a round that finds nothing by then ends
-constexpr double kShare = 3;       // of the best cost: a raw path must be below, as cuts shorten it
-constexpr int kCuts = 40;          // attempts at once
-constexpr int kTurns = 8;          // of those, at most,
-constexpr double kPays = 0.005;    // as long as each saves this share
-constexpr double kPromise = 1.15;  // and the path is not longer than the best one by this factor
+constexpr double kShare = 3;  // of the best cost: a raw path must be below, as cuts shorten it
+constexpr int kCuts = 40;     // attempts at once to cut corners,
+constexpr int kCutTurns = 8;  // so many times at most,
+constexpr double kCutPays = 0.005;  // as long as each saves this share;
+constexpr int kSlides = 100;        // then attempts to move them
+constexpr int kSlideTurns = 6;
+constexpr double kSlidePays = 0.001;
+constexpr double kPromise = 1.15;  // a path that is longer than the best one by this factor is left
 constexpr double kProofShare = 0.93;  // of the time; the rest is for the last cuts and the proof
 
-/// Shortens a path as long as that pays and it may become shorter than `cost`.
-void settle(const detail::SearchProblem& problem, PlanOptions options, double cost, RawPath& path) {
-  double length = path_length(path.q);
-  for (int k = 0; k < kTurns; ++k) {
-    const double before = length;
-    options.seed += 1000003;
-    detail::shorten(problem.checker, problem.tilt ? &*problem.tilt : nullptr, options, kCuts, path);
-    length = path_length(path.q);
-    if (length > kPromise * cost || length > (1 - kPays) * before) return;
+/// Shortens paths as long as that pays and they may become shorter than the best one.
+class Settler {
+ public:
+  Settler(const detail::SearchProblem& problem, const PlanOptions& options)
+      : problem_(problem), options_(options) {}
+
+  /// @param cost  of the best path.
+  void settle(std::uint64_t seed, double cost, RawPath& path) {
+    options_.seed = seed;
+    repeat(kCutTurns, kCutPays, cost, path,
+           [&] { detail::shorten(problem_.checker, tilt(), options_, kCuts, path); });
+    repeat(kSlideTurns, kSlidePays, cost, path,
+           [&] { detail::slide_corners(problem_.checker, tilt(), options_, kSlides, path); });
   }
-}
+
+ private:
+  template <class Turn>
+  void repeat(int turns, double pays, double cost, RawPath& path, const Turn& turn) {
+    double length = path_length(path.q);
+    for (int k = 0; k < turns && !problem_.deadline.passed(); ++k) {
+      const double before = length;
+      options_.seed += 1000003;
+      turn();
+      length = path_length(path.q);
+      if (length > kPromise * cost || length > (1 - pays) * before) return;
+    }
+  }
+
+  const detail::TiltKeeper* tilt() const { return problem_.tilt ? &*problem_.tilt : nullptr; }
+
+  const detail::SearchProblem& problem_;
+  PlanOptions options_;
+};
 
 }  // namespace
 
@@ -37,7 +62,8 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
   if (timed) problem->deadline = detail::Deadline(kProofShare * left_us);
   PlanOptions round = options;
   round.samples = kSamplesOfRound;
-  settle(*problem, round, path_length(best.q), best);
+  Settler settler(*problem, round);
+  settler.settle(round.seed, path_length(best.q), best);
   double cost = path_length(best.q);
   const double least = detail::distance(start, problem->goals.front()) * (1 + 1e-12);
   for (int k = 0; cost > least && (timed ? !problem->deadline.passed() : k < options.rounds); ++k) {
@@ -45,7 +71,7 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
     problem->most_cost = kShare * cost;
     Result<RawPath, PlanFailure> found = detail::rrt_connect(*problem, round);
     if (!found) continue;
-    settle(*problem, round, cost, *found);
+    settler.settle(round.seed, cost, *found);
     const double length = path_length(found->q);
     if (!(length < cost)) continue;
     best = std::move(*found);

@@ -91,6 +91,11 @@ inline void between(std::span<const double> a, std::span<const double> b, double
 void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
              int attempts, RawPath& path);
 
+/// Shortens `path` in place by so many attempts to move one of its corners a little.
+/// @param tilt  may be null.
+void slide_corners(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+                   int attempts, RawPath& path);
+
 /// Looks at the options, the start and every goal.
 [[nodiscard]] Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
                                                                  std::span<const double> start,

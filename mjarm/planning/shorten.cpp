@@ -9,12 +9,16 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMostFailed = 30;      // cuts in a row that did not work: enough
-constexpr int kPulls = 1;            // rounds over all corners at most
-constexpr double kLeastPull = 0.4;   // share of the way to the straight line
-constexpr double kLeastGain = 1e-3;  // share of the length that a cut must save
-constexpr int kTiltCuts = 8;         // times as many attempts, and
-constexpr int kTiltPulls = 12;       // so many rounds, where a limit of the tilt needs many corners
+constexpr int kMostFailed = 30;       // cuts in a row that did not work: enough
+constexpr int kPulls = 1;             // rounds over all corners at most
+constexpr double kLeastPull = 0.4;    // share of the way to the straight line
+constexpr double kLeastGain = 1e-3;   // share of the length that a cut must save
+constexpr double kFirstStep = 0.2;    // [rad or m, L2] that a corner is moved by at first,
+constexpr double kLeastStep = 1e-3;   // and at least;
+constexpr double kLeastSaved = 0.02;  // of a step: less does not count
+constexpr double kLonger = 1.5, kShorter = 0.85;  // the next step after one that worked or failed
+constexpr int kTiltCuts = 8;                      // times as many attempts, and
+constexpr int kTiltPulls = 12;  // so many rounds, where a limit of the tilt needs many corners
 
 class Shortener {
  public:
@@ -34,6 +38,15 @@ class Shortener {
     }
     const int pulls = tilt_ != nullptr ? kTiltPulls : kPulls;
     for (int round = 0; round < pulls && pull_corners(); ++round) continue;
+  }
+
+  /// Moves corners by random steps that make the path shorter, also along what is in the way.
+  void slide(int attempts) {
+    double step = kFirstStep;
+    for (int k = 0; k < attempts && q_.size() > 2 && step > kLeastStep; ++k) {
+      const std::size_t i = 1 + static_cast<std::size_t>(rng_.below(q_.size() - 2));
+      step *= slide_corner(i, step) ? kLonger : kShorter;
+    }
   }
 
  private:
@@ -123,6 +136,22 @@ class Shortener {
     return (corner - a).norm() + (corner - b).norm() < (1 - kLeastGain) * length;
   }
 
+  bool slide_corner(std::size_t i, double step) {
+    const JointVec &a = q_[i - 1], &b = q_[i + 1];
+    const double length = (q_[i] - a).norm() + (q_[i] - b).norm();
+    const JointVec shorter = (a - q_[i]).normalized() + (b - q_[i]).normalized();
+    JointVec way(q_[i].size());
+    for (double& x : way) x = rng_.normal();
+    way *= (way.dot(shorter) < 0 ? -step : step) / std::max(way.norm(), 1e-9);
+    const JointVec moved = q_[i] + way;
+    if ((moved - a).norm() + (moved - b).norm() > length - kLeastSaved * step) return false;
+    if (!prover_.is_free(view(a), view(moved)) || !prover_.is_free(view(moved), view(b))) {
+      return false;
+    }
+    q_[i] = moved;
+    return true;
+  }
+
   static std::size_t edge_at(std::span<const double> ends, double length) {
     const auto found = std::upper_bound(ends.begin(), ends.end() - 1, length);
     return static_cast<std::size_t>(found - ends.begin());
@@ -146,6 +175,11 @@ class Shortener {
 void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
              int attempts, RawPath& path) {
   if (path.q.size() > 2) Shortener(checker, tilt, options, path).run(attempts);
+}
+
+void slide_corners(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+                   int attempts, RawPath& path) {
+  if (path.q.size() > 2) Shortener(checker, tilt, options, path).slide(attempts);
 }
 
 }  // namespace mjarm::detail

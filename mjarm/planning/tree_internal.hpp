@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -14,15 +15,16 @@ namespace mjarm::detail {
 /// Configurations that are joined by proved edges, each with the one it was reached from.
 class Tree {
  public:
-  explicit Tree(std::size_t dof) : dof_(dof), stride_((dof + 3) / 4 * 4) {
-    rows_.reserve(64 * stride_);
+  explicit Tree(std::size_t dof) : dof_(dof) {
+    rows_.reserve(64 * dof);
+    places_.reserve(64 * dof);
     parents_.reserve(64);
     weights_.reserve(64);
   }
 
   int size() const { return static_cast<int>(parents_.size()); }
   std::span<const double> q(int node) const {
-    return {rows_.data() + static_cast<std::size_t>(node) * stride_, dof_};
+    return {rows_.data() + static_cast<std::size_t>(node) * dof_, dof_};
   }
   int parent(int node) const { return parents_[static_cast<std::size_t>(node)]; }
   /// [rad or m] length of the way from the root.
@@ -36,10 +38,9 @@ class Tree {
   /// @param length  [rad or m] of the edge from there.
   int add(std::span<const double> q, int parent, double length) {
     rows_.insert(rows_.end(), q.begin(), q.end());
-    rows_.resize(rows_.size() + stride_ - dof_, 0.0);
+    place(q);
     parents_.push_back(parent);
     costs_.push_back(parent < 0 ? 0 : cost(parent) + length);
-    weights_.push_back(1);
     children_.push_back({});
     hang_below(size() - 1, parent);
     return size() - 1;
@@ -49,7 +50,10 @@ class Tree {
   void move(int node, int parent, double cost);
 
   /// Makes a node from which a way was blocked look farther away, so that others have their turn.
-  void push_away(int node, double factor) { weights_[static_cast<std::size_t>(node)] *= factor; }
+  void push_away(int node, double factor) {
+    float& weight = weights_[static_cast<std::size_t>(node)];
+    weight = std::min(weight * static_cast<float>(factor), kMostWeight);
+  }
 
   struct Near {
     int node = -1;
@@ -75,12 +79,21 @@ class Tree {
     children(parent).first = node;
   }
 
-  std::size_t dof_, stride_;
-  std::vector<double> rows_;  // stride_ a node, the rest 0: whole registers
+  static constexpr std::size_t kLanes = 8;  // nodes that are compared at once
+  static constexpr float kMostWeight = 1e6F;
+  static constexpr float kNowhere =
+      1e9F;  // [rad or m] where lanes without a node are: out of reach
+
+  /// Writes the next node where nearest() looks for it.
+  void place(std::span<const double> q);
+
+  std::size_t dof_;
+  std::vector<double> rows_;   // dof_ a node
+  std::vector<float> places_;  // the same in single precision: kLanes nodes joint by joint, ...
   std::vector<int> parents_;
   std::vector<double> costs_;
   std::vector<Children> children_;
-  std::vector<double> weights_;  // of the squared distance
+  std::vector<float> weights_;  // of the squared distance, kLanes at least
 };
 
 }  // namespace mjarm::detail
