@@ -171,6 +171,13 @@ TEST(ContactRules, HeldWhereItIsItStaysThere) {
   EXPECT_LT((X_WB.R - Eigen::Matrix3d::Identity()).norm(), 1e-9);
 }
 
+TEST(ContactRules, PosturesOfAnotherSizeAreRefused) {
+  const Crane& crane = free_bar();
+  EXPECT_FALSE(hold_where_it_is(crane.model, crane.arm, "bar", {}));
+  const std::vector<double> nan(3, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(hold_where_it_is(crane.model, crane.arm, "bar", nan));
+}
+
 TEST(ContactRules, WordsAndPosesThatAreNoneAreNamed) {
   const LanguageScope english(Language::english);
   const Crane& crane = free_bar();

@@ -92,6 +92,29 @@ TEST(GoalRegion, WhereAllCollidesTheyAreGivenSoThatThePlannerSaysWithWhat) {
   EXPECT_EQ(path.error().reason, PlanErrc::goals_hit);
 }
 
+TEST(GoalRegion, GoalsThatLeanAreLeftOutWhereOthersDoNot) {
+  const Arm& arm = testing::walled_arm().robot.arm;
+  const GoalOptions options{.poses = 40, .most = 4000, .tilt = TiltLimit{.most = 0.2}};
+  const auto goals = goals_of({.X_WR = kBehindWall, .lean = 0.6}, options);
+  ASSERT_TRUE(goals);
+  for (const JointVec& q : *goals) EXPECT_LE(tilt(*options.tilt, arm, view(q)), 0.2);
+  // All lean: the planner shall say by how much.
+  GoalRegion leaning{kBehindWall};
+  leaning.X_WR.R = from_euler({pi - 0.5, 0, 0});
+  EXPECT_TRUE(goals_of(leaning, options));
+}
+
+TEST(GoalRegion, RefusesPosturesOfAnotherSize) {
+  const testing::CoveredArm& arm = testing::walled_arm();
+  const IkSolver ik(arm.robot.arm);
+  for (const std::size_t size : {0u, 5u, 40u}) {
+    const std::vector<double> q(size);
+    const auto goals = goals_in(arm.checker, ik, {.X_WR = kBehindWall}, q);
+    ASSERT_FALSE(goals);
+    EXPECT_EQ(goals.error().code, IkErrc::bad_input);
+  }
+}
+
 TEST(GoalRegion, RefusesTolerancesThatAreNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const GoalRegion& bad :

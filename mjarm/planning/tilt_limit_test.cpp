@@ -88,6 +88,18 @@ TEST(TiltKeeper, EdgesThatAreKeptAreSoAtEveryPlaceAndOthersAreNotAtTheirs) {
   EXPECT_GT(left, 300);
 }
 
+TEST(TiltKeeper, EdgesWithoutEndAreGivenUp) {
+  const Arm arm = testing::ur5e();
+  const JointVec q0 = JointVec::Zero(6);
+  const TiltKeeper keeper(keep_upright(arm, view(q0), 0.1), arm);
+  JointVec q1 = q0;
+  q1[3] = 1e12;
+  EXPECT_FALSE(keeper.look(view(q0), view(q1)).kept);
+  q1 = q0;
+  q1[0] = 1e17;  // about the vertical: nothing to look at
+  EXPECT_TRUE(keeper.look(view(q0), view(q1)).kept);
+}
+
 TEST(TiltKeeper, PutsBackWithinTheLimitOrSaysThatItCannot) {
   const Arm arm = testing::ur5e();
   Rng rng(7);

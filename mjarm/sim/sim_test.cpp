@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/sim/worlds_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -222,6 +223,20 @@ TEST(Sim, PlaceSetsTheCtrlThatKeepsTheServosThere) {
   EXPECT_EQ(sim.arm_state(robot.arm).q, joint_vec(q));
   EXPECT_EQ(sim.arm_state(robot.arm).v, JointVec::Zero(2));
   EXPECT_EQ(sim.arm_torque(robot.arm), JointVec::Zero(2));
+}
+
+TEST(Sim, PlacesWhatIsFreeAndNothingElse) {
+  const Loaded robot = load_text(small_world());
+  Sim sim(robot.model);
+  const std::vector<double> before(sim.qpos().begin(), sim.qpos().end());
+  sim.place_free("upper", {{7, 7, 7}, Eigen::Matrix3d::Identity()});
+  sim.place_free("none", {{7, 7, 7}, Eigen::Matrix3d::Identity()});
+  EXPECT_THAT(sim.qpos(), ElementsAreArray(before));
+  sim.place_free("box", {{0.1, 0.2, 0.3}, to_matrix(Quat(0, 1, 0, 0))});
+  const std::vector<double> placed{0.1, 0.2, 0.3, 0, 1, 0, 0};
+  EXPECT_THAT(sim.qpos().first(7), ElementsAreArray(placed));
+  EXPECT_THAT(sim.qpos().subspan(7),
+              ElementsAreArray(std::vector<double>(before.begin() + 7, before.end())));
 }
 
 TEST(Sim, NamesContactsAndTellsTheArmsFromOthers) {

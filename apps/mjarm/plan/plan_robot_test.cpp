@@ -68,13 +68,27 @@ TEST_F(PlanRobot, KeepsTheToolUprightAndSaysByHowMuch) {
   EXPECT_LE(path.at("tilt").at("largest"), five);
   EXPECT_EQ(verify().exit_code, 0);
   // A smaller one than is true is found out.
-  json file = json::parse(folder_.read("path.json"));
+  const json sound = json::parse(folder_.read("path.json"));
+  json file = sound;
   file.front()["tilt"]["largest"] = 1e-4;
   file.front().erase("certificate");
   folder_.write("path.json", file.dump());
   const auto verified = verify();
   EXPECT_EQ(verified.exit_code, 1);
   EXPECT_NE(verified.err.find("leans"), std::string::npos) << verified.err;
+  // What cannot be is no input.
+  const std::pair<const char*, json> wrong[] = {
+      {"/tilt/tool", {0, 0, 0}}, {"/tilt/world", {0, 0, 2}}, {"/tilt/largest", 0.2},
+      {"/tilt/limit", 2},        {"/tilt/limit", nullptr},   {"/spheres", 1e-9},
+      {"/spheres", -1},          {"/hold", "rod"},           {"/allow", {1, 2}}};
+  for (const auto& [place, value] : wrong) {
+    file = sound;
+    file.front()[json::json_pointer(place)] = value;
+    folder_.write("path.json", file.dump());
+    const auto refused = verify();
+    EXPECT_EQ(refused.exit_code, 2) << place;
+    EXPECT_NE(only_line(refused).find("path.json"), std::string::npos) << place;
+  }
 }
 
 TEST_F(PlanRobot, ARegionIsReachedWhereThePoseIsNot) {
@@ -127,23 +141,22 @@ std::string with_rod(const support::TempFolder& folder) {
 TEST_F(PlanRobot, CarriesWhatItHoldsOverTheWall) {
   const std::string robot = with_rod(folder_);
   Words words{"--start", kBefore, "--goal", kBehind, "--allow-outside"};
-  const auto clearance_of_top = [&] {
-    double least = 10;
-    const json path = answer();
-    for (const json& edge : path.at("certificate")) {
-      least = std::min(least, edge.at("clearance").get<double>());
-    }
-    return least;
-  };
   ASSERT_EQ(plan(words, robot.c_str()).exit_code, 0);
-  EXPECT_GT(clearance_of_top(), 0);
   const std::string bare = folder_.read("path.json");
   words.insert(words.end(), {"--hold", "rod"});
   ASSERT_EQ(plan(words, robot.c_str()).exit_code, 0);
   EXPECT_NE(folder_.read("path.json"), bare);
-  const auto held =
-      mjarm({"verify", paths(), "--robot", robot, "--allow-outside", "--hold", "rod"});
+  // The file says what was held.
+  EXPECT_EQ(answer().at("hold"), json({"rod"}));
+  const auto held = mjarm({"verify", "--robot", robot, "--allow-outside", paths()});
   EXPECT_EQ(held.exit_code, 0) << held.err;
+  json forgotten = json::parse(folder_.read("path.json"));
+  forgotten.front().erase("hold");
+  folder_.write("path.json", forgotten.dump());
+  EXPECT_EQ(mjarm({"verify", "--robot", robot, "--allow-outside", paths()}).exit_code, 1);
+  const auto told =
+      mjarm({"verify", "--robot", robot, "--allow-outside", "--hold", "rod", paths()});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
 
   words.back() = "rood";
   const auto wrong = plan(words, robot.c_str());
@@ -168,6 +181,11 @@ TEST_F(PlanRobot, WrongWordsGetOneLine) {
       {{"--goal", "0,0,0,0,0,0", "--keep-upright", "0"}, "--keep-upright"},
       {{"--goal", "0,0,0,0,0,0", "--spheres", "0"}, "--spheres"},
       {{"--goal", "0,0,0,0,0,nan"}, "--goal"},
+      {{"--goal", "0,0,0,0,0,0", "--problem", "x"}, "--robot and --problem"},
+      {{"--goal", "0,0,0,0,0,0", "--hold", "wall"}, "--hold: the body \"wall\" has no free joint"},
+      {{"--goal", "0,0,0,0,0,0", "--allow", "wall"}, "--allow"},
+      {{"--goal", "0,0,0,0,0,0", "--allow", "wall,flor"}, "\"floor\""},
+      {{"--pos", "1,2,3", "--task", "position", "--keep-upright", "5deg"}, "--task axis"},
       {{"--goal", "0,0,0,0,0,0", "--in", "x.json"}, "--in and --robot"}};
   for (const auto& [words, says] : wrong) {
     const auto result = plan(words);
@@ -177,6 +195,18 @@ TEST_F(PlanRobot, WrongWordsGetOneLine) {
   const auto both = mjarm({"verify", paths(), "--robot", "ur5e", "--in", "x.json"});
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_NE(only_line(both).find("--in and --robot"), std::string::npos);
+  // Nothing that was asked for is left out without a word.
+  for (const Words& more : {Words{"--hold", "cup"}, Words{"--allow", "a,b"},
+                            Words{"--within", "1,1,1"}, Words{"--spheres", "1mm"}}) {
+    Words words{"plan", "--in", "x.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto result = mjarm(words);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(only_line(result).find("--in and --robot"), std::string::npos) << result.err;
+  }
+  const auto held = mjarm({"verify", "x.json", "--in", "y.json", "--hold", "cup"});
+  EXPECT_EQ(held.exit_code, 2);
+  EXPECT_NE(only_line(held).find("--in and --hold"), std::string::npos);
 }
 
 }  // namespace
