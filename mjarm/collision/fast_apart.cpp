@@ -1,23 +1,25 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "mjarm/collision/fast_robot_internal.hpp"
 
-/// How far two groups with at most two joints between them keep apart, as a table over the values of
-/// these joints: most values are far from any overlap, and looking that up costs less than tests of
-/// spheres. Within a cell the distance is less than in its middle by at most (lever * half width),
-/// summed over the joints.
+/// How far two groups with at most two joints between them keep apart, as a table over the values
+/// of these joints: most values are far from any overlap, and looking that up costs less than tests
+/// of spheres. Within a cell the distance is less than in its middle by at most (lever * half
+/// width), summed over the joints.
 namespace mjarm::detail {
 namespace {
 
-constexpr int kLeastPartPairs = 4;   // fewer are looked at as fast
-constexpr int kMostTests = 100'000;  // of spheres, to make a table
-constexpr int kLeastSide = 12, kMostSide = 64;  // cells along one joint; fewer say too little
-constexpr double kUnitLength = 1e-3;            // [m] of the numbers in the cells
+constexpr int kLeastPartPairs = 4;        // fewer are looked at as fast
+constexpr int kMostApartTests = 100'000;  // of spheres, to make a table
+constexpr int kLeastApartSide = 12,
+              kMostApartSide = 64;   // cells along one joint; fewer say too little
+constexpr double kApartUnit = 1e-3;  // [m] of the numbers in the cells
 // Which cell a value is in is decided in single precision: cells reach a little farther, and
 // distances count a little less.
-constexpr double kWiden = 1.01, kSpare = 2e-5;  // [m]
+constexpr double kApartWiden = 1.01, kApartSpare = 2e-5;  // [m]
 
 /// Pose of body `b` seen from body `a`.
 Pose pose_between(const LinkChain& chain, int a, int b, const std::array<double, 2>& q) {
@@ -38,10 +40,7 @@ Pose pose_between(const LinkChain& chain, int a, int b, const std::array<double,
 class ApartBuilder {
  public:
   ApartBuilder(const FastRobotData& data, const LinkChain& chain, const FastPair& pair)
-      : data_(data),
-        chain_(chain),
-        from_(body(pair.a)),
-        to_(body(pair.b)) {
+      : data_(data), chain_(chain), from_(body(pair.a)), to_(body(pair.b)) {
     for (int r = pair.first; r < pair.first + pair.count; ++r) {
       const FastRow& row = data.rows[static_cast<std::size_t>(r)];
       part_pairs_ += row.count;
@@ -59,11 +58,13 @@ class ApartBuilder {
     FastApart out;
     const int joints = to_ - from_;
     if (joints < 1 || joints > 2 || part_pairs_ < kLeastPartPairs) return out;
-    const double most = static_cast<double>(kMostTests) / static_cast<double>(partners_.size());
-    const int side = std::min(kMostSide, static_cast<int>(joints == 1 ? most : std::sqrt(most)));
-    if (side < kLeastSide) return out;
+    const double most =
+        static_cast<double>(kMostApartTests) / static_cast<double>(partners_.size());
+    const int side =
+        std::min(kMostApartSide, static_cast<int>(joints == 1 ? most : std::sqrt(most)));
+    if (side < kLeastApartSide) return out;
     out.side = side;
-    out.unit = static_cast<float>(kUnitLength);
+    out.unit = static_cast<float>(kApartUnit);
     out.first = static_cast<int>(cells.size());
     for (int k = 0; k < joints; ++k) set_axis(k, out);
     for (int j = 0; j < (joints == 2 ? side : 1); ++j) {
@@ -91,18 +92,19 @@ class ApartBuilder {
 
   /// [m] by how much less the distance of a sphere can be elsewhere in a cell.
   double slack(int sphere) const {
-    double out = kSpare;
+    double out = kApartSpare;
     for (int k = from_; k < to_; ++k) {
-      const double half = 0.5 * kWiden * axes_[static_cast<std::size_t>(k - from_)].width + kSpare;
-      out += half * data_.levers_of_sphere[static_cast<std::size_t>(sphere)]
-                                          [static_cast<std::size_t>(k)];
+      const double half =
+          0.5 * kApartWiden * axes_[static_cast<std::size_t>(k - from_)].width + kApartSpare;
+      out += half *
+             data_.levers_of_sphere[static_cast<std::size_t>(sphere)][static_cast<std::size_t>(k)];
     }
     return out;
   }
 
   std::uint8_t cell(const std::array<double, 2>& q) const {
     const Pose X_AB = pose_between(chain_, from_, to_, q);
-    double least = 255 * kUnitLength;
+    double least = 255 * kApartUnit;
     for (const FastPartners& both : partners_) {
       const FastSphere& a = data_.spheres[static_cast<std::size_t>(both.a)];
       const FastSphere& b = data_.spheres[static_cast<std::size_t>(both.b)];
@@ -110,7 +112,7 @@ class ApartBuilder {
       const double gap = (way - Eigen::Vector3d(a.x, a.y, a.z)).norm() - both.reach;
       least = std::min(least, gap - slack(both.b));
     }
-    return static_cast<std::uint8_t>(std::max(least / kUnitLength, 0.0));
+    return static_cast<std::uint8_t>(std::max(least / kApartUnit, 0.0));
   }
 
   const FastRobotData& data_;

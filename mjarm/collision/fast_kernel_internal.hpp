@@ -16,7 +16,9 @@ class BlockSearch {
   BlockSearch(const FastRobotTables& robot, const FastWorldTables& world, LaneBits active, bool any)
       : robot_(robot), world_(world), active_(active), any_(any) {}
 
-  FastVerdict collide(const float* q) {
+  FastVerdict collide(const FastRows& rows) {
+    float q[kFastJoints * kWidth];
+    read(rows, robot_.dof, q);
     const LaneBits outside = outside_limits(robot_, q) & active_;
     verdict_.hit = outside;
     active_ &= ~outside;
@@ -414,8 +416,9 @@ class BlockSearch {
 };
 
 inline std::uint32_t collide_block(const FastRobotTables& robot, const FastWorldTables& world,
-                                   const float* q, std::uint32_t active, bool any) {
-  return BlockSearch<false>(robot, world, active, any).collide(q).hit;
+                                   const FastRows& rows, bool any) {
+  const LaneBits lanes = (LaneBits{1} << rows.count) - 1;
+  return BlockSearch<false>(robot, world, lanes, any).collide(rows).hit;
 }
 
 inline FastVerdict cover_block(const FastRobotTables& robot, const FastWorldTables& world,

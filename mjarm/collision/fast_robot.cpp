@@ -19,7 +19,7 @@ using detail::Tilt;
 static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMostSpheres);
 
 constexpr double kNothing = 1e-9;          // [m], [rad] counts as 0; the padding knows
-constexpr std::ptrdiff_t kMostOfPart = 4;  // spheres; more are cut in two
+constexpr std::ptrdiff_t kMostOfPart = 8;  // spheres; more are cut in two
 
 FastJoint fast_joint(const Arm& arm, const LinkChain& chain, int i) {
   const Link& link = chain.links[i];
@@ -140,7 +140,8 @@ void add_groups(FastRobotData& data, const LinkChain& chain) {
     data.padding = std::max(data.padding, bounds.padding);
     data.bounds.push_back(bounds);
     add_group(data, body, std::move(from), bounds.padding);
-    for (auto i = static_cast<std::size_t>(data.groups.back().first); i < data.spheres.size(); ++i) {
+    for (auto i = static_cast<std::size_t>(data.groups.back().first); i < data.spheres.size();
+         ++i) {
       const FastSphere& s = data.spheres[i];
       const Sphere one{{s.x, s.y, s.z}, s.radius};
       data.levers_of_sphere.push_back(

@@ -50,10 +50,10 @@ struct FastRobotData {
   std::vector<FastRow> rows;
   std::vector<FastPartPair> part_pairs;
   std::vector<FastPartners> partners;
-  FastRobotTables tables;                              ///< of the above
-  std::vector<GroupBounds> bounds;                     ///< one a group
+  FastRobotTables tables;                                     ///< of the above
+  std::vector<GroupBounds> bounds;                            ///< one a group
   std::vector<std::array<double, kMaxDof>> levers_of_sphere;  ///< as in GroupBounds
-  std::vector<int> link_of_sphere;                     ///< index into the set
+  std::vector<int> link_of_sphere;                            ///< index into the set
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
   double padding = 0;                                  ///< [m] largest of the groups
   /// Of every group and, of every pair, those of group b for the joints between both.
