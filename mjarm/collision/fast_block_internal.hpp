@@ -80,6 +80,17 @@ inline void carry(const FastJoint& joint, Floats q, Frame& f) {
          multiply_add(c, y.z, -s * x.z)};
 }
 
+/// Configurations joint by joint: q (dof, kWidth).
+inline void read(const FastRows& rows, int dof, float* q) {
+  const double* row[kWidth];
+  for (int k = 0; k < kWidth; ++k) row[k] = rows.q + (k < rows.count ? k : rows.count - 1) * dof;
+  for (int i = 0; i < dof; ++i) {
+    Floats value;
+    for (int k = 0; k < kWidth; ++k) value[k] = static_cast<float>(row[k][i]);
+    store(q + i * kWidth, value);
+  }
+}
+
 /// The scratch memory of one check.
 struct Block {
   Frame frames[kFastJoints + 1];

@@ -38,14 +38,6 @@ struct LaneInput {
   alignas(64) float q[kMaxDof * kMostLanes];
 
   LaneInput(const double* rows, std::size_t count, std::size_t dof, std::size_t width) {
-    if (count == width) {
-      for (std::size_t k = 0; k < width; ++k) {
-        for (std::size_t i = 0; i < dof; ++i) {
-          q[i * width + k] = static_cast<float>(rows[k * dof + i]);
-        }
-      }
-      return;
-    }
     for (std::size_t i = 0; i < dof; ++i) {
       for (std::size_t k = 0; k < width; ++k) {
         q[i * width + k] = static_cast<float>(rows[std::min(k, count - 1) * dof + i]);
@@ -107,11 +99,10 @@ void FastChecker::check(std::span<const double> q, std::span<std::uint8_t> free)
   assert(q.size() == free.size() * dof);
   for (std::size_t first = 0; first < free.size(); first += width) {
     const std::size_t count = std::min(width, free.size() - first);
-    const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
-    std::uint32_t hit = lanes;
+    std::uint32_t hit = ~std::uint32_t{0};
     if (!fixed_overlap_) {
-      const LaneInput input(q.data() + first * dof, count, dof, width);
-      hit = kernels_->collide(robot_.data().tables, world_->tables, input.q, lanes, false);
+      const detail::FastRows rows{q.data() + first * dof, static_cast<int>(count)};
+      hit = kernels_->collide(robot_.data().tables, world_->tables, rows, false);
     }
     for (std::size_t k = 0; k < count; ++k) {
       free[first + k] = static_cast<std::uint8_t>(1 - ((hit >> k) & 1));

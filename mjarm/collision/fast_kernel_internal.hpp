@@ -16,12 +16,15 @@ class BlockSearch {
   BlockSearch(const FastRobotTables& robot, const FastWorldTables& world, LaneBits active, bool any)
       : robot_(robot), world_(world), active_(active), any_(any) {}
 
-  FastVerdict collide(const float* q) {
+  FastVerdict collide(const FastRows& rows) {
+    float q[kFastJoints * kWidth];
+    read(rows, robot_.dof, q);
     const LaneBits outside = outside_limits(robot_, q) & active_;
     verdict_.hit = outside;
     active_ &= ~outside;
     if (active_ == 0 || (any_ && outside != 0)) return verdict_;
     block_.place(robot_, world_, q);
+    q_ = q;
     search();
     return verdict_;
   }
@@ -36,6 +39,7 @@ class BlockSearch {
     }
     block_.place(robot_, world_, q);
     block_.move(robot_, motion.dq);
+    q_ = q;
     motion_ = &motion;
     half_ = load(half);
     search();
@@ -333,36 +337,42 @@ class BlockSearch {
     }
   }
 
-  void meet_itself(int k) {
+  [[gnu::always_inline]] void meet_itself(int k) {
     const FastPair& pair = robot_.pairs[k];
     const Point& ball = block_.balls[pair.b];
     const Floats balls = squared(block_.balls[pair.a] - ball);
-    if constexpr (kCover) {
-      // The bound that costs nothing first: most pairs are far apart.
-      grow_ = half_ * motion_->pair_rate[k];
-      if ((less(balls, squared_reach(pair.reach)) & active_) == 0) return;
-      grow_ = smaller(grow_, pair_growth(k));
+    // The bounds that cost nothing first: most pairs are far apart.
+    if constexpr (kCover) grow_ = half_ * motion_->pair_rate[k];
+    LaneBits lanes = less(balls, squared_reach(pair.reach)) & active_;
+    if (lanes == 0) return;
+    if (pair.apart >= 0) {
+      lanes &= ~less(grow_, apart_bound(robot_.apart[pair.apart], q_));
+      if (lanes == 0) return;
     }
-    if ((less(balls, squared_reach(pair.reach)) & active_) == 0) return;
+    if constexpr (kCover) {
+      grow_ = smaller(grow_, pair_growth(k));
+      lanes &= less(balls, squared_reach(pair.reach));
+      if (lanes == 0) return;
+    }
     block_.place_part_balls(robot_, pair.a);
     for (int i = pair.first; i < pair.first + pair.count; ++i) {
       const FastRow& row = robot_.rows[i];
       const Floats gap2 = squared(block_.part_balls[row.part] - ball);
-      if ((less(gap2, squared_reach(row.reach)) & active_) != 0) meet_row(k, row);
+      if ((less(gap2, squared_reach(row.reach)) & lanes) != 0) meet_row(k, row, lanes);
     }
   }
 
-  void meet_row(int k, const FastRow& row) {
+  void meet_row(int k, const FastRow& row, LaneBits lanes) {
     block_.place_part_balls(robot_, robot_.pairs[k].b);
     const Point ball = block_.part_balls[row.part];
     for (int i = row.first; i < row.first + row.count; ++i) {
       const FastPartPair& parts = robot_.part_pairs[i];
       const Floats gap2 = squared(ball - block_.part_balls[parts.b]);
-      if ((less(gap2, squared_reach(parts.reach)) & active_) != 0) meet_parts(k, parts);
+      if ((less(gap2, squared_reach(parts.reach)) & lanes) != 0) meet_parts(k, parts);
     }
   }
 
-  void meet_parts(int k, const FastPartPair& parts) {
+  [[gnu::always_inline]] void meet_parts(int k, const FastPartPair& parts) {
     const FastPair& pair = robot_.pairs[k];
     block_.place_spheres(robot_, robot_.groups[pair.a].body, parts.a);
     block_.place_spheres(robot_, robot_.groups[pair.b].body, parts.b);
@@ -397,6 +407,7 @@ class BlockSearch {
   bool any_;
   bool done_ = false;
   FastVerdict verdict_;
+  const float* q_ = nullptr;
   const FastMotion* motion_ = nullptr;
   Floats half_{};
   Floats grow_{};
@@ -405,8 +416,9 @@ class BlockSearch {
 };
 
 inline std::uint32_t collide_block(const FastRobotTables& robot, const FastWorldTables& world,
-                                   const float* q, std::uint32_t active, bool any) {
-  return BlockSearch<false>(robot, world, active, any).collide(q).hit;
+                                   const FastRows& rows, bool any) {
+  const LaneBits lanes = (LaneBits{1} << rows.count) - 1;
+  return BlockSearch<false>(robot, world, lanes, any).collide(rows).hit;
 }
 
 inline FastVerdict cover_block(const FastRobotTables& robot, const FastWorldTables& world,

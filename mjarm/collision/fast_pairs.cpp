@@ -19,22 +19,24 @@ using Joints = std::array<double, kMostProved>;
 
 class MeetingSearch {
  public:
-  /// `levers` are those of body `b`.
-  MeetingSearch(const Arm& arm, const LinkChain& chain, int a, int b,
-                const std::array<double, kMaxDof>& levers)
+  MeetingSearch(const Arm& arm, const LinkChain& chain, int a, int b)
       : chain_(chain), a_(a), b_(b) {
     for (int k = a; k < b && k < a + kMostProved; ++k) {
       const auto i = static_cast<std::size_t>(k - a);
       const FastLimits limits = fast_limits(arm, k);
       middle_[i] = 0.5 * (limits.upper + limits.lower);
       half_[i] = 0.5 * (limits.upper - limits.lower);
-      levers_[i] = levers[static_cast<std::size_t>(k)] + 1e-6;
     }
   }
 
   /// False where no joint values bring the centres as near to each other as `reach`.
-  bool may_meet(const Eigen::Vector3d& center_a, const Eigen::Vector3d& center_b, double reach) {
+  /// `levers` are those of the one on body b.
+  bool may_meet(const Eigen::Vector3d& center_a, const Eigen::Vector3d& center_b,
+                const std::array<double, kMaxDof>& levers, double reach) {
     if (b_ - a_ > kMostProved) return true;
+    for (int k = a_; k < b_; ++k) {
+      levers_[static_cast<std::size_t>(k - a_)] = levers[static_cast<std::size_t>(k)] + 1e-6;
+    }
     boxes_ = 0;
     return search(center_a, center_b, reach + kSpare, middle_, half_);
   }
@@ -159,14 +161,15 @@ void add_pairs(FastRobotData& data, const LinkChain& chain) {
   const int count = static_cast<int>(data.groups.size());
   for (int a = count - 1; a >= 0; --a) {
     for (int b = a; b >= 0; --b) {
-      MeetingSearch search(data.arm, chain, body(a), body(b),
-                           data.bounds[static_cast<std::size_t>(b)].levers);
+      MeetingSearch search(data.arm, chain, body(a), body(b));
       add_pair(data, data.pairs, a, b, [&](int one, int other) {
         const FastSphere& from = data.spheres[static_cast<std::size_t>(one)];
         const FastSphere& to = data.spheres[static_cast<std::size_t>(other)];
         // Radii are padded, which covers that centres are rounded to floats.
         return (a != b || one < other) && paired(one, other) &&
-               search.may_meet(center_of(from), center_of(to), from.radius + to.radius);
+               search.may_meet(center_of(from), center_of(to),
+                               data.levers_of_sphere[static_cast<std::size_t>(other)],
+                               from.radius + to.radius);
       });
       add_pair(data, data.every_pair, a, b,
                [&](int one, int other) { return (a != b || one < other) && paired(one, other); });

@@ -19,7 +19,7 @@ using detail::Tilt;
 static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMostSpheres);
 
 constexpr double kNothing = 1e-9;          // [m], [rad] counts as 0; the padding knows
-constexpr std::ptrdiff_t kMostOfPart = 4;  // spheres; more are cut in two
+constexpr std::ptrdiff_t kMostOfPart = 8;  // spheres; more are cut in two
 
 FastJoint fast_joint(const Arm& arm, const LinkChain& chain, int i) {
   const Link& link = chain.links[i];
@@ -140,6 +140,14 @@ void add_groups(FastRobotData& data, const LinkChain& chain) {
     data.padding = std::max(data.padding, bounds.padding);
     data.bounds.push_back(bounds);
     add_group(data, body, std::move(from), bounds.padding);
+    for (auto i = static_cast<std::size_t>(data.groups.back().first); i < data.spheres.size();
+         ++i) {
+      const FastSphere& s = data.spheres[i];
+      const Sphere one{{s.x, s.y, s.z}, s.radius};
+      data.levers_of_sphere.push_back(
+          body > 0 ? detail::group_bounds(data.arm, chain, body, {&one, 1}).levers
+                   : std::array<double, kMaxDof>{});
+    }
   }
 }
 
@@ -213,6 +221,7 @@ Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   data->R_WB = link_frame(links, 0).R;
   add_groups(*data, links);
   detail::add_pairs(*data, links);
+  detail::add_apart(*data, links);
   add_levers(*data);
   data->tables.group_count = static_cast<int>(data->groups.size());
   data->tables.part_count = static_cast<int>(data->parts.size());
@@ -224,6 +233,7 @@ Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   data->tables.link_of_sphere = data->link_of_sphere.data();
   data->tables.pairs = data->pairs.data();
   data->tables.every_pair = data->every_pair.data();
+  data->tables.apart = data->apart.data();
   data->tables.rows = data->rows.data();
   data->tables.part_pairs = data->part_pairs.data();
   data->tables.partners = data->partners.data();

@@ -45,12 +45,15 @@ struct FastRobotData {
   std::vector<FastPart> parts;
   std::vector<FastSphere> spheres;
   std::vector<FastPair> pairs, every_pair;
+  std::vector<FastApart> apart;
+  std::vector<std::uint8_t> apart_cells;
   std::vector<FastRow> rows;
   std::vector<FastPartPair> part_pairs;
   std::vector<FastPartners> partners;
-  FastRobotTables tables;                              ///< of the above
-  std::vector<GroupBounds> bounds;                     ///< one a group
-  std::vector<int> link_of_sphere;                     ///< index into the set
+  FastRobotTables tables;                                     ///< of the above
+  std::vector<GroupBounds> bounds;                            ///< one a group
+  std::vector<std::array<double, kMaxDof>> levers_of_sphere;  ///< as in GroupBounds
+  std::vector<int> link_of_sphere;                            ///< index into the set
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< axes of body 0, whose origin is W's
   double padding = 0;                                  ///< [m] largest of the groups
   /// Of every group and, of every pair, those of group b for the joints between both.
@@ -81,5 +84,8 @@ struct FastLimits {
 
 /// Fills all kinds of pairs of a robot whose groups are there.
 void add_pairs(FastRobotData& data, const LinkChain& chain);
+
+/// Makes tables for pairs of groups with few joints between them.
+void add_apart(FastRobotData& data, const LinkChain& chain);
 
 }  // namespace mjarm::detail

@@ -76,11 +76,23 @@ struct FastRow {
   int first = 0, count = 0;  ///< of the pairs of parts
 };
 
+/// How far two groups keep apart at least, by the values of the one or two joints between them.
+struct FastApart {
+  int side = 0;           ///< cells along a joint
+  int joint[2] = {0, 0};  ///< the second varies slowest; twice the same where there is only one
+  float low[2] = {0, 0};  ///< [rad or m] the least value
+  float per_unit[2] = {0, 0};  ///< cells a rad or m; 0: that joint is not looked at
+  float unit = 0;              ///< [m] of the numbers in the cells
+  int first = 0;               ///< of the cells among those of all tables
+  const std::uint8_t* cells = nullptr;
+};
+
 /// Two groups with links that must not overlap; `b` is farther from the base.
 struct FastPair {
   int a = 0, b = 0;          ///< groups
   int first = 0, count = 0;  ///< of the rows
   float reach = 0;           ///< [m] sum of the radii of both balls
+  int apart = -1;            ///< table of how far they keep apart, -1: none
 };
 
 /// A robot, whatever stands round it.
@@ -97,6 +109,7 @@ struct FastRobotTables {
   const int* link_of_sphere = nullptr;   ///< index into the sphere set
   const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
   const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
+  const FastApart* apart = nullptr;
   const FastRow* rows = nullptr;
   const FastPartPair* part_pairs = nullptr;
   const FastPartners* partners = nullptr;
@@ -254,13 +267,19 @@ struct FastNearest {
   int other = -1;     ///< that sphere
 };
 
-/// The kernels of one level of SIMD. q is (dof, width), joint by joint.
+/// Configurations row by row; lanes without one repeat the last.
+struct FastRows {
+  const double* q;  ///< (count, dof)
+  int count;        ///< 1 to width
+};
+
+/// The kernels of one level of SIMD.
 struct FastKernels {
   int width;
-  /// Lanes of `active` that may be in collision or are outside of the limits; with `any` the first
+  /// Lanes with a row that may be in collision or are outside of the limits; with `any` the first
   /// found end the search.
-  std::uint32_t (*collide)(const FastRobotTables&, const FastWorldTables&, const float* q,
-                           std::uint32_t active, bool any);
+  std::uint32_t (*collide)(const FastRobotTables&, const FastWorldTables&, const FastRows& rows,
+                           bool any);
   /// Looks at intervals t[lane] +- half[lane] of an edge. Ends with the first hit.
   FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, std::uint32_t active,
                        const FastMotion& motion, const float* t, const float* half);

@@ -22,11 +22,26 @@ inline Point point_of(const FastPoints& points, int i) {
   return {splat(points.center[0][i]), splat(points.center[1][i]), splat(points.center[2][i])};
 }
 
-/// Cells along one axis of a grid; NaN gives one as well.
-inline Ints cell_along(const Floats& x, float low, const FastGrid& grid) {
-  const Floats at = (x - low) * grid.per_meter;
-  const Floats last = splat(static_cast<float>(grid.side - 1));
+/// Cells of `side` along one axis; NaN gives one as well.
+inline Ints cell_along(const Floats& x, float low, float per_unit, int side) {
+  const Floats at = (x - low) * per_unit;
+  const Floats last = splat(static_cast<float>(side - 1));
   return __builtin_convertvector(smaller(larger(at, Floats{}), last), Ints);
+}
+inline Ints cell_along(const Floats& x, float low, const FastGrid& grid) {
+  return cell_along(x, low, grid.per_meter, grid.side);
+}
+
+/// Lower bound of how far two groups keep apart [m].
+/// @param q  (dof, kWidth), joint by joint.
+inline Floats apart_bound(const FastApart& table, const float* q) {
+  Ints cell[2];
+  for (int k = 0; k < 2; ++k) {
+    const Floats value = load(q + table.joint[k] * kWidth);
+    cell[k] = cell_along(value, table.low[k], table.per_unit[k], table.side);
+  }
+  const Ints counts = gather(table.cells, cell[1] * table.side + cell[0]);
+  return __builtin_convertvector(counts, Floats) * table.unit;
 }
 
 /// Lower bound of the distance from a point to all that the grid knows [m].

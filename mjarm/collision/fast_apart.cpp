@@ -1,0 +1,139 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mjarm/collision/fast_robot_internal.hpp"
+
+/// How far two groups with at most two joints between them keep apart, as a table over the values
+/// of these joints: most values are far from any overlap, and looking that up costs less than tests
+/// of spheres. Within a cell the distance is less than in its middle by at most (lever * half
+/// width), summed over the joints.
+namespace mjarm::detail {
+namespace {
+
+constexpr int kLeastPartPairs = 4;        // fewer are looked at as fast
+constexpr int kMostApartTests = 100'000;  // of spheres, to make a table
+constexpr int kLeastApartSide = 12,
+              kMostApartSide = 64;   // cells along one joint; fewer say too little
+constexpr double kApartUnit = 1e-3;  // [m] of the numbers in the cells
+// Which cell a value is in is decided in single precision: cells reach a little farther, and
+// distances count a little less.
+constexpr double kApartWiden = 1.01, kApartSpare = 2e-5;  // [m]
+
+/// Pose of body `b` seen from body `a`.
+Pose pose_between(const LinkChain& chain, int a, int b, const std::array<double, 2>& q) {
+  Pose X{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()};
+  for (int k = a; k < b; ++k) {
+    const Link& link = chain.links[k];
+    const double value = q[static_cast<std::size_t>(k - a)];
+    Eigen::Matrix3d R_tilt = Eigen::Matrix3d::Identity();
+    R_tilt.bottomRightCorner<2, 2>() << link.tilt_cos, -link.tilt_sin, link.tilt_sin, link.tilt_cos;
+    const double angle = link.offset + (link.slide ? 0 : value);
+    const Eigen::AngleAxisd turn(angle, Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d way(0, 0, link.slide ? value : 0);
+    X = X * Pose{{link.t[0], link.t[1], link.t[2]}, R_tilt} * Pose{way, turn.toRotationMatrix()};
+  }
+  return X;
+}
+
+class ApartBuilder {
+ public:
+  ApartBuilder(const FastRobotData& data, const LinkChain& chain, const FastPair& pair)
+      : data_(data), chain_(chain), from_(body(pair.a)), to_(body(pair.b)) {
+    for (int r = pair.first; r < pair.first + pair.count; ++r) {
+      const FastRow& row = data.rows[static_cast<std::size_t>(r)];
+      part_pairs_ += row.count;
+      for (int i = row.first; i < row.first + row.count; ++i) {
+        const FastPartPair& parts = data.part_pairs[static_cast<std::size_t>(i)];
+        for (int j = parts.first; j < parts.first + parts.count; ++j) {
+          partners_.push_back(data.partners[static_cast<std::size_t>(j)]);
+        }
+      }
+    }
+  }
+
+  /// Writes the cells behind the others; no side: a table does not pay.
+  FastApart build(std::vector<std::uint8_t>& cells) {
+    FastApart out;
+    const int joints = to_ - from_;
+    if (joints < 1 || joints > 2 || part_pairs_ < kLeastPartPairs) return out;
+    const double most =
+        static_cast<double>(kMostApartTests) / static_cast<double>(partners_.size());
+    const int side =
+        std::min(kMostApartSide, static_cast<int>(joints == 1 ? most : std::sqrt(most)));
+    if (side < kLeastApartSide) return out;
+    out.side = side;
+    out.unit = static_cast<float>(kApartUnit);
+    out.first = static_cast<int>(cells.size());
+    for (int k = 0; k < joints; ++k) set_axis(k, out);
+    for (int j = 0; j < (joints == 2 ? side : 1); ++j) {
+      for (int i = 0; i < side; ++i) cells.push_back(cell({at(0, i), joints == 2 ? at(1, j) : 0}));
+    }
+    return out;
+  }
+
+ private:
+  struct Axis {
+    double low = 0, width = 0;  // of a cell
+  };
+
+  int body(int g) const { return data_.groups[static_cast<std::size_t>(g)].body; }
+  double at(std::size_t k, int i) const { return axes_[k].low + (i + 0.5) * axes_[k].width; }
+
+  void set_axis(int k, FastApart& out) {
+    const FastLimits limits = fast_limits(data_.arm, from_ + k);
+    Axis& axis = axes_[static_cast<std::size_t>(k)];
+    axis = {limits.lower, (limits.upper - limits.lower) / out.side};
+    out.joint[k] = from_ + k;
+    out.low[k] = static_cast<float>(limits.lower);
+    out.per_unit[k] = axis.width > 0 ? static_cast<float>(1 / axis.width) : 0;
+  }
+
+  /// [m] by how much less the distance of a sphere can be elsewhere in a cell.
+  double slack(int sphere) const {
+    double out = kApartSpare;
+    for (int k = from_; k < to_; ++k) {
+      const double half =
+          0.5 * kApartWiden * axes_[static_cast<std::size_t>(k - from_)].width + kApartSpare;
+      out += half *
+             data_.levers_of_sphere[static_cast<std::size_t>(sphere)][static_cast<std::size_t>(k)];
+    }
+    return out;
+  }
+
+  std::uint8_t cell(const std::array<double, 2>& q) const {
+    const Pose X_AB = pose_between(chain_, from_, to_, q);
+    double least = 255 * kApartUnit;
+    for (const FastPartners& both : partners_) {
+      const FastSphere& a = data_.spheres[static_cast<std::size_t>(both.a)];
+      const FastSphere& b = data_.spheres[static_cast<std::size_t>(both.b)];
+      const Eigen::Vector3d way = X_AB * Eigen::Vector3d(b.x, b.y, b.z);
+      const double gap = (way - Eigen::Vector3d(a.x, a.y, a.z)).norm() - both.reach;
+      least = std::min(least, gap - slack(both.b));
+    }
+    return static_cast<std::uint8_t>(std::max(least / kApartUnit, 0.0));
+  }
+
+  const FastRobotData& data_;
+  const LinkChain& chain_;
+  int from_, to_;
+  int part_pairs_ = 0;
+  std::vector<FastPartners> partners_;
+  std::array<Axis, 2> axes_;
+};
+
+}  // namespace
+
+void add_apart(FastRobotData& data, const LinkChain& chain) {
+  for (FastPair& pair : data.pairs) {
+    const FastApart table = ApartBuilder(data, chain, pair).build(data.apart_cells);
+    if (table.side == 0) continue;
+    pair.apart = static_cast<int>(data.apart.size());
+    data.apart.push_back(table);
+  }
+  data.apart_cells.resize(data.apart_cells.size() + 3);  // gather() reads whole words
+  for (FastApart& table : data.apart) table.cells = data.apart_cells.data() + table.first;
+}
+
+}  // namespace mjarm::detail
