@@ -33,8 +33,9 @@ struct SphereClearance {
 /// and each other, as many at a time as the registers of this machine hold. Single precision, but
 /// every radius is padded by a bound of what that can do, so that a configuration that is called
 /// free is free; what keeps FastRobot::padding() (two links: twice) away is never called in
-/// collision. Immutable; may be used from many threads at once. The same input gives the same
-/// answer on one level of SIMD.
+/// collision, but beside solid meshes: their faces get thicker where spheres are small against
+/// them. Immutable; may be used from many threads at once. The same input gives the same answer on
+/// one level of SIMD.
 class FastChecker {
  public:
   /// Takes the obstacles apart; they are not needed afterwards.

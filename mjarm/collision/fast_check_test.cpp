@@ -71,7 +71,7 @@ TEST(FastChecker, LargeAndFarSolidsStaySafe) {
                                     CylinderShape{size, size}, CapsuleShape{size, 1}};
     const double up = round % 4 == 3 ? size + 1 : size;
     world.solids.push_back({"huge", {(gap + up) * away, R}, shapes[round % 4]});
-    compare(arm, set, world, kLevels[round % 3], rng, 200, tally, 4 * size);
+    compare(arm, set, world, kLevels[round % 3], rng, 200, tally, {.extent = 4 * size});
     if (::testing::Test::HasFatalFailure()) return;
   }
   EXPECT_GT(tally.free, 1000);

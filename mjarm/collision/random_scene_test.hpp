@@ -267,10 +267,36 @@ inline double point_distance(const ObstacleShape& shape, const Eigen::Vector3d& 
   return p.z();
 }
 
+/// The same, exact beyond the edges of polytopes as well: the point is put onto one plane after the
+/// other (J. P. Boyle and R. L. Dykstra, 1986), which tends to its projection.
+inline double exact_point_distance(const ObstacleShape& shape, const Eigen::Vector3d& p) {
+  const auto* polytope = std::get_if<PolytopeShape>(&shape);
+  if (polytope == nullptr) return point_distance(shape, p);
+  std::vector<Eigen::Vector4d> planes = polytope->planes;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
+    planes.push_back((Eigen::Vector4d() << axis, polytope->high[k]).finished());
+    planes.push_back((Eigen::Vector4d() << -axis, -polytope->low[k]).finished());
+  }
+  std::vector<double> pushed(planes.size(), 0.0);
+  Eigen::Vector3d x = p;
+  for (int round = 0; round < 2000; ++round) {
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      const Eigen::Vector3d n = planes[i].head<3>();
+      x += pushed[i] * n;
+      pushed[i] = std::max(n.dot(x) - planes[i].w(), 0.0);
+      x -= pushed[i] * n;
+    }
+  }
+  return (x - p).norm();
+}
+
 /// SphereClearance of a configuration; negative where something overlaps. `moving_only`: links at
 /// rest are held against other links alone.
 inline double true_clearance(const Arm& arm, const SphereSet& set, const Obstacles& world,
-                             std::span<const double> q, bool moving_only = false) {
+                             std::span<const double> q, bool moving_only = false,
+                             double (*distance_to)(const ObstacleShape&,
+                                                   const Eigen::Vector3d&) = point_distance) {
   std::vector<Pose> X_WJ(static_cast<std::size_t>(arm.dof()));
   fk_all(arm, q, X_WJ);
   std::vector<std::vector<Eigen::Vector3d>> centers;
@@ -284,7 +310,7 @@ inline double true_clearance(const Arm& arm, const SphereSet& set, const Obstacl
       if (moving_only && link.joint < 0) continue;
       for (const Obstacle& solid : world.solids) {
         const Eigen::Vector3d p = solid.X_WO.inverse() * center;
-        least = std::min(least, point_distance(solid.shape, p) - sphere.radius);
+        least = std::min(least, distance_to(solid.shape, p) - sphere.radius);
       }
       for (const PointCloud& cloud : world.clouds) {
         for (const Eigen::Vector3d& point : cloud.points_W) {

@@ -130,12 +130,6 @@ class Shortener {
     return false;
   }
 
-  /// Puts a corner back within the limit of the tilt, if the way over it is still shorter.
-  bool put_back(const JointVec& a, const JointVec& b, double length, JointVec& corner) const {
-    if (!tilt_->project({corner.data(), static_cast<std::size_t>(corner.size())})) return false;
-    return (corner - a).norm() + (corner - b).norm() < (1 - kLeastGain) * length;
-  }
-
   bool slide_corner(std::size_t i, double step) {
     const JointVec &a = q_[i - 1], &b = q_[i + 1];
     const double length = (q_[i] - a).norm() + (q_[i] - b).norm();
@@ -143,13 +137,20 @@ class Shortener {
     JointVec way(q_[i].size());
     for (double& x : way) x = rng_.normal();
     way *= (way.dot(shorter) < 0 ? -step : step) / std::max(way.norm(), 1e-9);
-    const JointVec moved = q_[i] + way;
+    JointVec moved = q_[i] + way;
+    if (tilt_ != nullptr && !put_back(a, b, length, moved)) return false;
     if ((moved - a).norm() + (moved - b).norm() > length - kLeastSaved * step) return false;
     if (!prover_.is_free(view(a), view(moved)) || !prover_.is_free(view(moved), view(b))) {
       return false;
     }
     q_[i] = moved;
     return true;
+  }
+
+  /// Puts a corner back within the limit of the tilt, if the way over it is still shorter.
+  bool put_back(const JointVec& a, const JointVec& b, double length, JointVec& corner) const {
+    if (!tilt_->project({corner.data(), static_cast<std::size_t>(corner.size())})) return false;
+    return (corner - a).norm() + (corner - b).norm() < (1 - kLeastGain) * length;
   }
 
   static std::size_t edge_at(std::span<const double> ends, double length) {
