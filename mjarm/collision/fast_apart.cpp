@@ -2,21 +2,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "mjarm/collision/fast_robot_internal.hpp"
 
 /// How far two groups with at most two joints between them keep apart, as a table over the values
-/// of these joints: most values are far from any overlap, and looking that up costs less than tests
-/// of spheres. Within a cell the distance is less than in its middle by at most (lever * half
-/// width), summed over the joints.
+/// of these joints: most values are far from any overlap or well within one, and looking that up
+/// costs less than tests of spheres. Within a box of joint values a distance differs from that in
+/// the middle by at most (lever * half width), summed over the joints.
 namespace mjarm::detail {
 namespace {
 
 constexpr int kLeastPartPairs = 4;        // fewer are looked at as fast
-constexpr int kMostApartTests = 100'000;  // of spheres, to make a table
-constexpr int kLeastApartSide = 12,
-              kMostApartSide = 64;   // cells along one joint; fewer say too little
-constexpr double kApartUnit = 1e-3;  // [m] of the numbers in the cells
+constexpr int kMostApartTests = 200'000;  // of spheres, to make a table
+constexpr int kLeastApartBoxes = 300;     // fewer say too little
+constexpr int kApartSide = 128;           // cells along one joint
+constexpr double kApartPlenty = 0.05;     // [m] as far apart is not looked at more closely
+constexpr double kApartUnit = 1e-3;       // [m] of the numbers in the cells
 // Which cell a value is in is decided in single precision: cells reach a little farther, and
 // distances count a little less.
 constexpr double kApartWiden = 1.01, kApartSpare = 2e-5;  // [m]
@@ -58,18 +61,15 @@ class ApartBuilder {
     FastApart out;
     const int joints = to_ - from_;
     if (joints < 1 || joints > 2 || part_pairs_ < kLeastPartPairs) return out;
-    const double most =
-        static_cast<double>(kMostApartTests) / static_cast<double>(partners_.size());
-    const int side =
-        std::min(kMostApartSide, static_cast<int>(joints == 1 ? most : std::sqrt(most)));
-    if (side < kLeastApartSide) return out;
-    out.side = side;
+    const int most = kMostApartTests / static_cast<int>(partners_.size());
+    if (most < kLeastApartBoxes) return out;
+    out.side = kApartSide;
     out.unit = static_cast<float>(kApartUnit);
     out.first = static_cast<int>(cells.size());
     for (int k = 0; k < joints; ++k) set_axis(k, out);
-    for (int j = 0; j < (joints == 2 ? side : 1); ++j) {
-      for (int i = 0; i < side; ++i) cells.push_back(cell({at(0, i), joints == 2 ? at(1, j) : 0}));
-    }
+    rows_ = joints == 2 ? kApartSide : 1;
+    cells.resize(cells.size() + static_cast<std::size_t>(kApartSide * rows_));
+    fill(most, &cells[static_cast<std::size_t>(out.first)]);
     return out;
   }
 
@@ -78,8 +78,33 @@ class ApartBuilder {
     double low = 0, width = 0;  // of a cell
   };
 
+  /// Cells [i, i + size) along the first joint, [j, ...) along the second.
+  struct Box {
+    int i, j, size;
+  };
+
+  /// Cuts boxes of cells in halves along each joint, the large ones first, until what they say
+  /// is enough or `most` have been looked at.
+  void fill(int most, std::uint8_t* cells) const {
+    std::vector<Box> boxes = {{0, 0, kApartSide}};
+    for (std::size_t next = 0; next < boxes.size() && next < static_cast<std::size_t>(most);
+         ++next) {
+      const Box box = boxes[next];
+      const Reach found = look(box);
+      const int high = std::min(box.size, rows_);
+      for (int j = box.j; j < box.j + high; ++j) {
+        std::fill_n(cells + j * kApartSide + box.i, box.size, code(found));
+      }
+      if (found.overlap || found.apart > kApartPlenty || box.size == 1) continue;
+      const int half = box.size / 2;
+      for (int j = 0; j < high; j += half) {
+        for (int i = 0; i < box.size; i += half) boxes.push_back({box.i + i, box.j + j, half});
+      }
+    }
+  }
+
   int body(int g) const { return data_.groups[static_cast<std::size_t>(g)].body; }
-  double at(std::size_t k, int i) const { return axes_[k].low + (i + 0.5) * axes_[k].width; }
+  double at(std::size_t k, double i) const { return axes_[k].low + i * axes_[k].width; }
 
   void set_axis(int k, FastApart& out) {
     const FastLimits limits = fast_limits(data_.arm, from_ + k);
@@ -90,35 +115,51 @@ class ApartBuilder {
     out.per_unit[k] = axis.width > 0 ? static_cast<float>(1 / axis.width) : 0;
   }
 
-  /// [m] by how much less the distance of a sphere can be elsewhere in a cell.
-  double slack(int sphere) const {
+  /// [m] by how much the distance of a sphere can differ elsewhere in a box of so many cells.
+  double slack(int sphere, int size) const {
     double out = kApartSpare;
     for (int k = from_; k < to_; ++k) {
-      const double half =
-          0.5 * kApartWiden * axes_[static_cast<std::size_t>(k - from_)].width + kApartSpare;
-      out += half *
+      const double width = size * axes_[static_cast<std::size_t>(k - from_)].width;
+      out += (0.5 * kApartWiden * width + kApartSpare) *
              data_.levers_of_sphere[static_cast<std::size_t>(sphere)][static_cast<std::size_t>(k)];
     }
     return out;
   }
 
-  std::uint8_t cell(const std::array<double, 2>& q) const {
-    const Pose X_AB = pose_between(chain_, from_, to_, q);
-    double least = 255 * kApartUnit;
+  /// What is true everywhere in a box.
+  struct Reach {
+    double apart;  ///< [m] at least
+    bool overlap;
+  };
+
+  Reach look(const Box& box) const {
+    const double half = 0.5 * box.size;
+    const Pose X_AB = pose_between(chain_, from_, to_,
+                                   {at(0, box.i + half), rows_ > 1 ? at(1, box.j + half) : 0});
+    Reach out{std::numeric_limits<double>::infinity(), false};
     for (const FastPartners& both : partners_) {
       const FastSphere& a = data_.spheres[static_cast<std::size_t>(both.a)];
       const FastSphere& b = data_.spheres[static_cast<std::size_t>(both.b)];
       const Eigen::Vector3d way = X_AB * Eigen::Vector3d(b.x, b.y, b.z);
       const double gap = (way - Eigen::Vector3d(a.x, a.y, a.z)).norm() - both.reach;
-      least = std::min(least, gap - slack(both.b));
+      const double spare = slack(both.b, box.size);
+      out.apart = std::min(out.apart, gap - spare);
+      out.overlap = out.overlap || gap + spare < 0;
     }
-    return static_cast<std::uint8_t>(std::max(least / kApartUnit, 0.0));
+    return out;
+  }
+
+  static std::uint8_t code(const Reach& found) {
+    if (found.overlap) return 0;
+    const double units = std::floor(std::max(found.apart / kApartUnit, 0.0));
+    return static_cast<std::uint8_t>(1 + std::min(units, 254.0));
   }
 
   const FastRobotData& data_;
   const LinkChain& chain_;
   int from_, to_;
   int part_pairs_ = 0;
+  int rows_ = 1;  // of cells: along the second joint
   std::vector<FastPartners> partners_;
   std::array<Axis, 2> axes_;
 };
@@ -132,6 +173,9 @@ void add_apart(FastRobotData& data, const LinkChain& chain) {
     pair.apart = static_cast<int>(data.apart.size());
     data.apart.push_back(table);
   }
+  // What costs least first.
+  std::stable_partition(data.pairs.begin(), data.pairs.end(),
+                        [](const FastPair& pair) { return pair.apart >= 0; });
   data.apart_cells.resize(data.apart_cells.size() + 3);  // gather() reads whole words
   for (FastApart& table : data.apart) table.cells = data.apart_cells.data() + table.first;
 }

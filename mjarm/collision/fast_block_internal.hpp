@@ -43,6 +43,23 @@ inline Point in_world(const Frame& f, const FastSphere& s) {
   return along(along(along(f.p, splat(s.x), f.x), splat(s.y), f.y), splat(s.z), f.z);
 }
 
+/// As many lanes go one by one, their spheres side by side in a register.
+inline bool is_few(LaneBits lanes) { return __builtin_popcount(lanes) <= kWidth / 4; }
+
+inline Point axis_of(const Point& axis, int lane) {
+  const auto at = [lane](const Floats& x) {
+    return splat(*(reinterpret_cast<const float*>(&x) + lane));
+  };
+  return {at(axis.x), at(axis.y), at(axis.z)};
+}
+
+/// Centres of spheres `from` to `from` + kWidth of a part in one lane.
+inline Point in_world(const Frame& f, int lane, const FastSideBySide& s, int from) {
+  const Point p = along(axis_of(f.p, lane), load(s.x + from), axis_of(f.x, lane));
+  return along(along(p, load(s.y + from), axis_of(f.y, lane)), load(s.z + from),
+               axis_of(f.z, lane));
+}
+
 inline void tilt(const FastJoint& joint, Frame& f) {
   const Point y = f.y, z = f.z;
   switch (joint.tilt) {
@@ -80,14 +97,43 @@ inline void carry(const FastJoint& joint, Floats q, Frame& f) {
          multiply_add(c, y.z, -s * x.z)};
 }
 
+/// Four rows at a time, four joints each: `q` gets lanes `lane` to `lane` + 4 of joints `joint` to
+/// `joint` + 4.
+inline void read_square(const double* const* row, int joint, int lane, float* q) {
+  typedef double Doubles __attribute__((vector_size(32)));
+  typedef float Quad __attribute__((vector_size(16)));
+  Quad r[4];
+  for (int k = 0; k < 4; ++k) {
+    Doubles four;
+    __builtin_memcpy(&four, row[lane + k] + joint, sizeof four);
+    r[k] = __builtin_convertvector(four, Quad);
+  }
+  const Quad low01 = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5);
+  const Quad low23 = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
+  const Quad high01 = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7);
+  const Quad high23 = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+  const Quad columns[4] = {__builtin_shufflevector(low01, low23, 0, 1, 4, 5),
+                           __builtin_shufflevector(low01, low23, 2, 3, 6, 7),
+                           __builtin_shufflevector(high01, high23, 0, 1, 4, 5),
+                           __builtin_shufflevector(high01, high23, 2, 3, 6, 7)};
+  for (int i = 0; i < 4; ++i) {
+    __builtin_memcpy(q + (joint + i) * kWidth + lane, &columns[i], sizeof columns[i]);
+  }
+}
+
 /// Configurations joint by joint: q (dof, kWidth).
 inline void read(const FastRows& rows, int dof, float* q) {
   const double* row[kWidth];
   for (int k = 0; k < kWidth; ++k) row[k] = rows.q + (k < rows.count ? k : rows.count - 1) * dof;
+  if (dof >= 4) {
+    for (int lane = 0; lane < kWidth; lane += 4) {
+      for (int i = 0; i + 4 < dof; i += 4) read_square(row, i, lane, q);
+      read_square(row, dof - 4, lane, q);
+    }
+    return;
+  }
   for (int i = 0; i < dof; ++i) {
-    Floats value;
-    for (int k = 0; k < kWidth; ++k) value[k] = static_cast<float>(row[k][i]);
-    store(q + i * kWidth, value);
+    for (int k = 0; k < kWidth; ++k) q[i * kWidth + k] = static_cast<float>(row[k][i]);
   }
 }
 

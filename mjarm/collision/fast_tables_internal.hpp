@@ -45,6 +45,13 @@ struct FastPart {
   FastSphere ball;           ///< contains them
 };
 
+inline constexpr int kMostOfPart = 16;  ///< spheres, with those that fill up a register
+
+/// The spheres of a part, with those that fill it up far away.
+struct alignas(64) FastSideBySide {
+  float x[kMostOfPart], y[kMostOfPart], z[kMostOfPart], radius[kMostOfPart];
+};
+
 /// The spheres of all links that one joint moves. Bodies are counted from 1; body 0 is what stands
 /// still.
 struct FastGroup {
@@ -67,6 +74,9 @@ struct FastPartPair {
   int a = 0, b = 0;
   float reach = 0;           ///< [m] sum of the radii of both balls
   int first = 0, count = 0;  ///< of the partners
+  /// [m^2] squared reaches of the spheres of `a`, kMostOfPart each: with those of `b`; negative:
+  /// they never meet. Where they begin.
+  int reach2 = 0;
 };
 
 /// A part of a group against all of another.
@@ -76,15 +86,16 @@ struct FastRow {
   int first = 0, count = 0;  ///< of the pairs of parts
 };
 
-/// How far two groups keep apart at least, by the values of the one or two joints between them.
+/// How far two groups keep apart at least, or that they overlap, by the values of the one or two
+/// joints between them.
 struct FastApart {
   int side = 0;           ///< cells along a joint
   int joint[2] = {0, 0};  ///< the second varies slowest; twice the same where there is only one
   float low[2] = {0, 0};  ///< [rad or m] the least value
-  float per_unit[2] = {0, 0};  ///< cells a rad or m; 0: that joint is not looked at
-  float unit = 0;              ///< [m] of the numbers in the cells
-  int first = 0;               ///< of the cells among those of all tables
-  const std::uint8_t* cells = nullptr;
+  float per_unit[2] = {0, 0};           ///< cells a rad or m; 0: that joint is not looked at
+  float unit = 0;                       ///< [m] of the numbers in the cells
+  int first = 0;                        ///< of the cells among those of all tables
+  const std::uint8_t* cells = nullptr;  ///< 0: they overlap everywhere in it; else units + 1
 };
 
 /// Two groups with links that must not overlap; `b` is farther from the base.
@@ -106,9 +117,11 @@ struct FastRobotTables {
   const FastGroup* groups = nullptr;  ///< farthest body first
   const FastPart* parts = nullptr;
   const FastSphere* spheres = nullptr;
-  const int* link_of_sphere = nullptr;   ///< index into the sphere set
-  const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
-  const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
+  const FastSideBySide* side_by_side = nullptr;  ///< the same, a part each
+  const float* reach2 = nullptr;                 ///< of pairs of parts
+  const int* link_of_sphere = nullptr;           ///< index into the sphere set
+  const FastPair* pairs = nullptr;               ///< without spheres that are proved never to meet
+  const FastPair* every_pair = nullptr;          ///< with all spheres, for distances
   const FastApart* apart = nullptr;
   const FastRow* rows = nullptr;
   const FastPartPair* part_pairs = nullptr;

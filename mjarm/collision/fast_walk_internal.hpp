@@ -32,7 +32,7 @@ inline Ints cell_along(const Floats& x, float low, const FastGrid& grid) {
   return cell_along(x, low, grid.per_meter, grid.side);
 }
 
-/// Lower bound of how far two groups keep apart [m].
+/// Lower bound of how far two groups keep apart [m]; negative where they overlap.
 /// @param q  (dof, kWidth), joint by joint.
 inline Floats apart_bound(const FastApart& table, const float* q) {
   Ints cell[2];
@@ -41,7 +41,7 @@ inline Floats apart_bound(const FastApart& table, const float* q) {
     cell[k] = cell_along(value, table.low[k], table.per_unit[k], table.side);
   }
   const Ints counts = gather(table.cells, cell[1] * table.side + cell[0]);
-  return __builtin_convertvector(counts, Floats) * table.unit;
+  return __builtin_convertvector(counts - 1, Floats) * table.unit;
 }
 
 /// Lower bound of the distance from a point to all that the grid knows [m].
