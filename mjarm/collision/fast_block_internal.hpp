@@ -97,28 +97,27 @@ inline void carry(const FastJoint& joint, Floats q, Frame& f) {
          multiply_add(c, y.z, -s * x.z)};
 }
 
-/// Four rows at a time, four joints each: `q` gets lanes `lane` to `lane` + 4 of joints `joint` to
-/// `joint` + 4.
-inline void read_square(const double* const* row, int joint, int lane, float* q) {
+/// Four joints from `joint` on, as columns: of as many rows as a register holds.
+inline void read_columns(const double* const* row, int joint, float* q) {
   typedef double Doubles __attribute__((vector_size(32)));
-  typedef float Quad __attribute__((vector_size(16)));
-  Quad r[4];
-  for (int k = 0; k < 4; ++k) {
-    Doubles four;
-    __builtin_memcpy(&four, row[lane + k] + joint, sizeof four);
-    r[k] = __builtin_convertvector(four, Quad);
+  Quad columns[4][kWidth / 4];
+  for (int lane = 0; lane < kWidth; lane += 4) {
+    Quad r[4];
+    for (int k = 0; k < 4; ++k) {
+      Doubles four;
+      __builtin_memcpy(&four, row[lane + k] + joint, sizeof four);
+      r[k] = __builtin_convertvector(four, Quad);
+    }
+    const Quad low01 = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5);
+    const Quad low23 = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
+    const Quad high01 = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7);
+    const Quad high23 = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+    columns[0][lane / 4] = __builtin_shufflevector(low01, low23, 0, 1, 4, 5);
+    columns[1][lane / 4] = __builtin_shufflevector(low01, low23, 2, 3, 6, 7);
+    columns[2][lane / 4] = __builtin_shufflevector(high01, high23, 0, 1, 4, 5);
+    columns[3][lane / 4] = __builtin_shufflevector(high01, high23, 2, 3, 6, 7);
   }
-  const Quad low01 = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5);
-  const Quad low23 = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5);
-  const Quad high01 = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7);
-  const Quad high23 = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
-  const Quad columns[4] = {__builtin_shufflevector(low01, low23, 0, 1, 4, 5),
-                           __builtin_shufflevector(low01, low23, 2, 3, 6, 7),
-                           __builtin_shufflevector(high01, high23, 0, 1, 4, 5),
-                           __builtin_shufflevector(high01, high23, 2, 3, 6, 7)};
-  for (int i = 0; i < 4; ++i) {
-    __builtin_memcpy(q + (joint + i) * kWidth + lane, &columns[i], sizeof columns[i]);
-  }
+  for (int i = 0; i < 4; ++i) store(q + (joint + i) * kWidth, joined(columns[i]));
 }
 
 /// Configurations joint by joint: q (dof, kWidth).
@@ -126,10 +125,8 @@ inline void read(const FastRows& rows, int dof, float* q) {
   const double* row[kWidth];
   for (int k = 0; k < kWidth; ++k) row[k] = rows.q + (k < rows.count ? k : rows.count - 1) * dof;
   if (dof >= 4) {
-    for (int lane = 0; lane < kWidth; lane += 4) {
-      for (int i = 0; i + 4 < dof; i += 4) read_square(row, i, lane, q);
-      read_square(row, dof - 4, lane, q);
-    }
+    for (int i = 0; i + 4 < dof; i += 4) read_columns(row, i, q);
+    read_columns(row, dof - 4, q);
     return;
   }
   for (int i = 0; i < dof; ++i) {

@@ -47,6 +47,21 @@ inline Floats load(const float* from) {
 
 inline void store(float* to, const Floats& x) { __builtin_memcpy(to, &x, sizeof x); }
 
+typedef float Quad __attribute__((vector_size(16)));
+
+/// kWidth / 4 of them side by side.
+inline Floats joined(const Quad* from) {
+#if defined(__AVX512F__)
+  const auto low = __builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 4, 5, 6, 7);
+  const auto high = __builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 4, 5, 6, 7);
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#elif defined(__AVX2__)
+  return __builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  return from[0];
+#endif
+}
+
 // Splats by intrinsics read memory as they spread it; a sum with zero would be worked out.
 #if defined(__AVX512F__)
 inline Floats splat(float x) { return (Floats)_mm512_set1_ps(x); }
