@@ -110,7 +110,7 @@ def faults_of(path, text):
         header = found.group(2)
         if header.startswith("mjarm/"):
             fault = None if header.endswith(".inc") else room_fault(path, header)
-        elif header.startswith("tests/"):
+        elif header.startswith(("tests/", "bench/peers/")):
             fault = None if is_test(path) else f"includes {header}, which is for tests"
         elif found.group(1) == '"' and room_of(path):
             fault = f'includes "{header}"; write the path from the root: "mjarm/ROOM/FILE"'
