@@ -1,18 +1,34 @@
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::hostile {
 
+/// What stands in a file. Long texts are made only when they are written: every test of the program
+/// begins with all files.
+class Content {
+ public:
+  Content(std::string text) : make_([text = std::move(text)] { return text; }) {}
+  Content(const char* text) : Content(std::string(text)) {}
+  Content(std::string (*make)()) : make_(make) {}
+
+  [[nodiscard]] std::string text() const { return make_(); }
+
+ private:
+  std::function<std::string()> make_;
+};
+
 /// A file that must be refused with one line.
 struct HostileFile {
   std::string label;
   std::string file;  ///< name of the model in the test's folder
-  std::string content;
+  Content content;
   std::vector<std::string> words;  ///< all of these stand in the line
   /// Lays down what the model needs besides; may be null.
   void (*prepare)(const support::TempFolder& folder) = nullptr;

@@ -46,7 +46,7 @@ TEST_P(HostileModel, IsRefusedInOneLine) {
   const HostileFile& hostile = GetParam();
   const support::TempFolder folder;
   if (hostile.prepare != nullptr) hostile.prepare(folder);
-  const fs::path file = folder.write(hostile.file, hostile.content);
+  const fs::path file = folder.write(hostile.file, hostile.content.text());
   const std::set<fs::path> before = files_in(folder.path());
 
   const auto result = support::run_program(MJARM_PROGRAM, {"model", "info", file.string()},

@@ -70,7 +70,7 @@ std::vector<HostileFile> hostile_urdf() {
        {"a.urdf:1", "loop"}},
       {"HundredThousandLinks",
        "a.urdf",
-       chain(100'000),
+       +[] { return chain(100'000); },
        {"a.urdf:1: <link \"l1001\">", "1000 joints"}},
       {"TenThousandLinks", "a.urdf", chain(10'000), {"a.urdf:1: <link \"l1001\">", "1000 joints"}},
       {"MisspeltVisual",

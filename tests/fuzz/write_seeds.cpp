@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mjarm/core/file.hpp"
@@ -58,8 +59,10 @@ int main(int count, char** arguments) {
     for (const auto& file : files) {
       // Those that are stopped for their time alone would stop the fuzzer as well.
       const bool slow = file.label == "FlexibleBodyLarge" || file.label == "ManyLargeTextures";
-      if (!slow && file.content.size() < kLongest)
-        seeds.emplace_back(file.label + file.file[0], file.content);
+      std::string text = file.content.text();
+      if (!slow && text.size() < kLongest) {
+        seeds.emplace_back(file.label + file.file[0], std::move(text));
+      }
     }
   }
   for (const auto& [name, content] : seeds) {
