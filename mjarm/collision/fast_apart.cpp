@@ -90,7 +90,7 @@ class ApartBuilder {
     for (std::size_t next = 0; next < boxes.size() && next < static_cast<std::size_t>(most);
          ++next) {
       const Box box = boxes[next];
-      const Reach found = look(box);
+      const Finding found = look(box);
       const int high = std::min(box.size, rows_);
       for (int j = box.j; j < box.j + high; ++j) {
         std::fill_n(cells + j * kApartSide + box.i, box.size, code(found));
@@ -127,16 +127,16 @@ class ApartBuilder {
   }
 
   /// What is true everywhere in a box.
-  struct Reach {
+  struct Finding {
     double apart;  ///< [m] at least
     bool overlap;
   };
 
-  Reach look(const Box& box) const {
+  Finding look(const Box& box) const {
     const double half = 0.5 * box.size;
     const Pose X_AB = pose_between(chain_, from_, to_,
                                    {at(0, box.i + half), rows_ > 1 ? at(1, box.j + half) : 0});
-    Reach out{std::numeric_limits<double>::infinity(), false};
+    Finding out{std::numeric_limits<double>::infinity(), false};
     for (const FastPartners& both : partners_) {
       const FastSphere& a = data_.spheres[static_cast<std::size_t>(both.a)];
       const FastSphere& b = data_.spheres[static_cast<std::size_t>(both.b)];
@@ -149,7 +149,7 @@ class ApartBuilder {
     return out;
   }
 
-  static std::uint8_t code(const Reach& found) {
+  static std::uint8_t code(const Finding& found) {
     if (found.overlap) return 0;
     const double units = std::floor(std::max(found.apart / kApartUnit, 0.0));
     return static_cast<std::uint8_t>(1 + std::min(units, 254.0));

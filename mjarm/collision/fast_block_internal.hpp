@@ -46,18 +46,16 @@ inline Point in_world(const Frame& f, const FastSphere& s) {
 /// As many lanes go one by one, their spheres side by side in a register.
 inline bool is_few(LaneBits lanes) { return __builtin_popcount(lanes) <= kWidth / 4; }
 
-inline Point axis_of(const Point& axis, int lane) {
-  const auto at = [lane](const Floats& x) {
-    return splat(*(reinterpret_cast<const float*>(&x) + lane));
-  };
-  return {at(axis.x), at(axis.y), at(axis.z)};
+/// A lane's point in all lanes.
+inline Point lane_of(const Point& p, int lane) {
+  return {splat(p.x[lane]), splat(p.y[lane]), splat(p.z[lane])};
 }
 
 /// Centres of spheres `from` to `from` + kWidth of a part in one lane.
 inline Point in_world(const Frame& f, int lane, const FastSideBySide& s, int from) {
-  const Point p = along(axis_of(f.p, lane), load(s.x + from), axis_of(f.x, lane));
-  return along(along(p, load(s.y + from), axis_of(f.y, lane)), load(s.z + from),
-               axis_of(f.z, lane));
+  const Point p = along(lane_of(f.p, lane), load(s.x + from), lane_of(f.x, lane));
+  return along(along(p, load(s.y + from), lane_of(f.y, lane)), load(s.z + from),
+               lane_of(f.z, lane));
 }
 
 inline void tilt(const FastJoint& joint, Frame& f) {

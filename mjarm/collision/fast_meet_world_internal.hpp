@@ -82,9 +82,7 @@ class WorldSearch {
   template <class Solid>
   void meet_solid(int g, int frame, const Solid& solid, int id, LaneBits lanes) {
     const FastGroup& group = now_.robot.groups[g];
-    if (group.parts.count == 1) {
-      return meet_part(g, group.parts.first, frame, solid, id, lanes & now_.active);
-    }
+    if (group.parts.count == 1) return meet_part(g, group.parts.first, frame, solid, id, lanes);
     now_.block.place_part_balls(now_.robot, g);
     for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
       Point turned;

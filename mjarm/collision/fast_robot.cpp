@@ -20,6 +20,7 @@ static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMostSph
 
 constexpr double kNothing = 1e-9;          // [m], [rad] counts as 0; the padding knows
 constexpr std::ptrdiff_t kManyOfPart = 8;  // spheres; more are cut in two
+static_assert(kManyOfPart <= detail::kMostOfPart);
 
 FastJoint fast_joint(const Arm& arm, const LinkChain& chain, int i) {
   const Link& link = chain.links[i];

@@ -69,9 +69,8 @@ struct BlockState {
     note(overlaps, [](LaneBits near) { return near; });
   }
 
-  /// @param refine  which lanes stay blocked when looked at more closely; costs more, so it is
-  /// asked
-  ///                only about lanes that do not overlap yet.
+  /// @param refine  which lanes stay blocked when looked at more closely; it costs more, so it is
+  ///                asked only about lanes that do not overlap yet.
   template <class Refine>
   void note(const Overlaps& overlaps, const Refine& refine) {
     LaneBits lanes = less(kCover ? overlaps.grown : overlaps.bare, Floats{}) & active;
