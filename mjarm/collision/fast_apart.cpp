@@ -17,7 +17,7 @@ namespace {
 constexpr int kLeastPartPairs = 4;        // fewer are looked at as fast
 constexpr int kMostApartTests = 200'000;  // of spheres, to make a table
 constexpr int kLeastApartBoxes = 300;     // fewer say too little
-constexpr int kApartSide = 128;           // cells along one joint
+constexpr int kApartSide = 64;            // cells along one joint
 constexpr double kApartPlenty = 0.05;     // [m] as far apart is not looked at more closely
 constexpr double kApartUnit = 1e-3;       // [m] of the numbers in the cells
 // Which cell a value is in is decided in single precision: cells reach a little farther, and
@@ -173,9 +173,6 @@ void add_apart(FastRobotData& data, const LinkChain& chain) {
     pair.apart = static_cast<int>(data.apart.size());
     data.apart.push_back(table);
   }
-  // What costs least first.
-  std::stable_partition(data.pairs.begin(), data.pairs.end(),
-                        [](const FastPair& pair) { return pair.apart >= 0; });
   data.apart_cells.resize(data.apart_cells.size() + 3);  // gather() reads whole words
   for (FastApart& table : data.apart) table.cells = data.apart_cells.data() + table.first;
 }

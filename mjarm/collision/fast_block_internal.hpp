@@ -43,21 +43,6 @@ inline Point in_world(const Frame& f, const FastSphere& s) {
   return along(along(along(f.p, splat(s.x), f.x), splat(s.y), f.y), splat(s.z), f.z);
 }
 
-/// As many lanes go one by one, their spheres side by side in a register.
-inline bool is_few(LaneBits lanes) { return __builtin_popcount(lanes) <= kWidth / 4; }
-
-/// A lane's point in all lanes.
-inline Point lane_of(const Point& p, int lane) {
-  return {splat(p.x[lane]), splat(p.y[lane]), splat(p.z[lane])};
-}
-
-/// Centres of spheres `from` to `from` + kWidth of a part in one lane.
-inline Point in_world(const Frame& f, int lane, const FastSideBySide& s, int from) {
-  const Point p = along(lane_of(f.p, lane), load(s.x + from), lane_of(f.x, lane));
-  return along(along(p, load(s.y + from), lane_of(f.y, lane)), load(s.z + from),
-               lane_of(f.z, lane));
-}
-
 inline void tilt(const FastJoint& joint, Frame& f) {
   const Point y = f.y, z = f.z;
   switch (joint.tilt) {

@@ -37,8 +37,7 @@ class SelfSearch {
     for (int i = pair.first; i < pair.first + pair.count; ++i) {
       const FastRow& row = now_.robot.rows[i];
       const Floats gap2 = squared(now_.block.part_balls[row.part] - ball);
-      const LaneBits near = less(gap2, now_.squared_reach(row.reach)) & lanes & now_.active;
-      if (near != 0) meet_row(k, row, near);
+      if ((less(gap2, now_.squared_reach(row.reach)) & lanes) != 0) meet_row(k, row, lanes);
     }
   }
 
@@ -51,16 +50,12 @@ class SelfSearch {
     for (int i = row.first; i < row.first + row.count; ++i) {
       const FastPartPair& parts = now_.robot.part_pairs[i];
       const Floats gap2 = squared(ball - now_.block.part_balls[parts.b]);
-      const LaneBits near = less(gap2, now_.squared_reach(parts.reach)) & lanes & now_.active;
-      if (near != 0) meet_parts(k, parts, near);
+      if ((less(gap2, now_.squared_reach(parts.reach)) & lanes) != 0) meet_parts(k, parts);
     }
   }
 
-  [[gnu::always_inline]] void meet_parts(int k, const FastPartPair& parts, LaneBits lanes) {
+  [[gnu::always_inline]] void meet_parts(int k, const FastPartPair& parts) {
     const FastPair& pair = now_.robot.pairs[k];
-    if constexpr (!kCover) {
-      if (is_few(lanes)) return meet_side_by_side(pair, parts, lanes);
-    }
     now_.block.place_spheres(now_.robot, now_.robot.groups[pair.a].body, parts.a);
     now_.block.place_spheres(now_.robot, now_.robot.groups[pair.b].body, parts.b);
     Overlaps overlaps;
@@ -70,36 +65,6 @@ class SelfSearch {
                 both.minus_reach2, overlaps);
     }
     now_.note(overlaps, [&](LaneBits near) { return approaching(k, parts, near); });
-  }
-
-  /// The same a lane at a time.
-  void meet_side_by_side(const FastPair& pair, const FastPartPair& parts, LaneBits lanes) {
-    const Frame& body_a = now_.block.frames[now_.robot.groups[pair.a].body];
-    const Frame& body_b = now_.block.frames[now_.robot.groups[pair.b].body];
-    const int count_a = now_.robot.parts[parts.a].count;
-    LaneBits touching = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int lane = __builtin_ctz(lanes);
-      float x[kMostOfPart], y[kMostOfPart], z[kMostOfPart];
-      for (int i = 0; i < count_a; i += kWidth) {
-        const Point a = in_world(body_a, lane, now_.robot.side_by_side[parts.a], i);
-        store(x + i, a.x);
-        store(y + i, a.y);
-        store(z + i, a.z);
-      }
-      Floats overlap = splat(1);
-      for (int j = 0; j < now_.robot.parts[parts.b].count; j += kWidth) {
-        const Point b = in_world(body_b, lane, now_.robot.side_by_side[parts.b], j);
-        const float* reach2 = now_.robot.reach2 + parts.reach2 + j;
-        for (int i = 0; i < count_a; ++i, reach2 += kMostOfPart) {
-          const Point a = {splat(x[i]), splat(y[i]), splat(z[i])};
-          overlap = smaller(overlap, squared(a - b) - load(reach2));
-        }
-      }
-      const bool any = less(overlap, Floats{}) != 0;
-      touching |= static_cast<LaneBits>(any) << lane;
-    }
-    now_.note(touching, touching);
   }
 
   /// The same of a pair of links: how the farther one moves as seen from the other.

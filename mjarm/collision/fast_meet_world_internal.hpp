@@ -60,8 +60,7 @@ class WorldSearch {
     }
     for (; near != 0; near &= near - 1) {
       const int i = __builtin_ctzll(near);
-      const LaneBits lanes = less(squared_gap(boxes[i], ball), reach) & now_.active;
-      meet_solid(g, list.frame, boxes[i], now_.world.box_ids[list.boxes.first + i], lanes);
+      meet_solid(g, list.frame, boxes[i], now_.world.box_ids[list.boxes.first + i]);
       if (now_.done) return;
     }
   }
@@ -73,34 +72,29 @@ class WorldSearch {
     for (int i = run.first; i < run.first + run.count; ++i) {
       const Solid& solid = solids[i];
       const Floats reach = now_.squared_reach(radius + rounding_of(solid));
-      const LaneBits lanes = less(squared_gap(solid, ball), reach) & now_.active;
-      if (lanes != 0) meet_solid(g, frame, solid, ids[i], lanes);
+      if ((less(squared_gap(solid, ball), reach) & now_.active) == 0) continue;
+      meet_solid(g, frame, solid, ids[i]);
     }
   }
 
   /// A solid that the ball of a group touches.
   template <class Solid>
-  void meet_solid(int g, int frame, const Solid& solid, int id, LaneBits lanes) {
+  void meet_solid(int g, int frame, const Solid& solid, int id) {
     const FastGroup& group = now_.robot.groups[g];
-    if (group.parts.count == 1) return meet_part(g, group.parts.first, frame, solid, id, lanes);
+    if (group.parts.count == 1) return meet_part(g, group.parts.first, frame, solid, id);
     now_.block.place_part_balls(now_.robot, g);
     for (int p = group.parts.first; p < group.parts.first + group.parts.count; ++p) {
       Point turned;
       const Point& ball = into_frame(now_.world, frame, now_.block.part_balls[p], turned);
       const Floats reach = now_.squared_reach(now_.robot.parts[p].ball.radius + rounding_of(solid));
-      const LaneBits near = less(squared_gap(solid, ball), reach) & lanes & now_.active;
-      if (near != 0) meet_part(g, p, frame, solid, id, near);
+      if ((less(squared_gap(solid, ball), reach) & now_.active) == 0) continue;
+      meet_part(g, p, frame, solid, id);
     }
   }
 
   template <class Solid>
-  void meet_part(int g, int p, int frame, const Solid& solid, int id, LaneBits lanes) {
+  void meet_part(int g, int p, int frame, const Solid& solid, int id) {
     const FastPart& part = now_.robot.parts[p];
-    if constexpr (!kCover) {
-      if (is_few(lanes) && now_.world.ignored_words == 0) {
-        return meet_side_by_side(g, p, frame, solid, lanes);
-      }
-    }
     now_.block.place_spheres(now_.robot, now_.robot.groups[g].body, p);
     Overlaps overlaps;
     for (int k = part.first; k < part.first + part.count; ++k) {
@@ -113,26 +107,6 @@ class WorldSearch {
     const FastRun spheres{part.first, part.count};
     now_.note(overlaps,
               [&](LaneBits near) { return approaching(g, spheres, frame, solid, id, near); });
-  }
-
-  /// The same a lane at a time.
-  template <class Solid>
-  void meet_side_by_side(int g, int p, int frame, const Solid& solid, LaneBits lanes) {
-    const Frame& body = now_.block.frames[now_.robot.groups[g].body];
-    const FastSideBySide& spheres = now_.robot.side_by_side[p];
-    LaneBits touching = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const int lane = __builtin_ctz(lanes);
-      for (int i = 0; i < now_.robot.parts[p].count; i += kWidth) {
-        Point turned;
-        const Point placed = in_world(body, lane, spheres, i);
-        const Point& centers = into_frame(now_.world, frame, placed, turned);
-        const Floats reach = load(spheres.radius + i) + rounding_of(solid);
-        const bool any = less(squared_gap(solid, centers), reach * reach) != 0;
-        touching |= static_cast<LaneBits>(any) << lane;
-      }
-    }
-    now_.note(touching, touching);
   }
 
   /// Which of the lanes `near` stay blocked when only motion towards the solid counts.

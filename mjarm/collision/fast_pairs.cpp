@@ -115,22 +115,17 @@ void add_part_pair(FastRobotData& data, FastRow& row, int a, int b, const Meets&
   const FastPart& from = data.parts[static_cast<std::size_t>(a)];
   const FastPart& to = data.parts[static_cast<std::size_t>(b)];
   const int first = static_cast<int>(data.partners.size());
-  std::vector<float> reach2(static_cast<std::size_t>(from.count) * kMostOfPart, -1.0F);
   for (int i = from.first; i < from.first + from.count; ++i) {
     for (int j = to.first; j < to.first + to.count; ++j) {
       if (!meets(i, j)) continue;
       const float reach = reach_of(data.spheres[static_cast<std::size_t>(i)],
                                    data.spheres[static_cast<std::size_t>(j)]);
-      const float squared = round_up(static_cast<double>(reach) * reach);
-      data.partners.push_back({i, j, reach, -squared});
-      reach2[static_cast<std::size_t>((i - from.first) * kMostOfPart + j - to.first)] = squared;
+      data.partners.push_back({i, j, reach, -round_up(static_cast<double>(reach) * reach)});
     }
   }
   const int count = static_cast<int>(data.partners.size()) - first;
   if (count == 0) return;
-  data.part_pairs.push_back(
-      {a, b, reach_of(from.ball, to.ball), first, count, static_cast<int>(data.reach2.size())});
-  data.reach2.insert(data.reach2.end(), reach2.begin(), reach2.end());
+  data.part_pairs.push_back({a, b, reach_of(from.ball, to.ball), first, count});
   ++row.count;
 }
 

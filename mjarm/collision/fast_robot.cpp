@@ -19,8 +19,7 @@ using detail::Tilt;
 static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMostSpheres);
 
 constexpr double kNothing = 1e-9;          // [m], [rad] counts as 0; the padding knows
-constexpr std::ptrdiff_t kManyOfPart = 8;  // spheres; more are cut in two
-static_assert(kManyOfPart <= detail::kMostOfPart);
+constexpr std::ptrdiff_t kMostOfPart = 8;  // spheres; more are cut in two
 
 FastJoint fast_joint(const Arm& arm, const LinkChain& chain, int i) {
   const Link& link = chain.links[i];
@@ -76,22 +75,9 @@ std::vector<Sphere> only_spheres(std::span<const LinkSphere> from) {
   return out;
 }
 
-detail::FastSideBySide side_by_side(std::span<const FastSphere> spheres) {
-  constexpr float kFar = 1e9;
-  detail::FastSideBySide out;
-  for (std::size_t i = 0; i < detail::kMostOfPart; ++i) {
-    const FastSphere s = i < spheres.size() ? spheres[i] : FastSphere{kFar, kFar, kFar, 0};
-    out.x[i] = s.x;
-    out.y[i] = s.y;
-    out.z[i] = s.z;
-    out.radius[i] = s.radius;
-  }
-  return out;
-}
-
 /// Cuts spheres across where they spread most until few are left in each part.
 void add_parts(FastRobotData& data, std::span<LinkSphere> from, double padding) {
-  if (std::ssize(from) > kManyOfPart) {
+  if (std::ssize(from) > kMostOfPart) {
     Eigen::Vector3d low = from.front().sphere.center, high = low;
     for (const LinkSphere& one : from) {
       low = low.cwiseMin(one.sphere.center);
@@ -111,7 +97,6 @@ void add_parts(FastRobotData& data, std::span<LinkSphere> from, double padding) 
     data.spheres.push_back(fast_sphere(one.sphere, padding));
     data.link_of_sphere.push_back(one.link);
   }
-  data.side_by_side.push_back(side_by_side(std::span(data.spheres).last(from.size())));
   data.parts.push_back({first, static_cast<int>(from.size()),
                         fast_sphere(bounding_sphere(only_spheres(from)), padding * 1.001 + 1e-9)});
 }
@@ -245,8 +230,6 @@ Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
   data->tables.groups = data->groups.data();
   data->tables.parts = data->parts.data();
   data->tables.spheres = data->spheres.data();
-  data->tables.side_by_side = data->side_by_side.data();
-  data->tables.reach2 = data->reach2.data();
   data->tables.link_of_sphere = data->link_of_sphere.data();
   data->tables.pairs = data->pairs.data();
   data->tables.every_pair = data->every_pair.data();

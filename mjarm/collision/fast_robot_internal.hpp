@@ -44,14 +44,12 @@ struct FastRobotData {
   std::vector<FastGroup> groups;
   std::vector<FastPart> parts;
   std::vector<FastSphere> spheres;
-  std::vector<FastSideBySide> side_by_side;
   std::vector<FastPair> pairs, every_pair;
   std::vector<FastApart> apart;
   std::vector<std::uint8_t> apart_cells;
   std::vector<FastRow> rows;
   std::vector<FastPartPair> part_pairs;
   std::vector<FastPartners> partners;
-  std::vector<float> reach2;
   FastRobotTables tables;                                     ///< of the above
   std::vector<GroupBounds> bounds;                            ///< one a group
   std::vector<std::array<double, kMaxDof>> levers_of_sphere;  ///< as in GroupBounds

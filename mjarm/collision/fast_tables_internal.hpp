@@ -45,13 +45,6 @@ struct FastPart {
   FastSphere ball;           ///< contains them
 };
 
-inline constexpr int kMostOfPart = 16;  ///< spheres, with those that fill up a register
-
-/// The spheres of a part, with those that fill it up far away.
-struct alignas(64) FastSideBySide {
-  float x[kMostOfPart], y[kMostOfPart], z[kMostOfPart], radius[kMostOfPart];
-};
-
 /// The spheres of all links that one joint moves. Bodies are counted from 1; body 0 is what stands
 /// still.
 struct FastGroup {
@@ -74,9 +67,6 @@ struct FastPartPair {
   int a = 0, b = 0;
   float reach = 0;           ///< [m] sum of the radii of both balls
   int first = 0, count = 0;  ///< of the partners
-  /// [m^2] squared reaches of the spheres of `a`, kMostOfPart each: with those of `b`; negative:
-  /// they never meet. Where they begin.
-  int reach2 = 0;
 };
 
 /// A part of a group against all of another.
@@ -117,11 +107,9 @@ struct FastRobotTables {
   const FastGroup* groups = nullptr;  ///< farthest body first
   const FastPart* parts = nullptr;
   const FastSphere* spheres = nullptr;
-  const FastSideBySide* side_by_side = nullptr;  ///< the same, a part each
-  const float* reach2 = nullptr;                 ///< of pairs of parts
-  const int* link_of_sphere = nullptr;           ///< index into the sphere set
-  const FastPair* pairs = nullptr;               ///< without spheres that are proved never to meet
-  const FastPair* every_pair = nullptr;          ///< with all spheres, for distances
+  const int* link_of_sphere = nullptr;   ///< index into the sphere set
+  const FastPair* pairs = nullptr;       ///< without spheres that are proved never to meet
+  const FastPair* every_pair = nullptr;  ///< with all spheres, for distances
   const FastApart* apart = nullptr;
   const FastRow* rows = nullptr;
   const FastPartPair* part_pairs = nullptr;

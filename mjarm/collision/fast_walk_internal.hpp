@@ -13,6 +13,11 @@ inline namespace MJARM_FLOAT_LANES {
 /// As many lanes are looked at one by one.
 inline constexpr int kFewLanes = kWidth / 2;
 
+/// A lane's point in all lanes.
+inline Point lane_of(const Point& p, int lane) {
+  return {splat(p.x[lane]), splat(p.y[lane]), splat(p.z[lane])};
+}
+
 inline Point point_of(const FastPoints& points, int i) {
   return {splat(points.center[0][i]), splat(points.center[1][i]), splat(points.center[2][i])};
 }
