@@ -7,16 +7,6 @@
 namespace mjarm::detail {
 namespace {
 
-/// The first joint outside of its limits; -1 where there is none.
-int outside_joint(const Arm& arm, std::span<const double> q) {
-  constexpr double kSlack = 1e-4;  // [rad or m]; rounded digits of a file
-  for (int k = 0; k < arm.dof(); ++k) {
-    const double value = q[static_cast<std::size_t>(k)];
-    if (!(value >= arm.limits.lower[k] - kSlack && value <= arm.limits.upper[k] + kSlack)) return k;
-  }
-  return -1;
-}
-
 tl::unexpected<PlanFailure> no_path(PlanErrc reason) {
   PlanFailure failure;
   failure.reason = reason;
@@ -64,6 +54,15 @@ tl::unexpected<PlanFailure> tilted(PlanErrc reason, const TiltLimit& limit, cons
 }
 
 }  // namespace
+
+int outside_joint(const Arm& arm, std::span<const double> q) {
+  constexpr double kSlack = 1e-4;  // [rad or m]; rounded digits of a file
+  for (int k = 0; k < arm.dof(); ++k) {
+    const double value = q[static_cast<std::size_t>(k)];
+    if (!(value >= arm.limits.lower[k] - kSlack && value <= arm.limits.upper[k] + kSlack)) return k;
+  }
+  return -1;
+}
 
 Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
                                                    std::span<const double> start,

@@ -9,6 +9,7 @@
 #include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
+#include "mjarm/planning/search_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -49,6 +50,11 @@ void expect_free(const FastChecker& checker, const Obstacles& world, const Plann
   const FastRobot& robot = checker.robot();
   ASSERT_GE(path.q.size(), 2u);
   ASSERT_EQ(path.proof.size() + 1, path.q.size());
+  const JointLimits& limits = robot.arm().limits;
+  for (const JointVec& q : path.q) {
+    EXPECT_GE((q - limits.lower).minCoeff(), -1e-4);
+    EXPECT_GE((limits.upper - q).minCoeff(), -1e-4);
+  }
   double cost = 0;
   for (std::size_t i = 1; i < path.q.size(); ++i) {
     const JointVec way = path.q[i] - path.q[i - 1];
@@ -88,6 +94,20 @@ TEST(PlanPath, TakesTheStraightWayWhereItIsFree) {
   ASSERT_TRUE(path);
   EXPECT_EQ(path->q.size(), 2u);
   EXPECT_NEAR(path->cost, 1.6, 1e-12);
+}
+
+TEST(EdgeProver, LimitsCountAsTheyDoForStartAndGoals) {
+  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), {});
+  PlanCounts counts;
+  detail::EdgeProver prover(checker, nullptr, {}, counts);
+  const std::array<double, 2> inside{0, 0}, rounded{3 + 0.9e-4, 0}, outside{3 + 1.1e-4, 0},
+      below{0, -2.8 - 1.1e-4};
+  ASSERT_EQ(check_edge(checker, inside, outside).verdict, EdgeVerdict::free);
+  EXPECT_TRUE(prover.is_free(inside, rounded));
+  EXPECT_FALSE(prover.is_free(inside, outside));
+  EXPECT_FALSE(prover.is_free(outside, inside));
+  EXPECT_FALSE(prover.is_free(inside, below));
+  EXPECT_EQ(counts.edges, 4);
 }
 
 TEST(PlanPath, AStartThatIsTheGoalIsAPathOfNoLength) {

@@ -36,7 +36,11 @@ struct SearchProblem {
   Deadline deadline{};
 };
 
-/// Proves edges and counts them.
+/// The first joint outside of its limits; -1 where there is none.
+[[nodiscard]] int outside_joint(const Arm& arm, std::span<const double> q);
+
+/// Proves edges and counts them. The checker lets pass what is outside of the limits by less than
+/// its rounding; here the limits count as they do for start and goals.
 class EdgeProver {
  public:
   /// @param tilt  may be null.
@@ -46,6 +50,9 @@ class EdgeProver {
 
   EdgeResult look(std::span<const double> a, std::span<const double> b) {
     ++counts_.edges;
+    const Arm& arm = checker_.robot().arm();
+    if (outside_joint(arm, a) >= 0) return {EdgeVerdict::hit, 0};
+    if (outside_joint(arm, b) >= 0) return {EdgeVerdict::hit, 1};
     if (tilt_ != nullptr) {
       const TiltKeeper::EdgeTilt found = tilt_->look(a, b);
       if (!found.kept) return {EdgeVerdict::undecided, found.t};
