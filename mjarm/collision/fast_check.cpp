@@ -116,6 +116,19 @@ bool FastChecker::is_free(std::span<const double> q) const noexcept {
   return free != 0;
 }
 
+bool FastChecker::all_free(std::span<const double> q) const noexcept {
+  const auto dof = static_cast<std::size_t>(robot_.dof());
+  const auto width = static_cast<std::size_t>(kernels_->width);
+  const std::size_t rows = q.size() / dof;
+  if (fixed_overlap_) return rows == 0;
+  for (std::size_t first = 0; first < rows; first += width) {
+    const detail::FastRows block{q.data() + first * dof,
+                                 static_cast<int>(std::min(width, rows - first))};
+    if (kernels_->collide(robot_.data().tables, world_->tables, block, true) != 0) return false;
+  }
+  return true;
+}
+
 SphereClearance FastChecker::clearance_of(const detail::FastNearest& from) const noexcept {
   const detail::FastRobotData& data = robot_.data();
   const auto link_of = [&](int sphere) {

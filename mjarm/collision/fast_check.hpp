@@ -52,6 +52,10 @@ class FastChecker {
   /// The same for one of shape (dof,).
   [[nodiscard]] bool is_free(std::span<const double> q) const noexcept;
 
+  /// Whether all of these are free: ends with the first block that shows one that is not.
+  /// @param q  shape (n, dof), row by row [rad or m].
+  [[nodiscard]] bool all_free(std::span<const double> q) const noexcept;
+
   /// Lower bounds of the clearance of configurations within the limits.
   /// @param q  shape (n, dof), row by row [rad or m], finite.
   void clearances(std::span<const double> q, std::span<SphereClearance> out) const noexcept;

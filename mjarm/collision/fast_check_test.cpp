@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +54,30 @@ TEST(FastChecker, NeverFreeWhereRandomRobotsCollide) {
   EXPECT_GT(tally.free, worlds * 20);
   EXPECT_GT(tally.blocked, worlds * 20);
   RecordProperty("padded", tally.padded);
+}
+
+TEST(FastChecker, AllAreFreeWhereEachIs) {
+  Rng rng(15);
+  int free_lists = 0, blocked_lists = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Arm arm = testing::random_arm(1 + round % 9, rng);
+    const FastRobot robot = FastRobot::make(arm, testing::random_spheres(arm, rng)).value();
+    const Obstacles world = testing::random_world(rng, static_cast<int>(rng.below(4)));
+    for (const SimdLevel level : kLevels) {
+      const FastChecker checker = FastChecker::make(robot, world, level).value();
+      for (int i = 0; i < 20; ++i) {
+        const int count = static_cast<int>(rng.below(40));
+        const std::vector<double> q = random_rows(arm, rng, count);
+        std::vector<std::uint8_t> free(static_cast<std::size_t>(count));
+        checker.check(q, free);
+        const bool all = std::ranges::all_of(free, [](std::uint8_t one) { return one != 0; });
+        ASSERT_EQ(checker.all_free(q), all) << count << " states";
+        ++(all ? free_lists : blocked_lists);
+      }
+    }
+  }
+  EXPECT_GT(free_lists, 2000);
+  EXPECT_GT(blocked_lists, 2000);
 }
 
 TEST(FastChecker, LargeAndFarSolidsStaySafe) {

@@ -70,12 +70,15 @@ void add_times(BenchEntry& entry, const PlanRun& run, const CheckTimes* checks) 
   const double world = times_of(times_in(run, &SolvedProblem::world_us)).median;
   entry.cells.push_back(or_dash(p95));
   entry.cells.push_back(or_dash(world));
-  entry.cells.push_back(checks ? fmt::format("{:.1f} / {:.1f}", checks->random_ns, checks->along_ns)
+  entry.cells.push_back(checks ? fmt::format("{:.1f} / {:.1f} / {:.1f}", checks->random_ns,
+                                             checks->together_ns, checks->along_ns)
                                : "-");
   entry.details.set("p95_us", p95);
   entry.details.set("world_us", world);
   if (checks == nullptr) return;
-  entry.details.set("check_ns", {{"random", checks->random_ns}, {"along", checks->along_ns}});
+  entry.details.set("check_ns", {{"random", checks->random_ns},
+                                 {"together", checks->together_ns},
+                                 {"along", checks->along_ns}});
 }
 
 std::vector<JsonDoc> wrong_json(const PlanSet* set, const Verdicts& all) {

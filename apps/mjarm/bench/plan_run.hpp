@@ -32,13 +32,15 @@ struct PlanRun : BenchEntry {
                                const PlanOptions& options);
 
 /// [ns] of one state check, the mean over many states: configurations anywhere within the limits,
-/// and 16 along each of many straight edges of 1 rad.
+/// each with an answer of its own; the same in blocks as wide as a register, asked whether all of
+/// a block are free; and 16 along each of many straight edges of 1 rad, each with its answer.
 struct CheckTimes {
   double random_ns = 0;
+  double together_ns = 0;
   double along_ns = 0;
 };
-/// Measures FastChecker::check() in the worlds of up to 50 problems, all over the set; the fastest
-/// of some rounds counts.
+/// Measures FastChecker::check() and all_free() in the worlds of up to 50 problems, all over the
+/// set; the fastest of some rounds counts.
 [[nodiscard]] Result<CheckTimes> run_checks(const PlanSet& set, std::uint64_t seed);
 
 }  // namespace mjarm::app

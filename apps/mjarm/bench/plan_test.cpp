@@ -166,6 +166,7 @@ TEST(BenchPlan, MoreTimeAndMoreObstacles) {
     const json& run = run_of(crowds, "mjarm", crowd);
     EXPECT_EQ(run.at("solved"), run.at("valid"));
     EXPECT_GT(run.at("check_ns").at("along"), 0.0);
+    EXPECT_GT(run.at("check_ns").at("together"), 0.0);
   }
   EXPECT_TRUE(folder.exists("out/bench_plan.svg"));
 }
