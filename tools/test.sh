@@ -123,7 +123,7 @@ run_sanitizer() {
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
   export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$root/tools/races.supp}
   check "build" build_counted "$1" all
-  ((failed)) || run_ctest "$1"
+  ((failed)) || run_ctest "$1" --timeout 1200  # some tests take minutes on a busy machine
   finish
 }
 
