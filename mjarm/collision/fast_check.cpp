@@ -93,38 +93,34 @@ Result<FastChecker> FastChecker::make(FastRobot robot, const Obstacles& obstacle
 
 int FastChecker::width() const noexcept { return kernels_->width; }
 
-void FastChecker::check(std::span<const double> q, std::span<std::uint8_t> free) const noexcept {
+std::uint32_t FastChecker::collide(std::span<const double> q, std::size_t first,
+                                   bool any) const noexcept {
+  if (fixed_overlap_) return ~std::uint32_t{0};
   const auto dof = static_cast<std::size_t>(robot_.dof());
+  const std::size_t count =
+      std::min(static_cast<std::size_t>(kernels_->width), q.size() / dof - first);
+  const detail::FastRows rows{q.data() + first * dof, static_cast<int>(count)};
+  return kernels_->collide(robot_.data().tables, world_->tables, rows, any);
+}
+
+void FastChecker::check(std::span<const double> q, std::span<std::uint8_t> free) const noexcept {
   const auto width = static_cast<std::size_t>(kernels_->width);
-  assert(q.size() == free.size() * dof);
+  assert(q.size() == free.size() * static_cast<std::size_t>(robot_.dof()));
   for (std::size_t first = 0; first < free.size(); first += width) {
-    const std::size_t count = std::min(width, free.size() - first);
-    std::uint32_t hit = ~std::uint32_t{0};
-    if (!fixed_overlap_) {
-      const detail::FastRows rows{q.data() + first * dof, static_cast<int>(count)};
-      hit = kernels_->collide(robot_.data().tables, world_->tables, rows, false);
-    }
-    for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t hit = collide(q, first, false);
+    for (std::size_t k = 0; k < std::min(width, free.size() - first); ++k) {
       free[first + k] = static_cast<std::uint8_t>(1 - ((hit >> k) & 1));
     }
   }
 }
 
-bool FastChecker::is_free(std::span<const double> q) const noexcept {
-  std::uint8_t free = 0;
-  check(q, {&free, 1});
-  return free != 0;
-}
+bool FastChecker::is_free(std::span<const double> q) const noexcept { return all_free(q); }
 
 bool FastChecker::all_free(std::span<const double> q) const noexcept {
-  const auto dof = static_cast<std::size_t>(robot_.dof());
   const auto width = static_cast<std::size_t>(kernels_->width);
-  const std::size_t rows = q.size() / dof;
-  if (fixed_overlap_) return rows == 0;
+  const std::size_t rows = q.size() / static_cast<std::size_t>(robot_.dof());
   for (std::size_t first = 0; first < rows; first += width) {
-    const detail::FastRows block{q.data() + first * dof,
-                                 static_cast<int>(std::min(width, rows - first))};
-    if (kernels_->collide(robot_.data().tables, world_->tables, block, true) != 0) return false;
+    if (collide(q, first, true) != 0) return false;
   }
   return true;
 }

@@ -87,6 +87,11 @@ class FastChecker {
 
  private:
   FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel level);
+  /// The block of width() configurations from row `first` on.
+  /// @param any  end with the first that collides.
+  /// @return bit k: row first + k collides; with `any` only whether it is zero counts.
+  [[nodiscard]] std::uint32_t collide(std::span<const double> q, std::size_t first,
+                                      bool any) const noexcept;
   [[nodiscard]] SphereClearance clearance_of(const detail::FastNearest& from) const noexcept;
 
   FastRobot robot_;

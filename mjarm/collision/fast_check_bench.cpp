@@ -93,15 +93,15 @@ BENCHMARK(fast_check_states_of_edges)->Arg(0)->Arg(2)->Arg(3);
 void fast_check_free_states(benchmark::State& state) { over_states(state, &Scene::free); }
 BENCHMARK(fast_check_free_states)->Arg(0)->Arg(2)->Arg(3);
 
-/// Blocks of eight that end with the first state in collision, as VAMP's do.
+/// Blocks of a register's width that end with the first state in collision, as VAMP's do.
 void fast_check_blocks(benchmark::State& state) {
   const std::vector<Scene> all = scenes(state);
-  constexpr std::size_t kLanes = 8;
   std::int64_t states = 0;
   for (auto _ : state) {
     for (const Scene& scene : all) {
       const std::span<const double> rows(scene.random);
-      const std::size_t block = rows.size() / kStates * kLanes;
+      const std::size_t block =
+          rows.size() / kStates * static_cast<std::size_t>(scene.checker.width());
       for (std::size_t first = 0; first < rows.size(); first += block) {
         benchmark::DoNotOptimize(scene.checker.all_free(rows.subspan(first, block)));
       }
