@@ -20,13 +20,10 @@ double world_us(const PlanSet& set, const PlanProblem& problem) {
 }
 
 SolvedProblem solve(const PlanSet& set, std::size_t index, const PlanOptions& options) {
-  const PlanProblem& problem = set.cases[index];
-  const PlanAnswer answer = answer_problem(set.robot, problem, options);
+  const PlanAnswer answer = answer_problem(set.robot, set.cases[index], options);
   SolvedProblem solved{.problem = index, .us = answer.us + answer.simplify_us};
-  solved.world_us = world_us(set, problem);
   if (!answer.path) return solved;
   for (const JointVec& q : answer.path->q) solved.path.emplace_back(q.data(), q.data() + q.size());
-  solved.verdict = judge_path(set, problem, solved.path);
   return solved;
 }
 
@@ -92,6 +89,14 @@ PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
                  const PlanOptions& options) {
   PlanRun run{{.who = "mjarm", .timed = "c++"}};
   for (const std::size_t index : problems) run.answers.push_back(solve(set, index, options));
+  for (SolvedProblem& answer : run.answers) {
+    answer.world_us = world_us(set, set.cases[answer.problem]);
+  }
+  // Judged when all are solved: peers too answer problem after problem, with caches warm.
+  for (SolvedProblem& answer : run.answers) {
+    if (answer.path.empty()) continue;
+    answer.verdict = judge_path(set, set.cases[answer.problem], answer.path);
+  }
   return run;
 }
 

@@ -27,7 +27,8 @@ struct PlanRun : BenchEntry {
 };
 
 /// Solves each of these problems once, in this thread, by answer_problem(), as `mjarm plan` does;
-/// the time is that of the obstacles taken in, the search, the shortening and the proof.
+/// the time is that of the obstacles taken in, the search, the shortening and the proof. The paths
+/// are judged afterwards.
 [[nodiscard]] PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
                                const PlanOptions& options);
 
