@@ -45,9 +45,8 @@ Result<std::vector<SolvedProblem>> answers_in(const PlanSet& set, const KnownPro
     SolvedProblem& answer = answers.emplace_back(
         SolvedProblem{.problem = problem->second, .path = std::move(paths[i]), .us = entry.us[i]});
     if (!world->empty()) answer.world_us = (*world)[i];
-    if (answer.path.empty()) continue;
-    answer.verdict = judge_path(set, set.cases[answer.problem], answer.path);
   }
+  judge_answers(set, answers);
   return answers;
 }
 

@@ -92,12 +92,16 @@ PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
   for (SolvedProblem& answer : run.answers) {
     answer.world_us = world_us(set, set.cases[answer.problem]);
   }
-  // Judged when all are solved: peers too answer problem after problem, with caches warm.
-  for (SolvedProblem& answer : run.answers) {
+  // After all clocks: peers too answer problem after problem, and judging leaves caches cold.
+  judge_answers(set, run.answers);
+  return run;
+}
+
+void judge_answers(const PlanSet& set, std::span<SolvedProblem> answers) {
+  for (SolvedProblem& answer : answers) {
     if (answer.path.empty()) continue;
     answer.verdict = judge_path(set, set.cases[answer.problem], answer.path);
   }
-  return run;
 }
 
 Result<CheckTimes> run_checks(const PlanSet& set, std::uint64_t seed) {

@@ -32,6 +32,10 @@ struct PlanRun : BenchEntry {
 [[nodiscard]] PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
                                const PlanOptions& options);
 
+/// Judges the paths of these answers, ours or a peer's, by judge_path(); where there is none, the
+/// verdict stays as it is.
+void judge_answers(const PlanSet& set, std::span<SolvedProblem> answers);
+
 /// [ns] of one state check, the mean over many states: configurations anywhere within the limits,
 /// each with an answer of its own; the same in blocks as wide as a register, asked whether all of
 /// a block are free; and 16 along each of many straight edges of 1 rad, each with its answer.
