@@ -2,31 +2,28 @@
 #include <cstdio>
 #include <vector>
 
-#include "mjarm/model/find_arm.hpp"
-#include "mjarm/model/model.hpp"
+#include "mjarm/model/robot.hpp"
 #include "mjarm/sim/follow.hpp"
 
 int main() {
-  const auto model = mjarm::find_model_file("ur5e").and_then(
-      [](const auto& file) { return mjarm::Model::load(file); });
-  if (!model) return std::fprintf(stderr, "%s\n", model.error().what.c_str()), 1;
-  const auto arm = mjarm::find_arm(*model);
-  if (!arm) return std::fprintf(stderr, "%s\n", arm.error().what.c_str()), 1;
+  const auto robot = mjarm::load_robot("ur5e");
+  if (!robot) return std::fprintf(stderr, "%s\n", robot.error().what.c_str()), 1;
+  const auto& [model, arm] = *robot;
 
   const std::vector<double> stretched = {-1.57, -0.5, 0.4, -1.3, -1.57, 0};  // [rad]
   const auto move =
-      mjarm::time_joint_move(mjarm::view(arm->home), stretched, arm->limits, {.joint_share = 0.5});
+      mjarm::time_joint_move(mjarm::as_span(arm.home), stretched, arm.limits, {.joint_share = 0.5});
   if (!move) return std::fprintf(stderr, "%s\n", move.error().what.c_str()), 1;
 
   using enum mjarm::ControlMode;
   for (const mjarm::ControlMode mode : {servo, servo_gravity, computed_torque}) {
-    mjarm::Sim sim(*model);
-    sim.place(*arm, mjarm::view(arm->home));
-    auto controller = mjarm::Controller::make(*model, *arm, mode);
+    mjarm::Sim sim(model);
+    sim.place(arm, mjarm::as_span(arm.home));
+    auto controller = mjarm::Controller::make(model, arm, mode);
     if (!controller) return std::fprintf(stderr, "%s\n", controller.error().what.c_str()), 1;
-    const auto outcome = mjarm::follow_time({.sim = sim, .controller = *controller, .arm = *arm},
+    const auto outcome = mjarm::follow_time({.sim = sim, .controller = *controller, .arm = arm},
                                             *move, {.settle = 2});
-    if (!outcome) return std::fprintf(stderr, "%s\n", describe(outcome.error(), *arm).c_str()), 1;
+    if (!outcome) return std::fprintf(stderr, "%s\n", describe(outcome.error(), arm).c_str()), 1;
     std::printf("%-16s static error %8.4f mm, torque used %3.0f %%\n",
                 std::string(mjarm::name(mode)).c_str(), 1e3 * outcome->final_tool_error,
                 100 * outcome->torque_use);

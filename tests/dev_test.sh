@@ -21,7 +21,7 @@ mkdir -p apps cmake mjarm .deps/mujoco-core-4.0.1
 touch CMakeLists.txt CMakePresets.json
 printf '#!/bin/sh\necho "in $PWD:" "$@"\nexit 3\n' >build/release/bin/mjarm
 chmod +x build/release/bin/mjarm
-touch build/release/.dev-built
+touch build/release/.dev-built-mjarm
 ln -s "$work/mjarm/dev" "$work/bin/dev-link"
 cd "$work/elsewhere"
 

@@ -47,7 +47,7 @@ void expect_torque(const Eigen::VectorXd& torque, const json& expected, const ch
 void expect_kinematics(const Arm& arm, const json& c, const Pose& X_WU = {},
                        double rot_tol = 1e-9) {
   const JointVec q = testing::joints_of(arm, values(c.at("q")));
-  const auto [X_WT, J_W] = fk_jacobian(arm, view(q));
+  const auto [X_WT, J_W] = fk_jacobian(arm, as_span(q));
   expect_pose(X_WT, X_WU * pose_of(c), rot_tol);
   Eigen::MatrixXd J = matrix_of(c.at("jac"));
   J.topRows(3) = X_WU.R * J.topRows(3).eval();
@@ -138,7 +138,7 @@ TEST(GroundTruth, PandaAgainstTheExactHand) {
   const json data = support::load_json(file);
   ASSERT_GE(data.at("cases").size(), 50U);
   for (const json& c : data.at("cases")) {
-    const Pose X = fk(arm, view(testing::joints_of(arm, values(c.at("q")))));
+    const Pose X = fk(arm, as_span(testing::joints_of(arm, values(c.at("q")))));
     EXPECT_LT((X.p - pose_of(c).p).norm(), 1e-9);
     EXPECT_LT(angle_between(X.R, pose_of(c).R), 1e-7);
   }
@@ -153,7 +153,7 @@ TEST(GroundTruth, TellsTheOfficialFiguresApart) {
   const json data = support::load_json(file);
   double farthest = 0;
   for (const json& c : data.at("cases")) {
-    const Pose X = fk(arm, view(testing::joints_of(arm, values(c.at("q")))));
+    const Pose X = fk(arm, as_span(testing::joints_of(arm, values(c.at("q")))));
     farthest = std::max(farthest, (X.p - pose_of(c).p).norm());
   }
   EXPECT_GT(farthest, 1e-3);

@@ -31,8 +31,8 @@ void expect_equal(const std::filesystem::path& theirs_file, const char* ours_fil
   Rng rng(21);
   for (int i = 0; i < 100; ++i) {
     const auto q = testing::random_qpos(ours, rng);
-    const Pose X = fk(their_arm, view(testing::joints_of(their_arm, q)));
-    const Pose Y = fk(our_arm, view(testing::joints_of(our_arm, q)));
+    const Pose X = fk(their_arm, as_span(testing::joints_of(their_arm, q)));
+    const Pose Y = fk(our_arm, as_span(testing::joints_of(our_arm, q)));
     EXPECT_LT((X.p - Y.p).norm(), 1e-9);
     EXPECT_LT(angle_between(X.R, Y.R), 1e-9);
     const Eigen::MatrixXd dM = their_dynamics.mass_matrix(q) - our_dynamics.mass_matrix(q);

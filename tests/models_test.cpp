@@ -71,8 +71,8 @@ TEST_P(Twins, MoveAlike) {
   Rng rng(11);
   for (int i = 0; i < 200; ++i) {
     const auto qpos = testing::random_qpos(urdf, rng);
-    const Pose X = fk(arm, view(testing::joints_of(arm, qpos)));
-    const Pose Y = GetParam().X_WU * fk(other, view(testing::joints_of(other, qpos)));
+    const Pose X = fk(arm, as_span(testing::joints_of(arm, qpos)));
+    const Pose Y = GetParam().X_WU * fk(other, as_span(testing::joints_of(other, qpos)));
     EXPECT_LT((X.p - Y.p).norm(), 1e-9);
     EXPECT_LT(angle_between(X.R, Y.R), 1e-9);
   }
@@ -136,7 +136,7 @@ TEST(Models, UrdfsKeepTheirSpeedAndEffort) {
 TEST(Models, Ur5ePosesAreThoseOfTheController) {
   const Arm arm = testing::arm_of(shipped("universal_robots_ur5e/scene.xml"));
   EXPECT_EQ(arm.tip, "attachment_site");
-  EXPECT_LT((fk(arm, view(arm.home)).p - Eigen::Vector3d(-0.134, 0.492, 0.488)).norm(), 1e-3);
+  EXPECT_LT((fk(arm, as_span(arm.home)).p - Eigen::Vector3d(-0.134, 0.492, 0.488)).norm(), 1e-3);
   const std::array seed = {-1.57, -1.34, 2.65, -1.3, 1.55, 0.0};
   EXPECT_LT((fk(arm, seed).p - Eigen::Vector3d(-0.136, 0.297, 0.097)).norm(), 1e-3);
   const std::array below_the_floor = {0.0, 0.0, 2.65, -1.3, 1.55, 0.0};
@@ -147,8 +147,8 @@ TEST(Models, Ur5eToolFramesPointOutOfTheFlange) {
   const Model model = shipped(kUr5e);
   const Arm z_out = testing::arm_of(model, "attachment_site");
   const Arm x_out = testing::arm_of(model, "ee_link");
-  const Pose X = fk(z_out, view(z_out.home));
-  const Pose Y = fk(x_out, view(x_out.home));
+  const Pose X = fk(z_out, as_span(z_out.home));
+  const Pose Y = fk(x_out, as_span(x_out.home));
   EXPECT_LT((X.p - Y.p).norm(), 1e-12);
   EXPECT_LT((X.R.col(2) - Y.R.col(0)).norm(), 1e-12);
   EXPECT_LT((X.R.col(2) + Eigen::Vector3d::UnitZ()).norm(), 1e-4) << "home looks down";
@@ -177,7 +177,7 @@ TEST(Models, PandaTipIsBetweenTheFingers) {
   const auto left = frame_pose(model, "left_finger", qpos);
   const auto right = frame_pose(model, "right_finger", qpos);
   ASSERT_TRUE(left.has_value() && right.has_value());
-  const Pose X = fk(arm, view(testing::joints_of(arm, qpos)));
+  const Pose X = fk(arm, as_span(testing::joints_of(arm, qpos)));
   const Eigen::Vector3d middle = (left->p + right->p) / 2;
   EXPECT_LT((X.p - (middle + 0.045 * X.R.col(2))).norm(), 1e-9);
 }

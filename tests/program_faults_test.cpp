@@ -12,8 +12,8 @@ namespace {
 
 using testing::RandomProgram;
 
-const ProgramRobot& ur5e_scene() {
-  static const ProgramRobot kRobot = [] {
+const Robot& ur5e_scene() {
+  static const Robot kRobot = [] {
     Program program;
     program.robot = "ur5e";
     return load_program_robot(program, "test.yaml").value();

@@ -21,10 +21,12 @@ ALLOWED = {
     "sim": "core model control",
     "render": "core model sim",
     "perception": "core model sim render",
-    "program": "core model kinematics collision path planning trajectory control sim render perception",
+    "execution": "core model kinematics collision path planning trajectory control sim",
+    "program": "core model kinematics collision path planning trajectory control sim render perception execution",
     "view": "core model sim render",
     "serve": "core model sim",
     "rl": "core model kinematics control sim",
+    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl",
 }
 
 # Where MuJoCo's own headers may be included; tests may, everywhere: MuJoCo is their oracle.

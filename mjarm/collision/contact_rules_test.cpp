@@ -89,12 +89,12 @@ TEST(ContactRules, AHeldBodyCollidesAsAPartOfTheHandDoes) {
   int hits = 0, by_bar = 0;
   for (int k = 0; k < 2000; ++k) {
     const JointVec q = draw(free.arm, rng);
-    const auto a = held.check(view(q)), b = part.check(view(q));
+    const auto a = held.check(as_span(q)), b = part.check(as_span(q));
     ASSERT_TRUE(a && b);
     ASSERT_EQ(a->free, b->free);
-    ASSERT_EQ(held.is_free(view(q)), b->free);
+    ASSERT_EQ(held.is_free(as_span(q)), b->free);
     hits += !b->free;
-    by_bar += !b->free && empty.is_free(view(q));
+    by_bar += !b->free && empty.is_free(as_span(q));
     ASSERT_EQ(a->contacts.size(), b->contacts.size());
     for (std::size_t i = 0; i < a->contacts.size(); ++i) {
       EXPECT_NEAR(a->contacts[i].depth, b->contacts[i].depth, 1e-6);
@@ -124,9 +124,9 @@ TEST(ContactRules, TheCoverHoldsTheBodyToo) {
   int free = 0;
   for (int k = 0; k < 20000; ++k) {
     const JointVec q = draw(crane.arm, rng);
-    if (!fast.is_free(view(q))) continue;
+    if (!fast.is_free(as_span(q))) continue;
     ++free;
-    ASSERT_TRUE(exact.is_free(view(q)));
+    ASSERT_TRUE(exact.is_free(as_span(q)));
   }
   EXPECT_GT(free, 2000);
 }

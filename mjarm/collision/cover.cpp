@@ -16,7 +16,7 @@ using detail::GeomGroup;
 using detail::GeomGroups;
 
 constexpr double kWider = 1.4;  // a bound that takes too many spheres grows by this
-constexpr int kMostWider = 20;
+constexpr int kMaxWider = 20;
 
 std::vector<CoverSolid> solids_of(const mjModel& m, const GeomGroup& group) {
   std::vector<CoverSolid> out;
@@ -29,10 +29,10 @@ std::vector<CoverSolid> solids_of(const mjModel& m, const GeomGroup& group) {
 /// The links as spheres, with the smallest bound that takes no more than there may be.
 bool add_spheres(const mjModel& m, const std::vector<GeomGroup>& links, double bound,
                  ModelCover& out) {
-  for (int round = 0; round < kMostWider; ++round, bound *= kWider) {
+  for (int round = 0; round < kMaxWider; ++round, bound *= kWider) {
     out.spheres.links.clear();
     out.bound = 0;
-    std::size_t left = kMostSpheres;
+    std::size_t left = kMaxSpheres;
     for (const GeomGroup& link : links) {
       const auto fit = detail::fit_cover(solids_of(m, link), bound, left);
       if (!fit) break;
@@ -90,7 +90,7 @@ Result<ModelCover> cover_model(const Model& model, const Arm& arm, const CoverOp
   ModelCover out;
   if (!add_spheres(*model.raw(), groups->links, options.bound, out)) {
     return fail(Errc::bad_input,
-                text(msg::collision_cover_spheres, arm.name, kMostSpheres, kMostSphereLinks));
+                text(msg::collision_cover_spheres, arm.name, kMaxSpheres, kMaxSphereLinks));
   }
   detail::MeetingProof proof(model, arm, *groups, options.rules);
   add_pairs(proof, *groups, out);

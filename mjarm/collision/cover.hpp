@@ -41,7 +41,7 @@ struct ModelCover {
 };
 
 /// Covers the geoms of `model` that can collide with something. A bound that needs more spheres
-/// than kMostSpheres is widened; ModelCover::bound says to what.
+/// than kMaxSpheres is widened; ModelCover::bound says to what.
 /// @return bad_input: one line, where the arm is not of the model, nothing on it can collide, or an
 /// option is out of range.
 [[nodiscard]] Result<ModelCover> cover_model(const Model& model, const Arm& arm,

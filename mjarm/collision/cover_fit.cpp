@@ -13,18 +13,18 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSpare = 0.08;       // share of the bound that is left for the seal
-constexpr double kMostPoints = 6000;  // of a grid
+constexpr double kMaxPoints = 6000;  // of a grid
 constexpr int kRounds = 400;          // of the set cover, the first time
 constexpr int kMoreRounds = 100;      // after points were added
 constexpr int kSearches = 10;         // from then on spheres are only added
-constexpr int kMostSeals = 60;
+constexpr int kMaxSeals = 60;
 
 /// The middles of the cells of a grid of about that spacing, within a distance of the solids.
 template <class Keep>
 void over_grid(std::span<const CoverSolid> solids, double spacing, Keep keep) {
   const CoverBounds bounds = bounds_of(solids);
   const Vector3d size = bounds.high - bounds.low;
-  const double coarse = std::cbrt(size.prod() / kMostPoints);
+  const double coarse = std::cbrt(size.prod() / kMaxPoints);
   const Eigen::Array3i n = (size.array() / std::max(spacing, coarse)).ceil().cast<int>().max(1);
   const Vector3d cell = size.array() / n.cast<double>();
   for (int i = 0; i < n.x(); ++i) {
@@ -55,8 +55,8 @@ class Thinner {
 Vector3d to_middle(const CoverSolid& solid, const Vector3d& p) {
   const Vector3d inwards = -solid.outwards(p);
   const double depth = -solid.signed_distance(p);
-  const double most = solid.size.maxCoeff() + depth;
-  double low = 0, high = solid.kind == SolidKind::hull ? 0.5 : most;
+  const double max = solid.size.maxCoeff() + depth;
+  double low = 0, high = solid.kind == SolidKind::hull ? 0.5 : max;
   for (int i = 0; i < 14; ++i) {
     const double way = 0.5 * (low + high);
     const double grown = -solid.signed_distance(p + way * inwards) - depth;
@@ -72,14 +72,14 @@ class CoverFit {
     add_points();
   }
 
-  std::optional<FittedCover> run(std::size_t most) {
-    for (int seal = 0; seal < kMostSeals; ++seal) {
+  std::optional<FittedCover> run(std::size_t max) {
+    for (int seal = 0; seal < kMaxSeals; ++seal) {
       FittedCover out;
       const int rounds = seal == 0 ? kRounds : seal < kSearches ? kMoreRounds : 0;
       for (const int c : cover_.solve(rounds)) {
         out.spheres.push_back(candidates_[static_cast<std::size_t>(c)]);
       }
-      if (out.spheres.size() > most) return std::nullopt;
+      if (out.spheres.size() > max) return std::nullopt;
       const std::vector<Vector3d> gaps = seal_cover(solids_, out.spheres, bound_);
       if (gaps.empty()) {
         for (const Sphere& sphere : out.spheres) {
@@ -159,8 +159,8 @@ class CoverFit {
 }  // namespace
 
 std::optional<FittedCover> fit_cover(std::span<const CoverSolid> solids, double bound,
-                                     std::size_t most) {
-  return CoverFit(solids, bound).run(most);
+                                     std::size_t max) {
+  return CoverFit(solids, bound).run(max);
 }
 
 }  // namespace mjarm::detail

@@ -21,9 +21,9 @@ struct FittedCover {
 /// to a convex solid grows by no more than the way: what is left is a set cover of points of the
 /// solids by such spheres. That the whole solids are covered is then proved by seal_cover(); points
 /// it could not cover are added, until there are none. The same input gives the same spheres.
-/// @return nothing where more than `most` spheres are needed.
+/// @return nothing where more than `max` spheres are needed.
 [[nodiscard]] std::optional<FittedCover> fit_cover(std::span<const CoverSolid> solids, double bound,
-                                                   std::size_t most);
+                                                   std::size_t max);
 
 /// Proves that the spheres contain the solids, cutting a box round them into cells until each is in
 /// one sphere or in no solid. Cells of the least size grow the sphere that needs it least, up to

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastBound = 1e-5;  // [m] finer ones need more points than memory has
-constexpr int kMostPostures = 64;     // of a gripper, for each geom
+constexpr int kMaxPostures = 64;     // of a gripper, for each geom
 
 struct DeletePoses {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -189,7 +189,7 @@ class GeomSorter {
       StrokeJoint& widest = *std::max_element(
           out.begin(), out.end(), [&](const auto& a, const auto& b) { return step(a) < step(b); });
       count = count / widest.steps * (widest.steps + 1);
-      if (count > kMostPostures || step(widest) <= 0.25 * options_.bound) break;
+      if (count > kMaxPostures || step(widest) <= 0.25 * options_.bound) break;
       ++widest.steps;
     }
     return out;

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kJointsProved = 3;     // between the two; for more the search is too large
-constexpr int kMostTried = 3000;     // boxes of one search
+constexpr int kMaxTried = 3000;     // boxes of one search
 constexpr double kKeptApart = 2e-5;  // [m] at least
 
 using Box = std::array<double, kJointsProved>;
@@ -47,7 +47,7 @@ struct MeetingProof::Search {
   int boxes = 0;
 
   bool is_clear(const Box& middle, const Box& half) {
-    if (++boxes > kMostTried) return false;
+    if (++boxes > kMaxTried) return false;
     double slack = 0;
     std::size_t widest = 0;
     const auto step = [&](std::size_t i) {
@@ -70,9 +70,9 @@ struct MeetingProof::Search {
     return true;
   }
 
-  double distance(const Box& q, double most) {
+  double distance(const Box& q, double max) {
     const Pose X_AB = pose(q);
-    double least = most;
+    double least = max;
     for (const PlacedGeom& one : a.geoms) {
       for (const PlacedGeom& other : b.geoms) {
         GeomIds ids{one.geom, other.geom};
@@ -80,7 +80,7 @@ struct MeetingProof::Search {
         put_geom(d, ids.geom2, X_AB * other.X_LG);
         if (m.geom_type[ids.geom1] > m.geom_type[ids.geom2]) std::swap(ids.geom1, ids.geom2);
         const double grow = one.grow + other.grow;
-        least = std::min(least, geom_distance(m, &d, ids, most + grow) - grow);
+        least = std::min(least, geom_distance(m, &d, ids, max + grow) - grow);
       }
     }
     return least;

@@ -11,8 +11,8 @@ using Eigen::Vector3d;
 
 constexpr double kLeastCell = 1.0 / 48;      // half width of the least cell, as share of the bound
 constexpr double kApart = 0.25;              // of gaps, as share of the bound
-constexpr std::size_t kMostGaps = 200;       // more are not gathered
-constexpr std::size_t kMostCells = 4000000;  // more are given up, as gaps
+constexpr std::size_t kMaxGaps = 200;       // more are not gathered
+constexpr std::size_t kMaxCells = 4000000;  // more are given up, as gaps
 
 struct Cell {
   Vector3d center, half;
@@ -23,7 +23,7 @@ class CoverSeal {
   CoverSeal(std::span<const CoverSolid> solids, std::span<Sphere> spheres, double bound)
       : solids_(solids), spheres_(spheres), bound_(bound) {
     for (const Sphere& sphere : spheres) {
-      most_.push_back(bound + depth_in(solids, sphere.center));
+      max_.push_back(bound + depth_in(solids, sphere.center));
     }
   }
 
@@ -43,7 +43,7 @@ class CoverSeal {
 
   /// `solids` and `spheres`: those that the cell above this one meets.
   void look(const Cell& cell, const std::vector<int>& solids, const std::vector<int>& spheres) {
-    if (gaps_.size() >= kMostGaps) return;
+    if (gaps_.size() >= kMaxGaps) return;
     const double round = cell.half.norm();
     std::vector<int> near_solids, near_spheres;
     for (const int i : solids) {
@@ -54,12 +54,12 @@ class CoverSeal {
     for (const int i : spheres) {
       const Sphere& sphere = spheres_[static_cast<std::size_t>(i)];
       if (farthest(cell, sphere.center) <= sphere.radius) return;
-      const double reach = most_[static_cast<std::size_t>(i)] + round;
+      const double reach = max_[static_cast<std::size_t>(i)] + round;
       if ((cell.center - sphere.center).squaredNorm() < reach * reach) near_spheres.push_back(i);
     }
     Eigen::Index widest = 0;
     const double half = cell.half.maxCoeff(&widest);
-    if (half <= kLeastCell * bound_ || ++cells_ > kMostCells) {
+    if (half <= kLeastCell * bound_ || ++cells_ > kMaxCells) {
       fill(cell, near_solids, near_spheres);
       return;
     }
@@ -79,7 +79,7 @@ class CoverSeal {
     for (const int k : spheres) {
       const auto i = static_cast<std::size_t>(k);
       const double radius = farthest(cell, spheres_[i].center);
-      if (radius > most_[i] || radius - spheres_[i].radius >= least) continue;
+      if (radius > max_[i] || radius - spheres_[i].radius >= least) continue;
       least = radius - spheres_[i].radius;
       which = i;
     }
@@ -102,7 +102,7 @@ class CoverSeal {
   std::span<const CoverSolid> solids_;
   std::span<Sphere> spheres_;
   double bound_;
-  std::vector<double> most_;  // largest radius of each sphere
+  std::vector<double> max_;  // largest radius of each sphere
   std::vector<Vector3d> gaps_;
   std::size_t cells_ = 0;
 };

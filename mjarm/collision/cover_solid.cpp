@@ -45,9 +45,9 @@ double from_ellipsoid(const Vector3d& a, const Vector3d& p) {
 }
 
 double from_hull(std::span<const Facet> facets, const Vector3d& p) {
-  double most = -kInfinity;
-  for (const Facet& facet : facets) most = std::max(most, facet.normal.dot(p) - facet.offset);
-  return most;
+  double max = -kInfinity;
+  for (const Facet& facet : facets) max = std::max(max, facet.normal.dot(p) - facet.offset);
+  return max;
 }
 
 /// The point of a segment that is nearest to p.

@@ -95,9 +95,9 @@ TEST(CoverModel, SameTwice) {
 }
 
 TEST(CoverModel, ShippedRobotsNeedFewSpheres) {
-  for (const auto& [name, most] : {std::pair{"ur5e", 42U}, std::pair{"panda", 95U}}) {
+  for (const auto& [name, max] : {std::pair{"ur5e", 42U}, std::pair{"panda", 95U}}) {
     const ModelCover cover = cover_of(testing::covered_robot(name));
-    EXPECT_LE(cover.spheres.size(), most) << name;
+    EXPECT_LE(cover.spheres.size(), max) << name;
     EXPECT_LE(cover.bound, 0.012 + 1e-9) << name;
     EXPECT_FALSE(cover.scene.solids.empty()) << name;  // the floor
     EXPECT_TRUE(cover.larger.empty()) << name;
@@ -165,7 +165,7 @@ TEST(CoverModel, ABoundThatTakesTooManySpheresIsWidened) {
       two_joints(R"(<geom name="wall" type="box" size="0.1 1 1" pos="4 0 0"/>)",
                  R"(<geom name="board" type="box" size="0.5 0.4 0.01"/>)");
   const ModelCover cover = cover_of(robot, {.bound = 0.005});
-  EXPECT_LE(cover.spheres.size(), kMostSpheres);
+  EXPECT_LE(cover.spheres.size(), kMaxSpheres);
   EXPECT_GT(cover.bound, 0.005);
   const LinkSpheres& board =
       cover.spheres.links[static_cast<std::size_t>(link_named(cover, "hand"))];

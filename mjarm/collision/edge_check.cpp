@@ -11,12 +11,12 @@
 namespace mjarm {
 namespace {
 
-constexpr std::size_t kMostOpen = 2048;  // intervals that wait; more means: undecided
-constexpr int kMostWidth = 16;
+constexpr std::size_t kMaxOpen = 2048;  // intervals that wait; more means: undecided
+constexpr int kMaxWidth = 16;
 
 /// So many floats fill whole registers.
 constexpr std::size_t kWhole(int n) {
-  return static_cast<std::size_t>((n + kMostWidth - 1) / kMostWidth * kMostWidth);
+  return static_cast<std::size_t>((n + kMaxWidth - 1) / kMaxWidth * kMaxWidth);
 }
 
 /// t and half are sums of powers of two, which floats hold exactly.
@@ -26,11 +26,11 @@ struct OpenInterval {
 
 /// Intervals that wait, widest first.
 struct IntervalQueue {
-  std::array<OpenInterval, kMostOpen> open;
+  std::array<OpenInterval, kMaxOpen> open;
   std::size_t size = 0;
 
   bool push(OpenInterval interval) {
-    if (size == kMostOpen) return false;
+    if (size == kMaxOpen) return false;
     open[size++] = interval;
     return true;
   }
@@ -107,7 +107,7 @@ class EdgeSearch {
             std::vector<EdgeInterval>* proof) {
     const std::size_t count = std::min(width_, queue.size - first);
     const OpenInterval* const open = &queue.open[first];
-    alignas(64) float t[kMostWidth], half[kMostWidth];
+    alignas(64) float t[kMaxWidth], half[kMaxWidth];
     for (std::size_t k = 0; k < width_; ++k) {
       const OpenInterval& interval = open[std::min(k, count - 1)];
       half[k] = interval.half;

@@ -60,7 +60,7 @@ TEST(CheckEdge, NoFalseCertificateAmongPlatesAndWires) {
     for (int k = 0; k < 40; ++k) {
       const JointVec q0 = testing::random_q(arm, rng);
       const JointVec q1 = q0 + rng.uniform(0.02, 1) * (testing::random_q(arm, rng) - q0);
-      compare_edge(checker, world, view(q0), view(q1), tally);
+      compare_edge(checker, world, as_span(q0), as_span(q1), tally);
       if (::testing::Test::HasFatalFailure()) return;
     }
   }
@@ -80,9 +80,9 @@ TEST(CheckEdge, CertificatesCoverTheEdge) {
     const auto checker = FastChecker::make(robot, world, kEdgeLevels[round % 3]).value();
     const JointVec q0 = testing::random_q(arm, rng);
     const JointVec q1 = testing::random_q(arm, rng);
-    const auto proof = certify_edge(checker, view(q0), view(q1));
+    const auto proof = certify_edge(checker, as_span(q0), as_span(q1));
     EXPECT_EQ(proof.has_value(),
-              check_edge(checker, view(q0), view(q1)).verdict == EdgeVerdict::free);
+              check_edge(checker, as_span(q0), as_span(q1)).verdict == EdgeVerdict::free);
     if (!proof) continue;
     ++proved;
     double reached = 0;
@@ -92,7 +92,7 @@ TEST(CheckEdge, CertificatesCoverTheEdge) {
       EXPECT_GE(2 * interval.half * (q1 - q0).norm(), proof->step - 1e-12);
     }
     EXPECT_GE(reached, 1);
-    const auto at = testing::on_edge(view(q0), view(q1), proof->nearest_t);
+    const auto at = testing::on_edge(as_span(q0), as_span(q1), proof->nearest_t);
     EXPECT_GT(proof->nearest.distance, 0);
     if (proof->nearest.obstacle >= 0) {
       SphereSet link;
@@ -112,13 +112,13 @@ TEST(CheckEdge, EndsOutsideOfTheLimitsAndEdgesOfNoLength) {
   const JointVec home = arm.home;
   JointVec out = home;
   out[1] = arm.limits.upper[1] + 0.01;
-  EXPECT_EQ(check_edge(checker, view(home), view(home)).verdict, EdgeVerdict::free);
-  const EdgeResult end = check_edge(checker, view(home), view(out));
+  EXPECT_EQ(check_edge(checker, as_span(home), as_span(home)).verdict, EdgeVerdict::free);
+  const EdgeResult end = check_edge(checker, as_span(home), as_span(out));
   EXPECT_EQ(end.verdict, EdgeVerdict::hit);
   EXPECT_EQ(end.t, 1);
-  EXPECT_EQ(check_edge(checker, view(out), view(home)).t, 0);
+  EXPECT_EQ(check_edge(checker, as_span(out), as_span(home)).t, 0);
   out[1] = std::nan("");
-  EXPECT_EQ(check_edge(checker, view(home), view(out)).verdict, EdgeVerdict::hit);
+  EXPECT_EQ(check_edge(checker, as_span(home), as_span(out)).verdict, EdgeVerdict::hit);
 }
 
 TEST(CheckEdge, PublicProblemsAgreeWithDenseSamples) {
@@ -134,7 +134,7 @@ TEST(CheckEdge, PublicProblemsAgreeWithDenseSamples) {
     compare_edge(checker, problem.obstacles, problem.start, problem.goals.front(), tally);
     for (int k = 0; k < 3; ++k) {
       const JointVec q1 = testing::random_q(all.arm, rng);
-      compare_edge(checker, problem.obstacles, problem.start, view(q1), tally);
+      compare_edge(checker, problem.obstacles, problem.start, as_span(q1), tally);
     }
     if (::testing::Test::HasFatalFailure()) return;
   }

@@ -114,14 +114,14 @@ struct ExactChecker::Impl {
   }
 
   bool overlaps() {
-    const double most = -options.allow_depth;
+    const double max = -options.allow_depth;
     const std::span<const mjContact> all = detect(m);
     return std::any_of(
                all.begin(), all.end(),
-               [&](const mjContact& contact) { return contact.dist < most && counts(contact); }) ||
+               [&](const mjContact& contact) { return contact.dist < max && counts(contact); }) ||
            std::any_of(capsule_boxes.begin(), capsule_boxes.end(), [&](GeomIds ids) {
              const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
-             return gap && gap->distance < most;
+             return gap && gap->distance < max;
            });
   }
 

@@ -83,12 +83,12 @@ std::optional<GeomGap> capsule_box_gap(const mjModel& m, mjData* d, GeomIds ids,
                  Eigen::Map<const Eigen::Vector3d>(nearest.normal)};
 }
 
-double geom_distance(const mjModel& m, mjData* d, GeomIds ids, double most) {
+double geom_distance(const mjModel& m, mjData* d, GeomIds ids, double max) {
   if (!is_capsule_box(m, ids.geom1, ids.geom2)) {
-    return mj_geomDistance(&m, d, ids.geom1, ids.geom2, most, nullptr);
+    return mj_geomDistance(&m, d, ids.geom1, ids.geom2, max, nullptr);
   }
-  const std::optional<GeomGap> gap = capsule_box_gap(m, d, ids, most);
-  return gap ? gap->distance : most;
+  const std::optional<GeomGap> gap = capsule_box_gap(m, d, ids, max);
+  return gap ? gap->distance : max;
 }
 
 }  // namespace mjarm::detail

@@ -41,7 +41,7 @@ struct GeomGap {
 [[nodiscard]] std::optional<GeomGap> capsule_box_gap(const mjModel& m, mjData* d, GeomIds ids,
                                                      double margin);
 
-/// Distance between any two geoms at the poses in `d`, at most `most` [m].
-[[nodiscard]] double geom_distance(const mjModel& m, mjData* d, GeomIds ids, double most);
+/// Distance between any two geoms at the poses in `d`, at most `max` [m].
+[[nodiscard]] double geom_distance(const mjModel& m, mjData* d, GeomIds ids, double max);
 
 }  // namespace mjarm::detail

@@ -119,9 +119,9 @@ std::set<std::pair<int, int>> constant_pairs(const Shipped& robot, Rng& rng) {
   for (int round = 0; round < 50; ++round) {
     robot.place(robot.random_q(rng));
     for (const auto& [pair, distance] : all_distances(robot)) {
-      auto& [least, most] = ranges.try_emplace(pair, distance, distance).first->second;
+      auto& [least, max] = ranges.try_emplace(pair, distance, distance).first->second;
       least = std::min(least, distance);
-      most = std::max(most, distance);
+      max = std::max(max, distance);
     }
   }
   std::set<std::pair<int, int>> out;
@@ -167,7 +167,7 @@ TEST(ExactCheckerModels, HomeIsFree) {
   for (const char* name : {"ur5e", "panda"}) {
     const Shipped robot(name);
     ExactChecker checker(robot.model, robot.arm);
-    const auto report = checker.check(view(robot.arm.home));
+    const auto report = checker.check(as_span(robot.arm.home));
     ASSERT_TRUE(report.has_value());
     EXPECT_TRUE(report->free) << name << ": " << describe(*report);
   }

@@ -363,7 +363,7 @@ TEST(ExactChecker, PredicateKeepsIkOutOfTheWall) {
   const auto answer = IkSolver(world.arm, options).solve(X_goal, blocked);
   ASSERT_TRUE(answer.has_value());
   EXPECT_GT(answer->q[1], 0);
-  EXPECT_TRUE(checker.is_free(view(answer->q)));
+  EXPECT_TRUE(checker.is_free(as_span(answer->q)));
 }
 
 TEST(ExactChecker, DescribesWhatItFound) {

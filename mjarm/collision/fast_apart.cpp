@@ -15,7 +15,7 @@ namespace mjarm::detail {
 namespace {
 
 constexpr int kLeastPartPairs = 4;        // fewer are looked at as fast
-constexpr int kMostApartTests = 200'000;  // of spheres, to make a table
+constexpr int kMaxApartTests = 200'000;  // of spheres, to make a table
 constexpr int kLeastApartBoxes = 300;     // fewer say too little
 constexpr int kApartSide = 64;            // cells along one joint
 constexpr double kApartPlenty = 0.05;     // [m] as far apart is not looked at more closely
@@ -61,15 +61,15 @@ class ApartBuilder {
     FastApart out;
     const int joints = to_ - from_;
     if (joints < 1 || joints > 2 || part_pairs_ < kLeastPartPairs) return out;
-    const int most = kMostApartTests / static_cast<int>(partners_.size());
-    if (most < kLeastApartBoxes) return out;
+    const int max = kMaxApartTests / static_cast<int>(partners_.size());
+    if (max < kLeastApartBoxes) return out;
     out.side = kApartSide;
     out.unit = static_cast<float>(kApartUnit);
     out.first = static_cast<int>(cells.size());
     for (int k = 0; k < joints; ++k) set_axis(k, out);
     rows_ = joints == 2 ? kApartSide : 1;
     cells.resize(cells.size() + static_cast<std::size_t>(kApartSide * rows_));
-    fill(most, &cells[static_cast<std::size_t>(out.first)]);
+    fill(max, &cells[static_cast<std::size_t>(out.first)]);
     return out;
   }
 
@@ -84,10 +84,10 @@ class ApartBuilder {
   };
 
   /// Cuts boxes of cells in halves along each joint, the large ones first, until what they say
-  /// is enough or `most` have been looked at.
-  void fill(int most, std::uint8_t* cells) const {
+  /// is enough or `max` have been looked at.
+  void fill(int max, std::uint8_t* cells) const {
     std::vector<Box> boxes = {{0, 0, kApartSide}};
-    for (std::size_t next = 0; next < boxes.size() && next < static_cast<std::size_t>(most);
+    for (std::size_t next = 0; next < boxes.size() && next < static_cast<std::size_t>(max);
          ++next) {
       const Box box = boxes[next];
       const Finding found = look(box);

@@ -56,11 +56,11 @@ TEST(FastApart, ProvedEdgesOfWristsAreFree) {
     for (int k = 0; k < 60; ++k) {
       const JointVec a = testing::random_q(arm, rng);
       const JointVec b = a + rng.uniform(0.05, 0.5) * (testing::random_q(arm, rng) - a);
-      if (check_edge(checker, view(a), view(b)).verdict != EdgeVerdict::free) continue;
+      if (check_edge(checker, as_span(a), as_span(b)).verdict != EdgeVerdict::free) continue;
       ++proved;
       for (int j = 0; j <= 50; ++j) {
         const JointVec q = a + j / 50.0 * (b - a);
-        ASSERT_GT(testing::true_clearance(arm, set, {}, view(q)), 0);
+        ASSERT_GT(testing::true_clearance(arm, set, {}, as_span(q)), 0);
       }
     }
   }

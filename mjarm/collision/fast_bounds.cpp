@@ -49,8 +49,8 @@ struct Hull {
 /// moves a point at distance 1.
 double joint_error(const Arm& arm, const LinkChain& chain, int k) {
   const FastLimits limits = fast_limits(arm, k);
-  const double most = std::max(std::abs(limits.lower), std::abs(limits.upper));
-  const double rounding = 6 * kUnit * (most + std::abs(chain.links[k].offset));
+  const double max = std::max(std::abs(limits.lower), std::abs(limits.upper));
+  const double rounding = 6 * kUnit * (max + std::abs(chain.links[k].offset));
   return rounding + (chain.links[k].slide ? 0 : std::numbers::sqrt2 * kTrigError);
 }
 
@@ -68,9 +68,9 @@ double padding_of(const Arm& arm, const LinkChain& chain, int body, const GroupB
 
 FastLimits fast_limits(const Arm& arm, int joint) {
   const bool slide = arm.joints[static_cast<std::size_t>(joint)].type == JointType::slide;
-  const double most = slide ? kEndlessSlide : kEndlessTurn;
-  return {std::max(arm.limits.lower[joint] - kLimitSlack, -most),
-          std::min(arm.limits.upper[joint] + kLimitSlack, most)};
+  const double max = slide ? kEndlessSlide : kEndlessTurn;
+  return {std::max(arm.limits.lower[joint] - kLimitSlack, -max),
+          std::min(arm.limits.upper[joint] + kLimitSlack, max)};
 }
 
 GroupBounds group_bounds(const Arm& arm, const LinkChain& chain, int body,

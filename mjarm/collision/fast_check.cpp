@@ -17,7 +17,7 @@ const FastKernels kFastBaseline = {kWidth, collide_block, cover_block, bound_mot
 
 namespace {
 
-constexpr int kMostLanes = 16;
+constexpr int kMaxLanes = 16;
 
 const detail::FastKernels& fast_kernels([[maybe_unused]] SimdLevel level) {
 #if defined(__x86_64__)
@@ -35,7 +35,7 @@ const detail::FastKernels& fast_kernels([[maybe_unused]] SimdLevel level) {
 
 /// Some configurations, joint by joint, as the kernels take them; unused lanes repeat the last.
 struct LaneInput {
-  alignas(64) float q[kMaxDof * kMostLanes];
+  alignas(64) float q[kMaxDof * kMaxLanes];
 
   LaneInput(const double* rows, std::size_t count, std::size_t dof, std::size_t width) {
     for (std::size_t i = 0; i < dof; ++i) {
@@ -141,9 +141,9 @@ void FastChecker::clearances(std::span<const double> q,
   for (std::size_t first = 0; first < out.size(); first += width) {
     const std::size_t count = std::min(width, out.size() - first);
     const LaneInput input(q.data() + first * dof, count, dof, width);
-    detail::FastNearest nearest[kMostLanes];
+    detail::FastNearest nearest[kMaxLanes];
     kernels_->clearances(robot_.data().tables, world_->tables, input.q,
-                         static_cast<float>(detail::kMostClearance), false, nearest);
+                         static_cast<float>(detail::kMaxClearance), false, nearest);
     for (std::size_t k = 0; k < count; ++k) out[first + k] = clearance_of(nearest[k]);
   }
 }
@@ -153,11 +153,11 @@ FastChecker::LeastClearance FastChecker::least_clearance(std::span<const double>
   const auto width = static_cast<std::size_t>(kernels_->width);
   const std::size_t rows = q.size() / dof;
   LeastClearance out;
-  out.nearest.distance = detail::kMostClearance;
+  out.nearest.distance = detail::kMaxClearance;
   for (std::size_t first = 0; first < rows; first += width) {
     const std::size_t count = std::min(width, rows - first);
     const LaneInput input(q.data() + first * dof, count, dof, width);
-    detail::FastNearest nearest[kMostLanes];
+    detail::FastNearest nearest[kMaxLanes];
     kernels_->clearances(robot_.data().tables, world_->tables, input.q,
                          static_cast<float>(out.nearest.distance), true, nearest);
     for (std::size_t k = 0; k < width; ++k) {

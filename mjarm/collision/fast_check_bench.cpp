@@ -60,7 +60,7 @@ std::vector<Scene> scenes(benchmark::State& state) {
     }
     while (out.back().free.size() < out.back().random.size()) {
       const JointVec q = testing::random_q(all.arm, rng);
-      if (out.back().checker.is_free(view(q))) add_row(q, out.back().free);
+      if (out.back().checker.is_free(as_span(q))) add_row(q, out.back().free);
     }
     for (int k = 0; k < 64; ++k) {
       const std::vector<double> rows = edge_rows(all.arm, rng, 1);

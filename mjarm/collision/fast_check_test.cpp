@@ -172,7 +172,7 @@ TEST(FastChecker, LimitsAndNumbers) {
     q[3] = bad;
     EXPECT_FALSE(checker.is_free(q)) << bad;
   }
-  EXPECT_EQ(checker.clearance(view(arm.home)).link, -1);
+  EXPECT_EQ(checker.clearance(as_span(arm.home)).link, -1);
 }
 
 TEST(FastChecker, PieceAtRestInAnObstacle) {
@@ -186,7 +186,7 @@ TEST(FastChecker, PieceAtRestInAnObstacle) {
   ASSERT_TRUE(checker.fixed_overlap().has_value());
   EXPECT_EQ(checker.fixed_overlap()->link, 0);
   EXPECT_EQ(checker.fixed_overlap()->obstacle, 1);
-  EXPECT_FALSE(checker.is_free(view(arm.home)));
+  EXPECT_FALSE(checker.is_free(as_span(arm.home)));
 }
 
 /// Starts and goals of the public problems are what their file says.

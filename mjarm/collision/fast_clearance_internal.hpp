@@ -11,8 +11,8 @@ inline namespace MJARM_FLOAT_LANES {
 class NearestSearch {
  public:
   NearestSearch(const FastRobotTables& robot, const FastWorldTables& world, const float* q,
-                float most, bool together)
-      : robot_(robot), world_(world), together_(together), best_(splat(most)) {
+                float max, bool together)
+      : robot_(robot), world_(world), together_(together), best_(splat(max)) {
     block_.place(robot, world, q);
   }
 
@@ -196,8 +196,8 @@ class NearestSearch {
 };
 
 inline void clearances_of_block(const FastRobotTables& robot, const FastWorldTables& world,
-                                const float* q, float most, bool together, FastNearest* out) {
-  NearestSearch(robot, world, q, most, together).run(out);
+                                const float* q, float max, bool together, FastNearest* out) {
+  NearestSearch(robot, world, q, max, together).run(out);
 }
 
 }  // namespace MJARM_FLOAT_LANES

@@ -24,7 +24,7 @@ void CrowdBuilder::add(const FastItem& item) {
   const FastBounds bounds = bounds_of(item);
   const Eigen::Vector3d nearest =
       space_.middle_F.cwiseMax(bounds.low.cast<double>()).cwiseMin(bounds.high.cast<double>());
-  if ((nearest - space_.middle_F).norm() > space_.reach + kMostClearance) return;
+  if ((nearest - space_.middle_F).norm() > space_.reach + kMaxClearance) return;
   items_.push_back(item);
   bounds_.push_back(bounds);
 }
@@ -99,7 +99,7 @@ void CrowdBuilder::build(std::span<const PointCloud> clouds, int first_id) {
     leaves.push_back(bounds_[static_cast<std::size_t>(i)]);
   }
   out_.crowd.build(leaves);
-  add_clouds(clouds, space_.R_WF[0], space_.middle_F, space_.reach + kMostClearance, first_id,
+  add_clouds(clouds, space_.R_WF[0], space_.middle_F, space_.reach + kMaxClearance, first_id,
              out_);
   if (!items_.empty() || !out_.point_ids.empty()) build_grid();
 }

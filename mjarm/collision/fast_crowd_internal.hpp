@@ -14,10 +14,10 @@ struct CrowdSpace {
   Eigen::Vector3d middle_F;               ///< [m] in frame 0
   double reach = 0;                       ///< [m] from there
   double least_radius = 0;                ///< [m] of any sphere that moves
-  std::size_t most_cubes = 0;             ///< that fill one mesh
+  std::size_t max_cubes = 0;             ///< that fill one mesh
 };
 
-/// Collects what goes into trees; what is out of reach by more than kMostClearance is left out.
+/// Collects what goes into trees; what is out of reach by more than kMaxClearance is left out.
 class CrowdBuilder {
  public:
   CrowdBuilder(const CrowdSpace& space, FastWorld& out) : space_(space), out_(out) {}

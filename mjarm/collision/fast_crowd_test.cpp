@@ -81,13 +81,13 @@ TEST(FastCrowd, NothingIsFreeInsideOfASolidMesh) {
     const double thick = round % 2 == 0 ? 0.03 : 0.09;
     for (int k = 0; k < 500; ++k) {
       const JointVec q = testing::random_q(arm, rng);
-      const double truth = testing::true_clearance(arm, set, world, view(q));
+      const double truth = testing::true_clearance(arm, set, world, as_span(q));
       if (truth <= 0) {
         ++inside;
-        ASSERT_FALSE(checker.is_free(view(q)));
-        ASSERT_LT(checker.clearance(view(q)).distance, 1e-4);
+        ASSERT_FALSE(checker.is_free(as_span(q)));
+        ASSERT_LT(checker.clearance(as_span(q)).distance, 1e-4);
       } else if (truth > thick) {
-        ASSERT_TRUE(checker.is_free(view(q)));
+        ASSERT_TRUE(checker.is_free(as_span(q)));
       }
     }
   }
@@ -113,10 +113,10 @@ TEST(FastCrowd, NoFalseCertificateOfEdges) {
     for (int k = 0; k < 20; ++k) {
       const JointVec q0 = testing::random_q(arm, rng);
       const JointVec q1 = q0 + rng.uniform(0.02, 0.5) * (testing::random_q(arm, rng) - q0);
-      const EdgeResult result = check_edge(checker, view(q0), view(q1));
+      const EdgeResult result = check_edge(checker, as_span(q0), as_span(q1));
       const auto clearance = [&](double t) {
         const JointVec q = q0 + t * (q1 - q0);
-        return testing::true_clearance(arm, set, world, view(q));
+        return testing::true_clearance(arm, set, world, as_span(q));
       };
       if (result.verdict == EdgeVerdict::hit) {
         ++hit;
@@ -142,8 +142,8 @@ TEST(FastCrowd, NearestObstacleIsNamed) {
     const auto checker = FastChecker::make(robot, world, kLevels[round % 3]).value();
     for (int i = 0; i < 40; ++i) {
       const JointVec q = testing::random_q(arm, rng);
-      const SphereClearance found = checker.clearance(view(q));
-      const double truth = testing::true_clearance(arm, set, world, view(q), true);
+      const SphereClearance found = checker.clearance(as_span(q));
+      const double truth = testing::true_clearance(arm, set, world, as_span(q), true);
       if (truth < 0 || truth > 0.9) continue;
       EXPECT_NEAR(found.distance, truth, 1e-4);
       const auto index = static_cast<std::size_t>(found.obstacle);
@@ -153,7 +153,7 @@ TEST(FastCrowd, NearestObstacleIsNamed) {
       } else {
         one.clouds = {world.clouds.at(index - world.solids.size())};
       }
-      EXPECT_NEAR(testing::true_clearance(arm, set, one, view(q), true), truth, 1e-4);
+      EXPECT_NEAR(testing::true_clearance(arm, set, one, as_span(q), true), truth, 1e-4);
     }
   }
 }
@@ -167,7 +167,7 @@ TEST(FastCrowd, PointsInOnePlaceOrFarAway) {
   const Eigen::Vector3d far(9e3, -9e3, 9e3);
   for (int kind = 0; kind < 4; ++kind) {
     Obstacles world;
-    world.clouds = {{"heap", std::vector<Eigen::Vector3d>(kMostPoints, {0.5, 0.2, 0.4}), 0.05}};
+    world.clouds = {{"heap", std::vector<Eigen::Vector3d>(kMaxPoints, {0.5, 0.2, 0.4}), 0.05}};
     std::vector<Eigen::Vector3d>& points = world.clouds[0].points_W;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (kind == 1) points[i].x() += 1e-6 * static_cast<double>(i);
@@ -179,9 +179,9 @@ TEST(FastCrowd, PointsInOnePlaceOrFarAway) {
     if (kind == 0 || kind == 2) few.clouds[0].points_W = {{0.5, 0.2, 0.4}, far};
     for (int i = 0; i < (kind == 1 ? 5 : 200); ++i) {
       const JointVec q = testing::random_q(arm, rng);
-      const double truth = testing::true_clearance(arm, set, few, view(q));
+      const double truth = testing::true_clearance(arm, set, few, as_span(q));
       if (std::abs(truth) < 4e-4) continue;
-      EXPECT_EQ(checker.is_free(view(q)), truth > 0) << kind;
+      EXPECT_EQ(checker.is_free(as_span(q)), truth > 0) << kind;
     }
   }
 }

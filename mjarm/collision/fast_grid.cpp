@@ -8,9 +8,9 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMostApart = 15;      // cells; distances are cut off there
+constexpr int kMaxApart = 15;      // cells; distances are cut off there
 constexpr int kCountsPerCell = 16;  // unit of the distances
-constexpr int kLeastSide = 24, kMostSide = 64;
+constexpr int kLeastSide = 24, kMaxSide = 64;
 
 int squared(int x) { return x * x; }
 
@@ -19,14 +19,14 @@ int apart2(int cells) { return squared(std::max(std::abs(cells) - 1, 0)); }
 
 /// Squared distances to the nearest mark of the same row.
 void look_along_row(const std::uint8_t* marks, std::size_t side, std::uint16_t* out) {
-  int far = kMostApart + 1;
+  int far = kMaxApart + 1;
   for (std::size_t x = 0; x < side; ++x) {
-    far = marks[x] != 0 ? 0 : std::min(far + 1, kMostApart + 1);
+    far = marks[x] != 0 ? 0 : std::min(far + 1, kMaxApart + 1);
     out[x] = static_cast<std::uint16_t>(apart2(far));
   }
-  far = kMostApart + 1;
+  far = kMaxApart + 1;
   for (std::size_t x = side; x-- > 0;) {
-    far = marks[x] != 0 ? 0 : std::min(far + 1, kMostApart + 1);
+    far = marks[x] != 0 ? 0 : std::min(far + 1, kMaxApart + 1);
     out[x] = std::min(out[x], static_cast<std::uint16_t>(apart2(far)));
   }
 }
@@ -41,8 +41,8 @@ void look_across_rows(const std::vector<std::uint16_t>& from, std::size_t side, 
   for (std::size_t row = 0; row < side * side; ++row) {
     const int at = static_cast<int>(place(row));
     std::uint16_t* const out = &to[row * side];
-    for (int k = std::max(-kMostApart, -at);
-         k <= std::min(kMostApart, static_cast<int>(side) - 1 - at); ++k) {
+    for (int k = std::max(-kMaxApart, -at);
+         k <= std::min(kMaxApart, static_cast<int>(side) - 1 - at); ++k) {
       const std::uint16_t* const in = from.data() + (static_cast<std::ptrdiff_t>(row) +
                                                      k * static_cast<std::ptrdiff_t>(stride)) *
                                                         static_cast<std::ptrdiff_t>(side);
@@ -56,8 +56,8 @@ void look_across_rows(const std::vector<std::uint16_t>& from, std::size_t side, 
 }
 
 /// Roots of squared distances in counts, rounded down.
-std::array<std::uint8_t, kMostApart * kMostApart + 1> root_table() {
-  std::array<std::uint8_t, kMostApart * kMostApart + 1> out;
+std::array<std::uint8_t, kMaxApart * kMaxApart + 1> root_table() {
+  std::array<std::uint8_t, kMaxApart * kMaxApart + 1> out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = static_cast<std::uint8_t>(kCountsPerCell * std::sqrt(static_cast<double>(i)));
   }
@@ -68,7 +68,7 @@ std::array<std::uint8_t, kMostApart * kMostApart + 1> root_table() {
 
 FastGridCells::FastGridCells(const Eigen::Vector3d& middle, double reach, std::size_t leaves) {
   const double side = 12 * std::pow(static_cast<double>(leaves), 0.15);
-  side_ = static_cast<std::size_t>(std::clamp(static_cast<int>(side), kLeastSide, kMostSide));
+  side_ = static_cast<std::size_t>(std::clamp(static_cast<int>(side), kLeastSide, kMaxSide));
   // One cell of margin on each side.
   size_ = std::max(2 * reach, 1e-3) / static_cast<double>(side_ - 2);
   low_ = middle - Eigen::Vector3d::Constant(0.5 * size_ * static_cast<double>(side_));
@@ -94,7 +94,7 @@ FastGridCells::Range FastGridCells::cells_of(const FastBounds& bounds) const {
 
 void FastGridCells::finish(double lack) {
   std::vector<std::uint16_t> one(side_ * side_ * side_), other;
-  if (work_ <= kMostGridWork) {
+  if (work_ <= kMaxGridWork) {
     for (std::size_t row = 0; row < side_ * side_; ++row) {
       look_along_row(&cells_[row * side_], side_, &one[row * side_]);
     }

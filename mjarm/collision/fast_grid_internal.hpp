@@ -53,7 +53,7 @@ class FastGridCells {
 };
 
 /// Cells that all marks together may look at.
-inline constexpr std::int64_t kMostGridWork = 4'000'000;
+inline constexpr std::int64_t kMaxGridWork = 4'000'000;
 
 template <class Meets>
 void FastGridCells::mark(const FastBounds& bounds, const Meets& meets) {
@@ -61,7 +61,7 @@ void FastGridCells::mark(const FastBounds& bounds, const Meets& meets) {
   std::int64_t count = 1;
   for (int k = 0; k < 3; ++k) count *= range.last[k] - range.first[k] + 1;
   work_ += count;
-  if (work_ > kMostGridWork) return;
+  if (work_ > kMaxGridWork) return;
   for (int z = range.first[2]; z <= range.last[2]; ++z) {
     for (int y = range.first[1]; y <= range.last[1]; ++y) {
       for (int x = range.first[0]; x <= range.last[0]; ++x) {

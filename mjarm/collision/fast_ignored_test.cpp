@@ -48,8 +48,8 @@ TEST(IgnoredPairs, AreLeftOutOfEveryCheck) {
     const double padding = 2 * robot.padding();
     for (int k = 0; k < 100; ++k) {
       const JointVec q = testing::random_q(arm, rng);
-      const double clearance = clearance_link_by_link(arm, set, world, view(q));
-      const bool free = checker.is_free(view(q));
+      const double clearance = clearance_link_by_link(arm, set, world, as_span(q));
+      const bool free = checker.is_free(as_span(q));
       if (clearance < 0) {
         EXPECT_FALSE(free);
       }
@@ -57,14 +57,14 @@ TEST(IgnoredPairs, AreLeftOutOfEveryCheck) {
         EXPECT_TRUE(free);
       }
       (free ? free_count : hit) += 1;
-      const SphereClearance found = checker.clearance(view(q));
+      const SphereClearance found = checker.clearance(as_span(q));
       EXPECT_LE(found.distance, std::max(clearance, 0.0) + 1e-6);
       EXPECT_GE(found.distance, std::min(clearance, 0.99) - padding - 1e-5);
       const IgnoredPair pair{found.link, found.obstacle};
       EXPECT_EQ(std::count(world.ignored.begin(), world.ignored.end(), pair), 0);
       const JointVec goal = q + JointVec::Constant(arm.dof(), 0.01);
       if (clearance > 0.2 &&
-          check_edge(checker, view(q), view(goal)).verdict == EdgeVerdict::free) {
+          check_edge(checker, as_span(q), as_span(goal)).verdict == EdgeVerdict::free) {
         ++edges;
       }
     }

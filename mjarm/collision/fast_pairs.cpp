@@ -11,17 +11,17 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMostProved = 3;    // joints between two links; for more the search is too large
-constexpr int kMostBoxes = 1000;  // of one search
+constexpr int kMaxProved = 3;    // joints between two links; for more the search is too large
+constexpr int kMaxBoxes = 1000;  // of one search
 constexpr double kSpare = 1e-5;   // [m] by which spheres that never meet keep apart at least
 
-using Joints = std::array<double, kMostProved>;
+using Joints = std::array<double, kMaxProved>;
 
 class MeetingSearch {
  public:
   MeetingSearch(const Arm& arm, const LinkChain& chain, int a, int b)
       : chain_(chain), a_(a), b_(b) {
-    for (int k = a; k < b && k < a + kMostProved; ++k) {
+    for (int k = a; k < b && k < a + kMaxProved; ++k) {
       const auto i = static_cast<std::size_t>(k - a);
       const FastLimits limits = fast_limits(arm, k);
       middle_[i] = 0.5 * (limits.upper + limits.lower);
@@ -33,7 +33,7 @@ class MeetingSearch {
   /// `levers` are those of the one on body b.
   bool may_meet(const Eigen::Vector3d& center_a, const Eigen::Vector3d& center_b,
                 const std::array<double, kMaxDof>& levers, double reach) {
-    if (b_ - a_ > kMostProved) return true;
+    if (b_ - a_ > kMaxProved) return true;
     for (int k = a_; k < b_; ++k) {
       levers_[static_cast<std::size_t>(k - a_)] = levers[static_cast<std::size_t>(k)] + 1e-6;
     }
@@ -44,7 +44,7 @@ class MeetingSearch {
  private:
   bool search(const Eigen::Vector3d& center_a, const Eigen::Vector3d& center_b, double reach,
               const Joints& middle, const Joints& half) {
-    if (++boxes_ > kMostBoxes) return true;
+    if (++boxes_ > kMaxBoxes) return true;
     const double gap = (place(center_b, middle) - center_a).norm() - reach;
     if (gap <= 0) return true;
     double slack = 0;

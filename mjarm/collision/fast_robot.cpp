@@ -16,10 +16,10 @@ using detail::FastRobotData;
 using detail::FastSphere;
 using detail::Tilt;
 
-static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMostSpheres);
+static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMaxSpheres);
 
 constexpr double kNothing = 1e-9;          // [m], [rad] counts as 0; the padding knows
-constexpr std::ptrdiff_t kMostOfPart = 8;  // spheres; more are cut in two
+constexpr std::ptrdiff_t kMaxOfPart = 8;  // spheres; more are cut in two
 
 FastJoint fast_joint(const Arm& arm, const LinkChain& chain, int i) {
   const Link& link = chain.links[i];
@@ -77,7 +77,7 @@ std::vector<Sphere> only_spheres(std::span<const LinkSphere> from) {
 
 /// Cuts spheres across where they spread most until few are left in each part.
 void add_parts(FastRobotData& data, std::span<LinkSphere> from, double padding) {
-  if (std::ssize(from) > kMostOfPart) {
+  if (std::ssize(from) > kMaxOfPart) {
     Eigen::Vector3d low = from.front().sphere.center, high = low;
     for (const LinkSphere& one : from) {
       low = low.cwiseMin(one.sphere.center);

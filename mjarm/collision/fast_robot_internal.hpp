@@ -14,7 +14,7 @@ namespace mjarm::detail {
 /// [rad or m] how far outside of the limits a configuration still counts.
 inline constexpr double kLimitSlack = 2e-4;
 /// [m] clearances are reported up to here.
-inline constexpr double kMostClearance = 1;
+inline constexpr double kMaxClearance = 1;
 
 /// What a group can do, in double precision.
 struct GroupBounds {

@@ -10,8 +10,8 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMostCuts = 7;
-constexpr std::int64_t kMostFillWork = 5'000'000;  // triangles looked at before the last cut
+constexpr int kMaxCuts = 7;
+constexpr std::int64_t kMaxFillWork = 5'000'000;  // triangles looked at before the last cut
 const double kRoot3 = std::sqrt(3.0);
 
 /// A cell and the faces that may meet it.
@@ -40,8 +40,8 @@ class Filler {
   }
 
   SolidFill run() {
-    for (int cut = 0; cut < kMostCuts && work_ < kMostFillWork && !cells_.empty() &&
-                      out_.cubes.size() + 8 * cells_.size() <= space_.most_cubes &&
+    for (int cut = 0; cut < kMaxCuts && work_ < kMaxFillWork && !cells_.empty() &&
+                      out_.cubes.size() + 8 * cells_.size() <= space_.max_cubes &&
                       2 * kRoot3 * half_ > space_.least_radius;
          ++cut) {
       half_ *= 0.5;

@@ -11,7 +11,7 @@ namespace mjarm::detail {
 
 inline constexpr int kFastJoints = 16;  ///< most joints (kMaxDof)
 inline constexpr int kFastGroups = kFastJoints + 1;
-inline constexpr int kFastSpheres = 512;  ///< most spheres (kMostSpheres)
+inline constexpr int kFastSpheres = 512;  ///< most spheres (kMaxSpheres)
 /// Most pairs of groups, each with itself included.
 inline constexpr int kFastPairs = kFastGroups * (kFastGroups + 1) / 2;
 
@@ -288,9 +288,9 @@ struct FastKernels {
   /// moves by at most (lever * rate), summed over the joints; each joint also turns what those
   /// after it do. What the joints before the first that counts do moves both links of a pair alike.
   void (*bound_motion)(const FastRates&, const FastLevers&, float* speed, float* bend);
-  /// Lower bounds of the distance, up to `most`; with `together` only of the lane where it is
+  /// Lower bounds of the distance, up to `max`; with `together` only of the lane where it is
   /// least.
-  void (*clearances)(const FastRobotTables&, const FastWorldTables&, const float* q, float most,
+  void (*clearances)(const FastRobotTables&, const FastWorldTables&, const float* q, float max,
                      bool together, FastNearest* out);
 };
 extern const FastKernels kFastBaseline;

@@ -78,12 +78,12 @@ std::vector<int> curve_order(std::span<const Eigen::Vector3f> places) {
     low = low.cwiseMin(place);
     high = high.cwiseMax(place);
   }
-  const float most = (1 << kCurveBits) - 1;
-  const float scale = most / std::max((high - low).maxCoeff(), 1e-30F);
+  const float max = (1 << kCurveBits) - 1;
+  const float scale = max / std::max((high - low).maxCoeff(), 1e-30F);
   std::vector<PlaceKey> keys(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     // Rounding may take the highest place a little too far.
-    const Eigen::Array3f at = ((places[i] - low) * scale).array().min(most);
+    const Eigen::Array3f at = ((places[i] - low) * scale).array().min(max);
     const auto bits = [&](int k) { return spread_bits(static_cast<std::uint32_t>(at[k])) << k; };
     keys[i] = {bits(0) | bits(1) | bits(2), static_cast<int>(i)};
   }

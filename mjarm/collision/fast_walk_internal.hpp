@@ -171,10 +171,10 @@ void walk_nearest(const FastTree& tree, const Point& p, const Limit& limit2, con
     for (int from = 0; from < kFan; from += kWidth) {
       store(gaps2 + from, squared_gaps(tree.nodes[now.level][now.node], from, p));
     }
-    const float most = limit2();
+    const float max = limit2();
     const int first = count;
     for (int c = 0; c < kFan; ++c) {
-      if (gaps2[c] >= most) continue;
+      if (gaps2[c] >= max) continue;
       int at = count++;
       for (; at > first && open[at - 1].gap2 < gaps2[c]; --at) open[at] = open[at - 1];
       open[at] = {now.level - 1, now.node * kFan + c, gaps2[c]};

@@ -9,10 +9,10 @@ namespace mjarm::detail {
 namespace {
 
 constexpr double kSameTurn = 1e-7;           // [rad] two orientations that count as one
-constexpr std::size_t kMostCompared = 64;    // orientations that a new one is compared with
-constexpr std::size_t kMostListed = 64;      // solids; more go into a tree
-constexpr int kMostOfList = 64;              // of a list: bits of a word
-constexpr std::size_t kMostCubes = 400'000;  // that fill solid meshes
+constexpr std::size_t kMaxCompared = 64;    // orientations that a new one is compared with
+constexpr std::size_t kMaxListed = 64;      // solids; more go into a tree
+constexpr int kMaxOfList = 64;              // of a list: bits of a word
+constexpr std::size_t kMaxCubes = 400'000;  // that fill solid meshes
 constexpr double kFloat = 0x1p-24;           // relative rounding error
 constexpr double kEverywhere = 1e9;          // [m]
 
@@ -41,7 +41,7 @@ struct Placed {
 struct Near {
   int frame = -1;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  double most = 0;  // [m] boxes are cut down to this
+  double max = 0;  // [m] boxes are cut down to this
 };
 
 /// Index of the entry of `v` that is 1 or -1 while the others vanish; -1 where there is none.
@@ -53,7 +53,7 @@ int lone_axis(const Eigen::Vector3d& v) {
   return rest.norm() < kSameTurn ? static_cast<int>(largest) : -1;
 }
 
-static_assert(kMostObstacles + kMostPieces + kMostCubes <= 1'000'000, "kFan^kFastLevels leaves");
+static_assert(kMaxObstacles + kMaxPieces + kMaxCubes <= 1'000'000, "kFan^kFastLevels leaves");
 
 class WorldBuilder {
  public:
@@ -73,7 +73,7 @@ class WorldBuilder {
     write_frames();
     const GroupBounds all = everyone();
     build_crowd(all, obstacles);
-    out_.tables.every_list = add_lists(all, kMostClearance, {});
+    out_.tables.every_list = add_lists(all, kMaxClearance, {});
     for (std::size_t g = 0; g < robot_.bounds.size(); ++g) {
       const bool moves = robot_.groups[g].body > 0;
       out_.lists_of_group.push_back(moves ? add_lists(robot_.bounds[g], 0, links_of(g))
@@ -141,7 +141,7 @@ class WorldBuilder {
   int frame_for(const Obstacle& solid) {
     const bool box = std::holds_alternative<BoxShape>(solid.shape) ||
                      std::holds_alternative<HeightFieldShape>(solid.shape);
-    for (std::size_t f = 0; f < std::min(frames_.size(), kMostCompared); ++f) {
+    for (std::size_t f = 0; f < std::min(frames_.size(), kMaxCompared); ++f) {
       const Eigen::Matrix3d R = frames_[f].transpose() * solid.X_WO.R;
       if (lone_axis(R.col(2)) >= 0 && (!box || lone_axis(R.col(0)) >= 0)) {
         return static_cast<int>(f);
@@ -219,10 +219,10 @@ class WorldBuilder {
 
   /// What is in lists stays in placed_.
   void build_crowd(const GroupBounds& all, const Obstacles& obstacles) {
-    const bool is_crowd = placed_.size() > kMostListed;
+    const bool is_crowd = placed_.size() > kMaxListed;
     if (!is_crowd && loose_.empty() && obstacles.clouds.empty()) return;
     const CrowdSpace space{frames_, frames_[0].transpose() * all.reach_center_W, all.reach,
-                           least_radius(), kMostCubes / std::max<std::size_t>(loose_.size(), 1)};
+                           least_radius(), kMaxCubes / std::max<std::size_t>(loose_.size(), 1)};
     CrowdBuilder crowd(space, out_);
     std::erase_if(placed_, [&](const Placed& placed) {
       if (!(is_crowd || placed.piece) || placed.endless) return false;
@@ -288,11 +288,11 @@ class WorldBuilder {
     for (const Placed& placed : placed_) {
       if (ignored_by_all(links, placed.id)) continue;
       if (placed.frame != near.frame) near = near_in(bounds, placed.frame);
-      const double most = bounds.reach + margin + 1e-4 + placed.round;
-      if (placed.apart(near.middle).squaredNorm() > most * most) continue;
+      const double max = bounds.reach + margin + 1e-4 + placed.round;
+      if (placed.apart(near.middle).squaredNorm() > max * max) continue;
       const int lists = static_cast<int>(out_.lists.size());
       if (lists == first || out_.lists.back().frame != placed.frame ||
-          out_.lists.back().boxes.count == kMostOfList) {
+          out_.lists.back().boxes.count == kMaxOfList) {
         start_list(placed.frame);
       }
       add(near, placed);
@@ -302,7 +302,7 @@ class WorldBuilder {
 
   Near near_in(const GroupBounds& bounds, int frame) const {
     return {frame, frames_[static_cast<std::size_t>(frame)].transpose() * bounds.reach_center_W,
-            bounds.reach + 2 * kMostClearance};
+            bounds.reach + 2 * kMaxClearance};
   }
 
   void start_list(int frame) {
@@ -331,7 +331,7 @@ class WorldBuilder {
   void add_box(const Near& near, const Placed& placed) {
     FastBox box = placed.box;
     for (int k = 0; k < 3 && placed.kind == Kind::box; ++k) {
-      const double low = near.middle[k] - near.most, high = near.middle[k] + near.most;
+      const double low = near.middle[k] - near.max, high = near.middle[k] + near.max;
       if (placed.low[k] < low) box.low[k] = round_down(low);
       if (placed.high[k] > high) box.high[k] = round_up(high);
     }

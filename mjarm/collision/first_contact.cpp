@@ -11,7 +11,7 @@ namespace mjarm {
 
 Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker, std::span<const double> q0,
                                                  std::span<const double> q1, double step) {
-  constexpr double kMostSteps = 1e8;
+  constexpr double kMaxSteps = 1e8;
   // The ends are looked at first of all: a wrong size or number shows here.
   for (const std::span<const double> end : {q0, q1}) {
     if (const auto report = checker.check(end); !report) return fail(report.error());
@@ -19,7 +19,7 @@ Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker, std::spa
   double squares = 0;
   for (std::size_t i = 0; i < q0.size(); ++i) squares += (q1[i] - q0[i]) * (q1[i] - q0[i]);
   const double pieces = std::max(std::ceil(std::sqrt(squares) / step), 1.0);
-  if (!(step > 0) || !(pieces <= kMostSteps)) {
+  if (!(step > 0) || !(pieces <= kMaxSteps)) {
     return fail(Errc::bad_input, text(msg::collision_walk_step, step));
   }
   std::vector<double> q(q0.size());

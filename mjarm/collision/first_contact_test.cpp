@@ -89,8 +89,8 @@ TEST(EdgeContact, AgreesWithVerifyEdge) {
     for (int k = 0; k < 5; ++k) {
       const JointVec q0 = testing::random_q(arm, rng);
       const JointVec q1 = q0 + rng.uniform(0, 0.5) * (testing::random_q(arm, rng) - q0);
-      const VerifyResult ours = verify_edge(arm, set, world, view(q0), view(q1)).value();
-      const auto theirs = first_contact(checker, view(q0), view(q1), 0.01);
+      const VerifyResult ours = verify_edge(arm, set, world, as_span(q0), as_span(q1)).value();
+      const auto theirs = first_contact(checker, as_span(q0), as_span(q1), 0.01);
       ASSERT_TRUE(theirs.has_value());
       ++count[static_cast<std::size_t>(ours.verdict)];
       if (!theirs->has_value()) continue;

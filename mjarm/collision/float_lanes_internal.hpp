@@ -12,11 +12,11 @@
 /// width has its own namespace, so that the copies of a kernel never meet.
 namespace mjarm::detail {
 
-/// Largest error of sine_cosine() below, for |x| <= kMostAngle: the reduced angle is right to 3e-8
+/// Largest error of sine_cosine() below, for |x| <= kMaxAngle: the reduced angle is right to 3e-8
 /// (three parts of pi/2, the first of 8 and the second of 11 bits, so that their products with the
 /// number of quarters are exact), Taylor's tails are below 3e-8, and what is left are roundings.
 inline constexpr double kTrigError = 3e-7;
-inline constexpr double kMostAngle = 100;  ///< [rad]
+inline constexpr double kMaxAngle = 100;  ///< [rad]
 
 #if defined(__AVX512F__)
 #define MJARM_FLOAT_LANES float_lanes_avx512
@@ -146,7 +146,7 @@ inline Ints gather(const std::uint8_t* from, Ints index) {
 }
 #endif
 
-/// Sine and cosine for |x| <= kMostAngle, to kTrigError: the argument is reduced to a quarter turn
+/// Sine and cosine for |x| <= kMaxAngle, to kTrigError: the argument is reduced to a quarter turn
 /// by three parts of pi/2 (W. J. Cody and W. Waite, 1980), then Taylor's series.
 inline void sine_cosine(Floats x, Floats& s, Floats& c) {
   constexpr float kMagic = 12582912.0F;  // 1.5 * 2^23: adding it rounds to a whole number

@@ -108,8 +108,8 @@ InsideTest::Crossing InsideTest::crossing(const std::array<int, 3>& face,
     const double height = (u * a.z() + v * b.z() + w * c.z()) / sum;
     return height > p.z() ? Crossing::one : Crossing::none;
   }
-  const double least = std::min({u, v, w}), most = std::max({u, v, w});
-  const bool near_edge = least >= -1e-14 * size || most <= 1e-14 * size;
+  const double least = std::min({u, v, w}), max = std::max({u, v, w});
+  const bool near_edge = least >= -1e-14 * size || max <= 1e-14 * size;
   return near_edge && std::max({a.z(), b.z(), c.z()}) > p.z() ? Crossing::unclear : Crossing::none;
 }
 

@@ -11,7 +11,7 @@ namespace mjarm {
 namespace {
 
 constexpr double kLeastSize = 1e-9;  // [m]
-constexpr double kMostSize = 1e4;    // [m]
+constexpr double kMaxSize = 1e4;    // [m]
 
 /// Distance of `p`, in the frame of the solid.
 struct DistanceTo {
@@ -56,17 +56,17 @@ struct DistanceTo {
   }
 };
 
-bool size_fits(double size) { return size >= kLeastSize && size <= kMostSize; }
+bool size_fits(double size) { return size >= kLeastSize && size <= kMaxSize; }
 
 bool place_fits(const Eigen::Vector3d& p) {
-  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMostSize;
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxSize;
 }
 
 struct SizesFit {
   bool operator()(const BallShape& ball) const { return size_fits(ball.radius); }
   bool operator()(const CapsuleShape& capsule) const {
     return size_fits(capsule.radius) && capsule.half_length >= 0 &&
-           capsule.half_length <= kMostSize;
+           capsule.half_length <= kMaxSize;
   }
   bool operator()(const BoxShape& box) const {
     return size_fits(box.half.x()) && size_fits(box.half.y()) && size_fits(box.half.z());
@@ -91,13 +91,13 @@ struct PartsFit {
   Result<void> operator()(const PolytopeShape& polytope) const {
     const auto fits = [](const Eigen::Vector4d& plane) {
       return plane.allFinite() && std::abs(plane.head<3>().norm() - 1) < 1e-6 &&
-             std::abs(plane.w()) <= 2 * kMostSize;
+             std::abs(plane.w()) <= 2 * kMaxSize;
     };
     const auto& planes = polytope.planes;
     if (!place_fits(polytope.low) || !place_fits(polytope.high) ||
         (polytope.low.array() > polytope.high.array()).any() || planes.empty() ||
-        planes.size() > kMostPlanes || !std::all_of(planes.begin(), planes.end(), fits)) {
-      return fail(Errc::bad_input, text(msg::collision_polytope, i, name, kMostPlanes));
+        planes.size() > kMaxPlanes || !std::all_of(planes.begin(), planes.end(), fits)) {
+      return fail(Errc::bad_input, text(msg::collision_polytope, i, name, kMaxPlanes));
     }
     return {};
   }
@@ -123,11 +123,11 @@ struct PartsFit {
   }
   Result<void> operator()(const HeightFieldShape& field) const {
     const auto fits = [&](double height) {
-      return std::isfinite(height) && std::abs(height) <= kMostSize && height > field.bottom;
+      return std::isfinite(height) && std::abs(height) <= kMaxSize && height > field.bottom;
     };
     const auto& heights = field.heights;
     const auto bad = std::find_if_not(heights.begin(), heights.end(), fits);
-    if (field.rows < 2 || field.cols < 2 || !(std::abs(field.bottom) <= kMostSize) ||
+    if (field.rows < 2 || field.cols < 2 || !(std::abs(field.bottom) <= kMaxSize) ||
         heights.size() / static_cast<std::size_t>(field.cols) !=
             static_cast<std::size_t>(field.rows) ||
         heights.size() % static_cast<std::size_t>(field.cols) != 0) {
@@ -166,8 +166,8 @@ Result<void> check_clouds(const std::vector<PointCloud>& clouds) {
   for (std::size_t i = 0; i < clouds.size(); ++i) {
     const PointCloud& cloud = clouds[i];
     points += cloud.points_W.size();
-    if (points > kMostPoints) {
-      return fail(Errc::bad_input, text(msg::collision_many_points, i, cloud.name, kMostPoints));
+    if (points > kMaxPoints) {
+      return fail(Errc::bad_input, text(msg::collision_many_points, i, cloud.name, kMaxPoints));
     }
     if (!size_fits(cloud.radius)) {
       return fail(Errc::bad_input, text(msg::collision_cloud_radius, i, cloud.name));
@@ -205,8 +205,8 @@ const std::string& obstacle_name(const Obstacles& obstacles, int index) noexcept
 Result<void> check_obstacles(const Obstacles& obstacles, int links) {
   const std::vector<Obstacle>& solids = obstacles.solids;
   const std::size_t count = solids.size() + obstacles.clouds.size();
-  if (count > kMostObstacles) {
-    return fail(Errc::bad_input, text(msg::collision_many_obstacles, count, kMostObstacles));
+  if (count > kMaxObstacles) {
+    return fail(Errc::bad_input, text(msg::collision_many_obstacles, count, kMaxObstacles));
   }
   std::size_t pieces = 0;
   for (std::size_t i = 0; i < solids.size(); ++i) {
@@ -222,8 +222,8 @@ Result<void> check_obstacles(const Obstacles& obstacles, int links) {
       return fail(Errc::bad_input, text(msg::collision_obstacle_size, i, obstacle.name));
     }
     pieces += std::visit(CountPieces{}, obstacle.shape);
-    if (pieces > kMostPieces) {
-      return fail(Errc::bad_input, text(msg::collision_many_pieces, i, obstacle.name, kMostPieces));
+    if (pieces > kMaxPieces) {
+      return fail(Errc::bad_input, text(msg::collision_many_pieces, i, obstacle.name, kMaxPieces));
     }
     const Result<void> fine = std::visit(PartsFit{i, obstacle.name}, obstacle.shape);
     if (!fine) return fine;

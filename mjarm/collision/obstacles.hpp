@@ -31,7 +31,7 @@ struct CylinderShape {
 struct HalfSpaceShape {};  ///< all points with z <= 0
 /// A convex solid: the points that are below every plane. See make_polytope().
 struct PolytopeShape {
-  /// (n, d): n . p <= d [m], n of length 1; 1 to kMostPlanes
+  /// (n, d): n . p <= d [m], n of length 1; 1 to kMaxPlanes
   std::vector<Eigen::Vector4d> planes{};
   /// [m] box round it, with sides along the axes; cuts off what the planes leave open
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = Eigen::Vector3d::Zero();
@@ -88,10 +88,10 @@ struct Obstacles {
 
 /// Most obstacles that a checker takes, most faces, planes and cells of all of them together, most
 /// planes of one, and most points of all clouds together.
-inline constexpr std::size_t kMostObstacles = 200'000;
-inline constexpr std::size_t kMostPieces = 200'000;
-inline constexpr std::size_t kMostPlanes = 256;
-inline constexpr std::size_t kMostPoints = 100'000;
+inline constexpr std::size_t kMaxObstacles = 200'000;
+inline constexpr std::size_t kMaxPieces = 200'000;
+inline constexpr std::size_t kMaxPlanes = 256;
+inline constexpr std::size_t kMaxPoints = 100'000;
 
 /// The solid as few planes round points, each of which touches one of them: the faces of their
 /// convex hull, planes along its edges, and some in all directions. The solid holds all points.

@@ -75,7 +75,7 @@ TEST(Obstacles, PolytopesHoldTheirPointsAndAreTight) {
       points.push_back(half.cwiseProduct(testing::random_vector(rng, 0.5)));
     }
     const PolytopeShape shape = make_polytope(points).value();
-    EXPECT_LE(shape.planes.size(), kMostPlanes);
+    EXPECT_LE(shape.planes.size(), kMaxPlanes);
     const Obstacle solid{"", {}, shape};
     for (const Eigen::Vector3d& point : points) EXPECT_LT(distance(solid, point), 1e-12);
     for (int k = 0; k < 20; ++k) {
@@ -154,7 +154,7 @@ TEST(Obstacles, WhatIsRefused) {
   EXPECT_NE(fault_of({"it", {{0, 0, 0}, -I}, BallShape{1}}), "");
   EXPECT_NE(fault_of({"it", {{0, 0, 0}, 1.1 * I}, BallShape{1}}), "");
   Obstacles many;
-  many.solids.resize(kMostObstacles + 1, {"it", {}, BallShape{1}});
+  many.solids.resize(kMaxObstacles + 1, {"it", {}, BallShape{1}});
   EXPECT_FALSE(check_obstacles(many).has_value());
 }
 
@@ -170,7 +170,7 @@ TEST(Obstacles, WhatIsRefusedOfComposites) {
     EXPECT_NE(fault_of({"it", {}, mesh}).find("face 1"), std::string::npos);
   }
   mesh = triangle;
-  mesh.faces.resize(kMostPieces, mesh.faces[0]);
+  mesh.faces.resize(kMaxPieces, mesh.faces[0]);
   EXPECT_NE(fault_of({"it", {}, mesh}), "");  // with the obstacle before it
   mesh.faces.clear();
   EXPECT_NE(fault_of({"it", {}, mesh}), "");
@@ -210,7 +210,7 @@ TEST(Obstacles, WhatIsRefusedOfComposites) {
   PolytopeShape open = cube;
   open.planes.clear();
   EXPECT_NE(fault_of({"it", {}, open}), "");
-  open.planes.resize(kMostPlanes + 1, cube.planes[0]);
+  open.planes.resize(kMaxPlanes + 1, cube.planes[0]);
   EXPECT_NE(fault_of({"it", {}, open}), "");
 }
 
@@ -235,8 +235,8 @@ TEST(Obstacles, WhatIsRefusedOfClouds) {
               std::string::npos)
         << bad;
   }
-  EXPECT_EQ(fault_of(PointCloud{"it", std::vector<Eigen::Vector3d>(kMostPoints - 1), 0.1}), "");
-  EXPECT_NE(fault_of(PointCloud{"it", std::vector<Eigen::Vector3d>(kMostPoints), 0.1}), "");
+  EXPECT_EQ(fault_of(PointCloud{"it", std::vector<Eigen::Vector3d>(kMaxPoints - 1), 0.1}), "");
+  EXPECT_NE(fault_of(PointCloud{"it", std::vector<Eigen::Vector3d>(kMaxPoints), 0.1}), "");
 }
 
 TEST(SphereSet, BoundingSphereHoldsAllAndIsTight) {
@@ -284,12 +284,12 @@ TEST(SphereSet, WhatIsRefused) {
     EXPECT_NE(fault(set), "");
   }
   SphereSet paired = good;
-  paired.pairs.resize(kMostSpherePairs + 1, good.pairs[0]);
+  paired.pairs.resize(kMaxSpherePairs + 1, good.pairs[0]);
   EXPECT_NE(fault(paired), "");
   paired.pairs.pop_back();
   EXPECT_EQ(fault(paired), "");
   SphereSet many = good;
-  many.links[0].spheres.resize(kMostSpheres, good.links[0].spheres[0]);
+  many.links[0].spheres.resize(kMaxSpheres, good.links[0].spheres[0]);
   EXPECT_NE(fault(many), "");
 }
 

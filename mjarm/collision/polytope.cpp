@@ -12,8 +12,8 @@
 namespace mjarm {
 namespace {
 
-constexpr std::size_t kMostHullPoints = 10'000;
-constexpr double kMostExtent = 1e4;      // [m]
+constexpr std::size_t kMaxHullPoints = 10'000;
+constexpr double kMaxExtent = 1e4;      // [m]
 constexpr double kEdgeStep = 0.35;       // [rad] between planes round an edge
 constexpr double kSameNormal = 1e-3;     // [rad] two planes that count as one
 constexpr std::size_t kFacePlanes = 80;  // at most
@@ -120,7 +120,7 @@ class PlaneList {
   }
 
   void add(const Eigen::Vector3d& n, double angle = kSameNormal) {
-    if (planes_.size() >= kMostPlanes || !is_new(n, angle)) return;
+    if (planes_.size() >= kMaxPlanes || !is_new(n, angle)) return;
     double d = n.dot(points_.front());
     for (const Eigen::Vector3d& p : points_) d = std::max(d, n.dot(p));
     planes_.push_back({n.x(), n.y(), n.z(), d});
@@ -187,12 +187,12 @@ void add_all_round(PlaneList& planes) {
 
 Result<PolytopeShape> make_polytope(std::span<const Eigen::Vector3d> points) {
   const auto fits = [](const Eigen::Vector3d& p) {
-    return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMostExtent;
+    return p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxExtent;
   };
-  if (points.empty() || points.size() > kMostHullPoints ||
+  if (points.empty() || points.size() > kMaxHullPoints ||
       !std::all_of(points.begin(), points.end(), fits)) {
     return fail(Errc::bad_input,
-                text(msg::collision_polytope_points, points.size(), kMostHullPoints));
+                text(msg::collision_polytope_points, points.size(), kMaxHullPoints));
   }
   std::vector<Eigen::Vector3d> corners(points.begin(), points.end());
   std::vector<HullFace> faces = Hull(corners).faces();

@@ -76,15 +76,15 @@ void SetCover::drop_neighbours(int count) {
   }
   drop(first);
   for (int k = 0; k < count && !chosen_.empty(); ++k) {
-    double most = -1;
+    double max = -1;
     std::size_t which = 0;
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
       const std::vector<int>& set = sets_[static_cast<std::size_t>(chosen_[i])];
       const auto shared = std::count_if(set.begin(), set.end(),
                                         [&](int e) { return marked[static_cast<std::size_t>(e)]; });
       const double weight = static_cast<double>(shared + 1) * rng_.uniform();
-      if (weight <= most) continue;
-      most = weight;
+      if (weight <= max) continue;
+      max = weight;
       which = i;
     }
     drop(which);

@@ -29,8 +29,8 @@ TEST(SphereModel, CollidesWhereTheOracleSaysSo) {
     ExactChecker checker(made->model, made->arm, {.margin = 0});
     for (int k = 0; k < 30; ++k) {
       const JointVec q = testing::random_q(arm, rng);
-      const double truth = testing::true_clearance(arm, set, world, view(q), true);
-      const auto report = checker.check(view(q));
+      const double truth = testing::true_clearance(arm, set, world, as_span(q), true);
+      const auto report = checker.check(as_span(q));
       ASSERT_TRUE(report.has_value());
       if (std::abs(truth) > 1e-9) {
         ASSERT_EQ(report->free, truth > 0) << "round " << round << ", clearance " << truth;

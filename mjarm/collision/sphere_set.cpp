@@ -9,12 +9,12 @@ namespace mjarm {
 namespace {
 
 constexpr double kLeastRadius = 1e-6;  // [m]
-constexpr double kMostRadius = 10;     // [m]
-constexpr double kMostOffset = 100;    // [m]
+constexpr double kMaxRadius = 10;     // [m]
+constexpr double kMaxOffset = 100;    // [m]
 
 bool is_usable(const Sphere& sphere) {
-  return sphere.center.allFinite() && sphere.center.cwiseAbs().maxCoeff() <= kMostOffset &&
-         sphere.radius >= kLeastRadius && sphere.radius <= kMostRadius;
+  return sphere.center.allFinite() && sphere.center.cwiseAbs().maxCoeff() <= kMaxOffset &&
+         sphere.radius >= kLeastRadius && sphere.radius <= kMaxRadius;
 }
 
 double reach_from(const Eigen::Vector3d& center, const Sphere& sphere) {
@@ -53,9 +53,9 @@ Sphere bounding_sphere(std::span<const Sphere> spheres) {
 }
 
 Result<void> check_sphere_set(const SphereSet& set, const Arm& arm) {
-  if (set.links.empty() || set.links.size() > kMostSphereLinks || set.size() > kMostSpheres) {
-    return fail(Errc::bad_input, text(msg::collision_sphere_count, set.size(), kMostSpheres,
-                                      set.links.size(), kMostSphereLinks));
+  if (set.links.empty() || set.links.size() > kMaxSphereLinks || set.size() > kMaxSpheres) {
+    return fail(Errc::bad_input, text(msg::collision_sphere_count, set.size(), kMaxSpheres,
+                                      set.links.size(), kMaxSphereLinks));
   }
   for (const LinkSpheres& link : set.links) {
     if (link.joint < -1 || link.joint >= arm.dof()) {
@@ -66,9 +66,9 @@ Result<void> check_sphere_set(const SphereSet& set, const Arm& arm) {
       return fail(Errc::bad_input, text(msg::collision_link_spheres, link.name));
     }
   }
-  if (set.pairs.size() > kMostSpherePairs) {
+  if (set.pairs.size() > kMaxSpherePairs) {
     return fail(Errc::bad_input,
-                text(msg::collision_many_pairs, set.pairs.size(), kMostSpherePairs));
+                text(msg::collision_many_pairs, set.pairs.size(), kMaxSpherePairs));
   }
   const auto is_link = [&](int i) { return i >= 0 && i < static_cast<int>(set.links.size()); };
   for (const auto& [a, b] : set.pairs) {

@@ -36,9 +36,9 @@ struct SphereSet {
 };
 
 /// Most spheres of a set, links and pairs of links in it.
-inline constexpr std::size_t kMostSpheres = 512;
-inline constexpr std::size_t kMostSphereLinks = 128;
-inline constexpr std::size_t kMostSpherePairs = 1024;
+inline constexpr std::size_t kMaxSpheres = 512;
+inline constexpr std::size_t kMaxSphereLinks = 128;
+inline constexpr std::size_t kMaxSpherePairs = 1024;
 
 /// A ball that contains all of `spheres` (not empty), at most a few percent larger than the least.
 [[nodiscard]] Sphere bounding_sphere(std::span<const Sphere> spheres);

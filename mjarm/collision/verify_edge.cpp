@@ -95,7 +95,7 @@ class EdgeMarch {
         nearest = result_of(VerifyVerdict::free, watch, watch.until, now);
       }
       if (now.overlaps) return result_of(VerifyVerdict::hit, watch, watch.until, now);
-      if (looks == options_.most_looks) {
+      if (looks == options_.max_looks) {
         return result_of(VerifyVerdict::undecided, watch, watch.until, now);
       }
       const double next = watch.until + kShare * now.step;
@@ -282,7 +282,7 @@ Result<void> check_request(const Arm& arm, std::span<const double> q0, std::span
   }
   const auto fits = [](double value) { return value >= 0 && std::isfinite(value); };
   if (!fits(options.allow_depth) || !fits(options.limit_slack) || !fits(options.least_step) ||
-      options.least_step == 0 || options.most_looks < 1) {
+      options.least_step == 0 || options.max_looks < 1) {
     return fail(Errc::bad_input, text(msg::collision_verify_options));
   }
   return {};

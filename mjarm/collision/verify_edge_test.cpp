@@ -104,7 +104,7 @@ TEST(VerifyEdge, AgreesWithDenseSamples) {
     for (int k = 0; k < 10; ++k) {
       const JointVec q0 = testing::random_q(scene.arm, rng);
       const JointVec q1 = q0 + rng.uniform(0, 0.5) * (testing::random_q(scene.arm, rng) - q0);
-      compare_with_samples(scene, view(q0), view(q1), 100, tally);
+      compare_with_samples(scene, as_span(q0), as_span(q1), 100, tally);
       if (::testing::Test::HasFatalFailure()) return;
     }
   }
@@ -129,9 +129,9 @@ TEST(VerifyEdge, AgreesWithDenseSamplesInCrowds) {
       const JointVec q0 = testing::random_q(scene.arm, rng);
       const JointVec q1 = q0 + rng.uniform(0, 0.5) * (testing::random_q(scene.arm, rng) - q0);
       const int free = tally.free;
-      compare_with_samples(scene, view(q0), view(q1), 50, tally);
+      compare_with_samples(scene, as_span(q0), as_span(q1), 50, tally);
       if (::testing::Test::HasFatalFailure()) return;
-      if (check_edge(checker, view(q0), view(q1)).verdict != EdgeVerdict::free) continue;
+      if (check_edge(checker, as_span(q0), as_span(q1)).verdict != EdgeVerdict::free) continue;
       ++certified;
       proved += tally.free - free;
     }
@@ -156,14 +156,14 @@ TEST(VerifyEdge, ProvesEveryCertifiedEdgeAmongPlatesAndWires) {
     for (int k = 0; k < 20; ++k) {
       const JointVec q0 = testing::random_q(scene.arm, rng);
       const JointVec q1 = q0 + rng.uniform(0.02, 1) * (testing::random_q(scene.arm, rng) - q0);
-      if (check_edge(checker, view(q0), view(q1)).verdict != EdgeVerdict::free) continue;
-      const VerifyResult result = verify(scene, view(q0), view(q1));
+      if (check_edge(checker, as_span(q0), as_span(q1)).verdict != EdgeVerdict::free) continue;
+      const VerifyResult result = verify(scene, as_span(q0), as_span(q1));
       ASSERT_EQ(result.verdict, VerifyVerdict::free)
           << "edge " << certified << ": clearance " << result.distance << " at t " << result.t;
       if (++certified % testing::rounds(4, 1) != 0) continue;
-      const int samples = samples_of(view(q0), view(q1), 1e-3);
+      const int samples = samples_of(as_span(q0), as_span(q1), 1e-3);
       ASSERT_GT(
-          testing::least_clearance(scene.arm, scene.set, scene.world, view(q0), view(q1), samples),
+          testing::least_clearance(scene.arm, scene.set, scene.world, as_span(q0), as_span(q1), samples),
           0)
           << "false certificate";
     }
@@ -183,13 +183,13 @@ TEST(VerifyEdge, ProvesCertifiedEdgesOfThePublicProblems) {
     for (int k = 0; k < 8; ++k) {
       const JointVec q0 = joint_vec(problem.start);
       const JointVec q1 = q0 + rng.uniform(0.05, 1) * (testing::random_q(all.arm, rng) - q0);
-      if (check_edge(checker, view(q0), view(q1)).verdict != EdgeVerdict::free) continue;
+      if (check_edge(checker, as_span(q0), as_span(q1)).verdict != EdgeVerdict::free) continue;
       ++certified;
-      const auto result = verify_edge(all.arm, all.set, problem.obstacles, view(q0), view(q1));
+      const auto result = verify_edge(all.arm, all.set, problem.obstacles, as_span(q0), as_span(q1));
       ASSERT_TRUE(result.has_value());
       ASSERT_EQ(result->verdict, VerifyVerdict::free) << problem.id << " at t " << result->t;
       ASSERT_GE(result->distance, testing::least_clearance(all.arm, all.set, problem.obstacles,
-                                                           view(q0), view(q1), 100) -
+                                                           as_span(q0), as_span(q1), 100) -
                                       0.01);
     }
   }
@@ -210,7 +210,7 @@ TEST(VerifyEdge, FindsAPlateBetweenTwoSamples) {
     const double t = rng.uniform(0.01, 0.99);
     const auto center_at = [&](double s) {
       std::vector<Pose> X_WJ(static_cast<std::size_t>(scene.arm.dof()));
-      fk_all(scene.arm, testing::on_edge(view(q0), view(q1), s), X_WJ);
+      fk_all(scene.arm, testing::on_edge(as_span(q0), as_span(q1), s), X_WJ);
       return Eigen::Vector3d(X_WJ.back() * scene.set.links[0].spheres[0].center);
     };
     Obstacle plate{"plate", {center_at(t), {}}, BoxShape{{0.05, 0.05, 5e-5}}};
@@ -219,15 +219,15 @@ TEST(VerifyEdge, FindsAPlateBetweenTwoSamples) {
     plate.X_WO.R =
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
     scene.world.solids = {plate};
-    const VerifyResult result = verify(scene, view(q0), view(q1));
+    const VerifyResult result = verify(scene, as_span(q0), as_span(q1));
     ASSERT_EQ(result.verdict, VerifyVerdict::hit) << "round " << round;
     ASSERT_LE(result.t, t + 1e-9);
     const double found =
-        clearance_of(scene, result, testing::on_edge(view(q0), view(q1), result.t));
+        clearance_of(scene, result, testing::on_edge(as_span(q0), as_span(q1), result.t));
     ASSERT_LT(found, 0);
     ASSERT_NEAR(found, result.distance, 1e-10);
-    const int samples = samples_of(view(q0), view(q1), 0.005);
-    missed += testing::least_clearance(scene.arm, scene.set, scene.world, view(q0), view(q1),
+    const int samples = samples_of(as_span(q0), as_span(q1), 0.005);
+    missed += testing::least_clearance(scene.arm, scene.set, scene.world, as_span(q0), as_span(q1),
                                        samples) > 0;
   }
   EXPECT_GT(missed, rounds / 2);
@@ -320,7 +320,7 @@ TEST(VerifyEdge, GivesUpWhereItsLooksAreUsedUp) {
   scene.arm = testing::make_arm("wheel", {{{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, -2, 2}}, Pose());
   scene.set.links[0].spheres[0].center = {0, 0, -0.899};
   EXPECT_EQ(verify(scene, q0, q1).verdict, VerifyVerdict::free);
-  EXPECT_EQ(verify(scene, q0, q1, {.most_looks = 1}).verdict, VerifyVerdict::undecided);
+  EXPECT_EQ(verify(scene, q0, q1, {.max_looks = 1}).verdict, VerifyVerdict::undecided);
 }
 
 TEST(VerifyEdge, WhatItRefuses) {
@@ -337,7 +337,7 @@ TEST(VerifyEdge, WhatItRefuses) {
   EXPECT_TRUE(refused(good, q, {.allow_depth = -1}));
   EXPECT_TRUE(refused(good, q, {.limit_slack = std::nan("")}));
   EXPECT_TRUE(refused(good, q, {.least_step = 0}));
-  EXPECT_TRUE(refused(good, q, {.most_looks = 0}));
+  EXPECT_TRUE(refused(good, q, {.max_looks = 0}));
   Scene bad = good;
   bad.set.links[0].joint = 3;
   EXPECT_TRUE(refused(bad, q));

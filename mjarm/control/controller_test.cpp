@@ -39,7 +39,7 @@ double worst_tracking_error(const Loaded& robot, ControlMode mode) {
 JointVec static_error(const Loaded& robot, ControlMode mode) {
   Controller controller = controller_of(robot, mode);
   World world(robot, robot.arm.home);
-  for (int i = 0; i < 3000; ++i) world.step(controller, hold(view(robot.arm.home)));
+  for (int i = 0; i < 3000; ++i) world.step(controller, hold(as_span(robot.arm.home)));
   return robot.arm.home - world.q();
 }
 
@@ -50,8 +50,8 @@ TEST(StepReference, SecondDifferenceIsWhatSemiImplicitEulerNeeds) {
   const double v = reference.velocity(h)[0] + h * reference.acceleration(h)[0];
   EXPECT_NEAR(reference.now[0] + h * v, 1.5, 1e-14);
   const JointVec q = JointVec::Constant(3, 0.7);
-  EXPECT_EQ(hold(view(q)).velocity(h), JointVec::Zero(3));
-  EXPECT_EQ(hold(view(q)).acceleration(h), JointVec::Zero(3));
+  EXPECT_EQ(hold(as_span(q)).velocity(h), JointVec::Zero(3));
+  EXPECT_EQ(hold(as_span(q)).acceleration(h), JointVec::Zero(3));
 }
 
 TEST(Controller, ComputedTorqueTracksToRounding) {
@@ -86,7 +86,7 @@ TEST(Controller, ComputedTorqueComesBackFromAnErrorWithoutOvershoot) {
   Controller controller = controller_of(robot, ControlMode::computed_torque);
   World world(robot, robot.arm.home + JointVec::Constant(6, 0.02));
   for (int i = 0; i < 250; ++i) {
-    world.step(controller, hold(view(robot.arm.home)));
+    world.step(controller, hold(as_span(robot.arm.home)));
     EXPECT_GT((world.q() - robot.arm.home).minCoeff(), -1e-4) << "step " << i;
   }
   EXPECT_LT((world.q() - robot.arm.home).cwiseAbs().maxCoeff(), 1e-4);
@@ -97,9 +97,9 @@ TEST(Controller, SaysWhenALimitCutsTheCommand) {
   for (const ControlMode mode : {ControlMode::servo, ControlMode::computed_torque}) {
     Controller controller = controller_of(robot, mode);
     World world(robot, robot.arm.home);
-    EXPECT_FALSE(world.step(controller, hold(view(robot.arm.home)))) << name(mode);
+    EXPECT_FALSE(world.step(controller, hold(as_span(robot.arm.home)))) << name(mode);
     const JointVec far = robot.arm.home + JointVec::Constant(6, 2.0);
-    EXPECT_TRUE(world.step(controller, hold(view(far)))) << name(mode);
+    EXPECT_TRUE(world.step(controller, hold(as_span(far)))) << name(mode);
   }
 }
 
@@ -113,7 +113,7 @@ TEST(Controller, KnowsTheForceLimitOfTheJointItself) {
   Controller controller = controller_of(robot, ControlMode::computed_torque);
   World world(robot, robot.arm.home);
   const JointVec far = robot.arm.home + JointVec::Constant(3, 0.5);
-  EXPECT_TRUE(world.step(controller, hold(view(far))));
+  EXPECT_TRUE(world.step(controller, hold(as_span(far))));
 }
 
 TEST(Controller, KeepsCtrlWithinItsRangeAndLeavesOthersAlone) {
@@ -123,7 +123,7 @@ TEST(Controller, KeepsCtrlWithinItsRangeAndLeavesOthersAlone) {
   const std::vector<double> qpos(robot.model.qpos0().begin(), robot.model.qpos0().end());
   const std::vector<double> qvel(robot.model.nv(), 0.0);
   const JointVec far = JointVec::Constant(robot.arm.dof(), 50.0);
-  EXPECT_TRUE(controller.command(qpos, qvel, hold(view(far)), ctrl));
+  EXPECT_TRUE(controller.command(qpos, qvel, hold(as_span(far)), ctrl));
   for (const ArmJoint& joint : robot.arm.joints) {
     EXPECT_EQ(ctrl[joint.actuator->id], joint.actuator->ctrl_upper);
   }

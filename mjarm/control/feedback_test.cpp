@@ -66,7 +66,7 @@ TEST(Integral, LeavesNoErrorAtRestAndForgetsWhenAsked) {
   Controller controller = controller_of(robot, ControlMode::computed_torque, kWithIntegral);
   World world(robot, robot.arm.home);
   load(world, robot, 1);
-  const StepReference home = hold(view(robot.arm.home));
+  const StepReference home = hold(as_span(robot.arm.home));
   for (int i = 0; i < 1500; ++i) world.step(controller, home);
   EXPECT_LT((world.q() - robot.arm.home).cwiseAbs().maxCoeff(), 1e-9);
   const std::vector<double> held = world.ctrl();
@@ -86,7 +86,7 @@ double overshoot(double integral) {
   far[0] += 1.5;
   double over = 0;
   for (int i = 0; i < 2500; ++i) {
-    world.step(controller, hold(view(far)));
+    world.step(controller, hold(as_span(far)));
     over = std::max(over, world.q()[0] - far[0]);
   }
   EXPECT_LT((world.q() - far).cwiseAbs().maxCoeff(), 1e-6);
@@ -140,7 +140,7 @@ TEST(FeedForward, FollowsToRoundingAndYieldsLikeTheServo) {
   const JointVec there = swing(robot.arm, 1500 * h);
   const int dof = robot.arm.joints[2].dof;
   world.d().qfrc_applied[dof] = 5;
-  for (int i = 0; i < 4000; ++i) world.step(controller, hold(view(there)));
+  for (int i = 0; i < 4000; ++i) world.step(controller, hold(as_span(there)));
   const double expected = 5 / servo_stiffness(*robot.arm.joints[2].actuator);
   EXPECT_NEAR((world.q() - there)[2], expected, 1e-3 * expected);
 }
@@ -150,7 +150,7 @@ TEST(JointImpedance, FollowsToRoundingAndYieldsLikeItsSprings) {
   Controller controller =
       controller_of(robot, ControlMode::joint_impedance, {.impedance = {.joint_stiffness = 150}});
   World world(robot, robot.arm.home);
-  const StepReference home = hold(view(robot.arm.home));
+  const StepReference home = hold(as_span(robot.arm.home));
   for (int i = 0; i < 500; ++i) world.step(controller, home);
   EXPECT_LT((world.q() - robot.arm.home).cwiseAbs().maxCoeff(), 1e-4);
   for (const ArmJoint& joint : robot.arm.joints) world.d().qfrc_applied[joint.dof] = 3;
@@ -164,19 +164,19 @@ Eigen::Vector3d yield_to(const Loaded& robot, double force, const Impedance& imp
   Controller controller =
       controller_of(robot, ControlMode::tool_impedance, {.impedance = impedance});
   World world(robot, robot.arm.home);
-  const StepReference home = hold(view(robot.arm.home));
-  const Eigen::Vector3d start = fk(robot.arm, view(robot.arm.home)).p;
+  const StepReference home = hold(as_span(robot.arm.home));
+  const Eigen::Vector3d start = fk(robot.arm, as_span(robot.arm.home)).p;
   const int body =
       world.m()
           .jnt_bodyid[mj_name2id(&world.m(), mjOBJ_JOINT, robot.arm.joints.back().name.c_str())];
   for (int i = 0; i < 8000; ++i) {
     mju_zero(world.d().qfrc_applied, static_cast<int>(world.m().nv));
-    const Eigen::Vector3d p = fk(robot.arm, view(world.q())).p, push(force, 0, 0);
+    const Eigen::Vector3d p = fk(robot.arm, as_span(world.q())).p, push(force, 0, 0);
     mj_applyFT(&world.m(), &world.d(), push.data(), nullptr, p.data(), body,
                world.d().qfrc_applied);
     EXPECT_FALSE(world.step(controller, home));
   }
-  return fk(robot.arm, view(world.q())).p - start;
+  return fk(robot.arm, as_span(world.q())).p - start;
 }
 
 TEST(ToolImpedance, YieldsToAForceLikeItsSpring) {
@@ -191,19 +191,19 @@ TEST(ToolImpedance, YieldsToAForceLikeItsSpring) {
 TEST(ToolImpedance, MovesJointsToSpareWithTheToolAtRest) {
   const Loaded robot = load_shipped("panda");
   const IkSolver ik(robot.arm);
-  const Pose X = fk(robot.arm, view(robot.arm.home));
+  const Pose X = fk(robot.arm, as_span(robot.arm.home));
   JointVec posture = robot.arm.home;
   posture[0] += 0.4;
   const auto other =
-      settle(ik, X, view(robot.arm.home), {.goal = PostureGoal::near_posture, .posture = posture});
+      null_space_step(ik, X, as_span(robot.arm.home), {.goal = PostureGoal::near_posture, .posture = posture});
   ASSERT_TRUE(other.has_value());
   ASSERT_GT((other->q - robot.arm.home).norm(), 0.1);
   Controller controller = controller_of(robot, ControlMode::tool_impedance);
   World world(robot, robot.arm.home);
   double worst = 0;
   for (int i = 0; i < 6000; ++i) {
-    world.step(controller, hold(view(other->q)));
-    worst = std::max(worst, (fk(robot.arm, view(world.q())).p - X.p).norm());
+    world.step(controller, hold(as_span(other->q)));
+    worst = std::max(worst, (fk(robot.arm, as_span(world.q())).p - X.p).norm());
   }
   EXPECT_LT((world.q() - other->q).cwiseAbs().maxCoeff(), 5e-3);
   EXPECT_LT(worst, 5e-3);

@@ -46,8 +46,8 @@ JointVec joint_spring(const Impedance& impedance, const ImpedanceState& state,
 
 JointVec tool_spring(const Impedance& impedance, const ImpedanceState& state,
                      const Eigen::MatrixXd& mass, const LinkChain& links) {
-  const FkJacobian at = fk_jacobian(links, view(state.q));
-  const Pose wanted = fk(links, view(state.q_ref));
+  const FkJacobian at = fk_jacobian(links, as_span(state.q));
+  const Pose wanted = fk(links, as_span(state.q_ref));
   const Jacobian& J = at.J_W;
   const PerForce per_force = solve_symmetric(mass, J.transpose());  // M^-1 J^T
   const Matrix6 mobility = J * per_force + kLeastMobility * Matrix6::Identity();

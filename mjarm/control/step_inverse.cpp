@@ -57,13 +57,13 @@ JointVec StepInverse::torque(std::span<const double> qpos, std::span<const doubl
 JointVec StepInverse::friction(std::span<const double> qpos, const JointVec& v, const JointVec& a,
                                const JointVec& implicit) {
   JointVec torque = JointVec::Zero(a.size());
-  const auto is_dry = [&](int dof) { return rule_.friction[dof].most > 0; };
+  const auto is_dry = [&](int dof) { return rule_.friction[dof].max > 0; };
   if (std::none_of(dof_.begin(), dof_.end(), is_dry)) return torque;
   // Constraints are solved before the integrator takes its implicit part.
   const JointVec before = a + JointVec(solve_symmetric(mass_matrix(qpos), implicit));
   for (Eigen::Index i = 0; i < a.size(); ++i) {
     const DryFriction& dry = rule_.friction[dof_[i]];
-    torque[i] = std::clamp(dry.mass * (before[i] + dry.damping * v[i]), -dry.most, dry.most);
+    torque[i] = std::clamp(dry.mass * (before[i] + dry.damping * v[i]), -dry.max, dry.max);
   }
   return torque;
 }

@@ -23,7 +23,7 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kM
 }
 
 /// Views a JointVec as a span, so that it passes where plain memory is taken.
-[[nodiscard]] inline std::span<const double> view(const JointVec& q) {
+[[nodiscard]] inline std::span<const double> as_span(const JointVec& q) {
   return {q.data(), static_cast<std::size_t>(q.size())};
 }
 

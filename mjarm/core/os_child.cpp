@@ -50,14 +50,14 @@ std::size_t address_space() {
 }
 
 /// @param slack  how far the limit that cannot be passed lies above the one that is told of first.
-void limit(__rlimit_resource_t resource, std::size_t most, std::size_t slack = 0) {
+void limit(__rlimit_resource_t resource, std::size_t max, std::size_t slack = 0) {
   rlimit old{};
   if (::getrlimit(resource, &old) != 0) return;
   // Never above what this process may have itself.
   const auto at_most = [&](std::size_t value) {
     return old.rlim_max == RLIM_INFINITY ? value : std::min<rlim_t>(value, old.rlim_max);
   };
-  const rlimit now{at_most(most), at_most(most + slack)};
+  const rlimit now{at_most(max), at_most(max + slack)};
   ::setrlimit(resource, &now);
 }
 
@@ -179,7 +179,7 @@ class Listener {
 
 }  // namespace
 
-void ChildVoice::say(std::string_view words) const noexcept {
+void ChildVoice::send(std::string_view words) const noexcept {
   while (!words.empty()) {
     const ssize_t count = ::write(pipe_, words.data(), words.size());
     if (count < 0 && errno == EINTR) continue;
@@ -202,7 +202,7 @@ Result<ChildResult> run_in_child(const std::function<void(const ChildVoice&)>& w
     try {
       const ChildVoice voice(pipe[1]);
       work(voice);
-      voice.say({&kEnd, 1});
+      voice.send({&kEnd, 1});
     } catch (...) {
       ::_exit(EXIT_FAILURE);
     }

@@ -37,7 +37,7 @@ class ChildVoice {
  public:
   explicit ChildVoice(int pipe) : pipe_(pipe) {}
   /// Sends `words` at once.
-  void say(std::string_view words) const noexcept;
+  void send(std::string_view words) const noexcept;
 
  private:
   int pipe_;

@@ -45,10 +45,10 @@ class Descriptor {
 
 /// The end of what a file holds.
 std::string end_of(int file) {
-  constexpr off_t kMost = 64 << 10;
+  constexpr off_t kMax = 64 << 10;
   const off_t size = ::lseek(file, 0, SEEK_END);
   if (size <= 0) return {};
-  std::string words(static_cast<std::size_t>(std::min(size, kMost)), '\0');
+  std::string words(static_cast<std::size_t>(std::min(size, kMax)), '\0');
   const off_t from = size - static_cast<off_t>(words.size());
   const ssize_t count = ::pread(file, words.data(), words.size(), from);
   words.resize(count < 0 ? 0 : static_cast<std::size_t>(count));

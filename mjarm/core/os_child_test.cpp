@@ -20,7 +20,7 @@ using support::kSanitized;
 
 TEST(Child, SaysAnything) {
   const std::string words = std::string(3'000'000, 'x') + '\0' + "\x04 end";
-  const auto result = run_in_child([&](const ChildVoice& voice) { voice.say(words); });
+  const auto result = run_in_child([&](const ChildVoice& voice) { voice.send(words); });
   ASSERT_TRUE(result) << result.error().what;
   EXPECT_EQ(result->end, ChildEnd::done);
   EXPECT_EQ(result->said, words);
@@ -29,7 +29,7 @@ TEST(Child, SaysAnything) {
 TEST(Child, TellsHowFarItCameBeforeItCrashed) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGKILL}) {
     const auto result = run_in_child([&](const ChildVoice& voice) {
-      voice.say("half");
+      voice.send("half");
       ::kill(::getpid(), signal);
     });
     ASSERT_TRUE(result);
@@ -71,9 +71,9 @@ TEST(Child, MemoryIsBounded) {
       [](const ChildVoice& voice) {
         try {
           const std::vector<char> much(std::size_t{1} << 28);
-          voice.say("got it");
+          voice.send("got it");
         } catch (const std::bad_alloc&) {
-          voice.say("refused");
+          voice.send("refused");
         }
       },
       {.memory = std::size_t{1} << 26});
@@ -84,7 +84,7 @@ TEST(Child, MemoryIsBounded) {
 TEST(Child, SaysNoMoreThanItMay) {
   const auto result = run_in_child(
       [](const ChildVoice& voice) {
-        for (int i = 0; i < 1000; ++i) voice.say(std::string(10'000, 'x'));
+        for (int i = 0; i < 1000; ++i) voice.send(std::string(10'000, 'x'));
       },
       {.answer = 100'000});
   ASSERT_TRUE(result);
@@ -102,7 +102,7 @@ TEST(Child, WritesNoFileAndIsSilent) {
     ::signal(SIGXFSZ, SIG_IGN);
     std::ofstream file(folder.path() / "stray");
     file << "words" << std::flush;
-    voice.say(file ? "written" : "refused");
+    voice.send(file ? "written" : "refused");
   });
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
@@ -117,7 +117,7 @@ TEST(Child, ManyThreadsMayHaveSome) {
     threads.emplace_back([&right, i] {
       for (int n = 0; n < 20; ++n) {
         const std::string words(static_cast<std::size_t>(10'000 * i + n), 'x');
-        const auto result = run_in_child([&](const ChildVoice& voice) { voice.say(words); });
+        const auto result = run_in_child([&](const ChildVoice& voice) { voice.send(words); });
         right[i] += result && result->end == ChildEnd::done && result->said == words ? 1 : 0;
       }
     });
@@ -128,7 +128,7 @@ TEST(Child, ManyThreadsMayHaveSome) {
 
 TEST(Child, WorksWhereTheHostIgnoresTheEndOfProcesses) {
   const auto before = std::signal(SIGCHLD, SIG_IGN);
-  const auto result = run_in_child([](const ChildVoice& voice) { voice.say("here"); });
+  const auto result = run_in_child([](const ChildVoice& voice) { voice.send("here"); });
   std::signal(SIGCHLD, before);
   ASSERT_TRUE(result);
   EXPECT_EQ(result->end, ChildEnd::done);

@@ -16,4 +16,10 @@ namespace mjarm {
 [[nodiscard]] Result<int> run_program(const std::filesystem::path& program,
                                       const std::vector<std::string>& arguments);
 
+/// Goes on as another program with these arguments, in the place of this one.
+/// @param program  path.
+/// @return only where it cannot be started: why.
+[[nodiscard]] Error become_program(const std::filesystem::path& program,
+                                   const std::vector<std::string>& arguments);
+
 }  // namespace mjarm

@@ -57,8 +57,8 @@ std::string list(std::span<const Unit> units) {
 
 /// What of `words` a message shows: all of it, or its beginning.
 std::string shown(std::string_view words) {
-  constexpr std::size_t kMost = 40;
-  return words.size() <= kMost ? std::string(words) : std::string(words.substr(0, kMost)) + "...";
+  constexpr std::size_t kMax = 40;
+  return words.size() <= kMax ? std::string(words) : std::string(words.substr(0, kMax)) + "...";
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ AxisChain::AxisChain(const Arm& arm) {
     }
   }
   std::vector<Pose> X_WJ(arm.joints.size());
-  X_WT = fk_all(arm, view(q), X_WJ);
+  X_WT = fk_all(arm, as_span(q), X_WJ);
   double open_slack = 0;
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];

@@ -74,7 +74,7 @@ BranchChoice::Placed BranchChoice::place(const double* row, double bound) const 
 IkSolution BranchChoice::measure(const double* q) const noexcept {
   IkSolution out;
   out.q = Eigen::Map<const Eigen::VectorXd>(q, chain_.dof);
-  const Pose X_WT = fk(ik_.links(), view(out.q));
+  const Pose X_WT = fk(ik_.links(), as_span(out.q));
   out.pos_err = (X_WT.p - goal_.X_WT.p).norm();
   out.rot_err = angle_between_frames(X_WT.R, goal_.X_WT.R);
   return out;

@@ -65,7 +65,7 @@ class BranchChoice {
     return nearness(solution.q.data(), goal_.seed.data(), chain_.dof).largest <= options_.max_step;
   }
   [[nodiscard]] bool is_accepted(const JointVec& q) const noexcept {
-    return !options_.valid || options_.valid(view(q));
+    return !options_.valid || options_.valid(as_span(q));
   }
 
   const IkSolver& ik_;

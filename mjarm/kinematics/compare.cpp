@@ -23,9 +23,9 @@ JointVec random_joints(const Arm& arm, Rng& rng) {
   JointVec q(arm.dof());
   for (int i = 0; i < arm.dof(); ++i) {
     const bool hinge = arm.joints[static_cast<std::size_t>(i)].type == JointType::hinge;
-    const double most = hinge ? std::numbers::pi : 0.5;
-    const double lower = std::isfinite(arm.limits.lower[i]) ? arm.limits.lower[i] : -most;
-    const double upper = std::isfinite(arm.limits.upper[i]) ? arm.limits.upper[i] : most;
+    const double max = hinge ? std::numbers::pi : 0.5;
+    const double lower = std::isfinite(arm.limits.lower[i]) ? arm.limits.lower[i] : -max;
+    const double upper = std::isfinite(arm.limits.upper[i]) ? arm.limits.upper[i] : max;
     q[i] = rng.uniform(lower, std::max(lower, upper));
   }
   return q;
@@ -47,8 +47,8 @@ Worst measure(const Arm& first, const Arm& second, const std::vector<int>& order
     const JointVec q = random_joints(first, rng);
     JointVec p(second.dof());
     for (int i = 0; i < second.dof(); ++i) p[i] = q[order[static_cast<std::size_t>(i)]];
-    const Pose A = fk(first, view(q));
-    const Pose B = fk(second, view(p));
+    const Pose A = fk(first, as_span(q));
+    const Pose B = fk(second, as_span(p));
     if (const double d = (A.p - B.p).norm(); d > worst.position) {
       worst.position = d;
       worst.q_position = q;

@@ -29,7 +29,7 @@ struct ZeroPose {
 
   explicit ZeroPose(const Arm& arm) : X_WJ(arm.joints.size()) {
     const JointVec zero = JointVec::Zero(arm.dof());
-    X_WT = fk_all(arm, view(zero), X_WJ);
+    X_WT = fk_all(arm, as_span(zero), X_WJ);
     for (std::size_t i = 0; i < X_WJ.size(); ++i) {
       screws.push_back(
           {X_WJ[i].p, X_WJ[i].R * arm.joints[i].axis, arm.joints[i].type == JointType::slide});
@@ -203,8 +203,8 @@ Pose fitted_base(const Arm& first, const Arm& second) {
   for (int k = 0; k < kPoses; ++k) {
     JointVec q(first.dof());
     for (double& value : q) value = rng.uniform(-1, 1);
-    A[k] = fk(first, view(q));
-    B[k] = fk(second, view(q));
+    A[k] = fk(first, as_span(q));
+    B[k] = fk(second, as_span(q));
   }
   Matrix3d H = Matrix3d::Zero();
   for (int k = 1; k < kPoses; ++k) {

@@ -16,17 +16,17 @@ namespace mjarm::testing {
 inline int count_solved(const Arm& arm, const IkSolver& ik, int rounds, Rng& rng) {
   int solved = 0;
   for (int i = 0; i < rounds; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
-    const auto answer = ik.solve(X_goal, view(random_q(arm, rng)));
+    const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
+    const auto answer = ik.solve(X_goal, as_span(random_q(arm, rng)));
     if (!answer) {
       std::cout << arm.name << ", pose " << i << ": " << describe(answer.error(), arm) << '\n';
       continue;
     }
     ++solved;
-    const Pose X = fk(arm, view(answer->q));
+    const Pose X = fk(arm, as_span(answer->q));
     EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
     EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
-    EXPECT_TRUE(within_limits(arm, view(answer->q)));
+    EXPECT_TRUE(within_limits(arm, as_span(answer->q)));
   }
   return solved;
 }

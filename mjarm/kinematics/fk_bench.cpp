@@ -24,7 +24,7 @@ void over_random_q(benchmark::State& state, Call call) {
   const std::vector<JointVec> qs = random_qs(arm);
   std::size_t i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(call(arm, view(qs[i])));
+    benchmark::DoNotOptimize(call(arm, as_span(qs[i])));
     i = (i + 1) % qs.size();
   }
 }

@@ -74,15 +74,15 @@ TEST(Fk, JacobianIsTheDerivativeOfThePose) {
   for (int round = 0; round < 200; ++round) {
     const Arm arm = round < 2 ? (round == 0 ? ur5e() : panda()) : random_arm(1 + round % 16, rng);
     const JointVec q = random_q(arm, rng);
-    const Jacobian J = fk_jacobian(arm, view(q)).J_W;
+    const Jacobian J = fk_jacobian(arm, as_span(q)).J_W;
     constexpr double h = 1e-6;
     for (int i = 0; i < arm.dof(); ++i) {
       JointVec above = q;
       JointVec below = q;
       above[i] += h;
       below[i] -= h;
-      const Pose A = fk(arm, view(above));
-      const Pose B = fk(arm, view(below));
+      const Pose A = fk(arm, as_span(above));
+      const Pose B = fk(arm, as_span(below));
       const Eigen::Vector3d linear = (A.p - B.p) / (2 * h);
       const Eigen::Vector3d angular = rotation_log(A.R * B.R.transpose()) / (2 * h);
       EXPECT_LT((J.col(i).head<3>() - linear).norm(), 1e-8);
@@ -96,10 +96,10 @@ TEST(Fk, AllThreePassesAgree) {
   for (int round = 0; round < 200; ++round) {
     const Arm arm = random_arm(1 + round % 16, rng);
     const JointVec q = random_q(arm, rng);
-    const Pose X = fk(arm, view(q));
+    const Pose X = fk(arm, as_span(q));
     std::vector<Pose> X_WJ(arm.joints.size());
-    const Pose X_all = fk_all(arm, view(q), X_WJ);
-    const FkJacobian both = fk_jacobian(arm, view(q));
+    const Pose X_all = fk_all(arm, as_span(q), X_WJ);
+    const FkJacobian both = fk_jacobian(arm, as_span(q));
     const Pose X_last = X_WJ.back() * arm.X_JT;
     for (const Pose& other : {X_all, both.X_WT, X_last}) {
       EXPECT_EQ(other.p, X.p);
@@ -113,7 +113,7 @@ TEST(Fk, SingularValuesMatchEigen) {
   Rng rng(13);
   for (int round = 0; round < 300; ++round) {
     const Arm arm = random_arm(1 + round % 16, rng);
-    const Jacobian J = fk_jacobian(arm, view(random_q(arm, rng))).J_W;
+    const Jacobian J = fk_jacobian(arm, as_span(random_q(arm, rng))).J_W;
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(J)};
     const double product = svd.singularValues().prod();
     EXPECT_NEAR(smallest_singular_value(J), svd.singularValues().tail<1>()[0], 1e-13);
@@ -136,17 +136,17 @@ TEST(Fk, SingularConfigurationsHaveNoManipulability) {
 TEST(Fk, LimitsAreCheckedAndClamped) {
   const Arm arm = panda();
   const JointVec home = arm.home;
-  EXPECT_TRUE(within_limits(arm, view(home)));
-  EXPECT_TRUE(within_limits(arm, view(arm.limits.upper)));
-  EXPECT_FALSE(within_limits(arm, view(arm.limits.upper), 1e-3));
+  EXPECT_TRUE(within_limits(arm, as_span(home)));
+  EXPECT_TRUE(within_limits(arm, as_span(arm.limits.upper)));
+  EXPECT_FALSE(within_limits(arm, as_span(arm.limits.upper), 1e-3));
   JointVec bad = home;
   bad[3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(within_limits(arm, view(bad)));
-  EXPECT_FALSE(within_limits(arm, std::span(view(home)).first(6)));
+  EXPECT_FALSE(within_limits(arm, as_span(bad)));
+  EXPECT_FALSE(within_limits(arm, std::span(as_span(home)).first(6)));
   JointVec far = home;
   far[0] = 9;
   far[3] = -9;
-  const JointVec inside = clamp_to_limits(arm, view(far));
+  const JointVec inside = clamp_to_limits(arm, as_span(far));
   EXPECT_EQ(inside[0], arm.limits.upper[0]);
   EXPECT_EQ(inside[3], arm.limits.lower[3]);
   EXPECT_EQ(inside[1], home[1]);

@@ -57,13 +57,13 @@ void add_samples(const IkSolver& ik, const IkGoal& goal, int starts, Answers& an
     if (!descent.converged) continue;
     const JointVec q = detail::unwind(ik.chain(), descent.q, goal.seed);
     if (answers.knows(q) || distance(q, goal.seed) > options.max_step) continue;
-    if (options.valid && !options.valid(view(q))) continue;
+    if (options.valid && !options.valid(as_span(q))) continue;
     answers.add({q, descent.pos_err, descent.rot_err, descent.iterations, start});
   }
 }
 
-/// Appends `solution` in every winding within the limits, `most` in all.
-void expand(const Chain& chain, const IkSolution& solution, std::size_t most,
+/// Appends `solution` in every winding within the limits, `max` in all.
+void expand(const Chain& chain, const IkSolution& solution, std::size_t max,
             std::vector<IkSolution>& out) {
   std::vector<JointVec> qs{solution.q};
   for (int i = 0; i < chain.dof; ++i) {
@@ -72,9 +72,9 @@ void expand(const Chain& chain, const IkSolution& solution, std::size_t most,
     const double q = solution.q[i];
     const double first = q - kTurn * std::floor((q - chain.lower[k]) / kTurn);
     const std::size_t count = qs.size();
-    for (double other = first; other <= chain.upper[k] && qs.size() < most; other += kTurn) {
+    for (double other = first; other <= chain.upper[k] && qs.size() < max; other += kTurn) {
       if (std::abs(other - q) < 1) continue;  // the winding that is there already
-      for (std::size_t j = 0; j < count && qs.size() < most; ++j) {
+      for (std::size_t j = 0; j < count && qs.size() < max; ++j) {
         qs.push_back(qs[j]);
         qs.back()[i] = other;
       }
@@ -114,17 +114,17 @@ Result<std::vector<IkSolution>, IkFailure> solve_all(const IkSolver& ik, const P
     add_samples(ik, goal, options.starts, answers);
   }
   std::vector<IkSolution> list = std::move(answers.list());
-  const auto most = static_cast<std::size_t>(std::max(options.most, 1));
+  const auto max = static_cast<std::size_t>(std::max(options.max, 1));
   if (options.windings) {
     std::vector<IkSolution> wound;
-    for (const IkSolution& solution : list) expand(ik.chain(), solution, most, wound);
+    for (const IkSolution& solution : list) expand(ik.chain(), solution, max, wound);
     std::erase_if(wound, [&](const IkSolution& solution) {
       return distance(solution.q, goal.seed) > ik.options().max_step;
     });
     list = std::move(wound);
   }
   sort_by_distance(list, goal.seed);
-  if (list.size() > most) list.resize(most);
+  if (list.size() > max) list.resize(max);
   return list;
 }
 

@@ -18,10 +18,10 @@ void expect_sound(const Arm& arm, const Pose& X_goal, const JointVec& seed,
                   const std::vector<IkSolution>& answers) {
   ASSERT_FALSE(answers.empty());
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    const Pose X = fk(arm, view(answers[i].q));
+    const Pose X = fk(arm, as_span(answers[i].q));
     EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
     EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
-    EXPECT_TRUE(within_limits(arm, view(answers[i].q)));
+    EXPECT_TRUE(within_limits(arm, as_span(answers[i].q)));
     if (i > 0) {
       EXPECT_LE(distance(answers[i - 1].q, seed), distance(answers[i].q, seed));
     }
@@ -38,8 +38,8 @@ TEST(IkAll, FindsTheBranchesOfTheUr5e) {
   for (int i = 0; i < 200; ++i) {
     const JointVec q = random_q(arm, rng);
     const JointVec seed = random_q(arm, rng);
-    const Pose X_goal = fk(arm, view(q));
-    const auto answers = solve_all(ik, X_goal, view(seed));
+    const Pose X_goal = fk(arm, as_span(q));
+    const auto answers = solve_all(ik, X_goal, as_span(seed));
     ASSERT_TRUE(answers.has_value());
     expect_sound(arm, X_goal, seed, *answers);
     EXPECT_LE(answers->size(), 8U);
@@ -53,8 +53,8 @@ TEST(IkAll, SamplesARedundantArm) {
   Rng rng(52);
   for (int i = 0; i < 50; ++i) {
     const JointVec seed = random_q(arm, rng);
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
-    const auto answers = solve_all(IkSolver(arm), X_goal, view(seed), {.starts = 30});
+    const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
+    const auto answers = solve_all(IkSolver(arm), X_goal, as_span(seed), {.starts = 30});
     ASSERT_TRUE(answers.has_value());
     expect_sound(arm, X_goal, seed, *answers);
   }
@@ -63,10 +63,10 @@ TEST(IkAll, SamplesARedundantArm) {
 TEST(IkAll, SameInputsSameAnswers) {
   const Arm arm = ur5e();
   Rng rng(53);
-  const Pose X_goal = fk(arm, view(random_q(arm, rng)));
+  const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
   const JointVec seed = random_q(arm, rng);
-  const auto a = solve_all(IkSolver(arm), X_goal, view(seed));
-  const auto b = solve_all(IkSolver(arm), X_goal, view(seed));
+  const auto a = solve_all(IkSolver(arm), X_goal, as_span(seed));
+  const auto b = solve_all(IkSolver(arm), X_goal, as_span(seed));
   ASSERT_TRUE(a && b);
   ASSERT_EQ(a->size(), b->size());
   for (std::size_t i = 0; i < a->size(); ++i) EXPECT_EQ((*a)[i].q, (*b)[i].q);
@@ -77,13 +77,13 @@ TEST(IkAll, PredicateAndReasonsHold) {
   IkOptions options;
   options.valid = [](std::span<const double> q) { return q[2] < 0; };
   const JointVec q = joint_vec(std::vector<double>{0.3, -1.1, 1.3, 0.5, 1.2, 0.2});
-  const auto answers = solve_all(IkSolver(arm, options), fk(arm, view(q)), view(q));
+  const auto answers = solve_all(IkSolver(arm, options), fk(arm, as_span(q)), as_span(q));
   ASSERT_TRUE(answers.has_value());
   for (const IkSolution& answer : *answers) EXPECT_LT(answer.q[2], 0);
-  const auto none = solve_all(IkSolver(arm), {{3, 0, 0}, Eigen::Matrix3d::Identity()}, view(q));
+  const auto none = solve_all(IkSolver(arm), {{3, 0, 0}, Eigen::Matrix3d::Identity()}, as_span(q));
   ASSERT_FALSE(none.has_value());
   EXPECT_EQ(none.error().code, IkErrc::out_of_reach);
-  const auto bad = solve_all(IkSolver(arm), fk(arm, view(q)), {});
+  const auto bad = solve_all(IkSolver(arm), fk(arm, as_span(q)), {});
   ASSERT_FALSE(bad.has_value());
   EXPECT_EQ(bad.error().code, IkErrc::bad_input);
 }

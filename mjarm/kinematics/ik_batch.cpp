@@ -60,8 +60,8 @@ std::vector<Result<IkSolution, IkFailure>> solve_batch(const IkSolver& ik,
   Batch batch(X_WT, q_seed, static_cast<std::size_t>(ik.arm().dof()));
   const unsigned wish = options.threads > 0 ? static_cast<unsigned>(options.threads)
                                             : std::thread::hardware_concurrency();
-  const std::size_t most = (X_WT.size() + kChunk - 1) / kChunk;
-  run_in_threads(static_cast<int>(std::min<std::size_t>(wish, most)), [&](int thread) {
+  const std::size_t max = (X_WT.size() + kChunk - 1) / kChunk;
+  run_in_threads(static_cast<int>(std::min<std::size_t>(wish, max)), [&](int thread) {
     const IkSolver own = ik;
     batch.work(own, [&](std::size_t done) {
       if (thread == 0 && options.progress) options.progress(done);

@@ -21,7 +21,7 @@ Cases cases(const Arm& arm, int n) {
   Rng rng(1);
   Cases out;
   for (int i = 0; i < n; ++i) {
-    out.X_WT.push_back(fk(arm, view(testing::random_q(arm, rng))));
+    out.X_WT.push_back(fk(arm, as_span(testing::random_q(arm, rng))));
     if (i % 10 == 3) out.X_WT.back().p *= 5;
     const JointVec seed = testing::random_q(arm, rng);
     out.q_seed.insert(out.q_seed.end(), seed.begin(), seed.end());
@@ -64,9 +64,9 @@ TEST(IkBatch, OneSeedMayServeAll) {
   const Arm arm = testing::ur5e();
   const IkSolver ik(arm);
   const Cases all = cases(arm, 70);
-  const std::vector<Answer> answers = solve_batch(ik, all.X_WT, view(arm.home));
+  const std::vector<Answer> answers = solve_batch(ik, all.X_WT, as_span(arm.home));
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    expect_same(answers[i], ik.solve(all.X_WT[i], view(arm.home)));
+    expect_same(answers[i], ik.solve(all.X_WT[i], as_span(arm.home)));
   }
 }
 
@@ -80,7 +80,7 @@ TEST(IkBatch, SeedsOfAWrongSizeAreBadInput) {
       EXPECT_EQ(answer.error().code, IkErrc::bad_input);
     }
   }
-  EXPECT_TRUE(solve_batch(ik, {}, view(arm.home)).empty());
+  EXPECT_TRUE(solve_batch(ik, {}, as_span(arm.home)).empty());
 }
 
 TEST(IkBatch, ProgressIsToldToTheEnd) {

@@ -29,7 +29,7 @@ std::vector<Problem> problems(const Arm& arm, double step) {
     const JointVec q = testing::random_q(arm, rng);
     JointVec seed = testing::random_q(arm, rng);
     if (step > 0) seed = q + step * (seed - q).normalized();
-    out.push_back({fk(arm, view(q)), seed});
+    out.push_back({fk(arm, as_span(q)), seed});
   }
   return out;
 }
@@ -46,7 +46,7 @@ void run(benchmark::State& state, double step) {
   double solved = 0;
   for (auto _ : state) {
     const auto start = Clock::now();
-    const auto answer = ik.solve(all[i].X_WT, view(all[i].seed));
+    const auto answer = ik.solve(all[i].X_WT, as_span(all[i].seed));
     us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
     solved += answer.has_value() ? 1 : 0;
     i = (i + 1) % all.size();
@@ -70,13 +70,13 @@ void ik_tracked_path(benchmark::State& state) {
   options.max_step = 0.1;
   const IkSolver ik(arm, options);
   JointVec q = joint_vec(std::vector<double>{-1.57, -1.34, 2.0, -1.3, 1.55, 0});
-  const Pose start = fk(arm, view(q));
+  const Pose start = fk(arm, as_span(q));
   double phase = 0;
   for (auto _ : state) {
     phase += 1e-3;
     Pose X = start;
     X.p += Eigen::Vector3d(0.1 * std::cos(phase) - 0.1, 0.1 * std::sin(phase), 0);
-    const auto answer = ik.solve(X, view(q));
+    const auto answer = ik.solve(X, as_span(q));
     if (!answer) {
       state.SkipWithError("lost the path");
       break;
@@ -92,7 +92,7 @@ void ik_servo_step(benchmark::State& state) {
   const std::vector<Problem> all = problems(arm, 0.02);
   std::size_t i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(tracker.step(all[i].X_WT, view(all[i].seed)));
+    benchmark::DoNotOptimize(tracker.step(all[i].X_WT, as_span(all[i].seed)));
     i = (i + 1) % all.size();
   }
 }
@@ -102,7 +102,7 @@ void ik_out_of_reach(benchmark::State& state) {
   const Arm arm = arm_of(state);
   const IkSolver ik(arm);
   const Pose X_WT{{1.5, 0.3, 0.2}, Eigen::Matrix3d::Identity()};
-  for (auto _ : state) benchmark::DoNotOptimize(ik.solve(X_WT, view(arm.home)));
+  for (auto _ : state) benchmark::DoNotOptimize(ik.solve(X_WT, as_span(arm.home)));
 }
 BENCHMARK(ik_out_of_reach)->Arg(6)->Arg(7);
 
@@ -112,7 +112,7 @@ void ik_all_branches(benchmark::State& state) {
   const std::vector<Problem> all = problems(arm, 0);
   std::size_t i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(solve_all(ik, all[i].X_WT, view(all[i].seed)));
+    benchmark::DoNotOptimize(solve_all(ik, all[i].X_WT, as_span(all[i].seed)));
     i = (i + 1) % all.size();
   }
 }

@@ -15,17 +15,17 @@ void expect_all_solved(const Arm& arm, const std::filesystem::path& file) {
     const Pose X_goal = testing::pose_of(entry);
     const auto answer = ik.solve(X_goal, entry.at("seed").get<std::vector<double>>());
     ASSERT_TRUE(answer.has_value()) << describe(answer.error(), arm);
-    const Pose X = fk(arm, view(answer->q));
+    const Pose X = fk(arm, as_span(answer->q));
     EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
     EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
-    EXPECT_TRUE(within_limits(arm, view(answer->q)));
+    EXPECT_TRUE(within_limits(arm, as_span(answer->q)));
   }
 }
 
 void expect_none_reachable(const Arm& arm, const std::filesystem::path& file) {
   const IkSolver ik(arm);
   for (const auto& entry : support::load_json_lines(file)) {
-    const auto answer = ik.solve(testing::pose_of(entry), view(arm.home));
+    const auto answer = ik.solve(testing::pose_of(entry), as_span(arm.home));
     ASSERT_FALSE(answer.has_value());
     EXPECT_EQ(answer.error().code, IkErrc::out_of_reach);
     EXPECT_GT(answer.error().amount, 0);
@@ -58,7 +58,7 @@ TEST(IkData, TheEllipseCrossesTheCylinderAtPoints37To62) {
   const nlohmann::json poses = support::load_json_lines(file).at(0).at("poses");
   ASSERT_EQ(poses.size(), 200U);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto answer = ik.solve(testing::pose_of(poses[i]), view(seed));
+    const auto answer = ik.solve(testing::pose_of(poses[i]), as_span(seed));
     const bool inside = i >= 37 && i <= 62;
     ASSERT_EQ(answer.has_value(), !inside) << i;
     if (answer) {
@@ -78,7 +78,7 @@ TEST(IkData, TheEllipseFartherOutIsReachable) {
   JointVec seed = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
   const nlohmann::json poses = support::load_json_lines(file).at(0).at("poses");
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto answer = ik.solve(testing::pose_of(poses[i]), view(seed));
+    const auto answer = ik.solve(testing::pose_of(poses[i]), as_span(seed));
     ASSERT_TRUE(answer.has_value()) << i;
     if (i > 0) {
       EXPECT_LT((answer->q - seed).cwiseAbs().maxCoeff(), 0.2) << i;

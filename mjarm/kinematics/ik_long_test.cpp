@@ -49,7 +49,7 @@ TEST_P(IkAtScale, EqualBitsTheSecondTimeAndInABatch) {
     std::vector<Pose> X_WT;
     std::vector<double> seeds;
     for (int i = 0; i < kBlock; ++i) {
-      X_WT.push_back(fk(arm(), view(testing::random_q(arm(), rng))));
+      X_WT.push_back(fk(arm(), as_span(testing::random_q(arm(), rng))));
       if (i % 20 == 3) X_WT.back().p *= rng.uniform(1, 3);
       const JointVec seed = testing::random_q(arm(), rng);
       seeds.insert(seeds.end(), seed.begin(), seed.end());
@@ -70,9 +70,9 @@ TEST_P(IkAtScale, BranchesDifferAndReachThePose) {
   const IkSolver ik = solver();
   const bool quick = ik.six_axis().has_value();
   for (int i = 0; i < kBlock * blocks() / (quick ? 1 : 20); ++i) {
-    const Pose X_goal = fk(arm(), view(testing::random_q(arm(), rng)));
+    const Pose X_goal = fk(arm(), as_span(testing::random_q(arm(), rng)));
     const JointVec seed = testing::random_q(arm(), rng);
-    const auto all = solve_all(ik, X_goal, view(seed), {.starts = 60});
+    const auto all = solve_all(ik, X_goal, as_span(seed), {.starts = 60});
     if (!all && !std::get<1>(GetParam())) continue;  // EveryPoseIsFoundAgain counts these
     ASSERT_TRUE(all.has_value()) << i;
     if (arm().dof() == 6) {
@@ -80,10 +80,10 @@ TEST_P(IkAtScale, BranchesDifferAndReachThePose) {
     }
     for (std::size_t k = 0; k < all->size(); ++k) {
       const JointVec& q = (*all)[k].q;
-      const Pose X = fk(arm(), view(q));
+      const Pose X = fk(arm(), as_span(q));
       EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
       EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
-      EXPECT_TRUE(within_limits(arm(), view(q)));
+      EXPECT_TRUE(within_limits(arm(), as_span(q)));
       for (std::size_t j = 0; j < k; ++j) {
         EXPECT_GE((q - (*all)[j].q).cwiseAbs().maxCoeff(), 1e-3) << i;
       }

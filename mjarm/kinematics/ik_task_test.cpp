@@ -30,18 +30,18 @@ Count count_tasks(const Arm& arm, IkTask task, int rounds, Rng& rng) {
   Count count;
   const IkSolver ik(arm, {.task = task});
   for (int i = 0; i < rounds; ++i) {
-    Pose X_goal = fk(arm, view(random_q(arm, rng)));
+    Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
     const double turn = rng.uniform(-3, 3);
     const bool axis = task == IkTask::axis;
     X_goal.R *= from_euler({axis ? 0 : rng.uniform(-3, 3), axis ? 0 : rng.uniform(-3, 3), turn});
-    const auto answer = ik.solve(X_goal, view(random_q(arm, rng)));
+    const auto answer = ik.solve(X_goal, as_span(random_q(arm, rng)));
     if (!answer) continue;
     ++count.solved;
-    const Pose X = fk(arm, view(answer->q));
+    const Pose X = fk(arm, as_span(answer->q));
     EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
     EXPECT_LT(axis ? angle_between_z(X, X_goal) : 0, 1.01e-7);
     EXPECT_NEAR(answer->rot_err, axis ? angle_between_z(X, X_goal) : 0, 1e-9);
-    EXPECT_TRUE(within_limits(arm, view(answer->q)));
+    EXPECT_TRUE(within_limits(arm, as_span(answer->q)));
     if (angle_between(X.R, X_goal.R) > 0.1) ++count.turned;
   }
   return count;
@@ -92,8 +92,8 @@ TEST(IkTask, FiveJointsAreEnoughForAnAxis) {
   EXPECT_GE(count_tasks(arm, IkTask::axis, 300, rng).solved, 297);
   Pose X_goal = fk(arm, std::vector<double>{0.3, -1, 1.2, 0.4, 0.9});
   X_goal.R *= from_euler({0, 0, 1});
-  EXPECT_TRUE(IkSolver(arm, {.task = IkTask::axis}).solve(X_goal, view(arm.home)).has_value());
-  EXPECT_FALSE(IkSolver(arm).solve(X_goal, view(arm.home)).has_value());
+  EXPECT_TRUE(IkSolver(arm, {.task = IkTask::axis}).solve(X_goal, as_span(arm.home)).has_value());
+  EXPECT_FALSE(IkSolver(arm).solve(X_goal, as_span(arm.home)).has_value());
 }
 
 /// The opposite direction is a full answer's worth away, though both axes are parallel.
@@ -105,14 +105,14 @@ TEST(IkTask, TheOppositeAxisIsNoAnswer) {
   X_goal.R *= from_euler({std::numbers::pi, 0, 0});
   const auto answer = ik.solve(X_goal, q);
   ASSERT_TRUE(answer.has_value());
-  EXPECT_LT(angle_between_z(fk(arm, view(answer->q)), X_goal), 1.01e-7);
+  EXPECT_LT(angle_between_z(fk(arm, as_span(answer->q)), X_goal), 1.01e-7);
 }
 
 TEST(IkTask, FarPositionsAreProvedOutOfReach) {
   const Arm arm = panda();
   for (const IkTask task : {IkTask::position, IkTask::axis}) {
     const IkSolver ik(arm, {.task = task});
-    const auto answer = ik.solve({{0.5, 2, 0.3}, Eigen::Matrix3d::Identity()}, view(arm.home));
+    const auto answer = ik.solve({{0.5, 2, 0.3}, Eigen::Matrix3d::Identity()}, as_span(arm.home));
     ASSERT_FALSE(answer.has_value());
     EXPECT_EQ(answer.error().code, IkErrc::out_of_reach);
     EXPECT_GT(answer.error().amount, 0.5);

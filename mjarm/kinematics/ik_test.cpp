@@ -57,7 +57,7 @@ TEST(Ik, SeedAtTheAnswerIsKept) {
     const IkSolver ik(arm);
     for (int i = 0; i < 500; ++i) {
       const JointVec q = random_q(arm, rng);
-      const auto answer = ik.solve(fk(arm, view(q)), view(q));
+      const auto answer = ik.solve(fk(arm, as_span(q)), as_span(q));
       ASSERT_TRUE(answer.has_value());
       EXPECT_EQ(answer->restarts, 0);
       EXPECT_LT((answer->q - q).cwiseAbs().maxCoeff(), 1e-9);
@@ -72,7 +72,7 @@ TEST(Ik, TakesTheWindingNearestToTheSeed) {
   Rng rng(35);
   for (int i = 0; i < 2000; ++i) {
     const JointVec seed = random_q(arm, rng);
-    const auto answer = ik.solve(fk(arm, view(random_q(arm, rng))), view(seed));
+    const auto answer = ik.solve(fk(arm, as_span(random_q(arm, rng))), as_span(seed));
     ASSERT_TRUE(answer.has_value());
     for (int j = 0; j < 6; ++j) {
       for (const double other : {answer->q[j] - turn, answer->q[j] + turn}) {
@@ -88,12 +88,12 @@ TEST(Ik, SameSeedSameBits) {
   const IkSolver ik(panda());
   const IkSolver copy = ik;
   for (int i = 0; i < 300; ++i) {
-    const Pose X_goal = fk(panda(), view(random_q(panda(), rng)));
+    const Pose X_goal = fk(panda(), as_span(random_q(panda(), rng)));
     const JointVec seed = random_q(panda(), rng);
-    const auto a = ik.solve(X_goal, view(seed));
-    const auto b = ik.solve(X_goal, view(seed));
-    const auto c = copy.solve(X_goal, view(seed));
-    const auto d = IkSolver(panda()).solve(X_goal, view(seed));
+    const auto a = ik.solve(X_goal, as_span(seed));
+    const auto b = ik.solve(X_goal, as_span(seed));
+    const auto c = copy.solve(X_goal, as_span(seed));
+    const auto d = IkSolver(panda()).solve(X_goal, as_span(seed));
     ASSERT_TRUE(a && b && c && d);
     EXPECT_TRUE(testing::same_bits(a->q, b->q) && testing::same_bits(a->q, c->q) &&
                 testing::same_bits(a->q, d->q));
@@ -107,10 +107,10 @@ TEST(Ik, OtherRngSeedOtherRestarts) {
   Rng rng(37);
   int differ = 0;
   for (int i = 0; i < 200; ++i) {
-    const Pose X_goal = fk(panda(), view(random_q(panda(), rng)));
+    const Pose X_goal = fk(panda(), as_span(random_q(panda(), rng)));
     const JointVec seed = random_q(panda(), rng);
-    const auto a = ik.solve(X_goal, view(seed));
-    const auto b = other.solve(X_goal, view(seed));
+    const auto a = ik.solve(X_goal, as_span(seed));
+    const auto b = other.solve(X_goal, as_span(seed));
     ASSERT_TRUE(a && b);
     if (a->restarts > 0 && !testing::same_bits(a->q, b->q)) ++differ;
   }
@@ -128,7 +128,7 @@ TEST(Ik, ThreeJointsReachWhatTheyCan) {
   EXPECT_EQ(count_solved(arm, IkSolver(arm), 500, rng), 500);
   Pose off = fk(arm, std::vector<double>{0.3, 0.5, 0.7});
   off.R = off.R * from_euler({0, 0, 0.4});  // about its own length: no joint can
-  const auto answer = IkSolver(arm).solve(off, view(arm.home));
+  const auto answer = IkSolver(arm).solve(off, as_span(arm.home));
   ASSERT_FALSE(answer.has_value());
   EXPECT_EQ(answer.error().code, IkErrc::no_convergence);
 }
@@ -141,7 +141,7 @@ TEST(Ik, SlidesAreSolved) {
                                      {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, -3, 3}},
                                     {{0, 0, -0.2}, Eigen::Matrix3d::Identity()});
   const Pose X_goal{{0.4, -0.7, 0.3}, from_euler({0, 0, 1.2})};
-  const auto answer = IkSolver(arm).solve(X_goal, view(arm.home));
+  const auto answer = IkSolver(arm).solve(X_goal, as_span(arm.home));
   ASSERT_TRUE(answer.has_value());
   EXPECT_LT((answer->q - JointVec(Eigen::Vector4d(0.4, -0.7, 0.5, 1.2))).norm(), 1e-6);
 }
@@ -154,7 +154,7 @@ TEST(Ik, JointsWithoutStopsAreSolved) {
   Rng rng(39);
   EXPECT_EQ(count_solved(arm, IkSolver(arm), 300, rng), 300);
   const JointVec seed = JointVec::Constant(6, 40);
-  const auto answer = IkSolver(arm).solve(fk(arm, view(random_q(arm, rng))), view(seed));
+  const auto answer = IkSolver(arm).solve(fk(arm, as_span(random_q(arm, rng))), as_span(seed));
   ASSERT_TRUE(answer.has_value());
   EXPECT_LT((answer->q - seed).cwiseAbs().maxCoeff(), std::numbers::pi + 1e-9);
 }
@@ -168,24 +168,24 @@ TEST(IkFailure, JointLimitIsNamed) {
   };
   const Pose X_goal = fk(arm_with(3), std::vector<double>{1.3, 0.4});
   const Arm arm = arm_with(1);
-  const auto answer = IkSolver(arm).solve(X_goal, view(arm.home));
+  const auto answer = IkSolver(arm).solve(X_goal, as_span(arm.home));
   ASSERT_FALSE(answer.has_value());
   EXPECT_EQ(answer.error().code, IkErrc::joint_limit);
   EXPECT_EQ(answer.error().joint, 0);
   EXPECT_NEAR(answer.error().amount, 0.3, 1e-6);
-  EXPECT_TRUE(within_limits(arm, view(answer.error().best.q)));
+  EXPECT_TRUE(within_limits(arm, as_span(answer.error().best.q)));
   EXPECT_NE(describe(answer.error(), arm).find("joint1"), std::string::npos);
 }
 
 TEST(IkFailure, OutOfReachSaysHowFar) {
   const Arm arm = ur5e();
   const auto answer =
-      IkSolver(arm).solve({{2, 0, 0.263}, Eigen::Matrix3d::Identity()}, view(arm.home));
+      IkSolver(arm).solve({{2, 0, 0.263}, Eigen::Matrix3d::Identity()}, as_span(arm.home));
   ASSERT_FALSE(answer.has_value());
   const IkFailure& failure = answer.error();
   EXPECT_EQ(failure.code, IkErrc::out_of_reach);
   EXPECT_NEAR(failure.amount, 2 - failure.bound, 1e-6);
-  EXPECT_TRUE(within_limits(arm, view(failure.best.q)));
+  EXPECT_TRUE(within_limits(arm, as_span(failure.best.q)));
   // The best attempt is stretched towards the goal.
   EXPECT_LT(failure.best.pos_err, 1.3);
   EXPECT_EQ(failure.best.restarts, 0);
@@ -197,7 +197,7 @@ TEST(IkFailure, OutOfReachSaysHowFar) {
 TEST(IkFailure, InnerVoidNamesTheCylinder) {
   const Arm arm = ur5e();
   const auto answer =
-      IkSolver(arm).solve({{0.1, 0.05, 0.7}, Eigen::Matrix3d::Identity()}, view(arm.home));
+      IkSolver(arm).solve({{0.1, 0.05, 0.7}, Eigen::Matrix3d::Identity()}, as_span(arm.home));
   ASSERT_FALSE(answer.has_value());
   EXPECT_EQ(answer.error().code, IkErrc::inner_void);
   EXPECT_NEAR(answer.error().bound, 0.134, 1e-8);
@@ -225,30 +225,30 @@ TEST(IkFailure, BadInputIsRefused) {
     options.restarts = restarts;
     return options;
   };
-  ASSERT_TRUE(ik.solve(good, view(seed)).has_value());
+  ASSERT_TRUE(ik.solve(good, as_span(seed)).has_value());
   Pose bad = good;
   bad.p.y() = nan;
-  EXPECT_EQ(code(ik.solve(bad, view(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(ik.solve(bad, as_span(seed))), IkErrc::bad_input);
   bad = good;
   bad.R(1, 2) = nan;
-  EXPECT_EQ(code(ik.solve(bad, view(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(ik.solve(bad, as_span(seed))), IkErrc::bad_input);
   bad = good;
   bad.R *= 1.001;
-  EXPECT_EQ(code(ik.solve(bad, view(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(ik.solve(bad, as_span(seed))), IkErrc::bad_input);
   bad = good;
   bad.R.col(0) *= -1;  // a mirror
-  EXPECT_EQ(code(ik.solve(bad, view(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(ik.solve(bad, as_span(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(ik.solve(good, std::vector<double>(5))), IkErrc::bad_input);
   EXPECT_EQ(code(ik.solve(good, std::vector<double>(7))), IkErrc::bad_input);
   EXPECT_EQ(code(ik.solve(good, {})), IkErrc::bad_input);
   EXPECT_EQ(code(ik.solve(good, std::vector<double>{0, 0, nan, 0, 0, 0})), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(arm, with(0, 1e-7, 50)).solve(good, view(seed))), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(arm, with(1e-7, nan, 50)).solve(good, view(seed))), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(arm, with(1e-7, 1e-7, -1)).solve(good, view(seed))), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(arm, {.max_step = 0}).solve(good, view(seed))), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(arm, {.max_step = nan}).solve(good, view(seed))), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(Arm{}).solve(good, view(seed))), IkErrc::bad_input);
-  EXPECT_FALSE(describe(ik.solve(bad, view(seed)).error(), arm).empty());
+  EXPECT_EQ(code(IkSolver(arm, with(0, 1e-7, 50)).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, with(1e-7, nan, 50)).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, with(1e-7, 1e-7, -1)).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, {.max_step = 0}).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, {.max_step = nan}).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(Arm{}).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_FALSE(describe(ik.solve(bad, as_span(seed)).error(), arm).empty());
 }
 
 TEST(IkFailure, RefusedEverywhereIsCollision) {
@@ -256,7 +256,7 @@ TEST(IkFailure, RefusedEverywhereIsCollision) {
   IkOptions options;
   options.valid = [](std::span<const double>) { return false; };
   const JointVec q = joint_vec(std::vector<double>{0.1, -1, 1, 0.4, 1, 0});
-  const auto answer = IkSolver(arm, options).solve(fk(arm, view(q)), view(q));
+  const auto answer = IkSolver(arm, options).solve(fk(arm, as_span(q)), as_span(q));
   ASSERT_FALSE(answer.has_value());
   EXPECT_EQ(answer.error().code, IkErrc::collision);
   EXPECT_LT(answer.error().best.pos_err, 1e-7);
@@ -273,7 +273,7 @@ TEST(Ik, PredicateLeadsToAnotherBranch) {
     JointVec q = random_q(arm, rng);
     q[2] = rng.uniform(0.3, 2.8);
     q[4] = rng.uniform(0.3, 2.8);
-    const auto answer = ik.solve(fk(arm, view(q)), view(q));
+    const auto answer = ik.solve(fk(arm, as_span(q)), as_span(q));
     ASSERT_TRUE(answer.has_value());
     EXPECT_LT(answer->q[2], 0);
   }

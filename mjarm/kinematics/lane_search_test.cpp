@@ -33,7 +33,7 @@ DescentBlock random_block(const Arm& arm, Rng& rng) {
 /// The same step, written plainly: damped least squares in the joints that are not held.
 JointVec plain_step(const Arm& arm, const Pose& X_goal, const DescentOptions& options,
                     const JointVec& q, double& error) {
-  const FkJacobian at = fk_jacobian(arm, view(q));
+  const FkJacobian at = fk_jacobian(arm, as_span(q));
   const Eigen::AngleAxisd turn(X_goal.R * at.X_WT.R.transpose());
   Eigen::Matrix<double, 6, 1> e;
   e << (X_goal.p - at.X_WT.p) / options.length, 2 * std::sin(0.5 * turn.angle()) * turn.axis();
@@ -72,7 +72,7 @@ TEST(LaneSearch, StepIsThatOfDampedLeastSquares) {
     const Chain chain(arm);
     DescentOptions options;
     options.length = 0.7;
-    const Pose X_goal = fk(arm, view(testing::random_q(arm, rng)));
+    const Pose X_goal = fk(arm, as_span(testing::random_q(arm, rng)));
     DescentBlock block = random_block(arm, rng);
     detail::descent_kernel()(chain, X_goal, options, block);
     for (int lane = 0; lane < kBlock; ++lane) {
@@ -91,7 +91,7 @@ TEST(LaneSearch, WidthsOfRegistersAgree) {
   const Arm arm = testing::panda();
   const Chain chain(arm);
   DescentOptions options;
-  const Pose X_goal = fk(arm, view(testing::random_q(arm, rng)));
+  const Pose X_goal = fk(arm, as_span(testing::random_q(arm, rng)));
   DescentBlock narrow = random_block(arm, rng);
   DescentBlock wide = narrow;
   detail::descent_step_baseline(chain, X_goal, options, narrow);
@@ -126,13 +126,13 @@ TEST(LaneSearch, SolvesEveryPoseOfUr5eAndPanda) {
   for (const Arm& arm : {testing::ur5e(), testing::panda()}) {
     const Chain chain(arm);
     for (int i = 0; i < 5000; ++i) {
-      const Pose X_goal = fk(arm, view(testing::random_q(arm, rng)));
+      const Pose X_goal = fk(arm, as_span(testing::random_q(arm, rng)));
       const JointVec seed = testing::random_q(arm, rng);
       const auto end = first_answer(chain, X_goal, seed, 51);
       ASSERT_TRUE(end.has_value()) << arm.name << i;
       const JointVec q = detail::unwind(chain, end->descent.q, seed);
-      EXPECT_TRUE(within_limits(arm, view(q)));
-      EXPECT_LT((fk(arm, view(q)).p - X_goal.p).norm(), 1.01e-7);
+      EXPECT_TRUE(within_limits(arm, as_span(q)));
+      EXPECT_LT((fk(arm, as_span(q)).p - X_goal.p).norm(), 1.01e-7);
       const auto again = first_answer(chain, X_goal, seed, 51);
       EXPECT_EQ(std::memcmp(end->descent.q.data(), again->descent.q.data(),
                             sizeof(double) * static_cast<std::size_t>(arm.dof())),
@@ -148,8 +148,8 @@ TEST(LaneSearch, ASeedThatIsNearWins) {
     for (int i = 0; i < 1000; ++i) {
       const JointVec q = testing::random_q(arm, rng);
       const JointVec away = testing::random_q(arm, rng) - q;
-      const JointVec seed = clamp_to_limits(arm, view(JointVec(q + 0.02 * away.normalized())));
-      const auto end = first_answer(chain, fk(arm, view(q)), seed, 51);
+      const JointVec seed = clamp_to_limits(arm, as_span(JointVec(q + 0.02 * away.normalized())));
+      const auto end = first_answer(chain, fk(arm, as_span(q)), seed, 51);
       ASSERT_TRUE(end.has_value());
       EXPECT_EQ(end->start, 0);
     }

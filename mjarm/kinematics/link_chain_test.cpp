@@ -10,13 +10,13 @@ namespace {
 
 void expect_same(const Arm& arm, const JointVec& q, double tol) {
   const LinkChain chain{Chain(arm)};
-  const FkJacobian expected = fk_jacobian(arm, view(q));
-  const FkJacobian got = fk_jacobian(chain, view(q));
+  const FkJacobian expected = fk_jacobian(arm, as_span(q));
+  const FkJacobian got = fk_jacobian(chain, as_span(q));
   EXPECT_LT((got.X_WT.p - expected.X_WT.p).norm(), tol);
   EXPECT_LT((got.X_WT.R - expected.X_WT.R).norm(), tol);
   ASSERT_EQ(got.J_W.cols(), arm.dof());
   EXPECT_LT((got.J_W - expected.J_W).norm(), tol);
-  const Pose X_WT = fk(chain, view(q));
+  const Pose X_WT = fk(chain, as_span(q));
   EXPECT_LT((X_WT.p - expected.X_WT.p).norm() + (X_WT.R - expected.X_WT.R).norm(), tol);
 }
 

@@ -98,9 +98,9 @@ static inline void pass_chain(const LinkChain& chain, const double* q, double* p
 template <int N>
 static void fk_pass_of(const LinkChain& chain, const double* q, double* p, double* R,
                        double* J) noexcept {
-  constexpr int kMost = N > 0 ? N : kMaxDof;
+  constexpr int kMax = N > 0 ? N : kMaxDof;
   const int n = N > 0 ? N : chain.dof;
-  double origin[kMost][4], axis[kMost][4];
+  double origin[kMax][4], axis[kMax][4];
   pass_chain<N, true>(chain, q, p, R, origin, axis);
   for (int i = 0; i < n; ++i) {
     const double* a = axis[i];

@@ -20,7 +20,7 @@ Eigen::Matrix3d differenced(const Arm& arm, const JointVec& q) {
     JointVec behind = q;
     ahead[j] += kStep;
     behind[j] -= kStep;
-    const Eigen::Vector3d column = (fk(arm, view(ahead)).p - fk(arm, view(behind)).p) / (2 * kStep);
+    const Eigen::Vector3d column = (fk(arm, as_span(ahead)).p - fk(arm, as_span(behind)).p) / (2 * kStep);
     JJt += column * column.transpose();
   }
   return JJt;
@@ -31,7 +31,7 @@ TEST(ManipulabilityEllipsoid, IsTheEigenDecompositionOfJJt) {
     Rng rng(71);
     for (int i = 0; i < 300; ++i) {
       const JointVec q = testing::random_q(arm, rng);
-      const VelocityEllipsoid found = manipulability_ellipsoid(arm, view(q));
+      const VelocityEllipsoid found = manipulability_ellipsoid(arm, as_span(q));
       const Eigen::Matrix3d JJt = differenced(arm, q);
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(JJt);
       EXPECT_LT((found.semi_axes.cwiseAbs2().reverse() - eigen.eigenvalues()).norm(), 1e-8);

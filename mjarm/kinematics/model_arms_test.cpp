@@ -47,7 +47,7 @@ void compare_with_mujoco(const Loaded& robot, Rng& rng) {
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     mj_jacSite(&m, d.get(), linear.data(), angular.data(), site);
-    const FkJacobian got = fk_jacobian(arm, view(q));
+    const FkJacobian got = fk_jacobian(arm, as_span(q));
     const Eigen::Map<const Eigen::Vector3d> p(d->site_xpos + 3 * site);
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(d->site_xmat + 9 * site);
     EXPECT_LT((got.X_WT.p - p).norm(), 1e-12);
@@ -71,7 +71,7 @@ TEST(ModelArms, FkAndJacobianAreMujocosOnTheShippedArms) {
 
 TEST(ModelArms, Ur5eStandsWhereTheControllerHasIt) {
   const Loaded robot = load(find_model_file("ur5e").value());
-  const Pose home = fk(robot.arm, view(robot.arm.home));
+  const Pose home = fk(robot.arm, as_span(robot.arm.home));
   EXPECT_LT((home.p - Eigen::Vector3d(-0.134, 0.492, 0.488)).norm(), 1e-5);
 }
 
@@ -82,13 +82,13 @@ TEST(ModelArms, IkFindsRandomPosesOfTheShippedArms) {
     const Loaded robot = load(find_model_file(name).value());
     const IkSolver ik(robot.arm);
     for (int i = 0; i < 1000; ++i) {
-      const Pose X_goal = fk(robot.arm, view(testing::random_q(robot.arm, rng)));
-      const auto answer = ik.solve(X_goal, view(testing::random_q(robot.arm, rng)));
+      const Pose X_goal = fk(robot.arm, as_span(testing::random_q(robot.arm, rng)));
+      const auto answer = ik.solve(X_goal, as_span(testing::random_q(robot.arm, rng)));
       ASSERT_TRUE(answer.has_value()) << describe(answer.error(), robot.arm);
-      const Pose X = fk(robot.arm, view(answer->q));
+      const Pose X = fk(robot.arm, as_span(answer->q));
       EXPECT_LT((X.p - X_goal.p).norm(), 1.01e-7);
       EXPECT_LT(angle_between(X.R, X_goal.R), 1.01e-7);
-      EXPECT_TRUE(within_limits(robot.arm, view(answer->q)));
+      EXPECT_TRUE(within_limits(robot.arm, as_span(answer->q)));
     }
   }
 }
@@ -106,7 +106,7 @@ TEST(ModelArms, IkSolvesTheCasesOfTheUrdfs) {
       ASSERT_TRUE(answer.has_value()) << describe(answer.error(), robot.arm);
     }
     for (const auto& entry : support::load_json_lines(unreachable)) {
-      const auto answer = ik.solve(testing::pose_of(entry), view(robot.arm.home));
+      const auto answer = ik.solve(testing::pose_of(entry), as_span(robot.arm.home));
       ASSERT_FALSE(answer.has_value());
       EXPECT_EQ(answer.error().code, IkErrc::out_of_reach);
     }

@@ -43,17 +43,17 @@ TEST(NoAllocation, FkAndIkNeverAllocate) {
     double sum = 0;
     for (int i = 0; i < 50; ++i) {
       const JointVec q = testing::random_q(arm, rng);
-      const FkJacobian both = fk_jacobian(arm, view(q));
-      sum += fk(arm, view(q)).p.x() + fk_all(arm, view(q), X_WJ).p.x();
+      const FkJacobian both = fk_jacobian(arm, as_span(q));
+      sum += fk(arm, as_span(q)).p.x() + fk_all(arm, as_span(q), X_WJ).p.x();
       sum += manipulability(both.J_W) + smallest_singular_value(both.J_W);
-      sum += clamp_to_limits(arm, view(q)).sum() + (within_limits(arm, view(q)) ? 1 : 0);
-      const auto answer = ik.solve(both.X_WT, view(arm.home));
+      sum += clamp_to_limits(arm, as_span(q)).sum() + (within_limits(arm, as_span(q)) ? 1 : 0);
+      const auto answer = ik.solve(both.X_WT, as_span(arm.home));
       sum += answer ? answer->pos_err : answer.error().amount;
-      const auto settled = settle(ik, both.X_WT, view(q), {.goal = PostureGoal::manipulability});
+      const auto settled = null_space_step(ik, both.X_WT, as_span(q), {.goal = PostureGoal::manipulability});
       sum += settled ? settled->pos_err : settled.error().amount;
       Pose far = both.X_WT;
       far.p.x() += i;
-      const auto none = ik.solve(far, view(arm.home));
+      const auto none = ik.solve(far, as_span(arm.home));
       sum += none ? none->pos_err : none.error().amount;
     }
     EXPECT_EQ(allocations - before, 0) << arm.dof() << " joints";

@@ -92,7 +92,7 @@ class Search {
   }
 
   bool is_valid(const JointVec& q) const noexcept {
-    return !options_.valid || options_.valid(view(q));
+    return !options_.valid || options_.valid(as_span(q));
   }
 
   /// Searches without limits; where that reaches the pose, names the joint that is farthest beyond

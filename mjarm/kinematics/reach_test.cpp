@@ -19,7 +19,7 @@ void expect_nothing_excluded(const Arm& arm, int rounds, Rng& rng) {
   const Reach reach(arm);
   for (int i = 0; i < rounds; ++i) {
     const JointVec q = random_q(arm, rng);
-    const Pose X_WT = fk(arm, view(q));
+    const Pose X_WT = fk(arm, as_span(q));
     const std::optional<ReachBreach> breach = reach.check(X_WT);
     ASSERT_FALSE(reach.check_position(X_WT.p).has_value());
     ASSERT_FALSE(breach.has_value())

@@ -61,7 +61,7 @@ class SelfMotion {
     for (; share * slope > 0.5 * options_.tolerance; share *= 0.5) {
       const JointVec wish = at_.q + share * direction;
       const Descent met =
-          detail::descend(ik_.chain(), goal_.X_WT, clamp_to_limits(ik_.arm(), view(wish)), back_);
+          detail::descend(ik_.chain(), goal_.X_WT, clamp_to_limits(ik_.arm(), as_span(wish)), back_);
       const double enough = before - kEnough * share * direction.squaredNorm();
       if (!met.converged || !(cost(met.q) < enough) || !accepts(met.q)) continue;
       const double moved = (met.q - at_.q).cwiseAbs().maxCoeff();
@@ -96,7 +96,7 @@ class SelfMotion {
   /// What is lowered.
   [[nodiscard]] double cost(const JointVec& q) const noexcept {
     if (options_.goal == PostureGoal::manipulability) {
-      return -manipulability(fk_jacobian(ik_.arm(), view(q)).J_W);
+      return -manipulability(fk_jacobian(ik_.arm(), as_span(q)).J_W);
     }
     return 0.5 * (q - target_).cwiseAbs2().dot(weight_);
   }
@@ -121,7 +121,7 @@ class SelfMotion {
   /// The part of `direction` that leaves the task alone; joints at a limit stay there rather than
   /// be pushed outwards.
   [[nodiscard]] JointVec free_part(JointVec direction) const noexcept {
-    const FkJacobian there = fk_jacobian(ik_.arm(), view(at_.q));
+    const FkJacobian there = fk_jacobian(ik_.arm(), as_span(at_.q));
     Jacobian J = there.J_W;
     auto turns = J.bottomRows<3>();
     if (ik_.options().task == IkTask::position) turns.setZero();
@@ -141,9 +141,9 @@ class SelfMotion {
 
   [[nodiscard]] bool accepts(const JointVec& q) const noexcept {
     const IkOptions& ik = ik_.options();
-    return within_limits(ik_.arm(), view(q)) &&
+    return within_limits(ik_.arm(), as_span(q)) &&
            (q - goal_.seed).cwiseAbs().maxCoeff() <= ik.max_step &&
-           (!ik.valid || ik.valid(view(q)));
+           (!ik.valid || ik.valid(as_span(q)));
   }
 
   const IkSolver& ik_;
@@ -163,7 +163,7 @@ bool make_sense(const SelfMotionOptions& options, int dof) noexcept {
 
 }  // namespace
 
-Result<IkSolution, IkFailure> settle(const IkSolver& ik, const Pose& X_WT,
+Result<IkSolution, IkFailure> null_space_step(const IkSolver& ik, const Pose& X_WT,
                                      std::span<const double> from,
                                      const SelfMotionOptions& options) noexcept {
   IkFailure failure;
@@ -176,7 +176,7 @@ Result<IkSolution, IkFailure> settle(const IkSolver& ik, const Pose& X_WT,
   const Descent& at = motion.at();
   failure.best = {at.q, at.pos_err, at.rot_err};
   if (!at.converged) return fail(failure);
-  if (ik.options().valid && !ik.options().valid(view(at.q))) {
+  if (ik.options().valid && !ik.options().valid(as_span(at.q))) {
     failure.code = IkErrc::collision;
     return fail(failure);
   }

@@ -33,7 +33,7 @@ std::map<IkErrc, int> compare(int count, Rng& rng, const std::function<Pose()>& 
   while (refused < count) {
     const Pose X_WT = draw();
     const double least = sweep.least_breach(X_WT);
-    const auto answer = ik.solve(X_WT, view(random_q(arm, rng)));
+    const auto answer = ik.solve(X_WT, as_span(random_q(arm, rng)));
     if (std::abs(least) < kDoubt) continue;
     if (least < 0) {
       // Never a proof against what can be reached.
@@ -47,7 +47,7 @@ std::map<IkErrc, int> compare(int count, Rng& rng, const std::function<Pose()>& 
     const IkFailure& failure = answer.error();
     ++reasons[failure.code];
     EXPECT_TRUE(testing::nothing_found(ik, X_WT)) << least << ' ' << describe(failure, arm);
-    EXPECT_TRUE(within_limits(arm, view(failure.best.q)));
+    EXPECT_TRUE(within_limits(arm, as_span(failure.best.q)));
     if (failure.code == IkErrc::joint_limit) {
       EXPECT_LT(least, PandaSweep::kNever) << describe(failure, arm);
       EXPECT_GT(failure.amount, least - kDoubt) << describe(failure, arm);
@@ -68,7 +68,7 @@ TEST(PandaSweep, FindsWhatCanBeReached) {
   Rng rng(110);
   for (int i = 0; i < testing::rounds(400, 5000); ++i) {
     const JointVec q = testing::random_q_near_limits(arm, rng);
-    EXPECT_LT(sweep.least_breach(fk(arm, view(q))), kDoubt) << i << ' ' << q.transpose();
+    EXPECT_LT(sweep.least_breach(fk(arm, as_span(q))), kDoubt) << i << ' ' << q.transpose();
   }
 }
 
@@ -96,7 +96,7 @@ TEST(SevenAxisHard, BeyondALimitOnly) {
     const double beyond = rng.uniform(0.01, 0.4);
     q[joint] =
         rng.uniform() < 0.5 ? arm.limits.lower[joint] - beyond : arm.limits.upper[joint] + beyond;
-    return fk(arm, view(q));
+    return fk(arm, as_span(q));
   });
   EXPECT_GT(reasons[IkErrc::joint_limit], count / 2);
 }
@@ -108,7 +108,7 @@ TEST(SevenAxisHard, TheWrongWayRoundAtTheRim) {
   auto reasons = compare(count, rng, [&] {
     JointVec q = random_q(arm, rng);
     q[3] = rng.uniform(-0.7, arm.limits.upper[3]);
-    return testing::moved(fk(arm, view(q)), 0, 1, rng);
+    return testing::moved(fk(arm, as_span(q)), 0, 1, rng);
   });
   EXPECT_GT(reasons[IkErrc::out_of_reach], count / 2);
 }

@@ -64,13 +64,13 @@ void ask(const SevenAxis& form, const Arm& arm, const Pose& X_WT, const JointVec
   if (asked.out.count == 0) return;
   asked.q = joint_vec({asked.out.q[0], 7});
   for (int i = 0; i < 7; ++i) asked.q[i] = nearest_winding(Chain(arm), i, asked.q[i], seed[i]);
-  asked.within = within_limits(arm, view(asked.q), -1e-8);
+  asked.within = within_limits(arm, as_span(asked.q), -1e-8);
 }
 
 /// To 2e-5 only: where a triangle just closes, within kSevenWithin, its root loses half the digits,
 /// which the front wins back by Newton's steps.
 void expect_reaches(const Arm& arm, const JointVec& q, const Pose& X_goal) {
-  const Pose X = fk(arm, view(q));
+  const Pose X = fk(arm, as_span(q));
   EXPECT_LT((X.p - X_goal.p).norm(), 2e-5);
   EXPECT_LT(angle_between(X.R, X_goal.R), 2e-5);
 }
@@ -98,7 +98,7 @@ TEST(SevenAxis, FindsEveryPoseOfTheArms) {
     int found = 0;
     const int count = rounds(10000);
     for (int i = 0; i < count; ++i) {
-      const Pose X_goal = fk(arm, view(random_q(arm, rng)));
+      const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
       ask(*form, arm, X_goal, random_q(arm, rng), asked);
       found += asked.within ? 1 : 0;
       EXPECT_TRUE(asked.within || !asked.out.complete) << arm.name << i;
@@ -115,7 +115,7 @@ TEST(SevenAxis, FindsPosesAtTheEdgeOfTheLimits) {
   Asked asked;
   for (int i = 0; i < rounds(3000); ++i) {
     const JointVec q = testing::random_q_near_limits(arm, rng);
-    const Pose X_goal = fk(arm, view(q));
+    const Pose X_goal = fk(arm, as_span(q));
     ask(*form, arm, X_goal, random_q(arm, rng), asked);
     // What is missed is handed on to the numeric search, never called impossible.
     EXPECT_TRUE(asked.within || !asked.out.complete) << i;
@@ -131,11 +131,11 @@ TEST(SevenAxis, StaysNearASeedThatIsNear) {
   for (int i = 0; i < 2000; ++i) {
     const JointVec q = random_q(arm, rng);
     const JointVec away = random_q(arm, rng) - q;
-    const JointVec seed = clamp_to_limits(arm, view(JointVec(q + 1e-3 * away.normalized())));
-    ask(*form, arm, fk(arm, view(q)), seed, asked);
+    const JointVec seed = clamp_to_limits(arm, as_span(JointVec(q + 1e-3 * away.normalized())));
+    ask(*form, arm, fk(arm, as_span(q)), seed, asked);
     ASSERT_TRUE(asked.within);
     EXPECT_LT((asked.q - seed).cwiseAbs().maxCoeff(), 0.2) << i;
-    ask(*form, arm, fk(arm, view(q)), q, asked);
+    ask(*form, arm, fk(arm, as_span(q)), q, asked);
     ASSERT_TRUE(asked.within);
     EXPECT_LT((asked.q - q).cwiseAbs().maxCoeff(), 1e-6) << i;
   }
@@ -152,7 +152,7 @@ TEST(SevenAxis, SolvesSingularPoses) {
     if (i % 3 != 1) q[1] = 0;
     if (i % 3 != 0) q[3] = stretched;
     if (i % 5 == 0) q[5] = 0;
-    const Pose X_goal = fk(arm, view(q));
+    const Pose X_goal = fk(arm, as_span(q));
     ask(*form, arm, X_goal, i % 2 == 0 ? q : random_q(arm, rng), asked);
     EXPECT_TRUE(asked.within || !asked.out.complete) << i;
   }
@@ -168,13 +168,13 @@ TEST(SevenAxis, SaysWhichLimitIsInTheWay) {
   Asked asked;
   int only_beyond = 0, none = 0;
   for (int i = 0; i < 500; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(wide, rng)));
+    const Pose X_goal = fk(arm, as_span(random_q(wide, rng)));
     ask(*form, arm, X_goal, random_q(arm, rng), asked);
     if (asked.out.count == 0) ++none;
     if (asked.within || asked.out.count == 0) continue;
     ++only_beyond;
     expect_reaches(arm, asked.q, X_goal);
-    EXPECT_FALSE(within_limits(arm, view(asked.q)));
+    EXPECT_FALSE(within_limits(arm, as_span(asked.q)));
   }
   EXPECT_GT(only_beyond, 10);
   EXPECT_EQ(none, 0);
@@ -186,11 +186,11 @@ TEST(SevenAxis, ListsAnswersOfTheWholeRange) {
   Rng rng(8);
   Asked asked;
   for (int i = 0; i < 200; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
+    const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
     ask(*form, arm, X_goal, random_q(arm, rng), asked, true);
     for (int k = 0; k < asked.out.count; ++k) {
       const JointVec q = joint_vec({asked.out.q[k], 7});
-      EXPECT_TRUE(within_limits(arm, view(q), -1e-8));
+      EXPECT_TRUE(within_limits(arm, as_span(q), -1e-8));
       expect_reaches(arm, q, X_goal);
     }
   }
@@ -214,7 +214,7 @@ TEST(SevenAxis, WidthsOfRegistersAgree) {
   Rng rng(9);
   Asked asked;
   const auto form = SevenAxis::recognise(Chain(arm));
-  const Pose X_WT = fk(arm, view(random_q(arm, rng)));
+  const Pose X_WT = fk(arm, as_span(random_q(arm, rng)));
   const Pose X_W6 = X_WT * form->geometry().X_T6;
   const Eigen::Vector3d p_6S =
       X_W6.R.transpose() * (Eigen::Map<const Eigen::Vector3d>(form->geometry().p_WS) - X_W6.p);

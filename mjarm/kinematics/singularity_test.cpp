@@ -35,11 +35,11 @@ TEST(Singularity, OnlySingularConfigurationsAreNear) {
   Rng rng(95);
   for (int i = 0; i < 500; ++i) {
     JointVec q = testing::random_q(arm, rng);
-    EXPECT_EQ(singularity(ik, view(q)).kind == SingularKind::none,
-              singularity(ik, view(q)).smallest > 0.02);
+    EXPECT_EQ(singularity(ik, as_span(q)).kind == SingularKind::none,
+              singularity(ik, as_span(q)).smallest > 0.02);
     q[4] = kPi * static_cast<double>(rng.below(3)) - kPi;
-    EXPECT_LT(singularity(ik, view(q)).smallest, 1e-10);
-    EXPECT_NE(singularity(ik, view(q)).kind, SingularKind::none);
+    EXPECT_LT(singularity(ik, as_span(q)).smallest, 1e-10);
+    EXPECT_NE(singularity(ik, as_span(q)).kind, SingularKind::none);
   }
 }
 

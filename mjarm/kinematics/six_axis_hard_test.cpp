@@ -20,8 +20,8 @@ std::vector<std::pair<Pose, IkFailure>> refused_near(const IkSolver& ik, double 
                                                      int count, Rng& rng) {
   std::vector<std::pair<Pose, IkFailure>> out;
   while (static_cast<int>(out.size()) < count) {
-    const Pose X = testing::moved(fk(ik.arm(), view(random_q(ik.arm(), rng))), place, turn, rng);
-    const auto answer = ik.solve(X, view(random_q(ik.arm(), rng)));
+    const Pose X = testing::moved(fk(ik.arm(), as_span(random_q(ik.arm(), rng))), place, turn, rng);
+    const auto answer = ik.solve(X, as_span(random_q(ik.arm(), rng)));
     if (!answer) out.emplace_back(X, answer.error());
   }
   return out;
@@ -49,8 +49,8 @@ TEST(SixAxisHard, WhatIsRefusedCannotBeFound) {
       EXPECT_TRUE(nothing_found(ik, X_WT)) << describe(failure, arm);
       EXPECT_NE(failure.code, IkErrc::no_convergence);
       EXPECT_GT(failure.amount, 0);
-      EXPECT_TRUE(within_limits(arm, view(failure.best.q)));
-      const Pose X = fk(arm, view(failure.best.q));
+      EXPECT_TRUE(within_limits(arm, as_span(failure.best.q)));
+      const Pose X = fk(arm, as_span(failure.best.q));
       EXPECT_NEAR((X.p - X_WT.p).norm(), failure.best.pos_err, 1e-9);
       EXPECT_FALSE(describe(failure, arm).empty());
     }
@@ -69,8 +69,8 @@ TEST(SixAxisHard, TheWrongWayRoundAtTheRim) {
   while (told < negatives()) {
     JointVec q = random_q(arm, rng);
     q[2] = rng.uniform(-0.2, 0.2);
-    const Pose X = testing::moved(fk(arm, view(q)), 0, 1, rng);
-    const auto answer = ik.solve(X, view(arm.home));
+    const Pose X = testing::moved(fk(arm, as_span(q)), 0, 1, rng);
+    const auto answer = ik.solve(X, as_span(arm.home));
     if (answer) continue;
     ++told;
     EXPECT_TRUE(answer.error().code == IkErrc::out_of_reach ||
@@ -90,7 +90,7 @@ TEST(SixAxisHard, InsideTheCylinder) {
     // The wrist centre lies 0.1 m behind the tool.
     X.p = Eigen::Vector3d(r * std::cos(around), r * std::sin(around), rng.uniform(-0.4, 0.9)) +
           0.1 * X.R.col(2);
-    const auto answer = ik.solve(X, view(random_q(arm, rng)));
+    const auto answer = ik.solve(X, as_span(random_q(arm, rng)));
     ASSERT_FALSE(answer.has_value());
     EXPECT_EQ(answer.error().code, IkErrc::inner_void);
     EXPECT_EQ(answer.error().shape, ReachShape::cylinder);
@@ -109,8 +109,8 @@ TEST(SixAxisHard, TheLimitThatIsNamedIsTheOne) {
     JointVec q = random_q(arm, rng);
     const auto joint = static_cast<Eigen::Index>(rng.below(6));
     q[joint] = arm.limits.upper[joint] + rng.uniform(0.01, 0.4);
-    const Pose X = fk(arm, view(q));
-    const auto answer = ik.solve(X, view(arm.home));
+    const Pose X = fk(arm, as_span(q));
+    const auto answer = ik.solve(X, as_span(arm.home));
     if (answer) continue;
     ++told;
     const IkFailure& failure = answer.error();
@@ -122,7 +122,7 @@ TEST(SixAxisHard, TheLimitThatIsNamedIsTheOne) {
       Arm other = arm;
       other.limits.lower.array() -= by;
       other.limits.upper.array() += by;
-      return IkSolver(other).solve(X, view(arm.home)).has_value();
+      return IkSolver(other).solve(X, as_span(arm.home)).has_value();
     };
     EXPECT_TRUE(widened(failure.amount + 1e-7));
     EXPECT_FALSE(widened(failure.amount - 1e-5));

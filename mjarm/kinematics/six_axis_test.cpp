@@ -106,10 +106,10 @@ double largest_off(const JointVec& a, const JointVec& b, bool modulo_turns) {
 }
 
 void expect_reaches(const Arm& arm, const IkSolution& answer, const Pose& X_goal, double tol) {
-  const Pose X = fk(arm, view(answer.q));
+  const Pose X = fk(arm, as_span(answer.q));
   EXPECT_LT((X.p - X_goal.p).norm(), tol);
   EXPECT_LT(angle_between(X.R, X_goal.R), tol);
-  EXPECT_TRUE(within_limits(arm, view(answer.q)));
+  EXPECT_TRUE(within_limits(arm, as_span(answer.q)));
 }
 
 /// Solves for poses of random configurations changed by `shape`; all must be solved (with an exact
@@ -124,9 +124,9 @@ void expect_all_solved(
   for (int i = 0; i < count; ++i) {
     JointVec q = random_q(arm, rng);
     shape(q);
-    q = clamp_to_limits(arm, view(q));
-    const Pose X_goal = fk(arm, view(q));
-    const auto answer = ik.solve(X_goal, view(random_q(arm, rng)));
+    q = clamp_to_limits(arm, as_span(q));
+    const Pose X_goal = fk(arm, as_span(q));
+    const auto answer = ik.solve(X_goal, as_span(random_q(arm, rng)));
     if (!answer) {
       ++missed;
       std::cout << arm.name << ": " << describe(answer.error(), arm) << " at\n"
@@ -213,8 +213,8 @@ TEST(SixAxis, SolvesPosesOnTheShoulderCylinder) {
     q[1] = std::asin(-rest / 0.425) - kPi / 2;
     q[2] = std::remainder(lift - q[1], 2 * kPi);
     q[3] = sum - q[1] - q[2];
-    const Pose X_goal = fk_all(arm, view(clamp_to_limits(arm, view(q))), X_WJ);
-    const auto answer = IkSolver(arm).solve(X_goal, view(random_q(arm, rng)));
+    const Pose X_goal = fk_all(arm, as_span(clamp_to_limits(arm, as_span(q))), X_WJ);
+    const auto answer = IkSolver(arm).solve(X_goal, as_span(random_q(arm, rng)));
     ASSERT_TRUE(answer.has_value()) << describe(answer.error(), arm);
     expect_reaches(arm, *answer, X_goal, 1.01e-7);
     on_it += X_WJ[5].p.head<2>().norm() < 0.134 + 1e-9 ? 1 : 0;
@@ -229,8 +229,8 @@ TEST(SixAxis, TheGeneratingConfigurationIsAmongAll) {
     int merged = 0;  // with a branch so near that both count as one
     for (int i = 0; i < rounds() / 5; ++i) {
       const JointVec q = random_q(arm, rng);
-      const Pose X_goal = fk(arm, view(q));
-      const auto all = solve_all(ik, X_goal, view(random_q(arm, rng)));
+      const Pose X_goal = fk(arm, as_span(q));
+      const auto all = solve_all(ik, X_goal, as_span(random_q(arm, rng)));
       ASSERT_TRUE(all.has_value());
       EXPECT_LE(all->size(), 8U);
       double off = kPi;
@@ -243,7 +243,7 @@ TEST(SixAxis, TheGeneratingConfigurationIsAmongAll) {
           EXPECT_GE(largest_off((*all)[k].q, (*all)[j].q, false), 1e-3);
         }
       }
-      const auto nearest = ik.solve(X_goal, view(q));  // q itself, or a branch that is as near
+      const auto nearest = ik.solve(X_goal, as_span(q));  // q itself, or a branch that is as near
       ASSERT_TRUE(nearest.has_value());
       EXPECT_LT(largest_off(nearest->q, q, false), 1e-6);
     }
@@ -255,30 +255,30 @@ TEST(SixAxis, WindingsAreAllThere) {
   const Arm arm = ur5e();
   const IkSolver ik(arm);
   Rng rng(77);
-  std::size_t most = 0;
+  std::size_t max = 0;
   for (int i = 0; i < 200; ++i) {
     const JointVec q = random_q(arm, rng);
     const JointVec seed = random_q(arm, rng);
-    const Pose X_goal = fk(arm, view(q));
-    const auto few = solve_all(ik, X_goal, view(seed));
-    const auto many = solve_all(ik, X_goal, view(seed), {.windings = true});
+    const Pose X_goal = fk(arm, as_span(q));
+    const auto few = solve_all(ik, X_goal, as_span(seed));
+    const auto many = solve_all(ik, X_goal, as_span(seed), {.windings = true});
     ASSERT_TRUE(few && many);
     EXPECT_EQ(many->size(), 32 * few->size());  // five joints of two turns
-    most = std::max(most, many->size());
+    max = std::max(max, many->size());
     EXPECT_EQ((*many)[0].q, (*few)[0].q);
     double before = 0;
     bool found = false;
     for (const IkSolution& answer : *many) {
-      EXPECT_TRUE(within_limits(arm, view(answer.q)));
+      EXPECT_TRUE(within_limits(arm, as_span(answer.q)));
       EXPECT_GE(largest_off(answer.q, seed, false), before);
       before = largest_off(answer.q, seed, false);
       found = found || largest_off(answer.q, q, false) < 1e-6;
     }
     expect_reaches(arm, many->back(), X_goal, 1.01e-7);
     EXPECT_TRUE(found);
-    EXPECT_EQ(solve_all(ik, X_goal, view(seed), {.windings = true, .most = 7})->size(), 7U);
+    EXPECT_EQ(solve_all(ik, X_goal, as_span(seed), {.windings = true, .max = 7})->size(), 7U);
   }
-  EXPECT_EQ(most, 256U);
+  EXPECT_EQ(max, 256U);
 }
 
 TEST(SixAxis, ACalibratedArmIsSolvedEveryTime) {
@@ -308,9 +308,9 @@ TEST(SixAxis, SameInputsSameBits) {
   const IkSolver ik(arm);
   const IkSolver copy = ik;
   for (int i = 0; i < 500; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
+    const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
     const JointVec seed = random_q(arm, rng);
-    EXPECT_EQ(ik.solve(X_goal, view(seed))->q, copy.solve(X_goal, view(seed))->q);
+    EXPECT_EQ(ik.solve(X_goal, as_span(seed))->q, copy.solve(X_goal, as_span(seed))->q);
   }
 }
 
@@ -323,12 +323,12 @@ TEST(SixAxis, AStepBoundGivesNoneRatherThanAFlip) {
   const IkSolver bound(arm, options);
   int none = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
+    const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
     JointVec seed = random_q(arm, rng);
-    if (i % 2 == 0) seed = free.solve(X_goal, view(seed))->q + JointVec::Constant(6, 0.3);
-    seed = clamp_to_limits(arm, view(seed));
-    const auto nearest = free.solve(X_goal, view(seed));
-    const auto answer = bound.solve(X_goal, view(seed));
+    if (i % 2 == 0) seed = free.solve(X_goal, as_span(seed))->q + JointVec::Constant(6, 0.3);
+    seed = clamp_to_limits(arm, as_span(seed));
+    const auto nearest = free.solve(X_goal, as_span(seed));
+    const auto answer = bound.solve(X_goal, as_span(seed));
     ASSERT_TRUE(nearest.has_value());
     const double step = largest_off(nearest->q, seed, false);
     ASSERT_EQ(answer.has_value(), step <= 0.5);
@@ -348,16 +348,16 @@ TEST(SixAxis, ThePredicateSeesBranchesInOrderOfNearness) {
   Rng rng(82);
   const Arm arm = ur5e();
   for (int i = 0; i < 200; ++i) {
-    const Pose X_goal = fk(arm, view(random_q(arm, rng)));
+    const Pose X_goal = fk(arm, as_span(random_q(arm, rng)));
     const JointVec seed = random_q(arm, rng);
-    const auto all = solve_all(IkSolver(arm), X_goal, view(seed));
+    const auto all = solve_all(IkSolver(arm), X_goal, as_span(seed));
     std::vector<JointVec> seen;
     IkOptions options;
     options.valid = [&](std::span<const double> q) {
       seen.push_back(joint_vec(q));
       return seen.size() == all->size();
     };
-    const auto last = IkSolver(arm, options).solve(X_goal, view(seed));
+    const auto last = IkSolver(arm, options).solve(X_goal, as_span(seed));
     ASSERT_TRUE(last.has_value());
     ASSERT_EQ(seen.size(), all->size());
     for (std::size_t k = 0; k < seen.size(); ++k) EXPECT_EQ(seen[k], (*all)[k].q);

@@ -76,10 +76,10 @@ class Normal {
 
 /// The damped step for `e`; `damping` returns what was used.
 JointVec damped_step(const Jacobian& J, const Vector6& e, const bool* held, double threshold,
-                     double most, double& damping) noexcept {
+                     double max, double& damping) noexcept {
   Normal normal(J, held);
   const double m = normal.factor(1e-14);
-  damping = m < threshold ? most * std::sqrt(1 - m / threshold) : 0;
+  damping = m < threshold ? max * std::sqrt(1 - m / threshold) : 0;
   if (damping > 0) normal.factor(damping * damping);
   JointVec dq(J.cols());
   double b[6] = {};
@@ -101,7 +101,7 @@ Tracker::Tracker(const Arm& arm, const TrackOptions& options)
       lower_(arm.limits.lower),
       upper_(arm.limits.upper),
       options_(options),
-      most_(options.dt * options.speed_share * arm.limits.velocity),
+      max_(options.dt * options.speed_share * arm.limits.velocity),
       length_(detail::characteristic_length(Chain(arm))) {
   const Chain chain(arm);
   if (chain.dof == 0) return;
@@ -112,7 +112,7 @@ Tracker::Tracker(const Arm& arm, const TrackOptions& options)
   const bool held[kMaxDof] = {};
   for (int i = 0; i < 256; ++i) {
     const JointVec q = detail::random_start(chain, middle, rng);
-    Jacobian J = fk_jacobian(chain_, view(q)).J_W;
+    Jacobian J = fk_jacobian(chain_, as_span(q)).J_W;
     J.topRows<3>() /= length_;
     threshold_ = std::max(threshold_, options_.near_singular * Normal(J, held).factor(1e-14));
   }
@@ -151,7 +151,7 @@ TrackStep Tracker::step(const Pose& X_WT, std::span<const double> q) const noexc
     if (out.held == before) break;
   }
   for (int i = 0; i < chain_.dof; ++i) {
-    if (std::abs(dq[i]) * out.speed_scale > most_[i]) out.speed_scale = most_[i] / std::abs(dq[i]);
+    if (std::abs(dq[i]) * out.speed_scale > max_[i]) out.speed_scale = max_[i] / std::abs(dq[i]);
   }
   for (int i = 0; i < chain_.dof; ++i) {
     const double to = out.q[i] + out.speed_scale * dq[i];

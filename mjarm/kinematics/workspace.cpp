@@ -13,7 +13,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kMostCells = 1e7;
+constexpr double kMaxCells = 1e7;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// [m] the tool is never farther from the first joint's frame than this; infinite for endless
@@ -51,7 +51,7 @@ WorkspaceMap grid(const Arm& arm, const WorkspaceOptions& options, double radius
 
 /// Manipulability, of the position alone where the orientation is free.
 double freedom(const Arm& arm, const JointVec& q, bool with_orientation) {
-  const Jacobian J = fk_jacobian(arm, view(q)).J_W;
+  const Jacobian J = fk_jacobian(arm, as_span(q)).J_W;
   if (with_orientation) return manipulability(J);
   const Eigen::Matrix3d square = J.topRows<3>() * J.topRows<3>().transpose();
   return std::sqrt(std::max(0.0, square.determinant()));
@@ -67,8 +67,8 @@ void fill_row(const IkSolver& ik, const WorkspaceOptions& options, int row, Work
     X_WT.p[map.u] = map.u_at(column);
     std::vector<IkSolution> answers;
     if (map.counted) {
-      answers = solve_all(ik, X_WT, view(arm.home)).value_or(answers);
-    } else if (auto answer = ik.solve(X_WT, view(arm.home))) {
+      answers = solve_all(ik, X_WT, as_span(arm.home)).value_or(answers);
+    } else if (auto answer = ik.solve(X_WT, as_span(arm.home))) {
       answers.push_back(*answer);
     }
     if (answers.empty()) continue;
@@ -143,9 +143,9 @@ Result<WorkspaceMap> map_workspace(const Arm& arm, const WorkspaceOptions& optio
   const double radius = stretch(arm);
   if (!std::isfinite(radius)) return fail(Errc::usage, text(msg::kinematics_workspace_endless));
   const double across = 2 * radius / options.step + 3;
-  if (across * across > kMostCells) {
+  if (across * across > kMaxCells) {
     return fail(Errc::usage, text(msg::kinematics_workspace_cells, options.step,
-                                  2 * radius / (std::sqrt(kMostCells) - 3), kMostCells));
+                                  2 * radius / (std::sqrt(kMaxCells) - 3), kMaxCells));
   }
   WorkspaceMap map = grid(arm, options, radius);
   if (!fill(arm, options, map)) {

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{200} << 20;  ///< [bytes]
-constexpr double kMostPixels = 1 << 26;
+constexpr double kMaxPixels = 1 << 26;
 
 /// The first bytes of a file; shorter where the file is.
 struct Head {
@@ -107,8 +107,8 @@ std::optional<std::string> asset_fault(const fs::path& path, std::string_view el
     return text(msg::guard_file_lies, shown, promise.bytes, size);
   }
   if (promise.empty) return text(msg::guard_empty_mesh, shown);
-  if (promise.pixels > kMostPixels) {
-    return text(msg::guard_too_big, shown, promise.pixels, kMostPixels);
+  if (promise.pixels > kMaxPixels) {
+    return text(msg::guard_too_big, shown, promise.pixels, kMaxPixels);
   }
   return std::nullopt;
 }

@@ -13,14 +13,14 @@ using std::numbers::pi;
 
 /// Hinges of arms turn by two revolutions at most; a number above, in radians, is most likely one
 /// of degrees, and surely so where it is whole.
-constexpr double kMostHingeAngle = 4 * pi;
+constexpr double kMaxHingeAngle = 4 * pi;
 /// Fixed rotations stay within one revolution.
-constexpr double kMostFixedAngle = 2 * pi + 0.01;
+constexpr double kMaxFixedAngle = 2 * pi + 0.01;
 /// 1.57, 3.14 and 6.28 are this far from what they stand for, relatively.
 constexpr double kRounding = 6e-4;
 
 /// Beyond this, numbers stand for "no limit" rather than for degrees.
-constexpr double kMostDegrees = 1000;
+constexpr double kMaxDegrees = 1000;
 
 bool is_whole(double value) { return std::abs(value - std::round(value)) < 1e-9; }
 
@@ -36,7 +36,7 @@ struct Angles {
   const SourceNode* node;
   const char* attribute;
   std::vector<double> values;
-  double most;  ///< [rad] the largest that makes sense
+  double max;  ///< [rad] the largest that makes sense
 };
 
 bool reads_degrees(const Description& description) {
@@ -56,14 +56,14 @@ std::vector<Angles> angles_of_mjcf(const Description& description) {
     if (node.kind() == "joint" && !node.attribute("range").empty()) {
       const std::optional<Setting> type = description.setting(node, "type");
       if (!type || type->value == "hinge" || type->value == "ball") {
-        all.push_back({&node, "range", numbers_in(node.attribute("range")), kMostHingeAngle});
+        all.push_back({&node, "range", numbers_in(node.attribute("range")), kMaxHingeAngle});
       }
     }
     if (!node.attribute("euler").empty()) {
-      all.push_back({&node, "euler", numbers_in(node.attribute("euler")), kMostFixedAngle});
+      all.push_back({&node, "euler", numbers_in(node.attribute("euler")), kMaxFixedAngle});
     }
     if (const auto values = numbers_in(node.attribute("axisangle")); values.size() == 4) {
-      all.push_back({&node, "axisangle", {values[3]}, kMostFixedAngle});
+      all.push_back({&node, "axisangle", {values[3]}, kMaxFixedAngle});
     }
   }
   return all;
@@ -73,18 +73,18 @@ std::vector<Angles> angles_of_urdf(const Description& description) {
   std::vector<Angles> all;
   for (const SourceNode& node : description.nodes()) {
     if (node.kind() == "origin" && !node.attribute("rpy").empty()) {
-      all.push_back({&node, "rpy", numbers_in(node.attribute("rpy")), kMostFixedAngle});
+      all.push_back({&node, "rpy", numbers_in(node.attribute("rpy")), kMaxFixedAngle});
     }
     if (node.section != "joint" || node.kind() != "limit") continue;
     const tinyxml2::XMLElement* joint = node.element->Parent()->ToElement();
     if (joint->Attribute("type", "revolute") == nullptr) continue;
     for (const char* end : {"lower", "upper"}) {
-      all.push_back({&node, end, numbers_in(node.attribute(end)), kMostHingeAngle});
+      all.push_back({&node, end, numbers_in(node.attribute(end)), kMaxHingeAngle});
     }
     // 45, 90, 180 and their like; 50, 100 or 1000 rad/s are what people write for "no limit".
     const std::vector<double> speed = numbers_in(node.attribute("velocity"));
     if (!speed.empty() && speed[0] > 40 && std::fmod(speed[0], 15) == 0) {
-      all.push_back({&node, "velocity", speed, kMostHingeAngle});
+      all.push_back({&node, "velocity", speed, kMaxHingeAngle});
     }
   }
   return all;
@@ -101,7 +101,7 @@ void report(const CheckContext& context, const Angles& angles, CheckCode code, G
 void find_degrees(const CheckContext& context, const std::vector<Angles>& all) {
   for (const Angles& angles : all) {
     for (const double value : angles.values) {
-      if (!(std::abs(value) > angles.most) || !(std::abs(value) < kMostDegrees)) continue;
+      if (!(std::abs(value) > angles.max) || !(std::abs(value) < kMaxDegrees)) continue;
       report(context, angles, CheckCode::degrees_for_radians,
              is_whole(value) && std::string_view(angles.attribute) != "velocity" ? Grade::error
                                                                                  : Grade::warning,
@@ -121,7 +121,7 @@ void find_radians(const CheckContext& context, const std::vector<Angles>& all) {
     if (std::string_view(angles.attribute) != "range") continue;
     ++ranges;
     small += std::all_of(angles.values.begin(), angles.values.end(),
-                         [](double v) { return std::abs(v) < kMostFixedAngle; });
+                         [](double v) { return std::abs(v) < kMaxFixedAngle; });
   }
   // Where every hinge would turn by a few degrees at most, not the ranges are wrong but the unit.
   if (ranges > 0 && small == ranges && (!suspects.empty() || ranges > 2)) {

@@ -109,7 +109,7 @@ namespace {
 /// Half of the joint's range and twice of it: commands outside this are of another unit, or leave
 /// much of the joint unused.
 constexpr double kLeastShare = 0.5;
-constexpr double kMostShare = 2;
+constexpr double kMaxShare = 2;
 
 Place ctrl_place(const CheckContext& context, const ArmActuator& actuator) {
   return context.description.actuator(actuator.name, {"ctrlrange"});
@@ -123,7 +123,7 @@ void check_ctrl_range(const CheckContext& context, int i, const ArmActuator& act
   // Where the servo rests: gain * ctrl + bias[0] = -bias[1] * gear * q.
   const double servo = (actuator.ctrl_upper - actuator.ctrl_lower) * actuator.gain / stiffness;
   if (!std::isfinite(servo)) return;
-  if (servo >= kLeastShare * joint && servo <= kMostShare * joint) return;
+  if (servo >= kLeastShare * joint && servo <= kMaxShare * joint) return;
   context.add(CheckCode::ctrl_range_differs, Grade::warning, ctrl_place(context, actuator),
               text(msg::check_ctrl_range, actuator.ctrl_lower, actuator.ctrl_upper,
                    arm.limits.lower[i], arm.limits.upper[i]));

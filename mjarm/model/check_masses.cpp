@@ -11,11 +11,11 @@ namespace mjarm {
 namespace {
 
 /// Heavier than any metal [kg/m^3], and lighter than any foam; of the box around a body.
-constexpr double kMostDensity = 20000;
+constexpr double kMaxDensity = 20000;
 constexpr double kLeastDensity = 5;
 /// Radius of gyration over the distance of the farthest point. Above 1 no body has it; identified
 /// figures of real arms reach 2.2 (the Panda's first link).
-constexpr double kMostGyration = 3;
+constexpr double kMaxGyration = 3;
 constexpr double kLeastGyration = 0.05;
 /// Nothing lighter moves an arm's joint [kg].
 constexpr double kLeastMass = 1e-4;
@@ -66,15 +66,15 @@ void check_density(const CheckContext& context, const Place& place, double mass,
   const double volume = std::min(shapes.volume, shapes.box.volume());
   if (!(volume > 1e-9)) return;
   const double density = mass / volume;
-  if (density <= kMostDensity && density >= kLeastDensity) return;
+  if (density <= kMaxDensity && density >= kLeastDensity) return;
   context.add(CheckCode::mass_implausible, Grade::warning, place,
-              text(density > kMostDensity ? msg::check_too_heavy : msg::check_too_light, mass,
+              text(density > kMaxDensity ? msg::check_too_heavy : msg::check_too_light, mass,
                    1000 * volume, density));
 }
 
 void check_gyration(const CheckContext& context, const Place& place, double radius, double size) {
   const double ratio = radius / size;
-  if (ratio > kMostGyration) {
+  if (ratio > kMaxGyration) {
     context.add(CheckCode::inertia_implausible, Grade::warning, place,
                 text(msg::check_inertia_large, 1000 * radius, 1000 * size));
   } else if (ratio > 1) {

@@ -14,7 +14,7 @@ namespace mjarm {
 namespace {
 
 /// Sag of the tool that is more than a property of position servos [m].
-constexpr double kMostSag = 0.05;
+constexpr double kMaxSag = 0.05;
 
 struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -153,7 +153,7 @@ void report_sag(const CheckContext& context, const Sag& home, const Sag& stretch
   const ArmJoint& joint = context.arm->joints[static_cast<std::size_t>(worst.joint)];
   const ArmActuator& servo = *joint.actuator;
   const double stiffness = -servo.bias[1] * servo.gear * servo.gear;
-  context.add(CheckCode::servo_sag, worst.tool > kMostSag ? Grade::warning : Grade::note,
+  context.add(CheckCode::servo_sag, worst.tool > kMaxSag ? Grade::warning : Grade::note,
               context.description.actuator(servo.name, {"kp", "biasprm"}),
               text(msg::check_sag, 1000 * home.tool, 1000 * stretched.tool, 1000 * worst.share,
                    joint.name, stiffness));

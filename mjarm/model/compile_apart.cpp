@@ -43,7 +43,7 @@ bool take(std::string_view& in, std::size_t& number) {
 }
 
 void tell_error(const ChildVoice& voice, const Error& error) {
-  voice.say(std::string{kError, static_cast<char>(error.code)} + error.what);
+  voice.send(std::string{kError, static_cast<char>(error.code)} + error.what);
 }
 
 void tell_model(const ChildVoice& voice, const LoadedModel& loaded) {
@@ -53,18 +53,18 @@ void tell_model(const ChildVoice& voice, const LoadedModel& loaded) {
     put(out, warning.size());
     out += warning;
   }
-  voice.say(out);
+  voice.send(out);
   const mjtSize size = mj_sizeModel(loaded.model.get());
   const std::unique_ptr<char[]> bytes(new char[static_cast<std::size_t>(size)]);
   mj_saveModel(loaded.model.get(), nullptr, bytes.get(), size);
-  voice.say({bytes.get(), static_cast<std::size_t>(size)});
+  voice.send({bytes.get(), static_cast<std::size_t>(size)});
 }
 
 /// The part of the work that is done in the copy.
 void work(const SpecSource& source, const ChildVoice& voice) {
   const auto tell_stage = [&](Stage stage) {
     const char letter = static_cast<char>(stage);
-    voice.say({&letter, 1});
+    voice.send({&letter, 1});
   };
   try {
     const Result<LoadedModel> loaded = compile_here(source, tell_stage);

@@ -13,7 +13,7 @@ namespace mjarm {
 namespace {
 
 /// Most scratch memory that a file may ask for by `<size memory>` [bytes].
-constexpr mjtSize kMostMemory = mjtSize{1} << 30;
+constexpr mjtSize kMaxMemory = mjtSize{1} << 30;
 
 /// Numbers without which nothing can be computed, by the kind of object they belong to.
 struct Numbers {
@@ -129,7 +129,7 @@ class Compiler {
   Result<LoadedModel> run() {
     if (auto done = parse(); !done) return fail(done.error());
     // More memory than any machine has is a slip of the pen; asking for it could end the process.
-    if (spec_->memory > kMostMemory) return fail(refusal("Could not allocate memory"));
+    if (spec_->memory > kMaxMemory) return fail(refusal("Could not allocate memory"));
     if (source_.prepare) source_.prepare(spec_.get());
     const std::vector<KeySizes> keys = key_sizes(spec_.get());
     if (auto done = compile(); !done) return fail(done.error());

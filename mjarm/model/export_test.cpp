@@ -159,7 +159,7 @@ Eigen::Vector4d random_quat(Rng& rng) {
 }
 
 /// A body with up to three joints, an inertia, a site, and children.
-std::string random_body(int& count, int most, Rng& rng) {
+std::string random_body(int& count, int max, Rng& rng) {
   const std::string n = std::to_string(count++);
   std::string xml = "<body name=\"b" + n + "\"" + words("pos", random_vector(0.3, rng)) +
                     words("quat", random_quat(rng)) + ">";
@@ -180,7 +180,7 @@ std::string random_body(int& count, int most, Rng& rng) {
          words("pos", random_vector(0.1, rng)) + "/>";
   xml += "<site name=\"s" + n + "\"" + words("pos", random_vector(0.1, rng)) +
          words("quat", random_quat(rng)) + "/>";
-  while (count < most && rng.uniform() < 0.7) xml += random_body(count, most, rng);
+  while (count < max && rng.uniform() < 0.7) xml += random_body(count, max, rng);
   return xml + "</body>";
 }
 

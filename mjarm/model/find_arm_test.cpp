@@ -67,7 +67,7 @@ TEST(FindArm, Ur5e) {
   EXPECT_DOUBLE_EQ(arm->joints[0].actuator->bias[1], -2000);
   EXPECT_DOUBLE_EQ(arm->joints[0].actuator->bias[2], -400);
   EXPECT_DOUBLE_EQ(arm->home[0], -1.5708);
-  const Pose home = compose(*arm, view(arm->home));
+  const Pose home = compose(*arm, as_span(arm->home));
   EXPECT_NEAR((home.p - Eigen::Vector3d(-0.134, 0.492, 0.488)).norm(), 0, 1e-3);
   Rng rng(1);
   EXPECT_LT(worst_chain_error(model, *arm, rng, 200), 1e-12);

@@ -15,17 +15,17 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr double kMostElements = 200'000;  ///< that <replicate> may make
+constexpr double kMaxElements = 200'000;  ///< that <replicate> may make
 constexpr double kLongestStep = 10;        ///< [s]
-constexpr double kMostTexels = 1 << 26;    ///< of all textures
-constexpr double kMostHeights = 1 << 25;   ///< of one height field
-constexpr double kMostNodes = 1'000'000;   ///< of one flexible body
+constexpr double kMaxTexels = 1 << 26;    ///< of all textures
+constexpr double kMaxHeights = 1 << 25;   ///< of one height field
+constexpr double kMaxNodes = 1'000'000;   ///< of one flexible body
 
 /// Attributes that alone decide how much memory or time something takes, wherever they stand.
 struct Amount {
   std::string_view element;  ///< empty = any
   std::string_view attribute;
-  double most;
+  double max;
 };
 constexpr std::array<Amount, 20> kAmounts = {
     {{"size", "nkey", 1e4},          {"size", "nuserdata", 1e6},
@@ -56,8 +56,8 @@ double texels_of(const XMLElement& element) {
   return product_of(element, "width") * product_of(element, "height");
 }
 
-std::string too_big(std::string_view what, double amount, double most) {
-  return text(msg::guard_too_big, what, amount, most);
+std::string too_big(std::string_view what, double amount, double max) {
+  return text(msg::guard_too_big, what, amount, max);
 }
 
 std::optional<std::string> amount_fault(const XMLElement& element) {
@@ -65,7 +65,7 @@ std::optional<std::string> amount_fault(const XMLElement& element) {
   for (const Amount& amount : kAmounts) {
     if (!amount.element.empty() && amount.element != kind) continue;
     const double value = product_of(element, amount.attribute.data());
-    if (value > amount.most) return too_big(amount.attribute, value, amount.most);
+    if (value > amount.max) return too_big(amount.attribute, value, amount.max);
   }
   if (kind == "quality") {
     for (const std::string_view name : kQuality) {
@@ -75,11 +75,11 @@ std::optional<std::string> amount_fault(const XMLElement& element) {
   }
   if (kind == "hfield") {
     const double cells = product_of(element, "nrow") * product_of(element, "ncol");
-    if (cells > kMostHeights) return too_big("nrow x ncol", cells, kMostHeights);
+    if (cells > kMaxHeights) return too_big("nrow x ncol", cells, kMaxHeights);
   }
   if (kind == "flexcomp") {
     const double nodes = product_of(element, "count");
-    if (nodes > kMostNodes) return too_big("count", nodes, kMostNodes);
+    if (nodes > kMaxNodes) return too_big("count", nodes, kMaxNodes);
   }
   return std::nullopt;
 }
@@ -113,9 +113,9 @@ class Replicas {
       if (outermost_ == nullptr) outermost_ = &element;
     }
     made_ += outermost_ != nullptr ? times : 0;
-    if (made_ > kMostElements) {
+    if (made_ > kMaxElements) {
       return fail(urdf_error(file_of(*outermost_), *outermost_,
-                             text(msg::guard_explodes, made_, kMostElements)));
+                             text(msg::guard_explodes, made_, kMaxElements)));
     }
     const auto included = included_.find(&element);
     const XMLElement& parent = included != included_.end() ? *included->second : element;
@@ -146,9 +146,9 @@ Result<void> check_amounts(const XmlSources& sources) {
   double texels = 0;
   for (const SourceElement& source : sources.elements()) {
     texels += texels_of(*source.element);
-    if (texels > kMostTexels) {
+    if (texels > kMaxTexels) {
       return fail(urdf_error(*source.file, *source.element,
-                             too_big("width x height of all textures", texels, kMostTexels)));
+                             too_big("width x height of all textures", texels, kMaxTexels)));
     }
     for (const auto& fault : {timestep_fault(*source.element), amount_fault(*source.element)}) {
       if (fault) return fail(urdf_error(*source.file, *source.element, *fault));

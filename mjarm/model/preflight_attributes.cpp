@@ -45,7 +45,7 @@ bool is_one_of(const std::array<std::string_view, N>& words, std::string_view wo
 
 /// The first number in `words` that nobody can compute with.
 std::optional<std::string> number_fault(std::string_view attribute, std::string_view words) {
-  const double most = is_one_of(kGeometry, attribute) ? kLargestGeometry : kLargest;
+  const double max = is_one_of(kGeometry, attribute) ? kLargestGeometry : kLargest;
   constexpr std::string_view kSpace = " \t\r\n";
   while (true) {
     words.remove_prefix(std::min(words.find_first_not_of(kSpace), words.size()));
@@ -66,8 +66,8 @@ std::optional<std::string> number_fault(std::string_view attribute, std::string_
       if (std::isinf(value) && attribute.ends_with("range")) continue;
       return text(msg::guard_not_finite, attribute, word);
     }
-    if (out_of_range || std::abs(value) > most) {
-      return text(msg::guard_absurd, attribute, word.substr(0, 40), most);
+    if (out_of_range || std::abs(value) > max) {
+      return text(msg::guard_absurd, attribute, word.substr(0, 40), max);
     }
   }
 }

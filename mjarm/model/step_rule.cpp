@@ -38,16 +38,16 @@ DryFriction friction_of(const mjModel& m, int dof) {
   constexpr int kOff = mjDSBL_FRICTIONLOSS | mjDSBL_CONSTRAINT;
   DryFriction friction;
   if ((m.opt.disableflags & kOff) != 0 || !(m.dof_frictionloss[dof] > 0)) return friction;
-  friction.most = m.dof_frictionloss[dof];
+  friction.max = m.dof_frictionloss[dof];
   const mjtNum* reference = m.dof_solref + mjNREF * dof;
   const mjtNum* impedance = m.dof_solimp + mjNIMP * dof;
-  const double most = std::clamp(impedance[1], mjMINIMP, mjMAXIMP);
+  const double max = std::clamp(impedance[1], mjMINIMP, mjMAXIMP);
   if (reference[0] > 0) {
     const bool safe = (m.opt.disableflags & mjDSBL_REFSAFE) == 0;
     const double time = safe ? std::max(reference[0], 2 * m.opt.timestep) : reference[0];
-    friction.damping = 2 / std::max(mjMINVAL, most * time);
+    friction.damping = 2 / std::max(mjMINVAL, max * time);
   } else {
-    friction.damping = -reference[1] / std::max(mjMINVAL, most);
+    friction.damping = -reference[1] / std::max(mjMINVAL, max);
   }
   const double share = std::clamp(impedance[0], mjMINIMP, mjMAXIMP);
   friction.mass = 1 / std::max(mjMINVAL, (1 - share) / share * m.dof_invweight0[dof]);

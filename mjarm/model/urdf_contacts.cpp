@@ -36,10 +36,10 @@ Pairs touching(const mjModel* m, mjData* d) {
 void draw_posture(const mjModel* m, Rng& rng, mjtNum* qpos) {
   for (int j = 0; j < m->njnt; ++j) {
     if (m->jnt_type[j] != mjJNT_HINGE && m->jnt_type[j] != mjJNT_SLIDE) continue;
-    const double most = m->jnt_type[j] == mjJNT_HINGE ? std::numbers::pi : 1.0;
+    const double max = m->jnt_type[j] == mjJNT_HINGE ? std::numbers::pi : 1.0;
     const bool limited = m->jnt_limited[j] != 0;
-    const double lower = limited ? m->jnt_range[2 * j] : -most;
-    const double upper = limited ? m->jnt_range[2 * j + 1] : most;
+    const double lower = limited ? m->jnt_range[2 * j] : -max;
+    const double upper = limited ? m->jnt_range[2 * j + 1] : max;
     qpos[m->jnt_qposadr[j]] = rng.uniform(lower, upper);
   }
 }

@@ -18,7 +18,7 @@ bool detail::smooth_joint(const CurvePiece& before, const CurvePiece& after) {
 
 Curve::Curve(std::vector<CurvePiece> pieces, std::vector<CurveBlend> blends,
              std::vector<double> joints)
-    : pieces_(std::move(pieces)), blends_(std::move(blends)), joints_(std::move(joints)) {
+    : pieces_(std::move(pieces)), blends_(std::move(blends)), breaks_(std::move(joints)) {
   double s = 0;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     pieces_[i].start = s;
@@ -66,7 +66,7 @@ const std::vector<double>& Curve::corners() const noexcept { return corners_; }
 
 const std::vector<CurveBlend>& Curve::blends() const noexcept { return blends_; }
 
-const std::vector<double>& Curve::joints() const noexcept { return joints_; }
+const std::vector<double>& Curve::breaks() const noexcept { return breaks_; }
 
 std::vector<double> Curve::stations(double step, double angle) const {
   std::vector<double> s{0.0};

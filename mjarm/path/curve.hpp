@@ -85,7 +85,7 @@ class Curve {
   /// Parameters at which the legs of a polyline or of joined legs meet, ascending, one for each
   /// inner point; where a corner is rounded, of the point nearest to it. Empty for all other
   /// curves.
-  [[nodiscard]] const std::vector<double>& joints() const noexcept;
+  [[nodiscard]] const std::vector<double>& breaks() const noexcept;
   /// Parameters so that neighbours are at most `step` [m] and `angle` [rad] apart (both > 0),
   /// evenly spread between the ends of the pieces; corners and ends included exactly.
   [[nodiscard]] std::vector<double> stations(double step, double angle) const;
@@ -105,7 +105,7 @@ class Curve {
   std::vector<CurvePiece> pieces_;  // at least one
   std::vector<double> corners_;
   std::vector<CurveBlend> blends_;
-  std::vector<double> joints_;
+  std::vector<double> breaks_;
 };
 
 }  // namespace mjarm

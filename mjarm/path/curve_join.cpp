@@ -130,13 +130,13 @@ void add_rest(const CurveLeg& leg, double front, double back, std::vector<CurveP
 /// arc (beyond it the quintic would bow out too far), and in proportion to what they want where two
 /// corners want more of a leg than there is.
 std::vector<double> radii_of(std::span<const CurveLeg> legs, std::span<const double> blends) {
-  const auto most_of = [](const CurveLeg& leg) {
+  const auto max_of = [](const CurveLeg& leg) {
     return leg.front().round ? 0.5 * std::numbers::pi * leg.front().a
                              : std::numeric_limits<double>::infinity();
   };
   std::vector<double> wanted(legs.size() + 1, 0.0), radii(blends.size());  // 0 at the ends
   for (std::size_t i = 0; i < blends.size(); ++i) {
-    wanted[i + 1] = std::min({blends[i], most_of(legs[i]), most_of(legs[i + 1])});
+    wanted[i + 1] = std::min({blends[i], max_of(legs[i]), max_of(legs[i + 1])});
   }
   const auto share = [&](std::size_t leg, double own, double other) {
     const double length = length_of(legs[leg]);

@@ -145,7 +145,7 @@ TEST(JoinedCurve, ChecksOfContinuityCanFail) {
   const Curve smooth = *Curve::joined(corner, std::vector<double>{0.1});
   EXPECT_THAT(smooth.blends(), ::testing::IsEmpty());
   EXPECT_THAT(smooth.corners(), ::testing::SizeIs(2));
-  EXPECT_THAT(smooth.joints(), ::testing::ElementsAre(1));
+  EXPECT_THAT(smooth.breaks(), ::testing::ElementsAre(1));
   const Derivatives before = one_sided(smooth, 1, -1e-4), after = one_sided(smooth, 1, 1e-4);
   EXPECT_LT((before.direction - after.direction).norm(), 1e-6);
   EXPECT_NEAR((before.curvature - after.curvature).norm(), 5, 1e-3);
@@ -233,10 +233,10 @@ TEST(JoinedCurve, TellsWhereItsLegsMeet) {
   for (int i = 0; i < 50; ++i) {
     const std::vector<Curve> legs = random_legs(rng, 4, 0.5);
     const Curve curve = *Curve::joined(legs, random_blends(rng, 3));
-    ASSERT_EQ(curve.joints().size(), 3U);
-    EXPECT_TRUE(std::ranges::is_sorted(curve.joints()));
+    ASSERT_EQ(curve.breaks().size(), 3U);
+    EXPECT_TRUE(std::ranges::is_sorted(curve.breaks()));
     for (const CurveBlend& b : curve.blends()) {
-      const Pose given = legs[b.point].at(0), X = curve.at(curve.joints()[b.point - 1]);
+      const Pose given = legs[b.point].at(0), X = curve.at(curve.breaks()[b.point - 1]);
       EXPECT_NEAR((X.p - given.p).norm(), b.distance, 1e-12);
       EXPECT_NEAR(angle_between(X.R, given.R), b.turn, 1e-9);
     }
@@ -245,9 +245,9 @@ TEST(JoinedCurve, TellsWhereItsLegsMeet) {
   const Pose a = at_point(0, 0, 0), b = at_point(1, 0, 0), c = at_point(1, 1, 0),
              d = at_point(0, 1, 0);
   const Curve laps = *Curve::polyline(std::vector<Pose>{a, b, c, d, a, b, c, d, a}, 0.1);
-  ASSERT_EQ(laps.joints().size(), 7U);
+  ASSERT_EQ(laps.breaks().size(), 7U);
   for (std::size_t i = 1; i < 7; ++i) {
-    EXPECT_NEAR(laps.joints()[i] - laps.joints()[i - 1], laps.joints()[3] - laps.joints()[2], 1e-9);
+    EXPECT_NEAR(laps.breaks()[i] - laps.breaks()[i - 1], laps.breaks()[3] - laps.breaks()[2], 1e-9);
   }
 }
 
@@ -271,7 +271,7 @@ TEST(JoinedCurve, OneLegIsItself) {
   const Curve curve = *Curve::joined(std::vector<Curve>{leg}, std::vector<double>{});
   EXPECT_EQ(curve.end(), leg.end());
   EXPECT_EQ(curve.at(0.3).p, leg.at(0.3).p);
-  EXPECT_THAT(curve.joints(), ::testing::IsEmpty());
+  EXPECT_THAT(curve.breaks(), ::testing::IsEmpty());
 }
 
 TEST(JoinedCurve, SaysWhatCannotBeJoined) {

@@ -22,13 +22,13 @@ bool works(const testing::FailingPath& path, PathOptions options, const PathFix&
   for (const Pose& X : path.poses) poses.push_back(fix.change(X));
   if (fix.kind == FixKind::max_step) options.max_step = fix.max_step;
   if (fix.kind == FixKind::slower) options.tool_speed = fix.tool_speed;
-  const auto solved = solve_path(IkSolver(path.arm), poses, view(path.arm.home), options);
+  const auto solved = solve_path(IkSolver(path.arm), poses, as_span(path.arm.home), options);
   if (!solved || solved->max_step() > options.max_step) return false;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Pose X = fk(path.arm, view(solved->q[i]));
+    const Pose X = fk(path.arm, as_span(solved->q[i]));
     if ((X.p - poses[i].p).norm() > 1e-6 || angle_between(X.R, poses[i].R) > 1e-6) return false;
-    if (!within_limits(path.arm, view(solved->q[i]))) return false;
-    if (path.clearance && path.clearance(view(solved->q[i])).distance < 0) return false;
+    if (!within_limits(path.arm, as_span(solved->q[i]))) return false;
+    if (path.clearance && path.clearance(as_span(solved->q[i])).distance < 0) return false;
     if (i == 0 || options.tool_speed == 0) continue;
     const double time = (poses[i].p - poses[i - 1].p).norm() / options.tool_speed;
     const JointVec speed = (solved->q[i] - solved->q[i - 1]).cwiseAbs() / time;
@@ -42,7 +42,7 @@ void judge(const testing::FailingPath& path, int number, const char* kind, Score
   options.clearance = path.clearance;
   options.tool_speed = path.tool_speed;
   const IkSolver ik(path.arm);
-  const auto home = view(path.arm.home);
+  const auto home = as_span(path.arm.home);
   const auto solved = solve_path(ik, path.poses, home, options);
   ++score.paths;
   const std::string which = std::string("\n") + kind + " " + std::to_string(number) + ": ";

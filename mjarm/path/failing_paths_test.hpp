@@ -57,7 +57,7 @@ inline std::vector<Pose> line_of(const Pose& from, const Eigen::Vector3d& to, do
 /// shoulder: 0.425 + 0.392 m, 0.134 m aside and 0.1 + 0.1 m behind the elbow's plane.
 inline FailingPath out_of_reach(Rng& rng, double depth) {
   FailingPath out{.arm = ur5e(), .cause = PathErrc::out_of_reach};
-  const Pose X = fk(out.arm, view(bent(rng)));
+  const Pose X = fk(out.arm, as_span(bent(rng)));
   const Eigen::Vector3d shoulder(0, 0, 0.163);
   const Eigen::Vector3d way = (X.p - shoulder).normalized();
   out.poses = line_of(X, shoulder + (1.151 + depth) * way, 0.004);
@@ -90,7 +90,7 @@ inline FailingPath joint_limit(Rng& rng, double depth) {
   (way > 0 ? out.arm.limits.upper : out.arm.limits.lower)[out.joint] = q1[out.joint] - way * depth;
   constexpr int n = 60;
   for (int i = 0; i <= n; ++i) {
-    out.poses.push_back(fk(out.arm, view(JointVec(q0 + (q1 - q0) * i / n))));
+    out.poses.push_back(fk(out.arm, as_span(JointVec(q0 + (q1 - q0) * i / n))));
   }
   out.arm.home = q0;
   return out;
@@ -119,7 +119,7 @@ inline FailingPath singularity(Rng& rng, double depth) {
   q[2] = rng.uniform(1.5, 1.9);  // the wrist may swing by 0.2 m
   q[4] = depth;
   std::vector<Pose> X_WJ(6);
-  const Pose X = fk_all(out.arm, view(q), X_WJ);
+  const Pose X = fk_all(out.arm, as_span(q), X_WJ);
   const Eigen::Vector3d axis5 = X_WJ[4].R * out.arm.joints[4].axis;
   const Eigen::Vector3d axis6 = X_WJ[5].R * out.arm.joints[5].axis;
   const Eigen::Vector3d turn = axis5.cross(axis6).normalized();
@@ -166,7 +166,7 @@ inline FailingPath far_apart(Rng& rng, double depth) {
   const int at = 10 + static_cast<int>(rng.uniform(0, 20));
   for (int i = 0; i < 40; ++i) {
     q[0] += i == at ? 0.55 + depth : 0.02;
-    out.poses.push_back(fk(out.arm, view(q)));
+    out.poses.push_back(fk(out.arm, as_span(q)));
   }
   return out;
 }

@@ -48,9 +48,9 @@ FixSearch::FixSearch(const IkSolver& ik, std::span<const Pose> poses, std::size_
       solve_(std::move(solve)),
       changed_(poses.size()) {
   const bool fast = ik.six_axis() || ik.seven_axis();
-  const auto most = static_cast<int>(std::min<std::size_t>(kPosesSolved / poses.size(), 50));
-  most_probed_ = fast ? 500 : 40;
-  most_solved_ = std::max(fast ? most : most / 8, 2);
+  const auto max = static_cast<int>(std::min<std::size_t>(kPosesSolved / poses.size(), 50));
+  max_probed_ = fast ? 500 : 40;
+  max_solved_ = std::max(fast ? max : max / 8, 2);
 }
 
 /// From cheap to dear: proofs of reach, a few poses spread over the path, the neighbourhood of the
@@ -62,7 +62,7 @@ bool FixSearch::mends(const PathChange& change) {
     if (ik_.reach().check(change(poses_[i]))) return false;
   }
   std::transform(poses_.begin(), poses_.end(), changed_.begin(), change);
-  if (++probed_ > most_probed_ || solved_ >= most_solved_) return false;
+  if (++probed_ > max_probed_ || solved_ >= max_solved_) return false;
   const std::size_t stride = std::max<std::size_t>(1, changed_.size() / kProbes);
   for (std::size_t i = 0; i < changed_.size(); i += stride) {
     if (!ik_.solve(changed_[i], q_start_)) return false;
@@ -82,7 +82,7 @@ std::optional<PathFix> FixSearch::shift(double reach) {
   for (const Eigen::Vector3i& g : grid_of(reach)) {
     const PathFix fix{.kind = FixKind::shift, .change = {.shift = g.cast<double>() * kGrid}};
     if (mends(fix.change)) return fix;
-    if (probed_ > most_probed_ || solved_ >= most_solved_) break;
+    if (probed_ > max_probed_ || solved_ >= max_solved_) break;
   }
   return std::nullopt;
 }
@@ -113,14 +113,14 @@ std::optional<PathFix> FixSearch::start() const {
 }
 
 std::optional<PathFix> FixSearch::longer_step(const PathFailure& failure) const {
-  constexpr double kMost = 1.6;  // [rad] beyond that the tool strays far between the poses
+  constexpr double kMax = 1.6;  // [rad] beyond that the tool strays far between the poses
   constexpr double kRound = 0.05;
   if (failure.code != PathErrc::branch_flip && failure.code != PathErrc::singularity) {
     return std::nullopt;
   }
   PathOptions longer = options_;
   longer.max_step = kRound * std::ceil(failure.amount / kRound);
-  if (longer.max_step > kMost || longer.max_step <= options_.max_step) return std::nullopt;
+  if (longer.max_step > kMax || longer.max_step <= options_.max_step) return std::nullopt;
   if (!solve_({}, longer)) return std::nullopt;
   return PathFix{.kind = FixKind::max_step, .max_step = longer.max_step};
 }

@@ -38,7 +38,7 @@ class FixSearch {
   PathOptions options_;
   Solve solve_;
   std::vector<Pose> changed_;
-  int most_probed_, most_solved_;  // of one kind of change; fewer where each takes long
+  int max_probed_, max_solved_;  // of one kind of change; fewer where each takes long
   int probed_ = 0;                 // changes that no proof refuted
   int solved_ = 0;                 // changes solved as a whole
 };

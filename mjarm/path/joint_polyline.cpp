@@ -69,7 +69,7 @@ void add_samples(JointPath& path, double length, double step, const At& at) {
 
 Result<JointPolyline> joint_polyline(std::span<const JointVec> waypoints,
                                      const JointPolylineOptions& options) {
-  constexpr double kMostSamples = 1e7, kCellsOfABend = 8;
+  constexpr double kMaxSamples = 1e7, kCellsOfABend = 8;
   if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
     return fail(Errc::bad_input, text(msg::path_blend_radius, options.blend));
   }
@@ -78,7 +78,7 @@ Result<JointPolyline> joint_polyline(std::span<const JointVec> waypoints,
   if (!legs) return fail(legs.error());
   double whole = 0;
   for (const Leg& leg : *legs) whole += leg.length;
-  if (whole / options.step + kCellsOfABend * static_cast<double>(legs->size()) > kMostSamples) {
+  if (whole / options.step + kCellsOfABend * static_cast<double>(legs->size()) > kMaxSamples) {
     return fail(Errc::bad_input, text(msg::path_joint_step, options.step));
   }
 

@@ -68,10 +68,10 @@ Onward step_on(const PathLayers& layers, const Pose& X0, const Pose& X_WT, const
 /// How far beyond its limit `joint` would be taken if the arm went on from `q` to the end.
 double farthest_beyond(const PathLayers& layers, std::span<const Pose> rest, JointVec q,
                        int joint) {
-  constexpr std::size_t kMost = 10000;  // poses
+  constexpr std::size_t kMax = 10000;  // poses
   const JointLimits& limits = layers.ik().arm().limits;
   double worst = 0;
-  for (const Pose& X_WT : rest.first(std::min(rest.size(), kMost))) {
+  for (const Pose& X_WT : rest.first(std::min(rest.size(), kMax))) {
     const auto next = layers.onward(X_WT, q);
     if (!next || (*next - q).cwiseAbs().maxCoeff() > layers.options().max_step) break;
     q = *next;
@@ -83,11 +83,11 @@ double farthest_beyond(const PathLayers& layers, std::span<const Pose> rest, Joi
 /// How far above its speed limit that joint would get on the way to the end.
 void tell_speed(const PathLayers& layers, std::span<const Pose> poses, const Onward& onward,
                 PathFailure& out) {
-  constexpr std::size_t kMost = 10000;  // poses
+  constexpr std::size_t kMax = 10000;  // poses
   out.joint = onward.joint;
   out.amount = onward.amount;
   JointVec q = onward.q;
-  const std::size_t end = std::min(poses.size(), out.at + kMost);
+  const std::size_t end = std::min(poses.size(), out.at + kMax);
   for (std::size_t i = out.at + 1; i < end; ++i) {
     const auto next = layers.onward(poses[i], q);
     if (!next || (*next - q).cwiseAbs().maxCoeff() > layers.options().max_step) break;
@@ -164,7 +164,7 @@ void tell_collision(const PathLayers& layers, const JointVec& q, PathFailure& ou
   out.code = PathErrc::collision;
   out.amount = 0;
   if (!layers.options().clearance) return;
-  const Clearance clearance = layers.options().clearance(view(q));
+  const Clearance clearance = layers.options().clearance(as_span(q));
   out.amount = std::max(0.0, -clearance.distance);
   out.pair = clearance.pair;
 }
@@ -172,7 +172,7 @@ void tell_collision(const PathLayers& layers, const JointVec& q, PathFailure& ou
 /// The first pose has no answer at all that will do.
 void tell_start(const PathLayers& layers, const Pose& X_WT, const JointVec& q_start,
                 PathFailure& out) {
-  const auto answer = layers.ik().solve(X_WT, view(q_start));
+  const auto answer = layers.ik().solve(X_WT, as_span(q_start));
   if (!answer && answer.error().code != IkErrc::collision) return tell(answer.error(), out);
   const JointVec q = answer ? answer->q : answer.error().best.q;
   out.ik.code = IkErrc::collision;
@@ -194,14 +194,14 @@ void tell_step(const PathLayers& layers, std::span<const Pose> poses, const Trac
   if (!passage.whole || passage.smallest > kNear) return;
   out.code = PathErrc::singularity;
   out.smallest = passage.smallest;
-  out.kind = singularity(layers.ik(), view(passage.q), kNear).kind;
+  out.kind = singularity(layers.ik(), as_span(passage.q), kNear).kind;
 }
 
 }  // namespace
 
 PathFailure find_cause(const PathLayers& layers, std::span<const Pose> poses, const Track& track,
                        const JointVec& q_start) {
-  constexpr std::size_t kMostTracks = 64;
+  constexpr std::size_t kMaxTracks = 64;
   PathFailure out;
   out.at = track.size();
   out.fraction = static_cast<double>(out.at) / static_cast<double>(poses.size());
@@ -210,15 +210,15 @@ PathFailure find_cause(const PathLayers& layers, std::span<const Pose> poses, co
     tell_start(layers, X_WT, q_start, out);
     return out;
   }
-  const auto free = layers.boundless().solve(X_WT, view(track.q.back()));
+  const auto free = layers.boundless().solve(X_WT, as_span(track.q.back()));
   if (!free) {
     // Limits may turn "too far" into a proof of more.
-    const auto bound = layers.ik().solve(X_WT, view(track.q.back()));
+    const auto bound = layers.ik().solve(X_WT, as_span(track.q.back()));
     tell(bound ? free.error() : bound.error(), out);
     return out;
   }
   std::optional<Onward> best;
-  const std::size_t count = std::min(track.last.size(), kMostTracks);
+  const std::size_t count = std::min(track.last.size(), kMaxTracks);
   for (std::size_t i = 0; i < count; ++i) {
     const Onward onward = step_on(layers, poses[out.at - 1], X_WT, track.last[i].q);
     if (!best || (best->code == PathErrc::branch_flip && onward.code != best->code)) best = onward;

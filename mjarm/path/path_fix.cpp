@@ -25,10 +25,10 @@ std::array<FixKind, 5> order_for(PathErrc cause) {
 }
 
 std::vector<PathFix> find_all(detail::FixSearch search, const PathFailure& failure,
-                              std::size_t most) {
+                              std::size_t max) {
   std::vector<PathFix> fixes;
   for (const FixKind kind : order_for(failure.code)) {
-    if (fixes.size() >= most) break;
+    if (fixes.size() >= max) break;
     if (auto fix = search.find(kind, failure)) fixes.push_back(std::move(*fix));
   }
   return fixes;
@@ -89,15 +89,15 @@ std::string describe(const PathFix& fix) {
 
 std::vector<PathFix> find_fixes(const IkSolver& ik, std::span<const Pose> poses,
                                 std::span<const double> q_start, const PathOptions& options,
-                                const PathFailure& failure, std::size_t most) {
+                                const PathFailure& failure, std::size_t max) {
   if (failure.code == PathErrc::bad_input || poses.empty()) return {};
   return find_all({ik, poses, failure.at, q_start, options, solver(ik, poses, q_start)}, failure,
-                  most);
+                  max);
 }
 
 std::vector<PathFix> find_fixes(const IkSolver& ik, const Curve& curve,
                                 std::span<const double> q_start, const CurveOptions& options,
-                                const PathFailure& failure, std::size_t most) {
+                                const PathFailure& failure, std::size_t max) {
   if (failure.code == PathErrc::bad_input) return {};
   constexpr double kSamples = 100;
   const std::vector<double> s = curve.stations(std::max(options.step, curve.length() / kSamples),
@@ -117,7 +117,7 @@ std::vector<PathFix> find_fixes(const IkSolver& ik, const Curve& curve,
     return solved->q.front();
   };
   return find_all({ik, poses, static_cast<std::size_t>(at), q_start, options.path, solve}, failure,
-                  most);
+                  max);
 }
 
 Result<Eigen::Vector3d> find_shift(const IkSolver& ik, std::span<const Pose> poses,

@@ -36,19 +36,19 @@ struct PathFix {
 /// One line for people.
 [[nodiscard]] std::string describe(const PathFix& fix);
 
-/// Changes that mend a path, at most one of each kind and `most` in all, what suits the cause
+/// Changes that mend a path, at most one of each kind and `max` in all, what suits the cause
 /// first, the least change of each kind. Each was verified by solving the changed path. Shifts are
 /// multiples of 0.05 m along the world's axes up to 0.6 m, tilts multiples of 5 degrees about one
 /// axis of the tool up to 60 (about z up to 180). Bounded tries; empty where none was found.
 [[nodiscard]] std::vector<PathFix> find_fixes(const IkSolver& ik, std::span<const Pose> poses,
                                               std::span<const double> q_start,
                                               const PathOptions& options,
-                                              const PathFailure& failure, std::size_t most = 3);
+                                              const PathFailure& failure, std::size_t max = 3);
 /// The same for a curve.
 [[nodiscard]] std::vector<PathFix> find_fixes(const IkSolver& ik, const Curve& curve,
                                               std::span<const double> q_start,
                                               const CurveOptions& options,
-                                              const PathFailure& failure, std::size_t most = 3);
+                                              const PathFailure& failure, std::size_t max = 3);
 
 /// The shift alone, zero where the path needs none.
 /// @param reach  [m] longest shift tried, >= 0 (at most 1 is used).

@@ -83,13 +83,13 @@ bool same_place(const Chain& chain, const JointVec& a, const JointVec& b) {
   return true;
 }
 
-/// Sorts `layer` and keeps the best `most`.
-void keep_best(Layer& layer, std::size_t most) {
+/// Sorts `layer` and keeps the best `max`.
+void keep_best(Layer& layer, std::size_t max) {
   std::vector<std::size_t> order(layer.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return layer[a].rank < layer[b].rank; });
-  if (order.size() > most) order.resize(most);
+  if (order.size() > max) order.resize(max);
   Layer sorted;
   sorted.reserve(order.size());
   for (const std::size_t k : order) sorted.push_back(layer[k]);
@@ -111,7 +111,7 @@ PathLayers::PathLayers(const IkSolver& ik, const PathOptions& options)
       chain_(ik.chain()) {}
 
 double PathLayers::smallest_singular_value(const JointVec& q) const {
-  return mjarm::smallest_singular_value(fk_jacobian(chain_, view(q)).J_W);
+  return mjarm::smallest_singular_value(fk_jacobian(chain_, as_span(q)).J_W);
 }
 
 /// 0.5 at kRoom from the nearest limit, 1 on it.
@@ -130,10 +130,10 @@ double PathLayers::limit_tightness(const JointVec& q) const {
 
 /// That of the configuration, limits left aside; none where it is refused.
 std::optional<double> PathLayers::tightness(const JointVec& q) const {
-  if (ik_.options().valid && !ik_.options().valid(view(q))) return std::nullopt;
+  if (ik_.options().valid && !ik_.options().valid(as_span(q))) return std::nullopt;
   double worst = std::max(0.0, 1 - smallest_singular_value(q) / (2 * kSingular));
   if (options_.clearance) {
-    const double distance = options_.clearance(view(q)).distance;
+    const double distance = options_.clearance(as_span(q)).distance;
     if (!(distance >= 0)) return std::nullopt;
     worst = std::max(worst, 1 - distance / (2 * kClearance));
   }
@@ -186,7 +186,7 @@ Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
   Layer layer;
   double nearest = kInfinity;
   for (const Pose& X : allowed(X_WT)) {
-    const auto answers = solve_all(all_, X, view(q_start), {.windings = true});
+    const auto answers = solve_all(all_, X, as_span(q_start), {.windings = true});
     if (!answers) continue;
     for (const IkSolution& answer : *answers) {
       const double start = largest(answer.q - q_start);
@@ -204,14 +204,14 @@ Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
   if (options_.keep_start) {
     std::erase_if(layer, [&](const TrackNode& node) { return node.rank.start > nearest + kSame; });
   }
-  keep_best(layer, ik_.six_axis() ? kMostNodes : kMostFollowed);
+  keep_best(layer, ik_.six_axis() ? kMaxNodes : kMaxFollowed);
   return layer;
 }
 
 Layer PathLayers::next(const Pose& X_before, const Pose& X_WT, const Layer& before) const {
   const JointVec longest = longest_step(X_before, X_WT);
   Layer layer = ik_.six_axis() ? join(X_WT, before, longest) : follow(X_WT, before, longest);
-  keep_best(layer, ik_.six_axis() ? kMostNodes : kMostFollowed);
+  keep_best(layer, ik_.six_axis() ? kMaxNodes : kMaxFollowed);
   return layer;
 }
 
@@ -226,7 +226,7 @@ Layer PathLayers::join(const Pose& X_WT, const Layer& before, const JointVec& lo
   Layer layer;
   std::vector<Branch> branches;
   for (const Pose& X : allowed(X_WT)) {
-    const auto answers = solve_all(boundless_, X, view(before.front().q));
+    const auto answers = solve_all(boundless_, X, as_span(before.front().q));
     if (!answers) continue;
     for (const IkSolution& answer : *answers) branches.push_back({answer.q, {}, false, {}});
   }
@@ -259,12 +259,12 @@ std::vector<JointVec> PathLayers::aside(const JointVec& q) const {
   const int rows = position ? 3 : 6;
   std::vector<JointVec> out;
   if (q.size() <= rows) return out;
-  const Eigen::MatrixXd kernel = null_space(fk_jacobian(chain_, view(q)).J_W.topRows(rows));
+  const Eigen::MatrixXd kernel = null_space(fk_jacobian(chain_, as_span(q)).J_W.topRows(rows));
   for (Eigen::Index k = 0; k < kernel.cols(); ++k) {
     const double size = kernel.col(k).cwiseAbs().maxCoeff();
     if (!(size > 0)) continue;
     for (const double way : {step / size, -step / size}) {
-      out.push_back(clamp_to_limits(ik_.arm(), view(JointVec(q + way * kernel.col(k)))));
+      out.push_back(clamp_to_limits(ik_.arm(), as_span(JointVec(q + way * kernel.col(k)))));
     }
   }
   return out;
@@ -276,7 +276,7 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& 
   const double same = ik_.arm().dof() > 6 ? kSameOfMany : kSame;
   Layer layer;
   const auto add = [&](const Pose& X, std::size_t i, const JointVec& seed) {
-    const auto answer = near_.solve(X, view(seed));
+    const auto answer = near_.solve(X, as_span(seed));
     if (!answer) return kInfinity;
     if (largest((answer->q - before[i].q).cwiseQuotient(longest)) > 1) return kInfinity;
     const auto tight = tightness(answer->q);
@@ -304,7 +304,7 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& 
 }
 
 std::optional<JointVec> PathLayers::onward(const Pose& X_WT, const JointVec& q) const {
-  const auto answer = boundless_.solve(X_WT, view(q));
+  const auto answer = boundless_.solve(X_WT, as_span(q));
   if (!answer) return std::nullopt;
   return answer->q;
 }

@@ -31,8 +31,8 @@ using Layer = std::vector<TrackNode>;
 /// Makes the answers to each pose out of those to the pose before.
 class PathLayers {
  public:
-  static constexpr std::size_t kMostNodes = 512;    ///< a layer; the best are kept
-  static constexpr std::size_t kMostFollowed = 96;  ///< likewise without a closed form of six axes
+  static constexpr std::size_t kMaxNodes = 512;    ///< a layer; the best are kept
+  static constexpr std::size_t kMaxFollowed = 96;  ///< likewise without a closed form of six axes
 
   /// Keeps references to both.
   PathLayers(const IkSolver& ik, const PathOptions& options);

@@ -16,12 +16,12 @@ PathMeasures measure_path(const Arm& arm, std::span<const JointVec> q,
     const auto note = [i](LeastAlong& least, double value) {
       if (value < least.value) least = {value, i};
     };
-    const Jacobian J_W = fk_jacobian(chain, view(q[i])).J_W;
+    const Jacobian J_W = fk_jacobian(chain, as_span(q[i])).J_W;
     note(out.manipulability, manipulability(J_W));
     note(out.singular_value, smallest_singular_value(J_W));
     note(out.limit_room,
          std::min((q[i] - arm.limits.lower).minCoeff(), (arm.limits.upper - q[i]).minCoeff()));
-    if (clearance) note(out.clearance, clearance(view(q[i])).distance);
+    if (clearance) note(out.clearance, clearance(as_span(q[i])).distance);
   }
   return out;
 }

@@ -22,12 +22,12 @@ JointVec longest_at_speed(const Arm& arm, const Pose& X_before, const Pose& X_WT
 
 Overspeed overspeed(const Arm& arm, const JointVec& step, double time) {
   Overspeed out;
-  double most = 1;
+  double max = 1;
   for (int i = 0; i < step.size(); ++i) {
     const double limit = arm.limits.velocity[i];
     const double way = std::abs(step[i]);
-    if (way <= limit * time + kRounding || way <= most * limit * time) continue;
-    most = way / (limit * time);
+    if (way <= limit * time + kRounding || way <= max * limit * time) continue;
+    max = way / (limit * time);
     out = {i, way / time - limit};
   }
   return out;

@@ -30,10 +30,10 @@ inline void expect_on_poses(const Arm& arm, const JointPath& path, std::span<con
   ASSERT_EQ(path.s.size(), poses.size());
   EXPECT_LE(path.max_step(), 0.5);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Pose X = fk(arm, view(path.q[i]));
+    const Pose X = fk(arm, as_span(path.q[i]));
     EXPECT_LT((X.p - poses[i].p).norm(), 1e-6);
     EXPECT_LT(angle_between(X.R, poses[i].R), rot_tol);
-    EXPECT_TRUE(within_limits(arm, view(path.q[i])));
+    EXPECT_TRUE(within_limits(arm, as_span(path.q[i])));
   }
 }
 

@@ -48,7 +48,7 @@ class Refiner {
   /// What the tool does at a share `t` of the stretch against what it should.
   [[nodiscard]] bool keeps(double s0, const JointVec& q0, double s1, const JointVec& q1,
                            double t) const {
-    const Pose X = fk(chain_, view(JointVec((1 - t) * q0 + t * q1)));
+    const Pose X = fk(chain_, as_span(JointVec((1 - t) * q0 + t * q1)));
     const Pose X_goal = options_.change(curve_.at((1 - t) * s0 + t * s1));
     return (X.p - X_goal.p).norm() <= options_.pos_tol &&
            turned(X, X_goal) <= options_.rot_tol + options_.path.orientation_tol;
@@ -73,7 +73,7 @@ class Refiner {
   [[nodiscard]] Pose allowed(const Pose& X_WT, const JointVec& q) const {
     const double tol = options_.path.orientation_tol;
     if (tol == 0) return X_WT;
-    const Eigen::Vector3d turn = rotation_log(X_WT.R.transpose() * fk(chain_, view(q)).R);
+    const Eigen::Vector3d turn = rotation_log(X_WT.R.transpose() * fk(chain_, as_span(q)).R);
     const double share = std::min(1.0, tol / std::max(turn.norm(), tol));
     return {X_WT.p, X_WT.R * rotation_exp(share * turn)};
   }
@@ -82,11 +82,11 @@ class Refiner {
   [[nodiscard]] std::optional<JointVec> between(double s, const JointVec& q0,
                                                 const JointVec& q1) const {
     const JointVec middle = 0.5 * (q0 + q1);
-    const auto answer = ik_.solve(allowed(options_.change(curve_.at(s)), middle), view(middle));
+    const auto answer = ik_.solve(allowed(options_.change(curve_.at(s)), middle), as_span(middle));
     if (!answer) return std::nullopt;
     const auto step = [&](const JointVec& q) { return (answer->q - q).cwiseAbs().maxCoeff(); };
     if (step(q0) > options_.path.max_step || step(q1) > options_.path.max_step) return std::nullopt;
-    if (options_.path.clearance && !(options_.path.clearance(view(answer->q)).distance >= 0)) {
+    if (options_.path.clearance && !(options_.path.clearance(as_span(answer->q)).distance >= 0)) {
       return std::nullopt;
     }
     return answer->q;

@@ -11,7 +11,7 @@ namespace mjarm {
 namespace {
 
 constexpr int kRounds = 12;  // of adding stations where the curve is not had
-constexpr std::size_t kMostStations = 400'000;
+constexpr std::size_t kMaxStations = 400'000;
 
 /// Seven more stations within (s0, s1).
 void split(std::vector<double>& stations, double s0, double s1) {
@@ -20,9 +20,9 @@ void split(std::vector<double>& stations, double s0, double s1) {
 }
 
 std::vector<double> first_stations(const Curve& curve, const CurveOptions& options) {
-  constexpr double kMost = 2e5;
-  const double step = std::max(options.step, curve.length() / kMost);
-  const double turn = std::max(options.turn, curve.turn() / kMost);
+  constexpr double kMax = 2e5;
+  const double step = std::max(options.step, curve.length() / kMax);
+  const double turn = std::max(options.turn, curve.turn() / kMax);
   return curve.stations(step, turn);
 }
 
@@ -68,7 +68,7 @@ Result<JointPath, PathFailure> solve_curve(const IkSolver& ik, const Curve& curv
   }
   std::vector<double> stations = first_stations(curve, options);
   PathFailure failure;
-  for (int round = 0; round < kRounds && stations.size() < kMostStations; ++round) {
+  for (int round = 0; round < kRounds && stations.size() < kMaxStations; ++round) {
     std::vector<Pose> poses = curve.poses(stations);
     std::transform(poses.begin(), poses.end(), poses.begin(), options.change);
     auto path = solve_path(ik, poses, stations, q_start, options.path);

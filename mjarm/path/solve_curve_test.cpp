@@ -23,7 +23,7 @@ void expect_on_curve(const Arm& arm, const Curve& curve, const JointPath& path,
     EXPECT_LT(path.s[i - 1], path.s[i]);
     for (int k = 0; k <= 16; ++k) {
       const double t = k / 16.0;
-      const Pose X = fk(arm, view(JointVec((1 - t) * path.q[i - 1] + t * path.q[i])));
+      const Pose X = fk(arm, as_span(JointVec((1 - t) * path.q[i - 1] + t * path.q[i])));
       const Pose X_goal = change(curve.at((1 - t) * path.s[i - 1] + t * path.s[i]));
       pos = std::max(pos, (X.p - X_goal.p).norm());
       rot = std::max(rot, angle_between(X.R, X_goal.R));
@@ -71,7 +71,7 @@ TEST(SolveCurve, ArcsEllipsesAndTurns) {
 TEST(SolveCurve, TheArmOfSevenJoints) {
   const IkSolver ik(testing::panda());
   const Curve line = *Curve::line({{0.4, -0.4, 0.3}, kDown}, {{0.4, 0.4, 0.5}, kDown});
-  const auto path = solve_curve(ik, line, view(ik.arm().home));
+  const auto path = solve_curve(ik, line, as_span(ik.arm().home));
   ASSERT_TRUE(path.has_value()) << describe(path.error(), ik.arm());
   expect_on_curve(ik.arm(), line, *path, {});
 }
@@ -113,13 +113,13 @@ TEST(SolveCurve, ThroughAWristSingularity) {
 
 /// Largest share of a velocity limit that the joints use at a tool speed, by differences.
 double speed_use(const Arm& arm, const JointPath& path, double tool_speed) {
-  double most = 0;
+  double max = 0;
   for (std::size_t i = 1; i < path.q.size(); ++i) {
     const double time = (path.s[i] - path.s[i - 1]) / tool_speed;
     const JointVec speed = (path.q[i] - path.q[i - 1]).cwiseAbs() / time;
-    most = std::max(most, speed.cwiseQuotient(arm.limits.velocity).maxCoeff());
+    max = std::max(max, speed.cwiseQuotient(arm.limits.velocity).maxCoeff());
   }
-  return most;
+  return max;
 }
 
 TEST(SolveCurve, ASpeedTooHighPastAWristSingularityAndOneThatIsNot) {

@@ -13,14 +13,14 @@
 namespace mjarm {
 namespace {
 
-constexpr double kMostTilt = std::numbers::pi / 2;  // [rad]
+constexpr double kMaxTilt = std::numbers::pi / 2;  // [rad]
 
 bool is_sound(const IkSolver& ik, std::span<const Pose> poses, std::span<const double> s,
               std::span<const double> q_start, const PathOptions& options) {
   return !poses.empty() && poses.size() == s.size() && all_finite(s) &&
          std::is_sorted(s.begin(), s.end()) && all_finite(q_start) &&
          q_start.size() == ik.arm().joints.size() && options.max_step > 0 &&
-         options.orientation_tol >= 0 && options.orientation_tol < kMostTilt &&
+         options.orientation_tol >= 0 && options.orientation_tol < kMaxTilt &&
          options.comfort >= 0 && options.comfort <= 1 && options.tool_speed >= 0 &&
          std::isfinite(options.tool_speed);
 }
@@ -63,7 +63,7 @@ std::vector<UnreachableRange> unreachable_ranges(const IkSolver& ik, std::span<c
   std::vector<UnreachableRange> ranges;
   JointVec seed = joint_vec(q_seed.first(std::min<std::size_t>(q_seed.size(), kMaxDof)));
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto answer = ik.solve(poses[i], view(seed));
+    const auto answer = ik.solve(poses[i], as_span(seed));
     if (answer) {
       seed = answer->q;
     } else if (!ranges.empty() && ranges.back().last + 1 == i) {

@@ -17,10 +17,10 @@ std::vector<Pose> known_path(const Arm& arm, int n, double size, Rng& rng) {
   const JointVec q0 = testing::random_q(arm, rng);
   JointVec q1 = q0;
   for (int i = 0; i < arm.dof(); ++i) q1[i] += rng.uniform(-size, size);
-  q1 = clamp_to_limits(arm, view(q1));
+  q1 = clamp_to_limits(arm, as_span(q1));
   std::vector<Pose> poses;
   for (int i = 0; i < n; ++i) {
-    poses.push_back(fk(arm, view(JointVec(q0 + (q1 - q0) * i / (n - 1)))));
+    poses.push_back(fk(arm, as_span(JointVec(q0 + (q1 - q0) * i / (n - 1)))));
   }
   return poses;
 }
@@ -31,7 +31,7 @@ int solved(const IkSolver& ik, int count, std::uint64_t seed) {
   int done = 0;
   for (int i = 0; i < count; ++i) {
     const std::vector<Pose> poses = known_path(ik.arm(), 60, 1.2, rng);
-    const auto path = solve_path(ik, poses, view(ik.arm().home));
+    const auto path = solve_path(ik, poses, as_span(ik.arm().home));
     if (path) testing::expect_on_poses(ik.arm(), *path, poses);
     done += path.has_value();
   }
@@ -57,7 +57,7 @@ TEST(SolvePathArms, LongPathsAreKeptInPieces) {
   const Arm arm = testing::ur5e();
   Rng rng(5);
   const std::vector<Pose> poses = known_path(arm, n, 2, rng);
-  const auto path = solve_path(IkSolver(arm), poses, view(arm.home));
+  const auto path = solve_path(IkSolver(arm), poses, as_span(arm.home));
   ASSERT_TRUE(path.has_value());
   testing::expect_on_poses(arm, *path, poses);
   EXPECT_LT(path->max_step(), 20.0 / n);
@@ -67,8 +67,8 @@ TEST(SolvePathArms, TheSameTwice) {
   for (const Arm& arm : {testing::ur5e(), testing::panda()}) {
     Rng rng(6);
     const std::vector<Pose> poses = known_path(arm, 40, 0.6, rng);
-    const auto one = solve_path(IkSolver(arm), poses, view(arm.home));
-    const auto two = solve_path(IkSolver(arm), poses, view(arm.home));
+    const auto one = solve_path(IkSolver(arm), poses, as_span(arm.home));
+    const auto two = solve_path(IkSolver(arm), poses, as_span(arm.home));
     ASSERT_EQ(one.has_value(), two.has_value());
     if (one) {
       EXPECT_EQ(one->q, two->q);
@@ -80,11 +80,11 @@ TEST(SolvePathArms, ATolerancePassesAWristSingularity) {
   Rng rng(7);
   const testing::FailingPath path = testing::singularity(rng, 0.01);
   const IkSolver ik(path.arm);
-  const auto strict = solve_path(ik, path.poses, view(path.arm.home));
+  const auto strict = solve_path(ik, path.poses, as_span(path.arm.home));
   ASSERT_FALSE(strict.has_value());
   EXPECT_EQ(strict.error().code, PathErrc::singularity);
   EXPECT_EQ(strict.error().kind, SingularKind::wrist);
-  const auto loose = solve_path(ik, path.poses, view(path.arm.home), {.orientation_tol = 0.06});
+  const auto loose = solve_path(ik, path.poses, as_span(path.arm.home), {.orientation_tol = 0.06});
   ASSERT_TRUE(loose.has_value()) << describe(loose.error(), path.arm);
   testing::expect_on_poses(path.arm, *loose, path.poses, 0.06 + 1e-6);
 }
@@ -106,7 +106,7 @@ TEST(SolvePathArms, AnotherStartMendsAPathFromAPostureThatCannotGoOn) {
   const auto fixes = find_fixes(ik, poses, q, options, kept.error());
   ASSERT_FALSE(fixes.empty());
   EXPECT_EQ(fixes.front().kind, FixKind::start);
-  const auto mended = solve_path(ik, poses, view(fixes.front().start), options);
+  const auto mended = solve_path(ik, poses, as_span(fixes.front().start), options);
   ASSERT_TRUE(mended.has_value());
   EXPECT_LT((mended->q.front() - fixes.front().start).norm(), 1e-6);
   EXPECT_LE(fixes.size(), 3U);

@@ -76,12 +76,12 @@ TEST(SolvePath, OtherBranchesAreTriedWhenTheNearestFails) {
   const Arm arm = testing::ur5e();
   const IkSolver ik(arm);
   const JointVec q0 = joint_vec(std::vector<double>{-1.57, -1.34, 2.2, -1.3, 1.55, 6.2});
-  const Pose from = fk(arm, view(q0));
+  const Pose from = fk(arm, as_span(q0));
   const Curve turn = *Curve::line(from, {from.p, from.R * from_euler({0, 0, 1.0})});
   const std::vector<double> s = turn.stations(0.001, 0.05);
   std::vector<Pose> poses;
   for (const double x : s) poses.push_back(turn.at(x));
-  const auto path = solve_path(ik, poses, s, view(q0));
+  const auto path = solve_path(ik, poses, s, as_span(q0));
   ASSERT_TRUE(path.has_value());
   testing::expect_on_poses(arm, *path, poses);
   EXPECT_LE(path->max_step(), 0.5);
@@ -156,7 +156,7 @@ TEST(SolvePathData, AllLinesAreSolved) {
   int line = 0;
   for (const auto& entry : support::load_json_lines(file)) {
     const std::vector<Pose> poses = poses_of(entry);
-    const auto path = solve_path(ik, poses, view(ik.arm().home));
+    const auto path = solve_path(ik, poses, as_span(ik.arm().home));
     EXPECT_TRUE(path.has_value()) << "line " << line << " stops at " << path.error().at << ": "
                                   << name(path.error().code);
     if (path) {

@@ -44,8 +44,8 @@ inline double expect_free_exactly(const CoveredArm& arm, const PlannedPath& path
     const int samples = std::max(2, static_cast<int>(way.norm() / 0.005));
     for (int k = 0; k <= samples; ++k) {
       const JointVec q = path.q[i - 1] + way * k / samples;
-      EXPECT_TRUE(checker.is_free(view(q))) << "edge " << i << " at " << k;
-      if (limit) largest = std::max(largest, tilt(*limit, arm.robot.arm, view(q)));
+      EXPECT_TRUE(checker.is_free(as_span(q))) << "edge " << i << " at " << k;
+      if (limit) largest = std::max(largest, tilt(*limit, arm.robot.arm, as_span(q)));
     }
   }
   return largest;

@@ -42,18 +42,18 @@ class Goals {
 
   void add(std::span<const IkSolution> answers) {
     for (const IkSolution& answer : answers) {
-      const bool free = checker_.is_free(view(answer.q));
+      const bool free = checker_.is_free(as_span(answer.q));
       const bool upright =
-          !tilt_ || tilt(*tilt_, checker_.robot().arm(), view(answer.q)) <= tilt_->most;
+          !tilt_ || tilt(*tilt_, checker_.robot().arm(), as_span(answer.q)) <= tilt_->max;
       (!free ? hit_ : upright ? good_ : leaning_).push_back(answer.q);
     }
   }
 
-  std::vector<JointVec> take(int most) {
+  std::vector<JointVec> take(int max) {
     std::vector<JointVec>& out = !good_.empty() ? good_ : !leaning_.empty() ? leaning_ : hit_;
     const auto far = [&](const JointVec& q) { return (q - near_).norm(); };
     std::ranges::stable_sort(out, {}, far);
-    if (out.size() > static_cast<std::size_t>(most)) out.resize(static_cast<std::size_t>(most));
+    if (out.size() > static_cast<std::size_t>(max)) out.resize(static_cast<std::size_t>(max));
     return std::move(out);
   }
 
@@ -67,7 +67,7 @@ class Goals {
 }  // namespace
 
 bool is_sound(const GoalRegion& region) noexcept {
-  const auto within = [](double x, double most) { return x >= 0 && x <= most; };
+  const auto within = [](double x, double max) { return x >= 0 && x <= max; };
   return within(region.half.minCoeff(), kWidest) && within(region.half.maxCoeff(), kWidest) &&
          region.half.allFinite() && within(region.lean, std::numbers::pi) &&
          within(region.turn, std::numbers::pi);
@@ -79,7 +79,7 @@ Result<std::vector<JointVec>, IkFailure> goals_in(const FastChecker& checker, co
                                                   const GoalOptions& options) {
   const bool fits = q_near.size() == static_cast<std::size_t>(checker.robot().dof()) &&
                     all_finite(q_near) && ik.arm().dof() == checker.robot().dof();
-  if (!fits || !is_sound(region) || options.poses < 0 || options.most <= 0) {
+  if (!fits || !is_sound(region) || options.poses < 0 || options.max <= 0) {
     return tl::unexpected(IkFailure{.code = IkErrc::bad_input, .best = {}});
   }
   Goals goals(checker, options.tilt, q_near);
@@ -96,7 +96,7 @@ Result<std::vector<JointVec>, IkFailure> goals_in(const FastChecker& checker, co
     if (why && why->code == IkErrc::bad_input) break;
   }
   if (!any) return tl::unexpected(std::move(*why));
-  return goals.take(options.most);
+  return goals.take(options.max);
 }
 
 }  // namespace mjarm

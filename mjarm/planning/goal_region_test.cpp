@@ -24,10 +24,10 @@ Result<std::vector<JointVec>, IkFailure> goals_of(const GoalRegion& region,
                                                   IkTask task = IkTask::pose) {
   const testing::CoveredArm& arm = testing::walled_arm();
   const IkSolver ik(arm.robot.arm, {.task = task});
-  return goals_in(arm.checker, ik, region, view(near()), options);
+  return goals_in(arm.checker, ik, region, as_span(near()), options);
 }
 
-Pose tool(const JointVec& q) { return fk(testing::walled_arm().robot.arm, view(q)); }
+Pose tool(const JointVec& q) { return fk(testing::walled_arm().robot.arm, as_span(q)); }
 
 TEST(GoalRegion, APoseIsAllItsBranchesThatAreFreeNearestFirst) {
   const auto goals = goals_of({.X_WR = kBehindWall});
@@ -38,12 +38,12 @@ TEST(GoalRegion, APoseIsAllItsBranchesThatAreFreeNearestFirst) {
   for (const JointVec& q : *goals) {
     EXPECT_LT((tool(q).p - kBehindWall.p).norm(), 1e-6);
     EXPECT_LT(angle_between(tool(q).R, kBehindWall.R), 1e-6);
-    EXPECT_TRUE(testing::walled_arm().checker.is_free(view(q)));
+    EXPECT_TRUE(testing::walled_arm().checker.is_free(as_span(q)));
     const double far = (q - near()).norm();
     EXPECT_GE(far, before);
     before = far;
   }
-  const auto few = goals_of({.X_WR = kBehindWall}, {.most = 3});
+  const auto few = goals_of({.X_WR = kBehindWall}, {.max = 3});
   ASSERT_TRUE(few);
   ASSERT_EQ(few->size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ((*few)[k], (*goals)[k]);
@@ -52,10 +52,10 @@ TEST(GoalRegion, APoseIsAllItsBranchesThatAreFreeNearestFirst) {
 TEST(GoalRegion, PosesAreDrawnFromTheWholeRegionAndNoOther) {
   GoalRegion region{kBehindWall, {0.1, 0.05, 0.02}, 0.3, 0.5};
   region.X_WR.R = from_euler({pi - 0.2, 0.1, 0.4});
-  const auto goals = goals_of(region, {.poses = 60, .most = 4000});
+  const auto goals = goals_of(region, {.poses = 60, .max = 4000});
   ASSERT_TRUE(goals);
   Eigen::Vector3d widest = Eigen::Vector3d::Zero();
-  double most_lean = 0;
+  double max_lean = 0;
   for (const JointVec& q : *goals) {
     const Pose X_RT = region.X_WR.inverse() * tool(q);
     for (int k = 0; k < 3; ++k) {
@@ -64,11 +64,11 @@ TEST(GoalRegion, PosesAreDrawnFromTheWholeRegionAndNoOther) {
     }
     const double lean = std::acos(std::clamp(X_RT.R(2, 2), -1.0, 1.0));
     EXPECT_LE(lean, region.lean + 1e-6);
-    most_lean = std::max(most_lean, lean);
+    max_lean = std::max(max_lean, lean);
   }
   EXPECT_GT(widest.minCoeff(), 0.8);
-  EXPECT_GT(most_lean, 0.2);
-  const auto again = goals_of(region, {.poses = 60, .most = 4000});
+  EXPECT_GT(max_lean, 0.2);
+  const auto again = goals_of(region, {.poses = 60, .max = 4000});
   EXPECT_EQ(*goals, *again);
 }
 
@@ -86,18 +86,18 @@ TEST(GoalRegion, WhereAllCollidesTheyAreGivenSoThatThePlannerSaysWithWhat) {
   const Pose inside{{0, -0.45, 0.2}, from_euler({pi, 0, 0})};
   const auto goals = goals_of({.X_WR = inside});
   ASSERT_TRUE(goals);
-  for (const JointVec& q : *goals) EXPECT_FALSE(arm.checker.is_free(view(q)));
-  const auto path = plan_path(arm.checker, view(near()), view(goals->front()));
+  for (const JointVec& q : *goals) EXPECT_FALSE(arm.checker.is_free(as_span(q)));
+  const auto path = plan_path(arm.checker, as_span(near()), as_span(goals->front()));
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().reason, PlanErrc::goals_hit);
 }
 
 TEST(GoalRegion, GoalsThatLeanAreLeftOutWhereOthersDoNot) {
   const Arm& arm = testing::walled_arm().robot.arm;
-  const GoalOptions options{.poses = 40, .most = 4000, .tilt = TiltLimit{.most = 0.2}};
+  const GoalOptions options{.poses = 40, .max = 4000, .tilt = TiltLimit{.max = 0.2}};
   const auto goals = goals_of({.X_WR = kBehindWall, .lean = 0.6}, options);
   ASSERT_TRUE(goals);
-  for (const JointVec& q : *goals) EXPECT_LE(tilt(*options.tilt, arm, view(q)), 0.2);
+  for (const JointVec& q : *goals) EXPECT_LE(tilt(*options.tilt, arm, as_span(q)), 0.2);
   // All lean: the planner shall say by how much.
   GoalRegion leaning{kBehindWall};
   leaning.X_WR.R = from_euler({pi - 0.5, 0, 0});

@@ -68,7 +68,7 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
   const double least = detail::distance(start, problem->goals.front()) * (1 + 1e-12);
   for (int k = 0; cost > least && (timed ? !problem->deadline.passed() : k < options.rounds); ++k) {
     ++round.seed;
-    problem->most_cost = kShare * cost;
+    problem->max_cost = kShare * cost;
     Result<RawPath, PlanFailure> found = detail::rrt_connect(*problem, round);
     if (!found) continue;
     settler.settle(round.seed, cost, *found);

@@ -49,7 +49,7 @@ tl::unexpected<PlanFailure> tilted(PlanErrc reason, const TiltLimit& limit, cons
   PlanFailure failure;
   failure.reason = reason;
   failure.value = tilt(limit, arm, q);
-  failure.limit = limit.most;
+  failure.limit = limit.max;
   return tl::unexpected(failure);
 }
 
@@ -117,7 +117,7 @@ Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
 
 double least_cost_through(const SearchProblem& problem, std::span<const double> q) {
   double least = std::numeric_limits<double>::infinity();
-  if (!std::isfinite(problem.most_cost)) return 0;
+  if (!std::isfinite(problem.max_cost)) return 0;
   for (const std::span<const double> goal : problem.goals) {
     least = std::min(least, distance(q, goal));
   }

@@ -175,7 +175,7 @@ class OmplSearch {
       planner->params().setParam("range", std::to_string(options_.range));
     }
     if (const auto fmt = std::dynamic_pointer_cast<og::FMT>(planner)) {
-      fmt->setNumSamples(static_cast<unsigned int>(std::min(kBatch, budget_.most() / kFreeShare)));
+      fmt->setNumSamples(static_cast<unsigned int>(std::min(kBatch, budget_.max() / kFreeShare)));
       fmt->setExtendedFMT(false);  // it takes minutes where there is no path
     }
     return planner;
@@ -190,13 +190,13 @@ class OmplSearch {
     }
     if (path.q.size() < 2) return failed(PlanErrc::back_end);
     for (std::size_t i = 1; i < path.q.size(); ++i) {
-      const std::span<const double> a = view(path.q[i - 1]), b = view(path.q[i]);
+      const std::span<const double> a = as_span(path.q[i - 1]), b = as_span(path.q[i]);
       if (!prover.is_free(a, b) && !prover.is_free(b, a)) {
         return failed(PlanErrc::unproved);
       }
     }
     const auto end = std::ranges::find_if(problem_.goals, [&](std::span<const double> goal) {
-      return distance(goal, view(path.q.back())) == 0;
+      return distance(goal, as_span(path.q.back())) == 0;
     });
     if (end == problem_.goals.end()) return failed(PlanErrc::back_end);
     path.goal = problem_.goal_index[static_cast<std::size_t>(end - problem_.goals.begin())];

@@ -64,12 +64,12 @@ void expect_clear(const FastChecker& checker, const Obstacles& world,
   const FastRobot& robot = checker.robot();
   ASSERT_GE(path.size(), 2u);
   for (std::size_t i = 1; i < path.size(); ++i) {
-    EXPECT_EQ(check_edge(checker, view(path[i - 1]), view(path[i])).verdict, EdgeVerdict::free);
+    EXPECT_EQ(check_edge(checker, as_span(path[i - 1]), as_span(path[i])).verdict, EdgeVerdict::free);
     const JointVec way = path[i] - path[i - 1];
     const int parts = std::max(2, static_cast<int>(way.norm() / 0.01));
     for (int k = 0; k <= parts; ++k) {
       const JointVec q = path[i - 1] + way * k / parts;
-      EXPECT_GT(testing::true_clearance(robot.arm(), robot.spheres(), world, view(q)), 0);
+      EXPECT_GT(testing::true_clearance(robot.arm(), robot.spheres(), world, as_span(q)), 0);
     }
   }
 }
@@ -166,7 +166,7 @@ TEST_P(OmplPlanner, EveryPathInRandomWorldsIsFree) {
     const JointVec start = testing::random_q(arm, rng), goal = testing::random_q(arm, rng);
     PlanOptions options = ompl_options(GetParam(), 400);
     options.seed = static_cast<std::uint64_t>(round);
-    const auto path = plan_path(checker, view(start), view(goal), options);
+    const auto path = plan_path(checker, as_span(start), as_span(goal), options);
     if (!path) {
       EXPECT_NE(path.error().reason, PlanErrc::unproved);
       EXPECT_NE(path.error().reason, PlanErrc::back_end);

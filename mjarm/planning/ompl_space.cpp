@@ -17,8 +17,8 @@ namespace {
 
 namespace ob = ompl::base;
 
-constexpr int kMostDraws = 100'000;         // where nothing else is said: until a path;
-constexpr int kMostWhereImproved = 10'000;  // by planners that go on: their samples cost more,
+constexpr int kMaxDraws = 100'000;         // where nothing else is said: until a path;
+constexpr int kMaxWhereImproved = 10'000;  // by planners that go on: their samples cost more,
 constexpr int kMoreDraws = 3000;            // and after it
 constexpr std::int64_t kStepsOfDraw = 30;   // edges and questions whether to end
 constexpr double kTimeShare = 0.9;          // the rest is for shortening and proof
@@ -70,35 +70,35 @@ class ArmSampler : public ob::StateSampler {
 /// Gammell, T. D. Barfoot and S. S. Srinivasa, IEEE T-RO 34 (2018) 966).
 class EllipsoidSampler : public ob::InformedSampler {
  public:
-  EllipsoidSampler(const ob::ProblemDefinitionPtr& definition, unsigned int most_calls,
+  EllipsoidSampler(const ob::ProblemDefinitionPtr& definition, unsigned int max_calls,
                    const SearchProblem& problem)
-      : InformedSampler(definition, most_calls),
+      : InformedSampler(definition, max_calls),
         problem_(problem),
         space_of_arm_(static_cast<const ArmSpace&>(*space_)),
         whole_(space_of_arm_.allocDefaultStateSampler()),
         random_(space_of_arm_.next_rng()) {}
 
-  bool sampleUniform(ob::State* state, const ob::Cost& most) override {
-    return sampleUniform(state, ob::Cost(0), most);
+  bool sampleUniform(ob::State* state, const ob::Cost& max) override {
+    return sampleUniform(state, ob::Cost(0), max);
   }
-  bool sampleUniform(ob::State* state, const ob::Cost& least, const ob::Cost& most) override {
+  bool sampleUniform(ob::State* state, const ob::Cost& least, const ob::Cost& max) override {
     const std::span<double> q = joints_of(state, problem_.start.size());
     for (unsigned int call = 0; call < numIters_; ++call) {
-      if (std::isinf(most.value())) {
+      if (std::isinf(max.value())) {
         whole_->sampleUniform(state);
-      } else if (!draw(most.value(), q) || !space_of_arm_.satisfiesBounds(state)) {
+      } else if (!draw(max.value(), q) || !space_of_arm_.satisfiesBounds(state)) {
         continue;
       }
       const double through = shortest_through(q);
-      if (through >= least.value() && through < most.value()) return true;
+      if (through >= least.value() && through < max.value()) return true;
     }
     return false;
   }
 
   bool hasInformedMeasure() const override { return true; }
-  double getInformedMeasure(const ob::Cost& most) const override {
+  double getInformedMeasure(const ob::Cost& max) const override {
     const double whole = space_->getMeasure();
-    return std::isinf(most.value()) ? whole : std::min(whole, measure(most.value()));
+    return std::isinf(max.value()) ? whole : std::min(whole, measure(max.value()));
   }
 
  private:
@@ -108,44 +108,44 @@ class EllipsoidSampler : public ob::InformedSampler {
     for (const auto goal : problem_.goals) least = std::min(least, distance(q, goal));
     return distance(problem_.start, q) + least;
   }
-  double measure_of(std::span<const double> goal, double most) const {
+  double measure_of(std::span<const double> goal, double max) const {
     const double straight = length_to(goal);
-    if (straight >= most) return 0;
+    if (straight >= max) return 0;
     return ompl::prolateHyperspheroidMeasure(static_cast<unsigned int>(goal.size()), straight,
-                                             most);
+                                             max);
   }
-  double measure(double most) const {
+  double measure(double max) const {
     double sum = 0;
-    for (const auto goal : problem_.goals) sum += measure_of(goal, most);
+    for (const auto goal : problem_.goals) sum += measure_of(goal, max);
     return sum;
   }
 
   /// Where ellipsoids overlap, as many draws are dropped as there are too many.
-  bool draw(double most, std::span<double> q) {
+  bool draw(double max, std::span<double> q) {
     budget().draw();
-    double share = random_.uniform() * measure(most);
+    double share = random_.uniform() * measure(max);
     std::span<const double> chosen = problem_.goals.front();
     for (const auto goal : problem_.goals) {
-      const double part = measure_of(goal, most);
+      const double part = measure_of(goal, max);
       if (part > 0) chosen = goal;
       share -= part;
       if (share < 0) break;
     }
-    if (length_to(chosen) >= most) return false;
-    draw_round(chosen, most, q);
+    if (length_to(chosen) >= max) return false;
+    draw_round(chosen, max, q);
     int inside = 0;
     for (const auto goal : problem_.goals) {
-      inside += distance(problem_.start, q) + distance(q, goal) < most ? 1 : 0;
+      inside += distance(problem_.start, q) + distance(q, goal) < max ? 1 : 0;
     }
     return inside <= 1 || random_.uniform() * inside < 1;
   }
 
   /// A point of the unit ball, stretched along the first axis, which a reflection then lays along
   /// the line from start to goal.
-  void draw_round(std::span<const double> goal, double most, std::span<double> q) {
+  void draw_round(std::span<const double> goal, double max, std::span<double> q) {
     const std::size_t n = q.size();
     const double straight = length_to(goal);
-    const double wide = 0.5 * std::sqrt(most * most - straight * straight);
+    const double wide = 0.5 * std::sqrt(max * max - straight * straight);
     std::array<double, kMaxDof> mirror{};
     double norm2 = 0, along = 0, mirror2 = 0;
     for (std::size_t k = 0; k < n; ++k) {
@@ -158,7 +158,7 @@ class EllipsoidSampler : public ob::InformedSampler {
     const double radius = std::pow(random_.uniform(), 1.0 / static_cast<double>(n));
     const double scale = radius / std::sqrt(std::max(norm2, 1e-300));
     for (std::size_t k = 0; k < n; ++k) {
-      q[k] *= scale * (k == 0 ? 0.5 * most : wide);
+      q[k] *= scale * (k == 0 ? 0.5 * max : wide);
       along += mirror[k] * q[k];
     }
     const double push = mirror2 > 0 ? 2 * along / mirror2 : 0;
@@ -179,9 +179,9 @@ class EllipsoidSampler : public ob::InformedSampler {
 OmplBudget::OmplBudget(const PlanOptions& options, bool improves)
     : deadline_(1e6 * kTimeShare * options.time_budget),
       timed_(options.time_budget > 0),
-      most_(options.samples > 0 ? options.samples
-            : improves          ? kMostWhereImproved
-                                : kMostDraws),
+      max_(options.samples > 0 ? options.samples
+            : improves          ? kMaxWhereImproved
+                                : kMaxDraws),
       more_(options.samples > 0 ? options.samples : kMoreDraws) {}
 
 void OmplBudget::found() {
@@ -194,7 +194,7 @@ bool OmplBudget::spent() {
   ++steps_;
   if (deadline_.passed() || interrupted()) return true;
   if (found_ && timed_) return false;
-  const int draws = found_ ? more_ : most_;
+  const int draws = found_ ? more_ : max_;
   return counts_.samples >= draws || steps_ >= kStepsOfDraw * draws;
 }
 
@@ -264,8 +264,8 @@ bool ProvedMotions::checkMotion(const ob::State* from, const ob::State* to,
 }
 
 ob::InformedSamplerPtr ArmLength::allocInformedStateSampler(
-    const ob::ProblemDefinitionPtr& definition, unsigned int most_calls) const {
-  return std::make_shared<EllipsoidSampler>(definition, most_calls, problem_);
+    const ob::ProblemDefinitionPtr& definition, unsigned int max_calls) const {
+  return std::make_shared<EllipsoidSampler>(definition, max_calls, problem_);
 }
 
 }  // namespace mjarm::detail

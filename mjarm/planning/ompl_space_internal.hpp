@@ -30,13 +30,13 @@ class OmplBudget {
 
   PlanCounts& counts() { return counts_; }
   /// Configurations that may be drawn until there is a path.
-  int most() const { return most_; }
+  int max() const { return max_; }
 
  private:
   PlanCounts counts_;
   Deadline deadline_;
   bool timed_;
-  int most_, more_;         // draws until there is a path, and after that
+  int max_, more_;         // draws until there is a path, and after that
   std::int64_t steps_ = 0;  // for planners that go on and on without drawing
   bool found_ = false;
 };
@@ -105,7 +105,7 @@ class ArmLength : public ompl::base::PathLengthOptimizationObjective {
   ArmLength(const ompl::base::SpaceInformationPtr& si, const SearchProblem& problem)
       : PathLengthOptimizationObjective(si), problem_(problem) {}
   ompl::base::InformedSamplerPtr allocInformedStateSampler(
-      const ompl::base::ProblemDefinitionPtr& definition, unsigned int most_calls) const override;
+      const ompl::base::ProblemDefinitionPtr& definition, unsigned int max_calls) const override;
 
  private:
   const SearchProblem& problem_;

@@ -14,7 +14,7 @@ bool prove(const FastChecker& checker, std::span<const JointVec> q, double resol
            std::vector<EdgeCertificate>& out) {
   out.clear();
   for (std::size_t i = 1; i < q.size(); ++i) {
-    auto proof = certify_edge(checker, view(q[i - 1]), view(q[i]), {resolution});
+    auto proof = certify_edge(checker, as_span(q[i - 1]), as_span(q[i]), {resolution});
     if (!proof) return false;
     out.push_back(std::move(*proof));
   }
@@ -25,7 +25,7 @@ bool prove(const FastChecker& checker, std::span<const JointVec> q, double resol
 bool prove(const detail::TiltKeeper& tilt, std::span<const JointVec> q, double& largest) {
   largest = 0;
   for (std::size_t i = 1; i < q.size(); ++i) {
-    const auto edge = tilt.look(view(q[i - 1]), view(q[i]));
+    const auto edge = tilt.look(as_span(q[i - 1]), as_span(q[i]));
     if (!edge.kept) return false;
     largest = std::max(largest, edge.largest);
   }

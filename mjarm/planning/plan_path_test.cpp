@@ -62,7 +62,7 @@ void expect_free(const FastChecker& checker, const Obstacles& world, const Plann
     const int samples = std::max(2, static_cast<int>(way.norm() / 0.01));
     for (int k = 0; k <= samples; ++k) {
       const JointVec q = path.q[i - 1] + way * k / samples;
-      EXPECT_GT(testing::true_clearance(robot.arm(), robot.spheres(), world, view(q)), 0);
+      EXPECT_GT(testing::true_clearance(robot.arm(), robot.spheres(), world, as_span(q)), 0);
     }
     EXPECT_GT(path.proof[i - 1].nearest.distance, 0);
     EXPECT_GE(path.proof[i - 1].step, 0);
@@ -131,7 +131,7 @@ void expect_tree(const FastChecker& checker, const SearchTree& tree) {
     EXPECT_LE(steps, tree.q.size());
     if (tree.parents[i] < 0) continue;
     const JointVec& from = tree.q[static_cast<std::size_t>(tree.parents[i])];
-    EXPECT_EQ(check_edge(checker, view(from), view(tree.q[i])).verdict, EdgeVerdict::free);
+    EXPECT_EQ(check_edge(checker, as_span(from), as_span(tree.q[i])).verdict, EdgeVerdict::free);
   }
 }
 
@@ -324,7 +324,7 @@ TEST_P(PlanRandomWorlds, EveryPathIsFree) {
     options.planner = GetParam();
     options.samples = 300;
     options.seed = static_cast<std::uint64_t>(round);
-    const auto path = plan_path(checker, view(start), view(goal), options);
+    const auto path = plan_path(checker, as_span(start), as_span(goal), options);
     if (!path) {
       EXPECT_FALSE(describe(path.error(), *robot, world).empty());
       EXPECT_NE(path.error().reason, PlanErrc::unproved);

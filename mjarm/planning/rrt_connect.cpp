@@ -11,7 +11,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMostSamples = 100'000;  // where nothing else is said
+constexpr int kMaxSamples = 100'000;  // where nothing else is said
 constexpr double kBeside = 0.5;        // share of samples that are drawn beside a node
 constexpr int kEvenOnly = 8;           // samples before that begins
 constexpr double kBlocked = 1.2;    // a node looks so much farther (squared) after a blocked way,
@@ -44,17 +44,17 @@ class Connector {
     from_start_.add(problem_.start, -1, 0);
     for (const std::span<const double> goal : problem_.goals) from_goals_.add(goal, -1, 0);
     // Once there is a path, the straight ways are known.
-    for (int g = 0; g < from_goals_.size() && std::isinf(problem_.most_cost); ++g) {
+    for (int g = 0; g < from_goals_.size() && std::isinf(problem_.max_cost); ++g) {
       if (prover_.is_free(problem_.start, from_goals_.q(g))) return join(0, g);
     }
     Tree* grown = &from_start_;
     Tree* other = &from_goals_;
-    const int most = options_.samples > 0 ? options_.samples : kMostSamples;
-    while (path_.counts.samples < most && !problem_.deadline.passed()) {
+    const int max = options_.samples > 0 ? options_.samples : kMaxSamples;
+    while (path_.counts.samples < max && !problem_.deadline.passed()) {
       const int node = grow(*grown);
       if (node >= 0) {
         const int met = connect(*other, grown->q(node));
-        if (met >= 0 && grown->cost(node) + other->cost(met) < problem_.most_cost)
+        if (met >= 0 && grown->cost(node) + other->cost(met) < problem_.max_cost)
           return grown == &from_start_ ? join(node, met) : join(met, node);
       }
       if (other->size() < grown->size() || node < 0) std::swap(grown, other);
@@ -87,7 +87,7 @@ class Connector {
       near.distance = distance(tree.q(near.node), q);
     }
     if (near.distance < kSamePlace) return -1;
-    if (least_cost_through(problem_, q) >= problem_.most_cost) return -1;
+    if (least_cost_through(problem_, q) >= problem_.max_cost) return -1;
     return advance(tree, near, q);
   }
 

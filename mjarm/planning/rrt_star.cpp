@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kStarSamples = 3000;      // where nothing else is said
 constexpr double kNeighbourhood = 1.1;  // of the radius that makes paths tend to the shortest one
-constexpr std::size_t kMostNear = 24;   // neighbours that are tried
+constexpr std::size_t kMaxNear = 24;   // neighbours that are tried
 constexpr double kTowardsGoal = 0.05;   // share of samples that are goals
 
 /// RRT* (S. Karaman and E. Frazzoli, IJRR 30 (2011) 846) with the samples of Informed RRT*
@@ -30,10 +30,10 @@ class Rewirer {
         rng_(options.seed, 2),
         box_(problem, rng_),
         tree_(dof_) {
-    problem_.most_cost = path_length(path_.q);
-    int node = tree_.add(view(path_.q.front()), -1, 0);
+    problem_.max_cost = path_length(path_.q);
+    int node = tree_.add(as_span(path_.q.front()), -1, 0);
     for (std::size_t i = 1; i < path_.q.size(); ++i) {
-      node = tree_.add(view(path_.q[i]), node, (path_.q[i] - path_.q[i - 1]).norm());
+      node = tree_.add(as_span(path_.q[i]), node, (path_.q[i] - path_.q[i - 1]).norm());
     }
     best_ = node;
   }
@@ -43,7 +43,7 @@ class Rewirer {
     for (int k = 0; k < samples && !problem_.deadline.passed(); ++k) {
       ++path_.counts.samples;
       add_sample();
-      problem_.most_cost = tree_.cost(best_);
+      problem_.max_cost = tree_.cost(best_);
     }
     path_.q = tree_.branch(best_);
     std::reverse(path_.q.begin(), path_.q.end());
@@ -79,7 +79,7 @@ class Rewirer {
     }
     const bool is_goal = to_goal && whole;  // which keeps the limit as it is
     if (problem_.tilt && !is_goal && !problem_.tilt->project(q)) return;
-    if (least_cost_through(problem_, q) >= problem_.most_cost) return;
+    if (least_cost_through(problem_, q) >= problem_.max_cost) return;
     find_near(q);
     const int node = attach(q);
     if (node < 0) return;
@@ -101,7 +101,7 @@ class Rewirer {
     near_.clear();
     const double n = tree_.size();
     const double radius =
-        std::min(range_, kNeighbourhood * problem_.most_cost *
+        std::min(range_, kNeighbourhood * problem_.max_cost *
                              std::pow(std::log(n + 1) / n, 1.0 / static_cast<double>(dof_)));
     for (int node = 0; node < tree_.size(); ++node) {
       const double length = distance(tree_.q(node), q);
@@ -116,7 +116,7 @@ class Rewirer {
     std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
       return a.cost < b.cost || (a.cost == b.cost && a.node < b.node);
     });
-    near_.resize(std::min(near_.size(), kMostNear));
+    near_.resize(std::min(near_.size(), kMaxNear));
   }
 
   /// A new node with the cheapest parent that a proved edge leads from, or -1.

@@ -20,7 +20,7 @@ WideningBox::WideningBox(const SearchProblem& problem, Rng& rng)
   for (std::size_t k = 0; k < problem.start.size(); ++k) {
     const auto joint = static_cast<Eigen::Index>(k);
     least_[k] = std::max(limits.lower[joint], -kEndless);
-    most_[k] = std::min(limits.upper[joint], kEndless);
+    max_[k] = std::min(limits.upper[joint], kEndless);
     low_[k] = high_[k] = problem.start[k];
     for (const std::span<const double> goal : problem.goals) {
       low_[k] = std::min(low_[k], goal[k]);
@@ -35,7 +35,7 @@ void WideningBox::next(std::span<double> q) {
   const double margin = kFirstMargin + kWidening * count_++;
   for (std::size_t k = 0; k < q.size(); ++k) {
     const double low = std::max(low_[k] - margin, least_[k]);
-    const double high = std::min(high_[k] + margin, most_[k]);
+    const double high = std::min(high_[k] + margin, max_[k]);
     q[k] = low + unit[k] * (high - low);
   }
 }

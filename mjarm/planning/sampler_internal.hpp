@@ -22,7 +22,7 @@ class WideningBox {
  private:
   Halton halton_;
   int count_ = 0;
-  std::array<double, kMaxDof> least_{}, most_{}, low_{}, high_{};
+  std::array<double, kMaxDof> least_{}, max_{}, low_{}, high_{};
 };
 
 /// A place at a random distance (short ones are as likely as long ones) from `from` in a random

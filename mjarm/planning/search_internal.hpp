@@ -32,7 +32,7 @@ struct SearchProblem {
   std::vector<int> goal_index;                 ///< of each in what the user gave
   std::optional<TiltKeeper> tilt = {};         ///< of PlanOptions::tilt
   /// [rad or m] only shorter paths count.
-  double most_cost = std::numeric_limits<double>::infinity();
+  double max_cost = std::numeric_limits<double>::infinity();
   Deadline deadline{};
 };
 

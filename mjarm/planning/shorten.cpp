@@ -9,7 +9,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMostFailed = 30;       // cuts in a row that did not work: enough
+constexpr int kMaxFailed = 30;       // cuts in a row that did not work: enough
 constexpr int kPulls = 1;             // rounds over all corners at most
 constexpr double kLeastPull = 0.4;    // share of the way to the straight line
 constexpr double kLeastGain = 1e-3;   // share of the length that a cut must save
@@ -33,7 +33,7 @@ class Shortener {
     skip_corners();
     int failed = 0;
     if (tilt_ != nullptr) attempts *= kTiltCuts;
-    for (int k = 0; k < attempts && q_.size() > 2 && failed < kMostFailed; ++k) {
+    for (int k = 0; k < attempts && q_.size() > 2 && failed < kMaxFailed; ++k) {
       failed = cut() ? 0 : failed + 1;
     }
     const int pulls = tilt_ != nullptr ? kTiltPulls : kPulls;
@@ -54,7 +54,7 @@ class Shortener {
   void skip_corners() {
     for (std::size_t i = 0; i + 2 < q_.size(); ++i) {
       for (std::size_t j = q_.size() - 1; j > i + 1; --j) {
-        if (!prover_.is_free(view(q_[i]), view(q_[j]))) continue;
+        if (!prover_.is_free(as_span(q_[i]), as_span(q_[j]))) continue;
         q_.erase(at(i + 1), at(j));
         break;
       }
@@ -76,10 +76,10 @@ class Shortener {
     if (i == j) return false;
     const JointVec from = place(i, a - (i > 0 ? ends[i - 1] : 0));
     const JointVec to = place(j, b - (j > 0 ? ends[j - 1] : 0));
-    const double most = (1 - kLeastGain) * (b - a);
-    if ((to - from).norm() > most) return false;
+    const double max = (1 - kLeastGain) * (b - a);
+    if ((to - from).norm() > max) return false;
     std::vector<JointVec> way{from, to};
-    if (!prover_.is_free(view(from), view(to)) && !walk(most, way)) return false;
+    if (!prover_.is_free(as_span(from), as_span(to)) && !walk(max, way)) return false;
     // The halves of a proved edge are proved again at the end.
     q_.erase(at(i + 1), at(j + 1));
     q_.insert(at(i + 1), way.begin(), way.end());
@@ -87,8 +87,8 @@ class Shortener {
   }
 
   /// Within a limit of the tilt: fills in short steps between both ends of `way`, which may become
-  /// as long as `most`.
-  bool walk(double most, std::vector<JointVec>& way) {
+  /// as long as `max`.
+  bool walk(double max, std::vector<JointVec>& way) {
     if (tilt_ == nullptr) return false;
     const JointVec to = way.back();
     way.pop_back();
@@ -96,13 +96,13 @@ class Shortener {
     for (; left > kTiltRange; left = (to - way.back()).norm()) {
       JointVec next(to.size());
       const std::span<double> out(next.data(), static_cast<std::size_t>(next.size()));
-      const auto length = tilt_->step(view(way.back()), view(to), kTiltRange, out);
-      if (!length || *length + (to - next).norm() > most) return false;
-      most -= *length;
-      if (!prover_.is_free(view(way.back()), view(next))) return false;
+      const auto length = tilt_->step(as_span(way.back()), as_span(to), kTiltRange, out);
+      if (!length || *length + (to - next).norm() > max) return false;
+      max -= *length;
+      if (!prover_.is_free(as_span(way.back()), as_span(next))) return false;
       way.push_back(next);
     }
-    if (left > most || !prover_.is_free(view(way.back()), view(to))) return false;
+    if (left > max || !prover_.is_free(as_span(way.back()), as_span(to))) return false;
     way.push_back(to);
     return true;
   }
@@ -121,7 +121,7 @@ class Shortener {
     for (double share = 1; share > kLeastPull; share *= 0.5) {
       JointVec moved = q_[i] + share * (straight - q_[i]);
       if (tilt_ != nullptr && !put_back(a, b, to_a + to_b, moved)) continue;
-      if (!prover_.is_free(view(a), view(moved)) || !prover_.is_free(view(moved), view(b))) {
+      if (!prover_.is_free(as_span(a), as_span(moved)) || !prover_.is_free(as_span(moved), as_span(b))) {
         continue;
       }
       q_[i] = moved;
@@ -140,7 +140,7 @@ class Shortener {
     JointVec moved = q_[i] + way;
     if (tilt_ != nullptr && !put_back(a, b, length, moved)) return false;
     if ((moved - a).norm() + (moved - b).norm() > length - kLeastSaved * step) return false;
-    if (!prover_.is_free(view(a), view(moved)) || !prover_.is_free(view(moved), view(b))) {
+    if (!prover_.is_free(as_span(a), as_span(moved)) || !prover_.is_free(as_span(moved), as_span(b))) {
       return false;
     }
     q_[i] = moved;

@@ -64,7 +64,7 @@ class TiltKeeper {
   LinkChain chain_;
   JointLimits limits_;
   TiltLimit limit_;
-  double most_sine_;
+  double max_sine_;
   Eigen::Matrix<double, 2, 3> across_;  ///< rows: two directions across axis_W
   int first_ = 0, last_ = 0;            ///< joints first_ <= k < last_ can tilt the tool
   std::array<bool, kMaxDof> turns_{};   ///< hinges

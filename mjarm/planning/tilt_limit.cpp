@@ -15,14 +15,14 @@ namespace detail {
 namespace {
 
 constexpr double kInner = 0.3;       // share of the limit that is aimed at
-constexpr int kMostSteps = 16;       // of Newton's method,
-constexpr double kMostTurn = 0.5;    // [rad] each
+constexpr int kMaxSteps = 16;       // of Newton's method,
+constexpr double kMaxTurn = 0.5;    // [rad] each
 constexpr double kDamping = 1e-6;    // of its normal equations
 constexpr double kParallel = 1e-12;  // |a x b| of axes that are one
-constexpr int kMostParts = 4096;     // of an edge that are looked at
+constexpr int kMaxParts = 4096;     // of an edge that are looked at
 constexpr double kFinest = 1e-4;     // [rad] L: narrower parts of an edge are not cut again
 constexpr double kLeastWay = 0.1;    // share of a step by which the end must come nearer
-constexpr double kMostWay = 2;       // a step that is put back may be so many times as long
+constexpr double kMaxWay = 2;       // a step that is put back may be so many times as long
 constexpr double kRounding = 1e-8;   // share of the limit
 
 }  // namespace
@@ -31,7 +31,7 @@ TiltKeeper::TiltKeeper(const TiltLimit& limit, const Arm& arm)
     : chain_(Chain(arm)),
       limits_(arm.limits),
       limit_(limit),
-      most_sine_(std::sin(limit.most)),
+      max_sine_(std::sin(limit.max)),
       last_(arm.dof()) {
   const Eigen::Vector3d e = limit.axis_W.unitOrthogonal();
   across_.row(0) = e;
@@ -45,7 +45,7 @@ void TiltKeeper::leave_out_turns(const Arm& arm) {
   const auto dof = static_cast<std::size_t>(arm.dof());
   std::array<Pose, kMaxDof> X_WJ;
   const JointVec zero = JointVec::Zero(arm.dof());
-  const Pose X_WT = fk_all(arm, mjarm::view(zero), X_WJ);
+  const Pose X_WT = fk_all(arm, mjarm::as_span(zero), X_WJ);
   std::array<Eigen::Vector3d, kMaxDof> axis_W;
   for (std::size_t k = 0; k < dof; ++k) {
     turns_[k] = arm.joints[k].type == JointType::hinge;
@@ -65,26 +65,26 @@ TiltKeeper::Lean TiltKeeper::lean(std::span<const double> q) const {
 }
 
 bool TiltKeeper::keeps(const Lean& lean) const {
-  return lean.along > 0 && lean.across.norm() <= most_sine_ * (1 + kRounding);
+  return lean.along > 0 && lean.across.norm() <= max_sine_ * (1 + kRounding);
 }
 
 bool TiltKeeper::keeps(std::span<const double> q) const { return keeps(lean(q)); }
 
 bool TiltKeeper::project(std::span<double> q) const {
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const FkJacobian at = fk_jacobian(chain_, q);
     const Eigen::Vector3d u = at.X_WT.R * limit_.axis_T;
     // The turn that would put u upright is about an axis across u, as are all that change it.
     const Eigen::Vector3d way = u.cross(limit_.axis_W);
     const double sine = way.norm(), angle = std::atan2(sine, limit_.axis_W.dot(u));
-    if (angle <= kInner * limit_.most) return true;
+    if (angle <= kInner * limit_.max) return true;
     const Eigen::Vector3d e1 = sine > kParallel ? Eigen::Vector3d(way / sine) : u.unitOrthogonal();
     Eigen::Matrix<double, 2, 3> across;
     across << e1.transpose(), u.cross(e1).transpose();
     const Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, kMaxDof> J =
         across * at.J_W.bottomRows<3>();
     const Eigen::Matrix2d A = J * J.transpose() + kDamping * Eigen::Matrix2d::Identity();
-    const Eigen::Vector2d turn(std::min(angle - 0.5 * kInner * limit_.most, kMostTurn), 0);
+    const Eigen::Vector2d turn(std::min(angle - 0.5 * kInner * limit_.max, kMaxTurn), 0);
     const JointVec move = J.transpose() * A.inverse() * turn;
     for (int k = 0; k < chain_.dof; ++k) {
       double& value = q[static_cast<std::size_t>(k)];
@@ -101,7 +101,7 @@ std::optional<double> TiltKeeper::step(std::span<const double> from, std::span<c
   if (!project(out)) return std::nullopt;
   const double length = distance(from, out);
   const bool nearer = distance(out, to) < left - kLeastWay * range;
-  if (!nearer || length > kMostWay * range) return std::nullopt;
+  if (!nearer || length > kMaxWay * range) return std::nullopt;
   return length;
 }
 
@@ -124,13 +124,13 @@ TiltKeeper::EdgeTilt TiltKeeper::look(std::span<const double> q0,
     between(q0, q1, end, q);
     const Lean to = lean(end < 1 ? q : q1);
     const double L = whole * (end - done), bulge = L * L / 8;
-    const double most = std::max(from.across.norm(), to.across.norm()) + bulge;
-    if (std::min(from.along, to.along) > bulge && most <= most_sine_ * (1 + kRounding)) {
-      sine = std::max(sine, most);
+    const double max = std::max(from.across.norm(), to.across.norm()) + bulge;
+    if (std::min(from.along, to.along) > bulge && max <= max_sine_ * (1 + kRounding)) {
+      sine = std::max(sine, max);
       done = end;
       from = to;
       part *= 2;
-    } else if (L > kFinest && parts < kMostParts) {
+    } else if (L > kFinest && parts < kMaxParts) {
       part = 0.5 * (end - done);
     } else {
       out.t = done;
@@ -146,13 +146,13 @@ TiltKeeper::EdgeTilt TiltKeeper::look(std::span<const double> q0,
 
 bool is_sound(const TiltLimit& limit) noexcept {
   const auto is_unit = [](const Eigen::Vector3d& v) { return std::abs(v.norm() - 1) < 1e-9; };
-  return limit.most >= kLeastTilt && limit.most < std::numbers::pi / 2 && is_unit(limit.axis_T) &&
+  return limit.max >= kLeastTilt && limit.max < std::numbers::pi / 2 && is_unit(limit.axis_T) &&
          is_unit(limit.axis_W);
 }
 
-TiltLimit keep_upright(const Arm& arm, std::span<const double> q, double most) {
+TiltLimit keep_upright(const Arm& arm, std::span<const double> q, double max) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  return {most, (fk(arm, q).R.transpose() * up).normalized(), up};
+  return {max, (fk(arm, q).R.transpose() * up).normalized(), up};
 }
 
 double tilt(const TiltLimit& limit, const Arm& arm, std::span<const double> q) {

@@ -52,7 +52,7 @@ class Tree {
   /// Makes a node from which a way was blocked look farther away, so that others have their turn.
   void push_away(int node, double factor) {
     float& weight = weights_[static_cast<std::size_t>(node)];
-    weight = std::min(weight * static_cast<float>(factor), kMostWeight);
+    weight = std::min(weight * static_cast<float>(factor), kMaxWeight);
   }
 
   struct Near {
@@ -80,7 +80,7 @@ class Tree {
   }
 
   static constexpr std::size_t kLanes = 8;  // nodes that are compared at once
-  static constexpr float kMostWeight = 1e6F;
+  static constexpr float kMaxWeight = 1e6F;
   static constexpr float kNowhere =
       1e9F;  // [rad or m] where lanes without a node are: out of reach
 

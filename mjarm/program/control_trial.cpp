@@ -40,9 +40,9 @@ class Lap {
         steps_(static_cast<long>(std::ceil(seconds / h_))),
         seconds_(seconds),
         ctrl_(static_cast<std::size_t>(world.nu()), 0.0) {
-    sim_.place(arm, view(q_start));
+    sim_.place(arm, as_span(q_start));
     std::ranges::copy(sim_.ctrl(), ctrl_.begin());
-    reference_ = hold(view(q_start));
+    reference_ = hold(as_span(q_start));
   }
 
   Result<LapResult> drive() {
@@ -56,9 +56,9 @@ class Lap {
       p_W.push_back(p);
     }
     out.rtf = static_cast<double>(steps_) * h_ / (1e-6 * watch.us());
-    out.error = measure_path(curve_, p_W);
+    out.error = path_error(curve_, p_W);
     const std::span<const Eigen::Vector3d> half = std::span(p_W).subspan(p_W.size() / 2);
-    out.second_half = measure_path(curve_, half).max;
+    out.second_half = path_error(curve_, half).max;
     return out;
   }
 
@@ -68,7 +68,7 @@ class Lap {
     out.peak_speed = std::max(out.peak_speed, (s - s_) / h_);
     s_ = s;
     goal_ = curve_.at(s);
-    const auto answer = ik_.solve(goal_, view(reference_.next));
+    const auto answer = ik_.solve(goal_, as_span(reference_.next));
     if (!answer) return fail(Errc::impossible, describe(answer.error(), arm_));
     reference_ = {reference_.now, reference_.next, answer->q};
     const JointVec v = (reference_.next - reference_.now) / h_;
@@ -103,7 +103,7 @@ Result<LapResult> drive_lap(const Model& model, const Arm& arm, const LapOptions
   if (!curve) return fail(curve.error());
   constexpr int kPoints = 200;
   const std::vector<Pose> poses = ellipse_points(ellipse, kPoints);
-  const auto path = solve_path(IkSolver(arm), poses, view(arm.home));
+  const auto path = solve_path(IkSolver(arm), poses, as_span(arm.home));
   if (!path) return fail(Errc::impossible, describe(path.error(), arm));
   Result<Controller> controller = Controller::make(model, arm, options.mode, options.control);
   if (!controller) return fail(std::move(controller.error()));
@@ -116,26 +116,26 @@ Result<LapResult> drive_lap(const Model& model, const Arm& arm, const LapOptions
 Result<RestResult> rest_errors(const Model& model, const Arm& arm, ControlMode mode, int poses,
                                std::uint64_t seed) {
   constexpr double kSeconds = 2;
-  constexpr int kMostDraws = 1000;  // for each pose
+  constexpr int kMaxDraws = 1000;  // for each pose
   constexpr double kNudge = 0.05;   // [rad or m] so far off it begins
   Rng rng(seed);
   ExactChecker checker(model, arm);
   RestResult out;
-  for (int draw = 0; out.poses < poses && draw < kMostDraws * poses; ++draw) {
+  for (int draw = 0; out.poses < poses && draw < kMaxDraws * poses; ++draw) {
     JointVec q(arm.dof());
     for (int i = 0; i < arm.dof(); ++i) {
       q[i] = rng.uniform(std::max(arm.limits.lower[i], -std::numbers::pi),
                          std::min(arm.limits.upper[i], std::numbers::pi));
     }
-    if (!checker.is_free(view(q))) continue;
+    if (!checker.is_free(as_span(q))) continue;
     Result<Controller> controller = Controller::make(model, arm, mode);
     if (!controller) return fail(std::move(controller.error()));
     JointVec q_start = q;
     for (double& value : q_start) value += rng.uniform(-kNudge, kNudge);
     Sim sim(model);
-    sim.place(arm, view(clamp_to_limits(arm, view(q_start))));
+    sim.place(arm, as_span(clamp_to_limits(arm, as_span(q_start))));
     std::vector<double> ctrl(sim.ctrl().begin(), sim.ctrl().end());
-    const StepReference reference = hold(view(q));
+    const StepReference reference = hold(as_span(q));
     bool touched = false;
     for (double t = 0; t < kSeconds && !touched; t += model.timestep()) {
       controller->command(sim.qpos(), sim.qvel(), reference, ctrl);
@@ -143,7 +143,7 @@ Result<RestResult> rest_errors(const Model& model, const Arm& arm, ControlMode m
       touched = !sim.contacts(arm).empty();
     }
     if (touched) continue;
-    const PoseError error = pose_error(fk(arm, view(q)), sim.tool(arm));
+    const PoseError error = pose_error(fk(arm, as_span(q)), sim.tool(arm));
     out.worst.position = std::max(out.worst.position, error.position);
     out.worst.rotation = std::max(out.worst.rotation, error.rotation);
     ++out.poses;

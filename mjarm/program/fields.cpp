@@ -11,7 +11,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kMostTurn = 4 * std::numbers::pi;  // [rad] more than that was meant in degrees
+constexpr double kMaxTurn = 4 * std::numbers::pi;  // [rad] more than that was meant in degrees
 
 template <class Map>
 std::vector<std::string> names_of(const Map& map) {
@@ -65,7 +65,7 @@ Eigen::Matrix3d quat_of(const YamlNode& node, const std::string& what) {
 Eigen::Matrix3d euler_of(const YamlNode& node, const std::string& what) {
   const Eigen::Vector3d angles = vector_of(node, what, Quantity::angle);
   for (const double angle : angles) {
-    if (std::abs(angle) > kMostTurn) {
+    if (std::abs(angle) > kMaxTurn) {
       throw ReadFault{node.place, text(msg::program_angle_in_degrees, what, angle, angle)};
     }
   }
@@ -100,10 +100,10 @@ double number_of(const YamlNode& node, std::string_view what, Quantity quantity)
   return *value;
 }
 
-double positive_of(const YamlNode& node, std::string_view what, Quantity quantity, double most) {
+double positive_of(const YamlNode& node, std::string_view what, Quantity quantity, double max) {
   const double value = number_of(node, what, quantity);
-  if (!(value > 0) || value > most) {
-    throw ReadFault{node.place, text(msg::program_out_of_range, what, most, value)};
+  if (!(value > 0) || value > max) {
+    throw ReadFault{node.place, text(msg::program_out_of_range, what, max, value)};
   }
   return value;
 }
@@ -156,10 +156,10 @@ const YamlNode& Fields::need(std::string_view key) const {
 
 std::string Fields::named(std::string_view key) const { return what_ + ": " + std::string(key); }
 
-std::optional<double> Fields::positive(std::string_view key, Quantity quantity, double most) const {
+std::optional<double> Fields::positive(std::string_view key, Quantity quantity, double max) const {
   const YamlNode* node = find(key);
   if (node == nullptr) return std::nullopt;
-  return positive_of(*node, named(key), quantity, most);
+  return positive_of(*node, named(key), quantity, max);
 }
 
 std::optional<double> Fields::not_negative(std::string_view key, Quantity quantity) const {

@@ -35,7 +35,7 @@ std::string text_of(const YamlNode& node, std::string_view what);
 double number_of(const YamlNode& node, std::string_view what, Quantity quantity);
 /// The same in a range: (0, most].
 double positive_of(const YamlNode& node, std::string_view what, Quantity quantity,
-                   double most = 1e6);
+                   double max = 1e6);
 /// A list of numbers; `size` 0 takes any but none.
 std::vector<double> numbers_of(const YamlNode& node, std::string_view what, Quantity quantity,
                                std::size_t size = 0);
@@ -53,7 +53,7 @@ class Fields {
   [[nodiscard]] std::string named(std::string_view key) const;  ///< "movel: speed"
 
   [[nodiscard]] std::optional<double> positive(std::string_view key, Quantity quantity,
-                                               double most = 1e6) const;
+                                               double max = 1e6) const;
   [[nodiscard]] std::optional<double> not_negative(std::string_view key, Quantity quantity) const;
   [[nodiscard]] Eigen::Vector3d vector(std::string_view key, Quantity quantity) const;
   /// From exactly one of `euler`, `quat` and `matrix`.

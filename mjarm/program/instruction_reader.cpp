@@ -9,8 +9,8 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kMostRepeats = 10000;
-constexpr double kMostSeconds = 86400;
+constexpr double kMaxRepeats = 10000;
+constexpr double kMaxSeconds = 86400;
 
 std::optional<double> speed_of(const Fields& fields) {
   return fields.positive("speed", Quantity::speed, 100);
@@ -150,8 +150,8 @@ Instruction::What read_text(const YamlNode& node, const NamedThings&) {
 
 Instruction::What read_wait(const YamlNode& node, const NamedThings&) {
   const double seconds = number_of(node, "wait", Quantity::time);
-  if (!(seconds >= 0 && seconds <= kMostSeconds)) {
-    throw ReadFault{node.place, text(msg::program_out_of_range, "wait", kMostSeconds, seconds)};
+  if (!(seconds >= 0 && seconds <= kMaxSeconds)) {
+    throw ReadFault{node.place, text(msg::program_out_of_range, "wait", kMaxSeconds, seconds)};
   }
   return Wait{seconds};
 }
@@ -173,8 +173,8 @@ Instruction::What read_repeat(const YamlNode& node, const NamedThings& named) {
   const Fields fields(node, "repeat", {"times", "program"});
   const YamlNode& times = fields.need("times");
   const double count = number_of(times, fields.named("times"), Quantity::number);
-  if (!(count >= 0 && count <= kMostRepeats) || std::floor(count) != count) {
-    throw ReadFault{times.place, text(msg::program_bad_count, fields.named("times"), kMostRepeats)};
+  if (!(count >= 0 && count <= kMaxRepeats) || std::floor(count) != count) {
+    throw ReadFault{times.place, text(msg::program_bad_count, fields.named("times"), kMaxRepeats)};
   }
   return Repeat{static_cast<int>(count),
                 instructions_of(fields.need("program"), fields.named("program"), named)};

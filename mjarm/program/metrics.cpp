@@ -28,7 +28,7 @@ bool is_covered(const Eigen::Vector3d& p, std::span<const Eigen::Vector3d> execu
 
 }  // namespace
 
-PathError measure_path(const Curve& curve, std::span<const Eigen::Vector3d> p_W, double near,
+PathError path_error(const Curve& curve, std::span<const Eigen::Vector3d> p_W, double near,
                        double spacing) {
   PathError error;
   if (p_W.empty()) return error;

@@ -21,7 +21,7 @@ struct PathError {
 /// passes within `near`; a tool that never moved covers next to nothing, however small its error.
 /// @param near     [m] > 0
 /// @param spacing  [m] > 0
-[[nodiscard]] PathError measure_path(const Curve& curve, std::span<const Eigen::Vector3d> p_W,
+[[nodiscard]] PathError path_error(const Curve& curve, std::span<const Eigen::Vector3d> p_W,
                                      double near = 0.002, double spacing = 0.002);
 
 /// Distance between two tool poses.

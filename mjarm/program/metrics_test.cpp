@@ -20,7 +20,7 @@ TEST(MeasurePath, PerfectRunHasNoErrorAndFullCoverage) {
   const Curve curve = *Curve::ellipse({.a = 0.3, .b = 0.15});
   std::vector<Eigen::Vector3d> p_W;
   for (int i = 0; i <= 2000; ++i) p_W.push_back(curve.at(curve.length() * i / 2000).p);
-  const PathError error = measure_path(curve, p_W);
+  const PathError error = path_error(curve, p_W);
   EXPECT_LT(error.max, 1e-9);
   EXPECT_LE(error.rms, error.max);
   EXPECT_EQ(error.coverage, 1.0);
@@ -29,7 +29,7 @@ TEST(MeasurePath, PerfectRunHasNoErrorAndFullCoverage) {
 TEST(MeasurePath, OffsetIsTheError) {
   std::vector<Eigen::Vector3d> p_W;
   for (int i = 0; i <= 100; ++i) p_W.emplace_back(0.01 * i, 0.0003, 0.0004);
-  const PathError error = measure_path(x_axis_metre(), p_W);
+  const PathError error = path_error(x_axis_metre(), p_W);
   EXPECT_NEAR(error.max, 0.0005, 1e-12);
   EXPECT_NEAR(error.rms, 0.0005, 1e-12);
   EXPECT_EQ(error.coverage, 1.0);
@@ -38,7 +38,7 @@ TEST(MeasurePath, OffsetIsTheError) {
 TEST(MeasurePath, WorstPlaceIsNamed) {
   std::vector<Eigen::Vector3d> p_W;
   for (int i = 0; i <= 100; ++i) p_W.emplace_back(0.01 * i, i == 70 ? 0.001 : 0.0, 0.0);
-  const PathError error = measure_path(x_axis_metre(), p_W);
+  const PathError error = path_error(x_axis_metre(), p_W);
   EXPECT_NEAR(error.max, 0.001, 1e-12);
   EXPECT_NEAR(error.at, 0.7, 1e-9);
   EXPECT_NEAR(error.rms, 0.001 / std::sqrt(101), 1e-12);
@@ -46,7 +46,7 @@ TEST(MeasurePath, WorstPlaceIsNamed) {
 
 TEST(MeasurePath, ToolThatNeverMovedCoversNextToNothing) {
   const std::vector<Eigen::Vector3d> p_W(500, Eigen::Vector3d::Zero());
-  const PathError error = measure_path(x_axis_metre(), p_W);
+  const PathError error = path_error(x_axis_metre(), p_W);
   EXPECT_LT(error.max, 1e-12);
   EXPECT_LT(error.coverage, 0.01);
 }
@@ -54,7 +54,7 @@ TEST(MeasurePath, ToolThatNeverMovedCoversNextToNothing) {
 TEST(MeasurePath, HalfARunCoversHalf) {
   std::vector<Eigen::Vector3d> p_W;
   for (int i = 0; i <= 50; ++i) p_W.emplace_back(0.01 * i, 0, 0);
-  EXPECT_NEAR(measure_path(x_axis_metre(), p_W).coverage, 0.5, 0.01);
+  EXPECT_NEAR(path_error(x_axis_metre(), p_W).coverage, 0.5, 0.01);
 }
 
 TEST(MeasurePath, GapIsNotCovered) {
@@ -62,12 +62,12 @@ TEST(MeasurePath, GapIsNotCovered) {
   for (int i = 0; i <= 40; ++i) p_W.emplace_back(0.01 * i, 0, 0);
   p_W.emplace_back(0.5, 0.2, 0);  // a detour over the middle fifth
   for (int i = 60; i <= 100; ++i) p_W.emplace_back(0.01 * i, 0, 0);
-  const double coverage = measure_path(x_axis_metre(), p_W).coverage;
+  const double coverage = path_error(x_axis_metre(), p_W).coverage;
   EXPECT_GT(coverage, 0.78);
   EXPECT_LT(coverage, 0.83);
 }
 
-TEST(MeasurePath, NothingExecuted) { EXPECT_EQ(measure_path(x_axis_metre(), {}).coverage, 0.0); }
+TEST(MeasurePath, NothingExecuted) { EXPECT_EQ(path_error(x_axis_metre(), {}).coverage, 0.0); }
 
 TEST(PoseError, PositionAndAngle) {
   Pose goal;

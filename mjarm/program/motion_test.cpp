@@ -25,7 +25,7 @@ struct Strayed {
 Strayed strayed(const Arm& arm, const ToolMotion& motion) {
   Strayed out;
   for (double t = 0; t <= motion.trajectory.duration(); t += 0.0013) {
-    const Pose X = fk(arm, view(motion.trajectory.at(t).q));
+    const Pose X = fk(arm, as_span(motion.trajectory.at(t).q));
     const Curve::Nearest nearest = motion.curve.nearest(X.p);
     out.pos = std::max(out.pos, nearest.distance);
     out.rot = std::max(out.rot, angle_between(motion.curve.at(nearest.s).R, X.R));
@@ -36,7 +36,7 @@ Strayed strayed(const Arm& arm, const ToolMotion& motion) {
 TEST(ToolMotion, StaysOnTheCurve) {
   for (const Arm& arm : {testing::ur5e(), testing::panda()}) {
     const IkSolver ik(arm);
-    const auto start = arm.dof() == 6 ? std::span<const double>(kSeed) : view(arm.home);
+    const auto start = arm.dof() == 6 ? std::span<const double>(kSeed) : as_span(arm.home);
     for (const Curve& curve :
          {the_ellipse(), *Curve::line({{0.3, -0.4, 0.3}, kDown},
                                       {{-0.3, -0.4, 0.4}, kDown * from_euler({0.3, 0, 1})})}) {

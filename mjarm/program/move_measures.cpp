@@ -25,11 +25,11 @@ std::optional<std::string> MoveJudge::beyond_limits(const JointVec& q) const {
   constexpr double kRounded = 1e-9;
   const JointLimits& limits = arm_.limits;
   int worst = -1;
-  double most = kRounded;
+  double max = kRounded;
   for (int i = 0; i < arm_.dof(); ++i) {
     const double beyond = std::max(q[i] - limits.upper[i], limits.lower[i] - q[i]);
-    if (!(beyond > most)) continue;
-    most = beyond;
+    if (!(beyond > max)) continue;
+    max = beyond;
     worst = i;
   }
   if (worst < 0) return std::nullopt;
@@ -47,7 +47,7 @@ std::optional<std::string> MoveJudge::beyond_limits(const JointVec& q) const {
 MoveMeasures MoveJudge::measure(const IkSolver& ik, const std::vector<JointVec>& way) const {
   const PathMeasures least = measure_path(arm_, way, clearance_);
   MoveMeasures out;
-  out.singularity = singularity(ik, view(way[least.singular_value.at]));
+  out.singularity = singularity(ik, as_span(way[least.singular_value.at]));
   out.manipulability = least.manipulability.value;
   out.limit_room = least.limit_room.value;
   const JointVec& tight = way[least.limit_room.at];
@@ -59,7 +59,7 @@ MoveMeasures MoveJudge::measure(const IkSolver& ik, const std::vector<JointVec>&
     out.limit_joint = i;
   }
   out.clearance = least.clearance.value;
-  if (clearance_) out.nearest = clearance_(view(way[least.clearance.at])).pair;
+  if (clearance_) out.nearest = clearance_(as_span(way[least.clearance.at])).pair;
   for (std::size_t i = 1; i < way.size(); ++i) {
     out.max_step = std::max(out.max_step, (way[i] - way[i - 1]).cwiseAbs().maxCoeff());
   }

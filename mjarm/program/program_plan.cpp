@@ -43,9 +43,9 @@ struct Tool {
   detail::WayRoundPlanner round;
 };
 
-class Planner {
+class ProgramPlanner {
  public:
-  Planner(const Model& model, detail::Steps steps, FilePlace start_place,
+  ProgramPlanner(const Model& model, detail::Steps steps, FilePlace start_place,
           const ProgramPlanOptions& options)
       : steps_(std::move(steps.steps)), start_place_(start_place), options_(options) {
     plan_.arms = std::move(steps.arms);
@@ -91,7 +91,7 @@ class Planner {
   }
 
  private:
-  static constexpr std::size_t kMostAnswers = 16;  ///< to one pose that are tried
+  static constexpr std::size_t kMaxAnswers = 16;  ///< to one pose that are tried
 
   const Tool& tool(const Step& step) const { return tools_[step.tool]; }
 
@@ -129,14 +129,14 @@ class Planner {
   bool recover(const Step& step, JointVec& q) const {
     const auto& valid = tool(step).ik.options().valid;
     if (step.q.size() > 0) {
-      q = clamp_to_limits(tool(step).arm, view(step.q));
-      return !valid || valid(view(q));
+      q = clamp_to_limits(tool(step).arm, as_span(step.q));
+      return !valid || valid(as_span(q));
     }
     const bool has_end = step.kind == Step::Kind::pose || step.kind == Step::Kind::line ||
                          step.kind == Step::Kind::arc || step.kind == Step::Kind::plan;
     if (!has_end && step.kind != Step::Kind::curve) return true;
     const Pose X = has_end ? step.X_WT : step.curve->at(step.curve->end());
-    const auto answer = tool(step).ik.solve(X, view(q));
+    const auto answer = tool(step).ik.solve(X, as_span(q));
     if (answer) q = answer->q;
     return answer.has_value();
   }
@@ -214,7 +214,7 @@ class Planner {
       return PlanFault{i, "joint_limit", *fault};
     }
     Result<Trajectory> trajectory =
-        time_joint_move(view(q), view(goal), with.arm.limits, {.joint_share = step.share});
+        time_joint_move(as_span(q), as_span(goal), with.arm.limits, {.joint_share = step.share});
     if (!trajectory) return PlanFault{i, "bad_input", trajectory.error().what};
     PlannedMove move = begun(step);
     if (word != nullptr) move.word = word;
@@ -241,13 +241,13 @@ class Planner {
   /// To the answer from which the tool moves that follow go farthest; the nearest of equals.
   Attempt to_pose(std::size_t i, const JointVec& q) {
     const Tool& with = tool(steps_[i]);
-    const auto answers = solve_all(with.ik, steps_[i].X_WT, view(q));
+    const auto answers = solve_all(with.ik, steps_[i].X_WT, as_span(q));
     if (!answers) {
       return failed(
           i, q, {i, std::string(name(answers.error().code)), describe(answers.error(), with.arm)});
     }
     std::optional<Attempt> best;
-    for (std::size_t k = 0; k < std::min(answers->size(), kMostAnswers); ++k) {
+    for (std::size_t k = 0; k < std::min(answers->size(), kMaxAnswers); ++k) {
       Attempt attempt{{}, i, q, {}};
       attempt.fault = joint_move(i, q, (*answers)[k].q, nullptr, attempt.moves);
       if (!attempt.fault) {
@@ -274,7 +274,7 @@ class Planner {
     auto goals = goals_of(with.round, step, q);
     if (!goals) return failed(i, q, {i, goals.error().reason, goals.error().what});
     std::optional<Attempt> best;
-    for (std::size_t k = 0; k < kMostAnswers && !goals->empty(); ++k) {
+    for (std::size_t k = 0; k < kMaxAnswers && !goals->empty(); ++k) {
       auto found = with.round.plan(q, *goals, step.share);
       if (!found && best) break;
       if (!found) return failed(i, q, {i, found.error().reason, found.error().what});
@@ -298,9 +298,9 @@ class Planner {
     const Pose X_first = step.curve->at(0);
     Attempt best = along(i, q, *step.curve, false);
     if (!best.fault) tool_moves(best);
-    if (!best.fault || same_pose(fk(tool(step).arm, view(q)), X_first)) return best;
-    const auto answers = solve_all(tool(step).ik, X_first, view(q));
-    for (std::size_t k = 0; answers && k < std::min(answers->size(), kMostAnswers); ++k) {
+    if (!best.fault || same_pose(fk(tool(step).arm, as_span(q)), X_first)) return best;
+    const auto answers = solve_all(tool(step).ik, X_first, as_span(q));
+    for (std::size_t k = 0; answers && k < std::min(answers->size(), kMaxAnswers); ++k) {
       Attempt attempt{{}, i, q, {}};
       attempt.fault = joint_move(i, q, (*answers)[k].q, "approach", attempt.moves);
       if (attempt.fault) continue;
@@ -332,7 +332,7 @@ class Planner {
   /// Why a pose that step `i` goes to is no place for the tool, whatever the way.
   std::optional<PlanFault> out_of_place(std::size_t i, const Pose& X_WT, const JointVec& q) const {
     const Tool& with = tool(steps_[i]);
-    const auto answer = with.reach.solve(X_WT, view(q));
+    const auto answer = with.reach.solve(X_WT, as_span(q));
     if (answer || answer.error().code == IkErrc::no_convergence) return std::nullopt;
     return PlanFault{i, std::string(name(answer.error().code)), describe(answer.error(), with.arm)};
   }
@@ -356,7 +356,7 @@ class Planner {
 
   /// Straight moves and arcs as far as they are blended into one.
   Attempt tool_move(std::size_t i, const JointVec& q) {
-    Pose X = fk(tool(steps_[i]).arm, view(q));
+    Pose X = fk(tool(steps_[i]).arm, as_span(q));
     if (steps_[i].kind == Step::Kind::line && same_pose(X, steps_[i].X_WT)) return rest(i, q, 0);
     std::vector<Curve> legs;
     std::vector<double> blends;
@@ -406,10 +406,10 @@ class Planner {
     options.path.keep_start = here;
     options.path.clearance = with.judge.clearance();
     if (!here) {
-      const Pose X_now = fk(with.arm, view(q));
+      const Pose X_now = fk(with.arm, as_span(q));
       options.path.keep_start = same_pose(X_now, curve.at(0));
     }
-    Result<ToolMotion, MotionFailure> motion = plan_tool_motion(with.ik, curve, view(q), options);
+    Result<ToolMotion, MotionFailure> motion = plan_tool_motion(with.ik, curve, as_span(q), options);
     if (!motion) return failed(i, q, motion_fault(i, with.arm, motion.error()));
     Attempt out{{}, i, q, {}};
     const JointVec& first = motion->path.q.front();
@@ -448,7 +448,7 @@ class Planner {
     for (std::size_t k = 1; k < count; ++k) {
       alike = alike && speed_of(i + k) == speed_of(i);
       keep = keep && steps_[i + k].keep_speed;
-      options.timing.tool_speeds.push_back({curve.joints()[k - 1], speed_of(i + k)});
+      options.timing.tool_speeds.push_back({curve.breaks()[k - 1], speed_of(i + k)});
     }
     if (alike) options.timing.tool_speeds.clear();
     if (alike && keep) options.path.tool_speed = options.timing.tool_speed;
@@ -477,7 +477,7 @@ double ProgramPlan::duration() const {
 
 ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& program,
                          const ProgramPlanOptions& options) {
-  return Planner(model, detail::steps_of(program, model, arm), program.start_place, options).plan();
+  return ProgramPlanner(model, detail::steps_of(program, model, arm), program.start_place, options).plan();
 }
 
 }  // namespace mjarm

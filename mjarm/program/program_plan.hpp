@@ -10,7 +10,7 @@
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/kinematics/singularity.hpp"
 #include "mjarm/model/arm.hpp"
-#include "mjarm/model/model.hpp"
+#include "mjarm/model/robot.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/program/program.hpp"
 #include "mjarm/program/tool_speed.hpp"
@@ -18,15 +18,9 @@
 
 namespace mjarm {
 
-/// What a program runs on.
-struct ProgramRobot {
-  Model model;
-  Arm arm;
-};
-
 /// Loads scene and robot of a program.
 /// @param file  of the program: relative paths in it start from its folder. Messages name it.
-[[nodiscard]] Result<ProgramRobot> load_program_robot(const Program& program,
+[[nodiscard]] Result<Robot> load_program_robot(const Program& program,
                                                       const std::filesystem::path& file);
 
 /// How near a motion comes to what it should keep away from.

@@ -16,8 +16,8 @@ using ::testing::HasSubstr;
 using testing::kDown;
 using testing::kSeed;
 
-const ProgramRobot& robot() {
-  static const ProgramRobot kRobot = [] {
+const Robot& robot() {
+  static const Robot kRobot = [] {
     Program program;
     program.robot = "ur5e";
     return load_program_robot(program, "").value();
@@ -60,7 +60,7 @@ void expect_connected(const ProgramPlan& plan) {
 
 Pose end_of(const ProgramPlan& plan, std::size_t i) {
   const PlannedMove& move = plan.moves.at(i);
-  return fk(plan.arms[move.tool], view(move.trajectory.at(move.trajectory.duration()).q));
+  return fk(plan.arms[move.tool], as_span(move.trajectory.at(move.trajectory.duration()).q));
 }
 
 /// Largest distance of the moving tool from the curve of the motion.
@@ -68,7 +68,7 @@ double strayed(const ProgramPlan& plan, const PlannedMove& move) {
   double worst = 0;
   for (int i = 0; i <= 200; ++i) {
     const JointVec q = move.trajectory.at(move.trajectory.duration() * i / 200).q;
-    worst = std::max(worst, move.curve->nearest(fk(plan.arms[move.tool], view(q)).p).distance);
+    worst = std::max(worst, move.curve->nearest(fk(plan.arms[move.tool], as_span(q)).p).distance);
   }
   return worst;
 }
@@ -132,10 +132,10 @@ TEST(ProgramPlan, EveryLegHasItsOwnSpeed) {
   double fastest[2] = {0, 0};
   const double h = 1e-3;
   for (double t = h; t < move.trajectory.duration(); t += h) {
-    const Pose X = fk(robot().arm, view(move.trajectory.at(t).q));
-    const Pose before = fk(robot().arm, view(move.trajectory.at(t - h).q));
-    double& most = fastest[X.p.z() < 0.375 ? 1 : 0];
-    most = std::max(most, (X.p - before.p).norm() / h);
+    const Pose X = fk(robot().arm, as_span(move.trajectory.at(t).q));
+    const Pose before = fk(robot().arm, as_span(move.trajectory.at(t - h).q));
+    double& max = fastest[X.p.z() < 0.375 ? 1 : 0];
+    max = std::max(max, (X.p - before.p).norm() / h);
   }
   EXPECT_NEAR(fastest[0], 0.3, 0.003);
   EXPECT_NEAR(fastest[1], 0.05, 0.0005);
@@ -143,8 +143,8 @@ TEST(ProgramPlan, EveryLegHasItsOwnSpeed) {
 
 /// Speed of the tool [m/s] from `t - h` to `t`.
 double speed_at(const PlannedMove& move, double t, double h) {
-  const Pose X = fk(robot().arm, view(move.trajectory.at(t).q));
-  return (X.p - fk(robot().arm, view(move.trajectory.at(t - h).q)).p).norm() / h;
+  const Pose X = fk(robot().arm, as_span(move.trajectory.at(t).q));
+  return (X.p - fk(robot().arm, as_span(move.trajectory.at(t - h).q)).p).norm() / h;
 }
 
 TEST(ProgramPlan, LinesAndArcsAreBlendedIntoOneMotion) {
@@ -169,17 +169,17 @@ TEST(ProgramPlan, LinesAndArcsAreBlendedIntoOneMotion) {
     EXPECT_LT(cut, 0.04);
   }
   EXPECT_LT(move.curve->nearest(via.p).distance, 1e-9);
-  double most[2] = {0, 0}, least = 1;
+  double max[2] = {0, 0}, least = 1;
   const double h = 1e-3;
   for (double t = h; t < move.trajectory.duration(); t += h) {
-    const Pose X = fk(robot().arm, view(move.trajectory.at(t).q));
+    const Pose X = fk(robot().arm, as_span(move.trajectory.at(t).q));
     const double speed = speed_at(move, t, h);
-    double& fastest = most[X.p.y() < -0.52 ? 1 : 0];
+    double& fastest = max[X.p.y() < -0.52 ? 1 : 0];
     fastest = std::max(fastest, speed);
     if ((X.p - a.p).norm() > 0.03 && (X.p - d.p).norm() > 0.03) least = std::min(least, speed);
   }
-  EXPECT_NEAR(most[0], 0.2, 0.002);
-  EXPECT_NEAR(most[1], 0.08, 0.001);
+  EXPECT_NEAR(max[0], 0.2, 0.002);
+  EXPECT_NEAR(max[1], 0.08, 0.001);
   EXPECT_GT(least, 0.05);  // no stop on the way
 
   // The check can fail: without blends it is three motions with stops between them.

@@ -98,8 +98,8 @@ Result<Program> parse_program(const std::string& content, const std::string& nam
 }
 
 Result<Program> read_program(const std::filesystem::path& file) {
-  constexpr std::size_t kMostBytes = std::size_t{16} << 20;
-  const Result<std::string> content = read_file(file, kMostBytes);
+  constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+  const Result<std::string> content = read_file(file, kMaxBytes);
   if (!content) return fail(content.error());
   Result<Program> program = parse_program(*content, file.string());
   if (program) program->name = file.stem().string();

@@ -16,7 +16,7 @@ Result<std::filesystem::path> find(const std::string& name, const std::filesyste
 
 }  // namespace
 
-Result<ProgramRobot> load_program_robot(const Program& program, const std::filesystem::path& file) {
+Result<Robot> load_program_robot(const Program& program, const std::filesystem::path& file) {
   const bool scene = !program.scene.empty();
   const FilePlace place = scene ? program.scene_place : program.robot_place;
   const auto fault = [&](const Error& error, FilePlace at) {
@@ -28,7 +28,7 @@ Result<ProgramRobot> load_program_robot(const Program& program, const std::files
   if (!model) return fault(model.error(), place);
   Result<Arm> arm = find_arm(*model, {.tip = program.tool});
   if (!arm) return fault(arm.error(), program.tool.empty() ? place : program.tool_place);
-  return ProgramRobot{std::move(*model), std::move(*arm)};
+  return Robot{std::move(*model), std::move(*arm)};
 }
 
 }  // namespace mjarm

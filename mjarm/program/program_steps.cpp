@@ -14,8 +14,8 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr std::size_t kMostSteps = 100'000;
-constexpr std::size_t kMostVisits = 10 * kMostSteps;  // of instructions that make no step as well
+constexpr std::size_t kMaxSteps = 100'000;
+constexpr std::size_t kMaxVisits = 10 * kMaxSteps;  // of instructions that make no step as well
 
 /// Ends the work on one instruction.
 struct StepFault {
@@ -63,7 +63,7 @@ class StepWriter {
     for (const Instruction& instruction : instructions) {
       if (full_) return;
       try {
-        if (++visits_ > kMostVisits) too_long(instruction.place);
+        if (++visits_ > kMaxVisits) too_long(instruction.place);
         std::visit([&](const auto& what) { add(what, instruction); }, instruction.what);
       } catch (const StepFault& fault) {
         note(instruction, fault);
@@ -93,11 +93,11 @@ class StepWriter {
 
   [[noreturn]] void too_long(FilePlace place) {
     full_ = true;
-    throw StepFault{place, "too_long", text(msg::program_too_long, kMostSteps)};
+    throw StepFault{place, "too_long", text(msg::program_too_long, kMaxSteps)};
   }
 
   void push(Step step) {
-    if (out_.steps.size() >= kMostSteps) too_long(step.place);
+    if (out_.steps.size() >= kMaxSteps) too_long(step.place);
     out_.steps.push_back(std::move(step));
   }
 

@@ -26,11 +26,11 @@ struct Range {
 };
 
 Range draw_range(const Arm& arm, int i) {
-  const double most = arm.joints[i].type == JointType::hinge ? 0.75 * std::numbers::pi : 0.5;
+  const double max = arm.joints[i].type == JointType::hinge ? 0.75 * std::numbers::pi : 0.5;
   const double lower = arm.limits.lower[i];
   const double upper = arm.limits.upper[i];
   const double centre = std::clamp(0.0, lower, upper);
-  Range range{std::max(lower, centre - most), std::min(upper, centre + most)};
+  Range range{std::max(lower, centre - max), std::min(upper, centre + max)};
   const double inset = 0.1 * (range.upper - range.lower);
   return {range.lower + inset, range.upper - inset};
 }
@@ -57,7 +57,7 @@ double merit(const Arm& arm, const StartPosture& posture) {
     twist += std::abs(posture.q[i] - range.middle()) / std::max(range.upper - range.lower, 1e-9) /
              arm.dof();
   }
-  const double height = fk(arm, view(posture.q)).p.z();
+  const double height = fk(arm, as_span(posture.q)).p.z();
   return std::min(posture.dexterity, kEnough) / kEnough - twist - (height < kAboveFloor ? 1 : 0);
 }
 
@@ -75,9 +75,9 @@ std::vector<StartPosture> start_postures(
     const Arm& arm, const std::function<bool(std::span<const double> q)>& valid, Rng& rng,
     const StartOptions& options) {
   const auto posture_at = [&](const JointVec& q) {
-    return StartPosture{q, false, dexterity(arm, view(q)), limit_room(arm, q)};
+    return StartPosture{q, false, dexterity(arm, as_span(q)), limit_room(arm, q)};
   };
-  const auto accepted = [&](const JointVec& q) { return !valid || valid(view(q)); };
+  const auto accepted = [&](const JointVec& q) { return !valid || valid(as_span(q)); };
   std::vector<StartPosture> postures;
   StartPosture home = posture_at(arm.home);
   home.is_home = true;
@@ -98,9 +98,9 @@ std::vector<StartPosture> start_postures(
   }
   std::stable_sort(drawn.begin(), drawn.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  const std::size_t most = postures.size() + static_cast<std::size_t>(options.postures);
+  const std::size_t max = postures.size() + static_cast<std::size_t>(options.postures);
   for (const auto& [negative_merit, posture] : drawn) {
-    if (postures.size() >= most) break;
+    if (postures.size() >= max) break;
     const bool known = std::any_of(postures.begin(), postures.end(), [&](const StartPosture& p) {
       return (p.q - posture.q).cwiseAbs().maxCoeff() < kDifferent;
     });

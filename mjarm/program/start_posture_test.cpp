@@ -35,18 +35,18 @@ TEST(StartPosture, HomeIsTakenWhereItIsFit) {
 TEST(StartPosture, StretchedHomeGivesWayToBentOnes) {
   Robot robot = load("ur5e");
   robot.arm.home.setZero();  // stretched out, a singularity
-  EXPECT_LT(dexterity(robot.arm, view(robot.arm.home)), 1e-6);
+  EXPECT_LT(dexterity(robot.arm, as_span(robot.arm.home)), 1e-6);
   ExactChecker checker(robot.model, robot.arm);
   Rng rng(1), again(1);
   const auto postures = start_postures(robot.arm, checker.predicate(), rng);
   ASSERT_GE(postures.size(), 5U);
   for (const StartPosture& posture : postures) {
     EXPECT_FALSE(posture.is_home);
-    EXPECT_TRUE(within_limits(robot.arm, view(posture.q)));
-    EXPECT_TRUE(checker.is_free(view(posture.q)));
+    EXPECT_TRUE(within_limits(robot.arm, as_span(posture.q)));
+    EXPECT_TRUE(checker.is_free(as_span(posture.q)));
     EXPECT_GT(posture.dexterity, 0.1);
     EXPECT_GT(posture.limit_room, 0.2);
-    EXPECT_GT(fk(robot.arm, view(posture.q)).p.z(), 0.1);
+    EXPECT_GT(fk(robot.arm, as_span(posture.q)).p.z(), 0.1);
   }
   const auto same = start_postures(robot.arm, checker.predicate(), again);
   ASSERT_EQ(same.size(), postures.size());
@@ -69,8 +69,8 @@ TEST(StartPosture, FewJointsAreJudgedByPosition) {
   arm.X_JT = {{0, 0, 0.4}, Eigen::Matrix3d::Identity()};
   const JointVec stretched = joint_vec(std::vector<double>{0, -1, 0});
   const JointVec bent = joint_vec(std::vector<double>{0, -1, 1.5});
-  EXPECT_LT(dexterity(arm, view(stretched)), 1e-6);
-  EXPECT_GT(dexterity(arm, view(bent)), 0.1);
+  EXPECT_LT(dexterity(arm, as_span(stretched)), 1e-6);
+  EXPECT_GT(dexterity(arm, as_span(bent)), 0.1);
 }
 
 }  // namespace

@@ -24,16 +24,16 @@ struct Sample {
 /// Speed of the tool; its rate of turn where it turns on the spot.
 double tool_rate(const LinkChain& chain, const JointState& x) {
   constexpr double kOnTheSpot = 1e-4;  // [m/rad]
-  const Eigen::VectorXd twist = fk_jacobian(chain, view(x.q)).J_W * x.v;
+  const Eigen::VectorXd twist = fk_jacobian(chain, as_span(x.q)).J_W * x.v;
   const double along = twist.head<3>().norm(), turn = twist.tail<3>().norm();
   return along > kOnTheSpot * turn ? along : turn;
 }
 
 std::vector<Sample> samples_of(const IkSolver& ik, const Curve& curve,
                                const Trajectory& trajectory) {
-  constexpr double kStep = 1e-3, kMost = 2e4;
+  constexpr double kStep = 1e-3, kMax = 2e4;
   const LinkChain chain(ik.chain());
-  const double count = std::clamp(std::ceil(trajectory.duration() / kStep), 2.0, kMost),
+  const double count = std::clamp(std::ceil(trajectory.duration() / kStep), 2.0, kMax),
                T = trajectory.duration();
   const double dt = T / count;
   const auto rate_at = [&](double t) { return tool_rate(chain, trajectory.at(t)); };
@@ -145,12 +145,12 @@ void note_limit(const JointLimits& limits, double share, const Sample& at, const
       asked * asked * asked * f.cwiseAbs().cwiseQuotient(limits.jerk)};
   for (std::size_t order = 0; order < use.size(); ++order) {
     int joint = 0;
-    const double most = use[order].maxCoeff(&joint);
-    const double kept = std::pow(std::max(most, 1e-300), -1.0 / static_cast<double>(order + 1));
+    const double max = use[order].maxCoeff(&joint);
+    const double kept = std::pow(std::max(max, 1e-300), -1.0 / static_cast<double>(order + 1));
     if (dip.joint >= 0 && kept >= dip.kept) continue;
     dip.joint = joint;
     dip.limit = static_cast<SpeedLimit>(order);
-    dip.use = most;
+    dip.use = max;
     dip.kept = kept;
   }
 }
@@ -177,7 +177,7 @@ SpeedDip dip_of(const IkSolver& ik, const Trajectory& trajectory,
   dip.least = samples[slowest].rate;
   dip.s_least = samples[slowest].s;
   dip.kept = std::min(all.kept, ratio(slowest));
-  dip.kind = singularity(ik, view(trajectory.at(samples[slowest].t).q), kNear).kind;
+  dip.kind = singularity(ik, as_span(trajectory.at(samples[slowest].t).q), kNear).kind;
   return dip;
 }
 

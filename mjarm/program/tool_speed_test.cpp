@@ -29,7 +29,7 @@ Curve line_at(double y) { return *Curve::line({{0.4, y, 0.4}, kDown}, {{-0.4, y,
 /// Speed of the tool by differences of its place.
 double speed_at(const Arm& arm, const Trajectory& motion, double t) {
   const double h = 1e-4;
-  return (fk(arm, view(motion.at(t + h).q)).p - fk(arm, view(motion.at(t - h).q)).p).norm() /
+  return (fk(arm, as_span(motion.at(t + h).q)).p - fk(arm, as_span(motion.at(t - h).q)).p).norm() /
          (2 * h);
 }
 
@@ -88,7 +88,7 @@ TEST(SpeedDips, NearTheFirstAxisItsVelocityLimitHoldsTheToolBack) {
   EXPECT_NEAR(dip.least, least, 1e-5);
   EXPECT_NEAR(dip.t_from, from, 0.003);
   EXPECT_NEAR(dip.t_to, to, 0.003);
-  const Pose X = fk(arm, view(motion->trajectory.at(t_least).q));
+  const Pose X = fk(arm, as_span(motion->trajectory.at(t_least).q));
   EXPECT_NEAR(line.nearest(X.p).s, dip.s_least, 2e-3);
   EXPECT_LT(dip.s_from, dip.s_least);
   EXPECT_GT(dip.s_to, dip.s_least);

@@ -72,7 +72,7 @@ class UrscriptWriter {
     head();
     comment("to where the plan begins; slow, for this way was not planned");
     set_tool(0);
-    line(fmt::format("movej({}, {})", list_of(view(plan_.q_start)), pace_of(0.5, 0.25)));
+    line(fmt::format("movej({}, {})", list_of(as_span(plan_.q_start)), pace_of(0.5, 0.25)));
     for (const PlannedMove& move : plan_.moves) add(move);
     out_ += "end\n" + name + "()\n";
     return std::move(out_);
@@ -115,8 +115,8 @@ class UrscriptWriter {
     for (const PlannedMove& move : plan_.moves) {
       const JointVec q = move.trajectory.at(move.trajectory.duration()).q;
       const Pose nominal =
-          ur_.X_WB * detail::ur_flange(ur_.lengths, view(q)) * tool_in_flange(move.tool);
-      worst = std::max(worst, (nominal.p - fk(plan_.arms[move.tool], view(q)).p).norm());
+          ur_.X_WB * detail::ur_flange(ur_.lengths, as_span(q)) * tool_in_flange(move.tool);
+      worst = std::max(worst, (nominal.p - fk(plan_.arms[move.tool], as_span(q)).p).norm());
     }
     return worst;
   }
@@ -167,7 +167,7 @@ class UrscriptWriter {
     constexpr double kLeastShare = 0.01;
     const double share = check_limits(move.trajectory, limits).velocity.maxCoeff();
     for (std::size_t i = 1; i < move.corners.size(); ++i) {
-      const auto edge = time_joint_move(view(move.corners[i - 1]), view(move.corners[i]), limits,
+      const auto edge = time_joint_move(as_span(move.corners[i - 1]), as_span(move.corners[i]), limits,
                                         {.joint_share = std::clamp(share, kLeastShare, 1.0)});
       if (edge) joint_move(*edge);
     }
@@ -189,7 +189,7 @@ class UrscriptWriter {
       peak = std::max(peak, std::abs(trajectory.at(seconds * i / kSamples).v[leading]));
     }
     const detail::Trapezoid pace = detail::trapezoid(way, seconds, peak);
-    line(fmt::format("movej({}, {})", list_of(view(q1)), pace_of(pace.accel, pace.speed)));
+    line(fmt::format("movej({}, {})", list_of(as_span(q1)), pace_of(pace.accel, pace.speed)));
     by_joints_ = true;
   }
 
@@ -234,7 +234,7 @@ class UrscriptWriter {
 
 }  // namespace
 
-Result<std::string> to_urscript(const Program& program, const ProgramRobot& robot,
+Result<std::string> to_urscript(const Program& program, const Robot& robot,
                                 const ProgramPlan& plan, const UrscriptOptions& options) {
   if (!plan.ok()) return fail(plan.faults.front().code, plan.faults.front().what);
   const Result<UrArm> ur = detail::find_ur_arm(robot.model, robot.arm);

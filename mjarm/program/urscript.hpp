@@ -24,7 +24,7 @@ struct UrscriptOptions {
 /// whatever the language.
 /// @return an error where the plan has faults, or where the arm is none of Universal Robots: by the
 ///         names of its joints, and by where their axes are.
-[[nodiscard]] Result<std::string> to_urscript(const Program& program, const ProgramRobot& robot,
+[[nodiscard]] Result<std::string> to_urscript(const Program& program, const Robot& robot,
                                               const ProgramPlan& plan,
                                               const UrscriptOptions& options = {});
 

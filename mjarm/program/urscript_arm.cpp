@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kUrJoints = 6;
-constexpr double kMostApart = 0.003;  // [m] models round the lengths
-constexpr double kMostTurned = 0.01;  // [rad]
+constexpr double kMaxApart = 0.003;  // [m] models round the lengths
+constexpr double kMaxTurned = 0.01;  // [rad]
 
 constexpr std::array<std::string_view, kUrJoints> kUrNames{
     "shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint",
@@ -77,7 +77,7 @@ Axes axes_of(const Arm& arm) {
 /// The base frame of an arm whose first two axes meet at right angles; none where they do not.
 std::optional<Pose> base_of(const Axes& axes, const UrLengths& lengths) {
   const Vector3d z = axes[0].z, y = -axes[1].z;
-  if (std::abs(z.dot(y)) > kMostTurned) return std::nullopt;
+  if (std::abs(z.dot(y)) > kMaxTurned) return std::nullopt;
   Pose X_WB;
   X_WB.R.col(2) = z;
   X_WB.R.col(1) = (y - z * z.dot(y)).normalized();
@@ -92,7 +92,7 @@ double apart(const Axes& axes, const UrLengths& lengths, const Pose& X_WB) {
   double worst = 0;
   for (std::size_t i = 0; i < kUrJoints; ++i) {
     const Vector3d z = X_WB.R * frames[i].R.col(2);
-    if ((z - axes[i].z).norm() > kMostTurned) return std::numeric_limits<double>::infinity();
+    if ((z - axes[i].z).norm() > kMaxTurned) return std::numeric_limits<double>::infinity();
     worst = std::max(worst, (axes[i].p - X_WB * frames[i].p).cross(z).norm());
   }
   return worst;
@@ -114,7 +114,7 @@ std::optional<std::string> prefix_of(const Arm& arm) {
 void take_named_base(const Model& model, const std::string& prefix, UrArm& ur) {
   for (const char* name : {"base", "base_link"}) {
     const Result<Pose> X = frame_pose(model, prefix + name, model.qpos0());
-    if (!X || (X->p - ur.X_WB.p).norm() > kMostApart) continue;
+    if (!X || (X->p - ur.X_WB.p).norm() > kMaxApart) continue;
     ur.X_WB.p = X->p;
     return;
   }
@@ -131,8 +131,8 @@ Pose flange_in_joint(const Model& model, const Arm& arm, const std::string& pref
     const Result<Arm> named = find_arm(model, {.tip = prefix + name});
     if (!named || named->joints.size() != kUrJoints) continue;
     if (named->joints.back().qpos != arm.joints.back().qpos) continue;
-    if ((named->X_JT.p - by_axes.p).norm() > kMostApart) continue;
-    if (angle_between(named->X_JT.R, by_axes.R) < kMostTurned) return named->X_JT;
+    if ((named->X_JT.p - by_axes.p).norm() > kMaxApart) continue;
+    if (angle_between(named->X_JT.R, by_axes.R) < kMaxTurned) return named->X_JT;
   }
   return by_axes;
 }
@@ -150,7 +150,7 @@ Result<UrArm> find_ur_arm(const Model& model, const Arm& arm) {
   }
   const Axes axes = axes_of(arm);
   std::optional<UrArm> best;
-  double nearest = kMostApart;
+  double nearest = kMaxApart;
   for (const UrLengths& lengths : kUrArms) {
     const std::optional<Pose> X_WB = base_of(axes, lengths);
     if (!X_WB) continue;

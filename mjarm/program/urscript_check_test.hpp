@@ -77,8 +77,8 @@ class UrCheck {
   void note(const std::string& what) {
     problems_.push_back("statement " + std::to_string(i_) + ": " + what);
   }
-  void below(double value, double most, const std::string& what) {
-    if (!(value <= most)) note(what + " " + std::to_string(value * 1e9) + "e-9");
+  void below(double value, double max, const std::string& what) {
+    if (!(value <= max)) note(what + " " + std::to_string(value * 1e9) + "e-9");
   }
 
   const UrStatement& next(const std::string& word) {
@@ -121,7 +121,7 @@ class UrCheck {
       const double seconds = ramps(way, to.named.at("a"), to.named.at("v"));
       below(std::abs(seconds - planned), 1e-6, "time of a joint move off by");
       seconds_ += seconds;
-      const Pose X = fk(plan_.arms[move.tool], view(q1));
+      const Pose X = fk(plan_.arms[move.tool], as_span(q1));
       const Pose exact = X_WB_ * ur_fk(kShipped, q_) * X_FT_;
       below((exact.p - X.p).norm(), kExact, "tool after movej off by");
       below(angle_between(exact.R, X.R), kExact, "tool after movej turned by");

@@ -8,15 +8,15 @@ namespace mjarm::detail {
 
 ToolClock::ToolClock(const Arm& arm, const Trajectory& trajectory, const Curve& curve) {
   constexpr double kStep = 0.002;  // [s]
-  constexpr double kFewest = 1000, kMost = 50'000;
+  constexpr double kFewest = 1000, kMax = 50'000;
   constexpr double kOnTheSpot = 1e-4;  // [m/rad] below it the tool only turns
   const double duration = trajectory.duration();
-  const auto n = static_cast<int>(std::clamp(std::ceil(duration / kStep), kFewest, kMost));
+  const auto n = static_cast<int>(std::clamp(std::ceil(duration / kStep), kFewest, kMax));
   double s = 0, before = 0;
   for (int i = 0; i <= n; ++i) {
     const double t = duration * i / n;
     const JointState state = trajectory.at(t);
-    const Eigen::Matrix<double, 6, 1> twist = fk_jacobian(arm, view(state.q)).J_W * state.v;
+    const Eigen::Matrix<double, 6, 1> twist = fk_jacobian(arm, as_span(state.q)).J_W * state.v;
     const double v = twist.head<3>().norm(), w = twist.tail<3>().norm();
     const double speed = v > kOnTheSpot * w ? v : w;
     s += (speed + before) / 2 * duration / n;

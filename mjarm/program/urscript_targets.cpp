@@ -142,9 +142,9 @@ class TargetMaker {
   /// @return the parameter of the last one.
   double cut(const Leg& leg) {
     constexpr double kShortest = 0.02;  // [m]
-    constexpr double kMost = 50;
+    constexpr double kMax = 50;
     const double between = leg.way - leg.r_from - leg.r_to;
-    const auto n = static_cast<int>(std::clamp(std::floor(between / kShortest), 1.0, kMost));
+    const auto n = static_cast<int>(std::clamp(std::floor(between / kShortest), 1.0, kMax));
     const auto s_at = [&](double x) { return leg.s_from + (leg.s_to - leg.s_from) * x / leg.way; };
     double x_before = 0;
     for (int i = 1; i < n; ++i) {

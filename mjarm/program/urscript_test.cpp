@@ -21,7 +21,7 @@ using testing::UrScript;
 /// A program, its plan and its script.
 struct Exported {
   Program program;
-  ProgramRobot robot;
+  Robot robot;
   ProgramPlan plan;
   Result<std::string> text;
 
@@ -32,7 +32,7 @@ Exported exported(const std::string& instructions, const std::string& head = "ro
                   const std::string& file = "cell.yaml") {
   Program program = parse_program(head + "program:\n" + instructions, file).value();
   program.name = std::filesystem::path(file).stem().string();
-  ProgramRobot robot = load_program_robot(program, file).value();
+  Robot robot = load_program_robot(program, file).value();
   ProgramPlan plan = plan_program(robot.model, robot.arm, program);
   EXPECT_TRUE(plan.ok()) << plan.faults.front().what;
   Result<std::string> text = to_urscript(program, robot, plan, {.version = "1.2.3"});
@@ -166,7 +166,7 @@ TEST(Urscript, PosesAreInTheControllersBaseWhereverTheArmStands) {
   program.instructions = {move_j(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0})};
   const Pose X_WT = fk(arm, std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
   program.instructions.push_back(move_l(X_WT * Pose{{0.02, 0, -0.05}, from_euler({0, 0, 0.2})}));
-  const ProgramRobot robot{*model, arm};
+  const Robot robot{*model, arm};
   const ProgramPlan plan = plan_program(*model, arm, program);
   ASSERT_TRUE(plan.ok()) << plan.faults.front().what;
   const Result<std::string> text = to_urscript(program, robot, plan);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kBounds[] = {0.012, 0.003};  // [m] of the spheres, coarse ones first
 constexpr double kWayStep = 5e-3;             // [rad or m]
-constexpr int kMostGoals = 64;                // answers to a pose
+constexpr int kMaxGoals = 64;                // answers to a pose
 const PlanOptions kSearch{.samples = 20'000, .rounds = 16};
 
 /// Whether finer spheres may do better.
@@ -74,17 +74,17 @@ Result<Trajectory> time_corners(std::span<const JointVec> corners, double blend,
 /// first straight way that is free is taken, be it to the farthest.
 void shorten(const FastChecker& checker, const JointVec& q, std::span<const JointVec> goals,
              PlannedPath& path) {
-  constexpr std::size_t kMostAlone = 8;
+  constexpr std::size_t kMaxAlone = 8;
   PlanOptions search = kSearch;
   search.samples /= 10;
   std::vector<std::size_t> order(goals.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto far = [&](std::size_t g) { return (goals[g] - q).norm(); };
   std::ranges::stable_sort(order, {}, far);
-  for (std::size_t k = 0; k < std::min(order.size(), kMostAlone); ++k) {
+  for (std::size_t k = 0; k < std::min(order.size(), kMaxAlone); ++k) {
     const std::size_t g = order[k];
     if (far(g) >= path.cost) return;
-    Result<PlannedPath, PlanFailure> other = plan_path(checker, view(q), view(goals[g]), search);
+    Result<PlannedPath, PlanFailure> other = plan_path(checker, as_span(q), as_span(goals[g]), search);
     if (!other || other->cost >= path.cost) continue;
     path = std::move(*other);
     path.goal = static_cast<int>(g);
@@ -109,7 +109,7 @@ std::vector<JointVec> sampled(const Trajectory& trajectory, const JointLimits& l
 /// less than 1e-5 rad, which the padding of the checker is for.
 bool is_proved(const FastChecker& checker, const std::vector<JointVec>& way) {
   for (std::size_t i = 1; i < way.size(); ++i) {
-    const EdgeResult edge = check_edge(checker, view(way[i - 1]), view(way[i]), {1e-5});
+    const EdgeResult edge = check_edge(checker, as_span(way[i - 1]), as_span(way[i]), {1e-5});
     if (edge.verdict != EdgeVerdict::free) return false;
   }
   return true;
@@ -145,7 +145,7 @@ std::optional<std::string> WayRoundPlanner::touches(const JointVec& q) const {
 
 std::optional<std::string> WayRoundPlanner::least_touch(const JointVec& q, const Pose& X_WT) const {
   const auto answers =
-      solve_all(IkSolver(arm_, {.task = ik_.options().task}), X_WT, view(q), {.most = kMostGoals});
+      solve_all(IkSolver(arm_, {.task = ik_.options().task}), X_WT, as_span(q), {.max = kMaxGoals});
   if (!answers) return std::nullopt;
   std::optional<MoveMeasures> best;
   for (const IkSolution& answer : *answers) {
@@ -160,7 +160,7 @@ Result<std::vector<JointVec>, WayRoundFault> WayRoundPlanner::goals(const JointV
   if (const auto pair = touches(q)) {
     return no_way("collision", text(msg::program_starts_touching, *pair));
   }
-  const auto answers = solve_all(ik_, X_WT, view(q), {.most = kMostGoals});
+  const auto answers = solve_all(ik_, X_WT, as_span(q), {.max = kMaxGoals});
   if (!answers && answers.error().code == IkErrc::collision) {
     const auto pair = least_touch(q, X_WT);
     if (pair) return no_way("collision", text(msg::program_no_free_answer, *pair));
@@ -223,7 +223,7 @@ Result<WayRound, WayRoundFault> WayRoundPlanner::plan(const JointVec& q,
       worlds_.push_back(std::move(*world));
     }
     const auto& [cover, checker] = worlds_[level];
-    Result<PlannedPath, PlanFailure> path = plan_path(checker, view(q), rows, kSearch);
+    Result<PlannedPath, PlanFailure> path = plan_path(checker, as_span(q), rows, kSearch);
     if (path) {
       if (goals.size() > 1) shorten(checker, q, goals, *path);
       Result<WayRound, WayRoundFault> way = timed(checker, path->q, limits);

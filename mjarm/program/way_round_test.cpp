@@ -18,8 +18,8 @@ constexpr const char* kBefore = "{pos: [0.3, -0.45, 0.2], euler: [180deg, 0, 0]}
 constexpr const char* kBehind = "{pos: [-0.3, -0.45, 0.2], euler: [180deg, 0, 0]}";
 
 /// The UR5e with a wall between x > 0 and x < 0.
-const ProgramRobot& walled() {
-  static const ProgramRobot kRobot = [] {
+const Robot& walled() {
+  static const Robot kRobot = [] {
     Program program;
     program.scene = "universal_robots_ur5e/wall.xml";
     return load_program_robot(program, "").value();
@@ -46,7 +46,7 @@ std::string told(const ProgramPlan& plan) {
 std::string plan_to(const std::string& goal) { return "  - plan: " + goal + "\n"; }
 
 Pose tool_at_end(const PlannedMove& move) {
-  return fk(walled().arm, view(move.trajectory.at(move.trajectory.duration()).q));
+  return fk(walled().arm, as_span(move.trajectory.at(move.trajectory.duration()).q));
 }
 
 /// Looks along the motion in steps of at most 0.005 rad.
@@ -58,7 +58,7 @@ void expect_free(const PlannedMove& move) {
   for (int i = 0; i <= count; ++i) {
     const JointVec q = move.trajectory.at(duration * i / count).q;
     EXPECT_LT((q - before).cwiseAbs().maxCoeff(), 0.005);
-    ASSERT_TRUE(checker.is_free(view(q))) << describe(checker.check(view(q)).value());
+    ASSERT_TRUE(checker.is_free(as_span(q))) << describe(checker.check(as_span(q)).value());
     before = q;
   }
   const LimitUse use = check_limits(move.trajectory, walled().arm.limits);
@@ -153,7 +153,7 @@ TEST(WayRound, AGoalInTheWallIsNamed) {
       IkSolver(walled().arm).solve({{0, -0.45, 0.2}, testing::kDown}, testing::kSeed);
   ASSERT_TRUE(inside.has_value());
   std::string list;
-  for (const double value : view(inside->q)) {
+  for (const double value : as_span(inside->q)) {
     list += (list.empty() ? "" : ", ") + std::to_string(value);
   }
   const ProgramPlan joints = walled_plan(plan_to("{joints: [" + list + "]}"));

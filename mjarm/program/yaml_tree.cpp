@@ -16,8 +16,8 @@
 namespace mjarm {
 namespace {
 
-constexpr std::size_t kMostLevels = 32;
-constexpr std::size_t kMostNodes = 200'000;
+constexpr std::size_t kMaxLevels = 32;
+constexpr std::size_t kMaxNodes = 200'000;
 
 /// What ends the reading; never leaves this file.
 struct Stop {
@@ -77,8 +77,8 @@ class TreeBuilder : public YAML::EventHandler {
   };
 
   void open(YamlNode::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
-    if (open_.size() >= kMostLevels) {
-      throw Stop{place_of(mark), text(msg::program_too_deep, kMostLevels)};
+    if (open_.size() >= kMaxLevels) {
+      throw Stop{place_of(mark), text(msg::program_too_deep, kMaxLevels)};
     }
     Open begun;
     begun.node.kind = kind;
@@ -118,7 +118,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void count(FilePlace place, std::size_t nodes) {
     count_ += nodes;
-    if (count_ > kMostNodes) throw Stop{place, text(msg::program_too_many_nodes, kMostNodes)};
+    if (count_ > kMaxNodes) throw Stop{place, text(msg::program_too_many_nodes, kMaxNodes)};
   }
 
   static void check_key(const YamlNode& map, const YamlNode& key) {

@@ -55,12 +55,12 @@ TEST(Framing, AllIsInThePictureAndSomethingNearlyTouchesItsEdge) {
     const CameraView view = framing_view(model, balls, sight);
     EXPECT_EQ(view.azimuth, sight.azimuth);
     EXPECT_EQ(view.elevation, sight.elevation);
-    double most = 0;
+    double max = 0;
     for (const FramedBall& ball : balls) {
-      most = std::max(most, reach(model, view, ball, sight.aspect));
+      max = std::max(max, reach(model, view, ball, sight.aspect));
     }
-    EXPECT_LT(most, 1);
-    EXPECT_GT(most, 0.9);
+    EXPECT_LT(max, 1);
+    EXPECT_GT(max, 0.9);
   }
 }
 

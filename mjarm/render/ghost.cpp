@@ -61,7 +61,7 @@ void tint(mjvGeom& geom, const Rgba& color) {
 
 void Ghosts::draw(std::span<const OverlayGhost> ghosts, const mjvOption& option, const mjData& d,
                   mjvScene& scene) {
-  for (const OverlayGhost& ghost : ghosts.first(std::min(ghosts.size(), kMostGhosts))) {
+  for (const OverlayGhost& ghost : ghosts.first(std::min(ghosts.size(), kMaxGhosts))) {
     const bool room = scene.maxgeom - scene.ngeom >= m_->ngeom;
     if (room && is_usable(ghost)) draw_one(ghost, option, d, scene);
   }

@@ -20,12 +20,12 @@ constexpr Rgba kBlue = {0.20F, 0.38F, 0.85F, 1};
 
 /// Tubes that a picture can afford. Without a GPU a tube costs some ten thin lines at low quality,
 /// and some milliseconds of processor time at high.
-constexpr std::size_t kMostTubes = 100;
+constexpr std::size_t kMaxTubes = 100;
 constexpr double kPixelsPerMetre = 700;    ///< width of thin lines: 3 mm are about two pixels
 constexpr double kThinnest = 1.0;          ///< [px]
 constexpr double kThickest = 5.0;          ///< [px]
 constexpr double kUnseen = 0.15;           ///< of its width a line may be off, to need fewer pieces
-constexpr std::size_t kMostDashes = 1000;  ///< of a line
+constexpr std::size_t kMaxDashes = 1000;  ///< of a line
 constexpr double kFlat = 1e-3;             ///< smallest semi-axis as a share of the largest
 
 /// Lets `room` of `wanted` things pass, evenly.
@@ -78,7 +78,7 @@ std::vector<Strokes> strokes_of(const Overlay& overlay) {
     strokes = {{}, true, line.width, line.color, line.look, finite(line.points_W)};
     strokes.own = simplified(strokes.own, kUnseen * line.width);
     if (line.dash > 0) {
-      strokes.own = dashes(strokes.own, line.dash, line.dash, kMostDashes);
+      strokes.own = dashes(strokes.own, line.dash, line.dash, kMaxDashes);
       strokes.connected = false;
     }
     strokes.points = strokes.own;
@@ -96,7 +96,7 @@ void choose_looks(std::vector<Strokes>& all) {
     if (strokes.look == LineLook::automatic) order.push_back(&strokes);
   }
   std::ranges::stable_sort(order, {}, [](const Strokes* strokes) { return strokes->count(); });
-  std::size_t left = kMostTubes;
+  std::size_t left = kMaxTubes;
   for (Strokes* strokes : order) {
     const bool tube = strokes->count() <= left;
     strokes->look = tube ? LineLook::tube : LineLook::thin;
@@ -233,17 +233,17 @@ std::size_t shapes_of(const Overlay& overlay) {
   std::size_t count = single_shapes(overlay) + overlay.spheres.size() + overlay.capsules.size();
   for (const OverlayLine& line : overlay.lines) {
     if (line.points_W.size() > 1) count += line.points_W.size() - 1;
-    if (line.dash > 0) count += kMostDashes;
+    if (line.dash > 0) count += kMaxDashes;
   }
   for (const OverlaySegments& segments : overlay.segments) count += segments.ends_W.size() / 2;
   return count;
 }
 
 std::string overlay_notice(const Overlay& overlay) {
-  if (shapes_of(overlay) <= kMostOverlayShapes) return {};
+  if (shapes_of(overlay) <= kMaxOverlayShapes) return {};
   const std::size_t wanted = single_shapes(overlay) + many_shapes(overlay, strokes_of(overlay));
-  if (wanted <= kMostOverlayShapes) return {};
-  return text(msg::render_overlay_thinned, kMostOverlayShapes, wanted);
+  if (wanted <= kMaxOverlayShapes) return {};
+  return text(msg::render_overlay_thinned, kMaxOverlayShapes, wanted);
 }
 
 void append(Overlay& overlay, const Overlay& more) {
@@ -260,8 +260,8 @@ void append(Overlay& overlay, const Overlay& more) {
 }
 
 std::size_t geoms_of(const Overlay& overlay, const mjModel& m) {
-  const std::size_t ghosts = std::min(overlay.ghosts.size(), kMostGhosts);
-  return std::min(shapes_of(overlay), kMostOverlayShapes) +
+  const std::size_t ghosts = std::min(overlay.ghosts.size(), kMaxGhosts);
+  return std::min(shapes_of(overlay), kMaxOverlayShapes) +
          ghosts * static_cast<std::size_t>(m.ngeom);
 }
 
@@ -269,7 +269,7 @@ void add_overlay(const Overlay& overlay, mjvScene& scene) {
   std::vector<Strokes> strokes = strokes_of(overlay);
   choose_looks(strokes);
   const auto free = static_cast<std::size_t>(std::max(scene.maxgeom - scene.ngeom, 0));
-  const std::size_t room = std::min(free, kMostOverlayShapes);
+  const std::size_t room = std::min(free, kMaxOverlayShapes);
   Sieve singles(single_shapes(overlay), room);
   add_singles(overlay, singles, scene);
   Sieve many(many_shapes(overlay, strokes), room - singles.room());

@@ -114,14 +114,14 @@ struct Overlay {
   std::vector<OverlayBox> boxes = {};
   std::vector<OverlayCapsule> capsules = {};
   std::vector<OverlaySegments> segments = {};
-  std::vector<OverlayGhost> ghosts = {};  ///< the first kMostGhosts are drawn
+  std::vector<OverlayGhost> ghosts = {};  ///< the first kMaxGhosts are drawn
 };
 
 /// Most shapes of an overlay that are drawn: a piece of a line, a dash, a ball and an axis of a
 /// frame are one each. Of more, every n-th is drawn, lines staying connected; labels, arrows,
 /// frames, boxes and ellipsoids go first.
-inline constexpr std::size_t kMostOverlayShapes = 20000;
-inline constexpr std::size_t kMostGhosts = 8;
+inline constexpr std::size_t kMaxOverlayShapes = 20000;
+inline constexpr std::size_t kMaxGhosts = 8;
 
 /// Most shapes that all of `overlay` can need, without its ghosts.
 [[nodiscard]] std::size_t shapes_of(const Overlay& overlay);

@@ -19,7 +19,7 @@ void trail_frame(benchmark::State& state, RenderQuality quality, LineLook look) 
   if (!model) return state.SkipWithError(model.error().what.c_str());
   Result<OffscreenRenderer> renderer = OffscreenRenderer::create(*model, {.quality = quality});
   if (!renderer) return state.SkipWithError(renderer.error().what.c_str());
-  Trail trail({.most_points = 20000});
+  Trail trail({.max_points = 20000});
   for (int i = 0; i <= state.range(0); ++i) {
     const double a = 0.005 * i;  // 2 mm a point
     trail.add({0.5 * std::cos(a), 0.3 * std::sin(a), 0.4 + 5e-5 * i});

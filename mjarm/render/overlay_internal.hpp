@@ -12,7 +12,7 @@ namespace mjarm {
 [[nodiscard]] std::size_t geoms_of(const Overlay& overlay, const mjModel& m);
 
 /// Adds what `overlay` holds, but for its ghosts, to the geoms of `scene`. Where that is more than
-/// kMostOverlayShapes or than there is room for, it is thinned evenly.
+/// kMaxOverlayShapes or than there is room for, it is thinned evenly.
 void add_overlay(const Overlay& overlay, mjvScene& scene);
 
 }  // namespace mjarm

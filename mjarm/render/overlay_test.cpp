@@ -140,7 +140,7 @@ TEST_F(OverlayScene, TooMuchIsThinnedEvenlyAndSaid) {
   EXPECT_EQ(shapes_of(overlay), kEdges + 4U);
   EXPECT_THAT(overlay_notice(overlay), HasSubstr("100004"));
   const std::vector<mjvGeom> geoms = added(overlay);
-  EXPECT_EQ(geoms.size(), kMostOverlayShapes);
+  EXPECT_EQ(geoms.size(), kMaxOverlayShapes);
   int tenths[10] = {0};
   std::map<int, int> count;
   for (const mjvGeom& geom : geoms) {
@@ -149,14 +149,14 @@ TEST_F(OverlayScene, TooMuchIsThinnedEvenlyAndSaid) {
   }
   EXPECT_EQ(count[mjGEOM_LABEL], 1);
   EXPECT_EQ(count[mjGEOM_CAPSULE], 3) << "the frame";
-  for (const int tenth : tenths) EXPECT_NEAR(tenth, static_cast<int>(kMostOverlayShapes) / 10, 2);
+  for (const int tenth : tenths) EXPECT_NEAR(tenth, static_cast<int>(kMaxOverlayShapes) / 10, 2);
 }
 
 TEST_F(OverlayScene, AThinnedLineStaysConnected) {
   Overlay overlay;
   overlay.lines = {line_of(50001)};
   const std::vector<mjvGeom> geoms = added(overlay);
-  ASSERT_EQ(geoms.size(), kMostOverlayShapes);
+  ASSERT_EQ(geoms.size(), kMaxOverlayShapes);
   // A thin line begins at its position and runs along its z axis.
   Vector3d end = {0, 0, 1};
   for (const mjvGeom& geom : geoms) {
@@ -203,7 +203,7 @@ TEST_F(OverlayScene, AGhostIsWhatMovesOnceMore) {
   overlay.ghosts = {{.qpos_index = {-1, 1000}, .qpos = {1, 1}}};
   EXPECT_TRUE(added(overlay).empty());
   overlay.ghosts.assign(100, {.qpos_index = {0}, .qpos = {1.0}});
-  EXPECT_EQ(added(overlay).size(), 2 * kMostGhosts);
+  EXPECT_EQ(added(overlay).size(), 2 * kMaxGhosts);
 }
 
 TEST_F(OverlayScene, AGhostLeavesTheStateAlone) {

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostLeftOut = 64;
+constexpr std::size_t kMaxLeftOut = 64;
 
 /// True where all points between two of them are near the straight line that joins those.
 bool is_straight(std::span<const Vector3d> points, std::size_t from, std::size_t to,
@@ -27,12 +27,12 @@ bool is_straight(std::span<const Vector3d> points, std::size_t from, std::size_t
 }  // namespace
 
 std::vector<Vector3d> dashes(std::span<const Vector3d> points, double dash, double gap,
-                             std::size_t most) {
+                             std::size_t max) {
   std::vector<Vector3d> ends;
   double total = 0;
   for (std::size_t i = 1; i < points.size(); ++i) total += (points[i] - points[i - 1]).norm();
-  if (!(total > 0) || !std::isfinite(total) || !(dash > 0) || !(gap > 0) || most == 0) return ends;
-  const double stretch = std::max(1.0, total / (dash + gap) / static_cast<double>(most));
+  if (!(total > 0) || !std::isfinite(total) || !(dash > 0) || !(gap > 0) || max == 0) return ends;
+  const double stretch = std::max(1.0, total / (dash + gap) / static_cast<double>(max));
   const double lengths[2] = {stretch * dash, stretch * gap};
   int phase = 0;  // 0 on a dash, 1 on a gap
   double left = lengths[0];
@@ -65,7 +65,7 @@ std::vector<Vector3d> simplified(std::span<const Vector3d> points, double tolera
   while (from + 1 < points.size()) {
     // Twice as far as long as that is straight, then back by halves: few looks at each point.
     std::size_t good = from + 1;
-    const std::size_t furthest = std::min(points.size() - 1, from + kMostLeftOut + 1);
+    const std::size_t furthest = std::min(points.size() - 1, from + kMaxLeftOut + 1);
     std::size_t bad = furthest + 1;
     for (std::size_t reach = 2; good < furthest; reach *= 2) {
       const std::size_t to = std::min(from + reach, furthest);

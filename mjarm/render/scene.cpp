@@ -37,8 +37,8 @@ mjModel with_quality(const mjModel& original, RenderQuality quality, bool softwa
     asked.shadowsize = std::min(asked.shadowsize, 1024);
     software ? at_most(12, 6) : at_most(16, 8);
   } else if (software) {
-    const int most = quality == RenderQuality::high ? 2048 : 1024;
-    asked.shadowsize = std::min(asked.shadowsize, most);
+    const int max = quality == RenderQuality::high ? 2048 : 1024;
+    asked.shadowsize = std::min(asked.shadowsize, max);
     at_most(24, 12);
   }
   asked.offsamples = quality == RenderQuality::high ? std::max(asked.offsamples, 8) : 0;

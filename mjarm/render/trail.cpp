@@ -5,7 +5,7 @@
 namespace mjarm {
 
 Trail::Trail(const TrailOptions& options) : options_(options) {
-  options_.most_points = std::max<std::size_t>(options_.most_points, 2);
+  options_.max_points = std::max<std::size_t>(options_.max_points, 2);
 }
 
 void Trail::add(const Eigen::Vector3d& p_W) {
@@ -15,7 +15,7 @@ void Trail::add(const Eigen::Vector3d& p_W) {
     const std::size_t last = (begin_ + ring_.size() - 1) % ring_.size();
     if ((ring_[last] - p_W).norm() < options_.spacing) return;
   }
-  if (ring_.size() < options_.most_points) {
+  if (ring_.size() < options_.max_points) {
     ring_.push_back(p_W);
     return;
   }

@@ -8,7 +8,7 @@ namespace mjarm {
 namespace {
 
 TEST(Trail, KeepsTheNewestOfALongWay) {
-  Trail trail({.most_points = 100, .spacing = 0.01});
+  Trail trail({.max_points = 100, .spacing = 0.01});
   for (int i = 0; i < 100000; ++i) trail.add({0.001 * i, 0, 0});
   EXPECT_EQ(trail.size(), 100U);
   const std::vector<Eigen::Vector3d> points = trail.points();

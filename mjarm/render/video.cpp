@@ -16,7 +16,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kMostFps = 1000;  // [1/s]
+constexpr double kMaxFps = 1000;  // [1/s]
 constexpr double kGifFps = 100;    // [1/s] a GIF counts hundredths of a second
 
 /// What ffmpeg is told about how the file is to be.
@@ -78,9 +78,9 @@ Result<void> check_options(VideoFormat format, const VideoOptions& options) {
                 text(msg::render_video_odd, options.width, options.height,
                      options.width + options.width % 2, options.height + options.height % 2));
   }
-  const double most = format == VideoFormat::gif ? kGifFps : kMostFps;
-  if (!(options.fps > 0) || options.fps > most) {
-    return fail(Errc::bad_input, text(msg::render_video_fps, options.fps, most));
+  const double max = format == VideoFormat::gif ? kGifFps : kMaxFps;
+  if (!(options.fps > 0) || options.fps > max) {
+    return fail(Errc::bad_input, text(msg::render_video_fps, options.fps, max));
   }
   return {};
 }

@@ -20,7 +20,7 @@ TensorShape shape_of(const ParameterBlock& block) {
 /// @param inputs  of the first layer; below 0: as many as there are.
 Result<std::vector<int>> rows_of_layers(const TensorSet& set, const std::string& net,
                                         std::int64_t inputs) {
-  constexpr std::int64_t kMostRows = 1 << 20;
+  constexpr std::int64_t kMaxRows = 1 << 20;
   std::vector<int> rows;
   for (;;) {
     const std::string name = net + "." + std::to_string(rows.size()) + ".weight";
@@ -28,7 +28,7 @@ Result<std::vector<int>> rows_of_layers(const TensorSet& set, const std::string&
     if (found == set.tensors.end()) break;
     const TensorShape& shape = found->second.shape;
     const bool fits = shape.size() == 2 && std::ranges::all_of(shape, [](std::int64_t size) {
-                        return size > 0 && size <= kMostRows;
+                        return size > 0 && size <= kMaxRows;
                       });
     if (!fits) {
       return fail(Errc::bad_input,

@@ -15,11 +15,11 @@ constexpr double kNoLimit = std::numeric_limits<double>::max();
 struct OptionRange {
   std::string_view words;
   double least;
-  double most = kNoLimit;
+  double max = kNoLimit;
   bool open = false;
 
   [[nodiscard]] bool holds(double value) const {
-    return (open ? value > least : value >= least) && value <= most;
+    return (open ? value > least : value >= least) && value <= max;
   }
 };
 

@@ -7,12 +7,12 @@
 namespace mjarm::rl::detail {
 namespace {
 
-constexpr int kMostSlices = 8;
+constexpr int kMaxSlices = 8;
 constexpr std::size_t kPortion = 16384;  ///< parameters a task
 
 int slices_of(std::size_t rows) {
   const auto blocks = (static_cast<int>(rows) + Mlp::kRows - 1) / Mlp::kRows;
-  return std::min(kMostSlices, blocks);
+  return std::min(kMaxSlices, blocks);
 }
 
 /// Shift and factor that bring the advantages of a minibatch to mean 0 and deviation 1.
@@ -174,7 +174,7 @@ void PpoGradient::add_slices(int count, std::span<const float> parameters,
   const std::size_t size = parameters.size();
   networks_.workers().run(static_cast<int>((size + kPortion - 1) / kPortion), [&](int task, int) {
     const std::size_t first = static_cast<std::size_t>(task) * kPortion;
-    const float* from[kMostSlices];
+    const float* from[kMaxSlices];
     for (int i = 0; i < count; ++i) from[i] = slices_[i].gradient.data() + first;
     networks_.kernels().add(count, from, static_cast<long>(std::min(kPortion, size - first)),
                             gradient_.data() + first);

@@ -145,8 +145,8 @@ Result<bool> PpoTrainer::State::step(const detail::Samples& samples, std::span<c
     return fail(Errc::impossible, text(msg::rl_diverged, losses.policy, losses.value, norm));
   }
   if (options.target_kl > 0 && losses.kl > 1.5 * options.target_kl) return false;
-  const double most = options.max_gradient_norm;
-  const double scale = most > 0 ? std::min(1.0, most / (norm + 1e-6)) : 1.0;
+  const double max = options.max_gradient_norm;
+  const double scale = max > 0 ? std::min(1.0, max / (norm + 1e-6)) : 1.0;
   adam.step(networks.kernels(), workers, gradient.gradient(), scale * share, rate,
             options.adam_epsilon, policy.parameters());
   networks.pack(policy);

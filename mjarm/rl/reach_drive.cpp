@@ -11,7 +11,7 @@ namespace {
 
 /// How many greatest steps a reference may be ahead of its joint, so that it does not run away
 /// while the joint is blocked.
-constexpr double kMostAhead = 3;
+constexpr double kMaxAhead = 3;
 
 }  // namespace
 
@@ -52,7 +52,7 @@ double ReachDrive::next(int joint, double action, double q, double reference) co
     default:
       wanted = reference + action * step;
   }
-  wanted = std::clamp(wanted, q - kMostAhead * step, q + kMostAhead * step);
+  wanted = std::clamp(wanted, q - kMaxAhead * step, q + kMaxAhead * step);
   return std::clamp(wanted, arm_.limits.lower[joint], arm_.limits.upper[joint]);
 }
 

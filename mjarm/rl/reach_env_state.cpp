@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kHead = 4;
 constexpr std::size_t kOfCopy = 13;
 
-bool whole(double value, double most) {
-  return value >= 0 && value <= most && value == std::floor(value);
+bool whole(double value, double max) {
+  return value >= 0 && value <= max && value == std::floor(value);
 }
 
 }  // namespace

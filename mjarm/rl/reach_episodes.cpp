@@ -93,7 +93,7 @@ Result<void> ReachEpisodes::find_start(const Arm& arm) {
     if (start_[i] >= arm.limits.lower[i] && start_[i] <= arm.limits.upper[i]) continue;
     return fail(Errc::usage, text(msg::reach_start_limit, arm.joints[i].name, start_[i]));
   }
-  p_start_ = fk(arm, view(start_)) * judged_point(options_);
+  p_start_ = fk(arm, as_span(start_)) * judged_point(options_);
   return {};
 }
 
@@ -104,18 +104,18 @@ Result<void> ReachEpisodes::settle(const ReachDrive& drive) {
   BatchSim& world = probe.world;
   const bool open = options_.gripper == ReachGripper::open && arm.gripper.has_value();
   if (open) probe.ctrl[arm.gripper->id] = arm.gripper->ctrl_open;
-  bool clear = probe.clear(view(start_));
+  bool clear = probe.clear(as_span(start_));
   if (open) {
     constexpr int kChunks = 50, kSteps = 10;  // 1 s of 2 ms
     for (int i = 0; i < kChunks && !world.failed(0); ++i) {
-      drive.hold(view(start_), world.bias(0), world.ctrl(0));
+      drive.hold(as_span(start_), world.bias(0), world.ctrl(0));
       world.step(kSteps);
     }
     probe.qpos.assign(world.qpos(0).begin(), world.qpos(0).end());
     probe.ctrl.assign(world.ctrl(0).begin(), world.ctrl(0).end());
-    clear = !world.failed(0) && probe.clear(view(start_));
+    clear = !world.failed(0) && probe.clear(as_span(start_));
   } else if (!options_.guide) {
-    drive.hold(view(start_), world.bias(0), probe.ctrl);
+    drive.hold(as_span(start_), world.bias(0), probe.ctrl);
   }
   if (!clear) return fail(Errc::impossible, text(msg::reach_start_touches));
   return {};
@@ -133,7 +133,7 @@ bool ReachEpisodes::in_region(const Eigen::Vector3d& p_W) const {
 
 bool ReachEpisodes::reachable(const Eigen::Vector3d& p_W) const {
   const Eigen::Vector3d down(1, -1, -1);
-  return solver_->solve({p_W, down.asDiagonal()}, view(start_)).has_value();
+  return solver_->solve({p_W, down.asDiagonal()}, as_span(start_)).has_value();
 }
 
 JointVec ReachEpisodes::draw_start(Rng& rng) {
@@ -142,7 +142,7 @@ JointVec ReachEpisodes::draw_start(Rng& rng) {
     JointVec q = start_;
     for (double& value : q) value += rng.uniform(-options_.start_spread, options_.start_spread);
     q = q.cwiseMax(limits.lower).cwiseMin(limits.upper);
-    if (probe_->clear(view(q))) return q;
+    if (probe_->clear(as_span(q))) return q;
   }
   return start_;
 }
@@ -163,7 +163,7 @@ Eigen::Vector3d ReachEpisodes::draw_ball(Rng& rng, const ReachEpisode& episode) 
   for (int i = 0; i < kTries / 10; ++i) {
     const Eigen::Vector3d p = draw_in(rng, middle - spread, middle + spread);
     if ((p - episode.goal).norm() < kBallRoom || p.z() < kBallRadius) continue;
-    if (probe_->clear(view(episode.q), p)) return p;
+    if (probe_->clear(as_span(episode.q), p)) return p;
   }
   return kBallAway;
 }

@@ -44,7 +44,7 @@ TEST(ReachEpisodes, GoalsAreThoseOfTheTutorial) {
     EXPECT_EQ(episode.q, joint_vec(options.start));
     // Reached, and by another way of asking than the one it was drawn with.
     if (i % 10 == 0) {
-      EXPECT_TRUE(solver.solve({goal, Eigen::Matrix3d::Identity()}, view(drawn.arm.home)));
+      EXPECT_TRUE(solver.solve({goal, Eigen::Matrix3d::Identity()}, as_span(drawn.arm.home)));
     }
   }
   // All of it is used, on both sides.
@@ -80,7 +80,7 @@ TEST(ReachEpisodes, WideGoalsAreAllReachableAndNothingTouchesThere) {
     far += goal.head<2>().norm() > 0.7;
     if (i % 20 != 0) continue;
     drawn.episodes.write(episode, qpos, ctrl);
-    EXPECT_TRUE(solver.solve({goal, Eigen::Matrix3d::Identity()}, view(drawn.arm.home)));
+    EXPECT_TRUE(solver.solve({goal, Eigen::Matrix3d::Identity()}, as_span(drawn.arm.home)));
   }
   EXPECT_GT(high, 1000);
   EXPECT_GT(near_base, 500);
@@ -100,7 +100,7 @@ TEST(ReachEpisodes, StartsSpreadWithinTheirBoundsAndTouchNothing) {
     const double away = (episode.q - middle).cwiseAbs().maxCoeff();
     EXPECT_LE(away, 0.4);
     widest = std::max(widest, away);
-    EXPECT_TRUE(within_limits(drawn.arm, view(episode.q)));
+    EXPECT_TRUE(within_limits(drawn.arm, as_span(episode.q)));
     sim.set_state(qpos, std::vector<double>(drawn.model.nv(), 0.0));
     EXPECT_TRUE(sim.contacts(drawn.arm).empty());
   }

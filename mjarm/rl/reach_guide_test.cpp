@@ -62,7 +62,7 @@ TEST(ReachGuide, SuccessEndsAnEpisodeAndTheStepLimitCutsIt) {
   std::vector<JointVec> targets;
   const JointVec start = joint_vec(options.start);
   for (int i = 0; i < env.count(); ++i) {
-    const auto found = solver.solve({env.goal(i), Eigen::Matrix3d::Identity()}, view(start));
+    const auto found = solver.solve({env.goal(i), Eigen::Matrix3d::Identity()}, as_span(start));
     ASSERT_TRUE(found);
     std::vector<double> qpos(env.model().nq(), 0.0);
     std::copy(found->q.begin(), found->q.end(), qpos.begin());

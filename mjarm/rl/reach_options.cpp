@@ -42,7 +42,7 @@ Result<void> in_range(const Range& range) {
                                 text(words, range.lower, range.upper), range.value));
 }
 
-constexpr double kMost = 1e6;  // of weights and scales
+constexpr double kMax = 1e6;  // of weights and scales
 
 }  // namespace
 
@@ -79,22 +79,22 @@ Result<void> check(const ReachOptions& o) {
       {"environments", 1.0 * o.environments, 1, 100000},
       {"threads", 1.0 * o.threads, 1, 1024},
       {"frame_skip", 1.0 * o.frame_skip, 1, 10000},
-      {"episode_steps", 1.0 * o.episode_steps, 1, kMost},
+      {"episode_steps", 1.0 * o.episode_steps, 1, kMax},
       {"start_spread", o.start_spread, 0, 1},
       {"speed", o.speed, 0, 1, true},
       {"torque", o.torque, 0, 1, true},
-      {"reward.distance", r.distance, 0, kMost},
-      {"reward.coarse", r.coarse, 0, kMost},
-      {"reward.coarse_scale", r.coarse_scale, 0, kMost, true},
-      {"reward.fine", r.fine, 0, kMost},
-      {"reward.fine_scale", r.fine_scale, 0, kMost, true},
-      {"reward.action", r.action, 0, kMost},
-      {"reward.collision", r.collision, 0, kMost},
-      {"reward.limit", r.limit, 0, kMost},
-      {"reward.limit_margin", r.limit_margin, 0, kMost, true},
-      {"reward.turn", r.turn, 0, kMost},
-      {"reward.turn_fine", r.turn_fine, 0, kMost},
-      {"reward.turn_scale", r.turn_scale, 0, kMost, true},
+      {"reward.distance", r.distance, 0, kMax},
+      {"reward.coarse", r.coarse, 0, kMax},
+      {"reward.coarse_scale", r.coarse_scale, 0, kMax, true},
+      {"reward.fine", r.fine, 0, kMax},
+      {"reward.fine_scale", r.fine_scale, 0, kMax, true},
+      {"reward.action", r.action, 0, kMax},
+      {"reward.collision", r.collision, 0, kMax},
+      {"reward.limit", r.limit, 0, kMax},
+      {"reward.limit_margin", r.limit_margin, 0, kMax, true},
+      {"reward.turn", r.turn, 0, kMax},
+      {"reward.turn_fine", r.turn_fine, 0, kMax},
+      {"reward.turn_scale", r.turn_scale, 0, kMax, true},
   };
   for (const Range& range : ranges) {
     if (auto fine = in_range(range); !fine) return fine;

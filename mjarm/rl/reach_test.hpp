@@ -71,7 +71,7 @@ class Expert {
   void act(std::span<const float> seen, std::span<float> actions) const {
     const int n = arm_.dof();
     const JointVec q = joints(seen);
-    const FkJacobian at = fk_jacobian(arm_, view(q));
+    const FkJacobian at = fk_jacobian(arm_, as_span(q));
     const auto three = [&](int first) {
       return Eigen::Vector3d(seen[first], seen[first + 1], seen[first + 2]);
     };

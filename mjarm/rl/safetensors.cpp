@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr std::size_t kLargestTensorFile = std::size_t{1} << 30;
 constexpr std::size_t kLargestHeader = std::size_t{4} << 20;
-constexpr std::size_t kMostDimensions = 8;
+constexpr std::size_t kMaxDimensions = 8;
 constexpr std::size_t kLengthBytes = 8;
 constexpr const char* kMetadataKey = "__metadata__";
 
@@ -131,8 +131,8 @@ Result<TensorPlace> SafetensorsReader::place(const std::string& name, const json
   }
   place.type = static_cast<std::size_t>(known - kNumberTypes);
   const auto shape = whole_numbers(entry["shape"]);
-  if (!shape || shape->size() > kMostDimensions) {
-    return bad(msg::policy_file_shape, in_quotes(name), kMostDimensions);
+  if (!shape || shape->size() > kMaxDimensions) {
+    return bad(msg::policy_file_shape, in_quotes(name), kMaxDimensions);
   }
   place.shape = *shape;
   const auto offsets = whole_numbers(entry["data_offsets"]);
@@ -265,7 +265,7 @@ Result<std::string> to_safetensors(const TensorSet& set, const std::string& sour
   }
   for (const auto* entry : in_file_order(set)) {
     const auto& [name, tensor] = *entry;
-    if (name == kMetadataKey || !is_utf8(name) || tensor.shape.size() > kMostDimensions ||
+    if (name == kMetadataKey || !is_utf8(name) || tensor.shape.size() > kMaxDimensions ||
         shape_product(tensor.shape) != value_count(tensor)) {
       return fail(Errc::bad_input, text(msg::policy_file_unwritable, source, in_quotes(name)));
     }

@@ -22,7 +22,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kLargestZip = std::size_t{256} << 20;
-constexpr std::int64_t kMostNumbers = std::int64_t{1} << 26;
+constexpr std::int64_t kMaxNumbers = std::int64_t{1} << 26;
 
 /// The JSON that Python writes, whose NaN, Infinity and -Infinity JSON does not know, with null in
 /// their place.
@@ -168,8 +168,8 @@ Result<Tensor> Sb3Reader::tensor(const StoredZip& zip, std::string_view folder,
     return bad(msg::policy_file_strides, in_quotes(name));
   }
   numbers_ += count;
-  if (count > kMostNumbers || numbers_ > kMostNumbers) {
-    return bad(msg::policy_file_many_numbers, kMostNumbers);
+  if (count > kMaxNumbers || numbers_ > kMaxNumbers) {
+    return bad(msg::policy_file_many_numbers, kMaxNumbers);
   }
   std::vector<float> values;
   values.reserve(static_cast<std::size_t>(count));

@@ -12,10 +12,10 @@ namespace {
 
 // What weights need by far, and what memory can always hold.
 constexpr std::size_t kLargestPickle = std::size_t{4} << 20;
-constexpr std::size_t kMostValues = 1 << 18;
+constexpr std::size_t kMaxValues = 1 << 18;
 constexpr std::size_t kDeepestStack = 4096;
-constexpr std::size_t kMostMarks = 32;
-constexpr std::size_t kMostMemos = 1 << 17;
+constexpr std::size_t kMaxMarks = 32;
+constexpr std::size_t kMaxMemos = 1 << 17;
 
 enum class PickleKind { none, truth, integer, words, global, tuple, dict, storage, tensor };
 
@@ -127,14 +127,14 @@ TorchPickle::Refusal TorchPickle::push(ValueId id) {
 }
 
 TorchPickle::Refusal TorchPickle::add(PickleValue value) {
-  if (values_.size() >= kMostValues) return too_much("VALUES");
+  if (values_.size() >= kMaxValues) return too_much("VALUES");
   values_.push_back(std::move(value));
   return push(values_.size() - 1);
 }
 
 TorchPickle::Refusal TorchPickle::put(std::size_t index) {
   if (available() == 0) return misfit();
-  if (memo_.size() >= kMostMemos) return too_much("MEMO");
+  if (memo_.size() >= kMaxMemos) return too_much("MEMO");
   memo_[index] = stack_.back();
   return std::nullopt;
 }
@@ -250,7 +250,7 @@ TorchPickle::Refusal TorchPickle::run(unsigned char code) {
     case PickleOp::proto:
       return take_number<std::uint8_t>() == 2 || cut_ ? Refusal() : misfit();
     case PickleOp::mark:
-      if (marks_.size() >= kMostMarks) return too_much("MARK");
+      if (marks_.size() >= kMaxMarks) return too_much("MARK");
       marks_.push_back(stack_.size());
       return std::nullopt;
     case PickleOp::global:

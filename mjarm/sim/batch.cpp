@@ -17,8 +17,8 @@
 namespace mjarm {
 namespace {
 
-constexpr int kMostWorlds = 100000;
-constexpr int kMostThreads = 1024;
+constexpr int kMaxWorlds = 100000;
+constexpr int kMaxThreads = 1024;
 
 struct DeleteBatch {
   void operator()(mjBatch* batch) const { mjb_deleteBatch(batch); }
@@ -115,11 +115,11 @@ struct BatchSim::Impl {
 };
 
 Result<void> BatchSim::Impl::make(const Arm& arm, int worlds, int threads) {
-  if (worlds < 1 || worlds > kMostWorlds) {
-    return fail(Errc::usage, text(msg::sim_batch_count, worlds, kMostWorlds));
+  if (worlds < 1 || worlds > kMaxWorlds) {
+    return fail(Errc::usage, text(msg::sim_batch_count, worlds, kMaxWorlds));
   }
-  if (threads < 1 || threads > kMostThreads) {
-    return fail(Errc::usage, text(msg::sim_batch_threads, threads, kMostThreads));
+  if (threads < 1 || threads > kMaxThreads) {
+    return fail(Errc::usage, text(msg::sim_batch_threads, threads, kMaxThreads));
   }
   count = worlds;
   std::array<char, 500> why{};

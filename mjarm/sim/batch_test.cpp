@@ -107,7 +107,7 @@ TEST(BatchSim, IsASimInEveryReadAfterPlacesAndSteps) {
 TEST(BatchSim, FingersThatTouchEachOtherDoNotCount) {
   const Loaded robot = load_shipped("panda");
   Sim sim(robot.model);
-  sim.place(robot.arm, view(robot.arm.home));
+  sim.place(robot.arm, as_span(robot.arm.home));
   std::vector<double> qpos(sim.qpos().begin(), sim.qpos().end());
   for (std::size_t i = robot.arm.dof(); i < qpos.size(); ++i) qpos[i] = -0.001;  // pressed together
   sim.set_state(qpos, sim.qvel());

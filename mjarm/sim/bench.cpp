@@ -37,7 +37,7 @@ class Contestant {
   Result<double> run(const std::vector<JointVec>& positions, bool record,
                      std::vector<double>* ctrl = nullptr) {
     if (auto reset = sim_.reset(); !reset) return fail(std::move(reset.error()));
-    sim_.place(arm_, view(positions.front()));
+    sim_.place(arm_, as_span(positions.front()));
     std::optional<Recorder> recorder;
     if (record) recorder.emplace(sim_.model(), arm_);
     const FollowSetup setup{.sim = sim_,

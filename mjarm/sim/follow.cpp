@@ -79,20 +79,20 @@ FollowWait explain(const FollowSetup& setup, const Stepper& stepper, const Joint
 /// The gated followers: `gap_at(i)` measures how far waypoint i is.
 template <class GapAt>
 Followed follow_gated(const FollowSetup& setup, std::span<const JointVec> waypoints,
-                      double tolerance, int most_steps, const GapAt& gap_at) {
+                      double tolerance, int max_steps, const GapAt& gap_at) {
   for (const JointVec& q : waypoints) {
     if (q.size() != setup.arm.dof()) return other_arm(q.size(), setup.arm);
   }
   Stepper stepper(setup);
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    const StepReference reference = hold(view(waypoints[i]));
+    const StepReference reference = hold(as_span(waypoints[i]));
     FollowWait wait;
     wait.waypoint = i;
     wait.count = waypoints.size();
     wait.tolerance = tolerance;
     Gap gap;
     do {
-      if (wait.steps == most_steps) {
+      if (wait.steps == max_steps) {
         wait.joint = gap.joint;
         wait.distance = gap.distance;
         return fail(
@@ -153,14 +153,14 @@ Followed follow_time(const FollowSetup& setup, const Trajectory& trajectory,
 Followed follow_joints(const FollowSetup& setup, std::span<const JointVec> waypoints,
                        const GateOptions& options) {
   return follow_gated(
-      setup, waypoints, options.joint_tol, options.most_steps,
+      setup, waypoints, options.joint_tol, options.max_steps,
       [](const Stepper& stepper, std::size_t) { return joint_gap(stepper.error()); });
 }
 
 Followed follow_tool(const FollowSetup& setup, std::span<const JointVec> waypoints,
                      std::span<const Eigen::Vector3d> points, const GateOptions& options) {
   assert(waypoints.size() == points.size());
-  return follow_gated(setup, waypoints, options.tool_tol, options.most_steps,
+  return follow_gated(setup, waypoints, options.tool_tol, options.max_steps,
                       [&](const Stepper&, std::size_t i) {
                         return Gap{(setup.sim.tool(setup.arm).p - points[i]).norm(), -1};
                       });

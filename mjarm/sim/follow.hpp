@@ -26,7 +26,7 @@ struct FollowSetup {
 };
 
 /// The first time the arm, or what it carries along, touched something.
-struct FirstContact {
+struct TimedContact {
   Contact contact;
   double time = 0;  ///< [s] of the simulation
 };
@@ -43,7 +43,7 @@ struct FollowOutcome {
   double velocity_use = 0;      ///< largest share of a joint's velocity limit
   double torque_use = 0;        ///< largest share of a joint's torque limit
   long long limited_steps = 0;  ///< steps in which a ctrl or force limit cut the command
-  std::optional<FirstContact> first_contact;
+  std::optional<TimedContact> first_contact;
 };
 
 /// What a run was waiting for when it gave up.
@@ -91,7 +91,7 @@ struct TimeOptions {
 struct GateOptions {
   double joint_tol = 0.02;  ///< [rad or m] every joint this near: next joint waypoint, > 0
   double tool_tol = 0.01;   ///< [m] tool this near: next tool point, > 0
-  int most_steps = 5000;    ///< steps spent on one waypoint before giving up, >= 1
+  int max_steps = 5000;    ///< steps spent on one waypoint before giving up, >= 1
 };
 
 /// Each of `waypoints` is commanded until all joints are within `joint_tol` of it.

@@ -33,7 +33,7 @@ struct Bench {
   Bench(Loaded loaded, ControlMode mode)
       : robot(std::move(loaded)), sim(robot.model), controller(controller_of(robot, mode)) {
     EXPECT_TRUE(sim.reset("home"));
-    sim.place(robot.arm, view(robot.arm.home));
+    sim.place(robot.arm, as_span(robot.arm.home));
   }
   [[nodiscard]] FollowSetup setup() {
     return {.sim = sim, .controller = controller, .arm = robot.arm};
@@ -174,7 +174,7 @@ TEST(FollowJoints, SaysThatTheServoSagsMoreThanTheTolerance) {
   Bench bench(load_text(small_world("integrator=\"implicitfast\"", "100")), ControlMode::servo);
   bench.sim.place(bench.robot.arm, kBelow);
   const std::vector<JointVec> goals{joint_vec(kBelow), JointVec::Zero(2)};
-  const auto outcome = follow_joints(bench.setup(), goals, {.joint_tol = 0.08, .most_steps = 3000});
+  const auto outcome = follow_joints(bench.setup(), goals, {.joint_tol = 0.08, .max_steps = 3000});
   ASSERT_FALSE(outcome);
   ASSERT_TRUE(outcome.error().wait);
   const FollowWait& wait = *outcome.error().wait;
@@ -199,11 +199,11 @@ TEST(FollowJoints, SaysThatTheServoSagsMoreThanTheTolerance) {
 TEST(FollowTool, SaysThatTheServoSagsMoreThanTheTolerance) {
   Bench bench(load_text(small_world("integrator=\"implicitfast\"", "400")), ControlMode::servo);
   const std::vector<JointVec> goals{JointVec::Zero(2)};
-  bench.sim.place(bench.robot.arm, view(goals[0]));
+  bench.sim.place(bench.robot.arm, as_span(goals[0]));
   const std::vector<Eigen::Vector3d> points{bench.sim.tool(bench.robot.arm).p};
   bench.sim.place(bench.robot.arm, kBelow);
   const auto outcome =
-      follow_tool(bench.setup(), goals, points, {.tool_tol = 0.01, .most_steps = 3000});
+      follow_tool(bench.setup(), goals, points, {.tool_tol = 0.01, .max_steps = 3000});
   ASSERT_FALSE(outcome);
   ASSERT_TRUE(outcome.error().wait);
   const FollowWait& wait = *outcome.error().wait;
@@ -214,14 +214,14 @@ TEST(FollowTool, SaysThatTheServoSagsMoreThanTheTolerance) {
   EXPECT_THAT(describe(outcome.error(), bench.robot.arm), HasSubstr("servo_gravity"));
 
   Bench better(load_text(small_world()), ControlMode::servo_gravity);
-  EXPECT_TRUE(follow_tool(better.setup(), goals, points, {.tool_tol = 0.01, .most_steps = 3000}));
+  EXPECT_TRUE(follow_tool(better.setup(), goals, points, {.tool_tol = 0.01, .max_steps = 3000}));
 }
 
 TEST(FollowJoints, TellsOtherCausesApart) {
   {
     Bench bench(load_text(small_world()), ControlMode::servo);
     const std::vector<JointVec> far{shifted(bench.robot.arm.home, 0.2)};
-    const auto slow = follow_joints(bench.setup(), far, {.joint_tol = 0.001, .most_steps = 40});
+    const auto slow = follow_joints(bench.setup(), far, {.joint_tol = 0.001, .max_steps = 40});
     ASSERT_FALSE(slow);
     EXPECT_EQ(slow.error().wait->cause, WaitCause::moving);
     EXPECT_THAT(describe(slow.error(), bench.robot.arm), HasSubstr("more steps"));

@@ -76,7 +76,7 @@ struct Recorder::Impl {
         options(wanted),
         ghost(model, source),
         stride(static_cast<std::size_t>(std::max(wanted.every, 1))) {
-    options.most_rows = std::max<std::size_t>(options.most_rows, 2);
+    options.max_rows = std::max<std::size_t>(options.max_rows, 2);
   }
 
   [[nodiscard]] std::size_t width() const { return 25 + 5 * static_cast<std::size_t>(arm.dof()); }
@@ -152,7 +152,7 @@ void Recorder::record(const Sim& sim, const JointVec& q_ref) {
   me.put(me.ghost.tool(sim, q_ref));
   me.put(sim.tool(me.arm));
   me.touching.push_back(me.index_of(joined(sim.contacts())));
-  if (me.touching.size() >= me.options.most_rows) me.thin_out();
+  if (me.touching.size() >= me.options.max_rows) me.thin_out();
 }
 
 std::size_t Recorder::size() const noexcept { return impl_->touching.size(); }

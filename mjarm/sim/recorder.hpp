@@ -15,7 +15,7 @@ namespace mjarm {
 
 struct RecordOptions {
   int every = 1;                   ///< steps from row to row, >= 1
-  std::size_t most_rows = 100000;  ///< when full, every second row is dropped, >= 2
+  std::size_t max_rows = 100000;  ///< when full, every second row is dropped, >= 2
 };
 
 /// One row of a record: what was asked for and what the simulation had, at one time.

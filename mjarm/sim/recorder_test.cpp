@@ -27,7 +27,7 @@ Recorder record(const Loaded& robot, int steps, const RecordOptions& options = {
   recorder.record(sim, q_ref);
   for (int i = 1; i <= steps; ++i) {
     q_ref[1] = robot.arm.home[1] - 0.001 * i;
-    EXPECT_TRUE(sim.step(view(q_ref)));
+    EXPECT_TRUE(sim.step(as_span(q_ref)));
     recorder.record(sim, q_ref);
   }
   return recorder;
@@ -50,7 +50,7 @@ TEST(Recorder, KeepsWhatTheSimulationHad) {
   JointVec q_ref = robot.arm.home;
   for (int i = 1; i <= 20; ++i) {
     q_ref[1] = robot.arm.home[1] - 0.001 * i;
-    ASSERT_TRUE(sim.step(view(q_ref)));
+    ASSERT_TRUE(sim.step(as_span(q_ref)));
   }
   const RecordRow row = recorder.row(20);
   EXPECT_EQ(row.time, sim.time());
@@ -65,7 +65,7 @@ TEST(Recorder, KeepsWhatTheSimulationHad) {
   EXPECT_EQ(recorder.tool_positions().back(), row.X_WT.p);
 
   // The planned tool is where the arm would have it at q_ref.
-  sim.place(robot.arm, view(q_ref));
+  sim.place(robot.arm, as_span(q_ref));
   EXPECT_EQ(row.X_ref.p, sim.tool(robot.arm).p);
   EXPECT_EQ(row.X_ref.R, sim.tool(robot.arm).R);
   EXPECT_EQ(recorder.planned_positions().back(), row.X_ref.p);
@@ -80,9 +80,9 @@ TEST(Recorder, KeepsEveryNthCall) {
 }
 
 TEST(Recorder, StaysWithinItsMemoryAndEvenlySpaced) {
-  for (const std::size_t most : {2U, 7U, 10U}) {
-    const Recorder recorder = record(load_text(small_world()), 200, {.most_rows = most});
-    EXPECT_LE(recorder.size(), most);
+  for (const std::size_t max : {2U, 7U, 10U}) {
+    const Recorder recorder = record(load_text(small_world()), 200, {.max_rows = max});
+    EXPECT_LE(recorder.size(), max);
     ASSERT_GE(recorder.size(), 1U);
     EXPECT_EQ(recorder.row(0).time, 0);
     if (recorder.size() < 3) continue;

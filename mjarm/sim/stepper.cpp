@@ -44,7 +44,7 @@ void Stepper::measure(const JointVec& q_ref) {
       std::max(outcome_.torque_use, torque.cwiseAbs().cwiseQuotient(limits.torque).maxCoeff());
   if (!outcome_.first_contact) {
     const auto contacts = sim.contacts(setup_.arm);
-    if (!contacts.empty()) outcome_.first_contact = FirstContact{contacts.front(), sim.time()};
+    if (!contacts.empty()) outcome_.first_contact = TimedContact{contacts.front(), sim.time()};
   }
 }
 

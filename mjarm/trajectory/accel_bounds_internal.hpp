@@ -116,19 +116,19 @@ class AccelBounds {
 
 /// The same with rows of its own, enough for both ends of a cell.
 struct CellBounds {
-  static constexpr int kMost = 4 * kMaxDof + 2;
-  double low[kMost], high[kMost], by[kMost];
+  static constexpr int kMax = 4 * kMaxDof + 2;
+  double low[kMax], high[kMax], by[kMax];
   AccelBounds bounds{low, high, by};
 };
 
 /// Largest u in [0, `from`] with u + h * bound(u).a <= most, for a convex left side that is below
-/// `most` at 0; Newton's method from the right.
+/// `max` at 0; Newton's method from the right.
 template <class Function>
-double largest_below(Function bound, double h, double from, double most) {
+double largest_below(Function bound, double h, double from, double max) {
   double u = from, solved = 0;  // the slope of the row that was solved for last
   for (int k = 0; k <= 2 * kMaxDof; ++k) {
     const Bound b = bound(u);
-    const double over = u + h * b.a - most, slope = 1 + h * b.by_u;
+    const double over = u + h * b.a - max, slope = 1 + h * b.by_u;
     if (over <= 0 || slope <= 0 || (k > 0 && b.by_u == solved)) break;
     u -= over / slope;
     solved = b.by_u;

@@ -11,7 +11,7 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 // What comes out of a calculation, such as a state on the way of another motion, is that far from
 // where it should be, relative to the largest numbers in it.
 constexpr double kRounding = 1e-12;
-constexpr int kMostSteps = 100;  // bisection alone needs fewer
+constexpr int kMaxSteps = 100;  // bisection alone needs fewer
 
 double square(double x) { return x * x; }
 
@@ -59,8 +59,8 @@ Farthest FarthestMotions::without_cruise(double duration) const noexcept {
   const double r = joint_.inverse_jerk, a = joint_.a_max;
   const double x = std::max(0.0, 0.5 * (duration - ramp_time_));
   // No phase up is shorter than nothing, whatever rounding says where x is next to 0.
-  const double least = 2 * r * joint_.a0 - x, most = 2 * r * joint_.a1 + x;
-  const double sum = std::max(least, std::min(most, x > 0 ? r * gain_ / x : 0));
+  const double least = 2 * r * joint_.a0 - x, max = 2 * r * joint_.a1 + x;
+  const double sum = std::max(least, std::min(max, x > 0 ? r * gain_ / x : 0));
   if (x + std::abs(sum) <= 2 * r * a) {
     if (r == 0) return {a, 0, -a, 0, 0};
     return {0.5 * (sum + x) / r, 0, 0.5 * (sum - x) / r, 0, 0};
@@ -151,7 +151,7 @@ double FarthestMotions::first_far_enough(double from, double until) const noexce
   const double bend = std::min(bend_time(), cruise_from_);
   if (t < bend) {
     // Newton's steps on a concave function stay before its first root.
-    for (int i = 0; i < kMostSteps && value.speed > 0; ++i) {
+    for (int i = 0; i < kMaxSteps && value.speed > 0; ++i) {
       const double step = (joint_.way - value.way) / value.speed;
       if (t + step > std::min(bend, until)) break;
       t += step;
@@ -183,7 +183,7 @@ double FarthestMotions::first_on_convex(double from, double until, Value value) 
                          2 * std::sqrt(missing / joint_.a_max));
   if (value.speed > 0) step = std::min(step, missing / value.speed);
   double t = low + step;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     if (!(t > low && t < high)) t = high < kInf ? 0.5 * (low + high) : 2 * low + step;
     value = at(t);
     (value.way < joint_.way ? low : high) = t;
@@ -234,7 +234,7 @@ JointTimes::JointTimes(const OneJoint& joint) noexcept
 double JointTimes::first_possible(double from) const noexcept {
   double t = std::max(from, durations_.from);
   // Each round goes on to a later duration that one of the three asks for, and few do.
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const bool before = t <= durations_.gap_from * (1 + kRounding);
     if (!before) t = std::max(t, durations_.gap_to);
     const double until = before ? std::max(t, durations_.gap_from) : kInf;

@@ -42,7 +42,7 @@ TEST(JointMove, KeepsItsPromisesOnRandomMoves) {
   Rng rng(1);
   for (int i = 0; i < 3000; ++i) {
     const Case c = random_case(rng);
-    const auto move = time_joint_move(view(c.q0), view(c.q1), c.limits);
+    const auto move = time_joint_move(as_span(c.q0), as_span(c.q1), c.limits);
     ASSERT_TRUE(move.has_value()) << move.error().what;
     const double T = move->duration();
     EXPECT_EQ(move->at(0).q, c.q0);
@@ -74,7 +74,7 @@ TEST(JointMove, DerivativesAgreeWithDifferences) {
   for (int i = 0; i < 300; ++i) {
     Case c = random_case(rng);
     for (double& q : c.q1) q += rng.uniform(0.1, 1);
-    const auto move = time_joint_move(view(c.q0), view(c.q1), c.limits);
+    const auto move = time_joint_move(as_span(c.q0), as_span(c.q1), c.limits);
     ASSERT_TRUE(move.has_value());
     const double T = move->duration(), h = 1e-5 * T;
     for (int k = 0; k < 20; ++k) {
@@ -106,7 +106,7 @@ TEST(JointMove, IsNeverShorterThanEachJointAlone) {
   Rng rng(3);
   for (int i = 0; i < 1000; ++i) {
     const Case c = random_case(rng);
-    const double T = time_joint_move(view(c.q0), view(c.q1), c.limits)->duration();
+    const double T = time_joint_move(as_span(c.q0), as_span(c.q1), c.limits)->duration();
     for (Eigen::Index j = 0; j < c.q0.size(); ++j) {
       const std::vector<double> q0{c.q0[j]}, q1{c.q1[j]};
       const double alone =
@@ -165,7 +165,7 @@ void expect_best_known(const std::string& name, bool equal) {
   for (const auto& entry : data.at("cases")) {
     if (entry.at("kind") != "rest") continue;
     const JointVec q0 = vec(entry.at("q0")), q1 = vec(entry.at("q1"));
-    const auto move = time_joint_move(view(q0), view(q1), limits);
+    const auto move = time_joint_move(as_span(q0), as_span(q1), limits);
     ASSERT_TRUE(move.has_value());
     const double optimum = best.at(std::to_string(entry.at("id").get<int>())).get<double>();
     // The figures are rounded to 9 digits after the point.

@@ -235,7 +235,7 @@ TEST(PathTiming, SaysWhatIsWrong) {
 }
 
 /// All public cases of one file: worst ratio to the optimum without jerk limits.
-void expect_cases(const std::string& name, double most, double most_smooth) {
+void expect_cases(const std::string& name, double max, double max_smooth) {
   MJARM_TEST_FILE(file, "trajectory_cases/" + name + ".json");
   MJARM_TEST_FILE(best_file, "trajectory_cases/best_known.json");
   const nlohmann::json data = support::load_json(file);
@@ -253,7 +253,7 @@ void expect_cases(const std::string& name, double most, double most_smooth) {
     for (const bool jerk : {false, true}) {
       const Trajectory motion = timed(waypoints, limits, jerk);
       EXPECT_LE(worst_use(motion, limits, jerk), 1 + 1e-6) << id;
-      EXPECT_LE(motion.duration(), (jerk ? most_smooth : most) * optimum) << id;
+      EXPECT_LE(motion.duration(), (jerk ? max_smooth : max) * optimum) << id;
       EXPECT_GE(motion.duration(), 0.999 * optimum) << id;
     }
   }

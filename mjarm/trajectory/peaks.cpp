@@ -10,17 +10,17 @@ namespace {
 double peak_of_quartic(const double (&p)[5]) {
   const double b[5] = {p[0], p[0] + p[1] / 4, p[0] + p[1] / 2 + p[2] * (1. / 6),
                        p[0] + 0.75 * p[1] + p[2] / 2 + p[3] / 4, p[0] + p[1] + p[2] + p[3] + p[4]};
-  double most = 0;
-  for (const double x : b) most = std::max(most, std::abs(x));
-  return most;
+  double max = 0;
+  for (const double x : b) max = std::max(max, std::abs(x));
+  return max;
 }
 
 /// Largest magnitude of the sum of p[k] x^k over x in [0, 1].
 double peak_of_quadratic(const double (&p)[3]) {
-  double most = std::max(std::abs(p[0]), std::abs(p[0] + p[1] + p[2]));
+  double max = std::max(std::abs(p[0]), std::abs(p[0] + p[1] + p[2]));
   const double turn = -0.5 * p[1] / p[2];
-  if (turn > 0 && turn < 1) most = std::max(most, std::abs(p[0] + 0.5 * turn * p[1]));
-  return most;
+  if (turn > 0 && turn < 1) max = std::max(max, std::abs(p[0] + 0.5 * turn * p[1]));
+  return max;
 }
 
 /// At least as much, for a cubic; spares most of them the exact extremum.
@@ -32,15 +32,15 @@ double bound_of_cubic(const double (&p)[4]) {
 }
 
 double peak_of_cubic(const double (&p)[4]) {
-  double most = std::max(std::abs(p[0]), std::abs(p[0] + p[1] + p[2] + p[3]));
+  double max = std::max(std::abs(p[0]), std::abs(p[0] + p[1] + p[2] + p[3]));
   // Where p1 + 2 p2 x + 3 p3 x^2 = 0, in the form that loses no digits.
   const double inside = p[2] * p[2] - 3 * p[1] * p[3];
-  if (inside < 0) return most;
+  if (inside < 0) return max;
   const double r = -(p[2] + std::copysign(std::sqrt(inside), p[2]));
   for (const double x : {r / (3 * p[3]), p[1] / r}) {
-    if (x > 0 && x < 1) most = std::max(most, std::abs(p[0] + x * (p[1] + x * (p[2] + x * p[3]))));
+    if (x > 0 && x < 1) max = std::max(max, std::abs(p[0] + x * (p[1] + x * (p[2] + x * p[3]))));
   }
-  return most;
+  return max;
 }
 
 }  // namespace

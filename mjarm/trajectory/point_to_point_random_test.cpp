@@ -25,16 +25,16 @@ double log_uniform(Rng& rng, double decades) {
 }
 
 /// A number in the range, quite often 0 or one of its ends.
-double often_at_the_edge(Rng& rng, double most) {
+double often_at_the_edge(Rng& rng, double max) {
   switch (static_cast<int>(rng.uniform(0, 8))) {
     case 0:
       return 0;
     case 1:
-      return most;
+      return max;
     case 2:
-      return -most;
+      return -max;
     default:
-      return rng.uniform(-most, most);
+      return rng.uniform(-max, max);
   }
 }
 
@@ -251,8 +251,8 @@ bool inside(const Lattice& x, const LatticeLimits& limits, int sign) {
 
 Lattice random_start(Rng& rng, const LatticeLimits& limits) {
   for (;;) {
-    const auto integer = [&](int most) {
-      return static_cast<int>(std::floor(rng.uniform(-most, most + 1)));
+    const auto integer = [&](int max) {
+      return static_cast<int>(std::floor(rng.uniform(-max, max + 1)));
     };
     const Lattice x{integer(limits.a), integer(limits.v2), 0};
     if (inside(x, limits, 1)) return x;

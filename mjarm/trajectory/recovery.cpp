@@ -28,9 +28,9 @@ void Recovery::slow_down(const OneJoint& joint, double sign) noexcept {
   const double jerk = r > 0 ? -sign / r : 0;
   const double over = sign * v - v_max, v_flat = sign * v + 0.5 * r * a * a;
   // The deceleration when the limit is met, and the most from which the opposite one holds.
-  const double most = r * joint.a_max * joint.a_max;
-  const double squared = std::min({most, r * a * a + 2 * over, v_flat + v_max});
-  const double low = squared < most ? std::sqrt(std::max(0.0, squared) / r) : joint.a_max;
+  const double max = r * joint.a_max * joint.a_max;
+  const double squared = std::min({max, r * a * a + 2 * over, v_flat + v_max});
+  const double low = squared < max ? std::sqrt(std::max(0.0, squared) / r) : joint.a_max;
   const double until = std::max(-sign * a, low);
   add(r * (until + sign * a), jerk);
   a = -sign * until;

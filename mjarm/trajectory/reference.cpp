@@ -8,7 +8,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kMostCells = 5000;  // of the time law, where waypoints do not ask for more
+constexpr double kMaxCells = 5000;  // of the time law, where waypoints do not ask for more
 
 /// Time at which `smooth` meets `s`, within [from, to]: Newton's method kept between bounds.
 double time_of(const SmoothProfile& smooth, double s, double from, double to) {
@@ -119,7 +119,7 @@ class Sampler {
 double law_cells(const CubicSpline& spline) {
   constexpr double kFewest = 400, kEach = 40, kEnough = 1500;
   const auto pieces = static_cast<double>(spline.knots().size() - 1);
-  return std::max(std::clamp(kEach * pieces, kFewest, kEnough), std::min(pieces, kMostCells));
+  return std::max(std::clamp(kEach * pieces, kFewest, kEnough), std::min(pieces, kMaxCells));
 }
 
 Reference reference_along(const CubicSpline& spline, const SmoothProfile& smooth,
@@ -127,7 +127,7 @@ Reference reference_along(const CubicSpline& spline, const SmoothProfile& smooth
   const std::vector<double>& knots = spline.knots();
   const std::size_t last = knots.size() - 1;
   // Too many waypoints: cells at least half as long as they would be without them.
-  const bool many = static_cast<double>(last) > 2 * kMostCells;
+  const bool many = static_cast<double>(last) > 2 * kMaxCells;
   const double shortest = 0.5 * smooth.duration() / cells;
   Sampler sampler(spline, smooth, cells);
   double from = 0;

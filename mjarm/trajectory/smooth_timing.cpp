@@ -161,14 +161,14 @@ class ProblemWriter {
 
 /// By which factor the way along the path is too fast; <= 1 where it keeps its bounds.
 double excess(const Reference& reference, const TimeLaw& law, const PathBounds& bounds) {
-  double most = 0;
+  double max = 0;
   for (std::size_t i = 0; i < law.t.size(); ++i) {
     const PathState& x = reference.states[i];
-    most = std::max(
-        {most, x.v * std::sqrt(law.u[i]) / bounds.speed_at(x.s),
+    max = std::max(
+        {max, x.v * std::sqrt(law.u[i]) / bounds.speed_at(x.s),
          std::sqrt(std::abs(x.a * law.u[i] + 0.5 * x.v * law.du[i]) / bounds.acceleration)});
   }
-  return most;
+  return max;
 }
 
 /// The reference walked by a time law.

@@ -160,9 +160,9 @@ class Grid {
     for (int j = 0; j < dof_; ++j) {
       const double now = terms.dry[j], before = i > 0 ? terms_[i - 1].dry[j] : now;
       if (before != now && before * now <= 0) {
-        const double most = std::max(std::abs(before), std::abs(now));
-        free_friction(i - 1, j, most);
-        free_friction(i, j, most);
+        const double max = std::max(std::abs(before), std::abs(now));
+        free_friction(i - 1, j, max);
+        free_friction(i, j, max);
       } else if (i == 0 || i + 1 == s_.size()) {
         free_friction(i, j, std::abs(now));
       }
@@ -173,14 +173,14 @@ class Grid {
     set_friction(i, speed);
     return true;
   }
-  /// Leaves room for dry friction of either sign, up to `most`, at point `i`: where joint `j` turns
+  /// Leaves room for dry friction of either sign, up to `max`, at point `i`: where joint `j` turns
   /// round nearby or stands.
-  void free_friction(std::size_t i, int j, double most) {
+  void free_friction(std::size_t i, int j, double max) {
     constexpr double kLeft = 1e-4;  // of the limit, so that there is always a motion
     const std::size_t row = interval(i) + static_cast<std::size_t>(dof_ + j);
     const double still = terms_[i].still[j], least = kLeft * bounds_.torque[j];
-    low_[row] = std::min(most - bounds_.torque[j] - still, -least);
-    high_[row] = std::max(bounds_.torque[j] - most - still, least);
+    low_[row] = std::min(max - bounds_.torque[j] - still, -least);
+    high_[row] = std::max(bounds_.torque[j] - max - still, least);
   }
   /// Viscous friction, which grows with the root of u, as if it grew with u, right at this speed.
   void set_friction(std::size_t i, double speed) {
@@ -205,12 +205,12 @@ class Grid {
   /// of those at its ends.
   [[nodiscard]] double torque_use(std::size_t i, double a, double u) const {
     const GridPoint p = point(i), q = point(i + 1);
-    double most = 0;
+    double max = 0;
     for (auto r = static_cast<std::size_t>(dof_); r < rows_; ++r) {
       const double torque = (p.d[r] + q.d[r]) * a + (p.e[r] + q.e[r]) * u;
-      most = std::max(most, torque / (torque > 0 ? p.high[r] + q.high[r] : p.low[r] + q.low[r]));
+      max = std::max(max, torque / (torque > 0 ? p.high[r] + q.high[r] : p.low[r] + q.low[r]));
     }
-    return most;
+    return max;
   }
 
   /// True where a joint turns round at about cell `i` and its limit matters. It leaves the

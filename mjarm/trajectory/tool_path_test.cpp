@@ -79,7 +79,7 @@ Drawn drawn(const Arm& arm, const Curve& curve, const Trajectory& timed) {
   Drawn d;
   for (double t = 0; t < timed.duration(); t += 0.0017) {
     const JointState x = timed.at(t);
-    const FkJacobian tool = fk_jacobian(arm, view(x.q));
+    const FkJacobian tool = fk_jacobian(arm, as_span(x.q));
     const double speed = (tool.J_W.topRows(3) * x.v).norm();
     d.deviation = std::max(d.deviation, curve.nearest(tool.X_WT.p).distance);
     d.fastest = std::max(d.fastest, speed);
@@ -132,8 +132,8 @@ TEST(ToolPath, RestsAtCorners) {
   double nearest = 1, speed_there = 1;
   for (double t = 0.2; t < timed.duration() - 0.2; t += 0.0005) {
     const JointState x = timed.at(t);
-    const double away = (fk(arm, view(x.q)).p - curve.at(0.2).p).norm();
-    EXPECT_LT(curve.nearest(fk(arm, view(x.q)).p).distance, 1e-6);
+    const double away = (fk(arm, as_span(x.q)).p - curve.at(0.2).p).norm();
+    EXPECT_LT(curve.nearest(fk(arm, as_span(x.q)).p).distance, 1e-6);
     if (away < nearest) {
       nearest = away;
       speed_there = x.v.norm();
@@ -154,7 +154,7 @@ TEST(ToolPath, JointLimitsSlowTheToolDown) {
   EXPECT_GT(use.worst(), 0.6);
   EXPECT_GT(timed.duration(), 1.0);
   for (double t = 0; t < timed.duration(); t += 0.001) {
-    EXPECT_LT(curve.nearest(fk(arm, view(timed.at(t).q)).p).distance, 1e-6);
+    EXPECT_LT(curve.nearest(fk(arm, as_span(timed.at(t).q)).p).distance, 1e-6);
   }
 }
 

@@ -11,15 +11,15 @@ template <class T>
 class History {
  public:
   /// @param most  moments kept, >= 1; then the oldest one makes room.
-  explicit History(std::size_t most) : most_(std::max<std::size_t>(most, 1)) {}
+  explicit History(std::size_t max) : max_(std::max<std::size_t>(max, 1)) {}
 
   /// Adds a moment after the one that is looked at; those that came after it are forgotten.
   void add(const T& moment) {
     size_ -= back_;
     back_ = 0;
-    if (size_ == moments_.size() && size_ < most_) moments_.emplace_back();
-    if (size_ == most_) {
-      first_ = (first_ + 1) % most_;
+    if (size_ == moments_.size() && size_ < max_) moments_.emplace_back();
+    if (size_ == max_) {
+      first_ = (first_ + 1) % max_;
       --size_;
     }
     moments_[(first_ + size_) % moments_.size()] = moment;
@@ -54,7 +54,7 @@ class History {
   }
 
  private:
-  std::size_t most_;
+  std::size_t max_;
   std::vector<T> moments_;  ///< a ring from `first_`, once it is full
   std::size_t first_ = 0;
   std::size_t size_ = 0;

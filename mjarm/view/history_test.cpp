@@ -41,8 +41,8 @@ TEST(History, WhatIsAddedInThePastReplacesWhatCameAfter) {
 /// Against a plain list, for a long time, with a ring that goes round often.
 TEST(History, IsTheSameAsAListThatIsCut) {
   Rng rng(4);
-  for (const std::size_t most : {1U, 2U, 7U}) {
-    History<int> history(most);
+  for (const std::size_t max : {1U, 2U, 7U}) {
+    History<int> history(max);
     std::deque<int> list;
     std::size_t at = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -50,7 +50,7 @@ TEST(History, IsTheSameAsAListThatIsCut) {
       if (choice < 0.6 || list.empty()) {
         if (!list.empty()) list.resize(at + 1);
         list.push_back(i);
-        if (list.size() > most) list.pop_front();
+        if (list.size() > max) list.pop_front();
         at = list.size() - 1;
         history.add(i);
       } else if (choice < 0.8) {

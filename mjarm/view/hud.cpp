@@ -9,14 +9,14 @@
 namespace mjarm {
 namespace {
 
-constexpr std::size_t kMostText = 480;  // mjMAXOVERLAY and what MuJoCo adds
+constexpr std::size_t kMaxText = 480;  // mjMAXOVERLAY and what MuJoCo adds
 constexpr const char* kHint = "F1: help   right click: settings   Tab: panels   Esc: close";
 
 /// Two columns of text for an overlay.
 class Facts {
  public:
   void add(std::string_view name, std::string_view value) {
-    if (names_.size() + name.size() > kMostText || values_.size() + value.size() > kMostText) {
+    if (names_.size() + name.size() > kMaxText || values_.size() + value.size() > kMaxText) {
       return;
     }
     const char* separator = names_.empty() ? "" : "\n";
@@ -103,7 +103,7 @@ void draw_hud(const HudText& text, const mjrRect& view, const mjrContext& contex
   facts.draw(view, context);
   std::string foot;
   for (const std::string& line : {text.note, text.status}) {
-    if (!line.empty()) foot += line.substr(0, kMostText / 3) + "\n";
+    if (!line.empty()) foot += line.substr(0, kMaxText / 3) + "\n";
   }
   foot += kHint;
   mjr_overlay(mjFONT_NORMAL, mjGRID_BOTTOMLEFT, view, foot.c_str(), nullptr, &context);

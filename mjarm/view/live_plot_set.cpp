@@ -52,7 +52,7 @@ void add_curve(Chart& chart, const std::vector<TimedValue>& values, std::string 
 void add_limits(Chart& chart, const JointVec& lower, const JointVec& upper) {
   if (chart.lines.empty() || chart.lines.front().x.empty()) return;
   const std::vector<double>& times = chart.lines.front().x;
-  std::ranges::move(limit_lines(view(lower), view(upper), times.front(), times.back()),
+  std::ranges::move(limit_lines(as_span(lower), as_span(upper), times.front(), times.back()),
                     std::back_inserter(chart.lines));
 }
 

@@ -89,17 +89,17 @@ TEST_F(Figures, TakeAnything) {
 /// MuJoCo moves the ends of the y axis outwards to multiples of the power of ten in its length; the
 /// labels of the grid are round only where they are such already.
 TEST_F(Figures, TheYAxisEndsWhereMujocoLeavesIt) {
-  for (const auto& [least, most] :
+  for (const auto& [least, max] :
        {std::pair(-0.31, 0.81), std::pair(0.0, 1.42), std::pair(0.03, 0.12), std::pair(-6.3, 6.3),
         std::pair(99.0, 101.0), std::pair(0.0, 0.08), std::pair(-150.0, 28.0)}) {
-    const mjvFigure& figure = fill({.series = {{.x = {0, 12}, .y = {least, most}}}});
+    const mjvFigure& figure = fill({.series = {{.x = {0, 12}, .y = {least, max}}}});
     const double lower = figure.range[1][0];
     const double upper = figure.range[1][1];
     EXPECT_LE(lower, least + 1e-6);
-    EXPECT_GE(upper, most - 1e-6);
+    EXPECT_GE(upper, max - 1e-6);
     const double ten = std::pow(10, std::floor(std::log10(upper - lower) + 1e-5));
-    EXPECT_NEAR(lower / ten, std::round(lower / ten), 1e-4) << least << " " << most;
-    EXPECT_NEAR(upper / ten, std::round(upper / ten), 1e-4) << least << " " << most;
+    EXPECT_NEAR(lower / ten, std::round(lower / ten), 1e-4) << least << " " << max;
+    EXPECT_NEAR(upper / ten, std::round(upper / ten), 1e-4) << least << " " << max;
     EXPECT_EQ(figure.gridsize[1], 5);
     EXPECT_EQ(figure.gridsize[0], 4) << "0 5 10 15";
     EXPECT_FLOAT_EQ(figure.range[0][1], 15);

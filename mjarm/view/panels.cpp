@@ -44,15 +44,15 @@ Panels::Panels(const mjModel& m, std::vector<int> jog_dofs, bool can_step, bool 
   for (int i = 0; i < m.njnt; ++i) {
     if (m.jnt_type[i] != mjJNT_HINGE && m.jnt_type[i] != mjJNT_SLIDE) continue;
     const bool hinge = m.jnt_type[i] == mjJNT_HINGE;
-    const double most = hinge ? std::numbers::pi : 1;
+    const double max = hinge ? std::numbers::pi : 1;
     const bool limited = m.jnt_limited[i] != 0;
     const char* name = mj_id2name(&m, mjOBJ_JOINT, i);
     const int dof = m.jnt_dofadr[i];
     joints_.push_back({.dof = dof,
                        .qpos = m.jnt_qposadr[i],
                        .name = name != nullptr ? name : "joint " + std::to_string(i),
-                       .lower = limited ? m.jnt_range[2 * i] : -most,
-                       .upper = limited ? m.jnt_range[2 * i + 1] : most,
+                       .lower = limited ? m.jnt_range[2 * i] : -max,
+                       .upper = limited ? m.jnt_range[2 * i + 1] : max,
                        .live = std::find(jog_dofs.begin(), jog_dofs.end(), dof) != jog_dofs.end()});
   }
   if (joints_.size() > mjMAXUIITEM / 2) joints_.resize(mjMAXUIITEM / 2);

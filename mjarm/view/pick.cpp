@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostPairs = 6;  // of contacts that are told
+constexpr std::size_t kMaxPairs = 6;  // of contacts that are told
 
 std::string name_of(const mjModel& m, int type, int id, const char* kind) {
   if (id < 0) return {};
@@ -137,7 +137,7 @@ std::vector<Picker::Row> Picker::describe() const {
     if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
   }
   rows.push_back({"Contacts", pairs.empty() ? "none" : pairs.front()});
-  for (std::size_t i = 1; i < std::min(pairs.size(), kMostPairs); ++i) {
+  for (std::size_t i = 1; i < std::min(pairs.size(), kMaxPairs); ++i) {
     rows.push_back({" ", pairs[i]});
   }
   return rows;

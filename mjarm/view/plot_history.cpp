@@ -16,7 +16,7 @@ void widen(TimedValue& into, const TimedValue& more, bool greatest) {
 }  // namespace
 
 PlotHistory::PlotHistory(std::size_t columns, std::size_t places, double span)
-    : columns_(columns), most_(std::max<std::size_t>(places, 2)), span_(span) {}
+    : columns_(columns), max_(std::max<std::size_t>(places, 2)), span_(span) {}
 
 void PlotHistory::clear() {
   rows_a_place_ = 1;
@@ -41,18 +41,18 @@ void PlotHistory::add(double time, std::span<const double> values) {
 /// A new place where the last one is full.
 void PlotHistory::open_place(double time) {
   if (!starts_.empty()) {
-    const bool full = span_ > 0 ? time - starts_.back() >= span_ / static_cast<double>(most_)
+    const bool full = span_ > 0 ? time - starts_.back() >= span_ / static_cast<double>(max_)
                                 : rows_in_last_ >= rows_a_place_;
     if (!full) return;
   }
   if (span_ > 0) {
     const auto old = std::ranges::find_if(starts_, [&](double t) { return t >= time - span_; });
     auto gone = static_cast<std::size_t>(old - starts_.begin());
-    if (starts_.size() - gone >= most_) gone = starts_.size() - most_ + 1;
+    if (starts_.size() - gone >= max_) gone = starts_.size() - max_ + 1;
     starts_.erase(starts_.begin(), starts_.begin() + static_cast<std::ptrdiff_t>(gone));
     extremes_.erase(extremes_.begin(),
                     extremes_.begin() + static_cast<std::ptrdiff_t>(gone * columns_));
-  } else if (starts_.size() == most_) {
+  } else if (starts_.size() == max_) {
     join_pairs();
     if (rows_in_last_ < rows_a_place_) return;
   }

@@ -41,7 +41,7 @@ class PlotHistory {
   [[nodiscard]] Extremes* place(std::size_t i) { return &extremes_[i * columns_]; }
 
   std::size_t columns_;
-  std::size_t most_;
+  std::size_t max_;
   double span_;
   std::size_t rows_a_place_ = 1;
   std::size_t rows_in_last_ = 0;

@@ -8,7 +8,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kMostAtOnce = 0.25;  // [s] of the clock
+constexpr double kMaxAtOnce = 0.25;  // [s] of the clock
 
 }  // namespace
 
@@ -30,7 +30,7 @@ int RealTimePacer::steps_due_at(double now, bool paused) {
   const double passed = last_ ? std::max(now - *last_, 0.0) : 0.0;
   last_ = now;
   if (paused) return 0;
-  owed_ += speed_ * std::min(passed, kMostAtOnce);
+  owed_ += speed_ * std::min(passed, kMaxAtOnce);
   // The sum of many small times may stay an ulp below a whole step.
   const int steps = static_cast<int>(std::floor(owed_ / timestep_ + 1e-9));
   owed_ = std::max(owed_ - steps * timestep_, 0.0);

@@ -9,10 +9,10 @@ namespace mjarm {
 
 Result<std::filesystem::path> save_screenshot(const Image& image,
                                               const std::filesystem::path& folder) {
-  constexpr int kMost = 9999;
+  constexpr int kMax = 9999;
   std::error_code ignored;  // a folder that cannot be made shows when the file is written
   std::filesystem::create_directories(folder, ignored);
-  for (int i = 1; i <= kMost; ++i) {
+  for (int i = 1; i <= kMax; ++i) {
     char name[32];
     std::snprintf(name, sizeof(name), "mjarm-%03d.png", i);
     const std::filesystem::path file = folder / name;
@@ -20,7 +20,7 @@ Result<std::filesystem::path> save_screenshot(const Image& image,
     if (auto written = write_png(image, file); !written) return fail(std::move(written.error()));
     return file;
   }
-  return fail(Errc::system, text(msg::view_many_screenshots, folder.string(), kMost));
+  return fail(Errc::system, text(msg::view_many_screenshots, folder.string(), kMax));
 }
 
 }  // namespace mjarm

@@ -131,14 +131,14 @@ bool TargetGizmo::is_visible(GizmoHandle handle) const {
 std::optional<TargetGizmo::Hit> TargetGizmo::find(const Ray& mouse) const {
   const double s = scale();
   if (!is_usable(mouse) || !(s > 0)) return std::nullopt;
-  const double most = options_.nearness / options_.size * s;
-  if (nearest_to_point(mouse, X_WT_.p).miss > s + most) return std::nullopt;
+  const double max = options_.nearness / options_.size * s;
+  if (nearest_to_point(mouse, X_WT_.p).miss > s + max) return std::nullopt;
   const Eigen::Matrix3d R = axes();
   const double middle = nearest_to_point(mouse, X_WT_.p).way;
   std::optional<Hit> best;
   const auto offer = [&](GizmoHandle handle, const Nearest& found) {
-    if (!(found.miss <= most)) return;
-    const double cost = found.miss / most + kDepthCost * (found.way - middle) / s;
+    if (!(found.miss <= max)) return;
+    const double cost = found.miss / max + kDepthCost * (found.way - middle) / s;
     if (!best || cost < best->cost) best = Hit{handle, cost, found.point};
   };
   for (int i = 0; i < 3; ++i) {

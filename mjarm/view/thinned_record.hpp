@@ -15,14 +15,14 @@ template <class T>
 class ThinnedRecord {
  public:
   /// @param most  moments kept, >= 2.
-  explicit ThinnedRecord(std::size_t most) : most_(std::max<std::size_t>(most, 2)) {}
+  explicit ThinnedRecord(std::size_t max) : max_(std::max<std::size_t>(max, 2)) {}
 
   /// One more step was made; `make()` gives its moment, and is asked only where it is kept.
   /// @param time [s] greater than that of the step before.
   template <class Make>
   void add(double time, const Make& make) {
     assert(moments_.empty() || time > moments_.back().time);
-    if (steps_ % spacing_ == 0 && moments_.size() == most_) thin();
+    if (steps_ % spacing_ == 0 && moments_.size() == max_) thin();
     if (steps_++ % spacing_ == 0) moments_.push_back({time, make()});
   }
   void clear() {
@@ -64,7 +64,7 @@ class ThinnedRecord {
     spacing_ *= 2;
   }
 
-  std::size_t most_;
+  std::size_t max_;
   std::vector<Moment> moments_;
   std::size_t steps_ = 0;    ///< that were added
   std::size_t spacing_ = 1;  ///< [steps]

@@ -24,19 +24,19 @@ TEST(ThinnedRecord, KeepsAllUntilItIsFull) {
 /// However long: evenly spaced from the first step on, at least half full, never more than allowed,
 /// and the end is never farther away than one spacing.
 TEST(ThinnedRecord, StaysEvenAndBounded) {
-  for (const std::size_t most : {2U, 3U, 7U, 8U, 100U}) {
-    ThinnedRecord<int> record(most);
+  for (const std::size_t max : {2U, 3U, 7U, 8U, 100U}) {
+    ThinnedRecord<int> record(max);
     for (int step = 0; step < 3000; ++step) {
       int asked = 0;
       record.add(step * kStep, [&] {
         ++asked;
         return step;
       });
-      ASSERT_LE(record.size(), most);
-      ASSERT_GE(2 * record.size(), std::min<std::size_t>(most, static_cast<std::size_t>(step) + 1));
+      ASSERT_LE(record.size(), max);
+      ASSERT_GE(2 * record.size(), std::min<std::size_t>(max, static_cast<std::size_t>(step) + 1));
       const auto spacing = static_cast<int>(record.spacing());
       for (std::size_t i = 0; i < record.size(); ++i) {
-        ASSERT_EQ(record.at(i), static_cast<int>(i) * spacing) << most << " " << step;
+        ASSERT_EQ(record.at(i), static_cast<int>(i) * spacing) << max << " " << step;
         ASSERT_EQ(record.time(i), record.at(i) * kStep);
       }
       ASSERT_LT(step - record.at(record.size() - 1), spacing);

@@ -12,6 +12,6 @@ int main(int argc, char** argv) {
   if (!model) return std::fprintf(stderr, "%s\n", model.error().what.c_str()), 1;
   const auto arm = mjarm::find_arm(*model);
   if (!arm) return std::fprintf(stderr, "%s\n", arm.error().what.c_str()), 1;
-  const mjarm::Pose X_WT = mjarm::fk(*arm, mjarm::view(arm->home));
+  const mjarm::Pose X_WT = mjarm::fk(*arm, mjarm::as_span(arm->home));
   std::printf("%.3f %.3f %.3f\n", X_WT.p.x(), X_WT.p.y(), X_WT.p.z());
 }

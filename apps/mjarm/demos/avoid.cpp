@@ -6,7 +6,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/program_run.hpp"
+#include "apps/mjarm/commands/program_run.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -39,7 +39,7 @@ std::optional<FirstTouch> first_touch(ExactChecker& checker, const Trajectory& m
                                       const JointLimits& limits) {
   for (const double share : looks(motion, limits)) {
     const JointVec q = motion.at(share * motion.duration()).q;
-    const auto report = checker.check(view(q));
+    const auto report = checker.check(as_span(q));
     if (report && !report->free) return FirstTouch{q, report->contacts.front(), share};
   }
   return std::nullopt;
@@ -53,7 +53,7 @@ std::optional<NearestPair> nearest_pair(ExactChecker& checker, const ProgramPlan
     if (move.corners.empty()) continue;
     for (const double share : looks(move.trajectory, limits)) {
       const JointVec q = move.trajectory.at(share * move.trajectory.duration()).q;
-      const auto report = checker.check(view(q));
+      const auto report = checker.check(as_span(q));
       if (!report || !report->nearest) continue;
       if (!out || report->nearest->distance < out->distance) out = report->nearest;
     }
@@ -67,9 +67,9 @@ Result<void> try_straight(Stage& stage, ExactChecker& checker, const PlannedMove
                           Report& report) {
   const JointVec q = round.corners.front();
   const Result<Curve> line =
-      Curve::line(fk(stage.arm(), view(q)), fk(stage.arm(), view(round.corners.back())));
+      Curve::line(fk(stage.arm(), as_span(q)), fk(stage.arm(), as_span(round.corners.back())));
   if (!line) return fail(line.error());
-  const auto straight = plan_tool_motion(stage.reach(), *line, view(q), {});
+  const auto straight = plan_tool_motion(stage.reach(), *line, as_span(q), {});
   if (!straight) {
     log_info(text(msg::demo_avoid_no_line, describe(straight.error(), stage.arm())));
     return {};
@@ -79,7 +79,7 @@ Result<void> try_straight(Stage& stage, ExactChecker& checker, const PlannedMove
     log_info(text(msg::demo_avoid_free));
     return {};
   }
-  const Eigen::Vector3d p_W = fk(stage.arm(), view(touch->q)).p;
+  const Eigen::Vector3d p_W = fk(stage.arm(), as_span(touch->q)).p;
   const double way = (p_W - line->at(0).p).norm();
   const ContactPoint& contact = touch->contact;
   log_info(text(msg::demo_avoid_hits, contact.pair.geom1, contact.pair.geom2, way, line->length(),
@@ -91,7 +91,7 @@ Result<void> try_straight(Stage& stage, ExactChecker& checker, const PlannedMove
   add_planned_path(overlay, std::vector<Pose>{line->at(0), line->at(line->end())});
   overlay.spheres.push_back({.p_W = contact.point_W, .radius = 0.015, .color = {0.9F, 0, 0, 1}});
   overlay.labels.push_back({contact.point_W, contact.pair.geom1 + " - " + contact.pair.geom2});
-  OverlayGhost ghost = ghost_of(stage.arm(), view(touch->q));
+  OverlayGhost ghost = ghost_of(stage.arm(), as_span(touch->q));
   ghost.color = kHit;
   overlay.ghosts.push_back(std::move(ghost));
   stage.show().add(overlay);
@@ -133,7 +133,7 @@ Result<LoadedProgram> plan_in_its_scene(const DemoOptions& options) {
   if (!program) return fail(std::move(program.error()));
   if (!options.robot.tip.empty()) program->tool = options.robot.tip;
   if (options.control) program->control = options.control;
-  Result<ProgramRobot> robot = load_program_robot(*program, "avoid.yaml");
+  Result<Robot> robot = load_program_robot(*program, "avoid.yaml");
   if (!robot) return fail(std::move(robot.error()));
   return plan_loaded("avoid.yaml", std::move(*program), std::move(*robot));
 }

@@ -53,12 +53,12 @@ void sample(const Sim& sim, Drive& drive) {
   drive.right.push_back(sim.sensor_data()[1]);
 }
 
-Result<void> drive_phase(const Phase& phase, double most_seconds, Sim& sim, Show& show,
+Result<void> drive_phase(const Phase& phase, double max_seconds, Sim& sim, Show& show,
                          Drive& drive) {
   std::array<double, 2> ctrl{};
   ctrl[kForward] = phase.forward;
   ctrl[kTurn] = phase.turn;
-  const double end = std::min(sim.time() + phase.seconds, most_seconds);
+  const double end = std::min(sim.time() + phase.seconds, max_seconds);
   while (sim.time() < end - 1e-9 && !drive.ended_by_user) {
     const std::array<double, 2> before = {sim.qpos()[kWheels], sim.qpos()[kWheels + 1]};
     if (auto done = sim.step(ctrl); !done) return done;
@@ -121,7 +121,7 @@ Report report_of(const Drive& drive, const Sim& sim) {
   from.p = straight.front();
   to.p = from.p + Eigen::Vector3d((straight.back() - from.p).x(), 0, 0);
   if (const auto line = Curve::line(from, to); line && line->length() > 0) {
-    report.path_error = measure_path(*line, straight, 0.01);
+    report.path_error = path_error(*line, straight, 0.01);
     report.coverage = report.path_error->coverage;
   }
   const double turned = std::abs(heading(sim));
@@ -151,9 +151,9 @@ Result<Report> run_car(const DemoOptions& options) {
   }
 
   Drive drive;
-  const double most = options.seconds > 0 ? options.seconds : 1e9;
+  const double max = options.seconds > 0 ? options.seconds : 1e9;
   for (const Phase& phase : kPhases) {
-    if (auto done = drive_phase(phase, most, sim, *show, drive); !done) {
+    if (auto done = drive_phase(phase, max, sim, *show, drive); !done) {
       return fail(std::move(done.error()));
     }
     if (phase.turn == 0) drive.straight = drive.time.size();

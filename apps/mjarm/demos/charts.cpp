@@ -10,7 +10,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr std::size_t kMostPoints = 2000;  // a curve; more than that no page can show
+constexpr std::size_t kMaxPoints = 2000;  // a curve; more than that no page can show
 
 /// The rows of all runs to be drawn, with a gap (null) between runs.
 using Rows = std::vector<const RecordRow*>;
@@ -19,7 +19,7 @@ using Value = std::function<double(const RecordRow& row)>;
 Rows rows_to_draw(std::span<const MeasuredRun> runs) {
   std::size_t count = 0;
   for (const MeasuredRun& run : runs) count += run.rows.size();
-  const std::size_t stride = std::max<std::size_t>(1, count / kMostPoints);
+  const std::size_t stride = std::max<std::size_t>(1, count / kMaxPoints);
   Rows rows;
   for (const MeasuredRun& run : runs) {
     if (!rows.empty()) rows.push_back(nullptr);
@@ -137,7 +137,7 @@ PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
   PlotPanel panel = a_line_a_joint(arm, rows, over_time(msg::demo_plot_joints, "rad"),
                                    [](const RecordRow& row, int j) { return row.q[j]; });
   if (rows.empty()) return panel;
-  std::ranges::move(limit_lines(view(arm.limits.lower), view(arm.limits.upper), rows.front()->time,
+  std::ranges::move(limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper), rows.front()->time,
                                 rows.back()->time, text(msg::demo_plot_limits)),
                     std::back_inserter(panel.lines));
   return panel;

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "apps/mjarm/robot.hpp"
+#include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
@@ -15,7 +15,7 @@ namespace mjarm::app {
 
 /// What the user chose for a demo.
 struct DemoOptions {
-  RobotOptions robot;                  ///< which arm, and which frame of it is the tool
+  RobotChoice robot;                  ///< which arm, and which frame of it is the tool
   std::filesystem::path out;           ///< folder of all files written
   bool headless = false;               ///< no window even where there is a display
   bool meshes = false;                 ///< the robot's real meshes, which must be installed

@@ -25,7 +25,7 @@ Result<Report> refuse(Stage& stage, std::span<const Pose> points,
     detail += text(msg::demo_points_unreachable, range.first, range.last, points.size(),
                    describe(range.worst, stage.arm()));
   }
-  const auto shift = find_shift(stage.ik(), points, view(stage.arm().home));
+  const auto shift = find_shift(stage.ik(), points, as_span(stage.arm().home));
   if (shift) {
     report.shift = *shift;
     detail += "; " + text(msg::demo_shift_mends, shift->x(), shift->y(), shift->z());
@@ -54,7 +54,7 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   const std::vector<Pose> points = ellipse_points(ellipse, kPoints);
   (*stage)->show().add_points(points, 2);
   const std::vector<UnreachableRange> ranges =
-      unreachable_ranges((*stage)->reach(), points, view((*stage)->arm().home));
+      unreachable_ranges((*stage)->reach(), points, as_span((*stage)->arm().home));
   if (!ranges.empty()) return refuse(**stage, points, ranges);
   return (*stage)->refuse(loaded->plan.faults.front().reason, first_fault(*loaded).what);
 }

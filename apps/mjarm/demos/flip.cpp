@@ -48,17 +48,17 @@ Result<Report> run_flip(const DemoOptions& options) {
   stage.show().add_line(std::vector<Pose>{line->at(0), line->at(line->end())});
   const JointVec home = stage.arm().home;
   const Result<NaiveMotion> naive =
-      naive_motion(stage.ik(), *line, view(home), kSpeed, 0.008, kFlipStep);
+      naive_motion(stage.ik(), *line, as_span(home), kSpeed, 0.008, kFlipStep);
   if (!naive) return fail(naive.error());
   const Result<ToolMotion, MotionFailure> motion =
-      plan_tool_motion(stage.ik(), *line, view(home), {.timing = {.tool_speed = kSpeed}});
+      plan_tool_motion(stage.ik(), *line, as_span(home), {.timing = {.tool_speed = kSpeed}});
   if (!motion) return stage.refuse(motion.error());
 
   const ControlMode mode = stage.control(ControlMode::computed_torque);
   const Result<MeasuredRun> naive_run = stage.rehearse(naive->trajectory, mode, *line);
   if (!naive_run) return fail(naive_run.error());
-  stage.start_at(view(home));
-  if (auto done = stage.approach(view(motion->path.q.front()), mode); !done) {
+  stage.start_at(as_span(home));
+  if (auto done = stage.approach(as_span(motion->path.q.front()), mode); !done) {
     return fail(std::move(done.error()));
   }
   if (auto done = stage.run(motion->trajectory, mode, 0.3, &*line); !done) {

@@ -26,7 +26,7 @@ Result<Report> run_waypoints(const DemoOptions& options) {
 
   constexpr int kWaypoints = 100;
   constexpr double kTolerance = 0.02;  // [m] a servo alone sags by nearly that
-  const Result<JointPath> path = joint_line(seed, view(solution->q), kWaypoints);
+  const Result<JointPath> path = joint_line(seed, as_span(solution->q), kWaypoints);
   if (!path) return fail(path.error());
   const ControlMode mode = stage.control(ControlMode::servo);
   if (auto done = stage.wait_through(path->q, {}, mode); !done)

@@ -31,7 +31,7 @@ Result<NaiveMotion> naive_motion(const IkSolver& ik, const Curve& curve,
   for (int i = 0; i <= poses; ++i) {
     const double fraction = static_cast<double>(i) / poses;
     const auto answer =
-        ik.solve(curve.at(curve.end() * fraction), q.empty() ? q_start : view(q.back()));
+        ik.solve(curve.at(curve.end() * fraction), q.empty() ? q_start : as_span(q.back()));
     if (!answer) {
       if (i < 2) return fail(Errc::impossible, describe(answer.error(), ik.arm()));
       motion.fraction = fraction;

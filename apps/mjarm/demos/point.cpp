@@ -2,8 +2,8 @@
 
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/program_run.hpp"
-#include "apps/mjarm/view_program.hpp"
+#include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -29,7 +29,7 @@ Result<Report> run_point(const DemoOptions& options) {
   Stage& stage = **opened;
   const ProgramPlan& plan = loaded->plan;
   const Trajectory& last = plan.moves.back().trajectory;
-  const Pose goal = fk(stage.arm(), view(last.at(last.duration()).q));
+  const Pose goal = fk(stage.arm(), as_span(last.at(last.duration()).q));
   stage.show().add_points({&goal, 1}, 1);
 
   Report report;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "apps/mjarm/program_run.hpp"
+#include "apps/mjarm/commands/program_run.hpp"
 #include "mjarm/program/program_reader.hpp"
 
 namespace mjarm::app {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/program_load.hpp"
+#include "apps/mjarm/commands/program_load.hpp"
 
 namespace mjarm::app {
 

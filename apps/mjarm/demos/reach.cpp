@@ -1,6 +1,6 @@
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/share.hpp"
-#include "apps/mjarm/train/policy_run.hpp"
+#include "apps/mjarm/cli/share.hpp"
+#include "apps/mjarm/commands/policy_run.hpp"
 
 namespace mjarm::app {
 

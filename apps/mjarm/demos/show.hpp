@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/render_video.hpp"
-#include "apps/mjarm/view_host.hpp"
+#include "apps/mjarm/commands/render_video.hpp"
+#include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/overlay.hpp"
@@ -74,7 +74,7 @@ class Show {
   [[nodiscard]] Overlay overlay() const;
 
  private:
-  static constexpr std::size_t kMostToolPoints = 2000;
+  static constexpr std::size_t kMaxToolPoints = 2000;
   explicit Show(double timestep) : playback_(timestep) {}
   [[nodiscard]] std::vector<LivePlot> plots() const;
   void handle_events();
@@ -92,10 +92,10 @@ class Show {
   bool trail_on_ = false;
   bool filming_ = true;
   std::optional<VideoOfRun> video_;
-  Trail trail_{{.most_points = 10000}};
+  Trail trail_{{.max_points = 10000}};
   Overlay planned_;
   std::optional<OverlaySphere> goal_;
-  ThinnedRecord<Eigen::Vector3d> tool_{kMostToolPoints};  ///< [m] what is plotted of it
+  ThinnedRecord<Eigen::Vector3d> tool_{kMaxToolPoints};  ///< [m] what is plotted of it
   double last_time_ = 0;                                  ///< [s] of the last step
   bool plots_tool_ = false;
 };

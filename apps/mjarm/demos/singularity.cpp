@@ -98,11 +98,11 @@ Result<Report> run_singularity(const DemoOptions& options) {
   const Result<Curve> line = line_with({});
   if (!line) return fail(line.error());
   stage.show().add_line(std::vector<Pose>{line->at(0), line->at(line->end())});
-  const Result<ToolMotion, MotionFailure> motion = plan(stage, *line, view(stage.arm().home));
+  const Result<ToolMotion, MotionFailure> motion = plan(stage, *line, as_span(stage.arm().home));
   if (!motion) return stage.refuse(motion.error());
   // The same answers from the same start, so that the timing alone makes the difference.
   const JointVec& q_start = motion->path.q.front();
-  const Result<NaiveMotion> naive = naive_motion(stage.reach(), *line, view(q_start), kSpeed);
+  const Result<NaiveMotion> naive = naive_motion(stage.reach(), *line, as_span(q_start), kSpeed);
   if (!naive) return fail(naive.error());
 
   Report report;
@@ -110,7 +110,7 @@ Result<Report> run_singularity(const DemoOptions& options) {
   const Result<MeasuredRun> naive_run = stage.rehearse(naive->trajectory, mode, *line);
   if (!naive_run) return fail(naive_run.error());
   std::vector<ComparedRun> compared{{text(msg::demo_naive), *naive_run}};
-  stage.start_at(view(q_start));
+  stage.start_at(as_span(q_start));
   if (auto done = stage.run(motion->trajectory, mode, 0.3, &*line); !done) {
     return fail(std::move(done.error()));
   }
@@ -120,8 +120,8 @@ Result<Report> run_singularity(const DemoOptions& options) {
   const std::string note = tell(stage, *naive_run, runs.back(), report);
   log_info(text(msg::demo_singularity_ours, peak_speed(runs.back()).speed,
                 motion->trajectory.duration(), naive->trajectory.duration()));
-  if (const auto tilt = ask_for_speed(stage, *line, view(q_start), report)) {
-    auto tilted = run_tilted(stage, *line, *tilt, view(q_start), mode, report);
+  if (const auto tilt = ask_for_speed(stage, *line, as_span(q_start), report)) {
+    auto tilted = run_tilted(stage, *line, *tilt, as_span(q_start), mode, report);
     if (!tilted) return fail(std::move(tilted.error()));
     if (*tilted) compared.push_back({text(msg::demo_tilts), std::move(**tilted)});
   }

@@ -53,12 +53,12 @@ struct Choice {
 Result<Choice, MotionFailure> choose(Stage& stage, std::span<const StartPosture> starts) {
   MotionFailure nearest;
   for (const StartPosture& start : starts) {
-    const Pose X_WT = fk(stage.arm(), view(start.q));
+    const Pose X_WT = fk(stage.arm(), as_span(start.q));
     for (const Plane& plane : planes()) {
       std::vector<Pose> corners = square(X_WT, plane);
       const Result<Curve> curve = Curve::polyline(corners);
       if (!curve) return fail(MotionFailure{{}, curve.error()});
-      auto motion = plan_tool_motion(stage.ik(), *curve, view(start.q));
+      auto motion = plan_tool_motion(stage.ik(), *curve, as_span(start.q));
       if (motion) return Choice{start, plane.name, std::move(corners), std::move(*motion)};
       log_debug(text(msg::demo_square_not, plane.name, describe(motion.error(), stage.arm())));
       const bool farther = motion.error().path && (!nearest.path || motion.error().path->fraction >
@@ -70,9 +70,9 @@ Result<Choice, MotionFailure> choose(Stage& stage, std::span<const StartPosture>
 }
 
 void tell(const Stage& stage, const Choice& choice) {
-  const Pose X_WT = fk(stage.arm(), view(choice.start.q));
+  const Pose X_WT = fk(stage.arm(), as_span(choice.start.q));
   std::string q;
-  append_numbers(q, view(choice.start.q));
+  append_numbers(q, as_span(choice.start.q));
   log_info(text(choice.start.is_home ? msg::demo_start_home : msg::demo_start_picked, q,
                 stage.arm().tip, X_WT.p.x(), X_WT.p.y(), X_WT.p.z()));
   log_info(text(msg::demo_square_plane, choice.plane));
@@ -96,11 +96,11 @@ Result<Report> run_square(const DemoOptions& options) {
   log_info(text(msg::demo_plan, motion.curve.length(), motion.trajectory.duration(),
                 motion.path.max_step()));
   stage.show().add_line(choice->corners);
-  stage.start_at(view(choice->start.q));
+  stage.start_at(as_span(choice->start.q));
   Report report;
   stage.tell(motion, report);
   const ControlMode mode = stage.control(ControlMode::computed_torque);
-  if (auto done = stage.approach(view(motion.path.q.front()), mode); !done) {
+  if (auto done = stage.approach(as_span(motion.path.q.front()), mode); !done) {
     return fail(std::move(done.error()));
   }
   if (auto done = stage.run(motion.trajectory, mode, 0.3, &motion.curve); !done) {

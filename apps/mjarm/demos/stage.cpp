@@ -40,12 +40,12 @@ Stage::Stage(std::string demo, const DemoOptions& options, Model model, Arm arm,
       sim_(model_),
       recorder_(model_, arm_),
       show_(std::move(show)) {
-  start_at(view(arm_.home));
+  start_at(as_span(arm_.home));
   show_.let_push(sim_);
 }
 
 Result<Robot> load_stage_robot(const std::string& demo, const DemoOptions& options, int dof) {
-  RobotOptions chosen = options.robot;
+  RobotChoice chosen = options.robot;
   if (options.meshes) {
     const Result<std::filesystem::path> scene = find_mesh_scene(chosen.robot);
     if (!scene) return fail(scene.error());
@@ -151,7 +151,7 @@ Result<void> Stage::follow(ControlMode mode, bool measured, const Curve* curve,
 }
 
 Result<void> Stage::approach(std::span<const double> q, ControlMode mode) {
-  const Result<Trajectory> move = time_joint_move(view(q_command_), q, arm_.limits);
+  const Result<Trajectory> move = time_joint_move(as_span(q_command_), q, arm_.limits);
   if (!move) return fail(move.error());
   return approach(*move, mode, 0.2);
 }
@@ -195,7 +195,7 @@ Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mo
   Result<Controller> controller = Controller::make(model_, arm_, mode);
   if (!controller) return fail(std::move(controller.error()));
   Sim sim(model_);
-  sim.place(arm_, view(trajectory.at(0).q));
+  sim.place(arm_, as_span(trajectory.at(0).q));
   show_.set_trail(false);
   show_.set_filming(false);
   Recorder recorder(model_, arm_);
@@ -244,7 +244,7 @@ std::vector<MeasuredRun> Stage::measured_runs() const {
     if (run.curve == nullptr) continue;
     std::vector<Eigen::Vector3d> p_W;
     for (const RecordRow& row : run.rows) p_W.push_back(row.X_WT.p);
-    run.error = measure_path(*run.curve, p_W);
+    run.error = path_error(*run.curve, p_W);
   }
   return runs;
 }

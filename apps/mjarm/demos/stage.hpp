@@ -10,7 +10,7 @@
 #include "apps/mjarm/demos/charts.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/show.hpp"
-#include "apps/mjarm/robot.hpp"
+#include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"

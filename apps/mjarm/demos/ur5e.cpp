@@ -16,9 +16,9 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   Stage& stage = **opened;
   const JointVec start = joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
   const JointVec goal = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
-  const Pose X_start = fk(stage.arm(), view(start));
+  const Pose X_start = fk(stage.arm(), as_span(start));
   if (X_start.p.z() < 0) log_warning(text(msg::demo_below_floor, X_start.p.z()));
-  stage.start_at(view(start));
+  stage.start_at(as_span(start));
   if (vision) {
     stage.show().set_balls(true);
     stage.show().plot_tool();
@@ -30,7 +30,7 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   const double seconds = options.seconds > 0 ? options.seconds : kSeconds;
   if (auto done = stage.jump(goal, mode, seconds); !done) return fail(std::move(done.error()));
   const JointVec q = stage.sim().arm_state(stage.arm()).q;
-  const PoseError error = pose_error(fk(stage.arm(), view(goal)), stage.sim().tool(stage.arm()));
+  const PoseError error = pose_error(fk(stage.arm(), as_span(goal)), stage.sim().tool(stage.arm()));
   report.static_error = error;
   report.coverage = 1 - (goal - q).norm() / (goal - start).norm();
   log_info(text(msg::demo_arrived, 1e3 * error.position, (goal - q).cwiseAbs().maxCoeff()));

@@ -22,7 +22,7 @@ namespace mjarm::app {
 namespace {
 
 constexpr std::uint64_t kLargestPage = std::uint64_t{64} << 20;
-constexpr int kMostAttempts = 200;
+constexpr int kMaxAttempts = 200;
 constexpr std::uint64_t kWorthSaying = 4'000'000;  // bytes to be read past
 
 struct FreeHandle {
@@ -247,7 +247,7 @@ Result<void> download(const std::string& url, ByteRange range, const std::filesy
   Progress progress(label, range.size() / 1000);
   progress.advance(size_of(file) / 1000);
   int idle = 0;
-  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
     const std::uint64_t before = size_of(file);
     if (before == range.size()) return {};
     const Outcome outcome = append_rest(url, range, file, options, progress);

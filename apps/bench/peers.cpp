@@ -1,0 +1,142 @@
+#include "apps/bench/peers.hpp"
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "apps/mjarm/cli/json_line.hpp"
+#include "apps/mjarm/cli/share.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/os_program.hpp"
+#include "mjarm/core/rotation.hpp"
+
+namespace mjarm::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A folder of its own that goes with this object.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_(temp_directory() / ("mjarm_bench_" + std::to_string(process_id()))) {
+    std::error_code ignored;
+    fs::create_directories(path_, ignored);
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+Result<fs::path> find_script(const std::string& suite) {
+  const Result<fs::path> share = share_folder();
+  if (!share) return fail(share.error());
+  fs::path script = *share / "bench" / "peers" / (suite + ".py");
+  if (is_there(script)) return script;
+  return fail(Errc::not_available, text(msg::bench_no_script, script.string()));
+}
+
+/// A member that may be missing.
+std::string text_or_nothing(const json& line, const char* key) {
+  return line.contains(key) ? text_in(line, key) : std::string();
+}
+
+/// All entries of a list by `read`; none of null.
+template <class Read>
+auto list_of(const json& list, const Read& read) {
+  std::vector<decltype(read(list))> values;
+  if (list.is_null()) return values;
+  for (const json& entry : list.get_ref<const json::array_t&>()) values.push_back(read(entry));
+  return values;
+}
+
+double number_of(const json& value) { return value.get<double>(); }
+double number_or_nan(const json& value) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : number_of(value);
+}
+std::vector<double> row_of(const json& value) { return list_of(value, number_of); }
+std::vector<std::vector<double>> rows_of(const json& value) { return list_of(value, row_of); }
+
+Result<void> take_line(const std::string& line, const TakeAnswer& take) {
+  const Result<JsonObject> object = parse_json_object(line);
+  if (!object) return fail(Errc::system, text(msg::bench_bad_answer, object.error().what));
+  const json& answer = **object;
+  try {
+    BenchEntry entry{.who = text_in(answer, "who"),
+                     .version = text_or_nothing(answer, "version"),
+                     .set = text_or_nothing(answer, "set"),
+                     .timed = text_or_nothing(answer, "timed"),
+                     .error = text_or_nothing(answer, "error")};
+    if (answer.contains("us")) entry.us = row_of(answer.at("us"));
+    return take(std::move(entry), answer);
+  } catch (const json::exception& error) {
+    return fail(Errc::system, text(msg::bench_bad_answer, error.what()));
+  }
+}
+
+}  // namespace
+
+JsonDoc pose_json(const Pose& X) {
+  const Quat q = to_quat(X.R);
+  return {{"pos", {X.p[0], X.p[1], X.p[2]}}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+std::vector<std::vector<double>> rows_in(const json& line, const char* key) {
+  return line.contains(key) ? rows_of(line.at(key)) : std::vector<std::vector<double>>();
+}
+
+std::vector<std::vector<std::vector<double>>> tables_in(const json& line, const char* key) {
+  if (!line.contains(key)) return {};
+  return list_of(line.at(key), rows_of);
+}
+
+std::vector<double> numbers_in(const json& line, const char* key) {
+  return list_of(line.at(key), number_or_nan);
+}
+
+std::string text_in(const json& line, const char* key) {
+  return line.at(key).get_ref<const std::string&>();
+}
+
+Result<void> run_peers(const fs::path& environment, const std::string& suite, JsonDoc job,
+                       const TakeAnswer& take) {
+  const fs::path python = environment / "bin" / "python";
+  if (!is_there(python)) return fail(Errc::bad_input, text(msg::bench_no_python, python.string()));
+  const Result<fs::path> script = find_script(suite);
+  if (!script) return fail(script.error());
+  const ScratchFolder folder;
+  const fs::path job_file = folder.path() / "job.json";
+  const fs::path answer_file = folder.path() / "answer.jsonl";
+  job.set("folder", folder.path().string());
+  if (auto written = write_file(job_file, job.line()); !written) return fail(written.error());
+  const Result<int> code =
+      run_program(python, {script->string(), job_file.string(), answer_file.string()});
+  if (!code) return fail(code.error());
+  if (*code != 0) return fail(Errc::system, text(msg::bench_peers_failed, *code));
+  const Result<std::string> content = read_file(answer_file);
+  if (!content) return fail(content.error());
+  std::size_t from = 0;
+  for (std::size_t to = content->find('\n'); to != std::string::npos;
+       from = to + 1, to = content->find('\n', from)) {
+    if (auto taken = take_line(content->substr(from, to - from), take); !taken) {
+      return fail(taken.error());
+    }
+  }
+  return {};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/bench/report.hpp"
+#include "mjarm/core/pose.hpp"
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::app {
+
+/// A pose as the files of cases and the peers write it.
+[[nodiscard]] JsonDoc pose_json(const Pose& X);
+
+// Members of a peer's answer. All throw json's exceptions where the member is of another type.
+
+/// Rows of numbers, one a case; empty ones for null, no rows where the member is missing.
+[[nodiscard]] std::vector<std::vector<double>> rows_in(const nlohmann::json& line, const char* key);
+/// Such rows of every path; none where the member is missing.
+[[nodiscard]] std::vector<std::vector<std::vector<double>>> tables_in(const nlohmann::json& line,
+                                                                      const char* key);
+/// Numbers; NaN for null. The member has to be there.
+[[nodiscard]] std::vector<double> numbers_in(const nlohmann::json& line, const char* key);
+/// A text; has to be there as well.
+[[nodiscard]] std::string text_in(const nlohmann::json& line, const char* key);
+
+/// Takes one answer of a peer: the entry with everything but cells and details, and the line it
+/// came in, whose members may be of any type.
+using TakeAnswer = std::function<Result<void>(BenchEntry entry, const nlohmann::json& line)>;
+
+/// Runs the peers of a Python environment on one job, each in a process and a loop of its own
+/// (`bench/peers/SUITE.py`). A peer that fails has an answer that says why.
+/// @param environment  folder of a virtual environment with some of the peers in it.
+/// @param job          all that a peer has to know; gets `folder`, where it may leave files for
+///                     as long as `take` is called.
+/// @return an error where the environment has no Python, an answer is broken, or the user stopped
+///         it.
+[[nodiscard]] Result<void> run_peers(const std::filesystem::path& environment,
+                                     const std::string& suite, JsonDoc job, const TakeAnswer& take);
+
+}  // namespace mjarm::app

@@ -1,0 +1,208 @@
+#include "apps/bench/plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <utility>
+
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/bench_plan.hpp"
+
+namespace mjarm::app {
+namespace {
+
+std::vector<double> times_in(const PlanRun& run, double SolvedProblem::* time) {
+  std::vector<double> us;
+  for (const SolvedProblem& answer : run.answers) us.push_back(answer.*time);
+  return us;
+}
+
+double p95_of(std::vector<double> us) {
+  if (us.empty()) return 0;
+  std::sort(us.begin(), us.end());
+  return us[us.size() * 95 / 100];
+}
+
+/// The median of a contestant over that of ours on the same problems; 0 where ours did none.
+double ratio_to(const PlanRun& run, const PlanRun* ours) {
+  if (ours == nullptr) return 0;
+  std::map<std::size_t, double> known;
+  for (const SolvedProblem& answer : ours->answers) known.emplace(answer.problem, answer.us);
+  std::vector<double> theirs, mine;
+  for (const SolvedProblem& answer : run.answers) {
+    const auto same = known.find(answer.problem);
+    if (same == known.end()) continue;
+    theirs.push_back(answer.us);
+    mine.push_back(same->second);
+  }
+  const double us = times_of(mine).median;
+  return us > 0 ? times_of(theirs).median / us : 0;
+}
+
+/// What the judge said of all paths.
+struct Verdicts {
+  int solved = 0, valid = 0;
+  double cost = 0;  ///< mean of the valid ones
+  std::vector<const SolvedProblem*> wrong;
+};
+Verdicts verdicts_of(const PlanRun& run) {
+  Verdicts all;
+  for (const SolvedProblem& answer : run.answers) {
+    if (answer.path.empty()) continue;
+    ++all.solved;
+    if (answer.verdict.fault == PathFault::none) {
+      ++all.valid;
+      all.cost += answer.verdict.cost;
+    } else {
+      all.wrong.push_back(&answer);
+    }
+  }
+  all.cost /= std::max(all.valid, 1);
+  return all;
+}
+
+std::string or_dash(double value) { return value > 0 ? rounded(value) : "-"; }
+
+void add_times(BenchEntry& entry, const PlanRun& run, const CheckTimes* checks) {
+  const double p95 = p95_of(entry.us);
+  const double world = times_of(times_in(run, &SolvedProblem::world_us)).median;
+  entry.cells.push_back(or_dash(p95));
+  entry.cells.push_back(or_dash(world));
+  entry.cells.push_back(checks ? fmt::format("{:.1f} / {:.1f} / {:.1f}", checks->random_ns,
+                                             checks->together_ns, checks->along_ns)
+                               : "-");
+  entry.details.set("p95_us", p95);
+  entry.details.set("world_us", world);
+  if (checks == nullptr) return;
+  entry.details.set("check_ns", {{"random", checks->random_ns},
+                                 {"together", checks->together_ns},
+                                 {"along", checks->along_ns}});
+}
+
+std::vector<JsonDoc> wrong_json(const PlanSet* set, const Verdicts& all) {
+  std::vector<JsonDoc> wrong;
+  for (const SolvedProblem* answer : all.wrong) {
+    const std::string id =
+        set == nullptr ? std::to_string(answer->problem) : set->cases[answer->problem].id;
+    wrong.push_back({{"problem", id},
+                     {"fault", name_of(answer->verdict.fault)},
+                     {"depth", answer->verdict.depth}});
+  }
+  return wrong;
+}
+
+BenchEntry entry_of(const PlanTable& table, const PlanRun& run, const PlanRun* ours,
+                    const CheckTimes* checks, bool timing) {
+  BenchEntry entry = run;
+  entry.us = times_in(run, &SolvedProblem::us);
+  entry.ratio = ratio_to(run, ours);
+  const std::size_t asked = run.answers.size();
+  const Verdicts all = verdicts_of(run);
+  const double share =
+      static_cast<double>(all.valid) / static_cast<double>(std::max<std::size_t>(asked, 1));
+  entry.cells = {fmt::format("{}/{}", all.solved, asked), fmt::format("{:.1f} %", 100 * share),
+                 all.valid > 0 ? fmt::format("{:.3f}", all.cost) : "-"};
+  entry.details = {{"problems", asked},
+                   {"solved", all.solved},
+                   {"valid", all.valid},
+                   {"cost", all.cost},
+                   {"wrong", wrong_json(table.set, all)}};
+  if (timing) add_times(entry, run, checks);
+  return entry;
+}
+
+/// Ours on the same case.
+const PlanRun* ours_beside(const std::vector<PlanRun>& runs, const std::string& set) {
+  const auto found = std::find_if(runs.begin(), runs.end(), [&](const PlanRun& run) {
+    return run.version.empty() && run.error.empty() && run.set == set;
+  });
+  return found == runs.end() ? nullptr : &*found;
+}
+
+/// All runs of each contestant as one, in the order of the first.
+std::vector<PlanRun> sums_of(const std::vector<PlanRun>& runs) {
+  std::vector<PlanRun> sums;
+  for (const PlanRun& run : runs) {
+    if (!run.error.empty()) continue;
+    auto sum = std::find_if(sums.begin(), sums.end(),
+                            [&](const PlanRun& known) { return known.who == run.who; });
+    if (sum == sums.end()) {
+      sum = sums.insert(sums.end(), run);
+      sum->set = text(msg::bench_plan_all);
+    } else {
+      sum->answers.insert(sum->answers.end(), run.answers.begin(), run.answers.end());
+    }
+  }
+  return sums;
+}
+
+bool is_told(const std::vector<BenchEntry>& entries, const BenchEntry& failed) {
+  return std::any_of(entries.begin(), entries.end(), [&](const BenchEntry& entry) {
+    return entry.who == failed.who && entry.error == failed.error;
+  });
+}
+
+std::string file_name(std::string text) {
+  for (char& c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<Msg> plan_columns(bool timing) {
+  std::vector<Msg> columns{msg::bench_plan_solved, msg::bench_plan_valid, msg::bench_plan_cost};
+  if (!timing) return columns;
+  columns.insert(columns.end(),
+                 {msg::bench_plan_p95, msg::bench_plan_world, msg::bench_plan_check});
+  return columns;
+}
+
+std::vector<BenchEntry> plan_entries(const PlanTable& table, bool timing) {
+  std::vector<BenchEntry> entries;
+  std::size_t at = 0;  // of the checks
+  for (const PlanRun& run : table.runs) {
+    if (!run.error.empty()) {
+      if (!is_told(entries, run)) entries.push_back(run);
+      continue;
+    }
+    const bool checked = !table.sum && run.version.empty() && at < table.checks.size();
+    const CheckTimes* checks = checked ? &table.checks[at++] : nullptr;
+    entries.push_back(entry_of(table, run, ours_beside(table.runs, run.set), checks, timing));
+  }
+  if (!table.sum) return entries;
+  const std::vector<PlanRun> sums = sums_of(table.runs);
+  for (const PlanRun& sum : sums) {
+    const bool checked = sum.version.empty() && !table.checks.empty();
+    entries.push_back(entry_of(table, sum, ours_beside(sums, sum.set),
+                               checked ? &table.checks.front() : nullptr, timing));
+  }
+  return entries;
+}
+
+int wrong_paths(const PlanRun& run) {
+  const Verdicts all = verdicts_of(run);
+  return all.solved - all.valid;
+}
+
+Result<void> write_paths(const PlanTable& table, bool timing, const std::filesystem::path& folder) {
+  for (const PlanRun& sum : sums_of(table.runs)) {
+    JsonDoc paths{std::initializer_list<JsonDoc::Member>{}};
+    for (const SolvedProblem& answer : sum.answers) {
+      if (answer.path.empty()) continue;
+      JsonDoc path{{"path", answer.path}};
+      if (timing) path.set("us", answer.us);
+      paths.set(table.set->cases[answer.problem].id.c_str(), std::move(path));
+    }
+    const std::string name = "paths_" + file_name(table.set->name + " " + sum.who) + ".json";
+    if (auto written = write_file(folder / name, paths.line() + "\n"); !written) {
+      return fail(std::move(written.error()));
+    }
+  }
+  return {};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,87 @@
+#include "mjarm/core/messages/sim.hpp"
+
+#include <memory>
+
+#include "apps/bench/suite.hpp"
+#include "apps/bench/suites.hpp"
+#include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/sim/bench.hpp"
+
+namespace mjarm::app {
+namespace {
+
+/// More than this takes hours.
+constexpr int kMax = 1'000'000;
+
+struct Options {
+  RobotChoice robot{.robot = "ur5e", .tip = {}};
+  std::string rounds = "40", steps = "250";
+  bool json = false, no_timing = false;
+};
+
+std::string to_json(const Robot& robot, const SimBenchOptions& work,
+                    const std::vector<SimBenchEntry>& entries, bool timing) {
+  std::string out = "{\"model\":";
+  append_json_string(out, robot.model.name());
+  out += ",\"timestep\":" + number(robot.model.timestep()) +
+         ",\"rounds\":" + std::to_string(work.rounds) + ",\"steps\":" + std::to_string(work.steps) +
+         ",\"entries\":[";
+  for (const SimBenchEntry& entry : entries) {
+    if (&entry != entries.data()) out += ',';
+    out += "{\"name\":";
+    append_json_string(out, entry.name);
+    // The ratio is made of times as well, so it goes with them.
+    if (timing) {
+      out += ",\"us\":" + number(entry.us) + ",\"rtf\":" + number(entry.rtf) +
+             ",\"ratio\":" + number(entry.ratio);
+    }
+    out += '}';
+  }
+  return out + "]}\n";
+}
+
+std::string to_table(const std::vector<SimBenchEntry>& entries, bool timing) {
+  std::string out = text(msg::sim_bench_title) + '\n';
+  for (const SimBenchEntry& entry : entries) {
+    out += timing ? text(msg::sim_bench_row, entry.name, entry.us, entry.rtf, entry.ratio)
+                  : entry.name;
+    out += '\n';
+  }
+  return out;
+}
+
+Result<int> run_sim(const Options& options) {
+  const Result<int> rounds = parse_count("--rounds", options.rounds, kMax);
+  if (!rounds) return fail(rounds.error());
+  const Result<int> steps = parse_count("--steps", options.steps, kMax);
+  if (!steps) return fail(steps.error());
+  const Result<Robot> robot = load_robot(options.robot);
+  if (!robot) return fail(robot.error());
+  const SimBenchOptions work{.rounds = *rounds, .steps = *steps};
+  const auto entries = bench_sim(robot->model, robot->arm, work);
+  if (!entries) return fail(entries.error());
+  const bool timing = !options.no_timing;
+  const std::string out =
+      options.json ? to_json(*robot, work, *entries, timing) : to_table(*entries, timing);
+  std::fwrite(out.data(), 1, out.size(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+BenchSuite add_bench_sim(CLI::App& bench) {
+  auto options = std::make_shared<Options>();
+  CLI::App& sim = add_subcommand(bench, "sim", msg::sim_bench_summary, msg::sim_bench_examples);
+  add_robot_options(sim, options->robot);
+  add_option(sim, "--steps", options->steps, msg::sim_bench_steps, "N");
+  add_option(sim, "--rounds", options->rounds, msg::sim_bench_rounds, "N");
+  add_flag(sim, "--json", options->json, msg::app_option_json);
+  add_flag(sim, "--no-timing", options->no_timing, msg::app_option_no_timing);
+  return {&sim, [options] { return run_sim(*options); }};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,115 @@
+#include "apps/bench/time_run.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/trajectory/point_to_point.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kEndTol = 1e-6;   // [rad, rad/s] at both ends
+constexpr double kPassTol = 1e-3;  // [rad or m] at waypoints
+
+/// Share of a limit that may be passed: path timers without jerk limits hold theirs on a grid.
+double allowed(TimeProblem problem) { return problem == TimeProblem::path_va ? 1e-3 : 1e-6; }
+
+bool same(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs().maxCoeff() <= kEndTol; }
+
+/// True where the motion comes near `point`: looked at more closely around its nearest sample.
+bool passes(const Trajectory& motion, std::span<const JointState> states, const JointVec& point) {
+  constexpr int kCloser = 100;
+  const auto away = [&](const JointState& x) { return (x.q - point).cwiseAbs().maxCoeff(); };
+  const auto nearest =
+      std::min_element(states.begin(), states.end(),
+                       [&](const auto& a, const auto& b) { return away(a) < away(b); });
+  const double dt = motion.duration() / static_cast<double>(states.size() - 1);
+  const double t = dt * static_cast<double>(nearest - states.begin());
+  double least = away(*nearest);
+  for (int k = -kCloser; k <= kCloser; ++k) {
+    const double at = std::clamp(t + dt * k / kCloser, 0.0, motion.duration());
+    least = std::min(least, away(motion.at(at)));
+  }
+  return least <= kPassTol;
+}
+
+bool arrives(const TimeSet& set, const TimeCase& entry, const Trajectory& motion,
+             std::span<const JointState> states) {
+  const JointState &first = states.front(), &last = states.back();
+  if (set.problem == TimeProblem::p2p) {
+    return same(first.q, entry.start.q) && same(first.v, entry.start.v) &&
+           same(last.q, entry.end.q) && same(last.v, entry.end.v);
+  }
+  const JointVec still = JointVec::Zero(first.v.size());
+  return same(first.q, entry.waypoints.front()) && same(last.q, entry.waypoints.back()) &&
+         same(first.v, still) && same(last.v, still) &&
+         std::all_of(entry.waypoints.begin(), entry.waypoints.end(),
+                     [&](const JointVec& point) { return passes(motion, states, point); });
+}
+
+/// The motion that `at` gives, sampled and judged.
+template <class At>
+TimedMotion judged(const TimeSet& set, const TimeCase& entry, double duration, const At& at) {
+  const int n = samples_of(set.problem);
+  std::vector<JointState> states;
+  for (int i = 0; i <= n; ++i) states.push_back(at(i == n ? duration : duration * i / n));
+  return judge_motion(set, entry, duration, states);
+}
+
+/// One case. Point to point is what a control loop calls; it makes no trajectory of its own.
+TimedMotion solve(const TimeSet& set, const TimeCase& entry, bool judge, double& us) {
+  const Stopwatch watch;
+  if (set.problem == TimeProblem::p2p) {
+    const auto move = PointToPoint::solve(entry.start, entry.end, set.limits);
+    us = std::min(us, watch.us());
+    if (!move) return {.reason = "bad_input"};
+    if (!judge) return {};
+    return judged(set, entry, move->duration(), [&](double t) { return move->at(t); });
+  }
+  const Result<Trajectory> motion = time_case(entry, set.limits, set.problem);
+  us = std::min(us, watch.us());
+  if (!motion) return {.reason = motion.error().what};
+  if (!judge) return {};
+  return judged(set, entry, motion->duration(), [&](double t) { return motion->at(t); });
+}
+
+}  // namespace
+
+int samples_of(TimeProblem problem) { return problem == TimeProblem::p2p ? 200 : 2000; }
+
+TimedMotion judge_motion(const TimeSet& set, const TimeCase& entry, double duration,
+                         std::span<const JointState> states) {
+  TimedMotion out{.duration = duration};
+  std::vector<double> times;
+  const double dt = duration / static_cast<double>(states.size() - 1);
+  for (std::size_t i = 0; i < states.size(); ++i) times.push_back(dt * static_cast<double>(i));
+  const auto motion = Trajectory::through(times, {states.begin(), states.end()});
+  if (!motion) return {.reason = motion.error().what};
+  // A hair more than the interval, so that rounding makes no sample of its own at the end.
+  const LimitUse use = check_limits(*motion, set.limits, dt * (1 + 1e-12));
+  out.use = use.worst();
+  if (set.problem != TimeProblem::path_va) out.use = std::max(out.use, use.jerk.maxCoeff());
+  out.holds = out.use <= 1 + allowed(set.problem);
+  out.arrives = arrives(set, entry, *motion, states);
+  return out;
+}
+
+std::optional<TimeRun> run_time(const TimeSet& set, int rounds,
+                                const std::function<bool()>& advance) {
+  TimeRun run{{.who = "mjarm", .set = set.name, .timed = "c++"}};
+  run.us.assign(set.cases.size(), std::numeric_limits<double>::infinity());
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < set.cases.size(); ++i) {
+      (void)solve(set, set.cases[i], false, run.us[i]);
+    }
+    if (!advance()) return std::nullopt;
+  }
+  for (const TimeCase& entry : set.cases) {
+    double us = 0;  // of a call amid others: no measure
+    run.motions.push_back(solve(set, entry, true, us));
+  }
+  return run;
+}
+
+}  // namespace mjarm::app

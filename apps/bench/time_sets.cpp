@@ -1,0 +1,198 @@
+#include "apps/bench/time_sets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
+
+#include "apps/mjarm/cli/json_line.hpp"
+#include "apps/mjarm/cli/robot.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/rng.hpp"
+
+namespace mjarm::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::uint64_t kSeed = 1;
+constexpr int kMoves = 500;
+constexpr int kPaths = 20;
+constexpr int kWaypoints = 10;
+constexpr int kLapPoints = 200;
+constexpr std::size_t kLargest = 1 << 28;  // [bytes] of a file
+
+/// One in each direction of every joint, uniform.
+JointVec random_vec(Rng& rng, const JointVec& half) {
+  JointVec out(half.size());
+  for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = rng.uniform(-half[i], half[i]);
+  return out;
+}
+
+/// Moves by up to half a turn of each joint; one in ten is a very short one.
+std::vector<TimeCase> make_moves(const JointLimits& limits, bool at_rest) {
+  Rng rng(kSeed, at_rest ? 0 : 1);
+  const JointVec turn = JointVec::Constant(limits.velocity.size(), std::numbers::pi);
+  // An acceleration from which the joint can still brake within its velocity limit.
+  const JointVec a =
+      0.3 * limits.acceleration.cwiseMin(limits.velocity.cwiseProduct(limits.jerk).cwiseSqrt());
+  std::vector<TimeCase> cases;
+  for (int i = 0; i < kMoves; ++i) {
+    TimeCase entry{std::to_string(i), JointState::at_rest(random_vec(rng, turn)), {}, {}};
+    const double share = i % 10 == 9 ? 0.01 : 1;
+    entry.end = JointState::at_rest(entry.start.q + share * random_vec(rng, turn));
+    if (!at_rest) {
+      entry.start.v = random_vec(rng, 0.5 * limits.velocity);
+      entry.start.a = random_vec(rng, a);
+      entry.end.v = random_vec(rng, 0.5 * limits.velocity);
+    }
+    cases.push_back(std::move(entry));
+  }
+  return cases;
+}
+
+/// Random waypoints, 0.3 to 1.5 rad (or m) apart.
+std::vector<TimeCase> make_paths(Eigen::Index dof) {
+  Rng rng(kSeed, 2);
+  const JointVec one = JointVec::Constant(dof, 1);
+  std::vector<TimeCase> cases;
+  for (int i = 0; i < kPaths; ++i) {
+    TimeCase entry{std::to_string(i), {}, {}, {random_vec(rng, one)}};
+    while (entry.waypoints.size() < kWaypoints) {
+      const JointVec way = random_vec(rng, one).normalized();
+      entry.waypoints.push_back(entry.waypoints.back() + rng.uniform(0.3, 1.5) * way);
+    }
+    cases.push_back(std::move(entry));
+  }
+  return cases;
+}
+
+/// A lap around an ellipse in joint space.
+std::vector<TimeCase> make_lap(Eigen::Index dof) {
+  Rng rng(kSeed, 3);
+  const JointVec one = JointVec::Constant(dof, 1);
+  const JointVec u = random_vec(rng, one).normalized(), v = random_vec(rng, one).normalized();
+  TimeCase entry{"0", {}, {}, {}};
+  for (int i = 0; i < kLapPoints; ++i) {
+    const double angle = 2 * std::numbers::pi * i / (kLapPoints - 1);
+    entry.waypoints.push_back(std::cos(angle) * u + 0.5 * std::sin(angle) * v);
+  }
+  return {std::move(entry)};
+}
+
+std::vector<TimeSet> make_sets(const JointLimits& arm) {
+  const JointLimits limits = unbounded(arm.velocity, arm.acceleration, arm.jerk);
+  const Eigen::Index dof = limits.velocity.size();
+  const std::vector<TimeCase> paths = make_paths(dof);
+  return {{"rest", TimeProblem::p2p, limits, make_moves(limits, true)},
+          {"state", TimeProblem::p2p, limits, make_moves(limits, false)},
+          {"path_va", TimeProblem::path_va, limits, paths},
+          {"path_vaj", TimeProblem::path_vaj, limits, paths},
+          {"via_vaj", TimeProblem::via_vaj, limits, paths},
+          {"ellipse", TimeProblem::path_va, limits, make_lap(dof)}};
+}
+
+Result<TimeCases> read_cases(const fs::path& file, TimeProblem problem) {
+  const Result<std::string> content = read_file(file, kLargest);
+  if (!content) return fail(content.error());
+  Result<TimeCases> cases = read_time_cases(*content, problem);
+  if (!cases) return fail(cases.error().code, file.string() + ": " + cases.error().what);
+  if (cases->cases.empty()) {
+    return fail(Errc::bad_input, text(msg::bench_no_cases, file.string()));
+  }
+  return cases;
+}
+
+/// Member `problem` of `known`, as `best_known.json` holds it; empty unless it has all cases.
+std::vector<double> best_of(const json& known, const std::string& file, const char* problem,
+                            const std::vector<TimeCase>& cases) {
+  std::vector<double> best;
+  const json durations = known.value(file, json::object()).value(problem, json::object());
+  for (const TimeCase& entry : cases) {
+    const double duration = durations.value(entry.id, 0.0);
+    if (!(duration > 0)) return {};
+    best.push_back(duration);
+  }
+  return best;
+}
+
+Result<json> read_best_known(const fs::path& folder) {
+  const fs::path file = folder / "best_known.json";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return json::object();
+  const Result<std::string> content = read_file(file, kLargest);
+  if (!content) return fail(content.error());
+  const Result<JsonObject> known = parse_json_object(*content);
+  if (!known) return fail(known.error().code, file.string() + ": " + known.error().what);
+  return **known;
+}
+
+bool rests(const TimeCase& entry) {
+  return entry.start.v.isZero(0) && entry.start.a.isZero(0) && entry.end.v.isZero(0) &&
+         entry.end.a.isZero(0);
+}
+
+/// Point to point apart by whether it goes from rest to rest.
+Result<void> read_moves(const fs::path& file, const json& known, std::vector<TimeSet>& sets) {
+  const Result<TimeCases> all = read_cases(file, TimeProblem::p2p);
+  if (!all) return fail(all.error());
+  for (const bool rest : {true, false}) {
+    TimeSet set{rest ? "rest" : "state", TimeProblem::p2p, all->limits, {}};
+    std::copy_if(all->cases.begin(), all->cases.end(), std::back_inserter(set.cases),
+                 [&](const TimeCase& entry) { return rests(entry) == rest; });
+    set.best = best_of(known, file.stem().string(), "p2p_vaj", set.cases);
+    if (!set.cases.empty()) sets.push_back(std::move(set));
+  }
+  return {};
+}
+
+Result<void> read_paths(const fs::path& file, const json& known, std::vector<TimeSet>& sets) {
+  struct Kind {
+    const char *name, *best;
+    TimeProblem problem;
+  };
+  std::vector<Kind> kinds{{"path_va", "spline_va", TimeProblem::path_va},
+                          {"path_vaj", "spline_va", TimeProblem::path_vaj},
+                          {"via_vaj", "via_vaj", TimeProblem::via_vaj}};
+  if (file.stem().string().ends_with("_ellipse")) {
+    kinds = {{"ellipse", "spline_va", TimeProblem::path_va}};
+  }
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return {};
+  const Result<TimeCases> all = read_cases(file, TimeProblem::path_va);
+  if (!all) return fail(all.error());
+  for (const Kind& kind : kinds) {
+    sets.push_back({kind.name, kind.problem, all->limits, all->cases,
+                    best_of(known, file.stem().string(), kind.best, all->cases)});
+  }
+  return {};
+}
+
+Result<std::vector<TimeSet>> read_sets(const std::string& name, const fs::path& folder) {
+  const Result<json> known = read_best_known(folder);
+  if (!known) return fail(known.error());
+  std::vector<TimeSet> sets;
+  try {
+    Result<void> done = read_moves(folder / (name + "_p2p.json"), *known, sets);
+    if (done) done = read_paths(folder / (name + "_paths.json"), *known, sets);
+    if (done) done = read_paths(folder / (name + "_ellipse.json"), *known, sets);
+    if (!done) return fail(done.error());
+  } catch (const json::exception& error) {  // best_known.json of another form
+    return fail(Errc::bad_input, (folder / "best_known.json").string() + ": " + error.what());
+  }
+  return sets;
+}
+
+}  // namespace
+
+Result<std::vector<TimeSet>> load_time_sets(const std::string& robot, const fs::path& folder) {
+  if (!folder.empty()) return read_sets(robot, folder);
+  const Result<Robot> loaded = load_robot({.robot = robot});
+  if (!loaded) return fail(loaded.error());
+  return make_sets(loaded->arm.limits);
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,147 @@
+#include "apps/mjarm/cli/batch.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "apps/mjarm/cli/options.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
+#include "mjarm/core/threads.hpp"
+
+namespace mjarm::app {
+namespace {
+
+/// Standard output, or a file that appears at the end.
+class Output {
+ public:
+  static Result<Output> open(const std::string& path) {
+    Output output;
+    if (path.empty() || path == "-") return output;
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return fail(std::move(file.error()));
+    output.file_ = std::move(*file);
+    return output;
+  }
+
+  /// @param now  somebody waits for this very line.
+  Result<void> write(std::string_view line, bool now) {
+    if (file_) return file_->write(line);
+    const bool written = std::fwrite(line.data(), 1, line.size(), stdout) == line.size();
+    if (written && (!now || std::fflush(stdout) == 0)) return {};
+    return fail(Errc::system, text(msg::core_cannot_write, "stdout", system_message(errno)));
+  }
+
+  Result<void> finish() { return file_ ? file_->commit() : Result<void>{}; }
+
+ private:
+  std::optional<AtomicFile> file_;
+};
+
+/// One request on its way.
+struct Line {
+  std::string request, place, answer;
+  Result<std::optional<std::string>> done;
+};
+
+/// Up to `count` requests; after an error those before it.
+Result<void> read_block(LineReader& reader, std::size_t count, std::vector<Line>& lines) {
+  lines.clear();
+  while (lines.size() < count) {
+    const Result<std::optional<std::string_view>> request = reader.next();
+    if (!request) return fail(request.error());
+    if (!*request) break;
+    lines.push_back({std::string(**request), reader.place(), {}, {}});
+  }
+  return {};
+}
+
+void answer_block(const AnswerLine& answer, int threads, std::vector<Line>& lines) {
+  std::atomic<std::size_t> next = 0;
+  run_in_threads(std::min(threads, static_cast<int>(lines.size())), [&](int) {
+    for (std::size_t i = next++; i < lines.size(); i = next++) {
+      lines[i].done = answer(lines[i].request, lines[i].answer);
+      lines[i].answer += '\n';
+    }
+  });
+}
+
+}  // namespace
+
+void add_batch_options(CLI::App& app, BatchOptions& options) {
+  add_option(app, "--in", options.in, msg::app_option_in, "FILE");
+  add_option(app, "--out", options.out, msg::app_option_out, "FILE");
+}
+
+Result<void> one_source(const std::string& in, const std::string& one, const std::string& option) {
+  if (in.empty() != one.empty()) return {};
+  return fail(Errc::usage, text(msg::app_need_one_of, "--in", option));
+}
+
+Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,
+                              const AnswerLine& answer) {
+  Result<LineReader> reader = LineReader::open(options.in, options.longest_line);
+  if (!reader) return fail(std::move(reader.error()));
+  Result<Output> output = Output::open(options.out);
+  if (!output) return fail(std::move(output.error()));
+  Progress progress(label, reader->count_lines());
+  // Somebody may wait for each line of a stream; a file is taken in blocks that feed the threads.
+  const bool stream = reader->is_stream() || options.threads <= 1;
+  const std::size_t block = stream ? 1 : 64 * static_cast<std::size_t>(options.threads);
+  BatchResult result;
+  std::vector<Line> lines;
+  do {
+    const Result<void> read = read_block(*reader, block, lines);
+    answer_block(answer, options.threads, lines);
+    for (const Line& line : lines) {
+      if (!line.done)
+        return fail(line.done.error().code, line.place + ": " + line.done.error().what);
+      if (*line.done && result.failed++ == 0) {
+        result.first_failure = line.place;
+        result.first_why = **line.done;
+      }
+      ++result.requests;
+      if (Result<void> written = output->write(line.answer, reader->is_stream()); !written) {
+        return fail(std::move(written.error()));
+      }
+    }
+    if (!read) return fail(read.error());
+    progress.advance(lines.size());
+  } while (!lines.empty());
+  if (Result<void> written = output->finish(); !written) return fail(std::move(written.error()));
+  return result;
+}
+
+Result<void> write_answer(const std::string& out, const std::string& answer) {
+  Result<Output> output = Output::open(out);
+  if (!output) return fail(std::move(output.error()));
+  if (Result<void> written = output->write(answer + "\n", true); !written) return written;
+  return output->finish();
+}
+
+Result<int> finish_one(const std::string& out, const std::string& answer,
+                       const std::optional<std::string>& why, Msg impossible) {
+  if (Result<void> written = write_answer(out, answer); !written) {
+    return fail(std::move(written.error()));
+  }
+  if (!why) return 0;
+  log_error(text(impossible, *why));
+  return 1;
+}
+
+int finish_all(const BatchResult& result, Msg some_failed) {
+  if (result.failed == 0) return 0;
+  log_error(
+      text(some_failed, result.first_failure, result.first_why, result.failed, result.requests));
+  return 1;
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "apps/mjarm/cli/line_reader.hpp"
+#include "apps/mjarm/cli/options.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::app {
+
+/// Where requests come from and answers go to.
+struct BatchOptions {
+  std::string in;   ///< file of JSON lines, `-` = standard input
+  std::string out;  ///< file, `-` or empty = standard output
+  int threads = 1;  ///< >= 1
+  std::size_t longest_line = LineReader::kLongestLine;  ///< [bytes]
+};
+
+/// Adds `--in FILE` and `--out FILE`, bound to `options`.
+void add_batch_options(CLI::App& app, BatchOptions& options);
+
+/// Checks that requests come either from `--in` or from `option` (value `one`), not from both.
+[[nodiscard]] Result<void> one_source(const std::string& in, const std::string& one,
+                                      const std::string& option);
+
+/// Answers one request: appends the answer to `out`, without a line break. Returns why the request
+/// could not be done, nothing where it was. An error is a malformed request; it says what is wrong,
+/// not where. Called from several threads at once where `BatchOptions::threads` is not 1.
+using AnswerLine =
+    std::function<Result<std::optional<std::string>>(std::string_view request, std::string& out)>;
+
+/// How a batch went.
+struct BatchResult {
+  std::uint64_t requests = 0;
+  std::uint64_t failed = 0;   ///< well-formed, but could not be done
+  std::string first_failure;  ///< `file:line` of the first of them
+  std::string first_why;      ///< why it could not be done
+};
+
+/// Answers all requests in order, one line each; blank lines are skipped. A file named by `out`
+/// appears only when every request was well-formed; standard output gets every answer as it is
+/// ready. The answers are the same bytes whatever the number of threads.
+/// @param label  what the progress bar says.
+/// @return an error that begins with `file:line:` at the first malformed request.
+[[nodiscard]] Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,
+                                            const AnswerLine& answer);
+
+/// Writes the answer to a single request, one line, to `out` (a file, `-` or empty).
+[[nodiscard]] Result<void> write_answer(const std::string& out, const std::string& answer);
+
+/// Writes the answer to a single request. Where it could not be done, for `why`, the text
+/// `impossible` (why) is logged.
+/// @return the exit code.
+[[nodiscard]] Result<int> finish_one(const std::string& out, const std::string& answer,
+                                     const std::optional<std::string>& why, Msg impossible);
+
+/// Logs the text `some_failed` (place, why, failed, requests) where requests could not be done.
+/// @return the exit code.
+[[nodiscard]] int finish_all(const BatchResult& result, Msg some_failed);
+
+}  // namespace mjarm::app

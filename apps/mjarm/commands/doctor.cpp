@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/cli/json_doc.hpp"
+#include "apps/mjarm/cli/options.hpp"
+#include "mjarm/core/cpu.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/install.hpp"
+#include "mjarm/core/messages/render_command.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/os_child_input.hpp"
+#include "mjarm/core/text_width.hpp"
+#include "mjarm/model/model.hpp"
+#include "mjarm/model/mujoco_library.hpp"
+#include "mjarm/planning/ompl_planners.hpp"
+#include "mjarm/render/gl_context.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Findings {
+  JsonDoc facts;                      ///< for `--json`
+  std::string lines;                  ///< for people
+  std::vector<std::string> problems;  ///< what is needed and missing, one line each
+};
+
+void add(Findings& findings, const char* key, const std::string& label, JsonDoc value,
+         const std::string& shown) {
+  findings.facts.set(key, std::move(value));
+  findings.lines += padded(label, 14) + shown + "\n";
+}
+
+const char* compiler() {
+#if defined(__clang__)
+  return "clang " __clang_version__;
+#else
+  return "g++ " __VERSION__;
+#endif
+}
+
+void look_at_mujoco(Findings& findings) {
+  const MujocoLibrary library = mujoco_library();
+  add(findings, "mujoco", "MuJoCo", library.version,
+      library.version + "  " + library.file.string());
+  findings.facts.set("mujoco_library", library.file.string());
+  if (library.version != library.built_against) {
+    findings.problems.push_back(text(msg::app_doctor_other_mujoco, library.built_against,
+                                     library.version, library.file.string()));
+  }
+}
+
+void look_at_machine(Findings& findings) {
+  const std::string simd(name(simd_level()));
+  add(findings, "compiler", text(msg::app_doctor_compiler), compiler(), compiler());
+  add(findings, "simd", text(msg::app_doctor_simd), simd, simd);
+  add(findings, "cores", text(msg::app_doctor_cores), core_count(), std::to_string(core_count()));
+  const bool display = has_display();
+  add(findings, "display", text(msg::app_doctor_display), display,
+      text(display ? msg::app_doctor_display_yes : msg::app_doctor_display_no));
+}
+
+/// Pictures are part of every demo: one way to draw must work, two are better.
+void look_at_graphics(Findings& findings) {
+  std::vector<JsonDoc> ways;
+  bool any = false;
+  for (const GlBackend& way : probe_gl_backends()) {
+    ways.push_back({{"name", way.name},
+                    {"works", way.works},
+                    {"renderer", way.renderer},
+                    {"version", way.version},
+                    {"reason", way.reason}});
+    findings.lines += padded(way.name, 14) + (way.works ? way.renderer : way.reason) + "\n";
+    any |= way.works;
+  }
+  findings.facts.set("gl", std::move(ways));
+  if (!any) findings.problems.push_back(text(msg::app_doctor_no_gl));
+}
+
+/// Only videos need it.
+void look_at_ffmpeg(Findings& findings) {
+  const std::string file = find_program("ffmpeg").string();
+  add(findings, "ffmpeg", text(msg::render_command_doctor), file,
+      file.empty() ? text(msg::render_command_doctor_none) : file);
+}
+
+/// Only users of its planners need it.
+void look_at_ompl(Findings& findings) {
+  const std::string version(ompl_version());
+  add(findings, "ompl", "OMPL", version, version.empty() ? text(msg::app_doctor_no_ompl) : version);
+}
+
+void look_at_models(Findings& findings) {
+  std::vector<JsonDoc> found;
+  std::string names;
+  for (const ShippedModel& shipped : shipped_models()) {
+    const Result<Model> model = Model::load(shipped.file);
+    if (!model) {
+      findings.problems.push_back(
+          text(msg::app_doctor_bad_model, shipped.name, model.error().what));
+      continue;
+    }
+    found.push_back({{"name", shipped.name}, {"file", shipped.file.string()}});
+    names += (names.empty() ? "" : ", ") + shipped.name;
+  }
+  if (found.empty()) findings.problems.push_back(text(msg::app_doctor_no_models));
+  add(findings, "models", text(msg::app_doctor_models), std::move(found),
+      names.empty() ? text(msg::app_info_none) : names);
+}
+
+/// Meshes are a choice: without them robots are drawn with simple shapes.
+void look_at_meshes(Findings& findings) {
+  std::vector<JsonDoc> found;
+  std::string shown, known;
+  for (const MeshSet& set : mesh_sets()) {
+    known += (known.empty() ? "" : ", ") + set.robot;
+    const Result<Installed> meshes = look_up(set);
+    if (!meshes || meshes->state.kind == MeshState::Kind::absent) continue;
+    const MeshState& state = meshes->state;
+    const bool whole = state.kind == MeshState::Kind::whole;
+    found.push_back({{"robot", set.robot}, {"whole", whole}, {"folder", meshes->folder.string()}});
+    shown += (shown.empty() ? "" : ", ") +
+             (whole ? set.robot : text(msg::install_mend, state.problem, set.robot));
+  }
+  add(findings, "meshes", text(msg::install_doctor), std::move(found),
+      shown.empty() ? text(msg::install_doctor_none, known) : shown);
+}
+
+Result<int> run(bool json) {
+  Findings findings;
+  add(findings, "mjarm", "mjarm", MJARM_VERSION, MJARM_VERSION);
+  look_at_mujoco(findings);
+  look_at_machine(findings);
+  look_at_graphics(findings);
+  look_at_ffmpeg(findings);
+  look_at_ompl(findings);
+  look_at_models(findings);
+  look_at_meshes(findings);
+  const bool fine = findings.problems.empty();
+  if (json) {
+    findings.facts.set("problems", findings.problems);
+    findings.facts.set("ok", fine);
+    std::fputs(findings.facts.document().c_str(), stdout);
+  } else {
+    std::fputs(findings.lines.c_str(), stdout);
+    if (fine) std::fputs((text(msg::app_doctor_fine) + "\n").c_str(), stdout);
+  }
+  for (const std::string& problem : findings.problems) log_error(problem);
+  return fine ? 0 : 1;
+}
+
+Run setup(CLI::App& app) {
+  auto json = std::make_shared<bool>(false);
+  add_flag(app, "--json", *json, msg::app_option_json);
+  return [json] { return run(*json); };
+}
+
+}  // namespace
+
+Command doctor_command() {
+  return {"doctor", msg::app_doctor_summary, msg::app_doctor_examples, setup};
+}
+
+}  // namespace mjarm::app

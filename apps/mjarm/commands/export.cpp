@@ -1,0 +1,67 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/commands/program_load.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/motion_program.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/program/urscript.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  std::string file, to, out;
+};
+
+/// The format, the only one there is.
+Result<void> check_format(const Options& options) {
+  if (options.to.empty()) return fail(Errc::usage, text(msg::app_option_missing, "--to"));
+  const std::string formats[] = {"urscript"};
+  const Result<std::size_t> format = parse_choice("--to", options.to, formats);
+  if (!format) return fail(format.error());
+  return {};
+}
+
+Result<int> run(const Options& options) {
+  if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_export));
+  if (auto known = check_format(options); !known) return fail(known.error());
+  std::error_code unknown;
+  if (!options.out.empty() && std::filesystem::equivalent(options.out, options.file, unknown)) {
+    return fail(Errc::usage, text(msg::motion_program_export_over, options.out));
+  }
+  catch_interrupts();
+  const Result<LoadedProgram> loaded = load_sound_program(options.file);
+  if (!loaded) return fail(loaded.error());
+  const Result<std::string> script =
+      to_urscript(loaded->program, loaded->robot, loaded->plan, {.version = MJARM_VERSION});
+  if (!script) return fail(script.error().code, options.file + ": " + script.error().what);
+  if (options.out.empty()) {
+    std::fwrite(script->data(), 1, script->size(), stdout);
+    return 0;
+  }
+  if (auto written = write_file(options.out, *script); !written) return fail(written.error());
+  std::printf("%s\n", options.out.c_str());
+  return 0;
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_option(app, "program", options->file, msg::motion_program_file, "PROGRAM.yaml");
+  add_option(app, "--to", options->to, msg::motion_program_option_to, "FORMAT");
+  add_option(app, "--out", options->out, msg::motion_program_option_export_out, "FILE");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command export_command() {
+  return {"export", msg::motion_program_export_summary, msg::motion_program_export_examples, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,216 @@
+#include "mjarm/kinematics/ik.hpp"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "apps/mjarm/cli/answer_json.hpp"
+#include "apps/mjarm/cli/batch.hpp"
+#include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/json_line.hpp"
+#include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/orientation.hpp"
+#include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/kinematics/ik_all.hpp"
+#include "mjarm/kinematics/self_motion.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  RobotChoice robot;
+  BatchOptions batch;
+  std::string pos, euler, quat, seed_q, task = "pose", prefer, seed = "1", threads = "1";
+  bool all = false, windings = false, no_timing = false;
+};
+
+/// What stays the same for all requests.
+struct Job {
+  IkSolver solver;
+  std::optional<PostureGoal> prefer;
+  bool all, windings, timing;
+};
+
+struct Request {
+  Pose X_WT;
+  std::vector<double> q_seed;
+};
+
+/// As pose_of(), but a position may stand alone where that is all that must be met.
+Result<Pose> goal_of(const nlohmann::json& object, IkTask task) {
+  if (task != IkTask::position || has_member(object, "quat")) return pose_of(object);
+  const Result<std::vector<double>> pos = number_list(object, "pos", 3);
+  if (!pos) return fail(pos.error());
+  return Pose{{(*pos)[0], (*pos)[1], (*pos)[2]}, Eigen::Matrix3d::Identity()};
+}
+
+Result<Request> read_request(std::string_view line, const IkSolver& ik) {
+  const Arm& arm = ik.arm();
+  const Result<JsonObject> object = parse_json_object(line);
+  if (!object) return fail(object.error());
+  const Result<Pose> X_WT = goal_of(**object, ik.options().task);
+  if (!X_WT) return fail(X_WT.error());
+  if (!has_member(**object, "seed")) {
+    return Request{*X_WT, {arm.home.begin(), arm.home.end()}};
+  }
+  Result<std::vector<double>> q_seed =
+      number_list(**object, "seed", static_cast<std::size_t>(arm.dof()));
+  if (!q_seed) return fail(std::move(q_seed.error()));
+  return Request{*X_WT, std::move(*q_seed)};
+}
+
+Result<Request> read_request(const Options& options, const IkSolver& ik) {
+  const Arm& arm = ik.arm();
+  const auto pos = parse_list("--pos", options.pos, Quantity::length, 3);
+  if (!pos) return fail(pos.error());
+  const bool any = ik.options().task == IkTask::position && (options.euler + options.quat).empty();
+  const Result<Eigen::Matrix3d> R = any ? Result<Eigen::Matrix3d>(Eigen::Matrix3d::Identity())
+                                        : parse_rotation(options.euler, options.quat);
+  if (!R) return fail(R.error());
+  Request request{{{(*pos)[0], (*pos)[1], (*pos)[2]}, *R}, {arm.home.begin(), arm.home.end()}};
+  if (options.seed_q.empty()) return request;
+  Result<std::vector<double>> q_seed = parse_joints("--seed-q", options.seed_q, arm);
+  if (!q_seed) return fail(std::move(q_seed.error()));
+  request.q_seed = std::move(*q_seed);
+  return request;
+}
+
+void append_branches(std::string& out, const std::vector<IkSolution>& branches) {
+  std::vector<JointVec> rows;
+  for (const IkSolution& branch : branches) rows.push_back(branch.q);
+  append_rows(out, "branches", rows);
+}
+
+void append_solution(std::string& out, const IkSolution& solution) {
+  out += "{\"ok\":true";
+  append_value(out, "q", solution.q);
+  append_value(out, "pos_err", solution.pos_err);
+  append_value(out, "rot_err", solution.rot_err);
+}
+
+void append_failure(std::string& out, const IkFailure& failure, const std::string& why) {
+  out += "{\"ok\":false,\"reason\":";
+  append_json_string(out, name(failure.code));
+  out += ",\"detail\":";
+  append_json_string(out, why);
+  append_value(out, "best", failure.best.q);
+}
+
+/// Solves one request and appends the answer. Where there is none, returns why.
+std::optional<std::string> answer(const Job& job, const Request& request, std::string& out) {
+  const Stopwatch watch;
+  Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
+  if (job.prefer && solution) {
+    const SelfMotionOptions self_motion{.goal = *job.prefer, .posture = joint_vec(request.q_seed)};
+    solution = null_space_step(job.solver, request.X_WT, as_span(solution->q), self_motion).value_or(*solution);
+  }
+  std::vector<IkSolution> branches;
+  if (job.all && solution) {
+    const IkAllOptions all{.windings = job.windings};
+    branches = solve_all(job.solver, request.X_WT, request.q_seed, all).value_or(branches);
+  }
+  const double us = watch.us();
+  std::optional<std::string> why;
+  if (solution) {
+    append_solution(out, *solution);
+  } else {
+    why = describe(solution.error(), job.solver.arm());
+    append_failure(out, solution.error(), *why);
+  }
+  if (job.all) append_branches(out, branches);
+  if (job.timing) append_us(out, us);
+  out += '}';
+  return why;
+}
+
+Result<int> answer_one(const Job& job, const Options& options) {
+  const Result<Request> request = read_request(options, job.solver);
+  if (!request) return fail(request.error());
+  std::string line;
+  const std::optional<std::string> why = answer(job, *request, line);
+  return finish_one(options.batch.out, line, why, msg::app_ik_no_answer);
+}
+
+Result<int> answer_all(const Job& job, const Options& options) {
+  const auto answer_line = [&](std::string_view line,
+                               std::string& out) -> Result<std::optional<std::string>> {
+    const Result<Request> request = read_request(line, job.solver);
+    if (!request) return fail(request.error());
+    return answer(job, *request, out);
+  };
+  const auto done = run_batch(options.batch, text(msg::app_ik_progress), answer_line);
+  if (!done) return fail(done.error());
+  return finish_all(*done, msg::app_ik_some_failed);
+}
+
+Result<IkTask> read_task(const std::string& word) {
+  constexpr IkTask kTasks[] = {IkTask::pose, IkTask::position, IkTask::axis};
+  const auto choice =
+      parse_choice("--task", word, std::vector<std::string>{"pose", "position", "axis"});
+  if (!choice) return fail(choice.error());
+  return kTasks[*choice];
+}
+
+/// Where to go with joints to spare; nowhere where nothing is asked for.
+Result<std::optional<PostureGoal>> read_prefer(const Options& options) {
+  constexpr PostureGoal kGoals[] = {PostureGoal::near_posture, PostureGoal::away_from_limits,
+                                    PostureGoal::manipulability};
+  if (options.prefer.empty()) return std::nullopt;
+  if (options.all || options.windings) {
+    const char* const all = options.all ? "--all" : "--windings";
+    return fail(Errc::usage, text(msg::app_exclusive_options, "--prefer", all));
+  }
+  const auto choice = parse_choice("--prefer", options.prefer,
+                                   std::vector<std::string>{"posture", "middle", "manipulability"});
+  if (!choice) return fail(choice.error());
+  return kGoals[*choice];
+}
+
+Result<int> run(Options options) {
+  if (Result<void> fine = one_source(options.batch.in, options.pos, "--pos"); !fine) {
+    return fail(std::move(fine.error()));
+  }
+  const Result<std::uint64_t> seed = parse_whole("--seed", options.seed);
+  if (!seed) return fail(seed.error());
+  const Result<int> threads = parse_threads(options.threads);
+  if (!threads) return fail(threads.error());
+  options.batch.threads = *threads;
+  const Result<IkTask> task = read_task(options.task);
+  if (!task) return fail(task.error());
+  const auto prefer = read_prefer(options);
+  if (!prefer) return fail(prefer.error());
+  Result<Robot> robot = load_robot(options.robot);
+  if (!robot) return fail(std::move(robot.error()));
+  const Job job{IkSolver(robot->arm, {.rng_seed = *seed, .task = *task}), *prefer,
+                options.all || options.windings, options.windings, !options.no_timing};
+  return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_robot_options(app, options->robot);
+  add_option(app, "--pos", options->pos, msg::app_option_pos, "X,Y,Z");
+  add_option(app, "--euler", options->euler, msg::app_option_euler, "A,B,C");
+  add_option(app, "--quat", options->quat, msg::app_option_quat, "W,X,Y,Z");
+  add_option(app, "--seed-q", options->seed_q, msg::app_option_seed_q, "Q1,Q2,...");
+  add_option(app, "--task", options->task, msg::app_option_task, "TASK");
+  add_option(app, "--prefer", options->prefer, msg::app_option_prefer, "GOAL");
+  add_batch_options(app, options->batch);
+  add_option(app, "--seed", options->seed, msg::app_option_seed, "N");
+  add_flag(app, "--all", options->all, msg::app_option_all);
+  add_flag(app, "--windings", options->windings, msg::app_option_windings);
+  add_option(app, "--threads", options->threads, msg::app_option_threads, "N");
+  add_flag(app, "--no-timing", options->no_timing, msg::app_option_no_timing);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command ik_command() { return {"ik", msg::app_ik_summary, msg::app_ik_examples, setup}; }
+
+}  // namespace mjarm::app

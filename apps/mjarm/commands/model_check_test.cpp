@@ -1,0 +1,94 @@
+#include "apps/mjarm/view/program_test.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using nlohmann::json;
+
+/// The UR5e with one text replaced, in a folder of its own.
+std::string edited(const support::TempFolder& folder, const std::string& from,
+                   const std::string& to) {
+  std::string text = support::read_data(model_file("universal_robots_ur5e/ur5e.xml"));
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  return folder.write("edited.xml", text).string();
+}
+
+TEST(ModelCheck, AGoodModelIsFine) {
+  for (const char* model : {"ur5e", "panda", "car", "hello"}) {
+    const auto result = mjarm({"model", "check", model});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_TRUE(result.err.empty()) << result.err;
+    EXPECT_NE(result.out.find("nothing wrong"), std::string::npos) << result.out;
+  }
+}
+
+TEST(ModelCheck, AWarningLeavesTheExitCode) {
+  const support::TempFolder folder;
+  const auto result = mjarm({"model", "check", edited(folder, "kp=\"2000\"", "kp=\"200\"")});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(result.err.empty()) << result.err;
+  EXPECT_NE(result.out.find("[servo_sag]"), std::string::npos);
+}
+
+TEST(ModelCheck, AnErrorIsToldOnOneLine) {
+  const support::TempFolder folder;
+  const std::string file = edited(folder, "range=\"-3.1415 3.1415\"", "range=\"-180 180\"");
+  const auto result = mjarm({"model", "check", file});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(only_line(result).rfind(file + ":", 0), 0u) << result.err;
+  EXPECT_NE(result.out.find("[degrees_for_radians]"), std::string::npos);
+  const auto chinese = mjarm({"model", "check", file, "--lang", "zh-CN"});
+  EXPECT_NE(chinese.out.find("错误"), std::string::npos);
+}
+
+TEST(ModelCheck, AFileThatDoesNotLoadHasItsOwnExitCode) {
+  const support::TempFolder folder;
+  const std::string file = edited(folder, "0.0311796 0.0311796", "0.9 0.0311796");
+  const auto result = mjarm({"model", "check", file, "--json"});
+  EXPECT_EQ(result.exit_code, 2);
+  only_line(result);
+  const json document = json::parse(result.out);
+  EXPECT_EQ(document.at("loads"), false);
+  EXPECT_EQ(document.at("ok"), false);
+  EXPECT_EQ(document.at("findings").at(0).at("code"), "inertia_triangle");
+  EXPECT_EQ(mjarm({"model", "check", (folder.path() / "none.xml").string()}).exit_code, 2);
+  EXPECT_EQ(mjarm({"model", "check"}).exit_code, 2);
+}
+
+TEST(ModelCheck, FilesOutsideAreReadOnRequest) {
+  const support::TempFolder folder;
+  const std::string file = folder.write("link.xml", "<body><geom size=\"0.1\"/></body>").string();
+  const std::string model = folder
+                                .write("inner/model.xml", "<mujoco><worldbody><include file=\"" +
+                                                              file + "\"/></worldbody></mujoco>")
+                                .string();
+  const auto refused = mjarm({"model", "check", model});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(only_line(refused).find("--allow-outside"), std::string::npos) << refused.err;
+  const auto read = mjarm({"model", "check", model, "--allow-outside"});
+  EXPECT_NE(read.out.find("[arm_missing]"), std::string::npos) << read.out << read.err;
+  const auto compared = mjarm({"model", "check", "ur5e", "--against", model, "--allow-outside"});
+  EXPECT_EQ(compared.err.find("--allow-outside"), std::string::npos) << compared.err;
+}
+
+TEST(ModelCheck, AgainstFindsTheTurnedBase) {
+  const std::string urdf = model_file("universal_robots_ur5e/ur5e.urdf");
+  const auto result = mjarm({"model", "check", "ur5e", "--against", urdf, "--json"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(only_line(result).find("180 deg about z"), std::string::npos) << result.err;
+  const json document = json::parse(result.out);
+  ASSERT_EQ(document.at("causes").size(), 1u);
+  EXPECT_EQ(document.at("causes").at(0).at("cause"), "base");
+  EXPECT_LT(document.at("position_left").get<double>(), 1e-12);
+  EXPECT_EQ(document.at("configurations"), 1000);
+  const auto same = mjarm({"model", "check", urdf, "--against", urdf});
+  EXPECT_EQ(same.exit_code, 0);
+  EXPECT_NE(same.out.find("agree"), std::string::npos);
+  EXPECT_EQ(mjarm({"model", "check", "ur5e", "--against", "panda"}).exit_code, 1);
+  EXPECT_EQ(mjarm({"model", "check", "ur5e", "--against", "none.xml"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace mjarm::app

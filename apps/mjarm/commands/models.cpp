@@ -1,0 +1,173 @@
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/install/install.hpp"
+#include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/cli/json_doc.hpp"
+#include "apps/mjarm/cli/options.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/messages/install.hpp"
+#include "mjarm/core/text_width.hpp"
+
+namespace mjarm::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> names;
+  std::string from;
+  bool list = false, remove = false, json = false;
+};
+
+/// The meshes named, each once; all where none is named.
+Result<std::vector<const MeshSet*>> chosen(const Options& options) {
+  std::vector<const MeshSet*> sets;
+  for (const MeshSet& set : mesh_sets()) {
+    if (options.names.empty()) sets.push_back(&set);
+  }
+  for (const std::string& name : options.names) {
+    const Result<const MeshSet*> set = find_mesh_set(name);
+    if (!set) return fail(set.error());
+    if (std::find(sets.begin(), sets.end(), *set) == sets.end()) sets.push_back(*set);
+  }
+  return sets;
+}
+
+std::string_view name(MeshState::Kind kind) {
+  constexpr std::string_view kNames[] = {"absent", "damaged", "outdated", "whole"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string words(MeshState::Kind kind) {
+  constexpr Msg kWords[] = {msg::install_state_absent, msg::install_state_damaged,
+                            msg::install_state_outdated, msg::install_state_whole};
+  return text(kWords[static_cast<std::size_t>(kind)]);
+}
+
+Result<int> run_list(const std::vector<const MeshSet*>& sets, bool json) {
+  std::vector<JsonDoc> entries;
+  std::string lines, worst;
+  for (const MeshSet* set : sets) {
+    const Result<Installed> found = look_up(*set);
+    if (!found) return fail(found.error());
+    const MeshState& state = found->state;
+    entries.push_back({{"robot", set->robot},
+                       {"state", name(state.kind)},
+                       {"folder", found->folder.string()},
+                       {"meshes", set->files.size()},
+                       {"licence", set->licence},
+                       {"problem", state.problem}});
+    lines += padded(set->robot, 8) + padded(words(state.kind), 16) + found->folder.string() + "\n";
+    if (worst.empty() && !state.problem.empty()) {
+      worst = text(msg::install_mend, state.problem, set->robot);
+    }
+  }
+  std::fputs((json ? JsonDoc(std::move(entries)).document() : lines).c_str(), stdout);
+  if (worst.empty()) return 0;
+  log_error(worst);
+  return 1;
+}
+
+Result<int> run_remove(const std::vector<const MeshSet*>& sets) {
+  const Result<fs::path> data = data_folder();
+  if (!data) return fail(data.error());
+  std::error_code ignored;
+  const bool any_there = fs::exists(*data, ignored);
+  std::optional<FolderLock> lock;
+  if (any_there) {
+    Result<FolderLock> locked = lock_data_folder(*data);
+    if (!locked) return fail(std::move(locked.error()));
+    lock.emplace(std::move(*locked));
+  }
+  for (const MeshSet* set : sets) {
+    const Result<bool> removed = any_there ? remove_meshes(*data, *set) : Result<bool>(false);
+    if (!removed) return fail(removed.error());
+    const Msg said = *removed ? msg::install_removed : msg::install_nothing_to_remove;
+    std::printf("%s\n", text(said, set->robot).c_str());
+  }
+  return 0;
+}
+
+/// What `--from` names, as the address of a folder; empty where it was not given.
+Result<std::string> address_of(const std::string& from) {
+  const bool url = from.find("://") != std::string::npos;
+  if (from.empty() || url) {
+    return from.ends_with('/') ? from.substr(0, from.size() - 1) : from;
+  }
+  std::error_code ignored;
+  if (!fs::is_directory(from, ignored)) {
+    return fail(Errc::bad_input, "--from: " + text(msg::core_no_such_folder, from));
+  }
+  return file_url(from);
+}
+
+Result<void> install_one(const MeshSet& set, MeshSources& sources) {
+  const Result<Installed> before = look_up(set);
+  if (!before) return fail(before.error());
+  if (before->state.kind == MeshState::Kind::whole) {
+    std::printf("%s\n", text(msg::install_already, set.robot, before->folder.string()).c_str());
+    return {};
+  }
+  if (!before->state.problem.empty()) {
+    log_info(text(msg::install_mending, before->state.problem));
+  }
+  if (auto done = install_meshes(before->data, set, before->scene, sources); !done) return done;
+  std::printf("%s\n", text(msg::install_done, set.robot, set.files.size(), set.licence,
+                           before->folder.string())
+                          .c_str());
+  return {};
+}
+
+Result<int> run_install(const std::vector<const MeshSet*>& sets, const Options& options) {
+  MeshSources sources = default_sources();
+  Result<std::string> from = address_of(options.from);
+  if (!from) return fail(std::move(from.error()));
+  sources.from = std::move(*from);
+  const Result<fs::path> data = data_folder();
+  if (!data) return fail(data.error());
+  const Result<FolderLock> lock = lock_data_folder(*data);
+  if (!lock) return fail(lock.error());
+  for (const MeshSet* set : sets) {
+    if (auto done = install_one(*set, sources); !done) return fail(std::move(done.error()));
+  }
+  return 0;
+}
+
+Result<int> run(const Options& options) {
+  const char* first = options.list ? "--list" : options.remove ? "--remove" : "";
+  const char* second = options.list && options.remove ? "--remove" : "--from";
+  if (*first != '\0' && ((options.list && options.remove) || !options.from.empty())) {
+    return fail(Errc::usage, text(msg::app_exclusive_options, first, second));
+  }
+  const Result<std::vector<const MeshSet*>> sets = chosen(options);
+  if (!sets) return fail(sets.error());
+  if (options.list) return run_list(*sets, options.json);
+  if (options.remove) return run_remove(*sets);
+  return run_install(*sets, options);
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App& install =
+      add_subcommand(app, "install", msg::install_install_summary, msg::install_install_examples);
+  add_option(install, "names", options->names, msg::install_option_names, "[NAME...]");
+  add_flag(install, "--list", options->list, msg::install_option_list);
+  add_flag(install, "--remove", options->remove, msg::install_option_remove);
+  add_option(install, "--from", options->from, msg::install_option_from, "DIR_OR_URL");
+  add_flag(install, "--json", options->json, msg::app_option_json);
+  return [options, &install]() -> Result<int> {
+    if (is_called(install)) return run(*options);
+    return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm models", "install"));
+  };
+}
+
+}  // namespace
+
+Command models_command() { return {"models", msg::install_summary, msg::install_examples, setup}; }
+
+}  // namespace mjarm::app

@@ -1,0 +1,213 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "apps/mjarm/view/program_test.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kWalled = "universal_robots_ur5e/wall.xml";
+// Before and behind the wall, the tool pointing down.
+constexpr const char* kBefore = "-4.375,-1.2456,1.9905,-2.3157,-1.5708,0";
+constexpr const char* kBehind = "-5.551,-1.2456,1.9905,-2.3157,-1.5708,0";
+constexpr const char* kPlaceBehind = "-0.3,-0.45,0.2";
+
+class PlanRobot : public ::testing::Test {
+ protected:
+  using Words = std::vector<std::string>;
+
+  std::string paths() const { return (folder_.path() / "path.json").string(); }
+  support::ProgramResult plan(const Words& more, const char* robot = kWalled) {
+    Words words{"plan", "--robot", robot, "--out", paths()};
+    words.insert(words.end(), more.begin(), more.end());
+    return mjarm(words);
+  }
+  json answer() const { return json::parse(folder_.read("path.json")).front(); }
+  support::ProgramResult verify(const char* robot = kWalled) {
+    return mjarm({"verify", paths(), "--robot", robot, "--json"});
+  }
+
+  support::TempFolder folder_;
+};
+
+TEST_F(PlanRobot, GoesRoundTheWallAndIsVerifiedWithExactGeometry) {
+  const auto planned = plan({"--start", kBefore, "--goal", kBehind});
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  const json path = answer();
+  EXPECT_GT(path.at("path").size(), 2u);
+  EXPECT_EQ(path.at("spheres"), 0.012);
+  EXPECT_FALSE(path.contains("tilt"));
+  const auto verified = verify();
+  EXPECT_EQ(verified.exit_code, 0) << verified.err;
+  EXPECT_EQ(json::parse(verified.out).at("valid"), 1);
+}
+
+TEST_F(PlanRobot, AStraightWayThroughTheWallIsNotVerified) {
+  folder_.write("path.json", std::string("{\"straight\":[[") + kBefore + "],[" + kBehind + "]]}");
+  const auto verified = verify();
+  EXPECT_EQ(verified.exit_code, 1);
+  const json faults = json::parse(verified.out).at("paths").at("straight").at("faults");
+  std::vector<std::string> kinds;
+  for (const json& fault : faults) kinds.push_back(fault.at("kind"));
+  EXPECT_EQ(kinds, (std::vector<std::string>{"hit", "contact"}));
+  EXPECT_NE(faults[1].at("what").get<std::string>().find("\"wall\""), std::string::npos);
+}
+
+TEST_F(PlanRobot, KeepsTheToolUprightAndSaysByHowMuch) {
+  const Words way{"--start", kBefore, "--goal", kBehind, "--keep-upright"};
+  Words words = way;
+  words.push_back("5deg");
+  ASSERT_EQ(plan(words).exit_code, 0);
+  const json path = answer();
+  const double five = 5 * std::numbers::pi / 180;
+  EXPECT_NEAR(path.at("tilt").at("limit"), five, 1e-12);
+  EXPECT_LE(path.at("tilt").at("largest"), five);
+  EXPECT_EQ(verify().exit_code, 0);
+  // A smaller one than is true is found out.
+  const json sound = json::parse(folder_.read("path.json"));
+  json file = sound;
+  file.front()["tilt"]["largest"] = 1e-4;
+  file.front().erase("certificate");
+  folder_.write("path.json", file.dump());
+  const auto verified = verify();
+  EXPECT_EQ(verified.exit_code, 1);
+  EXPECT_NE(verified.err.find("leans"), std::string::npos) << verified.err;
+  // What cannot be is no input.
+  const std::pair<const char*, json> wrong[] = {
+      {"/tilt/tool", {0, 0, 0}}, {"/tilt/world", {0, 0, 2}}, {"/tilt/largest", 0.2},
+      {"/tilt/limit", 2},        {"/tilt/limit", nullptr},   {"/spheres", 1e-9},
+      {"/spheres", -1},          {"/hold", "rod"},           {"/allow", {1, 2}}};
+  for (const auto& [place, value] : wrong) {
+    file = sound;
+    file.front()[json::json_pointer(place)] = value;
+    folder_.write("path.json", file.dump());
+    const auto refused = verify();
+    EXPECT_EQ(refused.exit_code, 2) << place;
+    EXPECT_NE(only_line(refused).find("path.json"), std::string::npos) << place;
+  }
+}
+
+TEST_F(PlanRobot, ARegionIsReachedWhereThePoseIsNot) {
+  const Words far{"--pos", "-0.95,-0.3,0.2", "--euler", "180deg,0,0"};
+  const auto none = plan(far);
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(only_line(none).find("out of reach"), std::string::npos);
+  EXPECT_EQ(answer().at("ok"), false);
+  Words near = far;
+  near.insert(near.end(), {"--within", "400mm,0,0", "--turn", "180deg"});
+  ASSERT_EQ(plan(near).exit_code, 0);
+  EXPECT_EQ(verify().exit_code, 0);
+}
+
+TEST_F(PlanRobot, SevenAxesAndAToolWhoseTurnIsFree) {
+  ASSERT_EQ(plan({"--pos", "0.4,-0.3,0.4", "--task", "position"}, "panda").exit_code, 0);
+  EXPECT_EQ(verify("panda").exit_code, 0);
+  ASSERT_EQ(
+      plan({"--pos", "0.4,-0.3,0.4", "--euler", "180deg,0,0", "--task", "axis"}, "panda").exit_code,
+      0);
+  EXPECT_EQ(verify("panda").exit_code, 0);
+}
+
+TEST_F(PlanRobot, SaysWhatIsHitAtTheGoal) {
+  const auto result = plan({"--pos", "0,-0.45,0.2", "--euler", "180deg,0,0"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(only_line(result).find("every goal is in collision"), std::string::npos);
+}
+
+TEST_F(PlanRobot, SameBytesEveryTime) {
+  const Words words{"--pos", kPlaceBehind,  "--euler", "180deg,0,0", "--keep-upright",
+                    "10deg", "--no-timing", "--start", kBefore};
+  ASSERT_EQ(plan(words).exit_code, 0);
+  const std::string first = folder_.read("path.json");
+  ASSERT_EQ(plan(words).exit_code, 0);
+  EXPECT_EQ(folder_.read("path.json"), first);
+}
+
+/// The walled UR5e with a rod that stands where the tool begins.
+std::string with_rod(const support::TempFolder& folder) {
+  const std::string file = model_file("universal_robots_ur5e/wall.xml");
+  return folder
+      .write("rod.xml", "<mujoco><include file=\"" + file + R"("/><worldbody>
+        <body name="rod" pos="0.3 -0.45 0.06"><freejoint/>
+          <geom name="rod" type="capsule" size="0.01 0.04"/></body>
+        </worldbody></mujoco>)")
+      .string();
+}
+
+TEST_F(PlanRobot, CarriesWhatItHoldsOverTheWall) {
+  const std::string robot = with_rod(folder_);
+  Words words{"--start", kBefore, "--goal", kBehind, "--allow-outside"};
+  ASSERT_EQ(plan(words, robot.c_str()).exit_code, 0);
+  const std::string bare = folder_.read("path.json");
+  words.insert(words.end(), {"--hold", "rod"});
+  ASSERT_EQ(plan(words, robot.c_str()).exit_code, 0);
+  EXPECT_NE(folder_.read("path.json"), bare);
+  // The file says what was held.
+  EXPECT_EQ(answer().at("hold"), json({"rod"}));
+  const auto held = mjarm({"verify", "--robot", robot, "--allow-outside", paths()});
+  EXPECT_EQ(held.exit_code, 0) << held.err;
+  json forgotten = json::parse(folder_.read("path.json"));
+  forgotten.front().erase("hold");
+  folder_.write("path.json", forgotten.dump());
+  EXPECT_EQ(mjarm({"verify", "--robot", robot, "--allow-outside", paths()}).exit_code, 1);
+  const auto told =
+      mjarm({"verify", "--robot", robot, "--allow-outside", "--hold", "rod", paths()});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+
+  words.back() = "rood";
+  const auto wrong = plan(words, robot.c_str());
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_NE(only_line(wrong).find("--hold: there is no body \"rood\""), std::string::npos);
+  words[words.size() - 2] = "--allow";
+  const auto lone = plan(words, robot.c_str());
+  EXPECT_EQ(lone.exit_code, 2);
+  EXPECT_NE(only_line(lone).find("--allow"), std::string::npos);
+}
+
+TEST_F(PlanRobot, WrongWordsGetOneLine) {
+  const std::pair<Words, const char*> wrong[] = {
+      {{}, "exactly one of --goal and --pos"},
+      {{"--goal", "1,2"}, "--goal: 6 values"},
+      {{"--goal", "0,0,0,0,0,0", "--within", "1,1,1"}, "--goal and --within exclude"},
+      {{"--pos", "1,2,3"}, "--euler and --quat"},
+      {{"--pos", "1,2,3", "--task", "pos"}, "--task"},
+      {{"--pos", "1,2,3", "--task", "position", "--within", "0,0,-1"}, "--within"},
+      {{"--pos", "1,2,3", "--task", "position", "--lean", "181deg"}, "--lean"},
+      {{"--goal", "0,0,0,0,0,0", "--keep-upright", "90deg"}, "--keep-upright"},
+      {{"--goal", "0,0,0,0,0,0", "--keep-upright", "0"}, "--keep-upright"},
+      {{"--goal", "0,0,0,0,0,0", "--spheres", "0"}, "--spheres"},
+      {{"--goal", "0,0,0,0,0,nan"}, "--goal"},
+      {{"--goal", "0,0,0,0,0,0", "--problem", "x"}, "--robot and --problem"},
+      {{"--goal", "0,0,0,0,0,0", "--hold", "wall"}, "--hold: the body \"wall\" has no free joint"},
+      {{"--goal", "0,0,0,0,0,0", "--allow", "wall"}, "--allow"},
+      {{"--goal", "0,0,0,0,0,0", "--allow", "wall,flor"}, "\"floor\""},
+      {{"--pos", "1,2,3", "--task", "position", "--keep-upright", "5deg"}, "--task axis"},
+      {{"--goal", "0,0,0,0,0,0", "--in", "x.json"}, "--in and --robot"}};
+  for (const auto& [words, says] : wrong) {
+    const auto result = plan(words);
+    EXPECT_EQ(result.exit_code, 2) << says;
+    EXPECT_NE(only_line(result).find(says), std::string::npos) << result.err;
+  }
+  const auto both = mjarm({"verify", paths(), "--robot", "ur5e", "--in", "x.json"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_NE(only_line(both).find("--in and --robot"), std::string::npos);
+  // Nothing that was asked for is left out without a word.
+  for (const Words& more : {Words{"--hold", "cup"}, Words{"--allow", "a,b"},
+                            Words{"--within", "1,1,1"}, Words{"--spheres", "1mm"}}) {
+    Words words{"plan", "--in", "x.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto result = mjarm(words);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(only_line(result).find("--in and --robot"), std::string::npos) << result.err;
+  }
+  const auto held = mjarm({"verify", "x.json", "--in", "y.json", "--hold", "cup"});
+  EXPECT_EQ(held.exit_code, 2);
+  EXPECT_NE(only_line(held).find("--in and --hold"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mjarm::app

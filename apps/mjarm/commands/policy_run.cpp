@@ -1,0 +1,182 @@
+#include "apps/mjarm/commands/policy_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "apps/mjarm/demos/output.hpp"
+#include "apps/mjarm/demos/show.hpp"
+#include "apps/mjarm/commands/train_outcome.hpp"
+#include "apps/mjarm/commands/policy_player.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/train.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/rl/safetensors.hpp"
+#include "mjarm/rl/sb3_zip.hpp"
+
+namespace mjarm::app {
+namespace {
+
+/// What was measured of the episodes that were shown.
+struct Played {
+  std::string csv;
+  std::vector<PlotLine> distances;  ///< [mm] over time [s], one an episode
+  double max_joint_step = 0;        ///< [rad]
+  bool ended_by_user = false;
+};
+
+std::string heading(const Arm& arm) {
+  std::string line = "episode,time [s]";
+  for (const ArmJoint& joint : arm.joints) line += "," + joint.name + " [rad]";
+  return line + ",x [m],y [m],z [m],goal x [m],goal y [m],goal z [m],distance [m]\n";
+}
+
+void add_row(int episode, double time, const JointVec& q, const PolicyPlayer& player,
+             const Eigen::Vector3d& p_WT, Played& played) {
+  const Eigen::Vector3d goal = player.goal();
+  const double distance = (goal - p_WT).norm();
+  played.csv += std::to_string(episode) + "," + number(time);
+  for (const double value : q) played.csv += "," + number(value);
+  for (const Eigen::Vector3d& p : {p_WT, goal}) {
+    for (const double value : p) played.csv += "," + number(value);
+  }
+  played.csv += "," + number(distance) + "\n";
+  played.distances.back().x.push_back(time);
+  played.distances.back().y.push_back(1e3 * distance);
+}
+
+/// One episode, until its end or that of the window.
+Result<void> play_episode(int episode, PolicyPlayer& player, Show& show, Played& played) {
+  if (auto begun = player.begin_episode(); !begun) return begun;
+  Sim& sim = player.sim();
+  show.begin_goal(sim, player.goal());
+  played.distances.push_back({.label = std::to_string(episode)});
+  const double start = sim.time();
+  JointVec q = sim.arm_state(player.arm()).q;
+  add_row(episode, 0, q, player, player.tool().p, played);
+  for (;;) {
+    const Result<bool> stepped = player.step();
+    if (!stepped) return fail(stepped.error());
+    if (!*stepped) return {};
+    const JointVec now = sim.arm_state(player.arm()).q;
+    played.max_joint_step = std::max(played.max_joint_step, (now - q).cwiseAbs().maxCoeff());
+    q = now;
+    const Eigen::Vector3d p_WT = player.tool().p;
+    add_row(episode, sim.time() - start, q, player, p_WT, played);
+    if (!show.step(sim, p_WT)) {
+      played.ended_by_user = true;
+      return {};
+    }
+  }
+}
+
+/// Shows the first goals; with a window, more of them until it is closed.
+Result<Played> play(PolicyPlayer& player, const PolicyTrial& trial, Show& show) {
+  Played played;
+  played.csv = heading(player.arm());
+  for (int i = 0; i < trial.shown && !played.ended_by_user; ++i) {
+    if (auto done = play_episode(i + 1, player, show, played); !done) {
+      return fail(std::move(done.error()));
+    }
+  }
+  show.set_filming(false);
+  Played more;
+  while (show.has_window() && !played.ended_by_user && !more.ended_by_user) {
+    more = {};
+    if (auto done = play_episode(0, player, show, more); !done) {
+      return fail(std::move(done.error()));
+    }
+  }
+  return played;
+}
+
+Plot plot_of(const std::string& title, const rl::Evaluation& evaluation, Played& played) {
+  PlotPanel over_time{.title = text(msg::train_plot_over_time),
+                      .x_label = text(msg::train_plot_time),
+                      .y_label = text(msg::train_plot_mm)};
+  over_time.lines = std::move(played.distances);
+  over_time.y_from_zero = true;
+  return {.title = title,
+          .note = in_words(evaluation),
+          .panels = {std::move(over_time), distance_panel(evaluation)}};
+}
+
+Report report_of(const PolicyTrial& trial, const Model& model, const rl::ReachOptions& task,
+                 const rl::Evaluation& evaluation, const Played& played) {
+  Report report;
+  report.name = trial.name;
+  report.model = model.name();
+  report.steps = std::lround(evaluation.steps * evaluation.episodes * task.frame_skip);
+  report.duration = static_cast<double>(report.steps) * model.timestep();
+  report.coverage = evaluation.within_2cm;
+  report.static_error = PoseError{evaluation.max, evaluation.turn_p95};
+  report.max_joint_step = played.max_joint_step;
+  report.facts = facts_of(evaluation);
+  report.ok = evaluation.within_2cm >= trial.least_success;
+  if (!report.ok) {
+    report.reason = "goals_missed";
+    report.detail = in_words(evaluation);
+  }
+  return report;
+}
+
+}  // namespace
+
+Result<LoadedPolicy> load_policy(const std::filesystem::path& file) {
+  const bool zip = file.extension() == ".zip";
+  const Result<rl::TensorSet> set = zip ? rl::load_sb3_zip(file) : rl::load_safetensors(file);
+  if (!set) return fail(set.error());
+  Result<rl::Policy> policy = rl::Policy::from(*set);
+  if (!policy) {
+    return fail(policy.error().code, file.string() + ": " + policy.error().what);
+  }
+  const Result<std::optional<rl::TrainingOptions>> config = config_in(*set, file);
+  if (!config) return fail(config.error());
+  return LoadedPolicy{file, std::move(*policy), config->value_or(rl::TrainingOptions{}).task};
+}
+
+Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& trial,
+                                 const DemoOptions& options) {
+  const Result<Model> model = task_model(loaded.task);
+  if (!model) return fail(model.error());
+  if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
+  const Stopwatch watch;
+  auto evaluation = rl::evaluate(*model, loaded.task, loaded.policy,
+                                 {.episodes = trial.episodes, .seed = trial.seed});
+  if (!evaluation) {
+    return fail(evaluation.error().code, loaded.file.string() + ": " + evaluation.error().what);
+  }
+  const double seconds = 1e-6 * watch.us();
+  log_info(in_words(*evaluation));
+
+  const rl::ActFunction act = [&](std::span<const float> observation, std::span<float> action) {
+    const Eigen::VectorXf chosen = loaded.policy.act(observation);
+    std::copy(chosen.begin(), chosen.end(), action.begin());
+  };
+  Result<PolicyPlayer> player = PolicyPlayer::create(*model, loaded.task, act, trial.seed);
+  if (!player) return fail(std::move(player.error()));
+  Result<Show> show = Show::open(*model, "mjarm " + trial.name, options.headless);
+  if (!show) return fail(std::move(show.error()));
+  show->set_trail(true);
+  if (options.video) {
+    auto filming = show->film(*model, options.out / kVideoFile, "");
+    if (!filming) return fail(std::move(filming.error()));
+  }
+  Result<Played> played = play(*player, trial, *show);
+  if (!played) return fail(std::move(played.error()));
+  Report report = report_of(trial, *model, loaded.task, *evaluation, *played);
+  if (options.timing) report.rtf = report.duration / seconds;
+  const DemoOutput output{report, plot_of(trial.name, *evaluation, *played), show->overlay(), ""};
+  auto written = write_file(options.out / "log.csv", played->csv)
+                     .and_then([&] {
+                       return write_output(options.out, *model, player->sim().snapshot(), output);
+                     })
+                     .and_then([&] { return show->end_film(); });
+  if (!written) return fail(std::move(written.error()));
+  return PolicyOutcome{std::move(report), std::move(*evaluation)};
+}
+
+}  // namespace mjarm::app

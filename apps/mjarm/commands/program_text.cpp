@@ -1,0 +1,118 @@
+#include "apps/mjarm/commands/program_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/mjarm/cli/table.hpp"
+#include "mjarm/core/messages/motion_program.hpp"
+
+namespace mjarm::app {
+namespace {
+
+std::string or_dash(bool known, const std::string& words) { return known ? words : "-"; }
+
+std::string pair_of(const GeomPair& pair) { return pair.geom1 + " - " + pair.geom2; }
+
+std::vector<std::string> row_of(const ProgramPlan& plan, const PlannedMove& move) {
+  const Arm& arm = plan.arms[move.tool];
+  const bool moves = move.measures.has_value();
+  const MoveMeasures measures = move.measures.value_or(MoveMeasures{});
+  const Singularity& singular = measures.singularity;
+  const bool near = singular.kind != SingularKind::none;
+  return {
+      move.place.line > 0 ? std::to_string(move.place.line) : "-",
+      move.instructions > 1 ? fmt::format("{} x{}", move.word, move.instructions) : move.word,
+      fmt::format("{:.2f} s", move.trajectory.duration()),
+      or_dash(move.curve.has_value(),
+              fmt::format("{:.3f} m", move.curve ? move.curve->length() : 0.0)),
+      or_dash(moves, fmt::format("{:.3g}{}{}", singular.smallest, near ? " " : "",
+                                 near ? name(singular.kind) : "")),
+      or_dash(moves && measures.limit_joint >= 0,
+              fmt::format("{:.3g} {}", measures.limit_room,
+                          measures.limit_joint < 0
+                              ? ""
+                              : arm.joints[static_cast<std::size_t>(measures.limit_joint)].name)),
+      or_dash(moves,
+              std::isfinite(measures.clearance)
+                  ? fmt::format("{:.1f} mm {}", 1e3 * measures.clearance, pair_of(measures.nearest))
+                  : text(msg::motion_program_far))};
+}
+
+JsonDoc move_json(const ProgramPlan& plan, const PlannedMove& move) {
+  const Arm& arm = plan.arms[move.tool];
+  JsonDoc out = {{"line", move.place.line},
+                 {"instruction", move.word},
+                 {"instructions", move.instructions},
+                 {"duration", move.trajectory.duration()}};
+  if (move.curve) out.set("length", move.curve->length());
+  if (!move.measures) return out;
+  const MoveMeasures& measures = *move.measures;
+  out.set("min_singular_value", measures.singularity.smallest);
+  out.set("singularity", std::string_view(name(measures.singularity.kind)));
+  out.set("min_manipulability", measures.manipulability);
+  out.set("limit_room", measures.limit_room);
+  if (measures.limit_joint >= 0) {
+    out.set("limit_joint", arm.joints[static_cast<std::size_t>(measures.limit_joint)].name);
+  }
+  out.set("clearance", measures.clearance);
+  if (std::isfinite(measures.clearance)) {
+    out.set("nearest", std::vector<std::string>{measures.nearest.geom1, measures.nearest.geom2});
+  }
+  out.set("max_joint_step", measures.max_step);
+  return out;
+}
+
+}  // namespace
+
+std::string plan_text(const LoadedProgram& loaded) {
+  const ProgramPlan& plan = loaded.plan;
+  std::vector<std::vector<std::string>> rows{
+      {text(msg::motion_program_line), text(msg::motion_program_instruction),
+       text(msg::motion_program_time), text(msg::motion_program_way),
+       text(msg::motion_program_singular), text(msg::motion_program_room),
+       text(msg::motion_program_clearance)}};
+  for (const PlannedMove& move : plan.moves) rows.push_back(row_of(plan, move));
+  std::string out = aligned(rows);
+  for (const PlannedMove& move : plan.moves) {
+    for (const SpeedDip& dip : move.dips) {
+      out += text(msg::motion_program_dip, move.place.line, describe(dip, plan.arms[move.tool])) +
+             "\n";
+    }
+  }
+  for (const ProgramFault& fault : plan.faults) {
+    out += line_of(loaded, fault) + "\n";
+    if (!fault.detour) continue;
+    out += text(msg::motion_program_detour, fault.place.line, fault.word, fault.detour->edges,
+                fault.detour->duration) +
+           "\n";
+  }
+  if (plan.ok()) out += text(msg::motion_program_total, plan.duration()) + "\n";
+  return out;
+}
+
+JsonDoc plan_json(const LoadedProgram& loaded) {
+  const ProgramPlan& plan = loaded.plan;
+  std::vector<JsonDoc> moves, faults;
+  for (const PlannedMove& move : plan.moves) moves.push_back(move_json(plan, move));
+  for (const ProgramFault& fault : plan.faults) {
+    JsonDoc& told = faults.emplace_back(JsonDoc{{"line", fault.place.line},
+                                                {"column", fault.place.column},
+                                                {"instruction", fault.word},
+                                                {"reason", fault.reason},
+                                                {"detail", fault.what}});
+    if (!fault.detour) continue;
+    JsonDoc fix = {{"kind", "detour"},
+                   {"instruction", "plan"},
+                   {"edges", fault.detour->edges},
+                   {"duration", fault.detour->duration}};
+    if (std::isfinite(fault.detour->clearance)) fix.set("clearance", fault.detour->clearance);
+    told.set("fix", std::move(fix));
+  }
+  return {{"ok", plan.ok()},
+          {"cycle_time", plan.duration()},
+          {"moves", std::move(moves)},
+          {"faults", std::move(faults)}};
+}
+
+}  // namespace mjarm::app

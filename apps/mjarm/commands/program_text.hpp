@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "apps/mjarm/cli/json_doc.hpp"
+#include "apps/mjarm/commands/program_load.hpp"
+
+namespace mjarm::app {
+
+/// A table of the motions, what slows the tool down, and the faults, for people.
+[[nodiscard]] std::string plan_text(const LoadedProgram& loaded);
+/// The same as one document.
+[[nodiscard]] JsonDoc plan_json(const LoadedProgram& loaded);
+
+}  // namespace mjarm::app

@@ -1,0 +1,139 @@
+#include "apps/mjarm/commands/render_program.hpp"
+
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/view/program_scene.hpp"
+#include "apps/mjarm/commands/render_video.hpp"
+#include "mjarm/core/messages/render_command.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
+#include "mjarm/render/overlay_shapes.hpp"
+#include "mjarm/render/png.hpp"
+#include "mjarm/render/trail.hpp"
+#include "mjarm/sim/follow.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr double kRest = 0.5;  // [s] at the end
+
+/// Runs the motions of a plan one after the other, with the trail of the tool in an overlay.
+class ProgramRun {
+ public:
+  explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
+    sim_.place(loaded.robot.arm, as_span(loaded.plan.q_start));
+    for (const PlannedMove& move : loaded.plan.moves) {
+      if (!move.curve && move.corners.empty()) continue;
+      add_planned_path(planned_, planned_tool_path(move, loaded.plan.arms[move.tool]));
+    }
+  }
+
+  /// @param seconds     [s] of simulated time at most.
+  /// @param after_step  returns false to stop; called once before anything moves.
+  Result<void> run(std::optional<double> seconds, const std::function<bool()>& after_step) {
+    if (!after_step()) return {};
+    bool stopped = false;
+    return for_each_motion(loaded_.plan, sim_, kRest,
+                           [&](const PlannedMove& move, double rest) -> Result<void> {
+                             if (stopped) return {};
+                             const Result<bool> went = follow(move, rest, seconds, after_step);
+                             if (!went) return fail(went.error());
+                             stopped = !*went;
+                             return {};
+                           });
+  }
+
+  [[nodiscard]] const Sim& sim() const { return sim_; }
+  [[nodiscard]] Overlay overlay() const {
+    Overlay all = planned_;
+    trail_.draw(all);
+    return all;
+  }
+
+ private:
+  /// @return false where it was stopped.
+  Result<bool> follow(const PlannedMove& move, double rest, std::optional<double> seconds,
+                      const std::function<bool()>& after_step) {
+    const Arm& arm = loaded_.robot.arm;
+    const Arm& tool = loaded_.plan.arms[move.tool];
+    Result<Controller> controller = Controller::make(
+        loaded_.robot.model, arm, loaded_.program.control.value_or(ControlMode::computed_torque));
+    if (!controller) return fail(std::move(controller.error()));
+    const FollowSetup setup{.sim = sim_,
+                            .controller = *controller,
+                            .arm = arm,
+                            .after_step = [&](const Sim& sim, const JointVec&) {
+                              trail_.add(sim.tool(tool).p);
+                              return after_step() && !(seconds && sim.time() >= *seconds);
+                            }};
+    const auto outcome = follow_time(setup, move.trajectory, {.settle = rest});
+    if (outcome) return !outcome->stopped;
+    return fail(Errc::impossible, describe(outcome.error(), arm));
+  }
+
+  const LoadedProgram& loaded_;
+  Sim sim_;
+  Overlay planned_;
+  Trail trail_{{.max_points = 10000}};
+};
+
+Result<std::string> video_of(ProgramRun& run, const Model& model, const PictureOptions& options,
+                             Progress& progress) {
+  Result<VideoOfRun> video = VideoOfRun::open(model, options);
+  if (!video) return fail(std::move(video.error()));
+  const auto after_step = [&] {
+    progress.advance();
+    return video->is_due(run.sim()) ? video->step(run.sim(), run.overlay()) : !interrupted();
+  };
+  if (Result<void> ran = run.run(options.seconds, after_step); !ran) return fail(ran.error());
+  if (Result<void> finished = video->finish(); !finished) return fail(finished.error());
+  return video->summary();
+}
+
+Result<std::string> picture_of(ProgramRun& run, const Model& model, const PictureOptions& options,
+                               Progress& progress) {
+  const Result<Camera> camera = choose_camera(model, options.camera);
+  if (!camera) return fail(camera.error());
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model, offscreen_options(options));
+  if (!renderer) return fail(std::move(renderer.error()));
+  const auto after_step = [&progress] {
+    progress.advance();
+    return !interrupted();
+  };
+  if (Result<void> ran = run.run(options.seconds, after_step); !ran) return fail(ran.error());
+  if (interrupted()) {
+    return fail(Errc::system, text(msg::render_command_stopped, options.out.string()));
+  }
+  return write_picture(*renderer, options, run.sim().snapshot(), *camera, run.overlay());
+}
+
+}  // namespace
+
+Result<std::string> render_program(const std::string& file, const PictureOptions& options) {
+  const Result<LoadedProgram> loaded = load_sound_program(file);
+  if (!loaded) return fail(loaded.error());
+  const Model& model = loaded->robot.model;
+  double duration = loaded->plan.duration() + kRest;
+  if (options.seconds) duration = std::min(duration, *options.seconds);
+  Progress progress(text(msg::render_command_running),
+                    static_cast<std::uint64_t>(duration / model.timestep()));
+  ProgramRun run(*loaded);
+  return options.video ? video_of(run, model, options, progress)
+                       : picture_of(run, model, options, progress);
+}
+
+Result<std::string> write_picture(OffscreenRenderer& renderer, const PictureOptions& options,
+                                  const Snapshot& snapshot, const Camera& camera,
+                                  const Overlay& overlay) {
+  const Result<Image> image = renderer.draw(snapshot, camera, overlay);
+  if (!image) return fail(image.error());
+  if (Result<void> written = write_png(*image, options.out); !written) {
+    return fail(std::move(written.error()));
+  }
+  return text(msg::render_command_picture, options.out.string(), image->width, image->height);
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,61 @@
+#include "apps/mjarm/commands/render_video.hpp"
+
+#include <utility>
+
+#include "mjarm/core/messages/render_command.hpp"
+#include "mjarm/core/os.hpp"
+
+namespace mjarm::app {
+
+Result<VideoOfRun> VideoOfRun::open(const Model& model, const PictureOptions& options) {
+  Result<Camera> camera = choose_camera(model, options.camera);
+  if (!camera) return fail(std::move(camera.error()));
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model, offscreen_options(options));
+  if (!renderer) return fail(std::move(renderer.error()));
+  Result<VideoWriter> writer = VideoWriter::create(
+      options.out, {.width = options.width, .height = options.height, .fps = options.fps});
+  if (!writer) return fail(std::move(writer.error()));
+  return VideoOfRun(options, std::move(*camera), std::move(*renderer), std::move(*writer));
+}
+
+bool VideoOfRun::add(const Snapshot& snapshot, const Camera& camera, const Overlay& overlay) {
+  if (error_ || interrupted()) return false;
+  const Result<Image> image = renderer_.draw(snapshot, camera, overlay);
+  const Result<void> added = image ? writer_.add(*image) : fail(image.error());
+  if (!added) error_ = added.error();
+  return !error_;
+}
+
+bool VideoOfRun::is_due(const Sim& sim) const {
+  // Half a step early is as near as half a step late.
+  const double half = sim.model().timestep() / 2;
+  return !start_ || *start_ + frames() / options_.fps <= sim.time() + half;
+}
+
+bool VideoOfRun::step(const Sim& sim, const Overlay& overlay) {
+  if (error_ || interrupted()) return false;
+  if (!start_) start_ = sim.time();
+  while (is_due(sim)) {
+    if (!add(sim.snapshot(), camera_, overlay)) return false;
+  }
+  return true;
+}
+
+Result<void> VideoOfRun::finish() {
+  if (!error_ && !interrupted()) {
+    Result<void> finished = writer_.finish();
+    if (finished) return {};
+    error_ = std::move(finished.error());
+  }
+  if (interrupted()) {
+    return fail(Errc::system, text(msg::render_command_stopped, options_.out.string()));
+  }
+  return fail(*error_);
+}
+
+std::string VideoOfRun::summary() const {
+  return text(msg::render_command_video, options_.out.string(), options_.width, options_.height,
+              frames(), frames() / options_.fps);
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+
+#include "apps/mjarm/commands/render_options.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/render/video.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm::app {
+
+/// Takes the frames of a video from a simulation as it runs, in simulated time. It only reads: the
+/// simulation goes on as if nobody looked.
+///
+///   Result<VideoOfRun> video = VideoOfRun::open(model, options);
+///   (void)video->step(sim, overlay);                       // the first frame, before it moves
+///   setup.after_step = [&](const Sim& sim, const JointVec&) { return video->step(sim, overlay); };
+///   ... run ...
+///   Result<void> done = video->finish();
+class VideoOfRun {
+ public:
+  /// Checks the camera, opens OpenGL and starts ffmpeg; nothing stands under the name of the file
+  /// before `finish`.
+  [[nodiscard]] static Result<VideoOfRun> open(const Model& model, const PictureOptions& options);
+
+  /// Whether `step` would take a frame now; spares making an overlay for nothing.
+  [[nodiscard]] bool is_due(const Sim& sim) const;
+
+  /// Another run begins here, whatever its clock says: the next frame is due now.
+  void begin_again(const Sim& sim) { start_ = sim.time() - frames() / options_.fps; }
+
+  /// Takes the frames that are due, the first at the time of the first call. After each step.
+  /// @return false where the user pressed Ctrl-C or a frame could not be kept: stop then, `finish`
+  ///         tells why.
+  [[nodiscard]] bool step(const Sim& sim, const Overlay& overlay);
+
+  /// Adds a frame of any state and camera, whatever the time. @return false as `step`.
+  [[nodiscard]] bool add(const Snapshot& snapshot, const Camera& camera, const Overlay& overlay);
+
+  /// Ends the file, which now stands under its name; without this call there is none.
+  /// @return why there is no file: Ctrl-C, ffmpeg, OpenGL.
+  [[nodiscard]] Result<void> finish();
+
+  [[nodiscard]] const Camera& camera() const { return camera_; }
+  [[nodiscard]] int frames() const { return writer_.frames(); }
+  /// `a.mp4: 1280 x 720 pixels, 150 frames, 5.00 s`, for people.
+  [[nodiscard]] std::string summary() const;
+
+ private:
+  VideoOfRun(PictureOptions options, Camera camera, OffscreenRenderer renderer, VideoWriter writer)
+      : options_(std::move(options)),
+        camera_(std::move(camera)),
+        renderer_(std::move(renderer)),
+        writer_(std::move(writer)) {}
+
+  PictureOptions options_;
+  Camera camera_;
+  OffscreenRenderer renderer_;
+  VideoWriter writer_;
+  std::optional<double> start_;  ///< [s] of the first frame
+  std::optional<Error> error_;
+};
+
+}  // namespace mjarm::app

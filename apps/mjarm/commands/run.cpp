@@ -1,0 +1,81 @@
+#include <filesystem>
+#include <memory>
+
+#include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/demos/outcome.hpp"
+#include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/view/view_host.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/demo.hpp"
+#include "mjarm/core/messages/motion_program.hpp"
+#include "mjarm/core/os.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  std::string file, out, control, tolerance;
+  bool headless = false, video = false, no_timing = false;
+};
+
+/// Options of the command as those of a demo, which is shown and kept the same way.
+Result<DemoOptions> stage_options(const Options& options) {
+  DemoOptions out;
+  out.out = options.out;
+  out.headless = options.headless;
+  out.video = options.video;
+  out.timing = !options.no_timing;
+  if (options.control.empty()) return out;
+  const Result<ControlMode> mode = control_mode(options.control);
+  if (!mode) return fail(mode.error());
+  out.control = *mode;
+  return out;
+}
+
+Result<double> tolerance_of(const Options& options) {
+  constexpr double kTolerance = 5e-4;  // [m]
+  if (options.tolerance.empty()) return kTolerance;
+  const Result<double> value = parse_quantity(options.tolerance, Quantity::length);
+  if (!value) return fail(in_option("--tolerance", value.error()));
+  if (!(*value > 0)) return fail(Errc::usage, text(msg::motion_program_tolerance, *value));
+  return value;
+}
+
+Result<int> run(const Options& options) {
+  if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
+  const Result<double> tolerance = tolerance_of(options);
+  if (!tolerance) return fail(tolerance.error());
+  Result<DemoOptions> chosen = stage_options(options);
+  if (!chosen) return fail(chosen.error());
+  catch_interrupts();
+  Result<LoadedProgram> loaded = load_sound_program(options.file);
+  if (!loaded) return fail(loaded.error());
+  if (chosen->control) loaded->program.control = chosen->control;
+  if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
+  const Result<Report> report =
+      beside_windows(chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
+  if (!report) return fail(report.error());
+  return conclude(*report, chosen->out);
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_option(app, "program", options->file, msg::motion_program_file, "PROGRAM.yaml");
+  add_option(app, "--out", options->out, msg::demo_option_out, "DIR");
+  add_flag(app, "--headless", options->headless, msg::demo_option_headless);
+  add_flag(app, "--video", options->video, msg::demo_option_video);
+  add_option(app, "--control", options->control, msg::demo_option_control, "MODE");
+  add_option(app, "--tolerance", options->tolerance, msg::motion_program_option_tolerance,
+             "LENGTH");
+  add_flag(app, "--no-timing", options->no_timing, msg::demo_option_no_timing);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command run_command() {
+  return {"run", msg::motion_program_run_summary, msg::motion_program_run_examples, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,94 @@
+#include "apps/mjarm/commands/train_task.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "apps/mjarm/commands/train_config.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/train.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/rl/reach_env.hpp"
+#include "mjarm/rl/safetensors.hpp"
+
+namespace mjarm::app {
+
+void add_task_argument(CLI::App& app, TaskArguments& arguments) {
+  add_option(app, "task", arguments.task, msg::train_option_task, "reach");
+}
+
+void add_task_options(CLI::App& app, TaskArguments& arguments) {
+  add_option(app, "--region", arguments.region, msg::train_option_region, "tutorial|wide");
+  add_flag(app, "--orientation", arguments.orientation, msg::train_option_orientation);
+  add_flag(app, "--obstacle", arguments.obstacle, msg::train_option_obstacle);
+  add_flag(app, "--guide", arguments.guide, msg::train_option_guide);
+  add_option(app, "--seed", arguments.seed, msg::train_option_seed, "N");
+  add_option(app, "--threads", arguments.threads, msg::train_option_threads, "N");
+}
+
+Result<rl::TrainingOptions> with_task(const TaskArguments& arguments, rl::TrainingOptions options) {
+  constexpr int kMaxThreads = 16;  // by itself: more than that a small network cannot feed
+  if (arguments.task != "reach") {
+    return fail(Errc::usage,
+                arguments.task.empty()
+                    ? text(msg::train_which_task)
+                    : text(msg::train_unknown_task, arguments.task) +
+                          did_you_mean(arguments.task, std::array{std::string("reach")}));
+  }
+  if (arguments.guide) {
+    const int environments = options.task.environments;
+    options.task = rl::guide_options();
+    options.task.environments = environments;
+  }
+  if (!arguments.region.empty()) {
+    const Result<rl::ReachRegion> region = rl::reach_region(arguments.region);
+    if (!region) return fail(in_option("--region", region.error()));
+    options.task.region = *region;
+  }
+  options.task.orientation |= arguments.orientation;
+  options.task.obstacle |= arguments.obstacle;
+  if (!arguments.seed.empty()) {
+    const Result<std::uint64_t> seed = parse_whole("--seed", arguments.seed);
+    if (!seed) return fail(seed.error());
+    options.ppo.seed = *seed;
+  }
+  options.ppo.threads = std::min(core_count(), kMaxThreads);
+  if (!arguments.threads.empty()) {
+    const Result<std::uint64_t> threads = parse_whole("--threads", arguments.threads);
+    if (!threads) return fail(threads.error());
+    options.ppo.threads = static_cast<int>(std::min<std::uint64_t>(*threads, 1 << 20));
+  }
+  options.task.threads = options.ppo.threads;
+  return options;
+}
+
+Result<rl::TrainingOptions> load_config(const std::filesystem::path& file) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+  const Result<std::string> content = read_file(file, kMaxBytes);
+  if (!content) return fail(content.error());
+  return read_config(*content, file.string());
+}
+
+Result<rl::TrainingOptions> config_of_checkpoint(const std::filesystem::path& file) {
+  const Result<rl::TensorSet> set = rl::load_safetensors(file);
+  if (!set) return fail(set.error());
+  Result<std::optional<rl::TrainingOptions>> config = config_in(*set, file);
+  if (!config) return fail(std::move(config.error()));
+  if (!*config) return fail(Errc::bad_input, text(msg::train_no_config, file.string()));
+  return std::move(**config);
+}
+
+Result<std::optional<rl::TrainingOptions>> config_in(const rl::TensorSet& checkpoint,
+                                                     const std::filesystem::path& file) {
+  const auto config = checkpoint.metadata.find("config");
+  if (config == checkpoint.metadata.end()) return std::nullopt;
+  return read_config(config->second, file.string());
+}
+
+Result<Model> task_model(const rl::ReachOptions& options) {
+  return rl::reach_scene(options).and_then(
+      [](const std::filesystem::path& file) { return Model::load(file); });
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,158 @@
+#include "mjarm/core/messages/view.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/commands/program_load.hpp"
+#include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/view/view_program.hpp"
+#include "apps/mjarm/view/view_robot.hpp"
+#include "apps/mjarm/view/view_sim.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/text_width.hpp"
+#include "mjarm/core/units.hpp"
+#include "mjarm/view/controls.hpp"
+
+namespace mjarm::app {
+namespace {
+
+struct Options {
+  RobotChoice robot;
+  std::string size, camera, quality, seconds, out;
+  bool passive = false, paused = false, stats = false;
+};
+
+struct Loaded {
+  Model model;
+  std::optional<Arm> arm;
+};
+
+/// Any model can be looked at; one without an arm has nothing to hold.
+Result<Loaded> load(const Options& options) {
+  if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::view_which));
+  Result<Model> model = load_model(options.robot);
+  if (!model) return fail(std::move(model.error()));
+  tell_warnings(*model);
+  Result<Arm> arm = find_arm(*model, {.tip = options.robot.tip});
+  if (!arm && !options.robot.tip.empty()) return fail(std::move(arm.error()));
+  Loaded loaded{std::move(*model), std::nullopt};
+  if (arm) loaded.arm = std::move(*arm);
+  return loaded;
+}
+
+Result<ViewSim> make_sim(const Loaded& loaded, bool passive) {
+  Result<ViewSim> sim = ViewSim::make(loaded.model, loaded.arm, passive);
+  if (sim || sim.error().code != Errc::not_available) return sim;
+  log_info(text(msg::view_not_held, sim.error().what));
+  return ViewSim::make(loaded.model, loaded.arm, true);
+}
+
+/// @param out  with what the user has no say in.
+Result<WindowOptions> window_options(const Options& options, WindowOptions out) {
+  out.paused = options.paused;
+  out.camera.name = options.camera;
+  out.screenshots = options.out;
+  if (!options.size.empty()) {
+    const Result<PixelSize> size = parse_size("--size", options.size);
+    if (!size) return fail(size.error());
+    out.width = size->width;
+    out.height = size->height;
+  }
+  if (!options.quality.empty()) {
+    const std::string words[] = {"low", "high"};
+    const auto chosen = parse_choice("--quality", options.quality, words);
+    if (!chosen) return fail(chosen.error());
+    out.quality = *chosen == 0 ? RenderQuality::low : RenderQuality::high;
+  }
+  return out;
+}
+
+Result<double> seconds_of(const Options& options) {
+  if (options.seconds.empty()) return 0;
+  Result<double> seconds = parse_quantity(options.seconds, Quantity::time);
+  if (!seconds) return fail(in_option("--seconds", seconds.error()));
+  if (!(*seconds > 0)) return fail(Errc::usage, text(msg::view_bad_seconds, options.seconds));
+  return seconds;
+}
+
+Result<int> run(const Options& options) {
+  const Result<double> seconds = seconds_of(options);
+  if (!seconds) return fail(seconds.error());
+  const Result<Loaded> loaded = load(options);
+  if (!loaded) return fail(loaded.error());
+  Result<ViewSim> sim = make_sim(*loaded, options.passive);
+  if (!sim) return fail(std::move(sim.error()));
+  const Result<WindowOptions> chosen =
+      window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
+  if (!chosen) return fail(chosen.error());
+  catch_interrupts();
+  if (options.paused) sim->handle(PauseEvent{true});
+  RobotView view(loaded->model, loaded->arm, *sim);
+  std::optional<TargetHandle> handle;
+  ShowOptions show{*seconds, options.stats};
+  if (TargetControl* target = view.target()) {
+    handle.emplace(target->link(), target->target().turns());
+    show.on_open = [&handle](Window& window) { handle->attach(window); };
+  }
+  return show_in_window(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen, show,
+                        [&view](ViewLink& link) { simulate_world(view, link); });
+}
+
+/// A program brings its robot and tool along, and holds it.
+Result<int> run_program(const Options& options) {
+  const Result<double> seconds = seconds_of(options);
+  if (!seconds) return fail(seconds.error());
+  const RobotChoice& robot = options.robot;
+  if (options.passive || robot.allow_outside || !robot.tip.empty() ||
+      !robot.package_paths.empty()) {
+    return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
+  }
+  const Result<WindowOptions> window = window_options(options, {});
+  if (!window) return fail(window.error());
+  return view_program(robot.robot, *window, {*seconds, options.stats});
+}
+
+/// Examples, and below them every control, in one language.
+std::string help_end(Language language) {
+  std::string lines(msg::view_examples.in(language));
+  lines += "\n\n";
+  lines += msg::view_controls.in(language);
+  for (const ControlHelp& row : control_help()) {
+    lines += "\n  " + padded(row.keys, 20) + std::string(row.about.in(language));
+  }
+  return lines;
+}
+
+Run setup(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  add_option(app, "file", options->robot.robot, msg::view_file, "FILE");
+  add_option(app, "--tip", options->robot.tip, msg::app_option_tip, "FRAME");
+  add_package_path_option(app, options->robot.package_paths);
+  add_outside_option(app, options->robot.allow_outside);
+  add_flag(app, "--passive", options->passive, msg::view_option_passive);
+  add_flag(app, "--paused", options->paused, msg::view_option_paused);
+  add_option(app, "--size", options->size, msg::view_option_size, "WxH");
+  add_option(app, "--camera", options->camera, msg::view_option_camera, "CAMERA");
+  add_option(app, "--quality", options->quality, msg::view_option_quality, "low|high");
+  add_option(app, "--out", options->out, msg::view_option_out, "DIR");
+  add_option(app, "--seconds", options->seconds, msg::view_option_seconds, "S");
+  add_flag(app, "--stats", options->stats, msg::view_option_stats);
+  return [options] {
+    return is_program(options->robot.robot) ? run_program(*options) : run(*options);
+  };
+}
+
+}  // namespace
+
+Command view_command() {
+  static const std::string english = help_end(Language::english);
+  static const std::string chinese = help_end(Language::chinese);
+  return {"view", msg::view_summary, Msg{english.c_str(), chinese.c_str()}, setup};
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,268 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "apps/mjarm/view/view_sim.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/model/shipped_test.hpp"
+#include "tests/support/run_program.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace mjarm::app {
+namespace {
+
+using mjarm::testing::shipped_arm;
+using mjarm::testing::TestArm;
+
+std::vector<double> positions(const ViewSim& world) {
+  return {world.sim().qpos().begin(), world.sim().qpos().end()};
+}
+
+void run(ViewSim& world, int steps) {
+  for (int i = 0; i < steps; ++i) world.step();
+}
+
+TEST(ViewSim, HoldsTheArmAtHome) {
+  for (const char* name : {"ur5e", "panda"}) {
+    const TestArm robot = shipped_arm(name);
+    ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
+    run(world, 1000);
+    const JointVec off = world.sim().arm_state(robot.arm).q - robot.arm.home;
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-3) << name;
+  }
+}
+
+TEST(ViewSim, PassiveFalls) {
+  const TestArm robot = shipped_arm("ur5e");
+  ViewSim world = ViewSim::make(robot.model, robot.arm, true).value();
+  EXPECT_TRUE(world.jog_dofs().empty());
+  run(world, 500);
+  const JointVec off = world.sim().arm_state(robot.arm).q - robot.arm.home;
+  EXPECT_GT(off.cwiseAbs().maxCoeff(), 0.1);
+}
+
+TEST(ViewSim, JogsWithinTheSpeedLimit) {
+  const TestArm robot = shipped_arm("ur5e");
+  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
+  const int dof = robot.arm.joints[2].dof;
+  ASSERT_EQ(world.jog_dofs().size(), 6U);
+  const double goal = robot.arm.home[2] - 0.5;
+  world.handle(JointEvent{dof, "elbow", goal});
+  double fastest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    world.step();
+    fastest = std::max(fastest, std::abs(world.sim().arm_state(robot.arm).v[2]));
+  }
+  EXPECT_NEAR(world.sim().arm_state(robot.arm).q[2], goal, 2e-3);
+  EXPECT_GT(fastest, 0.1);
+  EXPECT_LT(fastest, robot.arm.limits.velocity[2]);
+  // Beyond the limits it goes to the limit, and what is no joint of the arm is left alone.
+  world.handle(JointEvent{dof, "elbow", 100});
+  world.handle(JointEvent{99, "none", 1});
+  run(world, 5000);
+  EXPECT_LE(world.sim().arm_state(robot.arm).q[2], robot.arm.limits.upper[2] + 1e-2);
+}
+
+TEST(ViewSim, StepsBackAndForthAreTheSameToTheLastBit) {
+  const TestArm robot = shipped_arm("ur5e");
+  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
+  world.handle(JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
+  run(world, 40);
+  std::vector<Snapshot> seen;
+  for (int i = 0; i < 20; ++i) {
+    world.step();
+    seen.push_back(world.sim().snapshot());
+  }
+  world.handle(PauseEvent{true});
+  for (int i = 18; i >= 10; --i) {
+    world.handle(StepEvent{-1});
+    ASSERT_EQ(world.sim().snapshot().state, seen[static_cast<std::size_t>(i)].state);
+  }
+  world.handle(StepEvent{1});
+  EXPECT_EQ(world.sim().snapshot().state, seen[11].state);
+  // Going on from there gives what came the first time.
+  for (std::size_t i = 12; i < seen.size(); ++i) {
+    world.step();
+    ASSERT_EQ(world.sim().snapshot().state, seen[i].state) << i;
+  }
+  EXPECT_EQ(world.steps_due(), 0);
+  world.handle(StepEvent{1});
+  EXPECT_EQ(world.steps_due(), 1);
+}
+
+TEST(ViewSim, PushesMoveTheArmUntilLetGo) {
+  const TestArm robot = shipped_arm("ur5e");
+  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
+  const std::vector<double> before = positions(world);
+  const int body = robot.model.raw()->dof_bodyid[robot.arm.joints.back().dof];
+  for (int i = 0; i < 300; ++i) {
+    world.handle(PushEvent{.body = body, .force_W = {60, 0, 0}});
+    world.step();
+  }
+  const std::vector<double> pushed = positions(world);
+  double moved = 0;
+  for (std::size_t i = 0; i < 6; ++i) moved = std::max(moved, std::abs(pushed[i] - before[i]));
+  EXPECT_GT(moved, 1e-3);
+  world.handle(ReleaseEvent{body});
+  run(world, 3000);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(positions(world)[i], before[i], 1e-3);
+}
+
+TEST(ViewSim, ResetBeginsAnew) {
+  const TestArm robot = shipped_arm("panda");
+  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
+  const Snapshot first = world.sim().snapshot();
+  run(world, 30);
+  const Snapshot later = world.sim().snapshot();
+  world.handle(PushEvent{.body = 3, .force_W = {0, 9, 0}});
+  run(world, 30);
+  world.handle(ResetEvent{});
+  EXPECT_EQ(world.sim().snapshot().state, first.state);
+  run(world, 30);
+  EXPECT_EQ(world.sim().snapshot().state, later.state);
+}
+
+TEST(ViewSim, AnyModelCanBeLookedAt) {
+  const Model model = Model::load(find_model_file("car").value()).value();
+  ViewSim world = ViewSim::make(model, std::nullopt, false).value();
+  run(world, 10);
+  EXPECT_NEAR(world.sim().time(), 10 * model.timestep(), 1e-9);
+}
+
+support::ProgramResult mjarm(std::vector<std::string> arguments,
+                             std::vector<std::pair<std::string, std::string>> environment = {}) {
+  return support::run_program(MJARM_PROGRAM, arguments, {.environment = std::move(environment)});
+}
+
+TEST(ViewCommand, RefusesWhatMakesNoSense) {
+  const auto refused = [](const std::vector<std::string>& arguments, const char* part) {
+    const support::ProgramResult result = mjarm(arguments);
+    EXPECT_EQ(result.exit_code, 2) << part;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    EXPECT_EQ(support::lines_of(result.err).size(), 1U) << result.err;
+  };
+  refused({"view"}, "mjarm view FILE");
+  refused({"view", "ur5"}, "ur5e");
+  refused({"view", "ur5e", "--size", "12x"}, "1280x720");
+  refused({"view", "ur5e", "--size", "90000x800"}, "8192");
+  refused({"view", "ur5e", "--quality", "best"}, "low");
+  refused({"view", "ur5e", "--seconds", "-1"}, "--seconds");
+  refused({"view", "ur5e", "--camera", "nose"}, "nose");
+}
+
+TEST(ViewCommand, WithoutADisplayPointsAtRender) {
+  const support::ProgramResult result =
+      mjarm({"view", "ur5e"}, {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("mjarm render"), std::string::npos) << result.err;
+  EXPECT_EQ(support::lines_of(result.err).size(), 1U) << result.err;
+}
+
+TEST(ViewCommand, TheHelpListsEveryControlInBothLanguages) {
+  const std::string english = mjarm({"view", "--help"}).out;
+  for (const char* part : {"double click", "Ctrl-P", "Ctrl-T", "contact points", "Backspace"}) {
+    EXPECT_NE(english.find(part), std::string::npos) << part;
+  }
+  EXPECT_NE(mjarm({"view", "--help", "--lang", "zh"}).out.find("接触点"), std::string::npos);
+}
+
+/// A display of the test's own.
+class OnADisplay : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v Xvfb >/dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    server_ = fork();
+    if (server_ == 0) {
+      dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+      const std::string number = std::to_string(ends[1]);
+      execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1300x820x24", nullptr);
+      _exit(127);
+    }
+    close(ends[1]);
+    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) display_ += c;
+    close(ends[0]);
+    ASSERT_NE(display_, ":");
+  }
+  void TearDown() override {
+    if (server_ <= 0) return;
+    kill(server_, SIGKILL);
+    waitpid(server_, nullptr, 0);
+  }
+  pid_t server_ = -1;
+  std::string display_ = ":";
+};
+
+TEST_F(OnADisplay, AWindowOpensDrawsAndCloses) {
+  const support::ProgramResult result = mjarm(
+      {"view", "ur5e", "--seconds", "1", "--stats", "--size", "640x400"}, {{"DISPLAY", display_}});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  int frames = 0;
+  ASSERT_EQ(std::sscanf(result.out.c_str(), "%d frames", &frames), 1) << result.out;
+  EXPECT_GE(frames, 1);
+}
+
+/// The window looks on: the log of a demo has the same bytes with and without it, whatever the user
+/// does with the clock, be it shown as it goes (the tutorial's way) or as a program after it was
+/// run. Closing it ends the program.
+class DemoOnADisplay : public OnADisplay, public ::testing::WithParamInterface<bool> {};
+
+std::string way_name(const ::testing::TestParamInfo<bool>& info) {
+  return info.param ? "Guide" : "Program";
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, DemoOnADisplay, ::testing::Bool(), way_name);
+
+TEST_P(DemoOnADisplay, AWindowNeverChangesTheLog) {
+  static constexpr const char* kXdotool = "/usr/bin/xdotool";
+  if (!std::filesystem::exists(kXdotool)) GTEST_SKIP() << "xdotool is not installed";
+  const support::TempFolder folder;
+  const auto arguments = [&](const char* name) {
+    std::vector<std::string> words{"demo", "movej", "--seconds",
+                                   "1.5",  "--out", (folder.path() / name).string()};
+    if (GetParam()) words.emplace_back("--guide");
+    return words;
+  };
+  support::ProgramResult seen;
+  std::thread program([&] { seen = mjarm(arguments("seen"), {{"DISPLAY", display_}}); });
+  const auto xdotool = [this](const std::vector<std::string>& words) {
+    return support::run_program(kXdotool, words, {.environment = {{"DISPLAY", display_}}});
+  };
+  const auto found =
+      xdotool({"search", "--sync", "--onlyvisible", "--limit", "1", "--name", "mjarm movej"});
+  const std::string window = support::lines_of(found.out).at(0);
+  xdotool({"windowfocus", "--sync", window, "key", "--delay", "60", "space", "Left", "Left",
+           "Right", "minus", "space", "BackSpace", "plus", "Tab", "c"});
+  const std::filesystem::path log = folder.path() / "seen" / "log.csv";
+  // A program is run before it is shown.
+  EXPECT_TRUE(GetParam() || std::filesystem::exists(log));
+  for (int i = 0; i < 3000 && !std::filesystem::exists(log); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  // Until it is gone: on a busy machine a key may get lost between the programs.
+  while (xdotool({"search", "--name", "mjarm movej"}).exit_code == 0) {
+    xdotool({"windowfocus", window, "key", "Escape", "sleep", "0.3"});
+  }
+  program.join();
+  std::vector<std::string> headless = arguments("unseen");
+  headless.emplace_back("--headless");
+  const support::ProgramResult unseen = mjarm(headless);
+  EXPECT_EQ(seen.exit_code, unseen.exit_code) << seen.err;
+  const Result<std::string> bytes = read_file(log);
+  ASSERT_TRUE(bytes) << seen.err;
+  EXPECT_GT(bytes->size(), 1000U);
+  EXPECT_EQ(*bytes, read_file(folder.path() / "unseen" / "log.csv").value());
+}
+
+}  // namespace
+}  // namespace mjarm::app

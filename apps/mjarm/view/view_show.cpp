@@ -1,0 +1,39 @@
+#include "apps/mjarm/view/view_show.hpp"
+
+#include <cstdio>
+#include <utility>
+
+#include "mjarm/core/messages/view.hpp"
+#include "mjarm/core/os.hpp"
+
+namespace mjarm::app {
+
+Result<int> show_in_window(const Model& model, const std::string& title,
+                           const WindowOptions& window_options, const ShowOptions& options,
+                           const std::function<void(ViewLink&)>& simulate) {
+  using Clock = std::chrono::steady_clock;
+  Result<Window> window = Window::open(model, title, window_options);
+  if (!window) {
+    // What is missing here is a display, without which nothing can be seen in a window.
+    Error error = std::move(window.error());
+    if (error.code == Errc::not_available) error.code = Errc::impossible;
+    return fail(std::move(error));
+  }
+  if (options.on_open) options.on_open(*window);
+  const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
+  ViewLink link;
+  std::thread worker([&] { simulate(link); });
+  const Result<void> drawn = draw_until_closed(
+      *window, link, [&] { return interrupted() || (options.seconds > 0 && Clock::now() >= end); });
+  worker.join();
+  if (!drawn) return fail(drawn.error());
+  if (options.stats) {
+    const ViewStats stats = window->stats();
+    const std::string line = text(msg::view_stats, stats.frames, stats.fps, stats.frame_ms,
+                                  stats.first_frame_ms, stats.sim_rate);
+    std::printf("%s\n", line.c_str());
+  }
+  return 0;
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,62 @@
+#include "mjarm/session/arm_figures.hpp"
+
+#include <utility>
+
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm::session {
+namespace {
+
+constexpr double kRowPeriod = 0.01;  ///< [s] of the figures' time
+constexpr const char* kFigureNames[kLiveFigures] = {
+    "Tool position", "Tracking error", "Joint error", "Joints", "Torque", "Manipulability"};
+
+}  // namespace
+
+ArmFigures::ArmFigures(const Arm& arm, int first_item, const Choice& shown)
+    : plots_(arm), first_item_(first_item), shown_(shown) {}
+
+bool ArmFigures::handle(const PanelEvent& event) {
+  const int figure = event.id - first_item_;
+  if (figure < 0 || figure >= static_cast<int>(kLiveFigures)) return false;
+  shown_[static_cast<std::size_t>(figure)] = event.value != 0;
+  return true;
+}
+
+PanelSection ArmFigures::section() const {
+  PanelSection out{"Plots", {}};
+  for (std::size_t i = 0; i < kLiveFigures; ++i) {
+    out.items.push_back(
+        {first_item_ + static_cast<int>(i), kFigureNames[i], PanelCheckbox{shown_[i]}});
+  }
+  return out;
+}
+
+void ArmFigures::add(const Sim& sim, double time, const Arm& arm, const JointVec& q_ref) {
+  // Time may have gone back, and then a row is due at once.
+  if (time < next_row_ && time > next_row_ - 2 * kRowPeriod) return;
+  next_row_ = time + kRowPeriod;
+  LiveRow row{.time = time,
+              .q = sim.arm_state(arm).q,
+              .q_ref = q_ref,
+              .X_WT = sim.tool(arm),
+              .torque = sim.arm_torque(arm)};
+  row.X_ref = q_ref.size() > 0 ? fk(arm, as_span(q_ref)) : row.X_WT;
+  row.manipulability = manipulability(fk_jacobian(arm, as_span(row.q)).J_W);
+  plots_.add(row);
+}
+
+void ArmFigures::clear() {
+  plots_.clear();
+  next_row_ = 0;
+}
+
+std::vector<LivePlot> ArmFigures::plots() const {
+  std::vector<LivePlot> out;
+  for (std::size_t i = 0; i < kLiveFigures; ++i) {
+    if (shown_[i]) out.push_back(plots_.figure(static_cast<LiveFigure>(i)));
+  }
+  return out;
+}
+
+}  // namespace mjarm::session
