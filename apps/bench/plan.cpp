@@ -11,9 +11,9 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/bench.hpp"
-#include "mjarm/core/messages/bench_plan.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

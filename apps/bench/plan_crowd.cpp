@@ -5,7 +5,7 @@
 #include "apps/bench/plan_sets.hpp"
 #include "apps/bench/robots.hpp"
 #include "mjarm/collision/fast_check.hpp"
-#include "mjarm/core/messages/bench_plan.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 #include "mjarm/core/rng.hpp"
 
 namespace mjarm::app {

@@ -13,7 +13,7 @@
 #include "apps/mjarm/cli/table.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "apps/bench/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -14,8 +14,8 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/bench_rl.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/bench/messages/bench_rl.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 

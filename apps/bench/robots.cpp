@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/bench/peers.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "apps/bench/messages/bench.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/model/find_arm.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/cli/json_doc.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"

@@ -6,7 +6,7 @@
 #include "apps/bench/suites.hpp"
 #include "apps/bench/time_peers.hpp"
 #include "apps/bench/time_report.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "apps/bench/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

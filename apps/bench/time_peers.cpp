@@ -7,7 +7,7 @@
 
 #include "apps/bench/peers.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "apps/bench/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -65,8 +65,8 @@ std::vector<JointState> states_from(const double* values, int count, Eigen::Inde
   return states;
 }
 
-/// Judges the motions of one answer; throws json's exceptions.
-Result<void> judge(const TimeSet& set, const nlohmann::json& line, TimeRun& run) {
+/// Judges the motions of one answer; throws `BrokenAnswer`.
+Result<void> judge(const TimeSet& set, const JsonValue& line, TimeRun& run) {
   const std::string file = text_in(line, "states");
   const Result<std::string> content = read_file(file, kMaxStateBytes);
   if (!content) return fail(content.error());
@@ -98,7 +98,7 @@ Result<void> judge(const TimeSet& set, const nlohmann::json& line, TimeRun& run)
 Result<std::vector<TimeRun>> run_time_peers(const std::vector<TimeSet>& sets,
                                             const std::filesystem::path& environment, int rounds) {
   std::vector<TimeRun> runs;
-  const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const JsonValue& line) -> Result<void> {
     runs.push_back({std::move(entry)});
     TimeRun& run = runs.back();
     if (!run.error.empty()) return {};

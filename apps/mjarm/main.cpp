@@ -5,7 +5,7 @@
 #include "apps/mjarm/cli/cli.hpp"
 #include "apps/mjarm/commands/commands.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 
 int main(int argc, char** argv) {
   try {

@@ -10,7 +10,7 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -88,9 +88,10 @@ Error go_on(const Command& command, const std::vector<std::string>& arguments) {
   return {Errc::not_available, text(msg::app_no_program, command.name, program.string())};
 }
 
+/// @return the exit code.
 int report(const Error& error) {
   log_error(error.what);
-  return exit_code(error.code);
+  return error.code == Errc::bad_input || error.code == Errc::usage ? 2 : 1;
 }
 
 /// Results must have reached their reader before 0 is returned.

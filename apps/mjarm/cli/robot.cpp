@@ -4,7 +4,7 @@
 
 #include "apps/mjarm/cli/options.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 
 namespace mjarm::app {
 

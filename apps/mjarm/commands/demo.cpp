@@ -1,4 +1,4 @@
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -9,9 +9,9 @@
 #include "apps/mjarm/demos/outcome.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/view/view_host.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/install.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/install.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"

@@ -7,8 +7,8 @@
 #include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/view/view_host.hpp"
-#include "mjarm/core/messages/demo.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/demo.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

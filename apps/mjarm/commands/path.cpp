@@ -2,10 +2,10 @@
 #include <memory>
 #include <optional>
 
-#include "apps/mjarm/cli/answer_json.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/cli/json_line.hpp"
+#include "mjarm/core/json.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
 #include "apps/mjarm/commands/path_answer.hpp"
@@ -13,9 +13,8 @@
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/collision/exact.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/path_command.hpp"
-#include "mjarm/core/number.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/path_command.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/path_measures.hpp"
@@ -91,8 +90,9 @@ std::optional<std::string> answer(const Job& job, const PathRequest& request, st
       why = text(msg::path_command_mended, *why, describe(solved.fixes.front()));
     }
   }
-  if (job.timing) append_us(out, us);
-  out += '}';
+  JsonWriter json(out);
+  if (job.timing) json.member_us("us", us);
+  json.end_object();
   return why;
 }
 

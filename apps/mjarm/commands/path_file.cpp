@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/verify.hpp"
+#include "mjarm/core/messages/json.hpp"
+#include "apps/mjarm/messages/verify.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using nlohmann::json;
 
 constexpr double kTiltSlack = 1e-6;                             // relative
 constexpr std::size_t kLargestPathFile = std::size_t{1} << 28;  // [bytes]
@@ -23,15 +20,15 @@ std::string indexed(const char* list, std::size_t i) {
   return std::string(list) + '[' + std::to_string(i) + ']';
 }
 
-Result<double> number_at(const json& object, const char* key) {
-  const auto found = object.find(key);
-  if (found == object.end()) return fail(Errc::bad_input, text(msg::app_json_missing, key));
+Result<double> number_at(const JsonValue& object, const char* key) {
+  const JsonValue* const found = object.find(key);
+  if (found == nullptr) return fail(Errc::bad_input, text(msg::json_missing, key));
   if (!found->is_number()) return fail(Errc::bad_input, text(msg::verify_no_number, key));
-  return found->get<double>();
+  return found->number();
 }
 
-Result<void> read_rows(const json& rows, std::size_t dof, GivenPath& out) {
-  if (!rows.is_array()) return fail(Errc::bad_input, text(msg::verify_no_rows));
+Result<void> read_rows(const JsonValue& rows, std::size_t dof, GivenPath& out) {
+  if (!rows.is_list()) return fail(Errc::bad_input, text(msg::verify_no_rows));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Result<std::vector<double>> row = numbers_of(rows[i], indexed("path", i), dof);
     if (!row) return fail(std::move(row.error()));
@@ -40,8 +37,8 @@ Result<void> read_rows(const json& rows, std::size_t dof, GivenPath& out) {
   return {};
 }
 
-Result<GivenCertificate> certificate_of(const json& entry) {
-  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::app_json_no_object));
+Result<GivenCertificate> certificate_of(const JsonValue& entry) {
+  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::json_no_object));
   GivenCertificate out;
   const std::pair<const char*, double*> members[] = {
       {"step", &out.step}, {"clearance", &out.clearance}, {"t", &out.t}};
@@ -50,18 +47,18 @@ Result<GivenCertificate> certificate_of(const json& entry) {
     if (!value) return fail(value.error());
     *target = *value;
   }
-  const auto pair = entry.find("pair");
-  if (pair == entry.end()) return out;
-  if (!pair->is_array() || pair->size() != 2 || !(*pair)[0].is_string() ||
+  const JsonValue* const pair = entry.find("pair");
+  if (pair == nullptr) return out;
+  if (!pair->is_list() || pair->size() != 2 || !(*pair)[0].is_string() ||
       !(*pair)[1].is_string()) {
     return fail(Errc::bad_input, text(msg::verify_no_pair));
   }
-  out.pair = pair->get<std::vector<std::string>>();
+  out.pair = {(*pair)[0].string(), (*pair)[1].string()};
   return out;
 }
 
-Result<void> read_certificates(const json& list, GivenPath& out) {
-  if (!list.is_array()) return fail(Errc::bad_input, text(msg::verify_no_certificates));
+Result<void> read_certificates(const JsonValue& list, GivenPath& out) {
+  if (!list.is_list()) return fail(Errc::bad_input, text(msg::verify_no_certificates));
   out.certificate.emplace();
   for (std::size_t i = 0; i < list.size(); ++i) {
     Result<GivenCertificate> entry = certificate_of(list[i]);
@@ -73,8 +70,8 @@ Result<void> read_certificates(const json& list, GivenPath& out) {
   return {};
 }
 
-Result<void> read_tilt(const json& entry, GivenPath& out) {
-  if (!entry.is_object()) return fail(Errc::bad_input, "tilt: " + text(msg::app_json_no_object));
+Result<void> read_tilt(const JsonValue& entry, GivenPath& out) {
+  if (!entry.is_object()) return fail(Errc::bad_input, "tilt: " + text(msg::json_no_object));
   GivenTilt tilt;
   const std::pair<const char*, double*> numbers[] = {{"limit", &tilt.limit},
                                                      {"largest", &tilt.largest}};
@@ -102,27 +99,27 @@ Result<void> read_tilt(const json& entry, GivenPath& out) {
 }
 
 /// A list of strings, or none.
-Result<void> read_words(const json& entry, const char* key, std::vector<std::string>& out) {
-  const auto list = entry.find(key);
-  if (list == entry.end()) return {};
-  const auto is_word = [](const json& word) { return word.is_string(); };
-  if (!list->is_array() || !std::all_of(list->begin(), list->end(), is_word)) {
+Result<void> read_words(const JsonValue& entry, const char* key, std::vector<std::string>& out) {
+  const JsonValue* const list = entry.find(key);
+  if (list == nullptr) return {};
+  const auto is_word = [](const JsonValue& word) { return word.is_string(); };
+  if (!list->is_list() || !std::all_of(list->begin(), list->end(), is_word)) {
     return fail(Errc::bad_input, text(msg::verify_no_words, key));
   }
-  out = list->get<std::vector<std::string>>();
+  for (const JsonValue& word : *list) out.push_back(word.string());
   return {};
 }
 
-Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
-  if (entry.is_array()) return read_rows(entry, dof, out);
+Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out) {
+  if (entry.is_list()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::verify_no_rows));
-  const auto ok = entry.find("ok");
-  if (ok != entry.end() && !ok->is_boolean()) {
+  const JsonValue* const ok = entry.find("ok");
+  if (ok != nullptr && !ok->is_boolean()) {
     return fail(Errc::bad_input, text(msg::verify_no_bool, "ok"));
   }
-  if (ok != entry.end() && !ok->get<bool>()) return {};
-  const auto path = entry.find("path");
-  if (path == entry.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "path"));
+  if (ok != nullptr && !ok->boolean()) return {};
+  const JsonValue* const path = entry.find("path");
+  if (path == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "path"));
   if (Result<void> read = read_rows(*path, dof, out); !read) return read;
   if (entry.contains("cost")) {
     const Result<double> cost = number_at(entry, "cost");
@@ -140,11 +137,11 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
   }
   if (Result<void> read = read_words(entry, "hold", out.rules.hold); !read) return read;
   if (Result<void> read = read_words(entry, "allow", out.rules.allow); !read) return read;
-  if (const auto tilt = entry.find("tilt"); tilt != entry.end()) {
+  if (const JsonValue* const tilt = entry.find("tilt"); tilt != nullptr) {
     if (Result<void> read = read_tilt(*tilt, out); !read) return read;
   }
-  const auto certificate = entry.find("certificate");
-  return certificate == entry.end() ? Result<void>() : read_certificates(*certificate, out);
+  const JsonValue* const certificate = entry.find("certificate");
+  return certificate == nullptr ? Result<void>() : read_certificates(*certificate, out);
 }
 
 }  // namespace
@@ -155,10 +152,10 @@ Result<std::vector<GivenPath>> read_path_file(const std::string& path, std::size
   const Result<JsonObject> object = parse_json_object(*content);
   if (!object) return fail(object.error().code, path + ": " + object.error().what);
   std::vector<GivenPath> out;
-  for (const auto& item : (*object)->items()) {
+  for (const JsonValue& entry : **object) {
     GivenPath given;
-    given.id = item.key();
-    if (Result<void> read = read_entry(item.value(), dof, given); !read) {
+    given.id = entry.key();
+    if (Result<void> read = read_entry(entry, dof, given); !read) {
       return fail(read.error().code, text(msg::verify_in_path, path, given.id, read.error().what));
     }
     out.push_back(std::move(given));

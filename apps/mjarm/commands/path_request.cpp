@@ -3,38 +3,35 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
+#include "mjarm/core/json.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/path_command.hpp"
+#include "apps/mjarm/messages/path_command.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/path/ellipse.hpp"
 
 namespace mjarm::app {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kMaxPoses = 1'000'000;
 
 /// Member `key`, a number; `otherwise` where it is missing, an error where that is none.
-Result<double> number_of(const json& object, const char* key,
+Result<double> number_of(const JsonValue& object, const char* key,
                          std::optional<double> otherwise = {}) {
-  const auto member = object.find(key);
-  if (member == object.end() && otherwise) return *otherwise;
-  if (member == object.end() || !member->is_number()) {
+  const JsonValue* const member = object.find(key);
+  if (member == nullptr && otherwise) return *otherwise;
+  if (member == nullptr || !member->is_number()) {
     return fail(Errc::bad_input, text(msg::path_command_no_number, key));
   }
-  return member->get<double>();
+  return member->number();
 }
 
-Result<Pose> pose_member(const json& object, const char* key) {
-  const auto member = object.find(key);
-  if (member == object.end() || !member->is_object()) {
+Result<Pose> pose_member(const JsonValue& object, const char* key) {
+  const JsonValue* const member = object.find(key);
+  if (member == nullptr || !member->is_object()) {
     return fail(Errc::bad_input, text(msg::path_command_no_pose, key));
   }
   Result<Pose> pose = pose_of(*member);
@@ -42,14 +39,14 @@ Result<Pose> pose_member(const json& object, const char* key) {
   return pose;
 }
 
-Result<std::vector<Pose>> pose_list(const json& object, const char* key) {
-  const auto member = object.find(key);
-  if (member == object.end() || !member->is_array() || member->empty()) {
+Result<std::vector<Pose>> pose_list(const JsonValue& object, const char* key) {
+  const JsonValue* const member = object.find(key);
+  if (member == nullptr || !member->is_list() || member->empty()) {
     return fail(Errc::bad_input, text(msg::path_command_no_poses, key));
   }
   std::vector<Pose> poses;
   poses.reserve(member->size());
-  for (const json& entry : *member) {
+  for (const JsonValue& entry : *member) {
     const std::string place = std::string(key) + "[" + std::to_string(poses.size()) + "]";
     if (!entry.is_object()) {
       return fail(Errc::bad_input, text(msg::path_command_no_pose, place));
@@ -61,7 +58,7 @@ Result<std::vector<Pose>> pose_list(const json& object, const char* key) {
   return poses;
 }
 
-Result<void> read_poses(const json& object, PathRequest& out) {
+Result<void> read_poses(const JsonValue& object, PathRequest& out) {
   Result<std::vector<Pose>> poses = pose_list(object, "poses");
   if (!poses) return fail(std::move(poses.error()));
   out.poses = std::move(*poses);
@@ -74,14 +71,14 @@ Result<void> take(Result<Curve> curve, PathRequest& out) {
   return {};
 }
 
-Result<void> read_line(const json& object, PathRequest& out) {
+Result<void> read_line(const JsonValue& object, PathRequest& out) {
   const Result<Pose> from = pose_member(object, "from"), to = pose_member(object, "to");
   if (!from) return fail(from.error());
   if (!to) return fail(to.error());
   return take(Curve::line(*from, *to), out);
 }
 
-Result<void> read_arc(const json& object, PathRequest& out) {
+Result<void> read_arc(const JsonValue& object, PathRequest& out) {
   const Result<Pose> from = pose_member(object, "from"), via = pose_member(object, "via"),
                      to = pose_member(object, "to");
   for (const auto* pose : {&from, &via, &to}) {
@@ -90,7 +87,7 @@ Result<void> read_arc(const json& object, PathRequest& out) {
   return take(Curve::arc(*from, *via, *to), out);
 }
 
-Result<void> read_polyline(const json& object, PathRequest& out) {
+Result<void> read_polyline(const JsonValue& object, PathRequest& out) {
   const Result<std::vector<Pose>> points = pose_list(object, "points");
   if (!points) return fail(points.error());
   const Result<double> blend = number_of(object, "blend", 0.0);
@@ -98,7 +95,7 @@ Result<void> read_polyline(const json& object, PathRequest& out) {
   return take(Curve::polyline(*points, *blend), out);
 }
 
-Result<void> read_ellipse(const json& object, PathRequest& out) {
+Result<void> read_ellipse(const JsonValue& object, PathRequest& out) {
   const auto center = number_list(object, "center", 3);
   if (!center) return fail(center.error());
   const auto normal = number_list(object, "normal", 3);
@@ -129,7 +126,7 @@ Result<void> read_ellipse(const json& object, PathRequest& out) {
 
 struct Type {
   const char* name;
-  Result<void> (*read)(const json& object, PathRequest& out);
+  Result<void> (*read)(const JsonValue& object, PathRequest& out);
 };
 constexpr std::array<Type, 5> kTypes{{{"poses", read_poses},
                                       {"line", read_line},
@@ -137,18 +134,18 @@ constexpr std::array<Type, 5> kTypes{{{"poses", read_poses},
                                       {"arc", read_arc},
                                       {"ellipse", read_ellipse}}};
 
-Result<const Type*> type_of(const json& object) {
+Result<const Type*> type_of(const JsonValue& object) {
   std::vector<std::string> names;
   std::string all;
   for (const Type& type : kTypes) {
     names.emplace_back(type.name);
     all += (all.empty() ? "" : ", ") + names.back();
   }
-  const auto member = object.find("type");
-  if (member == object.end() || !member->is_string()) {
+  const JsonValue* const member = object.find("type");
+  if (member == nullptr || !member->is_string()) {
     return fail(Errc::bad_input, text(msg::path_command_no_type, all));
   }
-  const auto word = member->get<std::string>();
+  const auto word = member->string();
   for (const Type& type : kTypes) {
     if (word == type.name) return &type;
   }
@@ -163,7 +160,7 @@ Result<void> check_tilt(double tilt) {
   return fail(Errc::bad_input, text(msg::path_command_bad_tilt));
 }
 
-Result<PathRequest> path_request_of(const json& object, const Arm& arm) {
+Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm) {
   const Result<const Type*> type = type_of(object);
   if (!type) return fail(type.error());
   PathRequest out;

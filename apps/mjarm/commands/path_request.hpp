@@ -1,9 +1,9 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <vector>
 
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
@@ -23,7 +23,7 @@ struct PathRequest {
 
 /// Reads one request as INTERFACES of `mjarm path` describe it: `type` and what belongs to it.
 /// @return what is wrong, without the place of the line.
-[[nodiscard]] Result<PathRequest> path_request_of(const nlohmann::json& object, const Arm& arm);
+[[nodiscard]] Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm);
 
 /// Checks that a tolerance of orientation [rad] is in [0, pi/2).
 [[nodiscard]] Result<void> check_tilt(double tilt);

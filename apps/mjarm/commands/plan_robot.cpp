@@ -12,10 +12,10 @@
 #include "apps/mjarm/commands/plan_answer.hpp"
 #include "apps/mjarm/commands/robot_world.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/plan.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/plan.hpp"
 #include "mjarm/core/messages/planning.hpp"
-#include "mjarm/core/number.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/goal_region.hpp"
 
@@ -184,9 +184,8 @@ struct Found {
 };
 
 Found not_found(const std::string& why) {
-  Found out{"{\"ok\":false,\"reason\":", why};
-  append_json_string(out.line, why);
-  out.line += '}';
+  Found out{{}, why};
+  JsonWriter(out.line).object().member("ok", false).member("reason", why).end_object();
   return out;
 }
 
@@ -259,9 +258,9 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   const Result<Found> found = answer(*robot, *way, how, timing);
   if (!found) return fail(found.error());
   const std::string& name = robot->arm.name;
-  std::string line = "{";
-  append_json_string(line, name);
-  line += ':' + found->line + '}';
+  std::string line;
+  JsonWriter(line).object().key(name);
+  line += found->line + '}';
   const Result<int> code = finish_one(out, line, found->why, msg::plan_no_path);
   if (!code || !show || !found->path) return code;
   const auto shown =

@@ -11,7 +11,7 @@
 #include "apps/mjarm/commands/policy_player.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/rl/safetensors.hpp"

@@ -5,19 +5,16 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
-#include "mjarm/core/messages/plan.hpp"
+#include "mjarm/core/json.hpp"
+#include "apps/mjarm/messages/plan.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::size_t kLargest = std::size_t{1} << 28;  // [bytes], unpacked
 
@@ -51,42 +48,42 @@ Result<std::string> unpacked(const std::string& path) {
   }
 }
 
-Result<const json*> member(const json& object, const char* key) {
+Result<const JsonValue*> member(const JsonValue& object, const char* key) {
   if (!object.is_object()) return bad(msg::plan_no_object);
-  const auto found = object.find(key);
-  if (found != object.end()) return &*found;
+  const JsonValue* const found = object.find(key);
+  if (found != nullptr) return found;
   std::vector<std::string> keys;
-  for (const auto& item : object.items()) keys.push_back(item.key());
+  for (const JsonValue& item : object) keys.emplace_back(item.key());
   return bad(msg::plan_missing, key, did_you_mean(key, keys));
 }
 
-Result<const json*> list(const json& object, const char* key) {
-  Result<const json*> found = member(object, key);
-  if (found && !(*found)->is_array()) return bad(msg::plan_no_list, key);
+Result<const JsonValue*> list(const JsonValue& object, const char* key) {
+  Result<const JsonValue*> found = member(object, key);
+  if (found && !(*found)->is_list()) return bad(msg::plan_no_list, key);
   return found;
 }
 
-Result<std::string> string(const json& object, const char* key) {
-  const Result<const json*> found = member(object, key);
+Result<std::string> string(const JsonValue& object, const char* key) {
+  const Result<const JsonValue*> found = member(object, key);
   if (!found) return fail(found.error());
   if (!(*found)->is_string()) return bad(msg::plan_no_string, key);
-  return (*found)->get<std::string>();
+  return (*found)->string();
 }
 
-Result<double> real(const json& object, const char* key) {
-  const Result<const json*> found = member(object, key);
+Result<double> real(const JsonValue& object, const char* key) {
+  const Result<const JsonValue*> found = member(object, key);
   if (!found) return fail(found.error());
   if (!(*found)->is_number()) return bad(msg::plan_no_number, key);
-  return (*found)->get<double>();
+  return (*found)->number();
 }
 
-Result<Eigen::Vector3d> vector(const json& object, const char* key) {
+Result<Eigen::Vector3d> vector(const JsonValue& object, const char* key) {
   const Result<std::vector<double>> values = number_list(object, key, 3);
   if (!values) return fail(values.error());
   return Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
 }
 
-Result<Pose> pose(const json& object, const char* place) {
+Result<Pose> pose(const JsonValue& object, const char* place) {
   const Result<Eigen::Vector3d> p = vector(object, place);
   if (!p) return fail(p.error());
   const Result<std::vector<double>> quat = number_list(object, "quat", 4);
@@ -98,8 +95,8 @@ Result<Pose> pose(const json& object, const char* place) {
 
 /// Calls `take` with every entry of a list; its error gets the entry's place.
 template <class Take>
-Result<void> each(const json& object, const char* key, Take take) {
-  const Result<const json*> entries = list(object, key);
+Result<void> each(const JsonValue& object, const char* key, Take take) {
+  const Result<const JsonValue*> entries = list(object, key);
   if (!entries) return fail(entries.error());
   for (std::size_t i = 0; i < (*entries)->size(); ++i) {
     Result<void> taken = take((**entries)[i]);
@@ -113,22 +110,22 @@ class RobotReader {
  public:
   RobotReader(ProblemFile& out) : out_(out) {}
 
-  Result<void> read(const json& robot) {
+  Result<void> read(const JsonValue& robot) {
     const Result<std::string> name = string(robot, "name");
     if (!name) return fail(name.error());
     const Result<std::string> base = string(robot, "base");
     if (!base) return fail(base.error());
     out_.arm.name = *name;
     places_[*base] = {};
-    return each(robot, "joints", [&](const json& joint) { return add_joint(joint); })
+    return each(robot, "joints", [&](const JsonValue& joint) { return add_joint(joint); })
         .and_then([&] {
           out_.arm.limits.lower = joint_vec(lower_);
           out_.arm.limits.upper = joint_vec(upper_);
-          return each(robot, "spheres", [&](const json& sphere) { return add_sphere(sphere); });
+          return each(robot, "spheres", [&](const JsonValue& sphere) { return add_sphere(sphere); });
         })
         .and_then([&] {
           return each(robot, "self_collision_link_pairs",
-                      [&](const json& pair) { return add_pair(pair); });
+                      [&](const JsonValue& pair) { return add_pair(pair); });
         })
         .and_then([&] { return check_sphere_set(out_.spheres, out_.arm); });
   }
@@ -148,7 +145,7 @@ class RobotReader {
     return bad(msg::plan_unknown_link, link, did_you_mean(link, names));
   }
 
-  Result<void> add_joint(const json& from) {
+  Result<void> add_joint(const JsonValue& from) {
     const Result<std::string> parent = string(from, "parent");
     if (!parent) return fail(parent.error());
     const Result<std::string> child = string(from, "child");
@@ -168,7 +165,7 @@ class RobotReader {
     return {};
   }
 
-  Result<void> add_moving(const json& from, const std::string& type, const Place& place) {
+  Result<void> add_moving(const JsonValue& from, const std::string& type, const Place& place) {
     static const std::vector<std::string> kTypes{"fixed", "revolute", "continuous", "prismatic"};
     if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
       return bad(msg::plan_joint_type, type, listed(kTypes));
@@ -194,7 +191,7 @@ class RobotReader {
     return {};
   }
 
-  Result<void> add_sphere(const json& from) {
+  Result<void> add_sphere(const JsonValue& from) {
     const Result<std::string> link = string(from, "link");
     if (!link) return fail(link.error());
     const Result<Place> place = place_of(*link);
@@ -210,13 +207,13 @@ class RobotReader {
     return {};
   }
 
-  Result<void> add_pair(const json& from) {
-    if (!from.is_array() || from.size() != 2 || !from[0].is_string() || !from[1].is_string()) {
+  Result<void> add_pair(const JsonValue& from) {
+    if (!from.is_list() || from.size() != 2 || !from[0].is_string() || !from[1].is_string()) {
       return bad(msg::plan_pair);
     }
     std::array<int, 2> pair{};
     for (std::size_t k = 0; k < 2; ++k) {
-      const std::string link = from[k].get<std::string>();
+      const std::string link = from[k].string();
       const auto found = links_.find(link);
       if (found == links_.end()) return bad(msg::plan_pair_link, link);
       pair[k] = found->second;
@@ -231,7 +228,7 @@ class RobotReader {
   std::vector<double> lower_, upper_;
 };
 
-Result<ObstacleShape> cylinder_of(const json& from, Cylinders cylinders) {
+Result<ObstacleShape> cylinder_of(const JsonValue& from, Cylinders cylinders) {
   const Result<double> radius = real(from, "radius");
   if (!radius) return fail(radius.error());
   const Result<double> length = real(from, "length");
@@ -247,7 +244,7 @@ Result<ObstacleShape> cylinder_of(const json& from, Cylinders cylinders) {
   return bad(msg::plan_replacement, *as);
 }
 
-Result<Obstacle> obstacle_of(const json& from, Cylinders cylinders) {
+Result<Obstacle> obstacle_of(const JsonValue& from, Cylinders cylinders) {
   const Result<std::string> type = string(from, "type");
   if (!type) return fail(type.error());
   Obstacle out;
@@ -283,24 +280,26 @@ Result<Obstacle> obstacle_of(const json& from, Cylinders cylinders) {
   return out;
 }
 
-Result<PlanProblem> problem_of(const json& from, std::size_t dof, Cylinders cylinders) {
+Result<PlanProblem> problem_of(const JsonValue& from, std::size_t dof, Cylinders cylinders) {
   PlanProblem out;
   Result<std::string> id = string(from, "id");
   if (!id) return fail(id.error());
   out.id = *id;
-  if (from.contains("scene") && from["scene"].is_string()) out.scene = from["scene"];
-  if (from.contains("valid") && from["valid"].is_boolean()) out.valid = from["valid"];
+  const JsonValue* const scene = from.find("scene");
+  if (scene != nullptr && scene->is_string()) out.scene = scene->string();
+  const JsonValue* const valid = from.find("valid");
+  if (valid != nullptr && valid->is_boolean()) out.valid = valid->boolean();
   Result<std::vector<double>> start = number_list(from, "start", dof);
   if (!start) return fail(start.error());
   out.start = std::move(*start);
-  Result<void> done = each(from, "goals", [&](const json& goal) -> Result<void> {
+  Result<void> done = each(from, "goals", [&](const JsonValue& goal) -> Result<void> {
     const Result<std::vector<double>> q = numbers_of(goal, "goal", dof);
     if (!q) return fail(q.error());
     out.goals.insert(out.goals.end(), q->begin(), q->end());
     return {};
   });
   if (!done) return fail(done.error());
-  done = each(from, "obstacles", [&](const json& solid) -> Result<void> {
+  done = each(from, "obstacles", [&](const JsonValue& solid) -> Result<void> {
     Result<Obstacle> obstacle = obstacle_of(solid, cylinders);
     if (!obstacle) return fail(obstacle.error());
     out.obstacles.solids.push_back(std::move(*obstacle));
@@ -312,14 +311,14 @@ Result<PlanProblem> problem_of(const json& from, std::size_t dof, Cylinders cyli
   return out;
 }
 
-Result<ProblemFile> problems_of(const json& file, Cylinders cylinders) {
+Result<ProblemFile> problems_of(const JsonValue& file, Cylinders cylinders) {
   ProblemFile out;
-  const Result<const json*> robot = member(file, "robot");
+  const Result<const JsonValue*> robot = member(file, "robot");
   if (!robot) return fail(robot.error());
   Result<void> done = RobotReader(out).read(**robot);
   if (!done) return fail(at("robot", std::move(done.error())));
   std::set<std::string> ids;
-  done = each(file, "problems", [&](const json& from) -> Result<void> {
+  done = each(file, "problems", [&](const JsonValue& from) -> Result<void> {
     Result<PlanProblem> problem =
         problem_of(from, static_cast<std::size_t>(out.arm.dof()), cylinders);
     if (!problem) return fail(problem.error());

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/mjarm/cli/share.hpp"
-#include "mjarm/core/messages/motion_program.hpp"
+#include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"

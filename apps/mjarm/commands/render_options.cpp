@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/render_command.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/render_command.hpp"
 #include "mjarm/render/video.hpp"
 
 namespace mjarm::app {

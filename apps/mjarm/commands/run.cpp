@@ -6,9 +6,9 @@
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/view/view_host.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/demo.hpp"
-#include "mjarm/core/messages/motion_program.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/demo.hpp"
+#include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

@@ -3,22 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string_view>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/json.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 #include "mjarm/trajectory/via_points.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::array<std::pair<std::string_view, TimeProblem>, 4> kProblems{
     {{"p2p", TimeProblem::p2p},
@@ -27,19 +25,19 @@ constexpr std::array<std::pair<std::string_view, TimeProblem>, 4> kProblems{
      {"via_vaj", TimeProblem::via_vaj}}};
 
 /// Member `key` of `object`: one finite number a joint.
-Result<JointVec> joints_of(const json& object, const std::string& key, Eigen::Index dof) {
+Result<JointVec> joints_of(const JsonValue& object, const std::string& key, Eigen::Index dof) {
   const Result<std::vector<double>> values =
       number_list(object, key, static_cast<std::size_t>(dof));
   if (!values) return fail(values.error());
   return joint_vec(*values);
 }
 
-Result<JointLimits> limits_of(const json& file) {
-  const auto limits = file.find("limits");
-  if (limits == file.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "limits"));
+Result<JointLimits> limits_of(const JsonValue& file) {
+  const JsonValue* const limits = file.find("limits");
+  if (limits == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "limits"));
   if (!limits->is_object()) return fail(Errc::bad_input, text(msg::app_time_no_object, "limits"));
-  const auto v = limits->find("v");
-  const std::size_t dof = v != limits->end() && v->is_array() ? v->size() : 1;
+  const JsonValue* const v = limits->find("v");
+  const std::size_t dof = v != nullptr && v->is_list() ? v->size() : 1;
   if (dof < 1 || dof > static_cast<std::size_t>(kMaxDof)) {
     return fail(Errc::bad_input, text(msg::app_time_bad_dof, dof, kMaxDof));
   }
@@ -56,17 +54,17 @@ Result<JointLimits> limits_of(const json& file) {
   return unbounded(values[0], values[1], values[2]);
 }
 
-Result<std::string> id_of(const json& object) {
-  const auto id = object.find("id");
-  if (id == object.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "id"));
-  if (id->is_string()) return id->get<std::string>();
-  if (id->is_number_unsigned()) return std::to_string(id->get<std::uint64_t>());
-  if (id->is_number_integer()) return std::to_string(id->get<std::int64_t>());
+Result<std::string> id_of(const JsonValue& object) {
+  const JsonValue* const id = object.find("id");
+  if (id == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "id"));
+  if (id->is_string()) return id->string();
+  if (id->is_whole()) return std::to_string(id->whole());
+  if (id->negative() != 0) return std::to_string(id->negative());
   return fail(Errc::bad_input, text(msg::app_time_bad_id));
 }
 
 /// Fills in the two states; missing velocities and accelerations are zero.
-Result<void> read_states(const json& object, Eigen::Index dof, TimeCase& entry) {
+Result<void> read_states(const JsonValue& object, Eigen::Index dof, TimeCase& entry) {
   const std::array<std::pair<const char*, JointVec*>, 6> members{{{"q0", &entry.start.q},
                                                                   {"q1", &entry.end.q},
                                                                   {"v0", &entry.start.v},
@@ -85,11 +83,11 @@ Result<void> read_states(const json& object, Eigen::Index dof, TimeCase& entry) 
   return {};
 }
 
-Result<void> read_waypoints(const json& object, Eigen::Index dof, TimeCase& entry) {
+Result<void> read_waypoints(const JsonValue& object, Eigen::Index dof, TimeCase& entry) {
   constexpr std::size_t kMax = 200'000;
-  const auto list = object.find("waypoints");
-  if (list == object.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "waypoints"));
-  if (!list->is_array() || list->empty() || list->size() > kMax) {
+  const JsonValue* const list = object.find("waypoints");
+  if (list == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "waypoints"));
+  if (!list->is_list() || list->empty() || list->size() > kMax) {
     return fail(Errc::bad_input, text(msg::app_time_bad_waypoints, kMax));
   }
   for (std::size_t i = 0; i < list->size(); ++i) {
@@ -101,8 +99,8 @@ Result<void> read_waypoints(const json& object, Eigen::Index dof, TimeCase& entr
   return {};
 }
 
-Result<TimeCase> read_case(const json& object, Eigen::Index dof, TimeProblem problem) {
-  if (!object.is_object()) return fail(Errc::bad_input, text(msg::app_json_no_object));
+Result<TimeCase> read_case(const JsonValue& object, Eigen::Index dof, TimeProblem problem) {
+  if (!object.is_object()) return fail(Errc::bad_input, text(msg::json_no_object));
   TimeCase entry;
   Result<std::string> id = id_of(object);
   if (!id) return fail(std::move(id.error()));
@@ -139,12 +137,12 @@ JointLimits unbounded(const JointVec& v, const JointVec& a, const JointVec& j) {
 Result<TimeCases> read_time_cases(const std::string& content, TimeProblem problem) {
   const Result<JsonObject> object = parse_json_object(content);
   if (!object) return fail(object.error());
-  const json& file = **object;
+  const JsonValue& file = **object;
   Result<JointLimits> limits = limits_of(file);
   if (!limits) return fail(std::move(limits.error()));
-  const auto list = file.find("cases");
-  if (list == file.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "cases"));
-  if (!list->is_array()) return fail(Errc::bad_input, text(msg::app_time_cases_no_list));
+  const JsonValue* const list = file.find("cases");
+  if (list == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "cases"));
+  if (!list->is_list()) return fail(Errc::bad_input, text(msg::app_time_cases_no_list));
   TimeCases cases{std::move(*limits), {}};
   std::set<std::string> ids;
   for (std::size_t i = 0; i < list->size(); ++i) {

@@ -1,4 +1,4 @@
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/demos/output.hpp"
-#include "apps/mjarm/cli/json_doc.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/commands/train_config.hpp"
 #include "apps/mjarm/commands/train_curve.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/program/yaml_tree.hpp"

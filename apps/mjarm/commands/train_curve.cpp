@@ -8,7 +8,7 @@
 
 #include "apps/mjarm/cli/table.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {

@@ -6,7 +6,7 @@
 #include "apps/mjarm/commands/train_config.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/rl/reach_env.hpp"

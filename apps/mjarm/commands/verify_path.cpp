@@ -10,7 +10,7 @@
 #include "mjarm/collision/first_contact.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
-#include "mjarm/core/messages/verify.hpp"
+#include "apps/mjarm/messages/verify.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm::app {

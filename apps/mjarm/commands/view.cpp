@@ -12,7 +12,7 @@
 #include "apps/mjarm/view/view_robot.hpp"
 #include "apps/mjarm/view/view_sim.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"

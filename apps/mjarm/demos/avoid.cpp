@@ -8,7 +8,7 @@
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/commands/program_run.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <limits>
 
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -3,7 +3,7 @@
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/path/joint_path.hpp"
 
 namespace mjarm::app {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 
 namespace mjarm::app {
 

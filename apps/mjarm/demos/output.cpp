@@ -5,7 +5,7 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/png.hpp"
 

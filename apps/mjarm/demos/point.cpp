@@ -5,7 +5,7 @@
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::app {

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 

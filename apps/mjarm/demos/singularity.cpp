@@ -7,7 +7,7 @@
 #include "apps/mjarm/demos/naive.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/solve_curve.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/install.hpp"
+#include "apps/mjarm/messages/install.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "apps/mjarm/cli/line_reader.hpp"
+#include "mjarm/core/line_reader.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -6,11 +6,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/messages/run.hpp"
 #include "mjarm/core/os.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
 
 bool is_blank(std::string_view line) {
@@ -52,11 +52,11 @@ Result<bool> LineReader::read_line() {
     if (c == '\n') return true;
     if (current_.size() >= longest_) {
       ++line_;
-      return fail(Errc::bad_input, place() + ": " + text(msg::app_line_too_long, longest_));
+      return fail(Errc::bad_input, place() + ": " + text(msg::core_line_too_long, longest_));
     }
     current_.push_back(static_cast<char>(c));
   }
-  if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
+  if (interrupted()) return fail(Errc::system, text(msg::run_interrupted));
   if (std::ferror(file_.get()) != 0) {
     return fail(Errc::system, text(msg::core_cannot_read, name_, system_message(errno)));
   }
@@ -65,7 +65,7 @@ Result<bool> LineReader::read_line() {
 
 Result<std::optional<std::string_view>> LineReader::next() {
   for (;;) {
-    if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
+    if (interrupted()) return fail(Errc::system, text(msg::run_interrupted));
     const Result<bool> has_line = read_line();
     if (!has_line) return fail(has_line.error());
     if (!*has_line) return std::nullopt;
@@ -88,4 +88,18 @@ std::uint64_t LineReader::count_lines() const {
       std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\n'));
 }
 
-}  // namespace mjarm::app
+Result<void> read_json_lines(const std::filesystem::path& file, std::size_t longest,
+                             const std::function<Result<void>(const JsonValue& object)>& take) {
+  Result<LineReader> reader = LineReader::open(file.string(), longest);
+  if (!reader) return fail(std::move(reader.error()));
+  for (;;) {
+    const auto line = reader->next();
+    if (!line) return fail(line.error());
+    if (!*line) return {};
+    const auto taken =
+        parse_json_object(**line).and_then([&](const JsonObject& object) { return take(*object); });
+    if (!taken) return fail(taken.error().code, reader->place() + ": " + taken.error().what);
+  }
+}
+
+}  // namespace mjarm

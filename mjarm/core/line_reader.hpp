@@ -1,14 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 /// Reads a text line by line; a line has a bounded length, so that no input can eat the memory.
 class LineReader {
@@ -53,4 +57,12 @@ class LineReader {
   std::string current_;
 };
 
-}  // namespace mjarm::app
+/// Gives `take` every line of a file, each one JSON object; blank lines are skipped.
+/// @param longest  [bytes] of a line.
+/// @return an error that begins with `file:line:` at the first line that is none, or that `take`
+/// refuses.
+[[nodiscard]] Result<void> read_json_lines(
+    const std::filesystem::path& file, std::size_t longest,
+    const std::function<Result<void>(const JsonValue& object)>& take);
+
+}  // namespace mjarm

@@ -4,6 +4,6 @@
 
 namespace mjarm::msg {
 #define MJARM_MSG(id, english, chinese) inline constexpr Msg id{english, chinese};
-#include "mjarm/core/messages/plan.inc"
+#include "apps/bench/messages/bench_rl.inc"
 #undef MJARM_MSG
 }  // namespace mjarm::msg
