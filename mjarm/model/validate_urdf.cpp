@@ -81,7 +81,7 @@ class Checker {
   Checker(const fs::path& file, const XMLElement& robot) : file_(file), robot_(robot) {}
 
   Result<void> run() {
-    if (auto done = check_urdf_words(file_, robot_); !done) return done;
+    if (auto done = validate_urdf_words(file_, robot_); !done) return done;
     if (auto done = links(); !done) return done;
     for (const XMLElement* joint : children(robot_, "joint")) {
       if (auto done = this->joint(*joint); !done) return done;
@@ -276,7 +276,7 @@ class Checker {
 
 }  // namespace
 
-Result<void> check_urdf(const fs::path& file, const XMLElement& robot) {
+Result<void> validate_urdf(const fs::path& file, const XMLElement& robot) {
   return Checker(file, robot).run();
 }
 
