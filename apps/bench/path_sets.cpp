@@ -5,7 +5,7 @@
 
 #include "apps/bench/robots.hpp"
 #include "mjarm/core/line_reader.hpp"
-#include "apps/mjarm/commands/path_request.hpp"
+#include "mjarm/path/path_request.hpp"
 #include "apps/bench/messages/bench.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"

@@ -6,7 +6,6 @@
 #include "apps/bench/plan_plot.hpp"
 #include "apps/bench/plan_suite.hpp"
 #include "apps/bench/suites.hpp"
-#include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/file.hpp"

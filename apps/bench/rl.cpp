@@ -8,7 +8,6 @@
 #include "apps/bench/rl_run.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
-#include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
 #include "apps/mjarm/cli/usage.hpp"

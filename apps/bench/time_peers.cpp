@@ -23,20 +23,6 @@ JsonDoc case_json(const TimeSet& set, const TimeCase& entry) {
   return {{"waypoints", std::move(points)}};
 }
 
-const char* problem_name(TimeProblem problem) {
-  switch (problem) {
-    case TimeProblem::p2p:
-      return "p2p";
-    case TimeProblem::path_va:
-      return "path_va";
-    case TimeProblem::path_vaj:
-      return "path_vaj";
-    case TimeProblem::via_vaj:
-      return "via_vaj";
-  }
-  return "";
-}
-
 JsonDoc job_of(const std::vector<TimeSet>& sets, int rounds) {
   std::vector<JsonDoc> jobs;
   for (const TimeSet& set : sets) {
@@ -44,7 +30,7 @@ JsonDoc job_of(const std::vector<TimeSet>& sets, int rounds) {
     for (const TimeCase& entry : set.cases) cases.push_back(case_json(set, entry));
     jobs.push_back(
         {{"name", set.name},
-         {"problem", problem_name(set.problem)},
+         {"problem", name(set.problem)},
          {"samples", samples_of(set.problem)},
          {"limits",
           {{"v", set.limits.velocity}, {"a", set.limits.acceleration}, {"j", set.limits.jerk}}},

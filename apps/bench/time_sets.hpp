@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/commands/time_cases.hpp"
+#include "mjarm/trajectory/time_cases.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm::app {

@@ -9,12 +9,13 @@
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
 #include "apps/mjarm/commands/path_answer.hpp"
-#include "apps/mjarm/commands/path_request.hpp"
+#include "mjarm/path/path_request.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/path_command.hpp"
+#include "mjarm/core/messages/path.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/path_measures.hpp"
@@ -174,7 +175,7 @@ Result<PathOptions> path_options(const Options& options, const Robot& robot) {
   if (options.max_step.empty()) return path;
   const Result<double> step = parse_quantity(options.max_step, Quantity::angle);
   if (!step) return fail(in_option("--max-step", step.error()));
-  if (!(*step > 0)) return fail(Errc::bad_input, text(msg::path_command_max_step));
+  if (!(*step > 0)) return fail(Errc::bad_input, text(msg::path_request_max_step));
   path.max_step = *step;
   return path;
 }

@@ -10,15 +10,16 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/commands/time_cases.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/file.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/model/arm_dynamics.hpp"
+#include "mjarm/trajectory/time_cases.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -192,11 +193,22 @@ Result<TimeCase> read_points(const Options& options, TimeProblem problem, const 
   return entry;
 }
 
+Result<TimeProblem> read_problem(const std::string& word) {
+  std::vector<std::string> names;
+  for (const TimeProblem problem : kTimeProblems) {
+    if (word == name(problem)) return problem;
+    names.emplace_back(name(problem));
+  }
+  const std::optional<std::string> near = nearest_word(word, names);
+  const std::string hint = near ? text(msg::app_time_did_you_mean, *near) : std::string();
+  return fail(Errc::usage, text(msg::app_time_unknown_problem, word, listed(names)) + hint);
+}
+
 Result<int> run(const Options& options) {
   if (Result<void> fine = one_source(options.batch.in, options.points, "--points"); !fine) {
     return fail(std::move(fine.error()));
   }
-  const Result<TimeProblem> problem = parse_time_problem(options.problem);
+  const Result<TimeProblem> problem = read_problem(options.problem);
   if (!problem) return fail(problem.error());
   Job job{*problem, {}, 0, options.check, !options.no_timing};
   if (!options.dt.empty()) {

@@ -9,7 +9,7 @@
 #include "mjarm/model/arm.hpp"
 #include "mjarm/path/curve.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 /// A path to be solved: either given poses or a curve.
 struct PathRequest {
@@ -21,11 +21,13 @@ struct PathRequest {
   std::optional<double> tilt;            ///< [rad] `orientation_tol`, in [0, pi/2)
 };
 
-/// Reads one request as INTERFACES of `mjarm path` describe it: `type` and what belongs to it.
-/// @return what is wrong, without the place of the line.
+/// Reads one request: `"type"` is one of poses (with `"poses"`), line (`"from"`, `"to"`), arc
+/// (`"from"`, `"via"`, `"to"`), polyline (`"points"`, `"blend"` [m]) and ellipse (`"center"`, `"a"`,
+/// `"b"`, `"normal"`, `"quat"`, maybe `"points"`); a pose is `{"pos":[3],"quat":[4]}`.
+/// @return an error that names the member.
 [[nodiscard]] Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm);
 
 /// Checks that a tolerance of orientation [rad] is in [0, pi/2).
 [[nodiscard]] Result<void> check_tilt(double tilt);
 
-}  // namespace mjarm::app
+}  // namespace mjarm

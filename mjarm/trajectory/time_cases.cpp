@@ -1,28 +1,20 @@
-#include "apps/mjarm/commands/time_cases.hpp"
+#include "mjarm/trajectory/time_cases.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <set>
 #include <span>
-#include <string_view>
 #include <utility>
 
 #include "mjarm/core/json.hpp"
-#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/messages/json.hpp"
-#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 #include "mjarm/trajectory/via_points.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, TimeProblem>, 4> kProblems{
-    {{"p2p", TimeProblem::p2p},
-     {"path_va", TimeProblem::path_va},
-     {"path_vaj", TimeProblem::path_vaj},
-     {"via_vaj", TimeProblem::via_vaj}}};
 
 /// Member `key` of `object`: one finite number a joint.
 Result<JointVec> joints_of(const JsonValue& object, const std::string& key, Eigen::Index dof) {
@@ -35,11 +27,11 @@ Result<JointVec> joints_of(const JsonValue& object, const std::string& key, Eige
 Result<JointLimits> limits_of(const JsonValue& file) {
   const JsonValue* const limits = file.find("limits");
   if (limits == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "limits"));
-  if (!limits->is_object()) return fail(Errc::bad_input, text(msg::app_time_no_object, "limits"));
+  if (!limits->is_object()) return fail(Errc::bad_input, text(msg::trajectory_cases_no_object, "limits"));
   const JsonValue* const v = limits->find("v");
   const std::size_t dof = v != nullptr && v->is_list() ? v->size() : 1;
   if (dof < 1 || dof > static_cast<std::size_t>(kMaxDof)) {
-    return fail(Errc::bad_input, text(msg::app_time_bad_dof, dof, kMaxDof));
+    return fail(Errc::bad_input, text(msg::trajectory_cases_bad_dof, dof, kMaxDof));
   }
   std::array<JointVec, 3> values;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -47,7 +39,7 @@ Result<JointLimits> limits_of(const JsonValue& file) {
     Result<JointVec> list = joints_of(*limits, key, static_cast<Eigen::Index>(dof));
     if (!list) return fail(list.error().code, "limits: " + list.error().what);
     if (!(list->minCoeff() > 0)) {
-      return fail(Errc::bad_input, text(msg::app_time_bad_limit, key));
+      return fail(Errc::bad_input, text(msg::trajectory_cases_bad_limit, key));
     }
     values[k] = *list;
   }
@@ -60,7 +52,7 @@ Result<std::string> id_of(const JsonValue& object) {
   if (id->is_string()) return id->string();
   if (id->is_whole()) return std::to_string(id->whole());
   if (id->negative() != 0) return std::to_string(id->negative());
-  return fail(Errc::bad_input, text(msg::app_time_bad_id));
+  return fail(Errc::bad_input, text(msg::trajectory_cases_bad_id));
 }
 
 /// Fills in the two states; missing velocities and accelerations are zero.
@@ -88,7 +80,7 @@ Result<void> read_waypoints(const JsonValue& object, Eigen::Index dof, TimeCase&
   const JsonValue* const list = object.find("waypoints");
   if (list == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "waypoints"));
   if (!list->is_list() || list->empty() || list->size() > kMax) {
-    return fail(Errc::bad_input, text(msg::app_time_bad_waypoints, kMax));
+    return fail(Errc::bad_input, text(msg::trajectory_cases_bad_waypoints, kMax));
   }
   for (std::size_t i = 0; i < list->size(); ++i) {
     const std::string key = "waypoints[" + std::to_string(i) + "]";
@@ -113,15 +105,18 @@ Result<TimeCase> read_case(const JsonValue& object, Eigen::Index dof, TimeProble
 
 }  // namespace
 
-Result<TimeProblem> parse_time_problem(const std::string& name) {
-  std::vector<std::string> names;
-  for (const auto& [word, problem] : kProblems) {
-    if (word == name) return problem;
-    names.emplace_back(word);
+const char* name(TimeProblem problem) noexcept {
+  switch (problem) {
+    case TimeProblem::p2p:
+      return "p2p";
+    case TimeProblem::path_va:
+      return "path_va";
+    case TimeProblem::path_vaj:
+      return "path_vaj";
+    case TimeProblem::via_vaj:
+      return "via_vaj";
   }
-  const std::optional<std::string> near = nearest_word(name, names);
-  const std::string hint = near ? text(msg::app_time_did_you_mean, *near) : std::string();
-  return fail(Errc::usage, text(msg::app_time_unknown_problem, name, listed(names)) + hint);
+  return "";
 }
 
 JointLimits unbounded(const JointVec& v, const JointVec& a, const JointVec& j) {
@@ -142,17 +137,17 @@ Result<TimeCases> read_time_cases(const std::string& content, TimeProblem proble
   if (!limits) return fail(std::move(limits.error()));
   const JsonValue* const list = file.find("cases");
   if (list == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "cases"));
-  if (!list->is_list()) return fail(Errc::bad_input, text(msg::app_time_cases_no_list));
+  if (!list->is_list()) return fail(Errc::bad_input, text(msg::trajectory_cases_no_list));
   TimeCases cases{std::move(*limits), {}};
   std::set<std::string> ids;
   for (std::size_t i = 0; i < list->size(); ++i) {
     Result<TimeCase> entry = read_case((*list)[i], cases.limits.velocity.size(), problem);
     if (!entry) {
-      return fail(entry.error().code, text(msg::app_time_in_case, i, entry.error().what));
+      return fail(entry.error().code, text(msg::trajectory_cases_in_case, i, entry.error().what));
     }
     if (!ids.insert(entry->id).second) {
       return fail(Errc::bad_input,
-                  text(msg::app_time_in_case, i, text(msg::app_time_id_twice, entry->id)));
+                  text(msg::trajectory_cases_in_case, i, text(msg::trajectory_cases_id_twice, entry->id)));
     }
     cases.cases.push_back(std::move(*entry));
   }
@@ -171,4 +166,4 @@ Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits, T
   return time_waypoint_path(entry.waypoints, limits, torque);
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

@@ -1,4 +1,4 @@
-#include "apps/mjarm/commands/path_request.hpp"
+#include "mjarm/path/path_request.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,16 +7,20 @@
 #include <string>
 #include <utility>
 
-#include "mjarm/core/json.hpp"
-#include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/messages/path_command.hpp"
+#include "mjarm/core/messages/path.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/path/ellipse.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
 
 constexpr std::size_t kMaxPoses = 1'000'000;
+
+/// `place: ` before what is wrong there.
+Error at(const std::string& place, Error error) {
+  error.what = place + ": " + error.what;
+  return error;
+}
 
 /// Member `key`, a number; `otherwise` where it is missing, an error where that is none.
 Result<double> number_of(const JsonValue& object, const char* key,
@@ -24,7 +28,7 @@ Result<double> number_of(const JsonValue& object, const char* key,
   const JsonValue* const member = object.find(key);
   if (member == nullptr && otherwise) return *otherwise;
   if (member == nullptr || !member->is_number()) {
-    return fail(Errc::bad_input, text(msg::path_command_no_number, key));
+    return fail(Errc::bad_input, text(msg::path_request_no_number, key));
   }
   return member->number();
 }
@@ -32,27 +36,27 @@ Result<double> number_of(const JsonValue& object, const char* key,
 Result<Pose> pose_member(const JsonValue& object, const char* key) {
   const JsonValue* const member = object.find(key);
   if (member == nullptr || !member->is_object()) {
-    return fail(Errc::bad_input, text(msg::path_command_no_pose, key));
+    return fail(Errc::bad_input, text(msg::path_request_no_pose, key));
   }
   Result<Pose> pose = pose_of(*member);
-  if (!pose) return fail(in_option(key, pose.error()));
+  if (!pose) return fail(at(key, pose.error()));
   return pose;
 }
 
 Result<std::vector<Pose>> pose_list(const JsonValue& object, const char* key) {
   const JsonValue* const member = object.find(key);
   if (member == nullptr || !member->is_list() || member->empty()) {
-    return fail(Errc::bad_input, text(msg::path_command_no_poses, key));
+    return fail(Errc::bad_input, text(msg::path_request_no_poses, key));
   }
   std::vector<Pose> poses;
   poses.reserve(member->size());
   for (const JsonValue& entry : *member) {
     const std::string place = std::string(key) + "[" + std::to_string(poses.size()) + "]";
     if (!entry.is_object()) {
-      return fail(Errc::bad_input, text(msg::path_command_no_pose, place));
+      return fail(Errc::bad_input, text(msg::path_request_no_pose, place));
     }
     const Result<Pose> pose = pose_of(entry);
-    if (!pose) return fail(in_option(place, pose.error()));
+    if (!pose) return fail(at(place, pose.error()));
     poses.push_back(*pose);
   }
   return poses;
@@ -117,7 +121,7 @@ Result<void> read_ellipse(const JsonValue& object, PathRequest& out) {
   if (!points) return fail(points.error());
   if (!object.contains("points")) return {};
   if (!(*points >= 1 && *points <= double{kMaxPoses}) || std::floor(*points) != *points) {
-    return fail(Errc::bad_input, text(msg::path_command_points, kMaxPoses));
+    return fail(Errc::bad_input, text(msg::path_request_points, kMaxPoses));
   }
   out.curve.reset();
   out.poses = ellipse_points(ellipse, static_cast<int>(*points));
@@ -143,21 +147,21 @@ Result<const Type*> type_of(const JsonValue& object) {
   }
   const JsonValue* const member = object.find("type");
   if (member == nullptr || !member->is_string()) {
-    return fail(Errc::bad_input, text(msg::path_command_no_type, all));
+    return fail(Errc::bad_input, text(msg::path_request_no_type, all));
   }
   const auto word = member->string();
   for (const Type& type : kTypes) {
     if (word == type.name) return &type;
   }
   const std::string meant = nearest_word(word, names).value_or(all);
-  return fail(Errc::bad_input, text(msg::path_command_unknown_type, word.substr(0, 40), meant));
+  return fail(Errc::bad_input, text(msg::path_request_unknown_type, word.substr(0, 40), meant));
 }
 
 }  // namespace
 
 Result<void> check_tilt(double tilt) {
   if (tilt >= 0 && tilt < std::numbers::pi / 2) return {};
-  return fail(Errc::bad_input, text(msg::path_command_bad_tilt));
+  return fail(Errc::bad_input, text(msg::path_request_bad_tilt));
 }
 
 Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm) {
@@ -173,13 +177,13 @@ Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm) {
   if (object.contains("max_step")) {
     const Result<double> max_step = number_of(object, "max_step");
     if (!max_step) return fail(max_step.error());
-    if (!(*max_step > 0)) return fail(Errc::bad_input, text(msg::path_command_max_step));
+    if (!(*max_step > 0)) return fail(Errc::bad_input, text(msg::path_request_max_step));
     out.max_step = *max_step;
   }
   if (object.contains("speed")) {
     const Result<double> speed = number_of(object, "speed");
     if (!speed) return fail(speed.error());
-    if (!(*speed > 0)) return fail(Errc::bad_input, text(msg::path_command_bad_speed));
+    if (!(*speed > 0)) return fail(Errc::bad_input, text(msg::path_request_bad_speed));
     out.speed = *speed;
   }
   if (object.contains("orientation_tol")) {
@@ -191,4 +195,4 @@ Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm) {
   return out;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

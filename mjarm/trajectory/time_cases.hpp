@@ -9,9 +9,9 @@
 #include "mjarm/trajectory/path_timing.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
-/// What `mjarm time` can be asked for.
+/// What a motion in time can be asked for.
 enum class TimeProblem {
   p2p,       ///< from one state to another: v, a and jerk limits
   path_va,   ///< along one given path: v and a limits
@@ -19,8 +19,10 @@ enum class TimeProblem {
   via_vaj,   ///< through waypoints, the shape free: v, a and jerk limits
 };
 
-/// The problem of this name. @return a usage error with the nearest name.
-[[nodiscard]] Result<TimeProblem> parse_time_problem(const std::string& name);
+inline constexpr TimeProblem kTimeProblems[] = {TimeProblem::p2p, TimeProblem::path_va,
+                                                TimeProblem::path_vaj, TimeProblem::via_vaj};
+/// The problem as a word, such as `path_va`.
+[[nodiscard]] const char* name(TimeProblem problem) noexcept;
 
 /// One motion to be found.
 struct TimeCase {
@@ -35,7 +37,9 @@ struct TimeCases {
   std::vector<TimeCase> cases;
 };
 
-/// Reads `content`, the text of a file of cases. @return an error that names the case and the
+/// Reads `content`, the text of a file of cases, which is a JSON object:
+/// `{"limits":{"v":[],"a":[],"j":[]},"cases":[{"id":...,"q0":[],"q1":[]},...]}` (p2p; maybe with v0,
+/// a0, v1, a1), `{"id":...,"waypoints":[[],...]}` (the others). [rad or m, s] @return an error that names the case and the
 /// entry.
 [[nodiscard]] Result<TimeCases> read_time_cases(const std::string& content, TimeProblem problem);
 
@@ -47,4 +51,4 @@ struct TimeCases {
 [[nodiscard]] Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits,
                                            TimeProblem problem, PathTimingOptions torque = {});
 
-}  // namespace mjarm::app
+}  // namespace mjarm
