@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "apps/bench/messages/control_suite.hpp"
 #include "apps/bench/report.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
-#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "apps/bench/messages/control_suite.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/program/control_trial.hpp"
 
 namespace mjarm::app {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robots.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/line_reader.hpp"
-#include "apps/bench/messages/bench.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
 #include "apps/bench/robots.hpp"
-#include "apps/bench/messages/bench.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/solve_path.hpp"
 

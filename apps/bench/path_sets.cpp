@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robots.hpp"
 #include "mjarm/core/line_reader.hpp"
-#include "mjarm/path/path_request.hpp"
-#include "apps/bench/messages/bench.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"
+#include "mjarm/path/path_request.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -3,10 +3,10 @@
 #include <limits>
 #include <utility>
 
-#include "mjarm/core/json.hpp"
+#include "apps/bench/messages/bench.hpp"
 #include "apps/mjarm/cli/share.hpp"
 #include "mjarm/core/file.hpp"
-#include "apps/bench/messages/bench.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
 #include "mjarm/core/rotation.hpp"

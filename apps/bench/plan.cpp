@@ -3,16 +3,16 @@
 #include <memory>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 #include "apps/bench/plan_plot.hpp"
 #include "apps/bench/plan_suite.hpp"
 #include "apps/bench/suites.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "apps/bench/messages/bench.hpp"
-#include "apps/bench/messages/bench_plan.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

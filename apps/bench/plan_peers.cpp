@@ -4,9 +4,9 @@
 #include <map>
 #include <utility>
 
-#include "apps/bench/peers.hpp"
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/messages/bench_plan.hpp"
+#include "apps/bench/peers.hpp"
 
 namespace mjarm::app {
 namespace {

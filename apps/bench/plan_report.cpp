@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "mjarm/core/file.hpp"
 #include "apps/bench/messages/bench_plan.hpp"
+#include "mjarm/core/file.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -3,18 +3,18 @@
 #include <memory>
 #include <utility>
 
+#include "apps/bench/messages/bench_rl.hpp"
 #include "apps/bench/rl_peers.hpp"
 #include "apps/bench/rl_report.hpp"
 #include "apps/bench/rl_run.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/commands/train_task.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/train_task.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "apps/bench/messages/bench_rl.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "apps/bench/peers.hpp"
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/peers.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/sim/sim.hpp"

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
 #include "mjarm/core/file.hpp"
-#include "apps/bench/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include "mjarm/core/json.hpp"
+#include "apps/bench/messages/bench.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/core/file.hpp"
-#include "apps/bench/messages/bench.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/rng.hpp"
 
 namespace mjarm::app {

@@ -80,9 +80,9 @@ class JsonValue {
 
 /// What a text may ask of who reads it.
 struct JsonLimits {
-  int depth = 32;                               ///< brackets open at once, >= 1
-  std::size_t values = std::size_t{1} << 25;    ///< numbers, strings, lists, ... in all
-  std::size_t bytes = std::size_t{1} << 28;     ///< at most 2^31
+  int depth = 32;                             ///< brackets open at once, >= 1
+  std::size_t values = std::size_t{1} << 25;  ///< numbers, strings, lists, ... in all
+  std::size_t bytes = std::size_t{1} << 28;   ///< at most 2^31
   bool unique_keys = false;  ///< refuse an object that names a key twice; else the last one counts
 };
 
@@ -127,8 +127,8 @@ class JsonObject {
 // What requests are made of. Errors name the member, not the text.
 
 /// Member `key` of `object` as a list of `size` finite numbers.
-[[nodiscard]] Result<std::vector<double>> number_list(const JsonValue& object,
-                                                      std::string_view key, std::size_t size);
+[[nodiscard]] Result<std::vector<double>> number_list(const JsonValue& object, std::string_view key,
+                                                      std::size_t size);
 /// The same of a value that has no name of its own; `name` stands for it in the error.
 [[nodiscard]] Result<std::vector<double>> numbers_of(const JsonValue& value, std::string_view name,
                                                      std::size_t size);

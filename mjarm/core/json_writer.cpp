@@ -104,8 +104,7 @@ JsonDoc::JsonDoc(std::vector<JsonDoc> values) : tree_(new Tree{ordered_json::arr
   for (JsonDoc& value : values) tree_->json.push_back(std::move(value.tree_->json));
 }
 
-JsonDoc::JsonDoc(std::initializer_list<Member> members)
-    : tree_(new Tree{ordered_json::object()}) {
+JsonDoc::JsonDoc(std::initializer_list<Member> members) : tree_(new Tree{ordered_json::object()}) {
   for (const Member& member : members) {
     tree_->json[member.key] = std::move(member.value.tree_->json);
   }

@@ -18,7 +18,9 @@ class LineReaderTest : public ::testing::Test {
 };
 
 TEST_F(LineReaderTest, SkipsBlankLinesAndKnowsPlaces) {
-  const std::string path = file("\xEF\xBB\xBF" "a\n\n \t\r\nb\r\nc");
+  const std::string path = file(
+      "\xEF\xBB\xBF"
+      "a\n\n \t\r\nb\r\nc");
   Result<LineReader> reader = LineReader::open(path);
   ASSERT_TRUE(reader);
   EXPECT_FALSE(reader->is_stream());

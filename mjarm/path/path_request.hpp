@@ -22,7 +22,8 @@ struct PathRequest {
 };
 
 /// Reads one request: `"type"` is one of poses (with `"poses"`), line (`"from"`, `"to"`), arc
-/// (`"from"`, `"via"`, `"to"`), polyline (`"points"`, `"blend"` [m]) and ellipse (`"center"`, `"a"`,
+/// (`"from"`, `"via"`, `"to"`), polyline (`"points"`, `"blend"` [m]) and ellipse (`"center"`,
+/// `"a"`,
 /// `"b"`, `"normal"`, `"quat"`, maybe `"points"`); a pose is `{"pos":[3],"quat":[4]}`.
 /// @return an error that names the member.
 [[nodiscard]] Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm);

@@ -114,12 +114,12 @@ Result<void> SafetensorsReader::metadata(const JsonValue& texts) {
   return {};
 }
 
-Result<TensorPlace> SafetensorsReader::place(const std::string& name, const JsonValue& entry) const {
+Result<TensorPlace> SafetensorsReader::place(const std::string& name,
+                                             const JsonValue& entry) const {
   const JsonValue* const type_of = entry.find("dtype");
   const JsonValue* const shape_of = entry.find("shape");
   const JsonValue* const offsets_of = entry.find("data_offsets");
-  if (entry.size() != 3 || !type_of || !type_of->is_string() || !shape_of ||
-      !offsets_of) {
+  if (entry.size() != 3 || !type_of || !type_of->is_string() || !shape_of || !offsets_of) {
     return bad(msg::policy_file_fields, in_quotes(name));
   }
   TensorPlace place;

@@ -27,7 +27,8 @@ Result<JointVec> joints_of(const JsonValue& object, const std::string& key, Eige
 Result<JointLimits> limits_of(const JsonValue& file) {
   const JsonValue* const limits = file.find("limits");
   if (limits == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "limits"));
-  if (!limits->is_object()) return fail(Errc::bad_input, text(msg::trajectory_cases_no_object, "limits"));
+  if (!limits->is_object())
+    return fail(Errc::bad_input, text(msg::trajectory_cases_no_object, "limits"));
   const JsonValue* const v = limits->find("v");
   const std::size_t dof = v != nullptr && v->is_list() ? v->size() : 1;
   if (dof < 1 || dof > static_cast<std::size_t>(kMaxDof)) {
@@ -146,8 +147,8 @@ Result<TimeCases> read_time_cases(const std::string& content, TimeProblem proble
       return fail(entry.error().code, text(msg::trajectory_cases_in_case, i, entry.error().what));
     }
     if (!ids.insert(entry->id).second) {
-      return fail(Errc::bad_input,
-                  text(msg::trajectory_cases_in_case, i, text(msg::trajectory_cases_id_twice, entry->id)));
+      return fail(Errc::bad_input, text(msg::trajectory_cases_in_case, i,
+                                        text(msg::trajectory_cases_id_twice, entry->id)));
     }
     cases.cases.push_back(std::move(*entry));
   }

@@ -38,9 +38,9 @@ struct TimeCases {
 };
 
 /// Reads `content`, the text of a file of cases, which is a JSON object:
-/// `{"limits":{"v":[],"a":[],"j":[]},"cases":[{"id":...,"q0":[],"q1":[]},...]}` (p2p; maybe with v0,
-/// a0, v1, a1), `{"id":...,"waypoints":[[],...]}` (the others). [rad or m, s] @return an error that names the case and the
-/// entry.
+/// `{"limits":{"v":[],"a":[],"j":[]},"cases":[{"id":...,"q0":[],"q1":[]},...]}` (p2p; maybe with
+/// v0, a0, v1, a1), `{"id":...,"waypoints":[[],...]}` (the others). [rad or m, s] @return an error
+/// that names the case and the entry.
 [[nodiscard]] Result<TimeCases> read_time_cases(const std::string& content, TimeProblem problem);
 
 /// Limits without an end of the joints' range.

@@ -84,9 +84,9 @@ inline void expect_formats(const Msg& message) {
   };
   for (const Language language : {Language::english, Language::chinese}) {
     const LanguageScope scope(language);
-    const std::string formatted =
-        format_message(message, {value(0), value(1), value(2), value(3), value(4), value(5),
-                                 value(6), value(7), value(8)});
+    const std::string formatted = format_message(
+        message,
+        {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7), value(8)});
     EXPECT_TRUE(formatted.find("{}") == std::string::npos &&
                 formatted.find("{:") == std::string::npos)
         << formatted;

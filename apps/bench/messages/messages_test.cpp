@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "tests/support/messages.hpp"
+
+#include <gtest/gtest.h>
 
 namespace mjarm::app {
 namespace {

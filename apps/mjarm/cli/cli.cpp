@@ -9,8 +9,8 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -131,7 +131,8 @@ int run(std::span<const Command> commands, const std::vector<std::string>& argum
   GlobalOptions global;
   add_global_options(*app, global);
   std::vector<std::pair<const CLI::App*, Run>> runs;
-  if (const Command* other = handed_over(commands, arguments)) return report(go_on(*other, arguments));
+  if (const Command* other = handed_over(commands, arguments))
+    return report(go_on(*other, arguments));
   for (const Command& command : commands) {
     CLI::App& sub = add_subcommand(*app, command.name, command.summary, command.examples);
     if (command.setup != nullptr) runs.emplace_back(&sub, command.setup(sub));

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/view/view_host.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/install.hpp"
 #include "apps/mjarm/messages/train.hpp"
+#include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"

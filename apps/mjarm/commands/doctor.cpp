@@ -4,14 +4,14 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/install/installed.hpp"
-#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "mjarm/core/cpu.hpp"
-#include "mjarm/core/log.hpp"
+#include "apps/mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/install.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
+#include "mjarm/core/cpu.hpp"
+#include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_child_input.hpp"
 #include "mjarm/core/text_width.hpp"

@@ -2,13 +2,13 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/commands/train_outcome.hpp"
-#include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/view/view_host.hpp"
+#include "apps/mjarm/commands/policy_run.hpp"
+#include "apps/mjarm/commands/train_outcome.hpp"
+#include "apps/mjarm/demos/outcome.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/messages/train.hpp"
+#include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

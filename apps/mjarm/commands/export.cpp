@@ -4,11 +4,11 @@
 #include <system_error>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/file.hpp"
+#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/program/urscript.hpp"
 

@@ -5,11 +5,11 @@
 
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
-#include "mjarm/core/json.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/rotation.hpp"
 

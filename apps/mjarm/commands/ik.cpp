@@ -4,15 +4,15 @@
 #include <memory>
 #include <optional>
 
-#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
-#include "mjarm/core/json.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
@@ -109,7 +109,8 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
   Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
   if (job.prefer && solution) {
     const SelfMotionOptions self_motion{.goal = *job.prefer, .posture = joint_vec(request.q_seed)};
-    solution = null_space_step(job.solver, request.X_WT, as_span(solution->q), self_motion).value_or(*solution);
+    solution = null_space_step(job.solver, request.X_WT, as_span(solution->q), self_motion)
+                   .value_or(*solution);
   }
   std::vector<IkSolution> branches;
   if (job.all && solution) {

@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/install/install.hpp"
 #include "apps/mjarm/install/installed.hpp"
-#include "mjarm/core/json_writer.hpp"
-#include "apps/mjarm/cli/options.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "mjarm/core/messages/core.hpp"
 #include "apps/mjarm/messages/install.hpp"
+#include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {

@@ -1,24 +1,25 @@
+#include "mjarm/core/messages/path.hpp"
+
 #include <cmath>
 #include <memory>
 #include <optional>
 
-#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
-#include "mjarm/core/json.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
-#include "apps/mjarm/commands/path_answer.hpp"
-#include "mjarm/path/path_request.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/collision/exact.hpp"
+#include "apps/mjarm/commands/path_answer.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/path_command.hpp"
-#include "mjarm/core/messages/path.hpp"
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/path_measures.hpp"
+#include "mjarm/path/path_request.hpp"
 #include "mjarm/path/solve_curve.hpp"
 
 namespace mjarm::app {

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <utility>
 
-#include "mjarm/core/json.hpp"
-#include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/json.hpp"
 #include "apps/mjarm/messages/verify.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/messages/json.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -49,8 +49,7 @@ Result<GivenCertificate> certificate_of(const JsonValue& entry) {
   }
   const JsonValue* const pair = entry.find("pair");
   if (pair == nullptr) return out;
-  if (!pair->is_list() || pair->size() != 2 || !(*pair)[0].is_string() ||
-      !(*pair)[1].is_string()) {
+  if (!pair->is_list() || pair->size() != 2 || !(*pair)[0].is_string() || !(*pair)[1].is_string()) {
     return fail(Errc::bad_input, text(msg::verify_no_pair));
   }
   out.pair = {(*pair)[0].string(), (*pair)[1].string()};

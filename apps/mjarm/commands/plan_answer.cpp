@@ -77,10 +77,7 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
   JsonWriter json(out);
   json.object().member("ok", answer.path.has_value());
   if (answer.path) {
-    json.member("path", answer.path->q)
-        .member("cost", answer.path->cost)
-        .key("certificate")
-        .list();
+    json.member("path", answer.path->q).member("cost", answer.path->cost).key("certificate").list();
     for (const EdgeCertificate& proof : answer.path->proof) {
       append_proof(json, proof, robot, obstacles);
     }

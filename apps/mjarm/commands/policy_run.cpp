@@ -5,13 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "apps/mjarm/commands/policy_player.hpp"
+#include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/demos/show.hpp"
-#include "apps/mjarm/commands/train_outcome.hpp"
-#include "apps/mjarm/commands/policy_player.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/rl/safetensors.hpp"

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "mjarm/core/json.hpp"
 #include "apps/mjarm/messages/plan.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {
@@ -121,7 +121,8 @@ class RobotReader {
         .and_then([&] {
           out_.arm.limits.lower = joint_vec(lower_);
           out_.arm.limits.upper = joint_vec(upper_);
-          return each(robot, "spheres", [&](const JsonValue& sphere) { return add_sphere(sphere); });
+          return each(robot, "spheres",
+                      [&](const JsonValue& sphere) { return add_sphere(sphere); });
         })
         .and_then([&] {
           return each(robot, "self_collision_link_pairs",

@@ -2,10 +2,10 @@
 
 #include <utility>
 
+#include "apps/mjarm/messages/motion_program.hpp"
 #include "apps/mjarm/view/program_scene.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/kinematics/fk.hpp"
 

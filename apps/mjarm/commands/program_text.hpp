@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/commands/program_load.hpp"
+#include "mjarm/core/json_writer.hpp"
 
 namespace mjarm::app {
 

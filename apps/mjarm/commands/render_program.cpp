@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "apps/mjarm/commands/program_run.hpp"
-#include "apps/mjarm/view/program_scene.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
+#include "apps/mjarm/view/program_scene.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/render/overlay_shapes.hpp"

@@ -2,13 +2,13 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/view/view_host.hpp"
+#include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/demos/outcome.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
+#include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

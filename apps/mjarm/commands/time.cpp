@@ -5,14 +5,14 @@
 #include <string>
 #include <utility>
 
-#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/file.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
@@ -24,7 +24,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr double kMaxSamples = 1e7;       // of one motion
+constexpr double kMaxSamples = 1e7;        // of one motion
 constexpr double kRounding = 1e-6;         // a limit may be passed by this share of it
 constexpr double kTorqueRounding = 1e-3;   // the same for torques
 constexpr std::size_t kLargest = 1 << 28;  // [bytes] of a file

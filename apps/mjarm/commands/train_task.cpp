@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "apps/mjarm/commands/train_config.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/file.hpp"
+#include "apps/mjarm/commands/train_config.hpp"
 #include "apps/mjarm/messages/train.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/rl/reach_env.hpp"

@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "mjarm/core/json_writer.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/commands/robot_world.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/robot_world.hpp"
 #include "apps/mjarm/commands/verify_path.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"

@@ -6,11 +6,11 @@
 #include <span>
 #include <utility>
 
+#include "apps/mjarm/messages/verify.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/collision/first_contact.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
-#include "apps/mjarm/messages/verify.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm::app {

@@ -5,14 +5,14 @@
 #include <string>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/program_load.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "apps/mjarm/view/view_robot.hpp"
 #include "apps/mjarm/view/view_sim.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "mjarm/core/file.hpp"
 #include "apps/mjarm/messages/workspace.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"

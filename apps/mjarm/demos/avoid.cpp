@@ -3,12 +3,12 @@
 #include <optional>
 #include <vector>
 
+#include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/commands/program_run.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 

@@ -6,9 +6,9 @@
 #include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/demos/show.hpp"
 #include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 

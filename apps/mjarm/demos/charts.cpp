@@ -137,8 +137,8 @@ PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
   PlotPanel panel = a_line_a_joint(arm, rows, over_time(msg::demo_plot_joints, "rad"),
                                    [](const RecordRow& row, int j) { return row.q[j]; });
   if (rows.empty()) return panel;
-  std::ranges::move(limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper), rows.front()->time,
-                                rows.back()->time, text(msg::demo_plot_limits)),
+  std::ranges::move(limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper),
+                                rows.front()->time, rows.back()->time, text(msg::demo_plot_limits)),
                     std::back_inserter(panel.lines));
   return panel;
 }

@@ -5,8 +5,8 @@
 #include "apps/mjarm/demos/naive.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
 
 namespace mjarm::app {
 namespace {

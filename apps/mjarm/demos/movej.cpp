@@ -2,8 +2,8 @@
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/path/joint_path.hpp"
 
 namespace mjarm::app {

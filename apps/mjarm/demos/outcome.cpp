@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
 
 namespace mjarm::app {
 

@@ -1,8 +1,8 @@
 #include "apps/mjarm/demos/output.hpp"
 
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/png.hpp"
 

@@ -1,11 +1,11 @@
 #include <numbers>
 
+#include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::app {

@@ -3,8 +3,8 @@
 
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/program/start_posture.hpp"

@@ -6,8 +6,8 @@
 
 #include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/install/installed.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/render/camera.hpp"
 

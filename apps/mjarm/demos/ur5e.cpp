@@ -1,7 +1,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/stage.hpp"
-#include "mjarm/core/log.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::app {

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <thread>
 
+#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
-#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 
@@ -213,8 +213,7 @@ Outcome append_rest(const std::string& url, ByteRange range, const std::filesyst
     return true;
   };
   Outcome outcome =
-      perform({.url = url, .range = {range.from + have, range.to}, .take = take},
-              options, nullptr);
+      perform({.url = url, .range = {range.from + have, range.to}, .take = take}, options, nullptr);
   if (refused) return {.error = refused};
   return outcome;
 }
@@ -257,8 +256,7 @@ Result<Page> get_page(const std::string& url, const HttpOptions& options) {
       return true;
     };
     const Outcome outcome = perform(
-        {.url = url, .range = {0, kLargestPage}, .whole = true, .take = take},
-        options, &page.url);
+        {.url = url, .range = {0, kLargestPage}, .whole = true, .take = take}, options, &page.url);
     if (!outcome.error) return page;
     if (!outcome.worth_retrying || attempt >= options.idle_attempts) return fail(*outcome.error);
     std::this_thread::sleep_for(std::chrono::milliseconds(200));

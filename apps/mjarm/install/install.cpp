@@ -9,10 +9,10 @@
 #include "apps/mjarm/install/mesh_store.hpp"
 #include "apps/mjarm/install/package_index.hpp"
 #include "apps/mjarm/install/unpack.hpp"
+#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
-#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

@@ -34,9 +34,9 @@ class Install : public ::testing::Test {
   void serve(Served served) { server.serve("/files/" + package.set.wheel, std::move(served)); }
   void list_with(const std::string& sha256) {
     const std::string link = server.url() + "/files/" + package.set.wheel;
-    server.serve("/simple/toy-world/",
-                 {.body = "<a href=\"" + link + "#sha256=" + sha256 + "\">wheel</a>",
-                  .type = "text/html"});
+    server.serve(
+        "/simple/toy-world/",
+        {.body = "<a href=\"" + link + "#sha256=" + sha256 + "\">wheel</a>", .type = "text/html"});
   }
   Result<void> install() { return install_meshes(data, package.set, kScene, index, from); }
   fs::path target() { return mesh_folder(data, package.set); }

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "mjarm/core/file.hpp"
 #include "apps/mjarm/messages/install.hpp"
+#include "mjarm/core/file.hpp"
 
 namespace mjarm::app {
 namespace {

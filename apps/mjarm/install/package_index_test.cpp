@@ -34,9 +34,8 @@ TEST(FindEntry, InHtml) {
 }
 
 TEST(FindEntry, BearsAnyPage) {
-  for (const char* body :
-       {"", "{}", "href=", "<a href=\"", "<a href=g", "<a href='#sha256=1'>",
-        "href=\"\"", "<a href='https://[::1/g#sha256=1'>"}) {
+  for (const char* body : {"", "{}", "href=", "<a href=\"", "<a href=g", "<a href='#sha256=1'>",
+                           "href=\"\"", "<a href='https://[::1/g#sha256=1'>"}) {
     EXPECT_EQ(find_entry({kBase, body}, "g").url, "") << body;
   }
   Rng rng(3);

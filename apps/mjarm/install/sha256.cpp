@@ -12,7 +12,8 @@ std::string sha256(std::string_view content) {
   unsigned int size = 0;
   EVP_Digest(content.data(), content.size(), digest, &size, EVP_sha256(), nullptr);
   std::string hex;
-  for (unsigned int i = 0; i < size; ++i) hex += {kDigits[digest[i] >> 4U], kDigits[digest[i] & 15U]};
+  for (unsigned int i = 0; i < size; ++i)
+    hex += {kDigits[digest[i] >> 4U], kDigits[digest[i] & 15U]};
   return hex;
 }
 

@@ -3,8 +3,8 @@
 #include <zlib.h>
 
 #include "apps/mjarm/install/sha256.hpp"
-#include "mjarm/core/file.hpp"
 #include "apps/mjarm/messages/install.hpp"
+#include "mjarm/core/file.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/mjarm/view/plan_camera.hpp"
-#include "apps/mjarm/view/plan_player.hpp"
+#include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/render_program.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
-#include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/messages/plan_show.hpp"
+#include "apps/mjarm/view/plan_camera.hpp"
+#include "apps/mjarm/view/plan_player.hpp"
 #include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/plan_show.hpp"
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"

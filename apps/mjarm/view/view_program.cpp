@@ -2,10 +2,10 @@
 
 #include <utility>
 
+#include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/view/program_player.hpp"
 #include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/log.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
