@@ -22,7 +22,7 @@ ALLOWED = {
     "render": "core model sim",
     "perception": "core model sim render",
     "execution": "core model kinematics collision path planning trajectory control sim",
-    "program": "core model kinematics collision path planning trajectory control sim render perception execution",
+    "program": "core model kinematics collision path planning trajectory control sim execution",
     "view": "core model sim render",
     "serve": "core model sim",
     "rl": "core model kinematics control sim",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/bench/control_trial.hpp"
 #include "apps/bench/report.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
@@ -17,7 +18,6 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/control_suite.hpp"
-#include "mjarm/program/control_trial.hpp"
 
 namespace mjarm::app {
 namespace {

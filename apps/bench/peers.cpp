@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "apps/mjarm/cli/json_line.hpp"
-#include "apps/mjarm/cli/share.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/bench.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/share.hpp"
 
 namespace mjarm::app {
 namespace {

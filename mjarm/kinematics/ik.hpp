@@ -40,6 +40,11 @@ enum class IkTask {
   position,  ///< position alone, as for an arm of fewer than six joints; any orientation will do
   axis,      ///< position and direction of the tool's z axis; the turn about it is free
 };
+/// The words for them: "pose", "position", "axis".
+[[nodiscard]] std::span<const std::string_view> ik_task_names() noexcept;
+/// The most that an arm can do everywhere: with fewer than six joints it cannot turn its tool as it
+/// likes.
+[[nodiscard]] IkTask task_for(const Arm& arm) noexcept;
 
 /// How hard to try, and when to call it solved. Every default is usable as is.
 struct IkOptions {

@@ -244,7 +244,8 @@ TEST(IkFailure, BadInputIsRefused) {
   EXPECT_EQ(code(ik.solve(good, std::vector<double>{0, 0, nan, 0, 0, 0})), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, with(0, 1e-7, 50)).solve(good, as_span(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, with(1e-7, nan, 50)).solve(good, as_span(seed))), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(arm, with(1e-7, 1e-7, -1)).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, with(1e-7, 1e-7, -1)).solve(good, as_span(seed))),
+            IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, {.max_step = 0}).solve(good, as_span(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, {.max_step = nan}).solve(good, as_span(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(Arm{}).solve(good, as_span(seed))), IkErrc::bad_input);
@@ -287,6 +288,16 @@ TEST(Ik, NamesOfTheReasons) {
   EXPECT_EQ(name(IkErrc::no_convergence), "no_convergence");
   EXPECT_EQ(name(IkErrc::too_far), "too_far");
   EXPECT_EQ(name(IkErrc::bad_input), "bad_input");
+}
+
+TEST(IkTask, HasItsWordsAndFewJointsAreAskedForThePositionAlone) {
+  EXPECT_EQ(ik_task_names()[static_cast<std::size_t>(IkTask::position)], "position");
+  EXPECT_EQ(ik_task_names().size(), 3U);
+  Arm arm;
+  arm.joints.resize(5);
+  EXPECT_EQ(task_for(arm), IkTask::position);
+  arm.joints.resize(6);
+  EXPECT_EQ(task_for(arm), IkTask::pose);
 }
 
 }  // namespace

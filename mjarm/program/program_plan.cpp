@@ -4,14 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "mjarm/core/messages/execution.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/joint_path.hpp"
-#include "mjarm/program/motion.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
 #include "mjarm/program/way_round_internal.hpp"
+#include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm {
 namespace {
@@ -46,14 +47,14 @@ struct Tool {
 class ProgramPlanner {
  public:
   ProgramPlanner(const Model& model, detail::Steps steps, FilePlace start_place,
-          const ProgramPlanOptions& options)
+                 const ProgramPlanOptions& options)
       : steps_(std::move(steps.steps)), start_place_(start_place), options_(options) {
     plan_.arms = std::move(steps.arms);
     plan_.faults = std::move(steps.faults);
     plan_.q_start = std::move(steps.q_start);
     for (const Arm& arm : plan_.arms) {
       IkOptions ik;
-      ik.task = arm.dof() < 6 ? IkTask::position : IkTask::pose;
+      ik.task = task_for(arm);
       std::optional<ExactChecker> checker;
       if (options.collision) checker.emplace(model, arm);
       if (checker) ik.valid = checker->predicate();
@@ -198,7 +199,7 @@ class ProgramPlanner {
   Attempt grip(std::size_t i, const JointVec& q) const {
     constexpr double kSeconds = 1;  // [s] for the fingers to get there
     if (!tool(steps_[i]).arm.gripper) {
-      return failed(i, q, {i, "not_available", text(msg::program_no_gripper)});
+      return failed(i, q, {i, "not_available", text(msg::execution_no_gripper)});
     }
     Attempt attempt = rest(i, q, kSeconds);
     if (!attempt.fault) attempt.moves.back().close = steps_[i].close;
@@ -409,7 +410,8 @@ class ProgramPlanner {
       const Pose X_now = fk(with.arm, as_span(q));
       options.path.keep_start = same_pose(X_now, curve.at(0));
     }
-    Result<ToolMotion, MotionFailure> motion = plan_tool_motion(with.ik, curve, as_span(q), options);
+    Result<ToolMotion, MotionFailure> motion =
+        plan_tool_motion(with.ik, curve, as_span(q), options);
     if (!motion) return failed(i, q, motion_fault(i, with.arm, motion.error()));
     Attempt out{{}, i, q, {}};
     const JointVec& first = motion->path.q.front();
@@ -469,15 +471,10 @@ class ProgramPlanner {
 
 }  // namespace
 
-double ProgramPlan::duration() const {
-  double sum = 0;
-  for (const PlannedMove& move : moves) sum += move.trajectory.duration();
-  return sum;
-}
-
 ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& program,
                          const ProgramPlanOptions& options) {
-  return ProgramPlanner(model, detail::steps_of(program, model, arm), program.start_place, options).plan();
+  return ProgramPlanner(model, detail::steps_of(program, model, arm), program.start_place, options)
+      .plan();
 }
 
 }  // namespace mjarm

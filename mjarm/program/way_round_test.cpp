@@ -6,7 +6,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/program/program_plan.hpp"
 #include "mjarm/program/program_reader.hpp"
-#include "mjarm/program/tool_down_test.hpp"
+#include "mjarm/trajectory/tool_down_test.hpp"
 
 namespace mjarm {
 namespace {

@@ -2,10 +2,10 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/commands/train_outcome.hpp"
-#include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/policy_run.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
+#include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/messages/train.hpp"
@@ -48,7 +48,7 @@ Result<int> run(const Options& options) {
     if (!seed) return fail(seed.error());
     trial.seed = *seed;
   }
-  DemoOptions chosen;
+  StageOptions chosen;
   chosen.out = options.out.empty() ? std::filesystem::path("mjarm-out") / "eval"
                                    : std::filesystem::path(options.out);
   chosen.headless = !options.view;

@@ -107,7 +107,8 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
   Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
   if (job.prefer && solution) {
     const SelfMotionOptions self_motion{.goal = *job.prefer, .posture = joint_vec(request.q_seed)};
-    solution = null_space_step(job.solver, request.X_WT, as_span(solution->q), self_motion).value_or(*solution);
+    solution = null_space_step(job.solver, request.X_WT, as_span(solution->q), self_motion)
+                   .value_or(*solution);
   }
   std::vector<IkSolution> branches;
   if (job.all && solution) {
@@ -148,14 +149,6 @@ Result<int> answer_all(const Job& job, const Options& options) {
   return finish_all(*done, msg::app_ik_some_failed);
 }
 
-Result<IkTask> read_task(const std::string& word) {
-  constexpr IkTask kTasks[] = {IkTask::pose, IkTask::position, IkTask::axis};
-  const auto choice =
-      parse_choice("--task", word, std::vector<std::string>{"pose", "position", "axis"});
-  if (!choice) return fail(choice.error());
-  return kTasks[*choice];
-}
-
 /// Where to go with joints to spare; nowhere where nothing is asked for.
 Result<std::optional<PostureGoal>> read_prefer(const Options& options) {
   constexpr PostureGoal kGoals[] = {PostureGoal::near_posture, PostureGoal::away_from_limits,
@@ -180,7 +173,7 @@ Result<int> run(Options options) {
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   options.batch.threads = *threads;
-  const Result<IkTask> task = read_task(options.task);
+  const Result<IkTask> task = parse_task(options.task);
   if (!task) return fail(task.error());
   const auto prefer = read_prefer(options);
   if (!prefer) return fail(prefer.error());

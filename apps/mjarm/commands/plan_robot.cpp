@@ -9,9 +9,9 @@
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
+#include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/plan_answer.hpp"
 #include "apps/mjarm/commands/robot_world.hpp"
-#include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/plan.hpp"
 #include "mjarm/core/messages/planning.hpp"
@@ -45,20 +45,12 @@ Result<double> angle_of(const char* option, const std::string& value) {
   return angle;
 }
 
-Result<IkTask> task_of(const std::string& word) {
-  constexpr IkTask kTasks[] = {IkTask::pose, IkTask::position, IkTask::axis};
-  if (word.empty()) return IkTask::pose;
-  const auto choice =
-      parse_choice("--task", word, std::vector<std::string>{"pose", "position", "axis"});
-  if (!choice) return fail(choice.error());
-  return kTasks[*choice];
-}
-
 Result<ToolGoal> read_tool_goal(const RobotRequest& request) {
   ToolGoal out;
   const auto pos = parse_list("--pos", request.pos, Quantity::length, 3);
   if (!pos) return fail(pos.error());
-  const Result<IkTask> task = task_of(request.task);
+  const Result<IkTask> task =
+      request.task.empty() ? Result<IkTask>(IkTask::pose) : parse_task(request.task);
   if (!task) return fail(task.error());
   out.task = *task;
   GoalRegion& region = out.region;

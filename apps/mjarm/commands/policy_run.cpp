@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mjarm/demos/output.hpp"
-#include "apps/mjarm/demos/show.hpp"
-#include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/commands/policy_player.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
+#include "apps/mjarm/commands/train_outcome.hpp"
+#include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/train.hpp"
@@ -111,7 +111,7 @@ Report report_of(const PolicyTrial& trial, const Model& model, const rl::ReachOp
   report.model = model.name();
   report.steps = std::lround(evaluation.steps * evaluation.episodes * task.frame_skip);
   report.duration = static_cast<double>(report.steps) * model.timestep();
-  report.coverage = evaluation.within_2cm;
+  report.done = evaluation.within_2cm;
   report.static_error = PoseError{evaluation.max, evaluation.turn_p95};
   report.max_joint_step = played.max_joint_step;
   report.facts = facts_of(evaluation);
@@ -139,7 +139,7 @@ Result<LoadedPolicy> load_policy(const std::filesystem::path& file) {
 }
 
 Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& trial,
-                                 const DemoOptions& options) {
+                                 const StageOptions& options) {
   const Result<Model> model = task_model(loaded.task);
   if (!model) return fail(model.error());
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
@@ -169,7 +169,7 @@ Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& 
   if (!played) return fail(std::move(played.error()));
   Report report = report_of(trial, *model, loaded.task, *evaluation, *played);
   if (options.timing) report.rtf = report.duration / seconds;
-  const DemoOutput output{report, plot_of(trial.name, *evaluation, *played), show->overlay(), ""};
+  const RunOutput output{report, plot_of(trial.name, *evaluation, *played), show->overlay(), ""};
   auto written = write_file(options.out / "log.csv", played->csv)
                      .and_then([&] {
                        return write_output(options.out, *model, player->sim().snapshot(), output);

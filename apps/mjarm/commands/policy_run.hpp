@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/commands/stage.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
 #include "mjarm/core/result.hpp"
-#include "mjarm/program/report.hpp"
+#include "mjarm/execution/report.hpp"
 #include "mjarm/rl/policy.hpp"
 
 namespace mjarm::app {
@@ -40,6 +40,6 @@ struct PolicyOutcome {
 /// Tries a policy on unseen goals, shows some of them, and writes report.json, log.csv, plot and
 /// picture into `options.out`.
 [[nodiscard]] Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& trial,
-                                               const DemoOptions& options);
+                                               const StageOptions& options);
 
 }  // namespace mjarm::app

@@ -6,15 +6,15 @@
 #include <optional>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/demos/output.hpp"
 #include "apps/mjarm/cli/json_doc.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/policy_run.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_config.hpp"
 #include "apps/mjarm/commands/train_curve.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
-#include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/commands/train_processes.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
-#include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/rl.hpp"
@@ -113,7 +113,7 @@ Result<void> write_report(const std::filesystem::path& folder, const TrainedSeed
 Result<void> film_best(const std::filesystem::path& folder, bool timing) {
   const Result<LoadedPolicy> best = load_policy(folder / rl::Training::kBest);
   if (!best) return fail(best.error());
-  DemoOptions options;
+  StageOptions options;
   options.out = folder / "result";
   options.headless = options.video = true;
   options.timing = timing;

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/view/view_program.hpp"
@@ -16,6 +15,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/program/load_program.hpp"
 #include "mjarm/view/controls.hpp"
 
 namespace mjarm::app {

@@ -1,6 +1,6 @@
-#include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/cli/share.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
+#include "apps/mjarm/demos/demos.hpp"
+#include "mjarm/core/share.hpp"
 
 namespace mjarm::app {
 

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kStepWay = 0.01;      ///< [m] between two poses on the way to a target
 constexpr double kStepAngle = 0.05;    ///< [rad] likewise
-constexpr int kMaxSteps = 64;         ///< at first on one way, so that its time is bounded
+constexpr int kMaxSteps = 64;          ///< at first on one way, so that its time is bounded
 constexpr double kStepJoint = 0.35;    ///< [rad or m] a joint may move from pose to pose
-constexpr int kMaxSolves = 200;       ///< likewise
+constexpr int kMaxSolves = 200;        ///< likewise
 constexpr double kShortest = 64;       ///< parts of a step at an edge
 constexpr double kNearLimit = 0.1;     ///< [rad or m]
 constexpr double kSameBranch = 1;      ///< [rad or m] at most, to an answer beyond a gap
@@ -70,8 +70,6 @@ std::string_view unit_of(const Arm& arm, int joint) {
   return hinge ? "rad" : "m";
 }
 
-IkTask tool_task(const Arm& arm) { return arm.dof() < 6 ? IkTask::position : IkTask::pose; }
-
 }  // namespace
 
 Rgba color_of(TargetGrade grade) noexcept {
@@ -84,7 +82,7 @@ ToolTarget::ToolTarget(const Model& model, const Arm& arm)
     : ToolTarget(arm, checker_of(model, arm)) {}
 
 ToolTarget::ToolTarget(const Arm& arm, std::shared_ptr<ExactChecker> checker)
-    : task_(tool_task(arm)),
+    : task_(task_for(arm)),
       checker_(std::move(checker)),
       near_(arm, near_options(task_, checker_)),
       any_(arm, any_options(task_, checker_)) {
