@@ -10,7 +10,7 @@
 namespace mjarm {
 namespace detail {
 
-const FastKernels kFastBaseline = {kWidth, collide_block, cover_block, bound_motion,
+const FastKernels kFastBaseline = {kFloats, collide_block, cover_block, bound_motion,
                                    clearances_of_block};
 
 }  // namespace detail
