@@ -11,6 +11,7 @@ namespace {
 using detail::BranchChoice;
 using detail::Branches;
 using detail::BranchQuery;
+using detail::ClosedForm;
 using detail::IkGoal;
 
 IkFailure failure_of(const ReachBreach& breach, const IkSolution& best) noexcept {
@@ -28,7 +29,7 @@ Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) 
   const IkOptions& options = ik.options();
   Branches branches;
   const BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
-  ik.six_axis()->branches(query, branches);
+  ClosedForm::branches(*ik.six_axis(), query, branches);
   BranchChoice choice(ik, goal);
   if (const auto solution = choice.nearest(branches)) return *solution;
   if (branches.complete && branches.count > 0) return fail(choice.failure(branches));
@@ -46,7 +47,7 @@ Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal
   BranchChoice choice(ik, goal);
   BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
   Branches branches;
-  ik.seven_axis()->branches(query, branches);
+  ClosedForm::branches(*ik.seven_axis(), query, branches);
   if (const auto breach = ik.reach().check(goal.X_WT)) {
     return fail(failure_of(*breach, choice.failure(branches).best));
   }
@@ -54,7 +55,7 @@ Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal
   if (choice.has_refused()) {
     query.all = true;
     branches.count = 0;
-    ik.seven_axis()->branches(query, branches);
+    ClosedForm::branches(*ik.seven_axis(), query, branches);
     if (const auto solution = choice.nearest(branches)) return *solution;
   }
   if (branches.complete) return fail(choice.failure(branches));
