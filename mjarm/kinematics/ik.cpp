@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "mjarm/core/messages/kinematics.hpp"
 #include "mjarm/kinematics/branch_choice_internal.hpp"
 #include "mjarm/kinematics/numeric_search_internal.hpp"
 
@@ -63,6 +64,17 @@ Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal
 }
 
 }  // namespace
+
+Result<IkSolver> IkSolver::create(const Arm& arm, IkOptions options) {
+  if (const char* const option = detail::option_out_of_range(options)) {
+    return fail(Errc::bad_input, text(msg::kinematics_ik_option, option));
+  }
+  IkSolver out(arm, std::move(options));
+  if (out.chain_.dof == 0) {
+    return fail(Errc::bad_input, text(msg::kinematics_arm_joints, arm.name, arm.dof(), kMaxDof));
+  }
+  return out;
+}
 
 IkSolver::IkSolver(const Arm& arm, IkOptions options)
     : arm_(arm),
