@@ -5,6 +5,7 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
+#include "apps/mjarm/commands/train_task.hpp"
 #include "apps/mjarm/demos/outcome.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/messages/train.hpp"
