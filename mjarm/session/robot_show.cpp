@@ -1,4 +1,4 @@
-#include "apps/mjarm/view/robot_show.hpp"
+#include "mjarm/session/robot_show.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include "mjarm/kinematics/manipulability_ellipsoid.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 /// Numbers of the items; those of the figures follow each other.
@@ -52,7 +52,7 @@ void RobotShow::clear() {
   figures_.clear();
 }
 
-void RobotShow::add(const ViewSim& sim) {
+void RobotShow::add(const FreeSim& sim) {
   figures_.add(sim.sim(), sim.sim().time(), arm_, sim.is_held() ? sim.reference() : JointVec());
   trail_.add(sim.sim().tool(arm_).p);
 }
@@ -81,7 +81,7 @@ void RobotShow::add_contact(Overlay& overlay, const JointVec& q) {
   }
 }
 
-void RobotShow::add_overlay(Overlay& overlay, const ViewSim& sim) {
+void RobotShow::add_overlay(Overlay& overlay, const FreeSim& sim) {
   if (trail_look_ != 0) trail_.draw(overlay);
   if (!ellipsoid_ && !contacts_ && !nearest_) return;
   const JointVec q = sim.sim().arm_state(arm_).q;
@@ -92,4 +92,4 @@ void RobotShow::add_overlay(Overlay& overlay, const ViewSim& sim) {
   }
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

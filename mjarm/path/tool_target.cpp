@@ -1,4 +1,4 @@
-#include "apps/mjarm/view/tool_target.hpp"
+#include "mjarm/path/tool_target.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,14 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
 
 constexpr double kStepWay = 0.01;      ///< [m] between two poses on the way to a target
 constexpr double kStepAngle = 0.05;    ///< [rad] likewise
-constexpr int kMaxSteps = 64;         ///< at first on one way, so that its time is bounded
+constexpr int kMaxSteps = 64;          ///< at first on one way, so that its time is bounded
 constexpr double kStepJoint = 0.35;    ///< [rad or m] a joint may move from pose to pose
-constexpr int kMaxSolves = 200;       ///< likewise
+constexpr int kMaxSolves = 200;        ///< likewise
 constexpr double kShortest = 64;       ///< parts of a step at an edge
 constexpr double kNearLimit = 0.1;     ///< [rad or m]
 constexpr double kSameBranch = 1;      ///< [rad or m] at most, to an answer beyond a gap
@@ -25,25 +25,26 @@ constexpr double kSampleJoint = 0.02;  ///< [rad or m] between samples of a stra
 constexpr double kSingular = 0.01;     ///< smallest singular value that is not another branch yet
 
 /// Contact counts where the arm is free of it at home; else nothing could be reached.
-std::shared_ptr<ExactChecker> checker_of(const Model& model, const Arm& arm) {
-  auto checker = std::make_shared<ExactChecker>(model, arm, ExactOptions{.margin = 0});
-  return checker->is_free(as_span(arm.home)) ? checker : nullptr;
+std::optional<ExactChecker> checker_of(const Model& model, const Arm& arm) {
+  ExactChecker checker(model, arm, {.margin = 0});
+  if (!checker.is_free(as_span(arm.home))) return std::nullopt;
+  return checker;
 }
 
-IkOptions options_of(IkTask task, const std::shared_ptr<ExactChecker>& checker) {
+IkOptions options_of(IkTask task, const std::optional<ExactChecker>& checker) {
   IkOptions options{.task = task};
-  if (checker) options.valid = [checker](std::span<const double> q) { return checker->is_free(q); };
+  if (checker) options.valid = checker->predicate();
   return options;
 }
 
-IkOptions near_options(IkTask task, const std::shared_ptr<ExactChecker>& checker) {
+IkOptions near_options(IkTask task, const std::optional<ExactChecker>& checker) {
   IkOptions options = options_of(task, checker);
   options.max_step = kStepJoint;
   options.restarts = 0;
   return options;
 }
 
-IkOptions any_options(IkTask task, const std::shared_ptr<ExactChecker>& checker) {
+IkOptions any_options(IkTask task, const std::optional<ExactChecker>& checker) {
   IkOptions options = options_of(task, checker);
   options.restarts = 20;
   return options;
@@ -74,16 +75,10 @@ IkTask tool_task(const Arm& arm) { return arm.dof() < 6 ? IkTask::position : IkT
 
 }  // namespace
 
-Rgba color_of(TargetGrade grade) noexcept {
-  if (grade == TargetGrade::good) return {0.20F, 0.75F, 0.30F, 1};
-  if (grade == TargetGrade::unreachable) return {0.90F, 0.15F, 0.12F, 1};
-  return {0.98F, 0.65F, 0.08F, 1};
-}
-
 ToolTarget::ToolTarget(const Model& model, const Arm& arm)
     : ToolTarget(arm, checker_of(model, arm)) {}
 
-ToolTarget::ToolTarget(const Arm& arm, std::shared_ptr<ExactChecker> checker)
+ToolTarget::ToolTarget(const Arm& arm, std::optional<ExactChecker> checker)
     : task_(tool_task(arm)),
       checker_(std::move(checker)),
       near_(arm, near_options(task_, checker_)),
@@ -106,27 +101,27 @@ bool ToolTarget::lead(const Pose& X_to) {
   const int steps = steps_between(X_from, X_to, turns());
   const JointVec q_start = goal_;
   const double longest = 1.0 / steps;
-  double share = 0;
+  double fraction = 0;
   double step = longest;
   // Where a step is too long for the joints, or leads out of reach, shorter ones are tried.
-  for (int i = 0; i < kMaxSolves && share < 1 && step > longest / kShortest; ++i) {
-    const double next = share + step > 1 - 1e-9 ? 1 : share + step;
+  for (int i = 0; i < kMaxSolves && fraction < 1 && step > longest / kShortest; ++i) {
+    const double next = fraction + step > 1 - 1e-9 ? 1 : fraction + step;
     if (const auto answer = near_.solve(interpolate(X_from, X_to, next), as_span(goal_))) {
       // A short way for the tool shall be none that swings the arm about.
       if (largest_move(q_start, answer->q) > kStepJoint * (steps + 1)) return false;
       goal_ = answer->q;
-      share = next;
+      fraction = next;
       step = std::min(2 * step, longest);
     } else {
       step /= 2;
     }
   }
-  return share == 1;
+  return fraction == 1;
 }
 
 /// True where the straight joint motion passes neither contact nor a singularity, beyond which
 /// another branch begins.
-bool ToolTarget::is_connected(const JointVec& from, const JointVec& to) const {
+bool ToolTarget::is_connected(const JointVec& from, const JointVec& to) {
   const double way = largest_move(from, to);
   if (way > kSameBranch) return false;
   const int samples = std::max(1, static_cast<int>(std::ceil(way / kSampleJoint)));
@@ -147,9 +142,7 @@ void ToolTarget::move_to(const Pose& X_WT) {
   if (led) {
     standing_ = rate();
   } else if (auto answer = any_.solve(X_WT, as_span(goal_)); !answer) {
-    standing_ = rate();
-    standing_.grade = TargetGrade::unreachable;
-    standing_.failure = std::move(answer.error());
+    standing_ = refuse(std::move(answer.error()));
   } else if (steps_between(X_before, X_WT, turns()) > 1 && is_connected(goal_, answer->q)) {
     goal_ = answer->q;
     standing_ = rate();
@@ -228,18 +221,23 @@ std::string ToolTarget::jump_line(const JointVec& to) const {
               arm().joints[static_cast<std::size_t>(joint)].name, unit_of(arm(), joint));
 }
 
-/// Of a collision what touches, which the solver does not know.
-std::string ToolTarget::reason_of(const IkFailure& failure) const {
+/// Of a pose that cannot be reached; of a collision also what touches, which the solver does not
+/// know.
+ToolTarget::Standing ToolTarget::refuse(IkFailure failure) {
+  Standing out = rate();
+  out.grade = TargetGrade::unreachable;
   if (failure.code == IkErrc::collision && checker_) {
-    const Result<CollisionReport> report = checker_->check(as_span(failure.best.q));
-    if (report && !report->free) return describe(*report);
+    Result<CollisionReport> report = checker_->check(as_span(failure.best.q));
+    if (report && !report->free) out.contact = std::move(*report);
   }
-  return describe(failure, arm());
+  out.failure = std::move(failure);
+  return out;
 }
 
 std::string ToolTarget::line_of(const Standing& standing) const {
   if (standing.failure) {
-    return text(msg::target_not_reachable, reason_of(*standing.failure));
+    return text(msg::target_not_reachable, standing.contact ? describe(*standing.contact)
+                                                            : describe(*standing.failure, arm()));
   }
   if (standing.jump) return jump_line(*standing.jump);
   const double smallest = standing.singular.smallest;
@@ -258,4 +256,4 @@ std::string ToolTarget::line() const {
   return line_of(standing_);
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

@@ -1,22 +1,24 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/view/target_handle.hpp"
-#include "apps/mjarm/view/tool_target.hpp"
-#include "apps/mjarm/view/view_sim.hpp"
+#include "mjarm/path/tool_target.hpp"
+#include "mjarm/session/free_sim.hpp"
 #include "mjarm/view/panel_section.hpp"
+#include "mjarm/view/target_link.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-/// The target of the tool in `mjarm view`: dragged by its handles, jogged by buttons; the arm of
+/// Green, amber (near a limit or a singularity, a jump), red.
+[[nodiscard]] Rgba color_of(TargetGrade grade) noexcept;
+
+/// The target of the tool in a session: dragged by its handles, jogged by buttons; the arm of
 /// the simulation follows it. In the thread of the simulation.
 class TargetControl {
  public:
-  /// @param sim  holds `arm` (`ViewSim::is_held`) and outlives this.
-  TargetControl(const Model& model, const Arm& arm, ViewSim& sim);
+  /// @param sim  holds `arm` (`FreeSim::is_held`) and outlives this.
+  TargetControl(const Model& model, const Arm& arm, FreeSim& sim);
 
   /// Does what an item of its panels asks for.
   /// @return false where the item is not of these panels.
@@ -49,7 +51,7 @@ class TargetControl {
   [[nodiscard]] PanelSection target_section() const;
   [[nodiscard]] PanelSection tool_section() const;
 
-  ViewSim& sim_;
+  FreeSim& sim_;
   ToolTarget target_;
   TargetLink link_;
   JointVec sent_;  ///< the goal of the simulation as it was last seen
@@ -62,4 +64,4 @@ class TargetControl {
   int turn_step_ = 1;  ///< of kTurnSteps
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -11,16 +11,16 @@
 #include "mjarm/view/history.hpp"
 #include "mjarm/view/playback.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
 /// A simulation without a plan: the arm, where there is one, stands where the user puts it, and all
 /// that he does in a window acts on it. Knows no window and no clock of its own.
-class ViewSim {
+class FreeSim {
  public:
   /// @param arm      is held against gravity; none = all actuators stay at 0.
   /// @param passive  the arm is not held.
   /// @return not_available where the arm's actuators cannot hold it; `passive` never fails.
-  [[nodiscard]] static Result<ViewSim> make(const Model& model, const std::optional<Arm>& arm,
+  [[nodiscard]] static Result<FreeSim> make(const Model& model, const std::optional<Arm>& arm,
                                             bool passive);
 
   /// Does what the user asked for.
@@ -53,7 +53,7 @@ class ViewSim {
     Snapshot snapshot;
     JointVec q_before, q_now, q_goal;
   };
-  ViewSim(const Model& model, std::optional<Arm> arm, std::optional<Controller> controller);
+  FreeSim(const Model& model, std::optional<Arm> arm, std::optional<Controller> controller);
   void go_to(const Moment& moment);
   void remember();
   void jog(const JointEvent& event);
@@ -71,4 +71,4 @@ class ViewSim {
   std::string status_;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -2,16 +2,16 @@
 
 #include <vector>
 
-#include "mjarm/session/arm_figures.hpp"
-#include "apps/mjarm/view/view_sim.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/trail.hpp"
+#include "mjarm/session/arm_figures.hpp"
+#include "mjarm/session/free_sim.hpp"
 #include "mjarm/view/panel_section.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-/// What `mjarm view` draws of an arm beside itself, as far as the user wants it: trail of the tool
+/// What a session draws of an arm beside itself, as far as the user wants it: trail of the tool
 /// (on at first), manipulability ellipsoid, contacts, closest pair, figures.
 class RobotShow {
  public:
@@ -22,14 +22,14 @@ class RobotShow {
   /// @return false where the item is not of these panels.
   bool handle(const PanelEvent& event);
   /// Takes note of where the arm is; call it after each step.
-  void add(const ViewSim& sim);
+  void add(const FreeSim& sim);
   /// Forgets all that was.
   void clear();
 
   /// The ghost of the goal is wanted at all times.
   [[nodiscard]] bool wants_ghost() const noexcept { return ghost_; }
   void add_sections(std::vector<PanelSection>& sections) const;
-  void add_overlay(Overlay& overlay, const ViewSim& sim);
+  void add_overlay(Overlay& overlay, const FreeSim& sim);
   [[nodiscard]] std::vector<LivePlot> plots() const { return figures_.plots(); }
 
  private:
@@ -38,7 +38,7 @@ class RobotShow {
   Arm arm_;
   ExactChecker checker_;
   Trail trail_;
-  session::ArmFigures figures_;
+  ArmFigures figures_;
   bool ghost_ = false;
   bool ellipsoid_ = false;
   bool contacts_ = false;
@@ -46,4 +46,4 @@ class RobotShow {
   int trail_look_ = 1;  ///< off, line, balls
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,4 +1,4 @@
-#include "mjarm/program/yaml_tree.hpp"
+#include "mjarm/core/yaml_tree.hpp"
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "mjarm/core/messages/program.hpp"
+#include "mjarm/core/messages/core.hpp"
 
 namespace mjarm {
 namespace {
@@ -46,7 +46,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) throw Stop{place_of(mark), text(msg::program_bad_alias)};
+    if (found == anchors_.end()) throw Stop{place_of(mark), text(msg::core_yaml_bad_alias)};
     count(place_of(mark), count_nodes(found->second));
     add(found->second, 0);
   }
@@ -78,7 +78,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void open(YamlNode::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (open_.size() >= kMaxLevels) {
-      throw Stop{place_of(mark), text(msg::program_too_deep, kMaxLevels)};
+      throw Stop{place_of(mark), text(msg::core_yaml_too_deep, kMaxLevels)};
     }
     Open begun;
     begun.node.kind = kind;
@@ -118,14 +118,14 @@ class TreeBuilder : public YAML::EventHandler {
 
   void count(FilePlace place, std::size_t nodes) {
     count_ += nodes;
-    if (count_ > kMaxNodes) throw Stop{place, text(msg::program_too_many_nodes, kMaxNodes)};
+    if (count_ > kMaxNodes) throw Stop{place, text(msg::core_yaml_too_many_nodes, kMaxNodes)};
   }
 
   static void check_key(const YamlNode& map, const YamlNode& key) {
-    if (key.kind != YamlNode::Kind::scalar) throw Stop{key.place, text(msg::program_key_no_word)};
+    if (key.kind != YamlNode::Kind::scalar) throw Stop{key.place, text(msg::core_yaml_key_no_word)};
     const auto same = [&](const auto& member) { return member.first.text == key.text; };
     if (std::ranges::any_of(map.members, same)) {
-      throw Stop{key.place, text(msg::program_key_twice, key.text)};
+      throw Stop{key.place, text(msg::core_yaml_key_twice, key.text)};
     }
   }
 
@@ -148,20 +148,19 @@ Result<YamlNode> read_yaml(const std::string& content, std::string_view name) {
   try {
     std::istringstream stream(content);
     YAML::Parser parser(stream);
-    if (!parser.HandleNextDocument(builder)) {
-      return fail(Errc::bad_input, at_place(name, {1, 1}, text(msg::program_empty)));
-    }
+    if (!parser.HandleNextDocument(builder)) return YamlNode{};
     YamlNode root = builder.take();
     TreeBuilder second;
     if (parser.HandleNextDocument(second)) {
-      return fail(Errc::bad_input, at_place(name, second.take().place, text(msg::program_two)));
+      return fail(Errc::bad_input,
+                  at_place(name, second.take().place, text(msg::core_yaml_two_documents)));
     }
     return root;
   } catch (const Stop& stop) {
     return fail(Errc::bad_input, at_place(name, stop.place, stop.what));
   } catch (const YAML::Exception& exception) {
     return fail(Errc::bad_input, at_place(name, place_of(exception.mark),
-                                          text(msg::program_no_yaml, exception.msg)));
+                                          text(msg::core_yaml_syntax, exception.msg)));
   }
 }
 

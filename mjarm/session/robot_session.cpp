@@ -1,16 +1,17 @@
-#include "apps/mjarm/view/view_robot.hpp"
+#include "mjarm/session/robot_session.hpp"
 
 #include "mjarm/core/language_scope.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-RobotView::RobotView(const Model& model, const std::optional<Arm>& arm, ViewSim& sim) : sim_(sim) {
+RobotSession::RobotSession(const Model& model, const std::optional<Arm>& arm, FreeSim& sim)
+    : sim_(sim) {
   if (!arm) return;
   if (sim.is_held()) target_.emplace(model, *arm, sim);
   show_.emplace(model, *arm);
 }
 
-void RobotView::handle(const ViewEvent& event) {
+void RobotSession::handle(const ViewEvent& event) {
   if (const auto* used = std::get_if<PanelEvent>(&event)) {
     if (target_ && target_->handle(*used)) return;
     if (show_) (void)show_->handle(*used);
@@ -28,15 +29,15 @@ void RobotView::handle(const ViewEvent& event) {
   target_->follow_sim();
 }
 
-bool RobotView::take_drags() { return target_ && target_->take_drags(); }
+bool RobotSession::take_drags() { return target_ && target_->take_drags(); }
 
-void RobotView::step() {
+void RobotSession::step() {
   sim_.step();
   if (show_) show_->add(sim_);
   if (target_) target_->follow_sim();
 }
 
-void RobotView::fill(ViewFrame& frame) {
+void RobotSession::fill(ViewFrame& frame) {
   frame.snapshot = sim_.sim().snapshot();
   frame.overlay = {};
   frame.panels.clear();
@@ -57,4 +58,4 @@ void RobotView::fill(ViewFrame& frame) {
   if (frame.status.empty() && target_) frame.status = target_->line();
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

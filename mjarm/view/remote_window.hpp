@@ -9,8 +9,9 @@
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/view/view_link.hpp"
+#include "mjarm/view/window.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 /// Runs `work` in a thread of its own, while this one, the main thread, opens the windows that it
 /// asks for and draws them. Returns when `work` is through.
@@ -55,4 +56,4 @@ class RemoteWindow {
   std::shared_ptr<Order> order_;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/view/view_robot.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "mjarm/session/robot_session.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-/// A robot in `mjarm view`, without its window.
+/// A robot in a session, without a window.
 class RobotInView : public ::testing::Test {
  protected:
   void step(int steps) {
@@ -60,10 +60,10 @@ class RobotInView : public ::testing::Test {
 
   Model model_ = Model::load(find_model_file("ur5e").value()).value();
   Arm arm_ = find_arm(model_).value();
-  ViewSim sim_ = ViewSim::make(model_, arm_, false).value();
-  RobotView view_{model_, arm_, sim_};
+  FreeSim sim_ = FreeSim::make(model_, arm_, false).value();
+  RobotSession view_{model_, arm_, sim_};
   ViewFrame frame_;
   long drags_ = 0;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,9 +9,8 @@
 #include "mjarm/kinematics/singularity.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
-#include "mjarm/render/overlay.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 /// Whether and how well the target of a tool is reached.
 enum class TargetGrade {
@@ -26,9 +24,6 @@ enum class TargetGrade {
 /// Along the axes of what the target is jogged. The axes of the base are those of the first joint's
 /// frame at 0: for a robot that stands turned, those of its own foot.
 enum class JogFrame { world, tool, base };
-
-/// Green, amber (near a limit or a singularity, a jump), red.
-[[nodiscard]] Rgba color_of(TargetGrade grade) noexcept;
 
 /// A target for a tool that the arm is to follow: it is led from pose to pose in small steps, so
 /// that the joints never jump, without contact (unless the arm stands in contact at home). Six
@@ -86,25 +81,26 @@ class ToolTarget {
     int tightest = 0;  ///< the joint that is nearest to a limit
     Singularity singular = {};
     std::optional<IkFailure> failure = {};
+    std::optional<CollisionReport> contact = {};  ///< of the best attempt, where that touches
     std::optional<JointVec> jump = {};
   };
-  ToolTarget(const Arm& arm, std::shared_ptr<ExactChecker> checker);
+  ToolTarget(const Arm& arm, std::optional<ExactChecker> checker);
   [[nodiscard]] bool lead(const Pose& X_to);
   void turn_with_tool();
-  [[nodiscard]] bool is_connected(const JointVec& from, const JointVec& to) const;
+  [[nodiscard]] bool is_connected(const JointVec& from, const JointVec& to);
   [[nodiscard]] Standing rate() const;
-  [[nodiscard]] std::string reason_of(const IkFailure& failure) const;
+  [[nodiscard]] Standing refuse(IkFailure failure);
   [[nodiscard]] std::string line_of(const Standing& standing) const;
   [[nodiscard]] std::string jump_line(const JointVec& to) const;
 
   IkTask task_;
-  std::shared_ptr<ExactChecker> checker_;  ///< none where contact does not count
-  IkSolver near_;                          ///< answers next to the last one
-  IkSolver any_;                           ///< any answer, and the reasons
+  std::optional<ExactChecker> checker_;  ///< none where contact does not count
+  IkSolver near_;                        ///< answers next to the last one
+  IkSolver any_;                         ///< any answer, and the reasons
   Pose X_WT_;
   JointVec goal_;
   Standing standing_;
   std::optional<Standing> refused_;  ///< of a pose that the last jog did not reach
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm

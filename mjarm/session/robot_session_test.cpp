@@ -1,4 +1,4 @@
-#include "apps/mjarm/view/view_robot_test.hpp"
+#include "mjarm/session/robot_session_test.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 
 #include "mjarm/kinematics/fk.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 using ::testing::HasSubstr;
@@ -171,11 +171,11 @@ TEST_F(RobotInView, FiguresAreShownAsAskedFor) {
   EXPECT_EQ(frame().plots.size(), 1U);
 }
 
-TEST(RobotView, WithoutAHeldArmThereIsNoTarget) {
+TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
   const Model model = Model::load(find_model_file("ur5e").value()).value();
   const Arm arm = find_arm(model).value();
-  ViewSim passive = ViewSim::make(model, arm, true).value();
-  RobotView view(model, arm, passive);
+  FreeSim passive = FreeSim::make(model, arm, true).value();
+  RobotSession view(model, arm, passive);
   EXPECT_EQ(view.target(), nullptr);
   for (int i = 0; i < 20; ++i) view.step();
   ViewFrame frame;
@@ -184,8 +184,8 @@ TEST(RobotView, WithoutAHeldArmThereIsNoTarget) {
   EXPECT_TRUE(frame.status.empty());
 
   const Model car = Model::load(find_model_file("car").value()).value();
-  ViewSim driving = ViewSim::make(car, std::nullopt, false).value();
-  RobotView bare(car, std::nullopt, driving);
+  FreeSim driving = FreeSim::make(car, std::nullopt, false).value();
+  RobotSession bare(car, std::nullopt, driving);
   bare.step();
   bare.handle(PanelEvent{1000, 1});
   bare.handle(TargetEvent{});
@@ -194,4 +194,4 @@ TEST(RobotView, WithoutAHeldArmThereIsNoTarget) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -12,12 +12,14 @@
 #include <numbers>
 #include <thread>
 
-#include "apps/mjarm/view/view_robot_test.hpp"
-#include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/session/robot_session_test.hpp"
+#include "mjarm/session/simulate_world.hpp"
 #include "mjarm/view/real_window_test.hpp"
+#include "mjarm/view/target_handle.hpp"
+#include "mjarm/view/window.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 using ::testing::HasSubstr;
@@ -248,4 +250,4 @@ TEST_F(RobotInWindow, InItsOwnThreadTheArmFollowsAsWell) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::session

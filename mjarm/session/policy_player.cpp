@@ -1,18 +1,21 @@
-#include "apps/mjarm/commands/policy_player.hpp"
+#include "mjarm/session/policy_player.hpp"
 
 #include <utility>
 
-namespace mjarm::app {
+#include "mjarm/rl/evaluate.hpp"
 
-Result<PolicyPlayer> PolicyPlayer::create(const Model& model, rl::ReachOptions options,
-                                          rl::ActFunction act, std::uint64_t seed) {
+namespace mjarm::session {
+
+Result<PolicyPlayer> PolicyPlayer::make(const Model& model, rl::ReachOptions options,
+                                        rl::Policy policy, std::uint64_t seed) {
   const int actions = options.episode_steps;
   options.environments = options.threads = 1;
   options.held_out = true;
   options.episode_steps = actions + 1;  // the last state of an episode is to be seen
   Result<rl::ReachEnv> env = rl::ReachEnv::make(model, options);
   if (!env) return fail(std::move(env.error()));
-  return PolicyPlayer(model, std::move(*env), std::move(act), actions, seed);
+  if (auto fits = rl::check_sizes(policy, *env); !fits) return fail(std::move(fits.error()));
+  return PolicyPlayer(model, std::move(*env), std::move(policy), actions, seed);
 }
 
 Result<void> PolicyPlayer::begin_episode() {
@@ -22,10 +25,10 @@ Result<void> PolicyPlayer::begin_episode() {
 }
 
 Result<void> PolicyPlayer::take_action() {
-  action_.resize(static_cast<std::size_t>(env_.action_size()));
-  act_(env_.observations(), action_);
+  const Eigen::VectorXf action = policy_.act(env_.observations());
   const Snapshot before = env_.snapshot(0);
-  if (auto stepped = env_.step(action_); !stepped) return stepped;
+  if (auto stepped = env_.step({action.data(), static_cast<std::size_t>(action.size())}); !stepped)
+    return stepped;
   ++actions_;
   if (env_.terminated()[0] != 0) {
     ended_ = true;
@@ -49,4 +52,4 @@ Result<bool> PolicyPlayer::step() {
   return true;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

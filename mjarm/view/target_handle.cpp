@@ -1,6 +1,6 @@
-#include "apps/mjarm/view/target_handle.hpp"
+#include "mjarm/view/target_handle.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 void TargetHandle::attach(Window& window) {
   window.set_mouse_hook([this](const MouseInput& input) { return use(input); });
@@ -50,4 +50,4 @@ void TargetHandle::draw(const Eye& eye, Overlay& overlay) {
   gizmo_.draw(overlay, look_.color);
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

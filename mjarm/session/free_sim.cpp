@@ -1,45 +1,40 @@
-#include "apps/mjarm/view/view_sim.hpp"
+#include "mjarm/session/free_sim.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "mjarm/core/log.hpp"
+#include "mjarm/session/max_moments.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 constexpr std::size_t kMaxMoments = 2000;
-constexpr std::size_t kMaxNumbers = std::size_t{8} << 20;  // of all moments together
-constexpr double kPace = 8;                                 // [1/s] of the spring to the goal
-constexpr double kSpeedShare = 0.5;                         // of the joints' velocity limits
-
-std::size_t moments_of(const Sim& sim) {
-  const std::size_t numbers = std::max<std::size_t>(sim.snapshot().state.size(), 1);
-  return std::clamp(kMaxNumbers / numbers, std::size_t{10}, kMaxMoments);
-}
+constexpr double kPace = 8;          // [1/s] of the spring to the goal
+constexpr double kSpeedShare = 0.5;  // of the joints' velocity limits
 
 }  // namespace
 
-ViewSim::ViewSim(const Model& model, std::optional<Arm> arm, std::optional<Controller> controller)
+FreeSim::FreeSim(const Model& model, std::optional<Arm> arm, std::optional<Controller> controller)
     : sim_(model),
       arm_(std::move(arm)),
       controller_(std::move(controller)),
       playback_(model.timestep()),
-      history_(moments_of(sim_)),
+      history_(max_moments(sim_, kMaxMoments)),
       ctrl_(static_cast<std::size_t>(model.nu()), 0.0) {
   reset();
 }
 
-Result<ViewSim> ViewSim::make(const Model& model, const std::optional<Arm>& arm, bool passive) {
-  if (passive || !arm) return ViewSim(model, arm, std::nullopt);
+Result<FreeSim> FreeSim::make(const Model& model, const std::optional<Arm>& arm, bool passive) {
+  if (passive || !arm) return FreeSim(model, arm, std::nullopt);
   // Servos of the model as they are where there are some; else what motors can do.
   Result<Controller> controller = Controller::make(model, *arm, ControlMode::servo_gravity);
   if (!controller) controller = Controller::make(model, *arm, ControlMode::computed_torque);
   if (!controller) return fail(Errc::not_available, controller.error().what);
-  return ViewSim(model, arm, std::move(*controller));
+  return FreeSim(model, arm, std::move(*controller));
 }
 
-void ViewSim::reset() {
+void FreeSim::reset() {
   if (!sim_.reset("home")) (void)sim_.reset();
   if (arm_) {
     sim_.place(*arm_, as_span(arm_->home));
@@ -54,9 +49,9 @@ void ViewSim::reset() {
   status_.clear();
 }
 
-void ViewSim::remember() { history_.add({sim_.snapshot(), q_before_, q_now_, q_goal_}); }
+void FreeSim::remember() { history_.add({sim_.snapshot(), q_before_, q_now_, q_goal_}); }
 
-void ViewSim::go_to(const Moment& moment) {
+void FreeSim::go_to(const Moment& moment) {
   // Of the same model, so it fits.
   (void)sim_.restore(moment.snapshot);
   sim_.clear_external_forces();  // a push goes on with the user's hand, not with the past
@@ -65,7 +60,7 @@ void ViewSim::go_to(const Moment& moment) {
   q_goal_ = moment.q_goal;
 }
 
-JointVec ViewSim::next_reference() const {
+JointVec FreeSim::next_reference() const {
   const double dt = sim_.model().timestep();
   const JointVec max = kSpeedShare * arm_->limits.velocity;
   const JointVec v = (q_now_ - q_before_) / dt;
@@ -73,7 +68,7 @@ JointVec ViewSim::next_reference() const {
   return q_now_ + dt * (v + dt * a).cwiseMax(-max).cwiseMin(max);
 }
 
-void ViewSim::step() {
+void FreeSim::step() {
   if (controller_) {
     StepReference reference{q_before_, q_now_, next_reference()};
     (void)controller_->command(sim_.qpos(), sim_.qvel(), reference, ctrl_);
@@ -89,19 +84,19 @@ void ViewSim::step() {
   remember();
 }
 
-std::vector<int> ViewSim::jog_dofs() const {
+std::vector<int> FreeSim::jog_dofs() const {
   std::vector<int> dofs;
   if (!controller_) return dofs;
   for (const ArmJoint& joint : arm_->joints) dofs.push_back(joint.dof);
   return dofs;
 }
 
-void ViewSim::set_goal(const JointVec& q) {
+void FreeSim::set_goal(const JointVec& q) {
   if (!controller_ || q.size() != q_goal_.size()) return;
   q_goal_ = q.cwiseMax(arm_->limits.lower).cwiseMin(arm_->limits.upper);
 }
 
-void ViewSim::jog(const JointEvent& event) {
+void FreeSim::jog(const JointEvent& event) {
   if (!controller_) return;
   for (int i = 0; i < arm_->dof(); ++i) {
     if (arm_->joints[static_cast<std::size_t>(i)].dof != event.dof) continue;
@@ -109,7 +104,7 @@ void ViewSim::jog(const JointEvent& event) {
   }
 }
 
-void ViewSim::handle(const ViewEvent& event) {
+void FreeSim::handle(const ViewEvent& event) {
   if (const auto* push = std::get_if<PushEvent>(&event)) {
     sim_.set_external_force(push->body, push->force_W, push->torque_W);
   } else if (std::holds_alternative<ReleaseEvent>(event)) {
@@ -130,4 +125,4 @@ void ViewSim::handle(const ViewEvent& event) {
   }
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

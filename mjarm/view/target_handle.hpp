@@ -1,38 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <optional>
-
-#include "mjarm/core/pose.hpp"
 #include "mjarm/render/overlay.hpp"
-#include "mjarm/view/mailbox.hpp"
 #include "mjarm/view/mouse_input.hpp"
 #include "mjarm/view/target_gizmo.hpp"
+#include "mjarm/view/target_link.hpp"
 #include "mjarm/view/window.hpp"
 
-namespace mjarm::app {
-
-/// Where the user drags the target.
-struct TargetDrag {
-  Pose X_WT;
-  bool held = true;  ///< false once he lets go
-  long number = 0;   ///< of all drags, rising
-};
-
-/// How the target is to be shown.
-struct TargetLook {
-  bool shown = false;
-  Pose X_WT = {};
-  std::optional<Eigen::Matrix3d> R_WG = {};  ///< directions of the handles; none = the target's
-  Rgba color = {};                           ///< of the ball
-  long number = 0;                           ///< of the last drag that this is the answer to
-};
-
-/// What passes between the window's thread and that of the simulation.
-struct TargetLink {
-  Queue<TargetDrag> drags;    ///< from the window
-  Mailbox<TargetLook> looks;  ///< to the window
-};
+namespace mjarm {
 
 /// The handles of the target in a window; in the main thread. Once it is gone, the window
 /// is not drawn any more.
@@ -60,4 +34,4 @@ class TargetHandle {
   long number_ = 0;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm

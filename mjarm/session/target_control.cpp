@@ -1,4 +1,4 @@
-#include "apps/mjarm/view/target_control.hpp"
+#include "mjarm/session/target_control.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 /// Numbers of the items; those of the jog buttons follow each other.
@@ -57,7 +57,13 @@ std::string pair_of(double length, double angle) {
 
 }  // namespace
 
-TargetControl::TargetControl(const Model& model, const Arm& arm, ViewSim& sim)
+Rgba color_of(TargetGrade grade) noexcept {
+  if (grade == TargetGrade::good) return {0.20F, 0.75F, 0.30F, 1};
+  if (grade == TargetGrade::unreachable) return {0.90F, 0.15F, 0.12F, 1};
+  return {0.98F, 0.65F, 0.08F, 1};
+}
+
+TargetControl::TargetControl(const Model& model, const Arm& arm, FreeSim& sim)
     : sim_(sim), target_(model, arm) {
   restart();
 }
@@ -207,4 +213,4 @@ void TargetControl::add_ghost(Overlay& overlay, bool always) const {
 
 std::string TargetControl::line() const { return shown_ ? target_.line() : std::string(); }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

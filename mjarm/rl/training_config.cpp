@@ -1,4 +1,4 @@
-#include "apps/mjarm/commands/train_config.hpp"
+#include "mjarm/rl/training_config.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -10,12 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/core/messages/train.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
-#include "mjarm/program/yaml_tree.hpp"
+#include "mjarm/core/yaml_tree.hpp"
+#include "mjarm/rl/safetensors.hpp"
 
-namespace mjarm::app {
+namespace mjarm::rl {
 namespace {
 
 template <class T>
@@ -24,11 +26,11 @@ template <class T>
 inline constexpr bool kIsList<std::vector<T>> = true;
 
 /// The last value of an enumeration.
-constexpr rl::ReachRegion last_of(rl::ReachRegion) { return rl::ReachRegion::wide; }
-constexpr rl::ReachAction last_of(rl::ReachAction) { return rl::ReachAction::torque; }
-constexpr rl::ReachGripper last_of(rl::ReachGripper) { return rl::ReachGripper::as_model; }
-constexpr rl::Schedule last_of(rl::Schedule) { return rl::Schedule::linear; }
-constexpr rl::Activation last_of(rl::Activation) { return rl::Activation::relu; }
+constexpr ReachRegion last_of(ReachRegion) { return ReachRegion::wide; }
+constexpr ReachAction last_of(ReachAction) { return ReachAction::torque; }
+constexpr ReachGripper last_of(ReachGripper) { return ReachGripper::as_model; }
+constexpr Schedule last_of(Schedule) { return Schedule::linear; }
+constexpr Activation last_of(Activation) { return Activation::relu; }
 
 /// Names of an enumeration, in its order.
 template <class T>
@@ -63,7 +65,7 @@ std::string written(const T& value) {
 template <class T>
 std::string take(const YamlNode& node, T& value) {
   if constexpr (kIsList<T>) {
-    if (node.kind != YamlNode::Kind::list) return text(msg::train_config_no_list);
+    if (node.kind != YamlNode::Kind::list) return text(msg::rl_config_no_list);
     T list(node.items.size());
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (std::string fault = take(node.items[i], list[i]); !fault.empty()) return fault;
@@ -73,7 +75,7 @@ std::string take(const YamlNode& node, T& value) {
     const std::vector<std::string> known = words<T>();
     const auto found = std::find(known.begin(), known.end(), node.text);
     if (node.kind != YamlNode::Kind::scalar || found == known.end()) {
-      return text(msg::train_config_no_word, listed(known)) + did_you_mean(node.text, known);
+      return text(msg::rl_config_no_word, listed(known)) + did_you_mean(node.text, known);
     }
     value = static_cast<T>(found - known.begin());
   } else {
@@ -83,8 +85,7 @@ std::string take(const YamlNode& node, T& value) {
     bool good = node.kind == YamlNode::Kind::scalar && code == std::errc() && stop == end;
     if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(read);
     if (!good) {
-      return text(std::is_integral_v<T> ? msg::train_config_no_integer
-                                        : msg::train_config_no_number);
+      return text(std::is_integral_v<T> ? msg::rl_config_no_integer : msg::rl_config_no_number);
     }
     value = read;
   }
@@ -99,7 +100,7 @@ struct Field {
 };
 
 /// The fields of `options`, which they refer to.
-std::vector<Field> fields_of(rl::TrainingOptions& options) {
+std::vector<Field> fields_of(TrainingOptions& options) {
   std::vector<Field> fields;
   std::string section;
   const auto add = [&](const char* key, auto& value) {
@@ -107,7 +108,7 @@ std::vector<Field> fields_of(rl::TrainingOptions& options) {
                       [&value] { return written(value); }});
   };
   section = "task";
-  rl::ReachOptions& task = options.task;
+  ReachOptions& task = options.task;
   add("environments", task.environments);
   add("region", task.region);
   add("action", task.action);
@@ -122,7 +123,7 @@ std::vector<Field> fields_of(rl::TrainingOptions& options) {
   add("obstacle", task.obstacle);
   add("guide", task.guide);
   section = "reward";
-  rl::ReachReward& reward = task.reward;
+  ReachReward& reward = task.reward;
   add("distance", reward.distance);
   add("coarse", reward.coarse);
   add("coarse_scale", reward.coarse_scale);
@@ -136,7 +137,7 @@ std::vector<Field> fields_of(rl::TrainingOptions& options) {
   add("turn_fine", reward.turn_fine);
   add("turn_scale", reward.turn_scale);
   section = "ppo";
-  rl::PpoOptions& ppo = options.ppo;
+  PpoOptions& ppo = options.ppo;
   add("seed", ppo.seed);
   add("total_steps", ppo.total_steps);
   add("rollout_steps", ppo.rollout_steps);
@@ -189,26 +190,26 @@ Error unknown_key(const std::string& name, const YamlNode& key,
                   const std::vector<std::string>& known) {
   const std::string near = did_you_mean(key.text, known);
   return fault_at(name, key,
-                  text(msg::train_config_unknown, key.text) +
-                      (near.empty() ? text(msg::train_config_known, listed(known)) : near));
+                  text(msg::rl_config_unknown, key.text) +
+                      (near.empty() ? text(msg::rl_config_known, listed(known)) : near));
 }
 
 }  // namespace
 
-Result<rl::TrainingOptions> read_config(const std::string& yaml, const std::string& name,
-                                        rl::TrainingOptions options) {
+Result<TrainingOptions> read_config(const std::string& yaml, const std::string& name,
+                                    TrainingOptions options) {
   const Result<YamlNode> root = read_yaml(yaml, name);
   if (!root) return fail(root.error());
   const std::vector<Field> fields = fields_of(options);
   const std::vector<std::string> sections = names_in(fields, "");
   if (root->kind != YamlNode::Kind::map) {
-    return fail(fault_at(name, *root, text(msg::train_config_shape, listed(sections))));
+    return fail(fault_at(name, *root, text(msg::rl_config_shape, listed(sections))));
   }
   for (const auto& [section, body] : root->members) {
     const std::vector<std::string> keys = names_in(fields, section.text);
     if (keys.empty()) return fail(unknown_key(name, section, sections));
     if (body.kind != YamlNode::Kind::map) {
-      return fail(fault_at(name, section, text(msg::train_config_shape, listed(keys))));
+      return fail(fault_at(name, section, text(msg::rl_config_shape, listed(keys))));
     }
     for (const auto& [key, value] : body.members) {
       const auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& known) {
@@ -222,8 +223,31 @@ Result<rl::TrainingOptions> read_config(const std::string& yaml, const std::stri
   return options;
 }
 
-std::string config_text(const rl::TrainingOptions& options) {
-  rl::TrainingOptions copy = options;
+Result<TrainingOptions> load_config(const std::filesystem::path& file) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+  const Result<std::string> content = read_file(file, kMaxBytes);
+  if (!content) return fail(content.error());
+  return read_config(*content, file.string());
+}
+
+Result<TrainingOptions> config_of_checkpoint(const std::filesystem::path& file) {
+  const Result<TensorSet> set = load_safetensors(file);
+  if (!set) return fail(set.error());
+  Result<std::optional<TrainingOptions>> config = config_in(*set, file);
+  if (!config) return fail(std::move(config.error()));
+  if (!*config) return fail(Errc::bad_input, text(msg::rl_no_config, file.string()));
+  return std::move(**config);
+}
+
+Result<std::optional<TrainingOptions>> config_in(const TensorSet& checkpoint,
+                                                 const std::filesystem::path& file) {
+  const auto config = checkpoint.metadata.find("config");
+  if (config == checkpoint.metadata.end()) return std::nullopt;
+  return read_config(config->second, file.string());
+}
+
+std::string config_text(const TrainingOptions& options) {
+  TrainingOptions copy = options;
   std::string out, section;
   for (const Field& field : fields_of(copy)) {
     if (field.section != section) out += field.section + ":\n";
@@ -233,4 +257,4 @@ std::string config_text(const rl::TrainingOptions& options) {
   return out;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::rl

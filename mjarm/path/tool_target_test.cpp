@@ -1,4 +1,4 @@
-#include "apps/mjarm/view/tool_target.hpp"
+#include "mjarm/path/tool_target.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "mjarm/model/shipped_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
 
 using mjarm::testing::shipped_arm;
@@ -58,7 +58,7 @@ Pose moved(Pose pose, const Eigen::Vector3d& way) {
   return pose;
 }
 
-TEST(ToolTarget, BeginsAtHomeInGreen) {
+TEST(ToolTarget, BeginsWellAtHome) {
   for (const char* name : {"ur5e", "panda"}) {
     const TestArm robot = shipped_arm(name);
     const ToolTarget target(robot.model, robot.arm);
@@ -66,7 +66,6 @@ TEST(ToolTarget, BeginsAtHomeInGreen) {
     expect_same(target.pose(), fk(robot.arm, as_span(robot.arm.home)));
     EXPECT_EQ(target.grade(), TargetGrade::good) << target.line();
     EXPECT_THAT(target.line(), StartsWith("reachable; "));
-    EXPECT_GT(color_of(target.grade()).g, 0.7F);
   }
 }
 
@@ -123,14 +122,13 @@ TEST(ToolTarget, ALineOutOfTheWorkspaceStopsAtItsEdge) {
       ASSERT_TRUE(target.failure());
       EXPECT_EQ(target.failure()->code, IkErrc::out_of_reach) << name << step;
       EXPECT_THAT(target.line(), HasSubstr("out of reach"));
-      EXPECT_GT(color_of(target.grade()).r, 0.8F);
       // On the line, where one can still be and 3 mm further one cannot.
       const Pose X_edge = fk(robot.arm, as_span(target.goal()));
       const double way = (X_edge.p - X_home.p).dot(out);
       EXPECT_GT(way, 0.05);
       expect_same(X_edge, moved(X_home, way * out));
       EXPECT_FALSE(judge.solve(moved(X_edge, 3e-3 * out), as_span(target.goal()))) << name << step;
-      // And back, into the colour it had.
+      // And back, as good as it was.
       target.move_to(X_home);
       EXPECT_EQ(target.grade(), TargetGrade::good) << target.line();
       expect_same(fk(robot.arm, as_span(target.goal())), X_home);
@@ -194,7 +192,6 @@ TEST(ToolTarget, AJumpIsShownAndTakenOnlyWhenAsked) {
   };
   target.move_to(turned(0.2));
   ASSERT_EQ(target.grade(), TargetGrade::jump) << target.line();
-  EXPECT_EQ(color_of(target.grade()), color_of(TargetGrade::near_limit));
   EXPECT_LT(largest(target.goal() - q), 0.051);
   ASSERT_TRUE(target.jump());
   int joint = 0;
@@ -206,7 +203,7 @@ TEST(ToolTarget, AJumpIsShownAndTakenOnlyWhenAsked) {
   EXPECT_FALSE(target.jump());
 }
 
-TEST(ToolTarget, ANearSingularityIsAmber) {
+TEST(ToolTarget, ANearSingularityIsSaid) {
   const TestArm robot = shipped_arm("ur5e");
   ToolTarget target(robot.model, robot.arm);
   JointVec q = robot.arm.home;
@@ -214,7 +211,6 @@ TEST(ToolTarget, ANearSingularityIsAmber) {
   target.set_goal(q);
   EXPECT_EQ(target.grade(), TargetGrade::near_singular);
   EXPECT_THAT(target.line(), HasSubstr("wrist"));
-  EXPECT_EQ(color_of(target.grade()), color_of(TargetGrade::jump));
 }
 
 TEST(ToolTarget, JogsAlongTheAxesOfTheFrame) {
@@ -347,4 +343,4 @@ TEST(ToolTarget, LinesAreAsciiInTheWindowAndChineseElsewhere) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm

@@ -6,9 +6,14 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
-#include "mjarm/program/program.hpp"
 
 namespace mjarm {
+
+/// Where something stands in a file, both from 1; 0 where it comes from no file.
+struct FilePlace {
+  int line = 0;
+  int column = 0;
+};
 
 /// A YAML document as a tree that knows where everything stands, without yaml-cpp's headers.
 struct YamlNode {
@@ -24,7 +29,7 @@ struct YamlNode {
 };
 
 /// Reads one document. Bounded, whatever the text holds: at most 32 levels and 200,000 nodes,
-/// copies by aliases counted.
+/// copies by aliases counted. An empty text gives `Kind::nothing` at no place.
 /// @return an error that begins with `name:line:column:`.
 [[nodiscard]] Result<YamlNode> read_yaml(const std::string& text, std::string_view name);
 
