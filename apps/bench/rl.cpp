@@ -67,7 +67,7 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
   };
   std::vector<LearningRun> runs;
   for (const LearningSet& set : sets) {
-    const Result<Model> model = task_model(set.options.task);
+    const Result<Model> model = rl::reach_model(set.options.task);
     if (!model) return fail(model.error());
     for (int i = 0; i < seeds; ++i) {
       const std::uint64_t seed = set.options.ppo.seed + static_cast<std::uint64_t>(i);

@@ -5,7 +5,7 @@
 
 #include "mjarm/control/sag.hpp"
 #include "mjarm/core/messages.hpp"
-#include "mjarm/sim/worlds_test.hpp"
+#include "mjarm/execution/execution_test.hpp"
 
 namespace mjarm {
 namespace {
@@ -15,6 +15,7 @@ using ::testing::HasSubstr;
 using testing::load_shipped;
 using testing::load_text;
 using testing::Loaded;
+using testing::shifted;
 using testing::small_world;
 
 /// What a run needs, the arm at home.
@@ -32,8 +33,6 @@ struct Bench {
     return {.sim = sim, .controller = controller, .arm = robot.arm};
   }
 };
-
-JointVec shifted(const JointVec& q, double by) { return q + JointVec::Constant(q.size(), by); }
 
 /// Hanging below the horizontal, so that a servo on its way up stops short.
 const std::vector<double> kBelow{0.5, 0};

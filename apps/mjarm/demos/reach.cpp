@@ -7,8 +7,8 @@ namespace mjarm::app {
 Result<Report> run_reach(const DemoOptions& options) {
   const Result<std::filesystem::path> share = share_folder();
   if (!share) return fail(share.error());
-  const Result<LoadedPolicy> loaded =
-      load_policy(*share / "models" / "policies" / "reach.safetensors");
+  const Result<rl::TrainedPolicy> loaded =
+      rl::load_policy(*share / "models" / "policies" / "reach.safetensors");
   if (!loaded) return fail(loaded.error());
   Result<PolicyOutcome> outcome =
       run_policy(*loaded, {.name = "reach", .least_success = 0.95}, options);
