@@ -54,7 +54,7 @@ struct PlannedMove {
   /// Curve::blends()) or the two poses of one arc; empty where arcs are blended and for curves that
   /// have a center.
   std::vector<PlannedPoint> points;
-  /// Of a way round obstacles: the joint values that its edges run between, start and goal
+  /// Of a detour (`plan`): the joint values that its edges run between, start and goal
   /// included. Every edge is proved free of contact; the trajectory cuts the corners where that is
   /// as well.
   std::vector<JointVec> corners;
