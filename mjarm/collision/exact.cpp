@@ -236,6 +236,20 @@ struct ExactChecker::Impl {
   std::unique_ptr<mjData, DeleteData> d;
 };
 
+Result<ExactChecker> ExactChecker::create(const Model& model, const Arm& arm,
+                                          const ExactOptions& options) {
+  const auto fits = [](double length) { return length >= 0 && std::isfinite(length); };
+  if (!fits(options.margin) || !fits(options.allow_depth)) {
+    return fail(Errc::bad_input, text(msg::collision_exact_options));
+  }
+  ExactChecker out(model, arm, options);
+  if (!out.impl_->sound) return fail(out.impl_->sound.error());
+  if (!out.impl_->bodies.matches) {
+    return fail(Errc::bad_input, text(msg::collision_other_arm, arm.name));
+  }
+  return out;
+}
+
 ExactChecker::ExactChecker(const Model& model, const Arm& arm, const ExactOptions& options)
     : impl_(std::make_unique<Impl>(model, arm, options)) {}
 ExactChecker::~ExactChecker() = default;

@@ -81,6 +81,11 @@ struct IkFailure {
 /// Inverse kinematics of one arm. A value: copy it to use it from another thread.
 class IkSolver {
  public:
+  /// For options that a user chose.
+  /// @return bad_input: one line that names the first option out of its range, or that says that the
+  /// arm has no joints or too many.
+  [[nodiscard]] static Result<IkSolver> create(const Arm& arm, IkOptions options);
+  /// For options that are known to be in their ranges: with others every solve is bad_input.
   explicit IkSolver(const Arm& arm, IkOptions options = {});
 
   /// Finds q with fk(q) within tolerance of `X_WT`. Where a closed form is known (six_axis.hpp,

@@ -251,6 +251,27 @@ TEST(IkFailure, BadInputIsRefused) {
   EXPECT_FALSE(describe(ik.solve(bad, as_span(seed)).error(), arm).empty());
 }
 
+TEST(IkSolver, OptionsOutOfRangeAreNamedAtOnce) {
+  const Arm arm = ur5e();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [&](IkOptions options, const std::string& word) {
+    const auto made = IkSolver::create(arm, std::move(options));
+    return !made && made.error().code == Errc::bad_input &&
+           made.error().what.find(word) != std::string::npos;
+  };
+  EXPECT_TRUE(refused({.pos_tol = 0}, "pos_tol"));
+  EXPECT_TRUE(refused({.pos_tol = nan}, "pos_tol"));
+  EXPECT_TRUE(refused({.rot_tol = -1}, "rot_tol"));
+  EXPECT_TRUE(refused({.max_iterations = 0}, "max_iterations"));
+  EXPECT_TRUE(refused({.restarts = -1}, "restarts"));
+  EXPECT_TRUE(refused({.max_step = nan}, "max_step"));
+  EXPECT_FALSE(IkSolver::create(Arm{}, {}).has_value());
+  const auto made = IkSolver::create(arm, {.restarts = 0});
+  ASSERT_TRUE(made.has_value());
+  const JointVec q = joint_vec(std::vector<double>{0.1, -1, 1, 0.4, 1, 0});
+  EXPECT_TRUE(made->solve(fk(arm, as_span(q)), as_span(q)).has_value());
+}
+
 TEST(IkFailure, RefusedEverywhereIsCollision) {
   const Arm arm = ur5e();
   IkOptions options;

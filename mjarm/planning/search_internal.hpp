@@ -51,8 +51,8 @@ class EdgeProver {
   EdgeResult look(std::span<const double> a, std::span<const double> b) {
     ++counts_.edges;
     const Arm& arm = checker_.robot().arm();
-    if (outside_joint(arm, a) >= 0) return {EdgeVerdict::hit, 0};
-    if (outside_joint(arm, b) >= 0) return {EdgeVerdict::hit, 1};
+    if (outside_joint(arm, a) >= 0) return {EdgeVerdict::outside, 0};
+    if (outside_joint(arm, b) >= 0) return {EdgeVerdict::outside, 1};
     if (tilt_ != nullptr) {
       const TiltKeeper::EdgeTilt found = tilt_->look(a, b);
       if (!found.kept) return {EdgeVerdict::undecided, found.t};

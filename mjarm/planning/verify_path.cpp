@@ -96,13 +96,13 @@ class PathJudge {
   }
 
   void add_edge_fault(int edge, const VerifyResult& found) {
-    if (found.verdict == VerifyVerdict::outside) {
+    if (found.verdict == EdgeVerdict::outside) {
       const auto joint = static_cast<std::size_t>(found.joint);
       const int at = edge + static_cast<int>(found.t);
       add("limits", edge,
           text(msg::planning_verify_limits, at, arm_.joints[joint].name, row(at)[joint],
                arm_.limits.lower[found.joint], arm_.limits.upper[found.joint]));
-    } else if (found.verdict == VerifyVerdict::hit) {
+    } else if (found.verdict == EdgeVerdict::hit) {
       add("hit", edge,
           text(msg::planning_verify_hit, edge, found.t, name_of(found.link), other_of(found),
                -found.distance));
@@ -134,13 +134,13 @@ class PathJudge {
       const Result<VerifyResult> found =
           verify_edge(arm_, set_, problem_.obstacles, row(edge), row(edge + 1), options);
       if (!found) return fail(found.error());
-      if (found->verdict != VerifyVerdict::outside) {
+      if (found->verdict != EdgeVerdict::outside) {
         out_.clearance = std::min(out_.clearance, found->distance);
       }
-      if (found->verdict == VerifyVerdict::hit) {
+      if (found->verdict == EdgeVerdict::hit) {
         if (Result<void> done = measure(edge); !done) return done;
       }
-      if (found->verdict == VerifyVerdict::free || is_faulty) continue;
+      if (found->verdict == EdgeVerdict::free || is_faulty) continue;
       is_faulty = true;
       add_edge_fault(edge, *found);
     }

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {

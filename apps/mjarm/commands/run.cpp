@@ -2,14 +2,14 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/view/view_host.hpp"
+#include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/demos/outcome.hpp"
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {

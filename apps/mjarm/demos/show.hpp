@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "apps/mjarm/commands/render_video.hpp"
-#include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/overlay.hpp"
@@ -16,6 +15,7 @@
 #include "mjarm/view/history.hpp"
 #include "mjarm/view/live_plot.hpp"
 #include "mjarm/view/playback.hpp"
+#include "mjarm/view/remote_window.hpp"
 #include "mjarm/view/thinned_record.hpp"
 #include "mjarm/view/view_link.hpp"
 
@@ -96,7 +96,7 @@ class Show {
   Overlay planned_;
   std::optional<OverlaySphere> goal_;
   ThinnedRecord<Eigen::Vector3d> tool_{kMaxToolPoints};  ///< [m] what is plotted of it
-  double last_time_ = 0;                                  ///< [s] of the last step
+  double last_time_ = 0;                                 ///< [s] of the last step
   bool plots_tool_ = false;
 };
 

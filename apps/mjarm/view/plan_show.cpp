@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/render_program.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
-#include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/core/log.hpp"
@@ -17,6 +17,7 @@
 #include "mjarm/render/video.hpp"
 #include "mjarm/session/plan_player.hpp"
 #include "mjarm/session/plan_view.hpp"
+#include "mjarm/session/simulate_world.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -107,7 +108,7 @@ Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
   catch_interrupts();
   const Result<int> shown =
       show_in_window(subject.model, "mjarm plan " + subject.title, window, {show.seconds},
-                     [&player](ViewLink& link) { simulate_world(player, link); });
+                     [&player](ViewLink& link) { session::simulate_world(player, link); });
   if (!shown) return fail(shown.error());
   return {};
 }

@@ -1,22 +1,16 @@
 #include "apps/mjarm/view/program_player.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "mjarm/core/log.hpp"
+#include "mjarm/session/max_moments.hpp"
 
 namespace mjarm::app {
 namespace {
 
-constexpr std::size_t kMaxRecorded = 5000;                      // moments
-constexpr std::size_t kMaxStateNumbers = std::size_t{8} << 20;  // of all moments together
-
-std::size_t max_recorded(const Sim& sim) {
-  const std::size_t numbers = std::max<std::size_t>(sim.snapshot().state.size(), 1);
-  return std::clamp(kMaxStateNumbers / numbers, std::size_t{10}, kMaxRecorded);
-}
+constexpr std::size_t kMaxRecorded = 5000;  // moments
 
 }  // namespace
 
@@ -26,7 +20,7 @@ ProgramPlayer::ProgramPlayer(const LoadedProgram& loaded, Controller controller)
       controller_(std::move(controller)),
       walk_(loaded.plan, loaded.robot.model.timestep()),
       playback_(loaded.robot.model.timestep()),
-      record_(max_recorded(sim_)),
+      record_(session::max_moments(sim_, kMaxRecorded)),
       scene_(loaded, kProgramFigure),
       lines_(program_lines(loaded.plan)) {
   restart();

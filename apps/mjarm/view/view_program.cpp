@@ -3,10 +3,11 @@
 #include <utility>
 
 #include "apps/mjarm/view/program_player.hpp"
-#include "apps/mjarm/view/view_host.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/session/simulate_world.hpp"
+#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -51,7 +52,8 @@ Result<int> view_program(const std::string& name_or_path, WindowOptions window,
   if (!player) return fail(std::move(player.error()));
   if (window.paused) player->handle(PauseEvent{true});
   return show_in_window(loaded->robot.model, window_title(*loaded), with_panel(std::move(window)),
-                        options, [&player](ViewLink& link) { simulate_world(*player, link); });
+                        options,
+                        [&player](ViewLink& link) { session::simulate_world(*player, link); });
 }
 
 Result<void> show_program(const LoadedProgram& loaded, double seconds) {
@@ -65,7 +67,7 @@ Result<void> show_program(const LoadedProgram& loaded, double seconds) {
   log_info(text(msg::demo_close_window));
   player->handle(PanelEvent{kProgramRun, 1});
   ProgramUntil world(*player, seconds);
-  simulate_world(world, (*window)->link());
+  session::simulate_world(world, (*window)->link());
   return {};
 }
 
