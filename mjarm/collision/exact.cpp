@@ -37,7 +37,7 @@ struct ExactChecker::Impl {
         m(*model.raw()),
         m_wide(*model.raw()),
         sound(check_contact_rules(model, arm, options.rules)),
-        bodies(m, arm, sound ? options.rules.held : std::vector<HeldBody>()),
+        bodies(m, arm, sound ? options.rules.attached : std::vector<AttachedBody>()),
         filter(m, options.rules) {
     // The arrays are those of the shared model; only the options of these two heads differ.
     for (mjModel* head : {&m, &m_wide}) {
@@ -93,7 +93,7 @@ struct ExactChecker::Impl {
 
   void place(std::span<const double> q) {
     for (std::size_t i = 0; i < q.size(); ++i) d->qpos[bodies.addresses[i]] = q[i];
-    if (!bodies.held.empty()) bodies.place_held(fk(arm, q), d->qpos);
+    if (!bodies.attached.empty()) bodies.place_attached(fk(arm, q), d->qpos);
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     if (m.nflex > 0) mj_flex(&m, d.get());

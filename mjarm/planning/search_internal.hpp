@@ -24,7 +24,7 @@ class Deadline {
   double left_us_ = 0;  // 0: never
 };
 
-/// A problem whose start and goals were looked at.
+/// A problem whose start and goals were checked. Its spans are those of the user.
 struct SearchProblem {
   const FastChecker& checker;
   std::span<const double> start;
@@ -103,10 +103,10 @@ void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptio
 void slide_corners(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
                    int attempts, RawPath& path);
 
-/// Looks at the options, the start and every goal.
-[[nodiscard]] Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
-                                                                 std::span<const double> start,
-                                                                 std::span<const double> goals,
-                                                                 const PlanOptions& options);
+/// Checks the options, the start and every goal.
+[[nodiscard]] Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
+                                                                  std::span<const double> start,
+                                                                  std::span<const JointVec> goals,
+                                                                  const PlanOptions& options);
 
 }  // namespace mjarm::detail

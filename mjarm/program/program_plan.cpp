@@ -11,7 +11,7 @@
 #include "mjarm/path/joint_path.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
-#include "mjarm/program/way_round_internal.hpp"
+#include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm {
@@ -41,7 +41,7 @@ struct Tool {
   IkSolver reach;  ///< geometry alone
   IkSolver ik;     ///< without contact
   MoveJudge judge;
-  detail::WayRoundPlanner round;
+  detail::DetourPlanner detours;
 };
 
 class ProgramPlanner {
@@ -61,7 +61,7 @@ class ProgramPlanner {
       const IkSolver solver(arm, ik);
       const MoveJudge judge(arm, checker);
       tools_.push_back({arm, IkSolver(arm, {.task = ik.task}), solver, judge,
-                        detail::WayRoundPlanner(model, arm, solver, judge)});
+                        detail::DetourPlanner({model, arm}, solver, judge)});
     }
   }
 
@@ -117,13 +117,13 @@ class ProgramPlanner {
     const bool one = step.kind == Step::Kind::joints || step.kind == Step::Kind::pose ||
                      (step.kind == Step::Kind::line && !blended(fault.step));
     if (!one || fault.reason != "collision") return std::nullopt;
-    detail::WayRoundPlanner& planner = tools_[step.tool].round;
+    detail::DetourPlanner& planner = tools_[step.tool].detours;
     const auto goals = goals_of(planner, step, q);
     if (!goals) return std::nullopt;
-    const auto way = planner.plan(q, *goals, step.share);
-    if (!way) return std::nullopt;
-    q = way->corners.back();
-    return Detour{way->corners.size() - 1, way->trajectory.duration(), way->measures.clearance};
+    const auto found = planner.plan(q, *goals, step.share);
+    if (!found) return std::nullopt;
+    q = found->corners.back();
+    return Detour{found->corners.size() - 1, found->trajectory.duration(), found->measures.clearance};
   }
 
   /// After a fault the arm is taken to be where the step should have ended.
@@ -170,7 +170,7 @@ class ProgramPlanner {
       case Step::Kind::plan:
         break;
     }
-    return round(i, q);
+    return detour(i, q);
   }
 
   static Attempt failed(std::size_t i, const JointVec& q, PlanFault fault) {
@@ -263,20 +263,20 @@ class ProgramPlanner {
   }
 
   /// Where a `plan` may end: its joint values, or every answer to its pose.
-  static Result<std::vector<JointVec>, detail::WayRoundFault> goals_of(
-      const detail::WayRoundPlanner& planner, const Step& step, const JointVec& q) {
+  static Result<std::vector<JointVec>, detail::DetourFault> goals_of(
+      const detail::DetourPlanner& planner, const Step& step, const JointVec& q) {
     return step.q.size() > 0 ? planner.goals(q, step.q) : planner.goals(q, step.X_WT);
   }
 
   /// Round what stands in the way, to a goal from which the tool moves that follow go farthest.
-  Attempt round(std::size_t i, const JointVec& q) {
+  Attempt detour(std::size_t i, const JointVec& q) {
     const Step& step = steps_[i];
     Tool& with = tools_[step.tool];
-    auto goals = goals_of(with.round, step, q);
+    auto goals = goals_of(with.detours, step, q);
     if (!goals) return failed(i, q, {i, goals.error().reason, goals.error().what});
     std::optional<Attempt> best;
     for (std::size_t k = 0; k < kMaxAnswers && !goals->empty(); ++k) {
-      auto found = with.round.plan(q, *goals, step.share);
+      auto found = with.detours.plan(q, *goals, step.share);
       if (!found && best) break;
       if (!found) return failed(i, q, {i, found.error().reason, found.error().what});
       Attempt attempt{{begun(step)}, i + 1, found->corners.back(), {}};

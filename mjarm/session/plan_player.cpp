@@ -1,10 +1,10 @@
-#include "apps/mjarm/view/plan_player.hpp"
+#include "mjarm/session/plan_player.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 constexpr double kPlanSpeed = 1;  // [rad/s or m/s, L2]
@@ -150,4 +150,4 @@ void PlanPlayer::fill(ViewFrame& frame) {
   if (look.obstacle_pair) frame.status += "; " + drawing_->pair_line(look, *look.obstacle_pair);
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -5,17 +5,18 @@
 
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
+#include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
-/// One way to be found.
+/// A path to be found.
 struct PlanProblem {
   std::string id;
   std::string scene;          ///< kind of scene, for tables; may be empty
   std::vector<double> start;  ///< shape (dof,) [rad or m]
-  std::vector<double> goals;  ///< shape (n, dof), row by row; may be empty
+  std::vector<JointVec> goals;  ///< (n,) each of shape (dof,); may be empty
   Obstacles obstacles;
   bool valid = true;  ///< what the file says: start and some goal are free
 };
@@ -39,4 +40,4 @@ enum class Cylinders {
 [[nodiscard]] Result<ProblemFile> read_problem_file(const std::string& path,
                                                     Cylinders cylinders = Cylinders::replaced);
 
-}  // namespace mjarm::app
+}  // namespace mjarm

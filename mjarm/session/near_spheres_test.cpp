@@ -1,10 +1,10 @@
-#include "apps/mjarm/view/near_spheres.hpp"
+#include "mjarm/session/near_spheres.hpp"
 
 #include <gtest/gtest.h>
 
 #include "mjarm/collision/random_scene_test.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 struct Found {
@@ -109,4 +109,4 @@ TEST(NearSpheres, InsideOfASolidThereIsNoWayBetween) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -3,11 +3,11 @@
 #include <optional>
 #include <string>
 
-#include "apps/mjarm/commands/path_file.hpp"
-#include "apps/mjarm/commands/problem_file.hpp"
+#include "mjarm/planning/plan_file.hpp"
 #include "mjarm/planning/plan_path.hpp"
+#include "mjarm/planning/problem_file.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 /// What came of one problem, and how long it took.
 struct PlanAnswer {
@@ -24,8 +24,9 @@ struct PlanAnswer {
 [[nodiscard]] PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
                                         const PlanOptions& options);
 
-/// Appends the answer as a JSON object.
+/// Appends the answer as a JSON object, as read_plan_file() reads it.
+/// @param robot, obstacles  that it was planned for; their names are told.
 void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& robot,
                    const Obstacles& obstacles, bool timing);
 
-}  // namespace mjarm::app
+}  // namespace mjarm

@@ -1,4 +1,4 @@
-#include "apps/mjarm/commands/verify_path.hpp"
+#include "mjarm/planning/verify_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 #include "mjarm/collision/first_contact.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
-#include "mjarm/core/messages/verify.hpp"
+#include "mjarm/core/messages/planning.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
 
 constexpr double kEndSlack = 1e-4;        // [rad or m] of start, goal and limits
@@ -78,13 +78,12 @@ class PathJudge {
 
   void check_ends() {
     const double off = farthest(path_.rows.front(), problem_.start);
-    if (off > kEndSlack) add("start", -1, text(msg::verify_start, off));
-    const std::size_t dof = problem_.start.size();
+    if (off > kEndSlack) add("start", -1, text(msg::planning_verify_start, off));
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i + dof <= problem_.goals.size(); i += dof) {
-      nearest = std::min(nearest, farthest(path_.rows.back(), Row(problem_.goals).subspan(i, dof)));
+    for (const JointVec& goal : problem_.goals) {
+      nearest = std::min(nearest, farthest(path_.rows.back(), as_span(goal)));
     }
-    if (nearest > kEndSlack) add("goal", -1, text(msg::verify_goal, nearest));
+    if (nearest > kEndSlack) add("goal", -1, text(msg::planning_verify_goal, nearest));
   }
 
   const std::string& name_of(int link) const {
@@ -101,15 +100,15 @@ class PathJudge {
       const auto joint = static_cast<std::size_t>(found.joint);
       const int at = edge + static_cast<int>(found.t);
       add("limits", edge,
-          text(msg::verify_limits, at, arm_.joints[joint].name, row(at)[joint],
+          text(msg::planning_verify_limits, at, arm_.joints[joint].name, row(at)[joint],
                arm_.limits.lower[found.joint], arm_.limits.upper[found.joint]));
     } else if (found.verdict == EdgeVerdict::hit) {
       add("hit", edge,
-          text(msg::verify_hit, edge, found.t, name_of(found.link), other_of(found),
+          text(msg::planning_verify_hit, edge, found.t, name_of(found.link), other_of(found),
                -found.distance));
     } else {
       add("undecided", edge,
-          text(msg::verify_undecided, edge, found.t, name_of(found.link), other_of(found),
+          text(msg::planning_verify_undecided, edge, found.t, name_of(found.link), other_of(found),
                found.distance));
     }
   }
@@ -165,7 +164,7 @@ class PathJudge {
       if (!found->has_value()) continue;
       const ContactPoint& contact = (*found)->contact;
       add("contact", edge,
-          text(msg::verify_contact, edge, (*found)->t, name_of(contact.pair.geom1),
+          text(msg::planning_verify_contact, edge, (*found)->t, name_of(contact.pair.geom1),
                name_of(contact.pair.geom2), contact.depth));
       return {};
     }
@@ -183,7 +182,7 @@ class PathJudge {
       for (double k = 0; k <= pieces; ++k) {
         const double t = k / std::max(pieces, 1.0), leans = tilt(stated, arm_, on_edge(edge, t));
         if (leans <= stated.max + kTiltSlack) continue;
-        add("tilt", edge, text(msg::verify_tilt, edge, t, leans, stated.max));
+        add("tilt", edge, text(msg::planning_verify_tilt, edge, t, leans, stated.max));
         return;
       }
     }
@@ -194,7 +193,7 @@ class PathJudge {
     if (!path_.cost) return;
     const double off = std::abs(*path_.cost - out_.cost);
     if (!(off <= kCostSlack * (1 + out_.cost))) {
-      add("cost", -1, text(msg::verify_cost, *path_.cost, out_.cost));
+      add("cost", -1, text(msg::planning_verify_cost, *path_.cost, out_.cost));
     }
   }
 
@@ -251,23 +250,23 @@ class PathJudge {
   Result<std::string> fault_of(const GivenCertificate& given, int edge) const {
     const double length = length_of(row(edge), row(edge + 1));
     if (!(given.step >= 0 && given.step <= length * (1 + kCostSlack))) {
-      return text(msg::verify_certificate_step, given.step, length);
+      return text(msg::planning_verify_certificate_step, given.step, length);
     }
-    if (!(given.t >= 0 && given.t <= 1)) return text(msg::verify_certificate_t, given.t);
+    if (!(given.t >= 0 && given.t <= 1)) return text(msg::planning_verify_certificate_t, given.t);
     if (given.pair.empty()) return std::string();
     const Result<std::optional<double>> found = clearance_of(given, edge);
     if (!found) return fail(found.error());
-    if (!*found) return text(msg::verify_certificate_pair, given.pair[0], given.pair[1]);
+    if (!*found) return text(msg::planning_verify_certificate_pair, given.pair[0], given.pair[1]);
     const double off = given.clearance - **found;
     if (off <= kClearanceAbove && off >= -kClearanceBelow) return std::string();
-    return text(msg::verify_certificate_clearance, given.clearance, given.t, **found);
+    return text(msg::planning_verify_certificate_clearance, given.clearance, given.t, **found);
   }
 
   Result<void> check_certificates() {
     if (!path_.certificate) return {};
     const std::size_t given = path_.certificate->size(), wanted = path_.rows.size() - 1;
     if (given != wanted) {
-      add("certificate", -1, text(msg::verify_certificate_count, given, wanted));
+      add("certificate", -1, text(msg::planning_verify_certificate_count, given, wanted));
       return {};
     }
     for (std::size_t i = 0; i < given; ++i) {
@@ -275,7 +274,7 @@ class PathJudge {
       const Result<std::string> fault = fault_of((*path_.certificate)[i], edge);
       if (!fault) return fail(fault.error());
       if (fault->empty()) continue;
-      add("certificate", edge, text(msg::verify_certificate, edge, *fault));
+      add("certificate", edge, text(msg::planning_verify_certificate, edge, *fault));
       return {};
     }
     return {};
@@ -298,4 +297,4 @@ Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& prob
   return PathJudge(file, problem, path, rules, exact).run();
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

@@ -29,16 +29,13 @@ tl::unexpected<PlanFailure> start_hit(const FastChecker& checker, std::span<cons
 }
 
 /// Of the goals within the limits, the one that overlaps least.
-tl::unexpected<PlanFailure> all_hit(const FastChecker& checker, std::span<const double> goals) {
+tl::unexpected<PlanFailure> all_hit(const FastChecker& checker, std::span<const JointVec> goals) {
   PlanFailure failure;
   failure.reason = PlanErrc::goals_hit;
   failure.pair.distance = -std::numeric_limits<double>::infinity();
-  const Arm& arm = checker.robot().arm();
-  const auto dof = static_cast<std::size_t>(arm.dof());
-  for (std::size_t g = 0; g < goals.size(); g += dof) {
-    const std::span<const double> goal = goals.subspan(g, dof);
-    if (outside_joint(arm, goal) >= 0) continue;
-    const SphereClearance pair = checker.clearance(goal);
+  for (const JointVec& goal : goals) {
+    if (outside_joint(checker.robot().arm(), as_span(goal)) >= 0) continue;
+    const SphereClearance pair = checker.clearance(as_span(goal));
     if (pair.distance > failure.pair.distance) failure.pair = pair;
   }
   return tl::unexpected(failure);
@@ -64,14 +61,16 @@ int outside_joint(const Arm& arm, std::span<const double> q) {
   return -1;
 }
 
-Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
-                                                   std::span<const double> start,
-                                                   std::span<const double> goals,
-                                                   const PlanOptions& options) {
+Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
+                                                    std::span<const double> start,
+                                                    std::span<const JointVec> goals,
+                                                    const PlanOptions& options) {
   const Arm& arm = checker.robot().arm();
-  const auto dof = static_cast<std::size_t>(arm.dof());
-  if (start.size() != dof || goals.empty() || goals.size() % dof != 0 || !all_finite(start) ||
-      !all_finite(goals)) {
+  const auto fits = [&arm](std::span<const double> q) {
+    return q.size() == static_cast<std::size_t>(arm.dof()) && all_finite(q);
+  };
+  const auto goal_fits = [&fits](const JointVec& goal) { return fits(as_span(goal)); };
+  if (!fits(start) || goals.empty() || !std::ranges::all_of(goals, goal_fits)) {
     return no_path(PlanErrc::bad_input);
   }
   if (options.tilt && !is_sound(*options.tilt)) return no_path(PlanErrc::bad_tilt);
@@ -89,28 +88,25 @@ Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
   if (out.tilt && !out.tilt->keeps(start)) {
     return tilted(PlanErrc::start_tilted, *options.tilt, arm, start);
   }
+  const auto goal_of = [&](int g) { return as_span(goals[static_cast<std::size_t>(g)]); };
   bool any_inside = false;
   int first_free = -1;
-  for (std::size_t g = 0; g * dof < goals.size(); ++g) {
-    const std::span<const double> goal = goals.subspan(g * dof, dof);
-    if (outside_joint(arm, goal) >= 0) continue;
+  for (int g = 0; g < static_cast<int>(goals.size()); ++g) {
+    if (outside_joint(arm, goal_of(g)) >= 0) continue;
     any_inside = true;
-    if (!checker.is_free(goal)) continue;
-    if (first_free < 0) first_free = static_cast<int>(g);
-    if (!out.tilt || out.tilt->keeps(goal)) out.goal_index.push_back(static_cast<int>(g));
+    if (!checker.is_free(goal_of(g))) continue;
+    if (first_free < 0) first_free = g;
+    if (!out.tilt || out.tilt->keeps(goal_of(g))) out.goal_index.push_back(g);
   }
   if (!any_inside) {
-    const std::span<const double> goal = goals.first(dof);
-    return outside(PlanErrc::goals_outside, goal, outside_joint(arm, goal));
+    return outside(PlanErrc::goals_outside, goal_of(0), outside_joint(arm, goal_of(0)));
   }
-  const auto goal_of = [&](int g) { return goals.subspan(static_cast<std::size_t>(g) * dof, dof); };
   if (first_free < 0) return all_hit(checker, goals);
   if (out.goal_index.empty()) {
     return tilted(PlanErrc::goals_tilted, *options.tilt, arm, goal_of(first_free));
   }
-  std::stable_sort(out.goal_index.begin(), out.goal_index.end(), [&](int a, int b) {
-    return distance(start, goal_of(a)) < distance(start, goal_of(b));
-  });
+  std::ranges::stable_sort(out.goal_index, {},
+                           [&](int g) { return distance(start, goal_of(g)); });
   for (const int g : out.goal_index) out.goals.push_back(goal_of(g));
   return out;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/view/near_spheres.hpp"
+#include "mjarm/session/near_spheres.hpp"
 #include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/collision/obstacles.hpp"
@@ -14,7 +14,7 @@
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/sim/sim.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
 /// A planned path and all that it was planned for. What it refers to outlives it.
 struct PlanSubject {
@@ -24,10 +24,10 @@ struct PlanSubject {
   const Obstacles& obstacles;       ///< of `checker`
   const PlannedPath& path;          ///< with its trees
   std::string title;                ///< of the problem
-  std::vector<HeldBody> held = {};  ///< by the tool
+  std::vector<AttachedBody> attached = {};  ///< to the tool
 };
 
-/// Puts the arm at `q`, shape (dof,), and what it holds.
+/// Puts the arm at `q`, shape (dof,), and what is attached to it.
 void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q);
 
 /// A path by the length travelled along it [rad or m, L2].
@@ -104,4 +104,4 @@ class PlanDrawing {
   Overlay path_, tree_, ends_, corners_;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

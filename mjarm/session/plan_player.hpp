@@ -3,12 +3,12 @@
 #include <optional>
 #include <vector>
 
-#include "apps/mjarm/view/plan_drawing.hpp"
+#include "mjarm/session/plan_drawing.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/view/playback.hpp"
 #include "mjarm/view/view_link.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
 /// Numbers of the items in the panel of a planned path.
 enum PlanItem {
@@ -56,4 +56,4 @@ class PlanPlayer {
   bool back_ = false;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,5 +1,5 @@
 // Pictures of planned paths, and what a window shows of them.
-#include "apps/mjarm/view/plan_drawing.hpp"
+#include "mjarm/session/plan_drawing.hpp"
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
@@ -8,16 +8,15 @@
 #include <numbers>
 #include <optional>
 
-#include "apps/mjarm/view/plan_camera.hpp"
-#include "apps/mjarm/view/plan_player.hpp"
-#include "apps/mjarm/view/program_test.hpp"
 #include "mjarm/collision/cover.hpp"
 #include "mjarm/kinematics/fk.hpp"
-#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/robot.hpp"
 #include "mjarm/render/framing.hpp"
 #include "mjarm/render/offscreen.hpp"
+#include "mjarm/session/plan_player.hpp"
+#include "mjarm/session/plan_view.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 /// The shipped UR5e on both sides of its wall, planned once.
@@ -32,10 +31,7 @@ class WallPlan : public ::testing::Test {
   };
   static const World& world() {
     static const World made = [] {
-      Model model =
-          Model::load(model_file("universal_robots_ur5e/wall.xml"), {.allow_outside = true})
-              .value();
-      Arm arm = find_arm(model).value();
+      auto [model, arm] = load_robot("universal_robots_ur5e/wall.xml").value();
       ModelCover cover = cover_model(model, arm).value();
       FastChecker checker =
           FastChecker::make(FastRobot::make(arm, cover.spheres).value(), cover.scene).value();
@@ -43,7 +39,8 @@ class WallPlan : public ::testing::Test {
                              -2.3156638212, -1.5707963268, 3.4792213440},
           goal{0.7324199581,  -1.2456136770, 1.9904811714,
                -2.3156638212, -1.5707963268, 2.3032162849};
-      PlannedPath path = plan_path(checker, start, goal, {.keep_trees = true}).value();
+      PlannedPath path =
+          plan_path(checker, start, std::vector{joint_vec(goal)}, {.keep_trees = true}).value();
       return World{std::move(model), std::move(arm), std::move(cover), std::move(checker),
                    std::move(path)};
     }();
@@ -333,4 +330,4 @@ TEST(PlanTool, IsBetweenTheOutermostSpheresWhereNoneIsNamed) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,10 +1,10 @@
-#include "apps/mjarm/view/near_spheres.hpp"
+#include "mjarm/session/near_spheres.hpp"
 
 #include <algorithm>
 
 #include "mjarm/kinematics/fk.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 /// An obstacle by its index among solids and clouds.
@@ -114,4 +114,4 @@ std::optional<ClosestPair> closest_pair(const Obstacles& obstacles,
   return out;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

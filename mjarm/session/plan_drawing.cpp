@@ -1,4 +1,4 @@
-#include "apps/mjarm/view/plan_drawing.hpp"
+#include "mjarm/session/plan_drawing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 constexpr Rgba kStartColor = {0.15F, 0.60F, 0.30F, 1};
@@ -83,7 +83,7 @@ FastChecker against_obstacles(const PlanSubject& subject) {
 void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q) {
   sim.place(subject.arm, as_span(q));
   const Pose X_WT = fk(subject.arm, as_span(q));
-  for (const HeldBody& held : subject.held) sim.place_free(held.body, X_WT * held.X_TB);
+  for (const AttachedBody& one : subject.attached) sim.place_free(one.body, X_WT * one.X_TB);
 }
 
 PathWay::PathWay(const PlannedPath& path) : q_(path.q), ends_{0} {
@@ -312,4 +312,4 @@ Overlay PlanDrawing::overlay(const PlanLayers& layers, const Look& look) const {
   return out;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

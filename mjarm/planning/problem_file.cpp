@@ -1,4 +1,4 @@
-#include "apps/mjarm/commands/problem_file.hpp"
+#include "mjarm/planning/problem_file.hpp"
 
 #include <zlib.h>
 
@@ -10,13 +10,15 @@
 #include <set>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
-#include "mjarm/core/messages/plan.hpp"
+#include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/planning/json_members_internal.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
 
+using detail::number_list;
+using detail::numbers_of;
 using nlohmann::json;
 
 constexpr std::size_t kLargest = std::size_t{1} << 28;  // [bytes], unpacked
@@ -39,44 +41,44 @@ std::string element(const char* list, std::size_t i) {
 /// The whole file; gzipped ones are unpacked.
 Result<std::string> unpacked(const std::string& path) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-  if (!file) return bad(msg::plan_cannot_open, path);
+  if (!file) return bad(msg::planning_file_cannot_open, path);
   std::string out;
   std::string block(std::size_t{1} << 16, '\0');
   for (;;) {
     const int count = gzread(file.get(), block.data(), static_cast<unsigned>(block.size()));
-    if (count < 0) return bad(msg::plan_cannot_read, path);
+    if (count < 0) return bad(msg::planning_file_cannot_read, path);
     if (count == 0) return out;
     out.append(block, 0, static_cast<std::size_t>(count));
-    if (out.size() > kLargest) return bad(msg::plan_file_large, path, kLargest >> 20);
+    if (out.size() > kLargest) return bad(msg::planning_file_large, path, kLargest >> 20);
   }
 }
 
 Result<const json*> member(const json& object, const char* key) {
-  if (!object.is_object()) return bad(msg::plan_no_object);
+  if (!object.is_object()) return bad(msg::planning_file_no_object);
   const auto found = object.find(key);
   if (found != object.end()) return &*found;
   std::vector<std::string> keys;
   for (const auto& item : object.items()) keys.push_back(item.key());
-  return bad(msg::plan_missing, key, did_you_mean(key, keys));
+  return bad(msg::planning_file_missing, key, did_you_mean(key, keys));
 }
 
 Result<const json*> list(const json& object, const char* key) {
   Result<const json*> found = member(object, key);
-  if (found && !(*found)->is_array()) return bad(msg::plan_no_list, key);
+  if (found && !(*found)->is_array()) return bad(msg::planning_file_no_list, key);
   return found;
 }
 
 Result<std::string> string(const json& object, const char* key) {
   const Result<const json*> found = member(object, key);
   if (!found) return fail(found.error());
-  if (!(*found)->is_string()) return bad(msg::plan_no_string, key);
+  if (!(*found)->is_string()) return bad(msg::planning_file_no_string, key);
   return (*found)->get<std::string>();
 }
 
 Result<double> real(const json& object, const char* key) {
   const Result<const json*> found = member(object, key);
   if (!found) return fail(found.error());
-  if (!(*found)->is_number()) return bad(msg::plan_no_number, key);
+  if (!(*found)->is_number()) return bad(msg::planning_file_no_number, key);
   return (*found)->get<double>();
 }
 
@@ -91,7 +93,7 @@ Result<Pose> pose(const json& object, const char* place) {
   if (!p) return fail(p.error());
   const Result<std::vector<double>> quat = number_list(object, "quat", 4);
   if (!quat) return fail(quat.error());
-  const Result<Eigen::Matrix3d> R = rotation_of_quat(*quat);
+  const Result<Eigen::Matrix3d> R = detail::rotation_of_quat(*quat);
   if (!R) return fail(R.error());
   return Pose{*p, *R};
 }
@@ -145,7 +147,7 @@ class RobotReader {
     if (found != places_.end()) return found->second;
     std::vector<std::string> names;
     for (const auto& [name, place] : places_) names.push_back(name);
-    return bad(msg::plan_unknown_link, link, did_you_mean(link, names));
+    return bad(msg::planning_file_unknown_link, link, did_you_mean(link, names));
   }
 
   Result<void> add_joint(const json& from) {
@@ -164,25 +166,25 @@ class RobotReader {
       if (Result<void> moved = add_moving(from, *type, *place); !moved) return moved;
       *place = {out_.arm.dof() - 1, Pose()};
     }
-    if (!places_.emplace(*child, *place).second) return bad(msg::plan_link_twice, *child);
+    if (!places_.emplace(*child, *place).second) return bad(msg::planning_file_link_twice, *child);
     return {};
   }
 
   Result<void> add_moving(const json& from, const std::string& type, const Place& place) {
     static const std::vector<std::string> kTypes{"fixed", "revolute", "continuous", "prismatic"};
     if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
-      return bad(msg::plan_joint_type, type, listed(kTypes));
+      return bad(msg::planning_file_joint_type, type, listed(kTypes));
     }
-    if (out_.arm.dof() == kMaxDof) return bad(msg::plan_many_joints, kMaxDof);
-    if (place.joint != out_.arm.dof() - 1) return bad(msg::plan_branch);
+    if (out_.arm.dof() == kMaxDof) return bad(msg::planning_file_many_joints, kMaxDof);
+    if (place.joint != out_.arm.dof() - 1) return bad(msg::planning_file_branch);
     const Result<std::string> name = string(from, "name");
     if (!name) return fail(name.error());
     const Result<Eigen::Vector3d> axis = vector(from, "axis");
     if (!axis) return fail(axis.error());
-    if (!(axis->norm() > 1e-6 && axis->norm() < 1e6)) return bad(msg::plan_axis);
+    if (!(axis->norm() > 1e-6 && axis->norm() < 1e6)) return bad(msg::planning_file_axis);
     const Result<std::vector<double>> limits = number_list(from, "limits", 2);
     if (!limits) return fail(limits.error());
-    if (!((*limits)[0] <= (*limits)[1])) return bad(msg::plan_limits, (*limits)[0], (*limits)[1]);
+    if (!((*limits)[0] <= (*limits)[1])) return bad(msg::planning_file_limits, (*limits)[0], (*limits)[1]);
     ArmJoint joint;
     joint.name = *name;
     joint.X_PJ = place.X;
@@ -212,13 +214,13 @@ class RobotReader {
 
   Result<void> add_pair(const json& from) {
     if (!from.is_array() || from.size() != 2 || !from[0].is_string() || !from[1].is_string()) {
-      return bad(msg::plan_pair);
+      return bad(msg::planning_file_pair);
     }
     std::array<int, 2> pair{};
     for (std::size_t k = 0; k < 2; ++k) {
       const std::string link = from[k].get<std::string>();
       const auto found = links_.find(link);
-      if (found == links_.end()) return bad(msg::plan_pair_link, link);
+      if (found == links_.end()) return bad(msg::planning_file_pair_link, link);
       pair[k] = found->second;
     }
     out_.spheres.pairs.push_back(pair);
@@ -244,7 +246,7 @@ Result<ObstacleShape> cylinder_of(const json& from, Cylinders cylinders) {
   if (!as) return fail(as.error());
   if (*as == "capsule") return CapsuleShape{*radius, half};
   if (*as == "box") return BoxShape{{*radius, *radius, half}};
-  return bad(msg::plan_replacement, *as);
+  return bad(msg::planning_file_replacement, *as);
 }
 
 Result<Obstacle> obstacle_of(const json& from, Cylinders cylinders) {
@@ -278,7 +280,7 @@ Result<Obstacle> obstacle_of(const json& from, Cylinders cylinders) {
     out.shape = *shape;
   } else {
     static const std::vector<std::string> kTypes{"box", "cylinder", "sphere"};
-    return bad(msg::plan_obstacle_type, *type, listed(kTypes), did_you_mean(*type, kTypes));
+    return bad(msg::planning_file_obstacle_type, *type, listed(kTypes), did_you_mean(*type, kTypes));
   }
   return out;
 }
@@ -296,7 +298,7 @@ Result<PlanProblem> problem_of(const json& from, std::size_t dof, Cylinders cyli
   Result<void> done = each(from, "goals", [&](const json& goal) -> Result<void> {
     const Result<std::vector<double>> q = numbers_of(goal, "goal", dof);
     if (!q) return fail(q.error());
-    out.goals.insert(out.goals.end(), q->begin(), q->end());
+    out.goals.push_back(joint_vec(*q));
     return {};
   });
   if (!done) return fail(done.error());
@@ -323,7 +325,7 @@ Result<ProblemFile> problems_of(const json& file, Cylinders cylinders) {
     Result<PlanProblem> problem =
         problem_of(from, static_cast<std::size_t>(out.arm.dof()), cylinders);
     if (!problem) return fail(problem.error());
-    if (!ids.insert(problem->id).second) return bad(msg::plan_id_twice, problem->id);
+    if (!ids.insert(problem->id).second) return bad(msg::planning_file_id_twice, problem->id);
     out.problems.push_back(std::move(*problem));
     return {};
   });
@@ -336,11 +338,11 @@ Result<ProblemFile> problems_of(const json& file, Cylinders cylinders) {
 Result<ProblemFile> read_problem_file(const std::string& path, Cylinders cylinders) {
   const Result<std::string> content = unpacked(path);
   if (!content) return fail(content.error());
-  const Result<JsonObject> object = parse_json_object(*content);
+  const Result<detail::JsonObject> object = detail::parse_json_object(*content);
   if (!object) return fail(at(path, object.error()));
   Result<ProblemFile> out = problems_of(**object, cylinders);
   if (!out) return fail(at(path, std::move(out.error())));
   return out;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

@@ -6,7 +6,7 @@
 
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 /// What a file says of one edge of a path.
 struct GivenCertificate {
@@ -31,9 +31,6 @@ struct GivenTilt {
   std::vector<double> tool, world;  ///< (3,) directions of the tool and of the world
 };
 
-/// [m] what spheres may stick out of a robot by.
-inline constexpr double kNarrowestSpheres = 1e-4, kWidestSpheres = 0.1;
-
 /// One path of a file.
 struct GivenPath {
   std::string id;
@@ -45,11 +42,11 @@ struct GivenPath {
   RuleWords rules;
 };
 
-/// Reads paths as `mjarm plan` writes them, `{"ID":{"ok":true,"path":[[q],...],...},...}`, or bare,
+/// Reads a file of plans, as `mjarm plan` writes them, `{"ID":{"ok":true,"path":[[q],...],...},...}`, or bare,
 /// `{"ID":[[q],...],...}`. What is not ok has no path.
 /// @param dof  how many values a row must have.
 /// @return an error that names the file, the id and the row.
-[[nodiscard]] Result<std::vector<GivenPath>> read_path_file(const std::string& path,
+[[nodiscard]] Result<std::vector<GivenPath>> read_plan_file(const std::string& path,
                                                             std::size_t dof);
 
-}  // namespace mjarm::app
+}  // namespace mjarm

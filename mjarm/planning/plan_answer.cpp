@@ -1,14 +1,42 @@
-#include "apps/mjarm/commands/plan_answer.hpp"
+#include "mjarm/planning/plan_answer.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <utility>
 
-#include "apps/mjarm/cli/answer_json.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/stopwatch.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
+
+// Members of a JSON object, each with the comma before it.
+void append_key(std::string& out, const char* key) { out += std::string(",\"") + key + "\":"; }
+
+void append_value(std::string& out, const char* key, double value) {
+  append_key(out, key);
+  append_number(out, value);
+}
+
+void append_axis(std::string& out, const char* key, const Eigen::Vector3d& axis) {
+  append_key(out, key);
+  append_numbers(out, {axis.data(), 3});
+}
+
+void append_rows(std::string& out, const char* key, std::span<const JointVec> rows) {
+  append_key(out, key);
+  out += '[';
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i > 0) out += ',';
+    append_numbers(out, as_span(rows[i]));
+  }
+  out += ']';
+}
+
+/// To a tenth of a microsecond.
+void append_us(std::string& out, const char* key, double us) {
+  append_value(out, key, std::round(us * 10) / 10);
+}
 
 std::string other_of(const SphereClearance& nearest, const FastRobot& robot,
                      const Obstacles& obstacles) {
@@ -39,8 +67,8 @@ void append_tilt(std::string& out, const TiltLimit& limit, double largest) {
   append_key(out, "tilt");
   out += "{\"limit\":" + number(limit.max);
   append_value(out, "largest", largest);
-  append_value(out, "tool", JointVec(limit.axis_T));
-  append_value(out, "world", JointVec(limit.axis_W));
+  append_axis(out, "tool", limit.axis_T);
+  append_axis(out, "world", limit.axis_W);
   out += '}';
 }
 
@@ -63,19 +91,12 @@ PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
   const Stopwatch watch;
   const Result<FastChecker> checker = FastChecker::make(robot, problem.obstacles);
   assert(checker);  // the obstacles were checked when they were read
-  if (options.time_budget > 0) {
-    out.path = plan_path(*checker, problem.start, problem.goals, options);
-    out.us = watch.us();
-    return out;
-  }
-  Result<RawPath, PlanFailure> raw = find_path(*checker, problem.start, problem.goals, options);
+  PlanTimes times;
+  out.path = plan_path(*checker, problem.start, problem.goals, options, &times);
   out.us = watch.us();
-  if (!raw) {
-    out.path = tl::unexpected(raw.error());
-    return out;
-  }
-  out.path = finish_path(*checker, std::move(*raw), options);
-  out.simplify_us = watch.us() - out.us;
+  if (options.time_budget > 0) return out;
+  out.simplify_us = times.finish_us;
+  out.us -= times.finish_us;
   return out;
 }
 
@@ -102,10 +123,10 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
     append_json_string(out, describe(answer.path.error(), robot, obstacles));
   }
   if (timing) {
-    append_us(out, answer.us);
-    append_us(out, answer.simplify_us, "simplify_us");
+    append_us(out, "us", answer.us);
+    append_us(out, "simplify_us", answer.simplify_us);
   }
   out += '}';
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

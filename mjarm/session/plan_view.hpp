@@ -1,19 +1,20 @@
 #pragma once
 
-#include "apps/mjarm/view/plan_drawing.hpp"
+#include <vector>
+
 #include "mjarm/render/camera.hpp"
+#include "mjarm/session/plan_drawing.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-/// A view of a planned path: all of the arm on its way and the obstacles within its reach are in
-/// the picture, and of the directions tried it is the one from which obstacles hide least of arm
-/// and path.
+/// A view of a planned path with all of the arm on its way in the picture, half from above and
+/// across the line from start to goal, from the side of the base on which the path lies.
 /// @param aspect  width of the picture by its height, > 0.
 [[nodiscard]] CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing,
                                    double aspect);
 
-/// The solids, by index, that hide more than a little of arm and path from there.
+/// The solids, by index, that hide places of the tool on its way from there.
 [[nodiscard]] std::vector<int> hiding_solids(const PlanSubject& subject, const PlanDrawing& drawing,
                                              const CameraView& view);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -7,23 +7,15 @@
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/joint_polyline.hpp"
-#include "mjarm/planning/plan_path.hpp"
-#include "mjarm/program/way_round_internal.hpp"
+#include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/trajectory/path_timing.hpp"
 
 namespace mjarm::detail {
 namespace {
 
-constexpr double kBounds[] = {0.012, 0.003};  // [m] of the spheres, coarse ones first
-constexpr double kWayStep = 5e-3;             // [rad or m]
-constexpr int kMaxGoals = 64;                // answers to a pose
+constexpr double kWayStep = 5e-3;  // [rad or m]
+constexpr int kMaxGoals = 64;      // answers to a pose
 const PlanOptions kSearch{.samples = 20'000, .rounds = 16};
-
-/// Whether finer spheres may do better.
-bool is_coarse(PlanErrc reason) {
-  return reason == PlanErrc::start_hit || reason == PlanErrc::goals_hit ||
-         reason == PlanErrc::base_hit || reason == PlanErrc::budget_spent;
-}
 
 const char* name_of(PlanErrc reason) {
   switch (reason) {
@@ -70,9 +62,9 @@ Result<Trajectory> time_corners(std::span<const JointVec> corners, double blend,
   return Trajectory::chain(parts);
 }
 
-/// The shortest way that is found to the goals that are nearest, each by itself: to all at once the
-/// first straight way that is free is taken, be it to the farthest.
-void shorten(const FastChecker& checker, const JointVec& q, std::span<const JointVec> goals,
+/// The shortest path that is found to the goals that are nearest, each by itself: to all at once
+/// the first straight path that is free is taken, be it to the farthest.
+void replace_by_shorter(const FastChecker& checker, const JointVec& q, std::span<const JointVec> goals,
              PlannedPath& path) {
   constexpr std::size_t kMaxAlone = 8;
   PlanOptions search = kSearch;
@@ -84,7 +76,8 @@ void shorten(const FastChecker& checker, const JointVec& q, std::span<const Join
   for (std::size_t k = 0; k < std::min(order.size(), kMaxAlone); ++k) {
     const std::size_t g = order[k];
     if (far(g) >= path.cost) return;
-    Result<PlannedPath, PlanFailure> other = plan_path(checker, as_span(q), as_span(goals[g]), search);
+    Result<PlannedPath, PlanFailure> other =
+        plan_path(checker, as_span(q), goals.subspan(g, 1), search);
     if (!other || other->cost >= path.cost) continue;
     path = std::move(*other);
     path.goal = static_cast<int>(g);
@@ -122,30 +115,19 @@ std::vector<JointVec> without_repeats(std::vector<JointVec> corners) {
   return corners;
 }
 
-tl::unexpected<WayRoundFault> no_way(std::string reason, std::string what) {
-  return tl::unexpected(WayRoundFault{std::move(reason), std::move(what)});
+tl::unexpected<DetourFault> no_detour(std::string reason, std::string what) {
+  return tl::unexpected(DetourFault{std::move(reason), std::move(what)});
 }
 
 }  // namespace
 
-Result<WayRoundPlanner::World> WayRoundPlanner::covered(double bound) const {
-  Result<ModelCover> cover =
-      cover_model(model_, arm_, {.bound = bound, .whole_stroke = arm_.gripper.has_value()});
-  if (!cover) return fail(cover.error());
-  const Result<FastRobot> robot = FastRobot::make(arm_, cover->spheres);
-  if (!robot) return fail(robot.error());
-  Result<FastChecker> checker = FastChecker::make(*robot, cover->scene);
-  if (!checker) return fail(checker.error());
-  return World{std::move(*cover), std::move(*checker)};
-}
-
-std::optional<std::string> WayRoundPlanner::touches(const JointVec& q) const {
+std::optional<std::string> DetourPlanner::touches(const JointVec& q) const {
   return MoveJudge::touches(judge_.measure(ik_, {q}));
 }
 
-std::optional<std::string> WayRoundPlanner::least_touch(const JointVec& q, const Pose& X_WT) const {
+std::optional<std::string> DetourPlanner::least_touch(const JointVec& q, const Pose& X_WT) const {
   const auto answers =
-      solve_all(IkSolver(arm_, {.task = ik_.options().task}), X_WT, as_span(q), {.max = kMaxGoals});
+      solve_all(IkSolver(robot_.arm, {.task = ik_.options().task}), X_WT, as_span(q), {.max = kMaxGoals});
   if (!answers) return std::nullopt;
   std::optional<MoveMeasures> best;
   for (const IkSolution& answer : *answers) {
@@ -155,46 +137,46 @@ std::optional<std::string> WayRoundPlanner::least_touch(const JointVec& q, const
   return MoveJudge::touches(*best);
 }
 
-Result<std::vector<JointVec>, WayRoundFault> WayRoundPlanner::goals(const JointVec& q,
+Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& q,
                                                                     const Pose& X_WT) const {
   if (const auto pair = touches(q)) {
-    return no_way("collision", text(msg::program_starts_touching, *pair));
+    return no_detour("collision", text(msg::program_starts_touching, *pair));
   }
   const auto answers = solve_all(ik_, X_WT, as_span(q), {.max = kMaxGoals});
   if (!answers && answers.error().code == IkErrc::collision) {
     const auto pair = least_touch(q, X_WT);
-    if (pair) return no_way("collision", text(msg::program_no_free_answer, *pair));
+    if (pair) return no_detour("collision", text(msg::program_no_free_answer, *pair));
   }
   if (!answers) {
-    return no_way(std::string(name(answers.error().code)), describe(answers.error(), arm_));
+    return no_detour(std::string(name(answers.error().code)), describe(answers.error(), robot_.arm));
   }
   std::vector<JointVec> out;
   for (const IkSolution& answer : *answers) out.push_back(answer.q);
   return out;
 }
 
-Result<std::vector<JointVec>, WayRoundFault> WayRoundPlanner::goals(const JointVec& q,
+Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& q,
                                                                     const JointVec& goal) const {
   if (const auto pair = touches(q)) {
-    return no_way("collision", text(msg::program_starts_touching, *pair));
+    return no_detour("collision", text(msg::program_starts_touching, *pair));
   }
-  if (const auto beyond = judge_.beyond_limits(goal)) return no_way("joint_limit", *beyond);
+  if (const auto beyond = judge_.beyond_limits(goal)) return no_detour("joint_limit", *beyond);
   if (const auto pair = touches(goal)) {
-    return no_way("collision", text(msg::program_ends_touching, *pair));
+    return no_detour("collision", text(msg::program_ends_touching, *pair));
   }
   return std::vector<JointVec>{goal};
 }
 
 /// Times the path with the widest rounding of its corners that is proved free.
-Result<WayRound, WayRoundFault> WayRoundPlanner::timed(const FastChecker& checker,
+Result<DetourMotion, DetourFault> DetourPlanner::timed(const FastChecker& checker,
                                                        const std::vector<JointVec>& path,
                                                        const JointLimits& limits) const {
-  WayRound out;
+  DetourMotion out;
   out.corners = without_repeats(path);
   std::vector<JointVec> way;
   for (const double blend : {0.4, 0.2, 0.1, 0.05, 0.0}) {
     Result<Trajectory> trajectory = time_corners(out.corners, blend, limits);
-    if (!trajectory) return no_way("timing", trajectory.error().what);
+    if (!trajectory) return no_detour("timing", trajectory.error().what);
     way = sampled(*trajectory, limits);
     if (blend > 0 && !is_proved(checker, way)) continue;
     out.trajectory = std::move(*trajectory);
@@ -202,40 +184,34 @@ Result<WayRound, WayRoundFault> WayRoundPlanner::timed(const FastChecker& checke
   }
   out.measures = judge_.measure(ik_, way);
   if (const auto pair = MoveJudge::touches(out.measures)) {
-    return no_way("collision", text(msg::program_move_touches, *pair));
+    return no_detour("collision", text(msg::program_move_touches, *pair));
   }
   return out;
 }
 
-Result<WayRound, WayRoundFault> WayRoundPlanner::plan(const JointVec& q,
+Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
                                                       std::span<const JointVec> goals,
                                                       double share) {
-  std::vector<double> rows;
-  for (const JointVec& goal : goals) rows.insert(rows.end(), goal.begin(), goal.end());
-  JointLimits limits = arm_.limits;
+  JointLimits limits = robot_.arm.limits;
   limits.velocity *= share;
   limits.acceleration *= share;
-  WayRoundFault fault;
-  for (std::size_t level = 0; level < std::size(kBounds); ++level) {
-    if (level == worlds_.size()) {
-      Result<World> world = covered(kBounds[level]);
-      if (!world) return no_way("bad_input", world.error().what);
-      worlds_.push_back(std::move(*world));
-    }
-    const auto& [cover, checker] = worlds_[level];
-    Result<PlannedPath, PlanFailure> path = plan_path(checker, as_span(q), rows, kSearch);
-    if (path) {
-      if (goals.size() > 1) shorten(checker, q, goals, *path);
-      Result<WayRound, WayRoundFault> way = timed(checker, path->q, limits);
-      if (way) way->goal = static_cast<std::size_t>(path->goal);
-      return way;
-    }
-    const PlanErrc reason = path.error().reason;
-    fault = {name_of(reason), describe(path.error(), checker.robot(), cover.scene)};
-    if (!is_coarse(reason)) break;
-    fault.what += text(msg::program_spheres, 1e3 * cover.bound);
+  if (!world_) {
+    Result<PlanningWorld> made = PlanningWorld::make(robot_);
+    if (!made) return no_detour("bad_input", made.error().what);
+    world_ = std::move(*made);
   }
-  return tl::unexpected(std::move(fault));
+  Result<WorldPath, WorldFailure> path = world_->plan(as_span(q), goals, kSearch);
+  if (!path) {
+    const WorldFailure& why = path.error();
+    const char* reason = why.code == WorldErrc::no_path ? name_of(why.search.reason) : "bad_input";
+    return no_detour(reason,
+                     why.what + (why.bound > 0 ? text(msg::program_spheres, 1e3 * why.bound) : ""));
+  }
+  const FastChecker& checker = (*world_->level(path->level))->checker;
+  if (goals.size() > 1) replace_by_shorter(checker, q, goals, *path);
+  Result<DetourMotion, DetourFault> motion = timed(checker, path->q, limits);
+  if (motion) motion->goal = static_cast<std::size_t>(path->goal);
+  return motion;
 }
 
 }  // namespace mjarm::detail

@@ -66,7 +66,7 @@ void expect_free(const PlannedMove& move) {
   EXPECT_LE(use.position.maxCoeff(), 1e-9);
 }
 
-TEST(WayRound, TheStraightWayHitsAndThePlannedOneDoesNot) {
+TEST(DetourPlanner, TheStraightWayHitsAndThePlannedOneDoesNot) {
   const ProgramPlan hits =
       walled_plan(std::string("  - movej: ") + kBefore + "\n  - movel: " + kBehind + "\n");
   ASSERT_EQ(hits.faults.size(), 1U) << told(hits);
@@ -88,7 +88,7 @@ TEST(WayRound, TheStraightWayHitsAndThePlannedOneDoesNot) {
   EXPECT_EQ(plan.moves[1].corners.front(), plan.moves[0].corners.back());
 }
 
-TEST(WayRound, BlockedMovesTellTheDetour) {
+TEST(DetourPlanner, BlockedMovesTellTheDetour) {
   const std::string before = std::string("  - plan: ") + kBefore + "\n";
   const ProgramPlan line = walled_plan(before + "  - movel: " + kBehind + "\n" + before);
   ASSERT_EQ(line.faults.size(), 1U) << told(line);
@@ -108,7 +108,7 @@ TEST(WayRound, BlockedMovesTellTheDetour) {
   EXPECT_FALSE(inside.faults[0].detour.has_value());
 }
 
-TEST(WayRound, SamePlanEveryTime) {
+TEST(DetourPlanner, SamePlanEveryTime) {
   const std::string program = plan_to(kBefore) + plan_to(kBehind);
   const ProgramPlan a = walled_plan(program), b = walled_plan(program);
   ASSERT_TRUE(a.ok()) << told(a);
@@ -121,7 +121,7 @@ TEST(WayRound, SamePlanEveryTime) {
   }
 }
 
-TEST(WayRound, JointGoalsRotationsOfAllKindsAndTheSpeedThatIsSet) {
+TEST(DetourPlanner, JointGoalsRotationsOfAllKindsAndTheSpeedThatIsSet) {
   const ProgramPlan plan =
       walled_plan(plan_to("{pos: [0.3, -0.45, 0.2], quat: [0, 1, 0, 0]}") +
                   plan_to("{pos: [-0.3, -0.45, 0.2], matrix: [1, 0, 0, 0, -1, 0, 0, 0, -1]}") +
@@ -138,14 +138,14 @@ TEST(WayRound, JointGoalsRotationsOfAllKindsAndTheSpeedThatIsSet) {
   EXPECT_EQ(plan.moves[4].trajectory.duration(), 0) << "it is there already";
 }
 
-TEST(WayRound, EndsWhereTheStraightMovesThatFollowCanBeDone) {
+TEST(DetourPlanner, EndsWhereTheStraightMovesThatFollowCanBeDone) {
   const ProgramPlan plan =
       walled_plan(plan_to("{pos: [0.35, -0.35, 0.5], euler: [180deg, 0, 0]}") +
                   "  - movel: {pos: [-0.35, -0.35, 0.5], euler: [180deg, 0, 0]}\n");
   EXPECT_TRUE(plan.ok()) << told(plan);
 }
 
-TEST(WayRound, AGoalInTheWallIsNamed) {
+TEST(DetourPlanner, AGoalInTheWallIsNamed) {
   const ProgramPlan pose = walled_plan(plan_to("{pos: [0, -0.45, 0.2], euler: [180deg, 0, 0]}"));
   EXPECT_THAT(told(pose), AllOf(HasSubstr("3 plan collision"), HasSubstr("wall"))) << told(pose);
   // By joint values, which do not look at contact.
@@ -164,7 +164,7 @@ TEST(WayRound, AGoalInTheWallIsNamed) {
               AllOf(HasSubstr("4 plan collision: begins in contact"), HasSubstr("wall")));
 }
 
-TEST(WayRound, WhatCannotBeReachedIsToldAndTheRestIsPlanned) {
+TEST(DetourPlanner, WhatCannotBeReachedIsToldAndTheRestIsPlanned) {
   const ProgramPlan plan = walled_plan(plan_to("{pos: [2, 0, 0.2], euler: [180deg, 0, 0]}") +
                                        plan_to("{joints: [0, 0, 7, 0, 0, 0]}") +
                                        plan_to("{joints: [0, 0]}") + plan_to(kBefore));
@@ -175,7 +175,7 @@ TEST(WayRound, WhatCannotBeReachedIsToldAndTheRestIsPlanned) {
   expect_free(plan.moves[0]);
 }
 
-TEST(WayRound, WordsThatAreNoneGetTheNearestOne) {
+TEST(DetourPlanner, WordsThatAreNoneGetTheNearestOne) {
   const auto misspelt =
       parse_program("robot: ur5e\nprogram:\n  - plan: {joint: [0, 0, 0, 0, 0, 0]}\n", "p.yaml");
   ASSERT_FALSE(misspelt.has_value());

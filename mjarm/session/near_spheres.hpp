@@ -8,7 +8,7 @@
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/collision/obstacles.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
 /// A sphere of a robot where it is now, in the world frame W.
 struct PlacedSphere {
@@ -56,4 +56,4 @@ struct ClosestPair {
                                                       const SphereNeighbours& to_obstacles,
                                                       const SphereNeighbours& to_links);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,4 +1,4 @@
-#include "apps/mjarm/commands/path_file.hpp"
+#include "mjarm/planning/plan_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,18 +6,21 @@
 #include <numbers>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/verify.hpp"
+#include "mjarm/core/messages/planning.hpp"
+#include "mjarm/planning/json_members_internal.hpp"
+#include "mjarm/planning/planning_world.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 namespace {
 
+using detail::number_list;
+using detail::numbers_of;
 using nlohmann::json;
 
-constexpr double kTiltSlack = 1e-6;                             // relative
-constexpr std::size_t kLargestPathFile = std::size_t{1} << 28;  // [bytes]
+constexpr double kUnitSlack = 1e-6;                             // relative
+constexpr std::size_t kMaxPlanFile = std::size_t{1} << 28;  // [bytes]
 
 std::string indexed(const char* list, std::size_t i) {
   return std::string(list) + '[' + std::to_string(i) + ']';
@@ -26,12 +29,12 @@ std::string indexed(const char* list, std::size_t i) {
 Result<double> number_at(const json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end()) return fail(Errc::bad_input, text(msg::app_json_missing, key));
-  if (!found->is_number()) return fail(Errc::bad_input, text(msg::verify_no_number, key));
+  if (!found->is_number()) return fail(Errc::bad_input, text(msg::planning_verify_no_number, key));
   return found->get<double>();
 }
 
 Result<void> read_rows(const json& rows, std::size_t dof, GivenPath& out) {
-  if (!rows.is_array()) return fail(Errc::bad_input, text(msg::verify_no_rows));
+  if (!rows.is_array()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Result<std::vector<double>> row = numbers_of(rows[i], indexed("path", i), dof);
     if (!row) return fail(std::move(row.error()));
@@ -54,14 +57,14 @@ Result<GivenCertificate> certificate_of(const json& entry) {
   if (pair == entry.end()) return out;
   if (!pair->is_array() || pair->size() != 2 || !(*pair)[0].is_string() ||
       !(*pair)[1].is_string()) {
-    return fail(Errc::bad_input, text(msg::verify_no_pair));
+    return fail(Errc::bad_input, text(msg::planning_verify_no_pair));
   }
   out.pair = pair->get<std::vector<std::string>>();
   return out;
 }
 
 Result<void> read_certificates(const json& list, GivenPath& out) {
-  if (!list.is_array()) return fail(Errc::bad_input, text(msg::verify_no_certificates));
+  if (!list.is_array()) return fail(Errc::bad_input, text(msg::planning_verify_no_certificates));
   out.certificate.emplace();
   for (std::size_t i = 0; i < list.size(); ++i) {
     Result<GivenCertificate> entry = certificate_of(list[i]);
@@ -91,12 +94,12 @@ Result<void> read_tilt(const json& entry, GivenPath& out) {
     *target = std::move(*axis);
   }
   const auto is_unit = [](const std::vector<double>& v) {
-    return std::abs(std::hypot(v[0], v[1], v[2]) - 1) < kTiltSlack;
+    return std::abs(std::hypot(v[0], v[1], v[2]) - 1) < kUnitSlack;
   };
   const bool is_sound = tilt.limit > 0 && tilt.limit < std::numbers::pi / 2 && tilt.largest >= 0 &&
-                        tilt.largest <= tilt.limit * (1 + kTiltSlack) && is_unit(tilt.tool) &&
+                        tilt.largest <= tilt.limit * (1 + kUnitSlack) && is_unit(tilt.tool) &&
                         is_unit(tilt.world);
-  if (!is_sound) return fail(Errc::bad_input, text(msg::verify_bad_tilt));
+  if (!is_sound) return fail(Errc::bad_input, text(msg::planning_verify_bad_tilt));
   out.tilt = std::move(tilt);
   return {};
 }
@@ -107,7 +110,7 @@ Result<void> read_words(const json& entry, const char* key, std::vector<std::str
   if (list == entry.end()) return {};
   const auto is_word = [](const json& word) { return word.is_string(); };
   if (!list->is_array() || !std::all_of(list->begin(), list->end(), is_word)) {
-    return fail(Errc::bad_input, text(msg::verify_no_words, key));
+    return fail(Errc::bad_input, text(msg::planning_verify_no_words, key));
   }
   out = list->get<std::vector<std::string>>();
   return {};
@@ -115,10 +118,10 @@ Result<void> read_words(const json& entry, const char* key, std::vector<std::str
 
 Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
   if (entry.is_array()) return read_rows(entry, dof, out);
-  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::verify_no_rows));
+  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
   const auto ok = entry.find("ok");
   if (ok != entry.end() && !ok->is_boolean()) {
-    return fail(Errc::bad_input, text(msg::verify_no_bool, "ok"));
+    return fail(Errc::bad_input, text(msg::planning_verify_no_bool, "ok"));
   }
   if (ok != entry.end() && !ok->get<bool>()) return {};
   const auto path = entry.find("path");
@@ -132,9 +135,9 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
   if (entry.contains("spheres")) {
     const Result<double> spheres = number_at(entry, "spheres");
     if (!spheres) return fail(spheres.error());
-    if (!(*spheres >= kNarrowestSpheres && *spheres <= kWidestSpheres)) {
+    if (!(*spheres >= kMinSphereBound && *spheres <= kMaxSphereBound)) {
       return fail(Errc::bad_input,
-                  text(msg::verify_bad_spheres, kNarrowestSpheres, kWidestSpheres));
+                  text(msg::planning_verify_bad_spheres, kMinSphereBound, kMaxSphereBound));
     }
     out.spheres = *spheres;
   }
@@ -149,21 +152,21 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
 
 }  // namespace
 
-Result<std::vector<GivenPath>> read_path_file(const std::string& path, std::size_t dof) {
-  const Result<std::string> content = read_file(path, kLargestPathFile);
+Result<std::vector<GivenPath>> read_plan_file(const std::string& path, std::size_t dof) {
+  const Result<std::string> content = read_file(path, kMaxPlanFile);
   if (!content) return fail(content.error());
-  const Result<JsonObject> object = parse_json_object(*content);
+  const Result<detail::JsonObject> object = detail::parse_json_object(*content);
   if (!object) return fail(object.error().code, path + ": " + object.error().what);
   std::vector<GivenPath> out;
   for (const auto& item : (*object)->items()) {
     GivenPath given;
     given.id = item.key();
     if (Result<void> read = read_entry(item.value(), dof, given); !read) {
-      return fail(read.error().code, text(msg::verify_in_path, path, given.id, read.error().what));
+      return fail(read.error().code, text(msg::planning_verify_in_path, path, given.id, read.error().what));
     }
     out.push_back(std::move(given));
   }
   return out;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

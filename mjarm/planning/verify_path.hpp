@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/commands/path_file.hpp"
-#include "apps/mjarm/commands/problem_file.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/planning/plan_file.hpp"
+#include "mjarm/planning/problem_file.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
 /// How paths are judged.
 struct VerifyRules {
@@ -42,4 +42,4 @@ struct PathVerdict {
                                               const GivenPath& path, const VerifyRules& rules,
                                               const std::optional<ExactChecker>& exact = {});
 
-}  // namespace mjarm::app
+}  // namespace mjarm
