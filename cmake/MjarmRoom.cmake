@@ -2,6 +2,7 @@
 #
 #   NAME.hpp            public header: installed, must compile alone with what users have
 #   NAME_internal.hpp   header of this room only: neither installed nor checked
+#   simd/NAME.hpp       what the kernels of all rooms share: neither installed nor checked
 #   NAME.cpp            source; NAME_avx2.cpp and NAME_avx512.cpp get their flags, on x86-64 only
 #   NAME_test.cpp       into ROOM_test (GoogleTest)
 #   NAME_bench.cpp      into ROOM_bench (google-benchmark, where found)
@@ -15,7 +16,7 @@ function(mjarm_room room)
   file(GLOB headers CONFIGURE_DEPENDS *.hpp)
   file(GLOB lists CONFIGURE_DEPENDS messages/*.inc)
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
-  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
+  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp simd/*_test.cpp)
   file(GLOB benches CONFIGURE_DEPENDS *_bench.cpp)
   list(FILTER headers EXCLUDE REGEX "_(internal|test)\\.hpp$")
   list(REMOVE_ITEM sources ${tests} ${benches})

@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/execution/execution.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/program/program_plan.hpp"
-#include "mjarm/sim/follow.hpp"
 
 int main() {
   const auto robot = mjarm::load_robot("ur5e");
@@ -23,17 +23,12 @@ int main() {
   for (const auto& fault : plan.faults) std::fprintf(stderr, "%s\n", fault.what.c_str());
   if (!plan.ok()) return 1;
 
-  auto controller = mjarm::Controller::make(model, arm, mjarm::ControlMode::computed_torque);
-  if (!controller) return std::fprintf(stderr, "%s\n", controller.error().what.c_str()), 1;
   mjarm::Sim sim(model);
   sim.place(arm, mjarm::as_span(plan.q_start));
-  double worst = 0;
-  for (const mjarm::PlannedMove& move : plan.moves) {
-    const auto done = mjarm::follow_time({.sim = sim, .controller = *controller, .arm = arm},
-                                         move.trajectory, {.settle = 0});
-    if (!done) return std::fprintf(stderr, "%s\n", describe(done.error(), arm).c_str()), 1;
-    worst = std::max(worst, done->worst_error);
-  }
+  auto execution = mjarm::Execution::make(model, plan);
+  if (!execution) return std::fprintf(stderr, "%s\n", execution.error().what.c_str()), 1;
+  const auto outcome = execution->run_to_end(sim);
+  if (!outcome) return std::fprintf(stderr, "%s\n", outcome.error().what.c_str()), 1;
   std::printf("%zu motions in %.2f s, joints within %.1g rad of the plan\n", plan.moves.size(),
-              plan.duration(), worst);
+              plan.duration(), outcome->worst_error);
 }

@@ -22,7 +22,7 @@ ALLOWED = {
     "render": "core model sim",
     "perception": "core model sim render",
     "execution": "core model kinematics collision path planning trajectory control sim",
-    "program": "core model kinematics collision path planning trajectory control sim render perception execution",
+    "program": "core model kinematics collision path planning trajectory control sim execution",
     "view": "core model sim render",
     "serve": "core model sim",
     "rl": "core model kinematics control sim",
@@ -48,6 +48,9 @@ SYSTEM_HEADERS = r"(unistd|dlfcn|fcntl|poll|signal|pthread|windows|termios|pwd|s
 # What a public header may include besides mjarm, Eigen and the standard library.
 PUBLIC_THIRD_PARTY = {"tl/expected.hpp": "mjarm/core/result.hpp"}
 
+# Not installed: for the kernels of every room, so no public header may include them.
+KERNEL_HEADERS = "mjarm/core/simd/"
+
 MOST_LINES = 500
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -66,7 +69,9 @@ def is_test(path):
 
 
 def is_public_header(path):
-    return path.startswith("mjarm/") and path.endswith(".hpp") and not re.search(r"_(internal|test)\.hpp$", path)
+    if not path.startswith("mjarm/") or path.startswith(KERNEL_HEADERS):
+        return False
+    return path.endswith(".hpp") and not re.search(r"_(internal|test)\.hpp$", path)
 
 
 def room_fault(path, header):
@@ -78,6 +83,8 @@ def room_fault(path, header):
         return f"includes {header}, but room {here} may include only: {ALLOWED[here] or 'nothing'}"
     if header.endswith("_internal.hpp") and here != there:
         return f"includes {header}, which is for room {there} alone"
+    if header.startswith(KERNEL_HEADERS) and is_public_header(path):
+        return f"includes {header}, which is not installed; kernels alone may"
     if is_test(header) and not is_test(path):
         return f"includes {header}, which is for tests"
     return None

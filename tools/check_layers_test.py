@@ -59,6 +59,13 @@ class CheckLayersTest(unittest.TestCase):
         self.assert_fault("mjarm/sim/a.cpp", line, "room model alone")
         self.assert_fault("apps/mjarm/a.cpp", line, "room model alone")
 
+    def test_kernel_headers_are_for_sources_of_any_room(self):
+        line = '#include "mjarm/core/simd/lanes.hpp"\n'
+        self.assertEqual(faults("mjarm/core/simd/lanes.hpp", "#include <immintrin.h>\n"), [])
+        for path in ("mjarm/rl/a.cpp", "mjarm/rl/a_internal.hpp", "mjarm/core/simd/functions.hpp"):
+            self.assertEqual(faults(path, line), [], path)
+        self.assert_fault("mjarm/rl/policy.hpp", line, "not installed")
+
     def test_public_headers_show_only_eigen(self):
         good = "#include <Eigen/Core>\n#include <vector>\n"
         self.assertEqual(faults("mjarm/path/line.hpp", good), [])

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/messages/control_suite.hpp"
+#include "apps/bench/control_trial.hpp"
 #include "apps/bench/report.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
@@ -15,9 +15,8 @@
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "mjarm/core/json_writer.hpp"
-#include "mjarm/program/control_trial.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/control_suite.hpp"
 
 namespace mjarm::app {
 namespace {

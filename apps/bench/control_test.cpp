@@ -10,6 +10,8 @@ TEST(BenchControl, StaysOnTheCurveAndCoversIt) {
   const auto result = mjarm({"bench", "control", "--poses", "5", "--json", "--no-timing"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json bench = json::parse(result.out);
+  EXPECT_EQ(bench.at("rest").front().at("control"), "servo");
+  EXPECT_GT(bench.at("rest").front().at("position").get<double>(), 1e-3) << "servos sag";
   const json& rest = bench.at("rest").back();
   EXPECT_EQ(rest.at("control"), "computed_torque");
   EXPECT_LT(rest.at("position").get<double>(), 1e-5);

@@ -3,13 +3,13 @@
 #include <limits>
 #include <utility>
 
-#include "apps/bench/messages/bench.hpp"
-#include "apps/mjarm/cli/share.hpp"
+#include "apps/mjarm/cli/json_line.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/share.hpp"
 
 namespace mjarm::app {
 namespace {

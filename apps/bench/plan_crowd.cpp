@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "apps/bench/messages/bench_plan.hpp"
@@ -96,12 +97,12 @@ CrowdedSet crowded(const PlanSet& like, const std::vector<double>& rows, std::si
   CrowdedSet crowd{count, points, {like.name, {}, like.arm, like.spheres, like.robot, {}}};
   const std::size_t dof = like.arm.joints.size();
   for (std::size_t at = 0; at < rows.size(); at += 2 * dof) {
-    const auto row = rows.begin() + static_cast<std::ptrdiff_t>(at);
-    const auto middle = row + static_cast<std::ptrdiff_t>(dof);
+    const std::span<const double> start(rows.data() + at, dof);
+    const std::span<const double> goal(rows.data() + at + dof, dof);
     crowd.set.cases.push_back({std::to_string(at / (2 * dof)),
                                "",
-                               {row, middle},
-                               {middle, middle + static_cast<std::ptrdiff_t>(dof)},
+                               {start.begin(), start.end()},
+                               {joint_vec(goal)},
                                obstacles});
   }
   return crowd;

@@ -125,10 +125,8 @@ bool is_path(const Arm& arm, std::span<const std::vector<double>> path) {
 }
 
 bool ends_at_goal(const PlanProblem& problem, std::span<const double> q) {
-  for (std::size_t from = 0; from < problem.goals.size(); from += q.size()) {
-    if (is_near(q, std::span(problem.goals).subspan(from, q.size()))) return true;
-  }
-  return false;
+  return std::ranges::any_of(problem.goals,
+                             [&](const JointVec& goal) { return is_near(q, as_span(goal)); });
 }
 
 PathFault fault_of_corners(const PlanSet& set, const PlanProblem& problem,

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "apps/bench/robots.hpp"
-#include "apps/mjarm/commands/plan_answer.hpp"
+#include "mjarm/planning/plan_answer.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/stopwatch.hpp"
 

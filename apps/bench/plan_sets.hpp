@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/commands/problem_file.hpp"
+#include "mjarm/planning/problem_file.hpp"
 #include "mjarm/collision/fast_robot.hpp"
 #include "mjarm/core/result.hpp"
 

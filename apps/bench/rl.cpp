@@ -11,8 +11,8 @@
 #include "apps/bench/suites.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
-#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
@@ -66,7 +66,7 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
   };
   std::vector<LearningRun> runs;
   for (const LearningSet& set : sets) {
-    const Result<Model> model = task_model(set.options.task);
+    const Result<Model> model = rl::reach_model(set.options.task);
     if (!model) return fail(model.error());
     for (int i = 0; i < seeds; ++i) {
       const std::uint64_t seed = set.options.ppo.seed + static_cast<std::uint64_t>(i);

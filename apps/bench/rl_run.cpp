@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "apps/bench/suite.hpp"
-#include "apps/mjarm/commands/train_config.hpp"
 
 namespace mjarm::app {
 
@@ -31,8 +30,7 @@ Result<LearningRun> run_learner(const Model& model, const LearningSet& set, std:
                                 const std::filesystem::path& folder, const AdvanceSteps& advance) {
   rl::TrainingOptions options = set.options;
   options.ppo.seed = seed;
-  auto training = rl::Training::create(model, options, folder,
-                                       {{"task", "reach"}, {"config", config_text(options)}});
+  auto training = rl::Training::create(model, options, folder);
   if (!training) return fail(std::move(training.error()));
   LearningRun run{{.who = "mjarm", .set = set.name, .timed = "c++"}, seed, {}};
   double us = 0;

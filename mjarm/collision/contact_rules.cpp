@@ -46,22 +46,22 @@ bool is_pose(const Pose& X) {
          X.R.determinant() > 0;
 }
 
-Result<void> check_held(const mjModel& m, const detail::ArmBodies& bodies, const HeldBody& held,
+Result<void> check_attached(const mjModel& m, const detail::ArmBodies& bodies, const AttachedBody& attached,
                         std::set<int>& known) {
-  const int body = mj_name2id(&m, mjOBJ_BODY, held.body.c_str());
+  const int body = mj_name2id(&m, mjOBJ_BODY, attached.body.c_str());
   if (body < 0) {
-    return fail(Errc::bad_input, text(msg::collision_held_unknown, held.body,
-                                      did_you_mean(held.body, free_bodies(m))));
+    return fail(Errc::bad_input, text(msg::collision_held_unknown, attached.body,
+                                      did_you_mean(attached.body, free_bodies(m))));
   }
   if (!is_free_body(m, body)) {
-    return fail(Errc::bad_input, text(msg::collision_held_fixed, held.body));
+    return fail(Errc::bad_input, text(msg::collision_held_fixed, attached.body));
   }
   const bool carries_arm = std::any_of(bodies.bodies.begin(), bodies.bodies.end(),
                                        [&](int moved) { return m.body_rootid[moved] == body; });
   if (carries_arm || !known.insert(body).second) {
-    return fail(Errc::bad_input, text(msg::collision_held_twice, held.body));
+    return fail(Errc::bad_input, text(msg::collision_held_twice, attached.body));
   }
-  if (!is_pose(held.X_TB)) return fail(Errc::bad_input, text(msg::collision_held_pose, held.body));
+  if (!is_pose(attached.X_TB)) return fail(Errc::bad_input, text(msg::collision_held_pose, attached.body));
   return {};
 }
 
@@ -71,8 +71,8 @@ Result<void> check_contact_rules(const Model& model, const Arm& arm, const Conta
   const mjModel& m = *model.raw();
   const detail::ArmBodies bodies(m, arm);
   std::set<int> known;
-  for (const HeldBody& held : rules.held) {
-    if (Result<void> fine = check_held(m, bodies, held, known); !fine) return fine;
+  for (const AttachedBody& attached : rules.attached) {
+    if (Result<void> fine = check_attached(m, bodies, attached, known); !fine) return fine;
   }
   const std::vector<std::string> words = bodies_and_geoms(m);
   for (const auto& pair : rules.allowed) {
@@ -85,13 +85,13 @@ Result<void> check_contact_rules(const Model& model, const Arm& arm, const Conta
   return {};
 }
 
-Result<HeldBody> hold_where_it_is(const Model& model, const Arm& arm, const std::string& body,
+Result<AttachedBody> attach_in_place(const Model& model, const Arm& arm, const std::string& body,
                                   std::span<const double> q) {
   if (q.size() != static_cast<std::size_t>(arm.dof()) || !all_finite(q)) {
     return fail(Errc::bad_input, text(msg::collision_bad_q, arm.dof(), q.size()));
   }
-  HeldBody held{body, {}};
-  if (Result<void> fine = check_contact_rules(model, arm, {.held = {held}}); !fine) {
+  AttachedBody attached{body, {}};
+  if (Result<void> fine = check_contact_rules(model, arm, {.attached = {attached}}); !fine) {
     return fail(std::move(fine.error()));
   }
   const mjModel& m = *model.raw();
@@ -102,8 +102,8 @@ Result<HeldBody> hold_where_it_is(const Model& model, const Arm& arm, const std:
   using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const int id = mj_name2id(&m, mjOBJ_BODY, body.c_str());
   const Pose X_WB{Eigen::Vector3d(d->xpos + 3 * id), Eigen::Map<const Rows>(d->xmat + 9 * id)};
-  held.X_TB = fk(arm, q).inverse() * X_WB;
-  return held;
+  attached.X_TB = fk(arm, q).inverse() * X_WB;
+  return attached;
 }
 
 namespace detail {

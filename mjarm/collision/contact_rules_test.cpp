@@ -69,9 +69,9 @@ const Crane& grown_bar() {
 }
 
 /// As in grown_bar(); MuJoCo turns about x, then y, then z of the moved frame.
-ContactRules held_bar() {
+ContactRules attached_bar() {
   const Eigen::Matrix3d R = rotation_exp({0.2, 0, 0}) * rotation_exp(Eigen::Vector3d(0, 0, 0.1));
-  return {.held = {{"bar", {{0, 0, 0.03}, R}}}};
+  return {.attached = {{"bar", {{0, 0, 0.03}, R}}}};
 }
 
 JointVec draw(const Arm& arm, Rng& rng) {
@@ -82,17 +82,17 @@ JointVec draw(const Arm& arm, Rng& rng) {
 
 TEST(ContactRules, AHeldBodyCollidesAsAPartOfTheHandDoes) {
   const Crane &free = free_bar(), &grown = grown_bar();
-  ExactChecker held(free.model, free.arm, {.rules = held_bar()});
+  ExactChecker attached(free.model, free.arm, {.rules = attached_bar()});
   ExactChecker part(grown.model, grown.arm);
   ExactChecker empty(free.model, free.arm);
   Rng rng(3);
   int hits = 0, by_bar = 0;
   for (int k = 0; k < 2000; ++k) {
     const JointVec q = draw(free.arm, rng);
-    const auto a = held.check(as_span(q)), b = part.check(as_span(q));
+    const auto a = attached.check(as_span(q)), b = part.check(as_span(q));
     ASSERT_TRUE(a && b);
     ASSERT_EQ(a->free, b->free);
-    ASSERT_EQ(held.is_free(as_span(q)), b->free);
+    ASSERT_EQ(attached.is_free(as_span(q)), b->free);
     hits += !b->free;
     by_bar += !b->free && empty.is_free(as_span(q));
     ASSERT_EQ(a->contacts.size(), b->contacts.size());
@@ -109,7 +109,7 @@ TEST(ContactRules, AHeldBodyCollidesAsAPartOfTheHandDoes) {
 
 TEST(ContactRules, TheCoverHoldsTheBodyToo) {
   const Crane& crane = free_bar();
-  const ModelCover cover = cover_model(crane.model, crane.arm, {.rules = held_bar()}).value();
+  const ModelCover cover = cover_model(crane.model, crane.arm, {.rules = attached_bar()}).value();
   const ModelCover without = cover_model(crane.model, crane.arm).value();
   const auto stands = [](const ModelCover& made) {
     return std::ranges::count(made.scene.solids, "bar", &Obstacle::name);
@@ -119,7 +119,7 @@ TEST(ContactRules, TheCoverHoldsTheBodyToo) {
   EXPECT_GT(cover.spheres.size(), without.spheres.size());
   const FastChecker fast =
       FastChecker::make(FastRobot::make(crane.arm, cover.spheres).value(), cover.scene).value();
-  ExactChecker exact(crane.model, crane.arm, {.rules = held_bar()});
+  ExactChecker exact(crane.model, crane.arm, {.rules = attached_bar()});
   Rng rng(5);
   int free = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -134,7 +134,7 @@ TEST(ContactRules, TheCoverHoldsTheBodyToo) {
 TEST(ContactRules, PairsThatMayTouchDoNotCount) {
   const Crane& crane = free_bar();
   // The bar held so that it cuts into the forearm, wherever the arm is.
-  ContactRules rules{.held = {{"bar", {{-0.25, 0, 0.05}, Eigen::Matrix3d::Identity()}}}};
+  ContactRules rules{.attached = {{"bar", {{-0.25, 0, 0.05}, Eigen::Matrix3d::Identity()}}}};
   const std::vector<double> q{0, 0, 0.1};
   const auto names = [&] {
     std::vector<std::string> out;
@@ -164,18 +164,18 @@ TEST(ContactRules, PairsThatMayTouchDoNotCount) {
 TEST(ContactRules, HeldWhereItIsItStaysThere) {
   const Crane& crane = free_bar();
   const std::vector<double> q{0.2, 0.3, 0.1};
-  const auto held = hold_where_it_is(crane.model, crane.arm, "bar", q);
-  ASSERT_TRUE(held);
-  const Pose X_WB = fk(crane.arm, q) * held->X_TB;
+  const auto attached = attach_in_place(crane.model, crane.arm, "bar", q);
+  ASSERT_TRUE(attached);
+  const Pose X_WB = fk(crane.arm, q) * attached->X_TB;
   EXPECT_LT((X_WB.p - Eigen::Vector3d(0.6, 0.2, -0.13)).norm(), 1e-9);
   EXPECT_LT((X_WB.R - Eigen::Matrix3d::Identity()).norm(), 1e-9);
 }
 
 TEST(ContactRules, PosturesOfAnotherSizeAreRefused) {
   const Crane& crane = free_bar();
-  EXPECT_FALSE(hold_where_it_is(crane.model, crane.arm, "bar", {}));
+  EXPECT_FALSE(attach_in_place(crane.model, crane.arm, "bar", {}));
   const std::vector<double> nan(3, std::numeric_limits<double>::quiet_NaN());
-  EXPECT_FALSE(hold_where_it_is(crane.model, crane.arm, "bar", nan));
+  EXPECT_FALSE(attach_in_place(crane.model, crane.arm, "bar", nan));
 }
 
 TEST(ContactRules, WordsAndPosesThatAreNoneAreNamed) {
@@ -196,15 +196,15 @@ TEST(ContactRules, WordsAndPosesThatAreNoneAreNamed) {
   };
   const Pose here;
   EXPECT_EQ(why({}), "");
-  EXPECT_EQ(why({.held = {{"baar", here}}}),
+  EXPECT_EQ(why({.attached = {{"baar", here}}}),
             "there is no body \"baar\" to be held (did you mean \"bar\"?)");
-  EXPECT_EQ(why({.held = {{"fore", here}}}),
+  EXPECT_EQ(why({.attached = {{"fore", here}}}),
             "the body \"fore\" has no free joint: it cannot be held");
-  EXPECT_EQ(why({.held = {{"bar", here}, {"bar", here}}}),
+  EXPECT_EQ(why({.attached = {{"bar", here}, {"bar", here}}}),
             "the body \"bar\" carries the arm, or is held twice");
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(why({.held = {{"bar", {{nan, 0, 0}, here.R}}}}).find("pose"), std::string::npos);
-  EXPECT_NE(why({.held = {{"bar", {here.p, 2 * here.R}}}}).find("pose"), std::string::npos);
+  EXPECT_NE(why({.attached = {{"bar", {{nan, 0, 0}, here.R}}}}).find("pose"), std::string::npos);
+  EXPECT_NE(why({.attached = {{"bar", {here.p, 2 * here.R}}}}).find("pose"), std::string::npos);
   EXPECT_EQ(why({.allowed = {{"tabel", "bar"}}}),
             "there is no body or geom \"tabel\" that may touch (did you mean \"table\"?)");
 }

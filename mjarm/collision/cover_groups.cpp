@@ -36,7 +36,7 @@ class GeomSorter {
       : m_(*model.raw()),
         arm_(arm),
         options_(options),
-        bodies_(m_, arm, options.rules.held),
+        bodies_(m_, arm, options.rules.attached),
         filter_(m_, options.rules) {}
 
   Result<GeomGroups> run() {
@@ -88,7 +88,7 @@ class GeomSorter {
     for (const int address : bodies_.addresses)
       q.push_back(qpos[static_cast<std::size_t>(address)]);
     X_WJ_.resize(q.size());
-    bodies_.place_held(fk_all(arm_, q, X_WJ_), d_->qpos);
+    bodies_.place_attached(fk_all(arm_, q, X_WJ_), d_->qpos);
     mj_kinematics(&m_, d_.get());
   }
 

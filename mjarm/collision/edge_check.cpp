@@ -6,10 +6,12 @@
 #include <cmath>
 #include <utility>
 
-#include "mjarm/collision/fast_world_internal.hpp"
+#include "mjarm/collision/fast_access_internal.hpp"
 
 namespace mjarm {
 namespace {
+
+using detail::FastAccess;
 
 constexpr std::size_t kMaxOpen = 2048;  // intervals that wait; more means: undecided
 constexpr int kMaxWidth = 16;
@@ -40,7 +42,7 @@ class EdgeSearch {
  public:
   EdgeSearch(const FastChecker& checker, std::span<const double> q0, std::span<const double> q1,
              const EdgeOptions& options)
-      : checker_(checker), data_(checker.robot().data()), width_(checker.width()) {
+      : checker_(checker), data_(FastAccess::data(checker.robot())), width_(checker.width()) {
     double length = 0;
     for (std::size_t i = 0; i < q0.size(); ++i) {
       start_[i] = q0[i];
@@ -60,7 +62,7 @@ class EdgeSearch {
 
   EdgeResult run(std::vector<EdgeInterval>* proof) {
     if (checker_.fixed_overlap()) return {EdgeVerdict::hit, 0, 0};
-    if (outside_ <= 1) return {EdgeVerdict::hit, outside_, 0};
+    if (outside_ <= 1) return {EdgeVerdict::outside, outside_, 0};
     IntervalQueue* now = &queues_[0];
     IntervalQueue* next = &queues_[1];
     split({0.5F, 0.5F}, width_, *now);
@@ -88,7 +90,7 @@ class EdgeSearch {
       before[k + 1] = before[k] + rate[k];
     }
     const detail::FastRates rates{data_.tables.dof, rate.data(), turn.data(), before.data()};
-    const auto bound = checker_.kernels().bound_motion;
+    const auto bound = FastAccess::kernels(checker_).bound_motion;
     bound(rates, data_.group_levers.tables(), rate_.data(), bend_.data());
     bound(rates, data_.pair_levers.tables(), pair_rate_.data(), pair_bend_.data());
   }
@@ -118,7 +120,8 @@ class EdgeSearch {
                                     pair_bend_.data()};
     const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
     const detail::FastVerdict found =
-        checker_.kernels().cover(data_.tables, checker_.world().tables, lanes, motion, t, half);
+        FastAccess::kernels(checker_).cover(data_.tables, FastAccess::world(checker_).tables, lanes,
+                                            motion, t, half);
     result_.stations += static_cast<int>(count);
     if (found.hit != 0) return end(EdgeVerdict::hit, open[__builtin_ctz(found.hit)].t);
     for (std::size_t k = 0; k < count; ++k) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "mjarm/collision/edge_verdict.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/result.hpp"
 
@@ -13,15 +14,11 @@ struct EdgeOptions {
   double resolution = 1e-3;  ///< [rad or m, L2] narrowest interval that is tried, > 0
 };
 
-enum class EdgeVerdict {
-  free,       ///< proved: no configuration of the edge is in collision
-  hit,        ///< some configuration is (or as near to it as the padding)
-  undecided,  ///< an interval as narrow as the resolution could not be proved
-};
-
+/// What check_edge() found. `hit` is also what is as near to a collision as the padding; `undecided`
+/// an interval as narrow as the resolution that could not be proved.
 struct EdgeResult {
   EdgeVerdict verdict = EdgeVerdict::free;
-  double t = 0;      ///< where on the edge it is hit or undecided, 0 to 1
+  double t = 0;      ///< where on the edge it is not free, 0 to 1
   int stations = 0;  ///< configurations that were looked at
 };
 
@@ -30,7 +27,7 @@ struct EdgeResult {
 /// within the interval: its speed there, and a bound of the second derivative from the largest
 /// distances to the joints' axes. Where nothing overlaps the whole interval is free; else it is cut
 /// in two. Wide intervals come first, so that most collisions show early. Never allocates.
-/// @param q0, q1  shape (dof,) [rad or m]; an end outside of the limits is a hit.
+/// @param q0, q1  shape (dof,) [rad or m].
 [[nodiscard]] EdgeResult check_edge(const FastChecker& checker, std::span<const double> q0,
                                     std::span<const double> q1,
                                     const EdgeOptions& options = {}) noexcept;

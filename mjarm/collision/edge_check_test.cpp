@@ -40,6 +40,8 @@ void compare_edge(const FastChecker& checker, const Obstacles& world, std::span<
       ++tally.undecided;
       ASSERT_LT(testing::true_clearance(arm, set, world, at), 0.01);
       break;
+    case EdgeVerdict::outside:
+      FAIL() << "both ends are within the limits";
   }
 }
 
@@ -114,11 +116,11 @@ TEST(CheckEdge, EndsOutsideOfTheLimitsAndEdgesOfNoLength) {
   out[1] = arm.limits.upper[1] + 0.01;
   EXPECT_EQ(check_edge(checker, as_span(home), as_span(home)).verdict, EdgeVerdict::free);
   const EdgeResult end = check_edge(checker, as_span(home), as_span(out));
-  EXPECT_EQ(end.verdict, EdgeVerdict::hit);
+  EXPECT_EQ(end.verdict, EdgeVerdict::outside);
   EXPECT_EQ(end.t, 1);
   EXPECT_EQ(check_edge(checker, as_span(out), as_span(home)).t, 0);
   out[1] = std::nan("");
-  EXPECT_EQ(check_edge(checker, as_span(home), as_span(out)).verdict, EdgeVerdict::hit);
+  EXPECT_EQ(check_edge(checker, as_span(home), as_span(out)).verdict, EdgeVerdict::outside);
 }
 
 TEST(CheckEdge, PublicProblemsAgreeWithDenseSamples) {

@@ -37,7 +37,7 @@ struct ExactChecker::Impl {
         m(*model.raw()),
         m_wide(*model.raw()),
         sound(check_contact_rules(model, arm, options.rules)),
-        bodies(m, arm, sound ? options.rules.held : std::vector<HeldBody>()),
+        bodies(m, arm, sound ? options.rules.attached : std::vector<AttachedBody>()),
         filter(m, options.rules) {
     // The arrays are those of the shared model; only the options of these two heads differ.
     for (mjModel* head : {&m, &m_wide}) {
@@ -93,7 +93,7 @@ struct ExactChecker::Impl {
 
   void place(std::span<const double> q) {
     for (std::size_t i = 0; i < q.size(); ++i) d->qpos[bodies.addresses[i]] = q[i];
-    if (!bodies.held.empty()) bodies.place_held(fk(arm, q), d->qpos);
+    if (!bodies.attached.empty()) bodies.place_attached(fk(arm, q), d->qpos);
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     if (m.nflex > 0) mj_flex(&m, d.get());
@@ -235,6 +235,20 @@ struct ExactChecker::Impl {
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
   std::unique_ptr<mjData, DeleteData> d;
 };
+
+Result<ExactChecker> ExactChecker::create(const Model& model, const Arm& arm,
+                                          const ExactOptions& options) {
+  const auto fits = [](double length) { return length >= 0 && std::isfinite(length); };
+  if (!fits(options.margin) || !fits(options.allow_depth)) {
+    return fail(Errc::bad_input, text(msg::collision_exact_options));
+  }
+  ExactChecker out(model, arm, options);
+  if (!out.impl_->sound) return fail(out.impl_->sound.error());
+  if (!out.impl_->bodies.matches) {
+    return fail(Errc::bad_input, text(msg::collision_other_arm, arm.name));
+  }
+  return out;
+}
 
 ExactChecker::ExactChecker(const Model& model, const Arm& arm, const ExactOptions& options)
     : impl_(std::make_unique<Impl>(model, arm, options)) {}

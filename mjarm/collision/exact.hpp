@@ -65,7 +65,13 @@ struct CollisionReport {
 /// from another thread.
 class ExactChecker {
  public:
-  /// `arm` must come from `model`, and the rules be sound; else every check answers with an error.
+  /// For options that a user chose.
+  /// @return check_contact_rules()'s error; bad_input for an arm that is not of `model`, or a margin
+  /// or depth that is negative or not finite.
+  [[nodiscard]] static Result<ExactChecker> create(const Model& model, const Arm& arm,
+                                                   const ExactOptions& options);
+  /// For an arm of `model` and options that are known to be sound: with others every check answers
+  /// with an error.
   ExactChecker(const Model& model, const Arm& arm, const ExactOptions& options = {});
   ~ExactChecker();
   ExactChecker(const ExactChecker& other);

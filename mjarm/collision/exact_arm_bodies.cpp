@@ -23,7 +23,7 @@ std::string name_of(const mjModel& m, int type, int id) {
 
 }  // namespace
 
-ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<HeldBody>& held_in)
+ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<AttachedBody>& attached_in)
     : pieces(static_cast<std::size_t>(m.nbody)) {
   for (const ArmJoint& joint : arm.joints) {
     const int id = joint_at(m, joint.qpos);
@@ -35,9 +35,9 @@ ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<HeldBod
     bodies.push_back(m.jnt_bodyid[id]);
     pieces[static_cast<std::size_t>(m.jnt_bodyid[id])] = static_cast<int>(addresses.size());
   }
-  for (const HeldBody& one : held_in) {
+  for (const AttachedBody& one : attached_in) {
     const int body = mj_name2id(&m, mjOBJ_BODY, one.body.c_str());
-    held.push_back({m.jnt_qposadr[m.body_jntadr[body]], one.X_TB});
+    attached.push_back({m.jnt_qposadr[m.body_jntadr[body]], one.X_TB});
     pieces[static_cast<std::size_t>(body)] = static_cast<int>(addresses.size());
   }
   for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
@@ -46,8 +46,8 @@ ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<HeldBod
   }
 }
 
-void ArmBodies::place_held(const Pose& X_WT, mjtNum* qpos) const {
-  for (const Held& one : held) {
+void ArmBodies::place_attached(const Pose& X_WT, mjtNum* qpos) const {
+  for (const Attached& one : attached) {
     const Pose X_WB = X_WT * one.X_TB;
     const Quat turn = to_quat(X_WB.R);
     const double values[] = {X_WB.p.x(), X_WB.p.y(), X_WB.p.z(), turn.w(),

@@ -13,20 +13,20 @@ namespace mjarm::detail {
 
 /// Which bodies of a model an arm moves, those it holds included.
 struct ArmBodies {
-  /// @param held  sound by check_contact_rules().
-  ArmBodies(const mjModel& m, const Arm& arm, const std::vector<HeldBody>& held = {});
+  /// @param attached  sound by check_contact_rules().
+  ArmBodies(const mjModel& m, const Arm& arm, const std::vector<AttachedBody>& attached = {});
 
-  /// Writes where the held bodies are to the model's qpos.
-  void place_held(const Pose& X_WT, mjtNum* qpos) const;
+  /// Writes where the attached bodies are to the model's qpos.
+  void place_attached(const Pose& X_WT, mjtNum* qpos) const;
 
   /// A free body that hangs on the tool.
-  struct Held {
+  struct Attached {
     int address = 0;  ///< of its free joint in qpos
     Pose X_TB;
   };
   std::vector<int> addresses;  ///< of the arm's joints in qpos
   std::vector<int> bodies;     ///< that these joints are of
-  std::vector<Held> held;
+  std::vector<Attached> attached;
   std::vector<int> pieces;  ///< per body: how many joints of the arm move it
   bool matches = true;      ///< the arm is one of this model
 };

@@ -316,6 +316,33 @@ TEST(ExactChecker, BadInputIsAnError) {
   EXPECT_FALSE(wrong.check(std::vector<double>{0, 0, 0}).has_value());
 }
 
+TEST(ExactChecker, OptionsThatAreNotSoundAreRefusedAtOnce) {
+  const support::TempFolder folder;
+  const World world = load(folder, slider("", R"(<geom type="sphere" size="0.2"/>)"));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const std::vector<ExactOptions> bad{{.margin = -1e-9},
+                                      {.margin = nan},
+                                      {.margin = inf},
+                                      {.allow_depth = -1},
+                                      {.allow_depth = nan},
+                                      {.rules = {.allowed = {{"nobody", "nothing"}}}}};
+  for (const ExactOptions& options : bad) {
+    const auto made = ExactChecker::create(world.model, world.arm, options);
+    ASSERT_FALSE(made.has_value());
+    EXPECT_EQ(made.error().code, Errc::bad_input);
+    EXPECT_FALSE(made.error().what.empty());
+  }
+  Arm stranger = world.arm;
+  stranger.joints[0].qpos = 77;
+  EXPECT_FALSE(ExactChecker::create(world.model, stranger, {}).has_value());
+  auto made = ExactChecker::create(world.model, world.arm, {.margin = 0.3});
+  ASSERT_TRUE(made.has_value());
+  ExactChecker plain(world.model, world.arm, {.margin = 0.3});
+  const std::vector<double> q{0.1, 0.2, -0.3};
+  EXPECT_EQ(made->check(q)->free, plain.check(q)->free);
+}
+
 TEST(ExactChecker, CopiesAreIndependentAndAgree) {
   const support::TempFolder folder;
   const World world = load(folder, slider(R"(<geom type="box" size="0.3 0.2 0.1"/>)",

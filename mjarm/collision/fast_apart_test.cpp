@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "mjarm/collision/edge_check.hpp"
+#include "mjarm/collision/fast_access_internal.hpp"
 #include "mjarm/collision/fast_oracle_test.hpp"
-#include "mjarm/collision/fast_robot_internal.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
 
 /// Wrists of many spheres, whose self-collisions are looked up in tables.
@@ -37,7 +37,7 @@ TEST(FastApart, NeverFreeWhereWristsCollide) {
   for (int i = 0; i < testing::rounds(40, 2000); ++i) {
     const Arm arm = i % 2 == 0 ? testing::panda() : testing::ur5e();
     const SphereSet set = random_wrist(arm, rng);
-    tables += static_cast<int>(FastRobot::make(arm, set)->data().apart.size());
+    tables += static_cast<int>(detail::FastAccess::data(*FastRobot::make(arm, set)).apart.size());
     testing::compare(arm, set, {}, testing::kLevels[static_cast<std::size_t>(i) % 3], rng, 300,
                      tally);
   }

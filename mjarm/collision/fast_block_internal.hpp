@@ -1,12 +1,14 @@
 #pragma once
 
 #include "mjarm/collision/fast_tables_internal.hpp"
-#include "mjarm/collision/float_lanes_internal.hpp"
+#include "mjarm/core/simd/functions.hpp"
 
 /// Where the spheres of a robot are, for as many configurations as a register holds. Included by
 /// one file for each width of the registers.
 namespace mjarm::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
+
+using namespace simd;
 
 struct Point {
   Floats x, y, z;
@@ -82,12 +84,12 @@ inline void carry(const FastJoint& joint, Floats q, Frame& f) {
 
 /// Four joints from `joint` on, as columns: of as many rows as a register holds.
 inline void read_columns(const double* const* row, int joint, float* q) {
-  typedef double Doubles __attribute__((vector_size(32)));
-  Quad columns[4][kWidth / 4];
-  for (int lane = 0; lane < kWidth; lane += 4) {
+  typedef double FourDoubles __attribute__((vector_size(32)));
+  Quad columns[4][kFloats / 4];
+  for (int lane = 0; lane < kFloats; lane += 4) {
     Quad r[4];
     for (int k = 0; k < 4; ++k) {
-      Doubles four;
+      FourDoubles four;
       __builtin_memcpy(&four, row[lane + k] + joint, sizeof four);
       r[k] = __builtin_convertvector(four, Quad);
     }
@@ -100,20 +102,20 @@ inline void read_columns(const double* const* row, int joint, float* q) {
     columns[2][lane / 4] = __builtin_shufflevector(high01, high23, 0, 1, 4, 5);
     columns[3][lane / 4] = __builtin_shufflevector(high01, high23, 2, 3, 6, 7);
   }
-  for (int i = 0; i < 4; ++i) store(q + (joint + i) * kWidth, joined(columns[i]));
+  for (int i = 0; i < 4; ++i) store(q + (joint + i) * kFloats, joined(columns[i]));
 }
 
-/// Configurations joint by joint: q (dof, kWidth).
+/// Configurations joint by joint: q (dof, kFloats).
 inline void read(const FastRows& rows, int dof, float* q) {
-  const double* row[kWidth];
-  for (int k = 0; k < kWidth; ++k) row[k] = rows.q + (k < rows.count ? k : rows.count - 1) * dof;
+  const double* row[kFloats];
+  for (int k = 0; k < kFloats; ++k) row[k] = rows.q + (k < rows.count ? k : rows.count - 1) * dof;
   if (dof >= 4) {
     for (int i = 0; i + 4 < dof; i += 4) read_columns(row, i, q);
     read_columns(row, dof - 4, q);
     return;
   }
   for (int i = 0; i < dof; ++i) {
-    for (int k = 0; k < kWidth; ++k) q[i * kWidth + k] = static_cast<float>(row[k][i]);
+    for (int k = 0; k < kFloats; ++k) q[i * kFloats + k] = static_cast<float>(row[k][i]);
   }
 }
 
@@ -137,7 +139,7 @@ struct Block {
                  {none, none, none}};
     Frame f = frames[0];
     for (int i = 0; i < robot.dof; ++i) {
-      carry(robot.joints[i], load(q + i * kWidth), f);
+      carry(robot.joints[i], load(q + i * kFloats), f);
       frames[i + 1] = f;
     }
     for (int g = 0; g < robot.group_count; ++g) {
@@ -194,7 +196,7 @@ struct Block {
 inline LaneBits outside_limits(const FastRobotTables& robot, const float* q) {
   LaneBits inside = kAllLanes;
   for (int i = 0; i < robot.dof; ++i) {
-    const Floats value = load(q + i * kWidth);
+    const Floats value = load(q + i * kFloats);
     inside &= less(splat(robot.joints[i].lower), value) & less(value, splat(robot.joints[i].upper));
   }
   return ~inside & kAllLanes;
@@ -334,5 +336,5 @@ void visit_solid(const FastWorldTables& world, const FastItem& item, const Visit
   }
 }
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::detail

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "mjarm/collision/fast_robot_internal.hpp"
-#include "mjarm/collision/float_lanes_internal.hpp"
+#include "mjarm/core/simd/functions.hpp"
 
 /// What a link can do at most, whatever the joints do: how far it reaches, how fast a joint moves
 /// it, and how wrong single precision can be about its place.
@@ -51,7 +51,7 @@ double joint_error(const Arm& arm, const LinkChain& chain, int k) {
   const FastLimits limits = fast_limits(arm, k);
   const double max = std::max(std::abs(limits.lower), std::abs(limits.upper));
   const double rounding = 6 * kUnit * (max + std::abs(chain.links[k].offset));
-  return rounding + (chain.links[k].slide ? 0 : std::numbers::sqrt2 * kTrigError);
+  return rounding + (chain.links[k].slide ? 0 : std::numbers::sqrt2 * simd::kTrigError);
 }
 
 /// A frame after m joints is off by at most 17 m units (two turns of two columns, each entry three

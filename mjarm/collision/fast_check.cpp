@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cassert>
 
+#include "mjarm/collision/fast_access_internal.hpp"
 #include "mjarm/collision/fast_clearance_internal.hpp"
 #include "mjarm/collision/fast_kernel_internal.hpp"
-#include "mjarm/collision/fast_world_internal.hpp"
 
 namespace mjarm {
 namespace detail {
 
-const FastKernels kFastBaseline = {kWidth, collide_block, cover_block, bound_motion,
+const FastKernels kFastBaseline = {kFloats, collide_block, cover_block, bound_motion,
                                    clearances_of_block};
 
 }  // namespace detail
@@ -77,7 +77,7 @@ std::optional<FastChecker::FixedOverlap> find_fixed_overlap(const SphereSet& set
 
 FastChecker::FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel level)
     : robot_(std::move(robot)),
-      world_(std::make_shared<detail::FastWorld>(robot_.data(), obstacles)),
+      world_(std::make_shared<detail::FastWorld>(detail::FastAccess::data(robot_), obstacles)),
       kernels_(&fast_kernels(level)),
       fixed_overlap_(find_fixed_overlap(robot_.spheres(), obstacles)) {}
 
@@ -100,7 +100,7 @@ std::uint32_t FastChecker::collide(std::span<const double> q, std::size_t first,
   const std::size_t count =
       std::min(static_cast<std::size_t>(kernels_->width), q.size() / dof - first);
   const detail::FastRows rows{q.data() + first * dof, static_cast<int>(count)};
-  return kernels_->collide(robot_.data().tables, world_->tables, rows, any);
+  return kernels_->collide(detail::FastAccess::data(robot_).tables, world_->tables, rows, any);
 }
 
 void FastChecker::check(std::span<const double> q, std::span<std::uint8_t> free) const noexcept {
@@ -126,7 +126,7 @@ bool FastChecker::all_free(std::span<const double> q) const noexcept {
 }
 
 SphereClearance FastChecker::clearance_of(const detail::FastNearest& from) const noexcept {
-  const detail::FastRobotData& data = robot_.data();
+  const detail::FastRobotData& data = detail::FastAccess::data(robot_);
   const auto link_of = [&](int sphere) {
     return sphere < 0 ? -1 : data.link_of_sphere[static_cast<std::size_t>(sphere)];
   };
@@ -142,7 +142,7 @@ void FastChecker::clearances(std::span<const double> q,
     const std::size_t count = std::min(width, out.size() - first);
     const LaneInput input(q.data() + first * dof, count, dof, width);
     detail::FastNearest nearest[kMaxLanes];
-    kernels_->clearances(robot_.data().tables, world_->tables, input.q,
+    kernels_->clearances(detail::FastAccess::data(robot_).tables, world_->tables, input.q,
                          static_cast<float>(detail::kMaxClearance), false, nearest);
     for (std::size_t k = 0; k < count; ++k) out[first + k] = clearance_of(nearest[k]);
   }
@@ -158,7 +158,7 @@ FastChecker::LeastClearance FastChecker::least_clearance(std::span<const double>
     const std::size_t count = std::min(width, rows - first);
     const LaneInput input(q.data() + first * dof, count, dof, width);
     detail::FastNearest nearest[kMaxLanes];
-    kernels_->clearances(robot_.data().tables, world_->tables, input.q,
+    kernels_->clearances(detail::FastAccess::data(robot_).tables, world_->tables, input.q,
                          static_cast<float>(out.nearest.distance), true, nearest);
     for (std::size_t k = 0; k < width; ++k) {
       if (nearest[k].sphere < 0) continue;

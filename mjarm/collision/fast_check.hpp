@@ -14,6 +14,7 @@
 namespace mjarm {
 
 namespace detail {
+struct FastAccess;
 struct FastWorld;
 struct FastKernels;
 struct FastNearest;
@@ -82,10 +83,8 @@ class FastChecker {
   /// Configurations that are looked at at once.
   [[nodiscard]] int width() const noexcept;
 
-  [[nodiscard]] const detail::FastWorld& world() const noexcept { return *world_; }
-  [[nodiscard]] const detail::FastKernels& kernels() const noexcept { return *kernels_; }
-
  private:
+  friend struct detail::FastAccess;
   FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel level);
   /// The block of width() configurations from row `first` on.
   /// @param any  end with the first that collides.

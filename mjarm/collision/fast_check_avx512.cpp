@@ -3,7 +3,7 @@
 
 namespace mjarm::detail {
 
-const FastKernels kFastAvx512 = {kWidth, collide_block, cover_block, bound_motion,
+const FastKernels kFastAvx512 = {kFloats, collide_block, cover_block, bound_motion,
                                  clearances_of_block};
 
 }  // namespace mjarm::detail

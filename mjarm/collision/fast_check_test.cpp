@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "mjarm/collision/fast_oracle_test.hpp"
-#include "mjarm/collision/float_lanes_internal.hpp"
 #include "mjarm/collision/problems_test.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
 
@@ -18,27 +17,6 @@ using testing::compare;
 using testing::kLevels;
 using testing::random_rows;
 using testing::Tally;
-
-TEST(FloatLanes, SineAndCosineKeepTheirBound) {
-  using detail::kWidth;
-  Rng rng(1);
-  double worst = 0;
-  for (int i = 0; i < 200'000; ++i) {
-    const double size = i % 3 == 0 ? 100 : i % 3 == 1 ? 4 : 1e-3;
-    float x[kWidth], s[kWidth], c[kWidth];
-    for (float& value : x) value = static_cast<float>(rng.uniform(-size, size));
-    detail::Floats sine, cosine;
-    detail::sine_cosine(detail::load(x), sine, cosine);
-    detail::store(s, sine);
-    detail::store(c, cosine);
-    for (int k = 0; k < kWidth; ++k) {
-      worst = std::max({worst, std::abs(s[k] - std::sin(static_cast<double>(x[k]))),
-                        std::abs(c[k] - std::cos(static_cast<double>(x[k])))});
-    }
-  }
-  EXPECT_LT(worst, detail::kTrigError);
-  EXPECT_GT(worst, 1e-8);
-}
 
 TEST(FastChecker, NeverFreeWhereRandomRobotsCollide) {
   Rng rng(11);

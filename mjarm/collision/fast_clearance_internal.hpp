@@ -6,7 +6,7 @@
 /// The search for the nearest pair of a block of configurations. Included by one file for each
 /// width of the registers.
 namespace mjarm::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
 
 class NearestSearch {
  public:
@@ -17,12 +17,12 @@ class NearestSearch {
   }
 
   void run(FastNearest* out) {
-    for (int k = 0; k < kWidth; ++k) out[k] = {best_[k], -1, -1, -1};
+    for (int k = 0; k < kFloats; ++k) out[k] = {best_[k], -1, -1, -1};
     found_ = out;
     for (int g = 0; g < robot_.group_count; ++g) meet_world(g);
     for (int g = 0; g < robot_.group_count; ++g) meet_crowd(g);
     for (int k = 0; k < robot_.every_pair_count; ++k) meet_itself(robot_.every_pair[k]);
-    for (int k = 0; k < kWidth; ++k) {
+    for (int k = 0; k < kFloats; ++k) {
       if (!together_ || out[k].sphere >= 0) out[k].distance = best_[k];
     }
   }
@@ -38,7 +38,7 @@ class NearestSearch {
     if (lanes == 0) return;
     if (together_) return note_least(distance, pair);
     best_ = smaller(distance, best_);
-    for (int k = 0; k < kWidth; ++k) {
+    for (int k = 0; k < kFloats; ++k) {
       if (((lanes >> k) & 1) != 0) found_[k] = pair;
     }
   }
@@ -46,11 +46,11 @@ class NearestSearch {
   /// The nearest of all lanes so far, which bounds them all.
   void note_least(const Floats& distance, const FastNearest& pair) {
     int lane = 0;
-    for (int k = 1; k < kWidth; ++k) {
+    for (int k = 1; k < kFloats; ++k) {
       if (distance[k] < distance[lane]) lane = k;
     }
     best_ = splat(distance[lane]);
-    for (int k = 0; k < kWidth; ++k) found_[k].sphere = -1;
+    for (int k = 0; k < kFloats; ++k) found_[k].sphere = -1;
     found_[lane] = pair;
   }
 
@@ -111,7 +111,7 @@ class NearestSearch {
     if (Touched(root, block_.balls[g], far * far, kAllLanes).children == 0) return;
     block_.place_spheres(robot_, g);
     for (int k = group.first; k < group.first + group.count; ++k) {
-      for (int lane = 0; lane < kWidth; ++lane) meet_leaves(tree, k, lane);
+      for (int lane = 0; lane < kFloats; ++lane) meet_leaves(tree, k, lane);
     }
   }
 
@@ -147,7 +147,7 @@ class NearestSearch {
     const FastPoints& points = world_.points[leaf];
     const float radius = robot_.spheres[sphere].radius;
     float distances[kFan];
-    for (int from = 0; from < kFan; from += kWidth) {
+    for (int from = 0; from < kFan; from += kFloats) {
       const Floats distance = square_root(squared_gaps(points, from, at));
       store(distances + from, distance - load(points.radius + from));
     }
@@ -200,5 +200,5 @@ inline void clearances_of_block(const FastRobotTables& robot, const FastWorldTab
   NearestSearch(robot, world, q, max, together).run(out);
 }
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::detail

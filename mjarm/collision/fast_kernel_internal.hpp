@@ -6,7 +6,7 @@
 /// The search for collisions of a block of configurations. Included by one file for each width of
 /// the registers.
 namespace mjarm::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
 
 template <bool kCover>
 class BlockSearch {
@@ -15,7 +15,7 @@ class BlockSearch {
       : now_(robot, world, active, any) {}
 
   FastVerdict collide(const FastRows& rows) {
-    float q[kFastJoints * kWidth];
+    float q[kFastJoints * kFloats];
     read(rows, now_.robot.dof, q);
     const LaneBits outside = outside_limits(now_.robot, q) & now_.active;
     now_.verdict.hit = outside;
@@ -28,11 +28,11 @@ class BlockSearch {
   }
 
   FastVerdict cover(const FastMotion& motion, const float* t, const float* half) {
-    float q[kFastJoints * kWidth];
+    float q[kFastJoints * kFloats];
     for (int i = 0; i < now_.robot.dof; ++i) {
-      for (int k = 0; k < kWidth; ++k) {
+      for (int k = 0; k < kFloats; ++k) {
         const double value = motion.start[i] + static_cast<double>(t[k]) * motion.way[i];
-        q[i * kWidth + k] = static_cast<float>(value);
+        q[i * kFloats + k] = static_cast<float>(value);
       }
     }
     now_.block.place(now_.robot, now_.world, q);
@@ -78,7 +78,7 @@ inline FastVerdict cover_block(const FastRobotTables& robot, const FastWorldTabl
 
 inline void bound_motion(const FastRates& rates, const FastLevers& levers, float* speed,
                          float* bend) {
-  for (int i = 0; i < levers.stride; i += kWidth) {
+  for (int i = 0; i < levers.stride; i += kFloats) {
     Floats v{}, a{};
     for (int k = 0; k < rates.dof; ++k) {
       const Floats lever = load(levers.levers + k * levers.stride + i);
@@ -86,11 +86,11 @@ inline void bound_motion(const FastRates& rates, const FastLevers& levers, float
       a = multiply_add(lever, splat(rates.turn[k]), a);
     }
     Floats alike{};
-    for (int k = 0; k < kWidth; ++k) alike[k] = rates.before[levers.from[i + k]];
+    for (int k = 0; k < kFloats; ++k) alike[k] = rates.before[levers.from[i + k]];
     store(speed + i, v * 1.0001F);
     store(bend + i, 0.5001F * multiply_add(alike * v, splat(-2 * 0.9999F), a));
   }
 }
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::detail

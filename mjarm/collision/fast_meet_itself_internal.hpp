@@ -5,7 +5,7 @@
 
 /// Two groups of spheres against each other. Included by one file for each width of the registers.
 namespace mjarm::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
 
 template <bool kCover>
 class SelfSearch {
@@ -87,5 +87,5 @@ class SelfSearch {
   BlockState<kCover>& now_;
 };
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::detail

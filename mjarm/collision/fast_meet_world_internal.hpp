@@ -6,7 +6,7 @@
 /// A group of spheres against what stands round the robot. Included by one file for each width of
 /// the registers.
 namespace mjarm::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
 
 template <bool kCover>
 class WorldSearch {
@@ -201,5 +201,5 @@ class WorldSearch {
   BlockState<kCover>& now_;
 };
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::detail

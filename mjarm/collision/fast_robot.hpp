@@ -9,8 +9,9 @@
 namespace mjarm {
 
 namespace detail {
+struct FastAccess;
 struct FastRobotData;
-}
+}  // namespace detail
 
 /// An arm and its spheres, made ready for FastChecker: any arm, read at run time. Immutable and
 /// cheap to copy.
@@ -27,9 +28,8 @@ class FastRobot {
   /// this far (two spheres: twice as far) from everything is never called in collision.
   [[nodiscard]] double padding() const noexcept;
 
-  [[nodiscard]] const detail::FastRobotData& data() const noexcept { return *data_; }
-
  private:
+  friend struct detail::FastAccess;
   explicit FastRobot(std::shared_ptr<const detail::FastRobotData> data) : data_(std::move(data)) {}
   std::shared_ptr<const detail::FastRobotData> data_;
 };

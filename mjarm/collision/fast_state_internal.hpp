@@ -5,7 +5,7 @@
 /// What a search for collisions knows of a block of configurations, and how overlaps are noted.
 /// Included by one file for each width of the registers.
 namespace mjarm::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
 
 /// With kCover every radius grows by what its sphere can move within the lane's interval, so that
 /// lanes without overlap prove their whole interval.
@@ -53,8 +53,8 @@ struct BlockState {
   /// The deepest overlap of several solids, noted all at once: branches cost more than the tests.
   /// Squared gaps less the squares of what they must be; negative: an overlap.
   struct Overlaps {
-    Floats grown = splat(1);  ///< with growth
-    Floats bare = splat(1);   ///< without
+    Floats grown = splat(1.0F);  ///< with growth
+    Floats bare = splat(1.0F);   ///< without
   };
 
   void look(const Floats& gap2, float radius, float minus_radius2, Overlaps& overlaps) const {
@@ -118,7 +118,7 @@ struct BlockState {
   bool any;           ///< the first lane found ends the search
   bool done = false;  ///< nothing is left to look at
   FastVerdict verdict;
-  const float* q = nullptr;            ///< (dof, kWidth)
+  const float* q = nullptr;            ///< (dof, kFloats)
   const FastMotion* motion = nullptr;  ///< with kCover
   Floats half{};                       ///< of the lane's interval
   Floats grow{};                       ///< [m] of what is looked at now
@@ -126,5 +126,5 @@ struct BlockState {
   Block block;
 };
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::detail

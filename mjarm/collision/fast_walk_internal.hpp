@@ -8,10 +8,10 @@
 /// Lanes that are near each other go together, a child at a time; few lanes go one by one, as many
 /// children at a time as a register holds. So nodes cost the lesser of both.
 namespace mjarm::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
 
 /// As many lanes are looked at one by one.
-inline constexpr int kFewLanes = kWidth / 2;
+inline constexpr int kFewLanes = kFloats / 2;
 
 /// A lane's point in all lanes.
 inline Point lane_of(const Point& p, int lane) {
@@ -33,11 +33,11 @@ inline Ints cell_along(const Floats& x, float low, const FastGrid& grid) {
 }
 
 /// Lower bound of how far two groups keep apart [m]; negative where they overlap.
-/// @param q  (dof, kWidth), joint by joint.
+/// @param q  (dof, kFloats), joint by joint.
 inline Floats apart_bound(const FastApart& table, const float* q) {
   Ints cell[2];
   for (int k = 0; k < 2; ++k) {
-    const Floats value = load(q + table.joint[k] * kWidth);
+    const Floats value = load(q + table.joint[k] * kFloats);
     cell[k] = cell_along(value, table.low[k], table.per_unit[k], table.side);
   }
   const Ints counts = gather(table.cells, cell[1] * table.side + cell[0]);
@@ -58,14 +58,14 @@ inline Floats beyond(const Floats& x, const Floats& low, const Floats& high) {
   return x - smaller(larger(x, low), high);
 }
 
-/// Squared distances of the boxes of children `from` to `from` + kWidth.
+/// Squared distances of the boxes of children `from` to `from` + kFloats.
 inline Floats squared_gaps(const FastNode& node, int from, const Point& p) {
   return squared(Point{beyond(p.x, load(node.low[0] + from), load(node.high[0] + from)),
                        beyond(p.y, load(node.low[1] + from), load(node.high[1] + from)),
                        beyond(p.z, load(node.low[2] + from), load(node.high[2] + from))});
 }
 
-/// Squared distances of points `from` to `from` + kWidth.
+/// Squared distances of points `from` to `from` + kFloats.
 inline Floats squared_gaps(const FastPoints& points, int from, const Point& p) {
   return squared(Point{p.x - load(points.center[0] + from), p.y - load(points.center[1] + from),
                        p.z - load(points.center[2] + from)});
@@ -74,7 +74,7 @@ inline Floats squared_gaps(const FastPoints& points, int from, const Point& p) {
 /// Whether a point comes as near as its radius and `radius` together; all lanes of p are the same.
 inline bool any_point_within(const FastPoints& points, const Point& p, float radius) {
   LaneBits near = 0;
-  for (int from = 0; from < kFan; from += kWidth) {
+  for (int from = 0; from < kFan; from += kFloats) {
     const Floats reach = load(points.radius + from) + radius;
     near |= less(squared_gaps(points, from, p), reach * reach);
   }
@@ -111,7 +111,7 @@ struct Touched {
       const int lane = __builtin_ctz(lanes);
       const Point p = lane_of(ball, lane);
       std::uint32_t near = 0;
-      for (int from = 0; from < kFan; from += kWidth) {
+      for (int from = 0; from < kFan; from += kFloats) {
         near |= less(squared_gaps(node, from, p), splat(reach2[lane])) << from;
       }
       children |= near;
@@ -168,7 +168,7 @@ void walk_nearest(const FastTree& tree, const Point& p, const Limit& limit2, con
       continue;
     }
     float gaps2[kFan];
-    for (int from = 0; from < kFan; from += kWidth) {
+    for (int from = 0; from < kFan; from += kFloats) {
       store(gaps2 + from, squared_gaps(tree.nodes[now.level][now.node], from, p));
     }
     const float max = limit2();
@@ -182,5 +182,5 @@ void walk_nearest(const FastTree& tree, const Point& p, const Limit& limit2, con
   }
 }
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::detail

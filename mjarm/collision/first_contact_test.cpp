@@ -95,11 +95,11 @@ TEST(EdgeContact, AgreesWithVerifyEdge) {
       ++count[static_cast<std::size_t>(ours.verdict)];
       if (!theirs->has_value()) continue;
       ++contacts;
-      ASSERT_EQ(ours.verdict, VerifyVerdict::hit) << "round " << round;
+      ASSERT_EQ(ours.verdict, EdgeVerdict::hit) << "round " << round;
       ASSERT_LE(ours.t, (*theirs)->t + 1e-9);
     }
   }
-  EXPECT_GT(count[static_cast<std::size_t>(VerifyVerdict::free)], scenes / 2);
+  EXPECT_GT(count[static_cast<std::size_t>(EdgeVerdict::free)], scenes / 2);
   EXPECT_GT(contacts, scenes / 2);
 }
 

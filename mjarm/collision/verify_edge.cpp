@@ -92,11 +92,11 @@ class EdgeMarch {
       watches_.pop();
       const Look now = look(watch, watch.until);
       if (now.clearance < nearest.distance) {
-        nearest = result_of(VerifyVerdict::free, watch, watch.until, now);
+        nearest = result_of(EdgeVerdict::free, watch, watch.until, now);
       }
-      if (now.overlaps) return result_of(VerifyVerdict::hit, watch, watch.until, now);
+      if (now.overlaps) return result_of(EdgeVerdict::hit, watch, watch.until, now);
       if (looks == options_.max_looks) {
-        return result_of(VerifyVerdict::undecided, watch, watch.until, now);
+        return result_of(EdgeVerdict::undecided, watch, watch.until, now);
       }
       const double next = watch.until + kShare * now.step;
       if (next >= 1 || watch.until >= 1) continue;
@@ -113,12 +113,12 @@ class EdgeMarch {
     for (double step = least_; step < 1000 * least_; step *= 2) {
       const double next = std::min(watch.until + step, 1.0);
       const Look then = look(watch, next);
-      if (then.overlaps) return result_of(VerifyVerdict::hit, watch, next, then);
+      if (then.overlaps) return result_of(EdgeVerdict::hit, watch, next, then);
     }
-    return result_of(VerifyVerdict::undecided, watch, watch.until, now);
+    return result_of(EdgeVerdict::undecided, watch, watch.until, now);
   }
 
-  static VerifyResult result_of(VerifyVerdict verdict, const Watch& watch, double t,
+  static VerifyResult result_of(EdgeVerdict verdict, const Watch& watch, double t,
                                 const Look& look) {
     return {verdict, t, look.clearance, watch.link, watch.obstacle, watch.other_link, -1};
   }
@@ -308,7 +308,7 @@ Result<VerifyResult> verify_edge(const Arm& arm, const SphereSet& set, const Obs
   if (auto fits = check_obstacles(obstacles); !fits) return fail(std::move(fits.error()));
   if (auto fits = check_request(arm, q0, q1, options); !fits) return fail(std::move(fits.error()));
   for (const double t : {0.0, 1.0}) {
-    VerifyResult out{.verdict = VerifyVerdict::outside, .t = t};
+    VerifyResult out{.verdict = EdgeVerdict::outside, .t = t};
     out.joint = outside_joint(arm, t == 0 ? q0 : q1, options.limit_slack);
     if (out.joint >= 0) return out;
   }

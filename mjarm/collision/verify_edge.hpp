@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "mjarm/collision/edge_verdict.hpp"
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
 #include "mjarm/core/result.hpp"
@@ -17,15 +18,10 @@ struct VerifyOptions {
   long max_looks = 10'000'000;  ///< a link looked at against one obstacle or link, > 0
 };
 
-enum class VerifyVerdict {
-  free,       ///< proved: nothing overlaps anywhere on the edge
-  hit,        ///< something overlaps at `t`
-  outside,    ///< an end of the edge is outside of the limits, or no number
-  undecided,  ///< at `t` something touches (to 1e-12 m) or the looks are used up
-};
-
+/// What verify_edge() found. `undecided`: at `t` something touches (to 1e-12 m) or the looks are
+/// used up.
 struct VerifyResult {
-  VerifyVerdict verdict = VerifyVerdict::free;
+  EdgeVerdict verdict = EdgeVerdict::free;
   double t = 0;  ///< where on the edge, 0 to 1; of a free edge: where it is nearest to anything
   /// [m] clearance of the pair at `t`, allow_depth not counted; negative: overlap. Of a free edge
   /// the least that was met; infinite where there is nothing to hit.

@@ -61,16 +61,16 @@ void compare_with_samples(const Scene& scene, std::span<const double> q0,
   const double found = clearance_of(scene, result, at);
   // Of a place inside a solid the oracle knows the depth, the distance is 0.
   ASSERT_LE(found, result.distance + 1e-10);
-  if (result.verdict != VerifyVerdict::hit) {
+  if (result.verdict != EdgeVerdict::hit) {
     ASSERT_NEAR(found, result.distance, 1e-10);
   }
   switch (result.verdict) {
-    case VerifyVerdict::free:
+    case EdgeVerdict::free:
       ++tally.free;
       ASSERT_GT(least, 0) << "false proof";
       ASSERT_GT(result.distance, 0);
       break;
-    case VerifyVerdict::hit:
+    case EdgeVerdict::hit:
       ++tally.hit;
       ASSERT_LT(result.distance, 0);
       break;
@@ -158,7 +158,7 @@ TEST(VerifyEdge, ProvesEveryCertifiedEdgeAmongPlatesAndWires) {
       const JointVec q1 = q0 + rng.uniform(0.02, 1) * (testing::random_q(scene.arm, rng) - q0);
       if (check_edge(checker, as_span(q0), as_span(q1)).verdict != EdgeVerdict::free) continue;
       const VerifyResult result = verify(scene, as_span(q0), as_span(q1));
-      ASSERT_EQ(result.verdict, VerifyVerdict::free)
+      ASSERT_EQ(result.verdict, EdgeVerdict::free)
           << "edge " << certified << ": clearance " << result.distance << " at t " << result.t;
       if (++certified % testing::rounds(4, 1) != 0) continue;
       const int samples = samples_of(as_span(q0), as_span(q1), 1e-3);
@@ -187,7 +187,7 @@ TEST(VerifyEdge, ProvesCertifiedEdgesOfThePublicProblems) {
       ++certified;
       const auto result = verify_edge(all.arm, all.set, problem.obstacles, as_span(q0), as_span(q1));
       ASSERT_TRUE(result.has_value());
-      ASSERT_EQ(result->verdict, VerifyVerdict::free) << problem.id << " at t " << result->t;
+      ASSERT_EQ(result->verdict, EdgeVerdict::free) << problem.id << " at t " << result->t;
       ASSERT_GE(result->distance, testing::least_clearance(all.arm, all.set, problem.obstacles,
                                                            as_span(q0), as_span(q1), 100) -
                                       0.01);
@@ -220,7 +220,7 @@ TEST(VerifyEdge, FindsAPlateBetweenTwoSamples) {
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
     scene.world.solids = {plate};
     const VerifyResult result = verify(scene, as_span(q0), as_span(q1));
-    ASSERT_EQ(result.verdict, VerifyVerdict::hit) << "round " << round;
+    ASSERT_EQ(result.verdict, EdgeVerdict::hit) << "round " << round;
     ASSERT_LE(result.t, t + 1e-9);
     const double found =
         clearance_of(scene, result, testing::on_edge(as_span(q0), as_span(q1), result.t));
@@ -262,7 +262,7 @@ TEST(VerifyEdge, FindsAPlateThatTheEdgeBendsInto) {
     const Eigen::Vector3d start = fk(scene.arm, one.from) * one.place;
     scene.world.solids = {{"plate", {start + one.toward, {}}, BoxShape{{5e-5, 0.5, 0.5}}}};
     scene.world.solids[0].X_WO.R.setIdentity();
-    EXPECT_EQ(verify(scene, one.from, q1).verdict, VerifyVerdict::hit) << one.rows.size();
+    EXPECT_EQ(verify(scene, one.from, q1).verdict, EdgeVerdict::hit) << one.rows.size();
   }
 }
 
@@ -280,38 +280,38 @@ TEST(VerifyEdge, MicronsOfClearanceAreEnoughAndNanometresOfOverlapTooMuch) {
   const std::vector<double> q0{-1}, q1{1};
   for (const double height : {1e-3, 1e-6, 1e-9, 1e-10}) {
     const VerifyResult result = verify(ball_over_floor(height), q0, q1);
-    EXPECT_EQ(result.verdict, VerifyVerdict::free) << height;
+    EXPECT_EQ(result.verdict, EdgeVerdict::free) << height;
     EXPECT_NEAR(result.distance, height, 1e-12);
     EXPECT_EQ(result.obstacle, 0);
-    EXPECT_EQ(verify(ball_over_floor(-height), q0, q1).verdict, VerifyVerdict::hit) << height;
+    EXPECT_EQ(verify(ball_over_floor(-height), q0, q1).verdict, EdgeVerdict::hit) << height;
   }
-  EXPECT_EQ(verify(ball_over_floor(0), q0, q1).verdict, VerifyVerdict::undecided);
+  EXPECT_EQ(verify(ball_over_floor(0), q0, q1).verdict, EdgeVerdict::undecided);
 }
 
 TEST(VerifyEdge, AllowedDepthIsAllowed) {
   const std::vector<double> q0{-1}, q1{1};
   const Scene scene = ball_over_floor(-1e-3);
-  EXPECT_EQ(verify(scene, q0, q1, {.allow_depth = 9.9e-4}).verdict, VerifyVerdict::hit);
+  EXPECT_EQ(verify(scene, q0, q1, {.allow_depth = 9.9e-4}).verdict, EdgeVerdict::hit);
   const VerifyResult result = verify(scene, q0, q1, {.allow_depth = 1.1e-3});
-  EXPECT_EQ(result.verdict, VerifyVerdict::free);
+  EXPECT_EQ(result.verdict, EdgeVerdict::free);
   EXPECT_NEAR(result.distance, -1e-3, 1e-12);
 }
 
 TEST(VerifyEdge, LimitsNumbersAndEdgesOfNoLength) {
   const Scene scene = ball_over_floor(0.1);
   const std::vector<double> inside{0.5}, edge{1.00005}, out{1.001}, none{std::nan("")};
-  EXPECT_EQ(verify(scene, inside, inside).verdict, VerifyVerdict::free);
-  EXPECT_EQ(verify(scene, inside, edge).verdict, VerifyVerdict::free);
-  EXPECT_EQ(verify(scene, inside, edge, {.limit_slack = 0}).verdict, VerifyVerdict::outside);
+  EXPECT_EQ(verify(scene, inside, inside).verdict, EdgeVerdict::free);
+  EXPECT_EQ(verify(scene, inside, edge).verdict, EdgeVerdict::free);
+  EXPECT_EQ(verify(scene, inside, edge, {.limit_slack = 0}).verdict, EdgeVerdict::outside);
   for (const std::vector<double>& bad : {out, none}) {
     const VerifyResult result = verify(scene, inside, bad);
-    EXPECT_EQ(result.verdict, VerifyVerdict::outside);
+    EXPECT_EQ(result.verdict, EdgeVerdict::outside);
     EXPECT_EQ(result.t, 1);
     EXPECT_EQ(result.joint, 0);
     EXPECT_EQ(verify(scene, bad, inside).t, 0);
   }
   const Scene touching = ball_over_floor(-0.01);
-  EXPECT_EQ(verify(touching, inside, inside).verdict, VerifyVerdict::hit);
+  EXPECT_EQ(verify(touching, inside, inside).verdict, EdgeVerdict::hit);
 }
 
 TEST(VerifyEdge, GivesUpWhereItsLooksAreUsedUp) {
@@ -319,8 +319,8 @@ TEST(VerifyEdge, GivesUpWhereItsLooksAreUsedUp) {
   Scene scene = ball_over_floor(1e-3);
   scene.arm = testing::make_arm("wheel", {{{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, -2, 2}}, Pose());
   scene.set.links[0].spheres[0].center = {0, 0, -0.899};
-  EXPECT_EQ(verify(scene, q0, q1).verdict, VerifyVerdict::free);
-  EXPECT_EQ(verify(scene, q0, q1, {.max_looks = 1}).verdict, VerifyVerdict::undecided);
+  EXPECT_EQ(verify(scene, q0, q1).verdict, EdgeVerdict::free);
+  EXPECT_EQ(verify(scene, q0, q1, {.max_looks = 1}).verdict, EdgeVerdict::undecided);
 }
 
 TEST(VerifyEdge, WhatItRefuses) {

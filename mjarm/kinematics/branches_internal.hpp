@@ -7,19 +7,9 @@
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/kinematics/reach.hpp"
 
-/// How closed forms plug into IkSolver. A closed form is a value class without heap memory (a plain
-/// public header, so that IkSolver can hold it by value):
-///
-///   class SixAxis {                                // seven_axis.hpp: class SevenAxis, likewise
-///    public:
-///     /// The form of `chain`, none where its geometry is another one.
-///     static std::optional<SixAxis> recognise(const Chain& chain);
-///     /// Appends the branches that reach the pose. Never allocates.
-///     void branches(const BranchQuery& query, Branches& out) const noexcept;
-///   };
-///
-/// IkSolver holds std::optional<SixAxis> six_ and std::optional<SevenAxis> seven_. Its front does
-/// for both: checking the input, Reach, winding each branch to the seed, limits, FK check and
+/// How closed forms (SixAxis, SevenAxis) plug into IkSolver. A closed form is a value class without
+/// heap memory, so that IkSolver can hold it by value; what it is asked here is not for users. The
+/// front of IkSolver does for both: checking the input, Reach, winding each branch to the seed, limits, FK check and
 /// polish by Newton's steps, the order by nearness, the predicate, the typed answer. Without a
 /// form, or where a form that is no proof finds nothing, the numeric search runs.
 namespace mjarm::detail {
@@ -61,6 +51,19 @@ struct Branches {
 
   /// A row to write to, null where the list is full.
   double* add() noexcept { return count < kCapacity ? q[count++] : nullptr; }
+};
+
+/// What users of the closed forms do not see.
+struct ClosedForm {
+  /// Appends the branches that reach the pose. Never allocates.
+  template <class Form>
+  static void branches(const Form& form, const BranchQuery& query, Branches& out) noexcept {
+    form.branches(query, out);
+  }
+  template <class Form>
+  static const auto& geometry(const Form& form) noexcept {
+    return form.geometry_;
+  }
 };
 
 }  // namespace mjarm::detail

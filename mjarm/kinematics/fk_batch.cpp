@@ -8,7 +8,7 @@
 namespace mjarm {
 namespace detail {
 
-const FkKernels kFkBaseline = {fk_rows<Lanes, double>, fk_rows<FloatLanes, float>};
+const FkKernels kFkBaseline = {fk_rows<Doubles, double>, fk_rows<Floats, float>};
 
 const FkKernels& fk_kernels() noexcept {
 #if defined(__x86_64__)

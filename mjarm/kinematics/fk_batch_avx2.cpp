@@ -2,6 +2,6 @@
 
 namespace mjarm::detail {
 
-const FkKernels kFkAvx2 = {fk_rows<Lanes, double>, fk_rows<FloatLanes, float>};
+const FkKernels kFkAvx2 = {fk_rows<Doubles, double>, fk_rows<Floats, float>};
 
 }  // namespace mjarm::detail

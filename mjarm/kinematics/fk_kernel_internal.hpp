@@ -3,12 +3,14 @@
 #include <algorithm>
 
 #include "mjarm/kinematics/fk_batch_internal.hpp"
-#include "mjarm/kinematics/lanes_internal.hpp"
+#include "mjarm/core/simd/functions.hpp"
 
 /// Forward kinematics of as many configurations as a register holds. Included by one file for each
 /// width of the registers.
 namespace mjarm::detail {
 inline namespace MJARM_LANES {
+
+using namespace simd;
 
 /// `V` lanes of type `T`: the pose reached, as position and columns of the rotation matrix.
 template <class V, class T>

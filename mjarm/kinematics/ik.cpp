@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "mjarm/core/messages/kinematics.hpp"
 #include "mjarm/kinematics/branch_choice_internal.hpp"
 #include "mjarm/kinematics/numeric_search_internal.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 using detail::BranchChoice;
 using detail::Branches;
 using detail::BranchQuery;
+using detail::ClosedForm;
 using detail::IkGoal;
 
 IkFailure failure_of(const ReachBreach& breach, const IkSolution& best) noexcept {
@@ -28,7 +30,7 @@ Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) 
   const IkOptions& options = ik.options();
   Branches branches;
   const BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
-  ik.six_axis()->branches(query, branches);
+  ClosedForm::branches(*ik.six_axis(), query, branches);
   BranchChoice choice(ik, goal);
   if (const auto solution = choice.nearest(branches)) return *solution;
   if (branches.complete && branches.count > 0) return fail(choice.failure(branches));
@@ -46,7 +48,7 @@ Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal
   BranchChoice choice(ik, goal);
   BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
   Branches branches;
-  ik.seven_axis()->branches(query, branches);
+  ClosedForm::branches(*ik.seven_axis(), query, branches);
   if (const auto breach = ik.reach().check(goal.X_WT)) {
     return fail(failure_of(*breach, choice.failure(branches).best));
   }
@@ -54,7 +56,7 @@ Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal
   if (choice.has_refused()) {
     query.all = true;
     branches.count = 0;
-    ik.seven_axis()->branches(query, branches);
+    ClosedForm::branches(*ik.seven_axis(), query, branches);
     if (const auto solution = choice.nearest(branches)) return *solution;
   }
   if (branches.complete) return fail(choice.failure(branches));
@@ -62,6 +64,17 @@ Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal
 }
 
 }  // namespace
+
+Result<IkSolver> IkSolver::create(const Arm& arm, IkOptions options) {
+  if (const char* const option = detail::option_out_of_range(options)) {
+    return fail(Errc::bad_input, text(msg::kinematics_ik_option, option));
+  }
+  IkSolver out(arm, std::move(options));
+  if (out.chain_.dof == 0) {
+    return fail(Errc::bad_input, text(msg::kinematics_arm_joints, arm.name, arm.dof(), kMaxDof));
+  }
+  return out;
+}
 
 IkSolver::IkSolver(const Arm& arm, IkOptions options)
     : arm_(arm),

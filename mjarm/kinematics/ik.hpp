@@ -40,6 +40,11 @@ enum class IkTask {
   position,  ///< position alone, as for an arm of fewer than six joints; any orientation will do
   axis,      ///< position and direction of the tool's z axis; the turn about it is free
 };
+/// The words for them: "pose", "position", "axis".
+[[nodiscard]] std::span<const std::string_view> ik_task_names() noexcept;
+/// The most that an arm can do everywhere: with fewer than six joints it cannot turn its tool as it
+/// likes.
+[[nodiscard]] IkTask task_for(const Arm& arm) noexcept;
 
 /// How hard to try, and when to call it solved. Every default is usable as is.
 struct IkOptions {
@@ -81,6 +86,11 @@ struct IkFailure {
 /// Inverse kinematics of one arm. A value: copy it to use it from another thread.
 class IkSolver {
  public:
+  /// For options that a user chose.
+  /// @return bad_input: one line that names the first option out of its range, or that says that the
+  /// arm has no joints or too many.
+  [[nodiscard]] static Result<IkSolver> create(const Arm& arm, IkOptions options);
+  /// For options that are known to be in their ranges: with others every solve is bad_input.
   explicit IkSolver(const Arm& arm, IkOptions options = {});
 
   /// Finds q with fk(q) within tolerance of `X_WT`. Where a closed form is known (six_axis.hpp,

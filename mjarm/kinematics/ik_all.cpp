@@ -42,7 +42,7 @@ void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answ
   detail::Branches branches;
   detail::BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
   query.all = true;
-  form.branches(query, branches);
+  detail::ClosedForm::branches(form, query, branches);
   detail::BranchChoice(ik, goal).each(branches,
                                       [&](const IkSolution& solution) { answers.add(solution); });
 }

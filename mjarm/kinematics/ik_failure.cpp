@@ -36,6 +36,13 @@ std::string describe_joint(const IkFailure& failure, const Arm& arm) {
 
 }  // namespace
 
+std::span<const std::string_view> ik_task_names() noexcept {
+  static constexpr std::string_view kNames[] = {"pose", "position", "axis"};
+  return kNames;
+}
+
+IkTask task_for(const Arm& arm) noexcept { return arm.dof() < 6 ? IkTask::position : IkTask::pose; }
+
 std::string_view name(IkErrc code) noexcept {
   switch (code) {
     case IkErrc::out_of_reach:

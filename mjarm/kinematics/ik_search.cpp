@@ -6,12 +6,20 @@
 
 namespace mjarm::detail {
 
+const char* option_out_of_range(const IkOptions& options) noexcept {
+  // Written so that NaN is refused.
+  if (!(options.pos_tol > 0)) return "pos_tol";
+  if (!(options.rot_tol > 0)) return "rot_tol";
+  if (options.max_iterations < 1) return "max_iterations";
+  if (options.restarts < 0) return "restarts";
+  if (!(options.max_step > 0)) return "max_step";
+  return nullptr;
+}
+
 bool check_goal(const Chain& chain, const IkOptions& options, const Pose& X_WT,
                 std::span<const double> q_seed, IkGoal& goal) noexcept {
   if (chain.dof == 0 || q_seed.size() != static_cast<std::size_t>(chain.dof)) return false;
-  // Written so that NaN is refused.
-  if (!(options.pos_tol > 0) || !(options.rot_tol > 0)) return false;
-  if (options.max_iterations < 1 || options.restarts < 0 || !(options.max_step > 0)) return false;
+  if (option_out_of_range(options) != nullptr) return false;
   if (!X_WT.p.allFinite() || !X_WT.R.allFinite()) return false;
   const Eigen::Matrix3d gram = X_WT.R.transpose() * X_WT.R;
   if (!gram.isIdentity(1e-6) || X_WT.R.col(0).cross(X_WT.R.col(1)).dot(X_WT.R.col(2)) < 0) {

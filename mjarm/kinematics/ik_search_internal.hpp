@@ -9,6 +9,9 @@
 
 namespace mjarm::detail {
 
+/// The first option that is out of its range; null where all are within.
+[[nodiscard]] const char* option_out_of_range(const IkOptions& options) noexcept;
+
 /// A pose goal and a seed that have passed the checks of check_goal().
 struct IkGoal {
   Pose X_WT;      ///< rotation orthonormal to rounding

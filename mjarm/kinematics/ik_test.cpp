@@ -244,11 +244,33 @@ TEST(IkFailure, BadInputIsRefused) {
   EXPECT_EQ(code(ik.solve(good, std::vector<double>{0, 0, nan, 0, 0, 0})), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, with(0, 1e-7, 50)).solve(good, as_span(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, with(1e-7, nan, 50)).solve(good, as_span(seed))), IkErrc::bad_input);
-  EXPECT_EQ(code(IkSolver(arm, with(1e-7, 1e-7, -1)).solve(good, as_span(seed))), IkErrc::bad_input);
+  EXPECT_EQ(code(IkSolver(arm, with(1e-7, 1e-7, -1)).solve(good, as_span(seed))),
+            IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, {.max_step = 0}).solve(good, as_span(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(arm, {.max_step = nan}).solve(good, as_span(seed))), IkErrc::bad_input);
   EXPECT_EQ(code(IkSolver(Arm{}).solve(good, as_span(seed))), IkErrc::bad_input);
   EXPECT_FALSE(describe(ik.solve(bad, as_span(seed)).error(), arm).empty());
+}
+
+TEST(IkSolver, OptionsOutOfRangeAreNamedAtOnce) {
+  const Arm arm = ur5e();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [&](IkOptions options, const std::string& word) {
+    const auto made = IkSolver::create(arm, std::move(options));
+    return !made && made.error().code == Errc::bad_input &&
+           made.error().what.find(word) != std::string::npos;
+  };
+  EXPECT_TRUE(refused({.pos_tol = 0}, "pos_tol"));
+  EXPECT_TRUE(refused({.pos_tol = nan}, "pos_tol"));
+  EXPECT_TRUE(refused({.rot_tol = -1}, "rot_tol"));
+  EXPECT_TRUE(refused({.max_iterations = 0}, "max_iterations"));
+  EXPECT_TRUE(refused({.restarts = -1}, "restarts"));
+  EXPECT_TRUE(refused({.max_step = nan}, "max_step"));
+  EXPECT_FALSE(IkSolver::create(Arm{}, {}).has_value());
+  const auto made = IkSolver::create(arm, {.restarts = 0});
+  ASSERT_TRUE(made.has_value());
+  const JointVec q = joint_vec(std::vector<double>{0.1, -1, 1, 0.4, 1, 0});
+  EXPECT_TRUE(made->solve(fk(arm, as_span(q)), as_span(q)).has_value());
 }
 
 TEST(IkFailure, RefusedEverywhereIsCollision) {
@@ -287,6 +309,16 @@ TEST(Ik, NamesOfTheReasons) {
   EXPECT_EQ(name(IkErrc::no_convergence), "no_convergence");
   EXPECT_EQ(name(IkErrc::too_far), "too_far");
   EXPECT_EQ(name(IkErrc::bad_input), "bad_input");
+}
+
+TEST(IkTask, HasItsWordsAndFewJointsAreAskedForThePositionAlone) {
+  EXPECT_EQ(ik_task_names()[static_cast<std::size_t>(IkTask::position)], "position");
+  EXPECT_EQ(ik_task_names().size(), 3U);
+  Arm arm;
+  arm.joints.resize(5);
+  EXPECT_EQ(task_for(arm), IkTask::position);
+  arm.joints.resize(6);
+  EXPECT_EQ(task_for(arm), IkTask::pose);
 }
 
 }  // namespace

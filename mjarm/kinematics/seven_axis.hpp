@@ -8,7 +8,7 @@ namespace mjarm {
 namespace detail {
 struct BranchQuery;
 struct Branches;
-}  // namespace detail
+struct ClosedForm;
 
 /// What the closed form of seven axes reads of an arm. Matrices by columns. Frame k is the moved
 /// frame of joint k + 1, ku the same before its motion; S is the shoulder, W the wrist.
@@ -30,6 +30,8 @@ struct SevenGeometry {
   double half_cos[7];  ///< of half their width; -2 for a joint of a full turn
 };
 
+}  // namespace detail
+
 /// Closed form for arms of seven hinges whose axes 1 to 3 meet in a shoulder S and whose axes 5 and
 /// 6 meet in a wrist W, with any offsets at the elbow and before the last joint: Franka's arms,
 /// xArm 7, KUKA's iiwa. The last joint is the parameter: at each of its values the pose of link 6
@@ -43,16 +45,16 @@ class SevenAxis {
   /// The form of `chain`, none where its axes do not meet so.
   static std::optional<SevenAxis> recognise(const Chain& chain);
 
+ private:
+  friend struct detail::ClosedForm;
+
   /// Appends answers within the limits, searched over the whole range of the last joint: the one
   /// nearest to the seed first, and all that the sampling met where `query.all` is set. Where none
   /// is within the limits, the sample of a whole turn of the last joint that breaks them least, by
   /// the cosine of the angle beyond. Never allocates.
   void branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept;
 
-  [[nodiscard]] const SevenGeometry& geometry() const noexcept { return geometry_; }
-
- private:
-  SevenGeometry geometry_;
+  detail::SevenGeometry geometry_;
   Chain chain_;
 
   explicit SevenAxis(const Chain& chain) : chain_(chain) {}

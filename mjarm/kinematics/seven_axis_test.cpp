@@ -59,7 +59,7 @@ struct Asked {
 void ask(const SevenAxis& form, const Arm& arm, const Pose& X_WT, const JointVec& seed,
          Asked& asked, bool all = false) {
   asked.out.count = 0;
-  form.branches({X_WT, seed.data(), 1e-7, 1e-7, all}, asked.out);
+  detail::ClosedForm::branches(form, {X_WT, seed.data(), 1e-7, 1e-7, all}, asked.out);
   asked.within = false;
   if (asked.out.count == 0) return;
   asked.q = joint_vec({asked.out.q[0], 7});
@@ -215,12 +215,13 @@ TEST(SevenAxis, WidthsOfRegistersAgree) {
   Asked asked;
   const auto form = SevenAxis::recognise(Chain(arm));
   const Pose X_WT = fk(arm, as_span(random_q(arm, rng)));
-  const Pose X_W6 = X_WT * form->geometry().X_T6;
+  const detail::SevenGeometry& geometry = detail::ClosedForm::geometry(*form);
+  const Pose X_W6 = X_WT * geometry.X_T6;
   const Eigen::Vector3d p_6S =
-      X_W6.R.transpose() * (Eigen::Map<const Eigen::Vector3d>(form->geometry().p_WS) - X_W6.p);
+      X_W6.R.transpose() * (Eigen::Map<const Eigen::Vector3d>(geometry.p_WS) - X_W6.p);
   std::copy_n(p_6S.data(), 3, goal.p_6S);
   const Eigen::Matrix3d R =
-      Eigen::Map<const Eigen::Matrix3d>(form->geometry().R_W0).transpose() * X_W6.R;
+      Eigen::Map<const Eigen::Matrix3d>(geometry.R_W0).transpose() * X_W6.R;
   std::copy_n(R.data(), 9, goal.R_0u6);
   for (int i = 0; i < 7; ++i) {
     goal.near_cos[i] = 1;
@@ -230,12 +231,12 @@ TEST(SevenAxis, WidthsOfRegistersAgree) {
   for (double& q : q7) q = rng.uniform(-2.8, 2.8);
   detail::SevenBlock narrow, wide;
   goal.beyond_limits = true;
-  detail::seven_block_baseline(form->geometry(), goal, q7, narrow);
+  detail::seven_block_baseline(geometry, goal, q7, narrow);
   for (const SimdLevel level : {SimdLevel::avx2, SimdLevel::avx512}) {
     if (simd_level() < level) continue;
     const auto kernel =
         level == SimdLevel::avx2 ? detail::seven_block_avx2 : detail::seven_block_avx512;
-    kernel(form->geometry(), goal, q7, wide);
+    kernel(geometry, goal, q7, wide);
     for (int branch = 0; branch < 8; ++branch) {
       for (int lane = 0; lane < detail::kBlock; ++lane) {
         EXPECT_NEAR(wide.beyond[branch][lane], narrow.beyond[branch][lane], 1e-9);

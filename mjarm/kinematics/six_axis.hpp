@@ -12,6 +12,7 @@ namespace detail {
 
 struct BranchQuery;
 struct Branches;
+struct ClosedForm;
 
 /// The first joint turns until a point lies at a given height along the axis of the second.
 struct ShoulderStep {
@@ -62,10 +63,6 @@ class SixAxis {
   /// (calibrated arms): then the branches are starts for Newton's steps, see defect().
   static std::optional<SixAxis> recognise(const Chain& chain);
 
-  /// Appends the branches that reach the pose, limits left aside. A missing one is told in
-  /// `out.why` by how much it misses. Never allocates.
-  void branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept;
-
   /// How far the axes are from those of the form [rad and m]; up to 1e-5 (rounded figures of a
   /// file) "no branch" is a proof.
   [[nodiscard]] double defect() const noexcept { return defect_; }
@@ -74,6 +71,12 @@ class SixAxis {
   [[nodiscard]] bool is_parallel() const noexcept { return parallel_; }
 
  private:
+  friend struct detail::ClosedForm;
+
+  /// Appends the branches that reach the pose, limits left aside. A missing one is told in
+  /// `out.why` by how much it misses. Never allocates.
+  void branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept;
+
   SixAxis() = default;
   class Walk;
 

@@ -87,7 +87,7 @@ TEST(GoalRegion, WhereAllCollidesTheyAreGivenSoThatThePlannerSaysWithWhat) {
   const auto goals = goals_of({.X_WR = inside});
   ASSERT_TRUE(goals);
   for (const JointVec& q : *goals) EXPECT_FALSE(arm.checker.is_free(as_span(q)));
-  const auto path = plan_path(arm.checker, as_span(near()), as_span(goals->front()));
+  const auto path = plan_path(arm.checker, as_span(near()), std::span(*goals).first(1));
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().reason, PlanErrc::goals_hit);
 }

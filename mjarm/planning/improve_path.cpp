@@ -53,9 +53,9 @@ class Settler {
 }  // namespace
 
 RawPath improve_path(const FastChecker& checker, std::span<const double> start,
-                     std::span<const double> goals, RawPath best, const PlanOptions& options,
+                     std::span<const JointVec> goals, RawPath best, const PlanOptions& options,
                      double left_us) {
-  auto problem = detail::look_at_problem(checker, start, goals, options);
+  auto problem = detail::validate_problem(checker, start, goals, options);
   if (!problem) return best;
   const bool timed = options.time_budget > 0;
   if (timed && left_us <= 0) return best;

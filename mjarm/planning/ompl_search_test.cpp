@@ -10,9 +10,13 @@
 #include "mjarm/kinematics/long_tests_test.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/plan_path.hpp"
+#include "mjarm/planning/goals_test.hpp"
 
 namespace mjarm {
 namespace {
+
+using testing::goal_at;
+using testing::goals_at;
 
 /// Two links of 0.5 m that turn about z, the first without stops, and posts in their way.
 struct PostWorld {
@@ -88,7 +92,7 @@ TEST_P(OmplPlanner, GoesRoundAPostToTheGoalThatCanBeReached) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
   ASSERT_EQ(check_edge(checker, kHere, kThere).verdict, EdgeVerdict::hit);
-  const std::vector<double> goals{0, 0, 0, 5, -0.8, 0};  // in collision, outside, behind the post
+  const auto goals = goals_at({{0, 0}, {0, 5}, {-0.8, 0}});  // in collision, outside, behind the post
   const PlanOptions options = ompl_options(GetParam(), 700);
   const auto raw = find_path(checker, kHere, goals, options);
   ASSERT_TRUE(raw) << describe(raw.error(), checker.robot(), flat.world);
@@ -108,7 +112,7 @@ TEST_P(OmplPlanner, GoesRoundAPostToTheGoalThatCanBeReached) {
 TEST_P(OmplPlanner, SameBytesWhateverElseRuns) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
-  const std::vector<double> goals{-0.8, 0, -0.8, 1, -2.4, -0.5};
+  const auto goals = goals_at({{-0.8, 0}, {-0.8, 1}, {-2.4, -0.5}});
   const PlanOptions options = ompl_options(GetParam(), 700);
   const auto search = [&] { return numbers_of(find_path(checker, kHere, goals, options)); };
   const std::vector<double> alone = search();
@@ -121,7 +125,7 @@ TEST_P(OmplPlanner, SameBytesWhateverElseRuns) {
     for (auto& out : together) threads.emplace_back([&] { out = search(); });
     threads.emplace_back([&] {  // others
       for (const std::string& name : ompl_planner_names()) {
-        (void)find_path(checker, kThere, kHere, ompl_options(name, 200));
+        (void)find_path(checker, kThere, goal_at(kHere), ompl_options(name, 200));
       }
     });
   }
@@ -132,9 +136,9 @@ TEST_P(OmplPlanner, SeedsDiffer) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
   PlanOptions options = ompl_options(GetParam(), 700);
-  const auto one = numbers_of(find_path(checker, kHere, kThere, options));
+  const auto one = numbers_of(find_path(checker, kHere, goal_at(kThere), options));
   options.seed = 2;
-  EXPECT_NE(numbers_of(find_path(checker, kHere, kThere, options)), one);
+  EXPECT_NE(numbers_of(find_path(checker, kHere, goal_at(kThere), options)), one);
 }
 
 TEST_P(OmplPlanner, AGoalWalledInSpendsTheBudget) {
@@ -145,7 +149,7 @@ TEST_P(OmplPlanner, AGoalWalledInSpendsTheBudget) {
   }
   const FastChecker checker = flat.checker();
   ASSERT_TRUE(checker.is_free(kThere));
-  const auto path = plan_path(checker, kHere, kThere, ompl_options(GetParam(), 1200));
+  const auto path = plan_path(checker, kHere, goal_at(kThere), ompl_options(GetParam(), 1200));
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().reason, PlanErrc::budget_spent);
   EXPECT_LE(path.error().samples, 1200 + 1000);  // some draw in batches
@@ -166,7 +170,7 @@ TEST_P(OmplPlanner, EveryPathInRandomWorldsIsFree) {
     const JointVec start = testing::random_q(arm, rng), goal = testing::random_q(arm, rng);
     PlanOptions options = ompl_options(GetParam(), 400);
     options.seed = static_cast<std::uint64_t>(round);
-    const auto path = plan_path(checker, as_span(start), as_span(goal), options);
+    const auto path = plan_path(checker, as_span(start), goal_at(as_span(goal)), options);
     if (!path) {
       EXPECT_NE(path.error().reason, PlanErrc::unproved);
       EXPECT_NE(path.error().reason, PlanErrc::back_end);
@@ -188,26 +192,26 @@ TEST_F(Ompl, FailuresAreThoseOfThePlannersHere) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
   const std::array<double, 2> inside{0, 0}, beyond{0, 3.5};
-  const auto reason = [&](std::span<const double> start, std::span<const double> goals) {
+  const auto reason = [&](std::span<const double> start, const std::vector<JointVec>& goals) {
     const auto path = plan_path(checker, start, goals, ompl_options("RRTConnect", 100));
     return path ? PlanErrc::unproved : path.error().reason;
   };
-  EXPECT_EQ(reason(inside, kThere), PlanErrc::start_hit);
-  EXPECT_EQ(reason(beyond, kThere), PlanErrc::start_outside);
-  EXPECT_EQ(reason(kHere, inside), PlanErrc::goals_hit);
-  EXPECT_EQ(reason(kHere, beyond), PlanErrc::goals_outside);
+  EXPECT_EQ(reason(inside, goal_at(kThere)), PlanErrc::start_hit);
+  EXPECT_EQ(reason(beyond, goal_at(kThere)), PlanErrc::start_outside);
+  EXPECT_EQ(reason(kHere, goal_at(inside)), PlanErrc::goals_hit);
+  EXPECT_EQ(reason(kHere, goal_at(beyond)), PlanErrc::goals_outside);
   EXPECT_EQ(reason(kHere, {}), PlanErrc::bad_input);
-  EXPECT_EQ(reason(std::array{std::nan(""), 0.0}, kThere), PlanErrc::bad_input);
+  EXPECT_EQ(reason(std::array{std::nan(""), 0.0}, goal_at(kThere)), PlanErrc::bad_input);
 }
 
 TEST_F(Ompl, StraightWaysAndNoWayAtAllNeedNoSearch) {
   PostWorld flat;
   const FastChecker blocked = flat.checker();
-  const auto none = plan_path(blocked, kHere, kHere, ompl_options("BITstar", 100));
+  const auto none = plan_path(blocked, kHere, goal_at(kHere), ompl_options("BITstar", 100));
   ASSERT_TRUE(none);
   EXPECT_EQ(none->cost, 0);
   flat.world = {};
-  const auto straight = plan_path(flat.checker(), kHere, kThere, ompl_options("RRT", 100));
+  const auto straight = plan_path(flat.checker(), kHere, goal_at(kThere), ompl_options("RRT", 100));
   ASSERT_TRUE(straight);
   EXPECT_EQ(straight->q.size(), 2u);
   EXPECT_EQ(straight->counts.samples, 0);
@@ -220,7 +224,7 @@ TEST_F(Ompl, PlannersThatImproveUseTheirTimeAndTheOthersDoNot) {
     PlanOptions options = ompl_options(improves ? "BITstar" : "RRTConnect", 0);
     options.time_budget = 0.3;
     const Stopwatch watch;
-    const auto path = plan_path(checker, kHere, kThere, options);
+    const auto path = plan_path(checker, kHere, goal_at(kThere), options);
     ASSERT_TRUE(path);
     expect_clear(checker, flat.world, path->q);
     EXPECT_EQ(watch.us() > 0.2e6, improves);
@@ -236,7 +240,7 @@ TEST_F(Ompl, TimeEndsASearchThatFindsNothing) {
   PlanOptions options = ompl_options("RRTstar", 1'000'000);
   options.time_budget = 0.05;
   const Stopwatch watch;
-  const auto path = plan_path(flat.checker(), kHere, kThere, options);
+  const auto path = plan_path(flat.checker(), kHere, goal_at(kThere), options);
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().reason, PlanErrc::budget_spent);
   EXPECT_LT(path.error().samples, 1'000'000);
@@ -246,7 +250,7 @@ TEST_F(Ompl, TimeEndsASearchThatFindsNothing) {
 TEST_F(Ompl, UnknownPlannersAreNotAvailable) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
-  const auto path = plan_path(checker, kHere, kThere, ompl_options("Dijkstra", 100));
+  const auto path = plan_path(checker, kHere, goal_at(kThere), ompl_options("Dijkstra", 100));
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().reason, PlanErrc::not_available);
   const std::string line = describe(path.error(), checker.robot(), flat.world);
@@ -257,7 +261,7 @@ TEST(OmplNotBuiltIn, SaysHowToGetIt) {
   if (!ompl_version().empty()) GTEST_SKIP() << "OMPL is built in";
   const PostWorld flat;
   const FastChecker checker = flat.checker();
-  const auto path = plan_path(checker, kHere, kThere, ompl_options("RRTConnect", 100));
+  const auto path = plan_path(checker, kHere, goal_at(kThere), ompl_options("RRTConnect", 100));
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().reason, PlanErrc::not_available);
   const std::string line = describe(path.error(), checker.robot(), flat.world);

@@ -41,8 +41,8 @@ double path_length(std::span<const JointVec> q) noexcept {
 }
 
 Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<const double> start,
-                                       std::span<const double> goals, const PlanOptions& options) {
-  const auto problem = detail::look_at_problem(checker, start, goals, options);
+                                       std::span<const JointVec> goals, const PlanOptions& options) {
+  const auto problem = detail::validate_problem(checker, start, goals, options);
   if (!problem) return tl::unexpected(problem.error());
   if (options.planner == Planner::rrt_star) return detail::rrt_star(*problem, options);
   if (options.planner == Planner::ompl) return detail::ompl_search(*problem, options);
@@ -75,17 +75,20 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
 
 Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
                                            std::span<const double> start,
-                                           std::span<const double> goals,
-                                           const PlanOptions& options) {
+                                           std::span<const JointVec> goals,
+                                           const PlanOptions& options, PlanTimes* times) {
   const Stopwatch watch;
   Result<RawPath, PlanFailure> raw = find_path(checker, start, goals, options);
-  if (!raw) return tl::unexpected(raw.error());
   const bool again = options.rounds > 0 || options.time_budget > 0;
-  if (again && options.planner != Planner::ompl) {
+  if (raw && again && options.planner != Planner::ompl) {
     const double left_us = 1e6 * options.time_budget - watch.us();
     *raw = improve_path(checker, start, goals, std::move(*raw), options, left_us);
   }
-  return finish_path(checker, std::move(*raw), options);
+  if (times != nullptr) times->search_us = watch.us();
+  if (!raw) return tl::unexpected(raw.error());
+  Result<PlannedPath, PlanFailure> out = finish_path(checker, std::move(*raw), options);
+  if (times != nullptr) times->finish_us = watch.us() - times->search_us;
+  return out;
 }
 
 }  // namespace mjarm

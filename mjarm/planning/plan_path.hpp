@@ -112,10 +112,10 @@ struct PlannedPath {
 
 /// Searches a path from `start` to any of `goals`. Every edge of it is proved free by check_edge().
 /// @param start  shape (dof,) [rad or m].
-/// @param goals  shape (n, dof), row by row, n >= 1; those in collision are left out.
+/// @param goals  shape (n,), n >= 1, each (dof,); those in collision are left out.
 [[nodiscard]] Result<RawPath, PlanFailure> find_path(const FastChecker& checker,
                                                      std::span<const double> start,
-                                                     std::span<const double> goals,
+                                                     std::span<const JointVec> goals,
                                                      const PlanOptions& options = {});
 
 /// Shortens a path of find_path() and proves it again.
@@ -129,14 +129,22 @@ struct PlannedPath {
 /// and T. S. Wilson et al., AORRTC, 2025), each result and the best one shortened further.
 /// @param left_us  [us] of PlanOptions::time_budget that are left; without one, the rounds count.
 [[nodiscard]] RawPath improve_path(const FastChecker& checker, std::span<const double> start,
-                                   std::span<const double> goals, RawPath best,
+                                   std::span<const JointVec> goals, RawPath best,
                                    const PlanOptions& options, double left_us);
 
-/// find_path(), finish_path() and, where rounds or a time budget are given, improve_path().
+/// How long plan_path() took.
+struct PlanTimes {
+  double search_us = 0;  ///< [us] find_path() and improve_path()
+  double finish_us = 0;  ///< [us] finish_path()
+};
+
+/// find_path(), where rounds or a time budget are given improve_path(), and finish_path().
+/// @param times  where given, is filled; nothing else of what comes back depends on a clock.
 [[nodiscard]] Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
                                                          std::span<const double> start,
-                                                         std::span<const double> goals,
-                                                         const PlanOptions& options = {});
+                                                         std::span<const JointVec> goals,
+                                                         const PlanOptions& options = {},
+                                                         PlanTimes* times = nullptr);
 
 /// [rad or m] sum of the L2 lengths of the edges.
 [[nodiscard]] double path_length(std::span<const JointVec> q) noexcept;

@@ -9,10 +9,14 @@
 #include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
+#include "mjarm/planning/goals_test.hpp"
 #include "mjarm/planning/search_internal.hpp"
 
 namespace mjarm {
 namespace {
+
+using testing::goal_at;
+using testing::goals_at;
 
 /// Two links of 0.5 m that turn about z, each a row of balls of 0.06 m.
 Arm flat_arm() {
@@ -80,7 +84,7 @@ TEST(PlanPath, GoesRoundAPostThatTheStraightWayHits) {
   const Arm arm = flat_arm();
   const FastChecker checker = checker_of(arm, flat_spheres(), post());
   ASSERT_EQ(check_edge(checker, kLeft, kRight).verdict, EdgeVerdict::hit);
-  const auto path = plan_path(checker, kLeft, kRight);
+  const auto path = plan_path(checker, kLeft, goal_at(kRight));
   ASSERT_TRUE(path);
   EXPECT_GT(path->q.size(), 2u);
   EXPECT_EQ(path->q.front(), joint_vec(kLeft));
@@ -90,7 +94,7 @@ TEST(PlanPath, GoesRoundAPostThatTheStraightWayHits) {
 
 TEST(PlanPath, TakesTheStraightWayWhereItIsFree) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), {});
-  const auto path = plan_path(checker, kLeft, kRight);
+  const auto path = plan_path(checker, kLeft, goal_at(kRight));
   ASSERT_TRUE(path);
   EXPECT_EQ(path->q.size(), 2u);
   EXPECT_NEAR(path->cost, 1.6, 1e-12);
@@ -112,7 +116,7 @@ TEST(EdgeProver, LimitsCountAsTheyDoForStartAndGoals) {
 
 TEST(PlanPath, AStartThatIsTheGoalIsAPathOfNoLength) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
-  const auto path = plan_path(checker, kLeft, kLeft);
+  const auto path = plan_path(checker, kLeft, goal_at(kLeft));
   ASSERT_TRUE(path);
   EXPECT_EQ(path->q.size(), 2u);
   EXPECT_EQ(path->cost, 0);
@@ -139,9 +143,9 @@ TEST(PlanPath, HandsOverItsTreesWhereTheyAreAskedFor) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
   for (const Planner planner : {Planner::rrt_connect, Planner::rrt_star}) {
     PlanOptions options{.planner = planner, .samples = 300};
-    const auto without = plan_path(checker, kLeft, kRight, options);
+    const auto without = plan_path(checker, kLeft, goal_at(kRight), options);
     options.keep_trees = true;
-    const auto with = plan_path(checker, kLeft, kRight, options);
+    const auto with = plan_path(checker, kLeft, goal_at(kRight), options);
     ASSERT_TRUE(without);
     ASSERT_TRUE(with);
     EXPECT_TRUE(without->trees.empty());
@@ -157,7 +161,7 @@ TEST(PlanPath, HandsOverItsTreesWhereTheyAreAskedFor) {
 
 TEST(PlanPath, RoundsHandOverTheTreesOfTheSearchThatFoundThePath) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
-  const auto path = plan_path(checker, kLeft, kRight, {.rounds = 5, .keep_trees = true});
+  const auto path = plan_path(checker, kLeft, goal_at(kRight), {.rounds = 5, .keep_trees = true});
   ASSERT_TRUE(path);
   ASSERT_EQ(path->trees.size(), 2U);
   for (const SearchTree& tree : path->trees) expect_tree(checker, tree);
@@ -166,44 +170,44 @@ TEST(PlanPath, RoundsHandOverTheTreesOfTheSearchThatFoundThePath) {
 TEST(PlanPath, EndsAtOneOfTheGoalsAndSaysWhich) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
   // In collision, outside of the limits, behind the post, near.
-  const std::vector<double> goals{0, 0, 0, 5, -0.8, 0, 1.4, 0.3};
+  const auto goals = goals_at({{0, 0}, {0, 5}, {-0.8, 0}, {1.4, 0.3}});
   const auto path = plan_path(checker, kLeft, goals);
   ASSERT_TRUE(path);
   EXPECT_EQ(path->goal, 3);
-  EXPECT_EQ(path->q.back(), joint_vec({goals.data() + 6, 2}));
+  EXPECT_EQ(path->q.back(), goals[3]);
 }
 
 TEST(PlanPath, SaysWhyThereIsNone) {
   const Arm arm = flat_arm();
   const FastChecker checker = checker_of(arm, flat_spheres(), post());
   const std::array<double, 2> inside{0, 0}, beyond{0, 3.5};
-  const auto reason = [&](std::span<const double> start, std::span<const double> goals) {
+  const auto reason = [&](std::span<const double> start, const std::vector<JointVec>& goals) {
     const auto path = plan_path(checker, start, goals);
     return path ? PlanErrc::unproved : path.error().reason;
   };
-  EXPECT_EQ(reason(inside, kRight), PlanErrc::start_hit);
-  EXPECT_EQ(reason(beyond, kRight), PlanErrc::start_outside);
-  EXPECT_EQ(reason(kLeft, inside), PlanErrc::goals_hit);
-  EXPECT_EQ(reason(kLeft, beyond), PlanErrc::goals_outside);
+  EXPECT_EQ(reason(inside, goal_at(kRight)), PlanErrc::start_hit);
+  EXPECT_EQ(reason(beyond, goal_at(kRight)), PlanErrc::start_outside);
+  EXPECT_EQ(reason(kLeft, goal_at(inside)), PlanErrc::goals_hit);
+  EXPECT_EQ(reason(kLeft, goal_at(beyond)), PlanErrc::goals_outside);
   EXPECT_EQ(reason(kLeft, {}), PlanErrc::bad_input);
-  EXPECT_EQ(reason(kLeft, std::array{0.1, 0.2, 0.3}), PlanErrc::bad_input);
-  EXPECT_EQ(reason({kLeft.data(), 1}, kRight), PlanErrc::bad_input);
-  EXPECT_EQ(reason(std::array{std::nan(""), 0.0}, kRight), PlanErrc::bad_input);
-  EXPECT_EQ(reason(kLeft, std::array{std::numeric_limits<double>::infinity(), 0.0}),
+  EXPECT_EQ(reason(kLeft, goal_at(std::array{0.1, 0.2, 0.3})), PlanErrc::bad_input);
+  EXPECT_EQ(reason({kLeft.data(), 1}, goal_at(kRight)), PlanErrc::bad_input);
+  EXPECT_EQ(reason(std::array{std::nan(""), 0.0}, goal_at(kRight)), PlanErrc::bad_input);
+  EXPECT_EQ(reason(kLeft, goal_at(std::array{std::numeric_limits<double>::infinity(), 0.0})),
             PlanErrc::bad_input);
 }
 
 TEST(PlanPath, NamesWhatOverlaps) {
   const Obstacles world = post();
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), world);
-  const auto path = plan_path(checker, std::array{0.0, 0.0}, kRight);
+  const auto path = plan_path(checker, std::array{0.0, 0.0}, goal_at(kRight));
   ASSERT_FALSE(path);
   // Radii are padded, so that the depth is a hair more.
   EXPECT_NE(
       describe(path.error(), checker.robot(), world)
           .find("the start is in collision: link \"lower\" overlaps obstacle \"post\" by 90.0"),
       std::string::npos);
-  const auto outside = plan_path(checker, std::array{0.0, 3.5}, kRight);
+  const auto outside = plan_path(checker, std::array{0.0, 3.5}, goal_at(kRight));
   EXPECT_EQ(describe(outside.error(), checker.robot(), world),
             "the start is outside of the limits: joint \"joint2\" at 3.5, expected -2.8 to 2.8");
 }
@@ -214,7 +218,7 @@ TEST(PlanPath, ALinkAtRestThatOverlapsIsNamed) {
   Obstacles world;
   world.solids.push_back({"floor", {{0, 0, -0.3}, Eigen::Matrix3d::Identity()}, HalfSpaceShape{}});
   const FastChecker checker = checker_of(flat_arm(), set, world);
-  const auto path = plan_path(checker, kLeft, kRight);
+  const auto path = plan_path(checker, kLeft, goal_at(kRight));
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().reason, PlanErrc::base_hit);
   EXPECT_EQ(describe(path.error(), checker.robot(), world),
@@ -234,7 +238,7 @@ TEST(PlanPath, AGoalWalledInSpendsTheBudgetAndSaysHowNearItCame) {
     PlanOptions options;
     options.planner = planner;
     options.samples = 500;
-    const auto path = plan_path(checker, kLeft, kRight, options);
+    const auto path = plan_path(checker, kLeft, goal_at(kRight), options);
     ASSERT_FALSE(path);
     EXPECT_EQ(path.error().reason, PlanErrc::budget_spent);
     EXPECT_EQ(path.error().samples, 500);
@@ -249,10 +253,10 @@ TEST(PlanPath, SameSeedSamePathAndOthersDiffer) {
   for (const Planner planner : {Planner::rrt_connect, Planner::rrt_star}) {
     options.planner = planner;
     options.seed = 1;
-    const auto first = plan_path(checker, kLeft, kRight, options);
-    const auto again = plan_path(checker, kLeft, kRight, options);
+    const auto first = plan_path(checker, kLeft, goal_at(kRight), options);
+    const auto again = plan_path(checker, kLeft, goal_at(kRight), options);
     options.seed = 2;
-    const auto other = plan_path(checker, kLeft, kRight, options);
+    const auto other = plan_path(checker, kLeft, goal_at(kRight), options);
     ASSERT_TRUE(first && again && other);
     EXPECT_EQ(rows(first->q), rows(again->q));
     EXPECT_NE(rows(first->q), rows(other->q));
@@ -263,11 +267,11 @@ TEST(PlanPath, RoundsNeverLengthenAndTheBestWayIsNearlyFound) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
   PlanOptions options;
   options.shortcuts = 0;
-  const double first = plan_path(checker, kLeft, kRight, options).value().cost;
+  const double first = plan_path(checker, kLeft, goal_at(kRight), options).value().cost;
   double before = first;
   for (const int rounds : {1, 5, 50}) {
     options.rounds = rounds;
-    const auto path = plan_path(checker, kLeft, kRight, options);
+    const auto path = plan_path(checker, kLeft, goal_at(kRight), options);
     ASSERT_TRUE(path);
     expect_free(checker, post(), *path);
     EXPECT_LE(path->cost, before + 1e-9);
@@ -277,7 +281,7 @@ TEST(PlanPath, RoundsNeverLengthenAndTheBestWayIsNearlyFound) {
   options.planner = Planner::rrt_star;
   options.samples = 2000;
   options.rounds = 0;
-  EXPECT_GT(plan_path(checker, kLeft, kRight, options).value().cost, 0.97 * before);
+  EXPECT_GT(plan_path(checker, kLeft, goal_at(kRight), options).value().cost, 0.97 * before);
   EXPECT_LT(before, first);
 }
 
@@ -287,8 +291,8 @@ TEST(PlanPath, RoundsLookBeyondAGoalThatIsStraightAhead) {
   world.solids.front().X_WO.p.x() = 0.9;
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), world);
   const std::array<double, 2> start{0.35, 0};
-  const std::vector<double> goals{-0.35, 0, 2.9, 2.79};
-  ASSERT_EQ(check_edge(checker, start, {goals.data(), 2}).verdict, EdgeVerdict::hit);
+  const auto goals = goals_at({{-0.35, 0}, {2.9, 2.79}});
+  ASSERT_EQ(check_edge(checker, start, as_span(goals[0])).verdict, EdgeVerdict::hit);
   PlanOptions options;
   EXPECT_EQ(plan_path(checker, start, goals, options).value().goal, 1);
   options.rounds = 20;
@@ -299,11 +303,11 @@ TEST(PlanPath, ATimeBudgetIsKept) {
   const FastChecker checker = checker_of(flat_arm(), flat_spheres(), post());
   PlanOptions options;
   options.time_budget = 1e-3;
-  const auto path = plan_path(checker, kLeft, kRight, options);
+  const auto path = plan_path(checker, kLeft, goal_at(kRight), options);
   ASSERT_TRUE(path);
   expect_free(checker, post(), *path);
   options.time_budget = 1e-9;  // spent before anything was found: the first path counts
-  EXPECT_TRUE(plan_path(checker, kLeft, kRight, options));
+  EXPECT_TRUE(plan_path(checker, kLeft, goal_at(kRight), options));
 }
 
 /// Random arms between random solids: every path is free by other code.
@@ -324,7 +328,7 @@ TEST_P(PlanRandomWorlds, EveryPathIsFree) {
     options.planner = GetParam();
     options.samples = 300;
     options.seed = static_cast<std::uint64_t>(round);
-    const auto path = plan_path(checker, as_span(start), as_span(goal), options);
+    const auto path = plan_path(checker, as_span(start), goal_at(as_span(goal)), options);
     if (!path) {
       EXPECT_FALSE(describe(path.error(), *robot, world).empty());
       EXPECT_NE(path.error().reason, PlanErrc::unproved);

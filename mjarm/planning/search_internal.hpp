@@ -24,7 +24,7 @@ class Deadline {
   double left_us_ = 0;  // 0: never
 };
 
-/// A problem whose start and goals were looked at.
+/// A problem whose start and goals were checked. Its spans are those of the user.
 struct SearchProblem {
   const FastChecker& checker;
   std::span<const double> start;
@@ -51,8 +51,8 @@ class EdgeProver {
   EdgeResult look(std::span<const double> a, std::span<const double> b) {
     ++counts_.edges;
     const Arm& arm = checker_.robot().arm();
-    if (outside_joint(arm, a) >= 0) return {EdgeVerdict::hit, 0};
-    if (outside_joint(arm, b) >= 0) return {EdgeVerdict::hit, 1};
+    if (outside_joint(arm, a) >= 0) return {EdgeVerdict::outside, 0};
+    if (outside_joint(arm, b) >= 0) return {EdgeVerdict::outside, 1};
     if (tilt_ != nullptr) {
       const TiltKeeper::EdgeTilt found = tilt_->look(a, b);
       if (!found.kept) return {EdgeVerdict::undecided, found.t};
@@ -103,10 +103,10 @@ void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptio
 void slide_corners(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
                    int attempts, RawPath& path);
 
-/// Looks at the options, the start and every goal.
-[[nodiscard]] Result<SearchProblem, PlanFailure> look_at_problem(const FastChecker& checker,
-                                                                 std::span<const double> start,
-                                                                 std::span<const double> goals,
-                                                                 const PlanOptions& options);
+/// Checks the options, the start and every goal.
+[[nodiscard]] Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
+                                                                  std::span<const double> start,
+                                                                  std::span<const JointVec> goals,
+                                                                  const PlanOptions& options);
 
 }  // namespace mjarm::detail

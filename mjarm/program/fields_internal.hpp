@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mjarm/core/units.hpp"
+#include "mjarm/core/yaml_tree.hpp"
 #include "mjarm/program/program.hpp"
-#include "mjarm/program/yaml_tree.hpp"
 
 namespace mjarm::detail {
 

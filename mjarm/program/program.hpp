@@ -7,15 +7,11 @@
 #include <vector>
 
 #include "mjarm/control/controller.hpp"
+#include "mjarm/core/file_place.hpp"
 #include "mjarm/core/pose.hpp"
+#include "mjarm/core/yaml_tree.hpp"
 
 namespace mjarm {
-
-/// Where something stands in a file, both from 1; 0 where it comes from no file.
-struct FilePlace {
-  int line = 0;
-  int column = 0;
-};
 
 /// The name of a frame of the program or of the model; empty = the frame that is set then.
 struct FrameName {

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "mjarm/core/messages/execution.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/joint_path.hpp"
-#include "mjarm/program/motion.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
-#include "mjarm/program/way_round_internal.hpp"
+#include "mjarm/program/detour_planner_internal.hpp"
+#include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm {
 namespace {
@@ -40,27 +41,27 @@ struct Tool {
   IkSolver reach;  ///< geometry alone
   IkSolver ik;     ///< without contact
   MoveJudge judge;
-  detail::WayRoundPlanner round;
+  detail::DetourPlanner detours;
 };
 
 class ProgramPlanner {
  public:
   ProgramPlanner(const Model& model, detail::Steps steps, FilePlace start_place,
-          const ProgramPlanOptions& options)
+                 const ProgramPlanOptions& options)
       : steps_(std::move(steps.steps)), start_place_(start_place), options_(options) {
     plan_.arms = std::move(steps.arms);
     plan_.faults = std::move(steps.faults);
     plan_.q_start = std::move(steps.q_start);
     for (const Arm& arm : plan_.arms) {
       IkOptions ik;
-      ik.task = arm.dof() < 6 ? IkTask::position : IkTask::pose;
+      ik.task = task_for(arm);
       std::optional<ExactChecker> checker;
       if (options.collision) checker.emplace(model, arm);
       if (checker) ik.valid = checker->predicate();
       const IkSolver solver(arm, ik);
       const MoveJudge judge(arm, checker);
       tools_.push_back({arm, IkSolver(arm, {.task = ik.task}), solver, judge,
-                        detail::WayRoundPlanner(model, arm, solver, judge)});
+                        detail::DetourPlanner({model, arm}, solver, judge)});
     }
   }
 
@@ -116,13 +117,13 @@ class ProgramPlanner {
     const bool one = step.kind == Step::Kind::joints || step.kind == Step::Kind::pose ||
                      (step.kind == Step::Kind::line && !blended(fault.step));
     if (!one || fault.reason != "collision") return std::nullopt;
-    detail::WayRoundPlanner& planner = tools_[step.tool].round;
+    detail::DetourPlanner& planner = tools_[step.tool].detours;
     const auto goals = goals_of(planner, step, q);
     if (!goals) return std::nullopt;
-    const auto way = planner.plan(q, *goals, step.share);
-    if (!way) return std::nullopt;
-    q = way->corners.back();
-    return Detour{way->corners.size() - 1, way->trajectory.duration(), way->measures.clearance};
+    const auto found = planner.plan(q, *goals, step.share);
+    if (!found) return std::nullopt;
+    q = found->corners.back();
+    return Detour{found->corners.size() - 1, found->trajectory.duration(), found->measures.clearance};
   }
 
   /// After a fault the arm is taken to be where the step should have ended.
@@ -169,7 +170,7 @@ class ProgramPlanner {
       case Step::Kind::plan:
         break;
     }
-    return round(i, q);
+    return detour(i, q);
   }
 
   static Attempt failed(std::size_t i, const JointVec& q, PlanFault fault) {
@@ -198,7 +199,7 @@ class ProgramPlanner {
   Attempt grip(std::size_t i, const JointVec& q) const {
     constexpr double kSeconds = 1;  // [s] for the fingers to get there
     if (!tool(steps_[i]).arm.gripper) {
-      return failed(i, q, {i, "not_available", text(msg::program_no_gripper)});
+      return failed(i, q, {i, "not_available", text(msg::execution_no_gripper)});
     }
     Attempt attempt = rest(i, q, kSeconds);
     if (!attempt.fault) attempt.moves.back().close = steps_[i].close;
@@ -262,20 +263,20 @@ class ProgramPlanner {
   }
 
   /// Where a `plan` may end: its joint values, or every answer to its pose.
-  static Result<std::vector<JointVec>, detail::WayRoundFault> goals_of(
-      const detail::WayRoundPlanner& planner, const Step& step, const JointVec& q) {
+  static Result<std::vector<JointVec>, detail::DetourFault> goals_of(
+      const detail::DetourPlanner& planner, const Step& step, const JointVec& q) {
     return step.q.size() > 0 ? planner.goals(q, step.q) : planner.goals(q, step.X_WT);
   }
 
   /// Round what stands in the way, to a goal from which the tool moves that follow go farthest.
-  Attempt round(std::size_t i, const JointVec& q) {
+  Attempt detour(std::size_t i, const JointVec& q) {
     const Step& step = steps_[i];
     Tool& with = tools_[step.tool];
-    auto goals = goals_of(with.round, step, q);
+    auto goals = goals_of(with.detours, step, q);
     if (!goals) return failed(i, q, {i, goals.error().reason, goals.error().what});
     std::optional<Attempt> best;
     for (std::size_t k = 0; k < kMaxAnswers && !goals->empty(); ++k) {
-      auto found = with.round.plan(q, *goals, step.share);
+      auto found = with.detours.plan(q, *goals, step.share);
       if (!found && best) break;
       if (!found) return failed(i, q, {i, found.error().reason, found.error().what});
       Attempt attempt{{begun(step)}, i + 1, found->corners.back(), {}};
@@ -409,7 +410,8 @@ class ProgramPlanner {
       const Pose X_now = fk(with.arm, as_span(q));
       options.path.keep_start = same_pose(X_now, curve.at(0));
     }
-    Result<ToolMotion, MotionFailure> motion = plan_tool_motion(with.ik, curve, as_span(q), options);
+    Result<ToolMotion, MotionFailure> motion =
+        plan_tool_motion(with.ik, curve, as_span(q), options);
     if (!motion) return failed(i, q, motion_fault(i, with.arm, motion.error()));
     Attempt out{{}, i, q, {}};
     const JointVec& first = motion->path.q.front();
@@ -469,15 +471,10 @@ class ProgramPlanner {
 
 }  // namespace
 
-double ProgramPlan::duration() const {
-  double sum = 0;
-  for (const PlannedMove& move : moves) sum += move.trajectory.duration();
-  return sum;
-}
-
 ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& program,
                          const ProgramPlanOptions& options) {
-  return ProgramPlanner(model, detail::steps_of(program, model, arm), program.start_place, options).plan();
+  return ProgramPlanner(model, detail::steps_of(program, model, arm), program.start_place, options)
+      .plan();
 }
 
 }  // namespace mjarm

@@ -7,7 +7,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/ellipse.hpp"
 #include "mjarm/program/program_reader.hpp"
-#include "mjarm/program/tool_down_test.hpp"
+#include "mjarm/trajectory/tool_down_test.hpp"
 
 namespace mjarm {
 namespace {

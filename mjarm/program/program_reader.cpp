@@ -90,6 +90,9 @@ Program read(const YamlNode& root) {
 Result<Program> parse_program(const std::string& content, const std::string& name) {
   const Result<YamlNode> root = read_yaml(content, name);
   if (!root) return fail(root.error());
+  if (root->place.line == 0) {
+    return fail(Errc::bad_input, at_place(name, {1, 1}, text(msg::program_empty)));
+  }
   try {
     return read(*root);
   } catch (const ReadFault& fault) {

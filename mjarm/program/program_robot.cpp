@@ -1,7 +1,7 @@
 #include "mjarm/core/messages/program.hpp"
+#include "mjarm/core/yaml_tree.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/program_plan.hpp"
-#include "mjarm/program/yaml_tree.hpp"
 
 namespace mjarm {
 namespace {

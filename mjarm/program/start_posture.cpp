@@ -66,7 +66,7 @@ double merit(const Arm& arm, const StartPosture& posture) {
 double dexterity(const Arm& arm, std::span<const double> q) {
   Jacobian J = fk_jacobian(arm, q).J_W;
   J.topRows<3>() /= reach_of(arm);
-  if (arm.dof() >= 6) return smallest_singular_value(J);
+  if (task_for(arm) == IkTask::pose) return smallest_singular_value(J);
   const Eigen::Matrix3d gram = J.topRows<3>() * J.topRows<3>().transpose();
   return std::sqrt(std::max(0.0, symmetric_eigen(gram).values[0]));
 }

@@ -135,7 +135,7 @@ class UrscriptWriter {
     if (move.curve) {
       tool_move(move);
     } else if (!move.corners.empty()) {
-      way_round(move);
+      detour(move);
     } else if (move.measures) {
       joint_move(move);
     } else {
@@ -161,7 +161,7 @@ class UrscriptWriter {
   }
 
   /// Edge by edge with a stop at each corner: what is proved free is the edges.
-  void way_round(const PlannedMove& move) {
+  void detour(const PlannedMove& move) {
     comment(move.place, move.word);
     const JointLimits& limits = plan_.arms[move.tool].limits;
     constexpr double kLeastShare = 0.01;

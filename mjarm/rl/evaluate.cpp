@@ -106,6 +106,14 @@ Result<Evaluation> run(ReachEnv& env, const ActFunction& act) {
 
 }  // namespace
 
+Result<void> check_sizes(const Policy& policy, const VecEnv& env) {
+  const int in = env.observation_size(), out = env.action_size();
+  const PolicyShape& shape = policy.shape();
+  if (shape.observations == in && shape.actions == out) return {};
+  return fail(Errc::bad_input,
+              text(msg::reach_policy_size, shape.observations, shape.actions, in, out));
+}
+
 Result<Evaluation> evaluate(const Model& model, const ReachOptions& options, const ActFunction& act,
                             const EvaluateOptions& how) {
   auto env = judged_env(model, options, how);
@@ -117,11 +125,8 @@ Result<Evaluation> evaluate(const Model& model, const ReachOptions& options, con
                             const EvaluateOptions& how) {
   auto env = judged_env(model, options, how);
   if (!env) return fail(std::move(env.error()));
+  if (auto fits = check_sizes(policy, *env); !fits) return fail(std::move(fits.error()));
   const int in = env->observation_size(), out = env->action_size();
-  if (policy.shape().observations != in || policy.shape().actions != out) {
-    return fail(Errc::bad_input, text(msg::reach_policy_size, policy.shape().observations,
-                                      policy.shape().actions, in, out));
-  }
   return run(*env, [&](std::span<const float> observations, std::span<float> actions) {
     for (int i = 0; i < env->count(); ++i) {
       const Eigen::VectorXf action = policy.act(observations.subspan(std::size_t(i) * in, in));

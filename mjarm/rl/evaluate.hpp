@@ -9,6 +9,7 @@
 #include "mjarm/model/model.hpp"
 #include "mjarm/rl/policy.hpp"
 #include "mjarm/rl/reach_options.hpp"
+#include "mjarm/rl/vec_env.hpp"
 
 namespace mjarm::rl {
 
@@ -38,6 +39,9 @@ struct Evaluation {
   std::vector<double> distances;  ///< [m] one an episode, in the order of the goals; infinite where
                                   ///< the simulation failed
 };
+
+/// @return an error where the policy is none for the numbers of observations and actions.
+[[nodiscard]] Result<void> check_sizes(const Policy& policy, const VecEnv& env);
 
 /// Writes the actions, shape (rows, actions), for observations of shape (rows, observations).
 using ActFunction =

@@ -10,11 +10,11 @@ namespace {
 
 using testing::Expert;
 using ::testing::HasSubstr;
-using testing::reach_model;
 using testing::row;
+using testing::task_model;
 
 Evaluation evaluate_expert(const ReachOptions& options, const EvaluateOptions& how) {
-  const Model model = reach_model(options);
+  const Model model = task_model(options);
   const Expert expert(find_arm(model).value(), options);
   const int size = 32 + (options.orientation ? 3 : 0) + (options.obstacle ? 3 : 0);
   const auto result = evaluate(
@@ -66,7 +66,7 @@ TEST(Evaluate, IsTheSameForAnyThreadsAndEveryGoalIsItsOwn) {
 }
 
 TEST(Evaluate, NumbersAreThoseOfTheDistances) {
-  const Model model = reach_model();
+  const Model model = task_model();
   const auto idle = [](std::span<const float>, std::span<float> actions) {
     std::fill(actions.begin(), actions.end(), 0.0F);
   };
@@ -85,7 +85,7 @@ TEST(Evaluate, NumbersAreThoseOfTheDistances) {
 }
 
 TEST(Evaluate, APolicyIsItsMeanActions) {
-  const Model model = reach_model();
+  const Model model = task_model();
   Policy policy({.observations = 32, .actions = 7, .actor = {8}, .critic = {8}});
   Rng rng(1);
   for (float& p : policy.parameters()) p = static_cast<float>(rng.uniform(-0.3, 0.3));

@@ -1,15 +1,17 @@
 #pragma once
 
-#include "mjarm/rl/float_lanes_internal.hpp"
+#include "mjarm/core/simd/functions.hpp"
 #include "mjarm/rl/net_kernels_internal.hpp"
 
 /// The bodies of NetKernels. Included by one file for each width of the registers.
 namespace mjarm::rl::detail {
-inline namespace MJARM_FLOAT_LANES {
+inline namespace MJARM_LANES {
+
+using namespace simd;
 
 inline constexpr int kVectors = 2;  ///< registers side by side in a tile
-inline constexpr int kPanel = kVectors * kWidth;
-inline constexpr int kTileRows = kWidth == 16 ? 8 : 4;  ///< rows of sums that stay in registers
+inline constexpr int kPanel = kVectors * kFloats;
+inline constexpr int kTileRows = kFloats == 16 ? 8 : 4;  ///< rows of sums that stay in registers
 
 /// `M` rows and `V` registers of sums.
 template <int M, int V>
@@ -23,7 +25,7 @@ struct Tile {
     for (int i = 0; i < inner; ++i) {
       Floats x[V];
 #pragma GCC unroll 4
-      for (int v = 0; v < V; ++v) x[v] = load(b + i * kPanel + v * kWidth);
+      for (int v = 0; v < V; ++v) x[v] = load(b + i * kPanel + v * kFloats);
 #pragma GCC unroll 16
       for (int m = 0; m < M; ++m) {
         const float factor = a[i * InnerStep + m * RowStep];
@@ -65,7 +67,7 @@ void product_tile(const Product& of, int p, int row) {
   const long stride = static_cast<long>(of.capacity) * kPanel;
   Tile<M, V> tile;
   for (int v = 0; v < V; ++v) {
-    const Floats start = of.bias ? load(of.bias + p * kPanel + v * kWidth) : Floats{};
+    const Floats start = of.bias ? load(of.bias + p * kPanel + v * kFloats) : Floats{};
     for (int m = 0; m < M; ++m) tile.sum[m][v] = start;
   }
   const float* x = of.x + static_cast<long>(row) * kPanel;
@@ -79,7 +81,7 @@ void product_tile(const Product& of, int p, int row) {
   const long at = p * stride + static_cast<long>(row) * kPanel;
   for (int m = 0; m < M; ++m) {
     for (int v = 0; v < V; ++v) {
-      const long place = at + m * kPanel + v * kWidth;
+      const long place = at + m * kPanel + v * kFloats;
       store(of.y + place, finished(tile.sum[m][v], of.h + place, of.finish));
     }
   }
@@ -96,7 +98,7 @@ inline void product(int rows, int inner, int cols, int capacity, const float* x,
                     const float* bias, const float* h, Finish finish, float* y) {
   const Product of = {inner, capacity, x, w, bias, h ? h : y, finish, y};
   for (int p = 0; p * kPanel < cols; ++p) {
-    if (cols - p * kPanel > kWidth) {
+    if (cols - p * kPanel > kFloats) {
       product_panel<kVectors>(of, p, rows);
     } else {
       product_panel<1>(of, p, rows);
@@ -120,10 +122,10 @@ void outer_tile(const Outer& of, int p, int row) {
                                     of.x + p * stride);
   for (int m = 0; m < M; ++m) {
     for (int v = 0; v < kVectors; ++v) {
-      const int col = p * kPanel + v * kWidth;
+      const int col = p * kPanel + v * kFloats;
       float* c = of.c + static_cast<long>(row + m) * of.inputs + col;
       const int count = of.inputs - col;
-      if (count >= kWidth) {
+      if (count >= kFloats) {
         store(c, of.add ? load(c) + tile.sum[m][v] : tile.sum[m][v]);
       } else if (count > 0) {
         const Floats old = of.add ? load_some(c, count) : Floats{};
@@ -146,11 +148,11 @@ inline void outer(int rows, int outputs, int inputs, int capacity, const float* 
 
 inline void column_sums(int rows, int cols, int capacity, const float* d, bool add, float* sums) {
   const long stride = static_cast<long>(capacity) * kPanel;
-  for (int col = 0; col < cols; col += kWidth) {
+  for (int col = 0; col < cols; col += kFloats) {
     const float* from = d + col / kPanel * stride + col % kPanel;
     Floats sum{};
     for (int row = 0; row < rows; ++row) sum += load(from + static_cast<long>(row) * kPanel);
-    const int count = cols - col < kWidth ? cols - col : kWidth;
+    const int count = cols - col < kFloats ? cols - col : kFloats;
     const Floats old = add ? load_some(sums + col, count) : Floats{};
     store_some(sums + col, old + sum, count);
   }
@@ -160,15 +162,15 @@ inline void column_sums(int rows, int cols, int capacity, const float* d, bool a
 template <class Body>
 inline __attribute__((always_inline)) void in_steps(long n, const Body& body) {
   long i = 0;
-  for (; i + kWidth <= n; i += kWidth) body(i, kWidth);
+  for (; i + kFloats <= n; i += kFloats) body(i, kFloats);
   if (i < n) body(i, static_cast<int>(n - i));
 }
 
 inline Floats load_up_to(const float* from, int count) {
-  return count == kWidth ? load(from) : load_some(from, count);
+  return count == kFloats ? load(from) : load_some(from, count);
 }
 inline void store_up_to(float* to, const Floats& x, int count) {
-  if (count == kWidth) return store(to, x);
+  if (count == kFloats) return store(to, x);
   store_some(to, x, count);
 }
 
@@ -187,7 +189,7 @@ inline float squares(const float* x, long n) {
     sum += value * value;
   });
   float total = 0;
-  for (int k = 0; k < kWidth; ++k) total += sum[k];
+  for (int k = 0; k < kFloats; ++k) total += sum[k];
   return total;
 }
 
@@ -215,5 +217,5 @@ inline void tanh_all(long n, const float* x, float* y) {
 inline constexpr NetKernels kLoops = {kPanel, product, outer, column_sums,
                                       add,    squares, adam,  tanh_all};
 
-}  // namespace MJARM_FLOAT_LANES
+}  // namespace MJARM_LANES
 }  // namespace mjarm::rl::detail

@@ -191,10 +191,11 @@ ReachEnv::~ReachEnv() = default;
 ReachEnv::ReachEnv(ReachEnv&&) noexcept = default;
 ReachEnv& ReachEnv::operator=(ReachEnv&&) noexcept = default;
 
-Result<std::filesystem::path> reach_scene(const ReachOptions& options) {
+Result<Model> reach_model(const ReachOptions& options) {
   auto scene = find_model_file("panda");
-  if (scene && options.obstacle) scene->replace_filename("reach_obstacle.xml");
-  return scene;
+  if (!scene) return fail(std::move(scene.error()));
+  if (options.obstacle) scene->replace_filename("reach_obstacle.xml");
+  return Model::load(*scene);
 }
 
 Result<ReachEnv> ReachEnv::make(const Model& model, const ReachOptions& options) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
@@ -17,7 +16,7 @@ namespace mjarm::rl {
 
 /// The shipped scene for these options: the Panda on its floor, with a ball where `obstacle` asks
 /// for one.
-[[nodiscard]] Result<std::filesystem::path> reach_scene(const ReachOptions& options = {});
+[[nodiscard]] Result<Model> reach_model(const ReachOptions& options = {});
 
 /// An arm that learns to bring its tool to goals. Success does not end an episode: it is cut after
 /// `episode_steps`, and the distance at its end is what counts.

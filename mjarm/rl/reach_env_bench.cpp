@@ -35,9 +35,7 @@ BareBatch bare_batch(const Model& model, int threads) {
 void reach_steps(benchmark::State& state, ReachGripper gripper) {
   const int threads = static_cast<int>(state.range(0));
   const ReachOptions options{.environments = kCopies, .threads = threads, .gripper = gripper};
-  const auto scene = reach_scene(options);
-  if (!scene) return state.SkipWithError(scene.error().what.c_str());
-  const auto model = Model::load(*scene);
+  const auto model = reach_model(options);
   if (!model) return state.SkipWithError(model.error().what.c_str());
   auto env = ReachEnv::make(*model, options);
   if (!env) return state.SkipWithError(env.error().what.c_str());

@@ -17,8 +17,8 @@ using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using testing::random_step;
 using testing::reach_env;
-using testing::reach_model;
 using testing::row;
+using testing::task_model;
 
 /// Everything that steps show, one row a copy.
 struct Seen {

@@ -11,7 +11,7 @@
 namespace mjarm::rl {
 namespace {
 
-using testing::reach_model;
+using testing::task_model;
 
 struct Drawn {
   Model model;
@@ -19,7 +19,7 @@ struct Drawn {
   ReachEpisodes episodes;
 };
 Drawn episodes_of(const ReachOptions& options) {
-  Model model = reach_model(options);
+  Model model = task_model(options);
   Arm arm = find_arm(model).value();
   ReachDrive drive = ReachDrive::make(arm, options, 0.04).value();
   ReachEpisodes episodes = ReachEpisodes::make(model, arm, options, drive).value();

@@ -78,7 +78,7 @@ struct ReachOptions {
   double speed = 0.5;        ///< greatest speed of a joint, as a share of its limit, > 0 to 1
   double torque = 0.2;       ///< greatest torque beyond gravity, as a share of its limit, > 0 to 1
   bool orientation = false;  ///< the tool's z axis is to point down as well
-  bool obstacle = false;     ///< a ball stands between start and goal; see reach_scene()
+  bool obstacle = false;     ///< a ball stands between start and goal; see reach_model()
   /// The environment of the tutorial, in which its checkpoints can be judged: `guide_options()`.
   bool guide = false;
   /// Goals and starts come from streams of random numbers that are never drawn from without this:

@@ -14,8 +14,8 @@ using ::testing::Each;
 using ::testing::HasSubstr;
 using testing::random_step;
 using testing::reach_env;
-using testing::reach_model;
 using testing::row;
+using testing::task_model;
 
 TEST(ReachTasks, OrientationIsSeenAndJudged) {
   ReachEnv env = reach_env({.environments = 2, .episode_steps = 4, .orientation = true});
@@ -60,7 +60,7 @@ TEST(ReachTasks, TheBallStandsBetweenAndCostsWhenTouched) {
 }
 
 TEST(ReachTasks, RefusesOptionsThatMakeNoSense) {
-  const Model model = reach_model();
+  const Model model = task_model();
   ReachReward odd;
   odd.fine_scale = 0;
   const std::pair<ReachOptions, const char*> wrong[] = {

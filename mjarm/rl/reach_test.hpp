@@ -16,16 +16,14 @@ namespace mjarm::testing {
 
 using namespace rl;
 
-inline Model reach_model(const ReachOptions& options = {}) {
-  const auto scene = reach_scene(options);
-  if (!scene) throw std::runtime_error(scene.error().what);
-  auto model = Model::load(*scene);
+inline Model task_model(const ReachOptions& options = {}) {
+  auto model = reach_model(options);
   if (!model) throw std::runtime_error(model.error().what);
   return std::move(*model);
 }
 
 inline ReachEnv reach_env(const ReachOptions& options = {}) {
-  auto env = ReachEnv::make(reach_model(options), options);
+  auto env = ReachEnv::make(task_model(options), options);
   if (!env) throw std::runtime_error(env.error().what);
   return std::move(*env);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "mjarm/rl/progress_log_internal.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/rl/safetensors.hpp"
+#include "mjarm/rl/training_config.hpp"
 
 namespace mjarm::rl {
 namespace {
@@ -87,13 +89,22 @@ double share_within(const Evaluation& evaluation, double distance) noexcept {
   return distance >= 0.005 ? evaluation.within_5mm : 0;
 }
 
+bool is_good_enough(const TrainingOptions& options,
+                    const std::optional<Evaluation>& evaluation) noexcept {
+  return options.stop_share <= 0 ||
+         (evaluation && share_within(*evaluation, options.stop_within) >= options.stop_share);
+}
+
 struct Training::State {
   State(const Model& task_model, const TrainingOptions& how, ReachEnv made_env)
       : model(task_model), options(how), env(std::move(made_env)) {}
 
   [[nodiscard]] int rank() const { return ranks == nullptr ? 0 : ranks->rank(); }
   [[nodiscard]] bool is_time_to_evaluate(std::int64_t steps_before) const;
-  [[nodiscard]] bool is_good_enough() const;
+  /// What is asked for, where something is.
+  [[nodiscard]] bool reached() const {
+    return options.stop_share > 0 && is_good_enough(options, last);
+  }
   [[nodiscard]] Result<void> evaluate_now(TrainingStep& step);
   [[nodiscard]] Result<void> save(const TrainingStep& step);
   [[nodiscard]] Result<void> save_best();
@@ -118,11 +129,6 @@ bool Training::State::is_time_to_evaluate(std::int64_t steps_before) const {
          trainer->steps() >= options.ppo.total_steps;
 }
 
-bool Training::State::is_good_enough() const {
-  return options.stop_share > 0 && last &&
-         share_within(*last, options.stop_within) >= options.stop_share;
-}
-
 Result<void> Training::State::evaluate_now(TrainingStep& step) {
   Result<Evaluation> found = evaluate(model, options.task, trainer->policy(), options.evaluation);
   if (!found) return fail(std::move(found.error()));
@@ -130,7 +136,7 @@ Result<void> Training::State::evaluate_now(TrainingStep& step) {
   step.evaluation = last;
   step.best = !best || score(*last) > score(*best);
   if (step.best) best = last;
-  stopped = is_good_enough();
+  stopped = reached();
   return {};
 }
 
@@ -171,13 +177,12 @@ Training::Training(Training&&) noexcept = default;
 Training& Training::operator=(Training&&) noexcept = default;
 
 Result<Training> Training::create(const Model& model, const TrainingOptions& options,
-                                  const std::filesystem::path& folder,
-                                  std::map<std::string, std::string> metadata, Ranks* ranks) {
+                                  const std::filesystem::path& folder, Ranks* ranks) {
   Result<ReachEnv> env = ReachEnv::make(model, options.task);
   if (!env) return fail(std::move(env.error()));
   auto state = std::make_unique<State>(model, options, std::move(*env));
   state->folder = folder;
-  state->metadata = std::move(metadata);
+  state->metadata = {{"task", "reach"}, {"config", config_text(options)}};
   state->ranks = ranks;
   Result<PpoTrainer> trainer = PpoTrainer::create(state->env, options.ppo, ranks);
   if (!trainer) return fail(std::move(trainer.error()));
@@ -193,7 +198,7 @@ Result<void> Training::resume(const std::filesystem::path& checkpoint) {
   if (auto restored = state_->trainer->restore(*set); !restored) return restored;
   state_->best = stored(*set, kBestEvaluation);
   state_->last = stored(*set, kLastEvaluation);
-  state_->stopped = state_->is_good_enough();
+  state_->stopped = state_->reached();
   state_->resumed_at = state_->trainer->steps();
   return {};
 }

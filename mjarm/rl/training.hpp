@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,10 +47,15 @@ struct TrainingStep {
 /// [m]; 0 below.
 [[nodiscard]] double share_within(const Evaluation& evaluation, double distance) noexcept;
 
+/// True where as many goals are reached as the options ask for, or where they ask for none.
+[[nodiscard]] bool is_good_enough(const TrainingOptions& options,
+                                  const std::optional<Evaluation>& evaluation) noexcept;
+
 /// A training with its files in one folder, each of which is whole at any time:
 ///
 ///   last.safetensors     everything to go on from, after each iteration
-///   best.safetensors     the policy with the best score so far
+///   best.safetensors     the policy with the best score so far; both hold the options, see
+///                        `config_of_checkpoint`
 ///   progress.csv         one line an iteration
 ///   events.out.tfevents.mjarm  the same for TensorBoard
 ///
@@ -66,11 +70,9 @@ class Training {
 
   /// Makes the environment and the trainer.
   /// @param folder    exists; files of an earlier training in it are replaced.
-  /// @param metadata  texts that go into both checkpoints.
   /// @param ranks     null: this process alone; must outlive the training.
   [[nodiscard]] static Result<Training> create(const Model& model, const TrainingOptions& options,
                                                const std::filesystem::path& folder,
-                                               std::map<std::string, std::string> metadata,
                                                Ranks* ranks = nullptr);
   ~Training();
   Training(Training&&) noexcept;

@@ -14,7 +14,7 @@ namespace mjarm::rl {
 namespace {
 
 using ::testing::HasSubstr;
-using testing::reach_model;
+using testing::task_model;
 
 constexpr const char* kFiles[] = {Training::kLast, Training::kBest, Training::kProgress,
                                   Training::kEvents};
@@ -35,7 +35,7 @@ TrainingOptions small_training() {
 }
 
 Result<Training> begin(const TrainingOptions& options, const support::TempFolder& folder) {
-  return Training::create(reach_model(), options, folder.path(), {{"task", "reach"}});
+  return Training::create(task_model(), options, folder.path());
 }
 
 void train(Training& training, int iterations) {
@@ -62,7 +62,7 @@ TEST(TrainingFiles, AreThereAfterEveryIteration) {
   const auto policy = Policy::from(*best);
   ASSERT_TRUE(policy) << policy.error().what;
   const auto again =
-      evaluate(reach_model(), small_training().task, *policy, small_training().evaluation);
+      evaluate(task_model(), small_training().task, *policy, small_training().evaluation);
   ASSERT_TRUE(again) << again.error().what;
   EXPECT_EQ(again->median, training->best_evaluation()->median);
   const auto rows = support::lines_of(folder.read(Training::kProgress));
@@ -125,7 +125,7 @@ TEST(TrainingFiles, OfAnotherTrainingAreRefused) {
 
 TEST(TrainingFiles, AVanishedFolderIsAnErrorAndNoHalfFile) {
   const support::TempFolder folder;
-  auto training = Training::create(reach_model(), small_training(), folder.path() / "gone", {});
+  auto training = Training::create(task_model(), small_training(), folder.path() / "gone");
   ASSERT_TRUE(training);
   const auto step = training->advance();
   ASSERT_FALSE(step);

@@ -9,7 +9,7 @@
 
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/sim/raw_internal.hpp"
-#include "mjarm/sim/stepper_internal.hpp"
+#include "mjarm/sim/stepper.hpp"
 
 namespace mjarm {
 namespace {
@@ -27,7 +27,7 @@ std::vector<JointVec> swing(const Arm& arm, double timestep, int steps) {
   return positions;
 }
 
-/// The loop as the followers run it.
+/// The loop as every run makes it.
 class Contestant {
  public:
   Contestant(std::string name, const Model& model, const Arm& arm, Controller controller)
@@ -40,14 +40,12 @@ class Contestant {
     sim_.place(arm_, as_span(positions.front()));
     std::optional<Recorder> recorder;
     if (record) recorder.emplace(sim_.model(), arm_);
-    const FollowSetup setup{.sim = sim_,
-                            .controller = controller_,
-                            .arm = arm_,
-                            .recorder = recorder ? &*recorder : nullptr};
-    Stepper stepper(setup);
+    Stepper stepper(sim_, arm_);
     const Stopwatch watch;
     for (std::size_t i = 1; i + 1 < positions.size(); ++i) {
-      auto stepped = stepper.step({positions[i - 1], positions[i], positions[i + 1]});
+      auto stepped =
+          stepper.step(sim_, controller_, {positions[i - 1], positions[i], positions[i + 1]},
+                       recorder ? &*recorder : nullptr);
       if (!stepped) return fail(std::move(stepped.error()));
       if (ctrl != nullptr) ctrl->insert(ctrl->end(), sim_.ctrl().begin(), sim_.ctrl().end());
     }

@@ -118,15 +118,6 @@ struct Recorder::Impl {
     pairs.push_back(words);
     return pairs.size() - 1;
   }
-
-  [[nodiscard]] std::vector<Eigen::Vector3d> positions(std::size_t offset) const {
-    std::vector<Eigen::Vector3d> all;
-    all.reserve(touching.size());
-    for (std::size_t i = 0; i < touching.size(); ++i) {
-      all.emplace_back(numbers.data() + i * width() + offset);
-    }
-    return all;
-  }
 };
 
 Recorder::Recorder(const Model& model, const Arm& arm, const RecordOptions& options)
@@ -169,13 +160,6 @@ RecordRow Recorder::row(std::size_t i) const {
           me.joints(row, 3),
           me.joints(row, 4),
           me.pairs[me.touching[i]]};
-}
-
-std::vector<Eigen::Vector3d> Recorder::tool_positions() const {
-  return impl_->positions(impl_->planned_at() + 12);
-}
-std::vector<Eigen::Vector3d> Recorder::planned_positions() const {
-  return impl_->positions(impl_->planned_at());
 }
 
 std::string Recorder::to_csv() const {

@@ -14,7 +14,7 @@
 namespace mjarm {
 
 struct RecordOptions {
-  int every = 1;                   ///< steps from row to row, >= 1
+  int every = 1;                  ///< steps from row to row, >= 1
   std::size_t max_rows = 100000;  ///< when full, every second row is dropped, >= 2
 };
 
@@ -45,9 +45,6 @@ class Recorder {
 
   [[nodiscard]] std::size_t size() const noexcept;  ///< rows kept
   [[nodiscard]] RecordRow row(std::size_t i) const;
-  /// Measured and planned tool positions in order of time [m], for path errors and plots.
-  [[nodiscard]] std::vector<Eigen::Vector3d> tool_positions() const;
-  [[nodiscard]] std::vector<Eigen::Vector3d> planned_positions() const;
 
   /// Header with units and one line a row, comma separated, full double precision; poses as x, y, z
   /// and unit quaternion w, x, y, z.

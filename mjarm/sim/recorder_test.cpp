@@ -62,13 +62,11 @@ TEST(Recorder, KeepsWhatTheSimulationHad) {
   EXPECT_EQ(row.X_WT.p, sim.tool(robot.arm).p);
   EXPECT_EQ(row.X_WT.R, sim.tool(robot.arm).R);
   EXPECT_EQ(row.contacts, "floor|box");
-  EXPECT_EQ(recorder.tool_positions().back(), row.X_WT.p);
 
   // The planned tool is where the arm would have it at q_ref.
   sim.place(robot.arm, as_span(q_ref));
   EXPECT_EQ(row.X_ref.p, sim.tool(robot.arm).p);
   EXPECT_EQ(row.X_ref.R, sim.tool(robot.arm).R);
-  EXPECT_EQ(recorder.planned_positions().back(), row.X_ref.p);
 }
 
 TEST(Recorder, KeepsEveryNthCall) {

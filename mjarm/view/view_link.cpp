@@ -1,5 +1,7 @@
 #include "mjarm/view/view_link.hpp"
 
+#include "mjarm/view/window.hpp"
+
 namespace mjarm {
 
 Result<void> draw_until_closed(Window& window, ViewLink& link, const std::function<bool()>& ended) {

@@ -2,15 +2,20 @@
 
 #include <atomic>
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/sim/sim.hpp"
+#include "mjarm/view/events.hpp"
+#include "mjarm/view/live_plot.hpp"
 #include "mjarm/view/mailbox.hpp"
-#include "mjarm/view/window.hpp"
+#include "mjarm/view/panel_section.hpp"
 
 namespace mjarm {
+
+class Window;
 
 /// All that one frame of a window shows.
 struct ViewFrame {

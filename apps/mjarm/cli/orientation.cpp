@@ -23,4 +23,12 @@ Result<Eigen::Matrix3d> parse_rotation(const std::string& euler, const std::stri
   return R;
 }
 
+Result<IkTask> parse_task(const std::string& word) {
+  const auto names = ik_task_names();
+  const Result<std::size_t> choice =
+      parse_choice("--task", word, std::vector<std::string>(names.begin(), names.end()));
+  if (!choice) return fail(choice.error());
+  return static_cast<IkTask>(*choice);
+}
+
 }  // namespace mjarm::app

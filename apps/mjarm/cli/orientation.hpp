@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/kinematics/ik.hpp"
 
 namespace mjarm::app {
 
@@ -11,5 +12,9 @@ namespace mjarm::app {
 /// @return a usage error unless exactly one of them is given.
 [[nodiscard]] Result<Eigen::Matrix3d> parse_rotation(const std::string& euler,
                                                      const std::string& quat);
+
+/// Reads what of a pose must be met, the value of `--task`.
+/// @return a usage error with the nearest word.
+[[nodiscard]] Result<IkTask> parse_task(const std::string& word);
 
 }  // namespace mjarm::app

@@ -4,12 +4,13 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
-#include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/messages/demo.hpp"
-#include "apps/mjarm/messages/train.hpp"
-#include "apps/mjarm/view/view_host.hpp"
+#include "apps/mjarm/commands/train_task.hpp"
+#include "mjarm/core/messages/demo.hpp"
+#include "mjarm/core/messages/train.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -20,8 +21,8 @@ struct Options {
   bool view = false, video = false, no_timing = false;
 };
 
-Result<LoadedPolicy> load(const Options& options) {
-  Result<LoadedPolicy> loaded = load_policy(options.file);
+Result<rl::TrainedPolicy> load(const Options& options) {
+  Result<rl::TrainedPolicy> loaded = rl::load_policy(options.file);
   if (!loaded) return loaded;
   rl::TrainingOptions base;
   base.task = loaded->task;
@@ -39,7 +40,7 @@ Result<int> run(const Options& options) {
   if (*episodes == 0 || *episodes > kMaxEpisodes) {
     return fail(Errc::usage, text(msg::train_bad_episodes, kMaxEpisodes));
   }
-  const Result<LoadedPolicy> loaded = load(options);
+  const Result<rl::TrainedPolicy> loaded = load(options);
   if (!loaded) return fail(loaded.error());
   PolicyTrial trial{.name = std::filesystem::path(options.file).stem().string(),
                     .episodes = static_cast<int>(*episodes)};
@@ -48,7 +49,7 @@ Result<int> run(const Options& options) {
     if (!seed) return fail(seed.error());
     trial.seed = *seed;
   }
-  DemoOptions chosen;
+  StageOptions chosen;
   chosen.out = options.out.empty() ? std::filesystem::path("mjarm-out") / "eval"
                                    : std::filesystem::path(options.out);
   chosen.headless = !options.view;

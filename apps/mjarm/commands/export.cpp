@@ -10,6 +10,7 @@
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/program/load_program.hpp"
 #include "mjarm/program/urscript.hpp"
 
 namespace mjarm::app {

@@ -152,14 +152,6 @@ Result<int> answer_all(const Job& job, const Options& options) {
   return finish_all(*done, msg::app_ik_some_failed);
 }
 
-Result<IkTask> read_task(const std::string& word) {
-  constexpr IkTask kTasks[] = {IkTask::pose, IkTask::position, IkTask::axis};
-  const auto choice =
-      parse_choice("--task", word, std::vector<std::string>{"pose", "position", "axis"});
-  if (!choice) return fail(choice.error());
-  return kTasks[*choice];
-}
-
 /// Where to go with joints to spare; nowhere where nothing is asked for.
 Result<std::optional<PostureGoal>> read_prefer(const Options& options) {
   constexpr PostureGoal kGoals[] = {PostureGoal::near_posture, PostureGoal::away_from_limits,
@@ -184,7 +176,7 @@ Result<int> run(Options options) {
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   options.batch.threads = *threads;
-  const Result<IkTask> task = read_task(options.task);
+  const Result<IkTask> task = parse_task(options.task);
   if (!task) return fail(task.error());
   const auto prefer = read_prefer(options);
   if (!prefer) return fail(prefer.error());

@@ -1,7 +1,6 @@
 #include "apps/mjarm/commands/plan_robot.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,14 +9,14 @@
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/plan_answer.hpp"
-#include "apps/mjarm/commands/robot_world.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/plan.hpp"
-#include "mjarm/core/json_writer.hpp"
+#include "apps/mjarm/commands/rule_options.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/plan.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/goal_region.hpp"
+#include "mjarm/planning/plan_answer.hpp"
+#include "mjarm/planning/planning_world.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -34,8 +33,7 @@ struct Way {
   std::vector<double> goal;      ///< joint values, or
   std::optional<ToolGoal> tool;  ///< a pose
   RuleWords words;
-  ContactRules rules;          ///< of these
-  std::vector<double> bounds;  ///< [m] of covers, to be tried one after the other
+  WorldOptions world;  ///< its rules are those of the words
 };
 
 Result<double> angle_of(const char* option, const std::string& value) {
@@ -45,20 +43,12 @@ Result<double> angle_of(const char* option, const std::string& value) {
   return angle;
 }
 
-Result<IkTask> task_of(const std::string& word) {
-  constexpr IkTask kTasks[] = {IkTask::pose, IkTask::position, IkTask::axis};
-  if (word.empty()) return IkTask::pose;
-  const auto choice =
-      parse_choice("--task", word, std::vector<std::string>{"pose", "position", "axis"});
-  if (!choice) return fail(choice.error());
-  return kTasks[*choice];
-}
-
 Result<ToolGoal> read_tool_goal(const RobotRequest& request) {
   ToolGoal out;
   const auto pos = parse_list("--pos", request.pos, Quantity::length, 3);
   if (!pos) return fail(pos.error());
-  const Result<IkTask> task = task_of(request.task);
+  const Result<IkTask> task =
+      request.task.empty() ? Result<IkTask>(IkTask::pose) : parse_task(request.task);
   if (!task) return fail(task.error());
   out.task = *task;
   GoalRegion& region = out.region;
@@ -84,10 +74,10 @@ Result<ToolGoal> read_tool_goal(const RobotRequest& request) {
 }
 
 Result<std::vector<double>> read_bounds(const std::string& value) {
-  if (value.empty()) return std::vector<double>(std::begin(kCoverBounds), std::end(kCoverBounds));
+  if (value.empty()) return WorldOptions{}.bounds;
   const Result<double> bound = parse_quantity(value, Quantity::length);
   if (!bound) return fail(in_option("--spheres", bound.error()));
-  if (!(*bound >= kNarrowestSpheres && *bound <= kWidestSpheres)) {
+  if (!(*bound >= kMinSphereBound && *bound <= kMaxSphereBound)) {
     return fail(Errc::usage, text(msg::plan_bad_spheres, value));
   }
   return std::vector<double>{*bound};
@@ -116,7 +106,7 @@ Result<Way> read_way(const RobotRequest& request, const Robot& robot) {
   }
   Result<ContactRules> rules = rules_of(request.rules, robot, out.start);
   if (!rules) return fail(std::move(rules.error()));
-  out.rules = std::move(*rules);
+  out.world.rules = std::move(*rules);
   out.words = request.rules;
   if (request.goal.empty() && request.pos.empty()) {
     return fail(Errc::usage, text(msg::app_need_one_of, "--goal", "--pos"));
@@ -133,7 +123,7 @@ Result<Way> read_way(const RobotRequest& request, const Robot& robot) {
   }
   Result<std::vector<double>> bounds = read_bounds(request.spheres);
   if (!bounds) return fail(std::move(bounds.error()));
-  out.bounds = std::move(*bounds);
+  out.world.bounds = std::move(*bounds);
   return out;
 }
 
@@ -154,67 +144,32 @@ Result<void> read_upright(const RobotRequest& request, const Arm& arm, const Way
   return fail(Errc::usage, text(msg::plan_bad_upright, request.upright));
 }
 
-/// Rows of joint values; or why the pose has none.
-Result<std::vector<double>, std::string> goals_of(const Way& way, const Arm& arm,
-                                                  const FastChecker& checker,
-                                                  const PlanOptions& options) {
-  if (!way.tool) return way.goal;
-  const IkSolver ik(arm, {.rng_seed = options.seed, .task = way.tool->task});
-  const auto goals = goals_in(checker, ik, way.tool->region, way.start,
-                              {.seed = options.seed, .tilt = options.tilt});
-  if (!goals) return tl::unexpected(describe(goals.error(), arm));
-  std::vector<double> rows;
-  for (const JointVec& q : *goals) rows.insert(rows.end(), q.begin(), q.end());
-  return rows;
-}
-
-/// Whether finer spheres may do better.
-bool is_coarse(PlanErrc reason) {
-  return reason == PlanErrc::start_hit || reason == PlanErrc::goals_hit ||
-         reason == PlanErrc::goals_tilted || reason == PlanErrc::base_hit ||
-         reason == PlanErrc::budget_spent;
-}
-
-/// An answer, and the world it was found in.
-struct Found {
-  std::string line;                ///< JSON
-  std::optional<std::string> why;  ///< there is no path
-  std::optional<RobotWorld> world = {};
-  std::optional<PlannedPath> path = {};
-};
-
-Found not_found(const std::string& why) {
-  Found out{{}, why};
-  JsonWriter(out.line).object().member("ok", false).member("reason", why).end_object();
-  return out;
-}
-
-/// Tries one cover after the other, until there is a path or finer spheres are no help.
-Result<Found> answer(const Robot& robot, const Way& way, const PlanOptions& options, bool timing) {
-  Found out;
-  for (const double bound : way.bounds) {
-    Result<RobotWorld> world = cover_robot(robot, bound, way.rules);
-    if (!world) return fail(std::move(world.error()));
-    const FastRobot& fast = world->checker.robot();
-    Result<std::vector<double>, std::string> goals =
-        goals_of(way, robot.arm, world->checker, options);
-    if (!goals) return not_found(goals.error());
-    PlanProblem problem;
-    problem.start = way.start;
-    problem.goals = std::move(*goals);
-    problem.obstacles = world->cover.scene;
-    PlanAnswer found = answer_problem(fast, problem, options);
-    found.rules = way.words;
-    found.spheres = bound;
-    out = {};
-    append_answer(out.line, found, fast, problem.obstacles, timing);
-    if (!found.path) out.why = describe(found.path.error(), fast, problem.obstacles);
-    const bool is_last = found.path || !is_coarse(found.path.error().reason);
-    out.world = std::move(*world);
-    if (found.path) out.path = std::move(*found.path);
-    if (is_last) break;
+Result<WorldPath, WorldFailure> find_way(PlanningWorld& world, const Way& way,
+                                         const PlanOptions& options, PlanTimes& times) {
+  if (way.tool) {
+    return world.plan(way.start, way.tool->region, options, way.tool->task, &times);
   }
-  return out;
+  return world.plan(way.start, std::vector{joint_vec(way.goal)}, options, &times);
+}
+
+/// The answer as a JSON object.
+/// @param level  that it was found at, or searched last.
+std::string answer_line(const Result<WorldPath, WorldFailure>& found, const Way& way,
+                        const PlanOptions& options, const PlanTimes& times,
+                        const WorldLevel& level, bool timing) {
+  PlanAnswer answer{.path = {}, .us = times.search_us, .simplify_us = times.finish_us};
+  if (options.time_budget > 0) answer = {.path = {}, .us = times.search_us + times.finish_us};
+  answer.tilt = options.tilt;
+  answer.rules = way.words;
+  answer.spheres = level.bound;
+  if (found) {
+    answer.path = *found;
+  } else {
+    answer.path = tl::unexpected(found.error().search);
+  }
+  std::string line;
+  append_answer(line, answer, level.checker.robot(), level.cover.scene, timing);
+  return line;
 }
 
 }  // namespace
@@ -255,19 +210,35 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   if (Result<void> read = read_upright(request, robot->arm, *way, how); !read) {
     return fail(std::move(read.error()));
   }
-  const Result<Found> found = answer(*robot, *way, how, timing);
-  if (!found) return fail(found.error());
+  Result<PlanningWorld> world = PlanningWorld::make(*robot, way->world);
+  if (!world) return fail(std::move(world.error()));
+  PlanTimes times;
+  const Result<WorldPath, WorldFailure> found = find_way(*world, *way, how, times);
+  const WorldErrc code = found ? WorldErrc::no_path : found.error().code;
+  if (code == WorldErrc::bad_model) return fail(Errc::bad_input, found.error().what);
+  const Result<const WorldLevel*> level = world->level(found ? found->level : found.error().level);
+  if (!level) return fail(level.error());
   const std::string& name = robot->arm.name;
-  std::string line;
-  JsonWriter(line).object().key(name);
-  line += found->line + '}';
-  const Result<int> code = finish_one(out, line, found->why, msg::plan_no_path);
-  if (!code || !show || !found->path) return code;
-  const auto shown =
-      show_plan(*show, {robot->model, robot->arm, found->world->checker, found->world->cover.scene,
-                        *found->path, name, way->rules.held});
+  std::string line = "{";
+  append_json_string(line, name);
+  line += ':';
+  if (code == WorldErrc::no_answer) {
+    line += "{\"ok\":false,\"reason\":";
+    append_json_string(line, found.error().what);
+    line += '}';
+  } else {
+    line += answer_line(found, *way, how, times, **level, timing);
+  }
+  line += '}';
+  const std::optional<std::string> why =
+      found ? std::nullopt : std::optional<std::string>(found.error().what);
+  const Result<int> exit_code = finish_one(out, line, why, msg::plan_no_path);
+  if (!exit_code || !show || !found) return exit_code;
+  const auto shown = show_plan(*show, {robot->model, robot->arm, (*level)->checker,
+                                       (*level)->cover.scene, *found, name,
+                                       way->world.rules.attached});
   if (!shown) return fail(shown.error());
-  return code;
+  return exit_code;
 }
 
 }  // namespace mjarm::app

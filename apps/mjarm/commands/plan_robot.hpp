@@ -3,10 +3,10 @@
 #include <optional>
 #include <string>
 
-#include "apps/mjarm/view/plan_show.hpp"
-#include "apps/mjarm/commands/robot_world.hpp"
 #include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/view/plan_show.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/planning/plan_file.hpp"
 #include "mjarm/planning/plan_path.hpp"
 
 namespace mjarm::app {

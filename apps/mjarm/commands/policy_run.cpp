@@ -5,20 +5,20 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mjarm/commands/policy_player.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
-#include "apps/mjarm/demos/output.hpp"
-#include "apps/mjarm/demos/show.hpp"
-#include "apps/mjarm/messages/train.hpp"
+#include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/stopwatch.hpp"
-#include "mjarm/rl/safetensors.hpp"
-#include "mjarm/rl/sb3_zip.hpp"
+#include "mjarm/rl/reach_env.hpp"
+#include "mjarm/session/policy_player.hpp"
 
 namespace mjarm::app {
 namespace {
+
+using session::PolicyPlayer;
 
 /// What was measured of the episodes that were shown.
 struct Played {
@@ -111,7 +111,7 @@ Report report_of(const PolicyTrial& trial, const Model& model, const rl::ReachOp
   report.model = model.name();
   report.steps = std::lround(evaluation.steps * evaluation.episodes * task.frame_skip);
   report.duration = static_cast<double>(report.steps) * model.timestep();
-  report.coverage = evaluation.within_2cm;
+  report.done = evaluation.within_2cm;
   report.static_error = PoseError{evaluation.max, evaluation.turn_p95};
   report.max_joint_step = played.max_joint_step;
   report.facts = facts_of(evaluation);
@@ -125,22 +125,9 @@ Report report_of(const PolicyTrial& trial, const Model& model, const rl::ReachOp
 
 }  // namespace
 
-Result<LoadedPolicy> load_policy(const std::filesystem::path& file) {
-  const bool zip = file.extension() == ".zip";
-  const Result<rl::TensorSet> set = zip ? rl::load_sb3_zip(file) : rl::load_safetensors(file);
-  if (!set) return fail(set.error());
-  Result<rl::Policy> policy = rl::Policy::from(*set);
-  if (!policy) {
-    return fail(policy.error().code, file.string() + ": " + policy.error().what);
-  }
-  const Result<std::optional<rl::TrainingOptions>> config = config_in(*set, file);
-  if (!config) return fail(config.error());
-  return LoadedPolicy{file, std::move(*policy), config->value_or(rl::TrainingOptions{}).task};
-}
-
-Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& trial,
-                                 const DemoOptions& options) {
-  const Result<Model> model = task_model(loaded.task);
+Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTrial& trial,
+                                 const StageOptions& options) {
+  const Result<Model> model = rl::reach_model(loaded.task);
   if (!model) return fail(model.error());
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
   const Stopwatch watch;
@@ -152,11 +139,7 @@ Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& 
   const double seconds = 1e-6 * watch.us();
   log_info(in_words(*evaluation));
 
-  const rl::ActFunction act = [&](std::span<const float> observation, std::span<float> action) {
-    const Eigen::VectorXf chosen = loaded.policy.act(observation);
-    std::copy(chosen.begin(), chosen.end(), action.begin());
-  };
-  Result<PolicyPlayer> player = PolicyPlayer::create(*model, loaded.task, act, trial.seed);
+  Result<PolicyPlayer> player = PolicyPlayer::make(*model, loaded.task, loaded.policy, trial.seed);
   if (!player) return fail(std::move(player.error()));
   Result<Show> show = Show::open(*model, "mjarm " + trial.name, options.headless);
   if (!show) return fail(std::move(show.error()));
@@ -169,7 +152,7 @@ Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& 
   if (!played) return fail(std::move(played.error()));
   Report report = report_of(trial, *model, loaded.task, *evaluation, *played);
   if (options.timing) report.rtf = report.duration / seconds;
-  const DemoOutput output{report, plot_of(trial.name, *evaluation, *played), show->overlay(), ""};
+  const RunOutput output{report, plot_of(trial.name, *evaluation, *played), show->overlay(), ""};
   auto written = write_file(options.out / "log.csv", played->csv)
                      .and_then([&] {
                        return write_output(options.out, *model, player->sim().snapshot(), output);

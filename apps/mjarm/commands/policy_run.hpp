@@ -1,26 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
-#include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/commands/train_task.hpp"
+#include "apps/mjarm/commands/stage.hpp"
 #include "mjarm/core/result.hpp"
-#include "mjarm/program/report.hpp"
-#include "mjarm/rl/policy.hpp"
+#include "mjarm/execution/report.hpp"
+#include "mjarm/rl/evaluate.hpp"
+#include "mjarm/rl/trained_policy.hpp"
 
 namespace mjarm::app {
-
-/// A policy and the task it was trained for.
-struct LoadedPolicy {
-  std::filesystem::path file;
-  rl::Policy policy;
-  rl::ReachOptions task;
-};
-
-/// Reads one of ours, or a `.zip` of stable-baselines3, which knows no task: the defaults then.
-[[nodiscard]] Result<LoadedPolicy> load_policy(const std::filesystem::path& file);
 
 /// How a policy is tried.
 struct PolicyTrial {
@@ -39,7 +28,8 @@ struct PolicyOutcome {
 
 /// Tries a policy on unseen goals, shows some of them, and writes report.json, log.csv, plot and
 /// picture into `options.out`.
-[[nodiscard]] Result<PolicyOutcome> run_policy(const LoadedPolicy& loaded, const PolicyTrial& trial,
-                                               const DemoOptions& options);
+[[nodiscard]] Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded,
+                                               const PolicyTrial& trial,
+                                               const StageOptions& options);
 
 }  // namespace mjarm::app

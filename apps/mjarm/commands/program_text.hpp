@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "apps/mjarm/commands/program_load.hpp"
-#include "mjarm/core/json_writer.hpp"
+#include "apps/mjarm/cli/json_doc.hpp"
+#include "mjarm/program/load_program.hpp"
 
 namespace mjarm::app {
 

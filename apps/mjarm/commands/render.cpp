@@ -6,14 +6,14 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/commands/render_options.hpp"
 #include "apps/mjarm/commands/render_program.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
-#include "apps/mjarm/messages/render_command.hpp"
+#include "mjarm/core/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "mjarm/program/load_program.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -4,23 +4,21 @@
 #include <optional>
 #include <utility>
 
-#include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
 #include "apps/mjarm/view/program_scene.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/execution/execution.hpp"
+#include "mjarm/program/load_program.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 #include "mjarm/render/png.hpp"
 #include "mjarm/render/trail.hpp"
-#include "mjarm/sim/follow.hpp"
 
 namespace mjarm::app {
 namespace {
 
-constexpr double kRest = 0.5;  // [s] at the end
-
-/// Runs the motions of a plan one after the other, with the trail of the tool in an overlay.
+/// Executes a plan, with the trail of the tool in an overlay.
 class ProgramRun {
  public:
   explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
@@ -35,15 +33,18 @@ class ProgramRun {
   /// @param after_step  returns false to stop; called once before anything moves.
   Result<void> run(std::optional<double> seconds, const std::function<bool()>& after_step) {
     if (!after_step()) return {};
-    bool stopped = false;
-    return for_each_motion(loaded_.plan, sim_, kRest,
-                           [&](const PlannedMove& move, double rest) -> Result<void> {
-                             if (stopped) return {};
-                             const Result<bool> went = follow(move, rest, seconds, after_step);
-                             if (!went) return fail(went.error());
-                             stopped = !*went;
-                             return {};
-                           });
+    const ProgramPlan& plan = loaded_.plan;
+    Result<Execution> execution = Execution::make(
+        loaded_.robot.model, plan,
+        {.control = loaded_.program.control.value_or(ControlMode::computed_torque)});
+    if (!execution) return fail(std::move(execution.error()));
+    const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
+      const PlannedMove& move = plan.moves[execution->motions().back().move];
+      trail_.add(sim.tool(plan.arms[move.tool]).p);
+      return after_step() && !(seconds && sim.time() >= *seconds);
+    });
+    if (!done) return fail(Errc::impossible, done.error().what);
+    return {};
   }
 
   [[nodiscard]] const Sim& sim() const { return sim_; }
@@ -54,26 +55,6 @@ class ProgramRun {
   }
 
  private:
-  /// @return false where it was stopped.
-  Result<bool> follow(const PlannedMove& move, double rest, std::optional<double> seconds,
-                      const std::function<bool()>& after_step) {
-    const Arm& arm = loaded_.robot.arm;
-    const Arm& tool = loaded_.plan.arms[move.tool];
-    Result<Controller> controller = Controller::make(
-        loaded_.robot.model, arm, loaded_.program.control.value_or(ControlMode::computed_torque));
-    if (!controller) return fail(std::move(controller.error()));
-    const FollowSetup setup{.sim = sim_,
-                            .controller = *controller,
-                            .arm = arm,
-                            .after_step = [&](const Sim& sim, const JointVec&) {
-                              trail_.add(sim.tool(tool).p);
-                              return after_step() && !(seconds && sim.time() >= *seconds);
-                            }};
-    const auto outcome = follow_time(setup, move.trajectory, {.settle = rest});
-    if (outcome) return !outcome->stopped;
-    return fail(Errc::impossible, describe(outcome.error(), arm));
-  }
-
   const LoadedProgram& loaded_;
   Sim sim_;
   Overlay planned_;
@@ -116,7 +97,7 @@ Result<std::string> render_program(const std::string& file, const PictureOptions
   const Result<LoadedProgram> loaded = load_sound_program(file);
   if (!loaded) return fail(loaded.error());
   const Model& model = loaded->robot.model;
-  double duration = loaded->plan.duration() + kRest;
+  double duration = loaded->plan.duration() + kRestAtEnd;
   if (options.seconds) duration = std::min(duration, *options.seconds);
   Progress progress(text(msg::render_command_running),
                     static_cast<std::uint64_t>(duration / model.timestep()));

@@ -4,12 +4,12 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/program_run.hpp"
-#include "apps/mjarm/demos/outcome.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/demo.hpp"
-#include "apps/mjarm/messages/motion_program.hpp"
-#include "apps/mjarm/view/view_host.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
+#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/messages/demo.hpp"
+#include "mjarm/core/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -19,9 +19,8 @@ struct Options {
   bool headless = false, video = false, no_timing = false;
 };
 
-/// Options of the command as those of a demo, which is shown and kept the same way.
-Result<DemoOptions> stage_options(const Options& options) {
-  DemoOptions out;
+Result<StageOptions> stage_options(const Options& options) {
+  StageOptions out;
   out.out = options.out;
   out.headless = options.headless;
   out.video = options.video;
@@ -46,7 +45,7 @@ Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
   const Result<double> tolerance = tolerance_of(options);
   if (!tolerance) return fail(tolerance.error());
-  Result<DemoOptions> chosen = stage_options(options);
+  Result<StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
   Result<LoadedProgram> loaded = load_sound_program(options.file);

@@ -6,14 +6,14 @@
 #include <optional>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/json_doc.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
-#include "apps/mjarm/commands/train_config.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_curve.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/commands/train_processes.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
-#include "apps/mjarm/demos/output.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
@@ -21,7 +21,9 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
+#include "mjarm/rl/reach_env.hpp"
 #include "mjarm/rl/training.hpp"
+#include "mjarm/rl/training_config.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -44,12 +46,6 @@ void add_fact(JsonDoc& doc, const Fact& fact) {
   }
 }
 
-bool is_good_enough(const TrainedSeed& run) {
-  return run.options.stop_share <= 0 ||
-         (run.best &&
-          rl::share_within(*run.best, run.options.stop_within) >= run.options.stop_share);
-}
-
 void tell(const rl::TrainingStep& step, double seconds) {
   if (!step.evaluation) return;
   log_info(text(msg::train_evaluated, step.iteration.steps, seconds, in_words(*step.evaluation)));
@@ -60,8 +56,7 @@ Result<rl::Training> begin(const Model& model, const rl::TrainingOptions& option
                            const std::filesystem::path& folder,
                            const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
   if (auto made = make_folder(folder); !made) return fail(std::move(made.error()));
-  Result<rl::Training> training = rl::Training::create(
-      model, options, folder, {{"task", "reach"}, {"config", config_text(options)}}, ranks);
+  Result<rl::Training> training = rl::Training::create(model, options, folder, ranks);
   if (!training || checkpoint.empty()) return training;
   if (auto resumed = training->resume(checkpoint); !resumed) return fail(resumed.error());
   log_info(text(msg::train_resumed, training->trainer().steps()));
@@ -96,7 +91,7 @@ Result<TrainedSeed> train(const Model& model, const rl::TrainingOptions& options
 Result<void> write_report(const std::filesystem::path& folder, const TrainedSeed& trained,
                           bool timing) {
   JsonDoc doc{{"name", "train reach"},
-              {"ok", is_good_enough(trained) && !trained.interrupted},
+              {"ok", rl::is_good_enough(trained.options, trained.best) && !trained.interrupted},
               {"steps", static_cast<double>(trained.steps)},
               {"seed", static_cast<double>(trained.options.ppo.seed)}};
   if (trained.best) {
@@ -111,9 +106,9 @@ Result<void> write_report(const std::filesystem::path& folder, const TrainedSeed
 
 /// Shows what was learned, as `mjarm eval --video` does.
 Result<void> film_best(const std::filesystem::path& folder, bool timing) {
-  const Result<LoadedPolicy> best = load_policy(folder / rl::Training::kBest);
+  const Result<rl::TrainedPolicy> best = rl::load_policy(folder / rl::Training::kBest);
   if (!best) return fail(best.error());
-  DemoOptions options;
+  StageOptions options;
   options.out = folder / "result";
   options.headless = options.video = true;
   options.timing = timing;
@@ -163,7 +158,7 @@ Result<int> train_seeds(const Options& options, const Model& model,
     return fail(Errc::impossible,
                 text(msg::train_interrupted, (folder_of(options) / rl::Training::kLast).string()));
   for (const TrainedSeed& run : runs) {
-    if (!is_good_enough(run)) {
+    if (!rl::is_good_enough(run.options, run.best)) {
       return fail(Errc::impossible, text(msg::train_not_reached, 100 * run.options.stop_share,
                                          1e3 * run.options.stop_within, run.steps));
     }
@@ -179,8 +174,8 @@ Result<rl::TrainingOptions> wanted(const Options& options) {
   if (!options.config.empty() && !options.resume.empty()) {
     return fail(Errc::usage, text(msg::train_config_and_resume));
   }
-  if (!options.config.empty()) base = load_config(options.config);
-  if (!options.resume.empty()) base = config_of_checkpoint(options.resume);
+  if (!options.config.empty()) base = rl::load_config(options.config);
+  if (!options.resume.empty()) base = rl::config_of_checkpoint(options.resume);
   if (!base) return base;
   Result<rl::TrainingOptions> chosen = with_task(options.task, std::move(*base));
   if (!chosen || options.steps.empty()) return chosen;
@@ -194,7 +189,7 @@ Result<int> run(const Options& options) {
   const Result<rl::TrainingOptions> chosen = wanted(options);
   if (!chosen) return fail(chosen.error());
   if (options.print_config) {
-    std::printf("%s", config_text(*chosen).c_str());
+    std::printf("%s", rl::config_text(*chosen).c_str());
     return 0;
   }
   const Result<std::uint64_t> seeds = parse_whole("--seeds", options.seeds);
@@ -202,7 +197,7 @@ Result<int> run(const Options& options) {
   if (*seeds == 0 || (*seeds > 1 && !options.resume.empty())) {
     return fail(Errc::usage, text(msg::train_bad_seeds));
   }
-  const Result<Model> model = task_model(chosen->task);
+  const Result<Model> model = rl::reach_model(chosen->task);
   if (!model) return fail(model.error());
   catch_interrupts();
   return train_seeds(options, *model, *chosen, *seeds);

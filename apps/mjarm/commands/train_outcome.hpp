@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "mjarm/program/report.hpp"
+#include "mjarm/execution/report.hpp"
 #include "mjarm/render/plot.hpp"
 #include "mjarm/rl/evaluate.hpp"
 

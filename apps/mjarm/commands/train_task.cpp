@@ -4,13 +4,9 @@
 #include <array>
 
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/train_config.hpp"
-#include "apps/mjarm/messages/train.hpp"
-#include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
-#include "mjarm/rl/reach_env.hpp"
-#include "mjarm/rl/safetensors.hpp"
 
 namespace mjarm::app {
 
@@ -61,34 +57,6 @@ Result<rl::TrainingOptions> with_task(const TaskArguments& arguments, rl::Traini
   }
   options.task.threads = options.ppo.threads;
   return options;
-}
-
-Result<rl::TrainingOptions> load_config(const std::filesystem::path& file) {
-  constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
-  const Result<std::string> content = read_file(file, kMaxBytes);
-  if (!content) return fail(content.error());
-  return read_config(*content, file.string());
-}
-
-Result<rl::TrainingOptions> config_of_checkpoint(const std::filesystem::path& file) {
-  const Result<rl::TensorSet> set = rl::load_safetensors(file);
-  if (!set) return fail(set.error());
-  Result<std::optional<rl::TrainingOptions>> config = config_in(*set, file);
-  if (!config) return fail(std::move(config.error()));
-  if (!*config) return fail(Errc::bad_input, text(msg::train_no_config, file.string()));
-  return std::move(**config);
-}
-
-Result<std::optional<rl::TrainingOptions>> config_in(const rl::TensorSet& checkpoint,
-                                                     const std::filesystem::path& file) {
-  const auto config = checkpoint.metadata.find("config");
-  if (config == checkpoint.metadata.end()) return std::nullopt;
-  return read_config(config->second, file.string());
-}
-
-Result<Model> task_model(const rl::ReachOptions& options) {
-  return rl::reach_scene(options).and_then(
-      [](const std::filesystem::path& file) { return Model::load(file); });
 }
 
 }  // namespace mjarm::app

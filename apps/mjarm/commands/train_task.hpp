@@ -1,12 +1,9 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <string>
 
 #include "apps/mjarm/cli/options.hpp"
 #include "mjarm/core/result.hpp"
-#include "mjarm/model/model.hpp"
 #include "mjarm/rl/training.hpp"
 
 namespace mjarm::app {
@@ -27,17 +24,5 @@ void add_task_options(CLI::App& app, TaskArguments& arguments);
 /// @return a usage error that names the word that is wrong, and the nearest right one.
 [[nodiscard]] Result<rl::TrainingOptions> with_task(const TaskArguments& arguments,
                                                     rl::TrainingOptions options);
-
-/// A configuration from a file.
-[[nodiscard]] Result<rl::TrainingOptions> load_config(const std::filesystem::path& file);
-/// The one a checkpoint was made with.
-[[nodiscard]] Result<rl::TrainingOptions> config_of_checkpoint(const std::filesystem::path& file);
-/// The same where it is already read; none where it holds none, as those of others.
-/// @param file  for messages.
-[[nodiscard]] Result<std::optional<rl::TrainingOptions>> config_in(
-    const rl::TensorSet& checkpoint, const std::filesystem::path& file);
-
-/// The scene of the task.
-[[nodiscard]] Result<Model> task_model(const rl::ReachOptions& options);
 
 }  // namespace mjarm::app

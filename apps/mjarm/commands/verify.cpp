@@ -14,18 +14,18 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/commands/rule_options.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/robot_world.hpp"
-#include "apps/mjarm/commands/verify_path.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/threads.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/planning/planning_world.hpp"
+#include "mjarm/planning/verify_path.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -66,7 +66,6 @@ struct SceneRow {
 };
 
 Result<VerifyRules> read_rules(const Options& options) {
-  VerifyRules rules;
   const Result<double> step = parse_quantity(options.step, Quantity::angle);
   if (!step) return fail(in_option("--step", step.error()));
   if (!(*step > 0)) return fail(Errc::usage, text(msg::verify_bad_step, options.step));
@@ -111,9 +110,21 @@ Result<std::vector<Job>> file_jobs(const Options& options, Cylinders cylinders) 
   Result<ProblemFile> file = read_problem_file(options.in, cylinders);
   if (!file) return fail(std::move(file.error()));
   Result<std::vector<GivenPath>> paths =
-      read_path_file(options.paths, static_cast<std::size_t>(file->arm.dof()));
+      read_plan_file(options.paths, static_cast<std::size_t>(file->arm.dof()));
   if (!paths) return fail(std::move(paths.error()));
   return match(std::make_shared<const ProblemFile>(std::move(*file)), std::move(*paths), options);
+}
+
+/// The way from the first to the last row of a path as a file of one problem.
+ProblemFile as_problem(const Robot& robot, const ModelCover& cover, const GivenPath& path) {
+  PlanProblem problem;
+  problem.id = path.id;
+  problem.obstacles = cover.scene;
+  if (!path.rows.empty()) {
+    problem.start = path.rows.front();
+    problem.goals = {joint_vec(path.rows.back())};
+  }
+  return {robot.arm, cover.spheres, {std::move(problem)}};
 }
 
 /// The way of a robot from the first to the last row of a path, among the spheres that it names.
@@ -126,9 +137,12 @@ Result<Job> robot_job(const Options& options, const Robot& robot, const VerifyRu
   words.allow.insert(words.allow.end(), path.rules.allow.begin(), path.rules.allow.end());
   const Result<ContactRules> rules = rules_of(words, robot, start);
   if (!rules) return fail(rules.error());
-  Result<RobotWorld> world = cover_robot(robot, path.spheres.value_or(kCoverBounds[1]), *rules);
+  const double bound = path.spheres.value_or(WorldOptions{}.bounds.back());
+  Result<PlanningWorld> world = PlanningWorld::make(robot, {.rules = *rules, .bounds = {bound}});
   if (!world) return fail(std::move(world.error()));
-  auto file = std::make_shared<const ProblemFile>(as_problem(robot, std::move(*world), path));
+  const Result<const WorldLevel*> level = world->level(0);
+  if (!level) return fail(level.error());
+  auto file = std::make_shared<const ProblemFile>(as_problem(robot, (*level)->cover, path));
   const ExactOptions exact{.margin = 0, .allow_depth = how.allow_depth, .rules = *rules};
   const PlanProblem* problem = &file->problems.front();
   return Job{std::move(file), problem, std::move(path), ExactChecker(robot.model, robot.arm, exact),
@@ -139,7 +153,7 @@ Result<std::vector<Job>> robot_jobs(const Options& options, const VerifyRules& r
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
   Result<std::vector<GivenPath>> paths =
-      read_path_file(options.paths, static_cast<std::size_t>(robot->arm.dof()));
+      read_plan_file(options.paths, static_cast<std::size_t>(robot->arm.dof()));
   if (!paths) return fail(std::move(paths.error()));
   std::vector<Job> jobs;
   for (GivenPath& path : *paths) {

@@ -10,16 +10,22 @@
 #include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/view/view_program.hpp"
-#include "apps/mjarm/view/view_robot.hpp"
-#include "apps/mjarm/view/view_sim.hpp"
+#include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/program/load_program.hpp"
+#include "mjarm/session/free_sim.hpp"
+#include "mjarm/session/robot_session.hpp"
+#include "mjarm/session/simulate_world.hpp"
 #include "mjarm/view/controls.hpp"
+#include "mjarm/view/target_handle.hpp"
 
 namespace mjarm::app {
 namespace {
+
+using session::FreeSim;
 
 struct Options {
   RobotChoice robot;
@@ -45,11 +51,11 @@ Result<Loaded> load(const Options& options) {
   return loaded;
 }
 
-Result<ViewSim> make_sim(const Loaded& loaded, bool passive) {
-  Result<ViewSim> sim = ViewSim::make(loaded.model, loaded.arm, passive);
+Result<FreeSim> make_sim(const Loaded& loaded, bool passive) {
+  Result<FreeSim> sim = FreeSim::make(loaded.model, loaded.arm, passive);
   if (sim || sim.error().code != Errc::not_available) return sim;
   log_info(text(msg::view_not_held, sim.error().what));
-  return ViewSim::make(loaded.model, loaded.arm, true);
+  return FreeSim::make(loaded.model, loaded.arm, true);
 }
 
 /// @param out  with what the user has no say in.
@@ -85,22 +91,22 @@ Result<int> run(const Options& options) {
   if (!seconds) return fail(seconds.error());
   const Result<Loaded> loaded = load(options);
   if (!loaded) return fail(loaded.error());
-  Result<ViewSim> sim = make_sim(*loaded, options.passive);
+  Result<FreeSim> sim = make_sim(*loaded, options.passive);
   if (!sim) return fail(std::move(sim.error()));
   const Result<WindowOptions> chosen =
       window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
   if (options.paused) sim->handle(PauseEvent{true});
-  RobotView view(loaded->model, loaded->arm, *sim);
+  session::RobotSession view(loaded->model, loaded->arm, *sim);
   std::optional<TargetHandle> handle;
   ShowOptions show{*seconds, options.stats};
-  if (TargetControl* target = view.target()) {
+  if (session::TargetControl* target = view.target()) {
     handle.emplace(target->link(), target->target().turns());
     show.on_open = [&handle](Window& window) { handle->attach(window); };
   }
   return show_in_window(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen, show,
-                        [&view](ViewLink& link) { simulate_world(view, link); });
+                        [&view](ViewLink& link) { session::simulate_world(view, link); });
 }
 
 /// A program brings its robot and tool along, and holds it.

@@ -1,6 +1,5 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <mujoco/mujoco.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,132 +10,12 @@
 #include <filesystem>
 #include <thread>
 
-#include "apps/mjarm/view/view_sim.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/model/shipped_test.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using mjarm::testing::shipped_arm;
-using mjarm::testing::TestArm;
-
-std::vector<double> positions(const ViewSim& world) {
-  return {world.sim().qpos().begin(), world.sim().qpos().end()};
-}
-
-void run(ViewSim& world, int steps) {
-  for (int i = 0; i < steps; ++i) world.step();
-}
-
-TEST(ViewSim, HoldsTheArmAtHome) {
-  for (const char* name : {"ur5e", "panda"}) {
-    const TestArm robot = shipped_arm(name);
-    ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
-    run(world, 1000);
-    const JointVec off = world.sim().arm_state(robot.arm).q - robot.arm.home;
-    EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-3) << name;
-  }
-}
-
-TEST(ViewSim, PassiveFalls) {
-  const TestArm robot = shipped_arm("ur5e");
-  ViewSim world = ViewSim::make(robot.model, robot.arm, true).value();
-  EXPECT_TRUE(world.jog_dofs().empty());
-  run(world, 500);
-  const JointVec off = world.sim().arm_state(robot.arm).q - robot.arm.home;
-  EXPECT_GT(off.cwiseAbs().maxCoeff(), 0.1);
-}
-
-TEST(ViewSim, JogsWithinTheSpeedLimit) {
-  const TestArm robot = shipped_arm("ur5e");
-  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
-  const int dof = robot.arm.joints[2].dof;
-  ASSERT_EQ(world.jog_dofs().size(), 6U);
-  const double goal = robot.arm.home[2] - 0.5;
-  world.handle(JointEvent{dof, "elbow", goal});
-  double fastest = 0;
-  for (int i = 0; i < 2000; ++i) {
-    world.step();
-    fastest = std::max(fastest, std::abs(world.sim().arm_state(robot.arm).v[2]));
-  }
-  EXPECT_NEAR(world.sim().arm_state(robot.arm).q[2], goal, 2e-3);
-  EXPECT_GT(fastest, 0.1);
-  EXPECT_LT(fastest, robot.arm.limits.velocity[2]);
-  // Beyond the limits it goes to the limit, and what is no joint of the arm is left alone.
-  world.handle(JointEvent{dof, "elbow", 100});
-  world.handle(JointEvent{99, "none", 1});
-  run(world, 5000);
-  EXPECT_LE(world.sim().arm_state(robot.arm).q[2], robot.arm.limits.upper[2] + 1e-2);
-}
-
-TEST(ViewSim, StepsBackAndForthAreTheSameToTheLastBit) {
-  const TestArm robot = shipped_arm("ur5e");
-  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
-  world.handle(JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
-  run(world, 40);
-  std::vector<Snapshot> seen;
-  for (int i = 0; i < 20; ++i) {
-    world.step();
-    seen.push_back(world.sim().snapshot());
-  }
-  world.handle(PauseEvent{true});
-  for (int i = 18; i >= 10; --i) {
-    world.handle(StepEvent{-1});
-    ASSERT_EQ(world.sim().snapshot().state, seen[static_cast<std::size_t>(i)].state);
-  }
-  world.handle(StepEvent{1});
-  EXPECT_EQ(world.sim().snapshot().state, seen[11].state);
-  // Going on from there gives what came the first time.
-  for (std::size_t i = 12; i < seen.size(); ++i) {
-    world.step();
-    ASSERT_EQ(world.sim().snapshot().state, seen[i].state) << i;
-  }
-  EXPECT_EQ(world.steps_due(), 0);
-  world.handle(StepEvent{1});
-  EXPECT_EQ(world.steps_due(), 1);
-}
-
-TEST(ViewSim, PushesMoveTheArmUntilLetGo) {
-  const TestArm robot = shipped_arm("ur5e");
-  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
-  const std::vector<double> before = positions(world);
-  const int body = robot.model.raw()->dof_bodyid[robot.arm.joints.back().dof];
-  for (int i = 0; i < 300; ++i) {
-    world.handle(PushEvent{.body = body, .force_W = {60, 0, 0}});
-    world.step();
-  }
-  const std::vector<double> pushed = positions(world);
-  double moved = 0;
-  for (std::size_t i = 0; i < 6; ++i) moved = std::max(moved, std::abs(pushed[i] - before[i]));
-  EXPECT_GT(moved, 1e-3);
-  world.handle(ReleaseEvent{body});
-  run(world, 3000);
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(positions(world)[i], before[i], 1e-3);
-}
-
-TEST(ViewSim, ResetBeginsAnew) {
-  const TestArm robot = shipped_arm("panda");
-  ViewSim world = ViewSim::make(robot.model, robot.arm, false).value();
-  const Snapshot first = world.sim().snapshot();
-  run(world, 30);
-  const Snapshot later = world.sim().snapshot();
-  world.handle(PushEvent{.body = 3, .force_W = {0, 9, 0}});
-  run(world, 30);
-  world.handle(ResetEvent{});
-  EXPECT_EQ(world.sim().snapshot().state, first.state);
-  run(world, 30);
-  EXPECT_EQ(world.sim().snapshot().state, later.state);
-}
-
-TEST(ViewSim, AnyModelCanBeLookedAt) {
-  const Model model = Model::load(find_model_file("car").value()).value();
-  ViewSim world = ViewSim::make(model, std::nullopt, false).value();
-  run(world, 10);
-  EXPECT_NEAR(world.sim().time(), 10 * model.timestep(), 1e-9);
-}
 
 support::ProgramResult mjarm(std::vector<std::string> arguments,
                              std::vector<std::pair<std::string, std::string>> environment = {}) {

@@ -51,7 +51,8 @@ Result<std::optional<Eigen::Matrix3d>> read_rotation(const Options& options, con
     if (!R) return fail(R.error());
     return *R;
   }
-  if (options.position_only || (given == 0 && arm.dof() < 6)) return std::nullopt;
+  if (options.position_only || (given == 0 && task_for(arm) == IkTask::position))
+    return std::nullopt;
   return from_euler({std::numbers::pi, 0, 0});
 }
 

@@ -4,10 +4,9 @@
 #include <vector>
 
 #include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
@@ -69,7 +68,7 @@ Result<void> try_straight(Stage& stage, ExactChecker& checker, const PlannedMove
   const Result<Curve> line =
       Curve::line(fk(stage.arm(), as_span(q)), fk(stage.arm(), as_span(round.corners.back())));
   if (!line) return fail(line.error());
-  const auto straight = plan_tool_motion(stage.reach(), *line, as_span(q), {});
+  const auto straight = plan_tool_motion(reach_solver(stage.robot()), *line, as_span(q), {});
   if (!straight) {
     log_info(text(msg::demo_avoid_no_line, describe(straight.error(), stage.arm())));
     return {};
@@ -144,8 +143,7 @@ Result<Report> run_avoid(const DemoOptions& options) {
   constexpr double kTolerance = 5e-4;  // [m]
   const Result<LoadedProgram> loaded = plan_in_its_scene(options);
   if (!loaded) return fail(loaded.error());
-  const Result<std::unique_ptr<Stage>> opened =
-      Stage::open("avoid", options, {loaded->robot.model, loaded->robot.arm});
+  const Result<std::unique_ptr<Stage>> opened = Stage::open("avoid", options, loaded->robot);
   if (!opened) return fail(opened.error());
   Stage& stage = **opened;
   const ProgramPlan& plan = loaded->plan;

@@ -2,13 +2,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/demos/output.hpp"
-#include "apps/mjarm/demos/show.hpp"
 #include "apps/mjarm/install/installed.hpp"
-#include "apps/mjarm/messages/demo.hpp"
+#include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
+#include "mjarm/core/messages/run_charts.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 
@@ -88,7 +89,7 @@ std::string to_csv(const Drive& drive) {
 }
 
 Plot plot_of(const Drive& drive) {
-  PlotPanel path{.title = text(msg::demo_plot_top), .x_label = "x [m]", .y_label = "y [m]"};
+  PlotPanel path{.title = text(msg::run_chart_top), .x_label = "x [m]", .y_label = "y [m]"};
   path.equal_aspect = true;
   PlotLine line;
   for (const Eigen::Vector3d& p : drive.p_W) {
@@ -97,7 +98,7 @@ Plot plot_of(const Drive& drive) {
   }
   path.lines.push_back(std::move(line));
   PlotPanel torque{.title = text(msg::demo_plot_sensors),
-                   .x_label = text(msg::demo_plot_time),
+                   .x_label = text(msg::run_chart_time),
                    .y_label = "N m"};
   torque.lines.push_back({.x = drive.time, .y = drive.left, .label = "left_torque"});
   torque.lines.push_back({.x = drive.time, .y = drive.right, .label = "right_torque"});
@@ -122,7 +123,7 @@ Report report_of(const Drive& drive, const Sim& sim) {
   to.p = from.p + Eigen::Vector3d((straight.back() - from.p).x(), 0, 0);
   if (const auto line = Curve::line(from, to); line && line->length() > 0) {
     report.path_error = path_error(*line, straight, 0.01);
-    report.coverage = report.path_error->coverage;
+    report.done = report.path_error->coverage;
   }
   const double turned = std::abs(heading(sim));
   report.ok = to.p.x() > 0.5 && turned > 0.5 && report.path_error && report.path_error->max < 0.01;
@@ -159,7 +160,7 @@ Result<Report> run_car(const DemoOptions& options) {
     if (phase.turn == 0) drive.straight = drive.time.size();
   }
   Report report = report_of(drive, sim);
-  const DemoOutput output{report, plot_of(drive), show->overlay(), "overview"};
+  const RunOutput output{report, plot_of(drive), show->overlay(), "overview"};
   auto written =
       write_file(options.out / "log.csv", to_csv(drive))
           .and_then([&] { return write_output(options.out, *model, sim.snapshot(), output); })

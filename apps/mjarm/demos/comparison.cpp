@@ -32,20 +32,20 @@ PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) {
   const std::span<const MeasuredRun> runs(&run, 1);
   switch (chart) {
     case Chart::joint_speeds:
-      return joint_speed_panel(arm, runs);
+      return session::joint_speed_panel(arm, runs);
     case Chart::joints:
-      return joint_panel(arm, runs);
+      return session::joint_panel(arm, runs);
     case Chart::front: {
-      PlotPanel panel = front_panel(runs);
+      PlotPanel panel = session::front_panel(runs);
       panel.lines.back() = front_line(*run.curve);
       return panel;
     }
     case Chart::tool_speed:
-      return tool_speed_panel(runs);
+      return session::tool_speed_panel(runs);
     case Chart::error:
       break;
   }
-  PlotPanel panel = error_panel(runs, 0);
+  PlotPanel panel = session::error_panel(runs, 0);
   panel.bands.clear();
   return panel;
 }

@@ -3,9 +3,9 @@
 #include <span>
 #include <string>
 
-#include "apps/mjarm/demos/charts.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/render/plot.hpp"
+#include "mjarm/session/run_charts.hpp"
 
 namespace mjarm::app {
 

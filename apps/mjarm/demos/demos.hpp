@@ -1,30 +1,22 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 
 #include "apps/mjarm/cli/robot.hpp"
-#include "mjarm/control/controller.hpp"
+#include "apps/mjarm/commands/stage.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
-#include "mjarm/program/report.hpp"
+#include "mjarm/execution/report.hpp"
 
 namespace mjarm::app {
 
 /// What the user chose for a demo.
-struct DemoOptions {
-  RobotChoice robot;                  ///< which arm, and which frame of it is the tool
-  std::filesystem::path out;           ///< folder of all files written
-  bool headless = false;               ///< no window even where there is a display
-  bool meshes = false;                 ///< the robot's real meshes, which must be installed
-  bool guide = false;                  ///< do it the tutorial's way
-  bool video = false;                  ///< writes video.mp4 as well
-  bool timing = true;                  ///< wall-clock fields in the report
-  double seconds = 0;                  ///< [s] most simulated time, 0 = as long as the motion takes
-  std::string text;                    ///< for `letters`
-  std::optional<ControlMode> control;  ///< none = the demo's own choice
+struct DemoOptions : StageOptions {
+  RobotChoice robot;    ///< which arm, and which frame of it is the tool
+  bool meshes = false;  ///< the robot's real meshes, which must be installed
+  bool guide = false;   ///< do it the tutorial's way
+  std::string text;     ///< for `letters`
 };
 
 /// One demo. `run` makes the motion and writes its files; a report with `ok` false is a demo that

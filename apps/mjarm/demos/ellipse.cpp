@@ -2,10 +2,10 @@
 
 #include <variant>
 
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/path/path_fix.hpp"
 
 namespace mjarm::app {
@@ -25,7 +25,7 @@ Result<Report> refuse(Stage& stage, std::span<const Pose> points,
     detail += text(msg::demo_points_unreachable, range.first, range.last, points.size(),
                    describe(range.worst, stage.arm()));
   }
-  const auto shift = find_shift(stage.ik(), points, as_span(stage.arm().home));
+  const auto shift = find_shift(free_solver(stage.robot()), points, as_span(stage.arm().home));
   if (shift) {
     report.shift = *shift;
     detail += "; " + text(msg::demo_shift_mends, shift->x(), shift->y(), shift->z());
@@ -48,13 +48,12 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   if (!loaded) return fail(loaded.error());
   if (loaded->plan.ok()) return run_demo_plan(*loaded, options);
 
-  Result<std::unique_ptr<Stage>> stage =
-      Stage::open("ellipse", options, {loaded->robot.model, loaded->robot.arm});
+  Result<std::unique_ptr<Stage>> stage = Stage::open("ellipse", options, loaded->robot);
   if (!stage) return fail(std::move(stage.error()));
   const std::vector<Pose> points = ellipse_points(ellipse, kPoints);
   (*stage)->show().add_points(points, 2);
   const std::vector<UnreachableRange> ranges =
-      unreachable_ranges((*stage)->reach(), points, as_span((*stage)->arm().home));
+      unreachable_ranges(reach_solver(loaded->robot), points, as_span(loaded->robot.arm.home));
   if (!ranges.empty()) return refuse(**stage, points, ranges);
   return (*stage)->refuse(loaded->plan.faults.front().reason, first_fault(*loaded).what);
 }

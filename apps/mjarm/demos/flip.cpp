@@ -1,9 +1,9 @@
 #include <numbers>
 
 #include "apps/mjarm/demos/comparison.hpp"
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/naive.hpp"
-#include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
@@ -40,34 +40,35 @@ void tell_naive(const NaiveMotion& naive, const MeasuredRun& run, const Arm& arm
 }  // namespace
 
 Result<Report> run_flip(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("flip", options, 6);
+  Result<std::unique_ptr<Stage>> opened = open_stage("flip", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
+  const IkSolver ik = free_solver(stage.robot());
   const Result<Curve> line = Curve::line(pose_at(-0.1), pose_at(0.6));
   if (!line) return fail(line.error());
   stage.show().add_line(std::vector<Pose>{line->at(0), line->at(line->end())});
   const JointVec home = stage.arm().home;
   const Result<NaiveMotion> naive =
-      naive_motion(stage.ik(), *line, as_span(home), kSpeed, 0.008, kFlipStep);
+      naive_motion(ik, *line, as_span(home), kSpeed, 0.008, kFlipStep);
   if (!naive) return fail(naive.error());
   const Result<ToolMotion, MotionFailure> motion =
-      plan_tool_motion(stage.ik(), *line, as_span(home), {.timing = {.tool_speed = kSpeed}});
+      plan_tool_motion(ik, *line, as_span(home), {.timing = {.tool_speed = kSpeed}});
   if (!motion) return stage.refuse(motion.error());
 
   const ControlMode mode = stage.control(ControlMode::computed_torque);
   const Result<MeasuredRun> naive_run = stage.rehearse(naive->trajectory, mode, *line);
   if (!naive_run) return fail(naive_run.error());
-  stage.start_at(as_span(home));
-  if (auto done = stage.approach(as_span(motion->path.q.front()), mode); !done) {
-    return fail(std::move(done.error()));
-  }
-  if (auto done = stage.run(motion->trajectory, mode, 0.3, &*line); !done) {
-    return fail(std::move(done.error()));
-  }
+  stage.run().start_at(as_span(home));
+  const Result<void> done = stage.move([&](MotionRun& run) {
+    return run.approach(as_span(motion->path.q.front()), mode).and_then([&] {
+      return run.follow(motion->trajectory, mode, 0.3, &*line);
+    });
+  });
+  if (!done) return fail(done.error());
 
   Report report;
   stage.tell(*motion, report);
-  const std::vector<MeasuredRun> runs = stage.measured_runs();
+  const std::vector<MeasuredRun> runs = stage.run().measured_runs();
   if (runs.empty()) return stage.finish(std::move(report));  // stopped on the way to the line
   tell_naive(*naive, *naive_run, stage.arm(), report);
   log_info(text(msg::demo_flip_ours, report.max_joint_step));

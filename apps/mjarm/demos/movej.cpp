@@ -1,6 +1,6 @@
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
@@ -11,16 +11,16 @@ namespace {
 
 /// 100 joint waypoints, each waited for until all joints are within 0.02 rad, as the tutorial does.
 Result<Report> run_waypoints(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("movej", options, 6);
+  Result<std::unique_ptr<Stage>> opened = open_stage("movej", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const Pose goal = tutorial_goal();
   const std::vector<double> seed = tutorial_seed();
-  const Result<IkSolution, IkFailure> solution = stage.ik().solve(goal, seed);
+  const Result<IkSolution, IkFailure> solution = free_solver(stage.robot()).solve(goal, seed);
   if (!solution) {
     return stage.refuse(name(solution.error().code), describe(solution.error(), stage.arm()));
   }
-  stage.start_at(seed);
+  stage.run().start_at(seed);
   stage.show().set_balls(true);
   stage.show().plot_tool();
 
@@ -29,15 +29,19 @@ Result<Report> run_waypoints(const DemoOptions& options) {
   const Result<JointPath> path = joint_line(seed, as_span(solution->q), kWaypoints);
   if (!path) return fail(path.error());
   const ControlMode mode = stage.control(ControlMode::servo);
-  if (auto done = stage.wait_through(path->q, {}, mode); !done)
-    return fail(std::move(done.error()));
-  const std::size_t reached = stage.reached();
-  if (auto done = stage.jump(solution->q, mode, 0.5); !done) return fail(std::move(done.error()));
+  std::size_t reached = 0;
+  const Result<void> done = stage.move([&](MotionRun& run) {
+    return run.wait_through(path->q, {}, mode).and_then([&] {
+      reached = run.outcome().reached;
+      return run.jump(solution->q, mode, 0.5);
+    });
+  });
+  if (!done) return fail(done.error());
 
   Report report;
   report.max_joint_step = path->max_step();
-  report.coverage = static_cast<double>(reached) / kWaypoints;
-  report.static_error = pose_error(goal, stage.sim().tool(stage.arm()));
+  report.done = static_cast<double>(reached) / kWaypoints;
+  report.static_error = pose_error(goal, stage.run().sim().tool(stage.arm()));
   log_info(text(msg::demo_waypoints, reached, kWaypoints, 1e3 * report.static_error->position));
   return stage.finish(std::move(report), kTolerance);
 }

@@ -1,6 +1,6 @@
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/demos/stage.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/solve_path.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 /// The tutorial's follower: 100 poses, each commanded until the tool is within 10 mm of it.
 Result<Report> run_follower(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("movel", options, 6);
+  Result<std::unique_ptr<Stage>> opened = open_stage("movel", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const std::vector<double> seed = tutorial_seed();
@@ -28,14 +28,15 @@ Result<Report> run_follower(const DemoOptions& options) {
   }
   stage.show().add_points(poses, 2);
   const Result<JointPath, PathFailure> path =
-      solve_path(stage.ik(), poses, s, seed, {.keep_start = true});
+      solve_path(free_solver(stage.robot()), poses, s, seed, {.keep_start = true});
   if (!path) return stage.refuse({.path = path.error(), .timing = {}});
 
-  stage.start_at(seed);
+  stage.run().start_at(seed);
   Report report;
   report.max_joint_step = path->max_step();
   const ControlMode mode = stage.control(ControlMode::servo);
-  auto done = stage.wait_through(path->q, points, mode, &*line);
+  auto done =
+      stage.move([&](MotionRun& run) { return run.wait_through(path->q, points, mode, &*line); });
   if (!done) return fail(std::move(done.error()));
   return stage.finish(std::move(report));
 }

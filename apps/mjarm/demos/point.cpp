@@ -3,7 +3,6 @@
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -24,24 +23,24 @@ Result<Report> run_point(const DemoOptions& options) {
   if (!loaded) return fail(loaded.error());
   if (!loaded->plan.ok()) return run_demo_plan(*loaded, options);
   Result<std::unique_ptr<Stage>> opened =
-      Stage::open("point", out_of_sight(options), {loaded->robot.model, loaded->robot.arm});
+      Stage::open("point", out_of_sight(options), loaded->robot);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const ProgramPlan& plan = loaded->plan;
-  const Trajectory& last = plan.moves.back().trajectory;
-  const Pose goal = fk(stage.arm(), as_span(last.at(last.duration()).q));
+  const Pose goal = fk(stage.arm(), as_span(plan.q_end()));
   stage.show().add_points({&goal, 1}, 1);
 
   Report report;
   report.control = "computed_torque";
   for (const PlannedMove& move : plan.moves) add_motion(move, stage.arm(), report);
   for (const ControlMode mode : kModes) {
-    if (auto done = execute(stage, plan, mode, 0); !done) return fail(std::move(done.error()));
-    if (stage.ended_early()) break;
-    const PoseError error = pose_error(goal, stage.sim().tool(stage.arm()));
+    auto done = stage.move([&](MotionRun& run) { return run.execute(plan, mode, 0); });
+    if (!done) return fail(std::move(done.error()));
+    if (stage.run().ended_early()) break;
+    const PoseError error = pose_error(goal, stage.run().sim().tool(stage.arm()));
     report.static_errors.push_back({std::string(name(mode)), error});
     report.static_error = error;  // in the end that of computed torque
-    report.coverage += 1.0 / std::size(kModes);
+    report.done += 1.0 / std::size(kModes);
     log_info(text(msg::demo_static_error, name(mode), 1e3 * error.position,
                   error.rotation * 180 / std::numbers::pi));
   }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "mjarm/program/program_reader.hpp"
 
 namespace mjarm::app {
@@ -15,11 +16,11 @@ Result<Program> demo_program(const std::string& demo) {
 
 Result<LoadedProgram> plan_demo(Program program, const DemoOptions& options) {
   Result<Robot> robot =
-      load_stage_robot(program.name, options, static_cast<int>(program.start.size()));
+      load_demo_robot(program.name, options, static_cast<int>(program.start.size()));
   if (!robot) return fail(std::move(robot.error()));
   const std::string file = program.name + ".yaml";
   if (options.control) program.control = options.control;
-  return plan_loaded(file, std::move(program), {std::move(robot->model), std::move(robot->arm)});
+  return plan_loaded(file, std::move(program), std::move(*robot));
 }
 
 Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& options,
@@ -27,7 +28,7 @@ Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& opt
   constexpr double kTolerance = 5e-4;  // [m]
   if (loaded.plan.ok()) return run_and_show(loaded, options, kTolerance, camera);
   const Result<std::unique_ptr<Stage>> stage =
-      Stage::open(loaded.program.name, options, {loaded.robot.model, loaded.robot.arm});
+      Stage::open(loaded.program.name, options, loaded.robot);
   if (!stage) return fail(stage.error());
   return (*stage)->refuse(loaded.plan.faults.front().reason, first_fault(loaded).what);
 }

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/commands/program_load.hpp"
+#include "mjarm/program/load_program.hpp"
 
 namespace mjarm::app {
 

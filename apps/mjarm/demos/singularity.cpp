@@ -3,10 +3,9 @@
 #include <optional>
 
 #include "apps/mjarm/demos/comparison.hpp"
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/naive.hpp"
-#include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/path_fix.hpp"
@@ -29,24 +28,24 @@ Result<Curve> line_with(const PathChange& change) {
   return Curve::line(change(pose_at(-0.25)), change(pose_at(0.35)));
 }
 
-Result<ToolMotion, MotionFailure> plan(const Stage& stage, const Curve& line,
+Result<ToolMotion, MotionFailure> plan(const IkSolver& ik, const Curve& line,
                                        std::span<const double> q_start) {
-  return plan_tool_motion(stage.ik(), line, q_start,
+  return plan_tool_motion(ik, line, q_start,
                           {.timing = {.tool_speed = kSpeed, .joint_share = kShare}});
 }
 
 /// Asks for the speed all along the line, and tells why it cannot be had and what mends that.
 /// @return the turn of the tool that does, if one was found.
-std::optional<PathFix> ask_for_speed(const Stage& stage, const Curve& line,
+std::optional<PathFix> ask_for_speed(const IkSolver& ik, const Curve& line,
                                      std::span<const double> q_start, Report& report) {
   const CurveOptions asked{.path = {.tool_speed = kSpeed}};
-  const auto path = solve_curve(stage.ik(), line, q_start, asked);
+  const auto path = solve_curve(ik, line, q_start, asked);
   if (path) return std::nullopt;
   const PathFailure& failure = path.error();
-  log_info(text(msg::demo_singularity_asked, kSpeed, describe(failure, stage.arm())));
+  log_info(text(msg::demo_singularity_asked, kSpeed, describe(failure, ik.arm())));
   report.facts.push_back({"asked_reason", std::string(name(failure.code))});
   std::optional<PathFix> tilt;
-  for (const PathFix& fix : find_fixes(stage.ik(), line, q_start, asked, failure, 2)) {
+  for (const PathFix& fix : find_fixes(ik, line, q_start, asked, failure, 2)) {
     log_info(text(msg::demo_singularity_mends, describe(fix)));
     if (fix.kind == FixKind::slower) report.facts.push_back({"slower", fix.tool_speed});
     if (fix.kind == FixKind::tilt) tilt = fix;
@@ -55,12 +54,12 @@ std::optional<PathFix> ask_for_speed(const Stage& stage, const Curve& line,
 }
 
 /// The same line with the tool turned, in a world apart.
-Result<std::optional<MeasuredRun>> run_tilted(Stage& stage, const Curve& line, const PathFix& tilt,
-                                              std::span<const double> q_start, ControlMode mode,
-                                              Report& report) {
+Result<std::optional<MeasuredRun>> run_tilted(Stage& stage, const IkSolver& ik, const Curve& line,
+                                              const PathFix& tilt, std::span<const double> q_start,
+                                              ControlMode mode, Report& report) {
   const Result<Curve> turned = line_with(tilt.change);
   if (!turned) return fail(turned.error());
-  const Result<ToolMotion, MotionFailure> motion = plan(stage, *turned, q_start);
+  const Result<ToolMotion, MotionFailure> motion = plan(ik, *turned, q_start);
   if (!motion) return std::optional<MeasuredRun>();
   Result<MeasuredRun> run = stage.rehearse(motion->trajectory, mode, line);
   if (!run) return fail(std::move(run.error()));
@@ -92,17 +91,19 @@ std::string tell(const Stage& stage, const MeasuredRun& naive, const MeasuredRun
 }  // namespace
 
 Result<Report> run_singularity(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("singularity", options, 6);
+  Result<std::unique_ptr<Stage>> opened = open_stage("singularity", options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
+  const IkSolver ik = free_solver(stage.robot());
   const Result<Curve> line = line_with({});
   if (!line) return fail(line.error());
   stage.show().add_line(std::vector<Pose>{line->at(0), line->at(line->end())});
-  const Result<ToolMotion, MotionFailure> motion = plan(stage, *line, as_span(stage.arm().home));
+  const Result<ToolMotion, MotionFailure> motion = plan(ik, *line, as_span(stage.arm().home));
   if (!motion) return stage.refuse(motion.error());
   // The same answers from the same start, so that the timing alone makes the difference.
   const JointVec& q_start = motion->path.q.front();
-  const Result<NaiveMotion> naive = naive_motion(stage.reach(), *line, as_span(q_start), kSpeed);
+  const Result<NaiveMotion> naive =
+      naive_motion(reach_solver(stage.robot()), *line, as_span(q_start), kSpeed);
   if (!naive) return fail(naive.error());
 
   Report report;
@@ -110,18 +111,18 @@ Result<Report> run_singularity(const DemoOptions& options) {
   const Result<MeasuredRun> naive_run = stage.rehearse(naive->trajectory, mode, *line);
   if (!naive_run) return fail(naive_run.error());
   std::vector<ComparedRun> compared{{text(msg::demo_naive), *naive_run}};
-  stage.start_at(as_span(q_start));
-  if (auto done = stage.run(motion->trajectory, mode, 0.3, &*line); !done) {
-    return fail(std::move(done.error()));
-  }
+  stage.run().start_at(as_span(q_start));
+  const Result<void> done =
+      stage.move([&](MotionRun& run) { return run.follow(motion->trajectory, mode, 0.3, &*line); });
+  if (!done) return fail(done.error());
   stage.tell(*motion, report);
-  const std::vector<MeasuredRun> runs = stage.measured_runs();
+  const std::vector<MeasuredRun> runs = stage.run().measured_runs();
   compared.push_back({text(msg::demo_slows), runs.back()});
   const std::string note = tell(stage, *naive_run, runs.back(), report);
   log_info(text(msg::demo_singularity_ours, peak_speed(runs.back()).speed,
                 motion->trajectory.duration(), naive->trajectory.duration()));
-  if (const auto tilt = ask_for_speed(stage, *line, as_span(q_start), report)) {
-    auto tilted = run_tilted(stage, *line, *tilt, as_span(q_start), mode, report);
+  if (const auto tilt = ask_for_speed(ik, *line, as_span(q_start), report)) {
+    auto tilted = run_tilted(stage, ik, *line, *tilt, as_span(q_start), mode, report);
     if (!tilted) return fail(std::move(tilted.error()));
     if (*tilted) compared.push_back({text(msg::demo_tilts), std::move(**tilted)});
   }

@@ -1,9 +1,8 @@
 #include <array>
 #include <string_view>
 
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -50,17 +49,17 @@ struct Choice {
 
 /// The first square that can be drawn: postures in their order, planes in theirs. Each posture that
 /// fails in every plane is told.
-Result<Choice, MotionFailure> choose(Stage& stage, std::span<const StartPosture> starts) {
+Result<Choice, MotionFailure> choose(const IkSolver& ik, std::span<const StartPosture> starts) {
   MotionFailure nearest;
   for (const StartPosture& start : starts) {
-    const Pose X_WT = fk(stage.arm(), as_span(start.q));
+    const Pose X_WT = fk(ik.arm(), as_span(start.q));
     for (const Plane& plane : planes()) {
       std::vector<Pose> corners = square(X_WT, plane);
       const Result<Curve> curve = Curve::polyline(corners);
       if (!curve) return fail(MotionFailure{{}, curve.error()});
-      auto motion = plan_tool_motion(stage.ik(), *curve, as_span(start.q));
+      auto motion = plan_tool_motion(ik, *curve, as_span(start.q));
       if (motion) return Choice{start, plane.name, std::move(corners), std::move(*motion)};
-      log_debug(text(msg::demo_square_not, plane.name, describe(motion.error(), stage.arm())));
+      log_debug(text(msg::demo_square_not, plane.name, describe(motion.error(), ik.arm())));
       const bool farther = motion.error().path && (!nearest.path || motion.error().path->fraction >
                                                                         nearest.path->fraction);
       if (farther || motion.error().timing) nearest = std::move(motion.error());
@@ -81,14 +80,14 @@ void tell(const Stage& stage, const Choice& choice) {
 }  // namespace
 
 Result<Report> run_square(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open("square", options);
+  Result<std::unique_ptr<Stage>> opened = open_stage("square", options);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
+  const IkSolver ik = free_solver(stage.robot());
   Rng rng(1);
-  const std::vector<StartPosture> starts =
-      start_postures(stage.arm(), stage.ik().options().valid, rng);
+  const std::vector<StartPosture> starts = start_postures(stage.arm(), ik.options().valid, rng);
   if (starts.empty()) return stage.refuse("collision", text(msg::demo_no_start));
-  const Result<Choice, MotionFailure> choice = choose(stage, starts);
+  const Result<Choice, MotionFailure> choice = choose(ik, starts);
   if (!choice) return stage.refuse(choice.error());
   tell(stage, *choice);
 
@@ -96,16 +95,16 @@ Result<Report> run_square(const DemoOptions& options) {
   log_info(text(msg::demo_plan, motion.curve.length(), motion.trajectory.duration(),
                 motion.path.max_step()));
   stage.show().add_line(choice->corners);
-  stage.start_at(as_span(choice->start.q));
+  stage.run().start_at(as_span(choice->start.q));
   Report report;
   stage.tell(motion, report);
   const ControlMode mode = stage.control(ControlMode::computed_torque);
-  if (auto done = stage.approach(as_span(motion.path.q.front()), mode); !done) {
-    return fail(std::move(done.error()));
-  }
-  if (auto done = stage.run(motion.trajectory, mode, 0.3, &motion.curve); !done) {
-    return fail(std::move(done.error()));
-  }
+  const Result<void> done = stage.move([&](MotionRun& run) {
+    return run.approach(as_span(motion.path.q.front()), mode).and_then([&] {
+      return run.follow(motion.trajectory, mode, 0.3, &motion.curve);
+    });
+  });
+  if (!done) return fail(done.error());
   return stage.finish(std::move(report));
 }
 

@@ -1,6 +1,5 @@
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/demos/stage.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
@@ -11,14 +10,14 @@ constexpr double kSeconds = 3;  // [s] the tutorial's servo has settled long bef
 
 /// The tutorial's first move: the arm starts at one posture and all servos jump to another.
 Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vision) {
-  Result<std::unique_ptr<Stage>> opened = Stage::open(demo, options, 6);
+  Result<std::unique_ptr<Stage>> opened = open_stage(demo, options, 6);
   if (!opened) return fail(std::move(opened.error()));
   Stage& stage = **opened;
   const JointVec start = joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
   const JointVec goal = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
   const Pose X_start = fk(stage.arm(), as_span(start));
   if (X_start.p.z() < 0) log_warning(text(msg::demo_below_floor, X_start.p.z()));
-  stage.start_at(as_span(start));
+  stage.run().start_at(as_span(start));
   if (vision) {
     stage.show().set_balls(true);
     stage.show().plot_tool();
@@ -28,11 +27,13 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   report.max_joint_step = (goal - start).cwiseAbs().maxCoeff();
   const ControlMode mode = stage.control(ControlMode::servo);
   const double seconds = options.seconds > 0 ? options.seconds : kSeconds;
-  if (auto done = stage.jump(goal, mode, seconds); !done) return fail(std::move(done.error()));
-  const JointVec q = stage.sim().arm_state(stage.arm()).q;
-  const PoseError error = pose_error(fk(stage.arm(), as_span(goal)), stage.sim().tool(stage.arm()));
+  auto done = stage.move([&](MotionRun& run) { return run.jump(goal, mode, seconds); });
+  if (!done) return fail(std::move(done.error()));
+  const JointVec q = stage.run().sim().arm_state(stage.arm()).q;
+  const PoseError error =
+      pose_error(fk(stage.arm(), as_span(goal)), stage.run().sim().tool(stage.arm()));
   report.static_error = error;
-  report.coverage = 1 - (goal - q).norm() / (goal - start).norm();
+  report.done = 1 - (goal - q).norm() / (goal - start).norm();
   log_info(text(msg::demo_arrived, 1e3 * error.position, (goal - q).cwiseAbs().maxCoeff()));
   return stage.finish(std::move(report), 0.02);
 }

@@ -7,9 +7,6 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/render_program.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
-#include "apps/mjarm/messages/plan_show.hpp"
-#include "apps/mjarm/view/plan_camera.hpp"
-#include "apps/mjarm/view/plan_player.hpp"
 #include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/core/log.hpp"
@@ -17,9 +14,17 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/render/video.hpp"
+#include "mjarm/session/plan_player.hpp"
+#include "mjarm/session/plan_view.hpp"
+#include "mjarm/session/simulate_world.hpp"
 
 namespace mjarm::app {
 namespace {
+
+using session::PlanDrawing;
+using session::PlanLayers;
+using session::PlanPlayer;
+using session::PlanSubject;
 
 constexpr double kFilmSpeed = 1;   // [rad/s or m/s, L2]
 constexpr double kFilmRest = 0.5;  // [s] at the end
@@ -35,12 +40,12 @@ double aspect_of(const PlanShow& show) {
 Result<Camera> camera_of(const PlanShow& show, const PlanSubject& subject,
                          const PlanDrawing& drawing) {
   if (!show.camera.empty()) return choose_camera(subject.model, show.camera);
-  return Camera{.view = plan_view(subject, drawing, aspect_of(show))};
+  return Camera{.view = session::plan_view(subject, drawing, aspect_of(show))};
 }
 
 Snapshot standing(const PlanSubject& subject, const JointVec& q) {
   Sim sim(subject.model);
-  place_subject(sim, subject, q);
+  session::place_subject(sim, subject, q);
   return sim.snapshot();
 }
 
@@ -102,7 +107,7 @@ Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
   catch_interrupts();
   const Result<int> shown =
       show_in_window(subject.model, "mjarm plan " + subject.title, window, {show.seconds},
-                     [&player](ViewLink& link) { simulate_world(player, link); });
+                     [&player](ViewLink& link) { session::simulate_world(player, link); });
   if (!shown) return fail(shown.error());
   return {};
 }
@@ -188,7 +193,7 @@ Result<void> show_plan(const PlanShow& show, const PlanSubject& subject) {
 
 Result<void> show_plan_of_spheres(const PlanShow& show, const FastRobot& robot,
                                   const PlanProblem& problem, const PlannedPath& path) {
-  const Arm arm = with_tool(robot.arm(), robot.spheres());
+  const Arm arm = session::with_tool(robot.arm(), robot.spheres());
   const Result<FastChecker> checker = FastChecker::make(robot, problem.obstacles);
   if (!checker) return fail(checker.error());
   SphereModelLook look;
@@ -199,7 +204,7 @@ Result<void> show_plan_of_spheres(const PlanShow& show, const FastRobot& robot,
   const PlanDrawing drawing(subject);
   const Result<Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
-  if (camera->view) look.see_through = hiding_solids(subject, drawing, *camera->view);
+  if (camera->view) look.see_through = session::hiding_solids(subject, drawing, *camera->view);
   if (look.see_through.empty()) return show_plan(show, subject);
   const Result<SphereModel> again = sphere_model(arm, robot.spheres(), problem.obstacles, &look);
   if (!again) return fail(again.error());

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/view/plan_drawing.hpp"
-#include "apps/mjarm/commands/problem_file.hpp"
 #include "apps/mjarm/commands/render_options.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/planning/problem_file.hpp"
+#include "mjarm/session/plan_drawing.hpp"
 
 namespace mjarm::app {
 
@@ -40,7 +40,7 @@ struct PlanShow {
 /// Draws a planned path into a file, or opens a window on it and returns when that is closed. Tells
 /// the tightest place. Called from the main thread.
 /// @return impossible without a display, not_available without OpenGL.
-[[nodiscard]] Result<void> show_plan(const PlanShow& show, const PlanSubject& subject);
+[[nodiscard]] Result<void> show_plan(const PlanShow& show, const session::PlanSubject& subject);
 
 /// The same for a robot that is known as spheres only: the arm is drawn as a chain of rods. An arm
 /// without a tool gets one at its outermost spheres.

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/view/view_show.hpp"
+#include "mjarm/program/load_program.hpp"
 
 namespace mjarm::app {
 

@@ -1,6 +1,8 @@
 #include "apps/mjarm/view/view_show.hpp"
 
+#include <chrono>
 #include <cstdio>
+#include <thread>
 #include <utility>
 
 #include "mjarm/core/messages/view.hpp"

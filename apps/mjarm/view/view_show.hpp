@@ -1,12 +1,11 @@
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <string>
-#include <thread>
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/view/view_link.hpp"
+#include "mjarm/view/window.hpp"
 
 namespace mjarm::app {
 
@@ -24,35 +23,5 @@ struct ShowOptions {
 [[nodiscard]] Result<int> show_in_window(const Model& model, const std::string& title,
                                          const WindowOptions& window, const ShowOptions& options,
                                          const std::function<void(ViewLink&)>& simulate);
-
-/// Lets `world` keep real time and do what the user asks for, until the window is gone. A world
-/// with something to be dragged has `take_drags` besides, which tells whether it was.
-template <class World>
-void simulate_world(World& world, ViewLink& link) {
-  ViewFrame frame;
-  bool changed = true;
-  const auto offer = [&] {
-    if (!changed || !link.frames.is_empty()) return;
-    changed = false;
-    world.fill(frame);
-    link.frames.post(frame);
-  };
-  while (!link.closed) {
-    for (const ViewEvent& event : link.events.take()) {
-      world.handle(event);
-      changed = true;
-    }
-    if constexpr (requires { world.take_drags(); }) {
-      if (world.take_drags()) changed = true;
-    }
-    for (int due = world.steps_due(); due > 0 && !link.closed; --due) {
-      world.step();
-      changed = true;
-      offer();
-    }
-    offer();
-    std::this_thread::sleep_for(std::chrono::microseconds(500));
-  }
-}
 
 }  // namespace mjarm::app

@@ -1,0 +1,136 @@
+#include "apps/mjarm/commands/stage.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/commands/run_output.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/demo.hpp"
+#include "mjarm/kinematics/ik.hpp"
+#include "mjarm/render/camera.hpp"
+#include "mjarm/session/run_charts.hpp"
+
+namespace mjarm::app {
+
+Stage::Stage(std::string name, const StageOptions& options, const Robot& robot, Show show)
+    : name_(std::move(name)),
+      options_(options),
+      robot_(robot),
+      run_(robot.model, robot.arm),
+      show_(std::move(show)) {
+  run_.set_after_step([this](const Sim& sim, bool measured) {
+    show_.set_trail(measured);
+    return show_step(sim);
+  });
+  run_.start_at(as_span(robot_.arm.home));
+  show_.let_push(run_.sim());
+}
+
+Result<std::unique_ptr<Stage>> Stage::open(const std::string& name, const StageOptions& options,
+                                           const Robot& robot) {
+  tell_warnings(robot.model);
+  if (task_for(robot.arm) == IkTask::position) {
+    log_info(text(msg::demo_position_only, robot.arm.dof()));
+  }
+  if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
+  Result<Show> show = Show::open(robot.model, "mjarm " + name, options.headless);
+  if (!show) return fail(std::move(show.error()));
+  return std::unique_ptr<Stage>(new Stage(name, options, robot, std::move(*show)));
+}
+
+ControlMode Stage::control(ControlMode fallback) {
+  const ControlMode mode = options_.control.value_or(fallback);
+  control_ = mjarm::name(mode);
+  return mode;
+}
+
+bool Stage::show_step(const Sim& sim) {
+  if (options_.seconds > 0 && sim.time() >= options_.seconds) return false;
+  if (tick_) tick_();
+  return show_.step(sim, sim.tool(robot_.arm).p);
+}
+
+std::string Stage::known_camera() const {
+  const std::vector<std::string> cameras = camera_names(robot_.model);
+  return std::ranges::find(cameras, camera_) != cameras.end() ? camera_ : std::string();
+}
+
+Result<void> Stage::begin_film() {
+  if (!options_.video || show_.is_filming()) return {};
+  return show_.film(robot_.model, options_.out / kVideoFile, known_camera());
+}
+
+Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mode,
+                                    const Curve& curve) {
+  constexpr double kRest = 0.3;  // [s]
+  show_.set_trail(false);
+  show_.set_filming(false);
+  MotionRun apart(robot_.model, robot_.arm);
+  apart.set_after_step([this](const Sim& sim, bool) { return show_step(sim); });
+  apart.start_at(as_span(trajectory.at(0).q));
+  Result<void> done = apart.follow(trajectory, mode, kRest);
+  show_.set_filming(true);
+  if (!done) return fail(std::move(done.error()));
+  MeasuredRun run{.rows = {}, .curve = &curve};
+  for (std::size_t i = 0; i < apart.recorder().size(); ++i) {
+    run.rows.push_back(apart.recorder().row(i));
+  }
+  return run;
+}
+
+void Stage::tell(const ToolMotion& motion, Report& report) const {
+  add_motion(motion, robot_.arm, report);
+  for (const SpeedDip& dip : motion.dips) log_info(describe(dip, robot_.arm));
+}
+
+Result<void> Stage::save_comparison(const Plot& page) const {
+  const std::filesystem::path stem = options_.out / "comparison";
+  log_info(text(msg::demo_compared, stem.string() + ".png"));
+  return save_plot(page, stem);
+}
+
+Result<Report> Stage::finish(Report begun, double tolerance) {
+  const std::vector<MeasuredRun> runs = run_.measured_runs();
+  return finish(run_.report(runs, tolerance, std::move(begun)), tolerance, runs);
+}
+
+Result<Report> Stage::finish(Report report, double tolerance, std::span<const MeasuredRun> runs) {
+  Plot plot = session::motion_plot(name_, robot_.arm, runs, tolerance);
+  if (report.path_error) {
+    plot.note = text(msg::demo_plot_note, control_, 1e3 * report.path_error->max,
+                     1e3 * report.path_error->rms, 100 * report.done);
+  }
+  return write(std::move(report), std::move(plot));
+}
+
+Result<Report> Stage::write(Report report, Plot plot) {
+  report.name = name_;
+  if (report.control.empty()) report.control = control_;
+  if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {
+    report.rtf = run_.outcome().duration / wall_seconds_;
+  }
+  const RunOutput output{report, std::move(plot), show_.overlay(), known_camera()};
+  auto written = run_.recorder().write_csv(options_.out / "log.csv").and_then([&] {
+    return write_output(options_.out, robot_.model, run_.sim().snapshot(), output);
+  });
+  if (written) written = show_.end_film();
+  if (!written) return fail(std::move(written.error()));
+  show_.linger(run_.sim());
+  return report;
+}
+
+Result<Report> Stage::refuse(std::string_view reason, const std::string& detail, Report report) {
+  report.model = robot_.model.name();
+  report.ok = false;
+  report.reason = reason;
+  report.detail = detail;
+  return write(std::move(report), {});
+}
+
+Result<Report> Stage::refuse(const MotionFailure& failure) {
+  return refuse(failure.path ? mjarm::name(failure.path->code) : "timing",
+                describe(failure, robot_.arm));
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,160 @@
+#include "apps/mjarm/view/run_show.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/render/overlay_shapes.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr auto kRest = std::chrono::microseconds(500);
+constexpr Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
+constexpr Rgba kGoal = {0.15F, 0.70F, 0.30F, 0.6F};
+
+}  // namespace
+
+Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
+  Show show(model.timestep());
+  if (headless) return show;
+  Result<std::optional<RemoteWindow>> window =
+      RemoteWindow::open_where_possible(model, title, {.can_reset = false});
+  if (!window) return fail(std::move(window.error()));
+  show.window_ = std::move(*window);
+  return show;
+}
+
+void Show::add_points(std::span<const Pose> X_WT, std::size_t every) {
+  for (std::size_t i = 0; i < X_WT.size(); i += every) {
+    planned_.spheres.push_back({.p_W = X_WT[i].p, .radius = 0.005, .color = kPlanned});
+  }
+}
+
+void Show::add_line(std::span<const Pose> X_WT) { add_planned_path(planned_, X_WT); }
+
+void Show::begin_goal(const Sim& sim, const Eigen::Vector3d& p_W) {
+  goal_ = OverlaySphere{.p_W = p_W, .radius = 0.02, .color = kGoal};
+  trail_.clear();
+  if (video_) video_->begin_again(sim);
+}
+
+Overlay Show::overlay() const {
+  Overlay all = planned_;
+  if (goal_) all.spheres.push_back(*goal_);
+  trail_.draw(all);
+  return all;
+}
+
+std::vector<LivePlot> Show::plots() const {
+  if (!plots_tool_) return {};
+  LivePlot path{.title = "tool from above [m]", .x_label = "x [m]", .series = {}};
+  path.equal_aspect = true;
+  path.series.push_back({.name = ""});
+  LivePlot time{.title = "tool position [m]", .x_label = "time [s]", .series = {}};
+  time.series = {{.name = "x", .color = {0.90F, 0.35F, 0.30F, 1}},
+                 {.name = "y", .color = {0.30F, 0.75F, 0.35F, 1}},
+                 {.name = "z", .color = {0.35F, 0.55F, 0.95F, 1}}};
+  for (std::size_t i = 0; i < tool_.size(); ++i) {
+    const Eigen::Vector3d& p_W = tool_.at(i);
+    path.series[0].x.push_back(p_W.x());
+    path.series[0].y.push_back(p_W.y());
+    for (int axis = 0; axis < 3; ++axis) {
+      LiveSeries& series = time.series[static_cast<std::size_t>(axis)];
+      series.x.push_back(tool_.time(i));
+      series.y.push_back(p_W[axis]);
+    }
+  }
+  return {std::move(path), std::move(time)};
+}
+
+bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
+  if (interrupted()) return false;
+  if (trail_on_) trail_.add(p_WT);
+  if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
+  if (!window_) return true;
+  history_.add(sim.snapshot());
+  // A rehearsal has a clock that begins anew.
+  if (!tool_.empty() && sim.time() <= last_time_) tool_.clear();
+  last_time_ = sim.time();
+  if (plots_tool_) tool_.add(last_time_, [&p_WT] { return p_WT; });
+  changed_ = true;
+  if (due_ > 0) --due_;
+  offer();
+  while (due_ == 0) {
+    if (!window_->is_open() || interrupted()) return false;
+    handle_events();
+    due_ = playback_.steps_due();
+    offer();
+    if (due_ == 0) std::this_thread::sleep_for(kRest);
+  }
+  return true;
+}
+
+Result<void> Show::film(const Model& model, const std::filesystem::path& file,
+                        const std::string& camera) {
+  Result<VideoOfRun> video =
+      VideoOfRun::open(model, {.out = file, .video = true, .camera = camera});
+  if (!video) return fail(std::move(video.error()));
+  video_.emplace(std::move(*video));
+  return {};
+}
+
+Result<void> Show::end_film() {
+  if (!video_) return {};
+  Result<void> done = video_->finish();
+  if (done) {
+    log_info(video_->summary());
+  } else if (interrupted()) {
+    log_warning(done.error().what);
+    return {};
+  }
+  return done;
+}
+
+void Show::handle_events() {
+  for (const ViewEvent& event : window_->link().events.take()) handle(event);
+}
+
+void Show::handle(const ViewEvent& event) {
+  changed_ = true;
+  if (const auto* push = std::get_if<PushEvent>(&event); push != nullptr && pushed_ != nullptr) {
+    pushed_->set_external_force(push->body, push->force_W, push->torque_W);
+  } else if (std::holds_alternative<ReleaseEvent>(event) && pushed_ != nullptr) {
+    pushed_->clear_external_forces();
+  }
+  if (const auto* step = std::get_if<StepEvent>(&event)) {
+    if (step->steps < 0) (void)history_.back();
+    if (step->steps < 0 || history_.forward() != nullptr) return;
+  }
+  (void)playback_.handle(event);
+  if (!playback_.paused()) history_.to_present();
+}
+
+void Show::offer() {
+  Mailbox<ViewFrame>& frames = window_->link().frames;
+  if (!changed_ || !frames.is_empty() || history_.size() == 0) return;
+  changed_ = false;
+  frame_.snapshot = history_.at();
+  frame_.overlay = overlay();
+  frame_.plots = plots();
+  frame_.status =
+      history_.is_past() ? "looking back; space goes on from now" : overlay_notice(frame_.overlay);
+  frames.post(frame_);
+}
+
+void Show::linger(const Sim& sim) {
+  if (!window_ || !window_->is_open() || interrupted()) return;
+  log_info(text(msg::demo_close_window));
+  history_.add(sim.snapshot());
+  changed_ = true;
+  while (window_->is_open() && !interrupted()) {
+    handle_events();
+    offer();
+    std::this_thread::sleep_for(kRest);
+  }
+}
+
+}  // namespace mjarm::app

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/mjarm/commands/render_video.hpp"
+#include "mjarm/core/pose.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/render/trail.hpp"
+#include "mjarm/sim/sim.hpp"
+#include "mjarm/view/history.hpp"
+#include "mjarm/view/live_plot.hpp"
+#include "mjarm/view/playback.hpp"
+#include "mjarm/view/remote_window.hpp"
+#include "mjarm/view/thinned_record.hpp"
+#include "mjarm/view/view_link.hpp"
+
+namespace mjarm::app {
+
+/// What people see of a demo: the window where there is one, the planned path and the trail, the
+/// live plots. Headless it only keeps the overlay, for the picture at the end. It belongs to the
+/// thread that simulates; the window is drawn by the main thread (`run_beside_windows`), and
+/// nothing in it changes what is simulated but a push of the user. Steps back show what was, and
+/// change nothing: a demo follows its plan.
+class Show {
+ public:
+  /// Opens a window unless `headless`; without a display it says so and goes on headless.
+  [[nodiscard]] static Result<Show> open(const Model& model, const std::string& title,
+                                         bool headless);
+
+  /// Red balls at every `every`-th of the positions.
+  void add_points(std::span<const Pose> X_WT, std::size_t every);
+  /// The trail grows with every call of `step` while on.
+  void set_trail(bool on) { trail_on_ = on; }
+  /// Red balls along the trail, as the tutorial draws it.
+  void set_balls(bool on) { trail_.set_balls(on); }
+  /// The way of the tool as it is planned, dashed.
+  void add_line(std::span<const Pose> X_WT);
+  /// More that is drawn all the time.
+  void add(const Overlay& overlay) { append(planned_, overlay); }
+  /// A green ball at `p_W` [m], in the place of the one before, and a new trail: another run to
+  /// another goal begins, which may set the clock back.
+  void begin_goal(const Sim& sim, const Eigen::Vector3d& p_W);
+  /// Live plots of the tool: its path from above, and its coordinates over time.
+  void plot_tool() { plots_tool_ = true; }
+
+  /// From now on every step is filmed into `file`, an MP4, in simulated time.
+  /// @param camera  of the model; empty = its own view.
+  [[nodiscard]] Result<void> film(const Model& model, const std::filesystem::path& file,
+                                  const std::string& camera);
+  /// Leaves out steps, or goes on.
+  void set_filming(bool on) { filming_ = on; }
+  /// Puts the video in its place, if there is one. A run that the user ends has none, which is
+  /// told.
+  [[nodiscard]] Result<void> end_film();
+  [[nodiscard]] bool is_filming() const { return video_.has_value(); }
+
+  /// Lets the user push the bodies of `sim`, which outlives this.
+  void let_push(Sim& sim) { pushed_ = &sim; }
+
+  /// Called after each simulation step; with a window hands over a frame where one is wanted, does
+  /// what the user asks for and keeps real time.
+  /// @return false when the user ended it.
+  [[nodiscard]] bool step(const Sim& sim, const Eigen::Vector3d& p_WT);
+  /// Keeps the window open until the user closes it; returns at once without one.
+  void linger(const Sim& sim);
+
+  [[nodiscard]] bool has_window() const { return window_.has_value(); }
+  /// What is planned, and the trail so far.
+  [[nodiscard]] Overlay overlay() const;
+
+ private:
+  static constexpr std::size_t kMaxToolPoints = 2000;
+  explicit Show(double timestep) : playback_(timestep) {}
+  [[nodiscard]] std::vector<LivePlot> plots() const;
+  void handle_events();
+  void handle(const ViewEvent& event);
+  /// Hands a frame to the window where it took the last one.
+  void offer();
+
+  std::optional<RemoteWindow> window_;
+  Playback playback_;
+  History<Snapshot> history_{2000};
+  Sim* pushed_ = nullptr;
+  int due_ = 0;
+  bool changed_ = true;  ///< since the last frame
+  ViewFrame frame_;      ///< memory that is used again
+  bool trail_on_ = false;
+  bool filming_ = true;
+  std::optional<VideoOfRun> video_;
+  Trail trail_{{.max_points = 10000}};
+  Overlay planned_;
+  std::optional<OverlaySphere> goal_;
+  ThinnedRecord<Eigen::Vector3d> tool_{kMaxToolPoints};  ///< [m] what is plotted of it
+  double last_time_ = 0;                                 ///< [s] of the last step
+  bool plots_tool_ = false;
+};
+
+}  // namespace mjarm::app

@@ -1,0 +1,11 @@
+#pragma once
+
+namespace mjarm {
+
+/// Where something stands in a file, both from 1; 0 where it comes from no file.
+struct FilePlace {
+  int line = 0;
+  int column = 0;
+};
+
+}  // namespace mjarm

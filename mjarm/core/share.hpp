@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "mjarm/core/result.hpp"
+
+namespace mjarm {
+
+/// Where the files that are shipped lie, `../share/mjarm` beside it.
+/// @return an error where the program's own place is unknown.
+[[nodiscard]] Result<std::filesystem::path> share_folder();
+
+}  // namespace mjarm

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mjarm/core/result.hpp"
+
+namespace mjarm {
+
+/// Where something stands in a file, both from 1; 0 where it comes from no file.
+struct FilePlace {
+  int line = 0;
+  int column = 0;
+};
+
+/// A YAML document as a tree that knows where everything stands, without yaml-cpp's headers.
+struct YamlNode {
+  enum class Kind { nothing, scalar, list, map };
+
+  Kind kind = Kind::nothing;
+  FilePlace place;
+  std::string text;             ///< of a scalar
+  bool quoted = false;          ///< a scalar in quotes, or with a tag: text, whatever it looks like
+  std::vector<YamlNode> items;  ///< of a list
+  std::vector<std::pair<YamlNode, YamlNode>>
+      members;  ///< of a map; keys are scalars, all different
+};
+
+/// Reads one document. Bounded, whatever the text holds: at most 32 levels and 200,000 nodes,
+/// copies by aliases counted. An empty text gives `Kind::nothing` at no place.
+/// @return an error that begins with `name:line:column:`.
+[[nodiscard]] Result<YamlNode> read_yaml(const std::string& text, std::string_view name);
+
+/// `name:line:column: what`; the place is left out where there is none.
+[[nodiscard]] std::string at_place(std::string_view name, FilePlace place, std::string_view what);
+
+}  // namespace mjarm

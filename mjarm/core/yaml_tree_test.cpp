@@ -1,0 +1,75 @@
+#include "mjarm/core/yaml_tree.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mjarm/core/language_scope.hpp"
+
+namespace mjarm {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string error_of(const std::string& text) {
+  const Result<YamlNode> root = read_yaml(text, "f.yaml");
+  if (root) return "none";
+  EXPECT_EQ(root.error().code, Errc::bad_input);
+  return root.error().what;
+}
+
+TEST(YamlTree, KnowsWhatStandsWhere) {
+  const Result<YamlNode> root = read_yaml("a: [1, '2', ~]\nb:\n  c: x\n", "f.yaml");
+  ASSERT_TRUE(root) << root.error().what;
+  ASSERT_EQ(root->kind, YamlNode::Kind::map);
+  ASSERT_EQ(root->members.size(), 2U);
+  const YamlNode& list = root->members[0].second;
+  ASSERT_EQ(list.items.size(), 3U);
+  EXPECT_EQ(list.items[0].text, "1");
+  EXPECT_FALSE(list.items[0].quoted);
+  EXPECT_TRUE(list.items[1].quoted);
+  EXPECT_EQ(list.items[2].kind, YamlNode::Kind::nothing);
+  EXPECT_EQ(list.items[1].place.line, 1);
+  EXPECT_EQ(list.items[1].place.column, 8);
+  const YamlNode& inner = root->members[1].second;
+  EXPECT_EQ(inner.members[0].first.place.line, 3);
+  EXPECT_EQ(inner.members[0].first.place.column, 3);
+}
+
+TEST(YamlTree, AliasesAreCopies) {
+  const Result<YamlNode> root = read_yaml("a: &way [1, 2]\nb: *way\n", "f.yaml");
+  ASSERT_TRUE(root) << root.error().what;
+  EXPECT_EQ(root->members[1].second.items.size(), 2U);
+  EXPECT_EQ(root->members[1].second.items[1].text, "2");
+  EXPECT_THAT(error_of("a: *way"), HasSubstr("f.yaml:1:"));
+}
+
+/// Who reads programs says something else of it than who reads trainings.
+TEST(YamlTree, AnEmptyTextIsNothingAtNoPlace) {
+  for (const char* text : {"", "\n\n", "# only a comment\n"}) {
+    const Result<YamlNode> root = read_yaml(text, "f.yaml");
+    ASSERT_TRUE(root) << root.error().what;
+    EXPECT_EQ(root->kind, YamlNode::Kind::nothing);
+    EXPECT_EQ(root->place.line, 0);
+  }
+  EXPECT_EQ(read_yaml("~", "f.yaml")->place.line, 1);
+}
+
+TEST(YamlTree, FaultsHaveAPlaceInBothLanguages) {
+  EXPECT_THAT(error_of("a: 1\na: 2"), HasSubstr("f.yaml:2:1: \"a\" stands here a second time"));
+  EXPECT_THAT(error_of("[1, 2]: 3"), HasSubstr("f.yaml:1:1: expected a word"));
+  EXPECT_THAT(error_of("a: 1\n---\nb: 2"), HasSubstr("f.yaml:3:1: expected one document"));
+  EXPECT_THAT(error_of("a: [1"), HasSubstr("no YAML: "));
+  EXPECT_THAT(error_of(std::string(33, '[') + std::string(33, ']')), HasSubstr("32 levels"));
+  EXPECT_EQ(error_of(std::string(32, '[') + std::string(32, ']')), "none");
+  const LanguageScope chinese(Language::chinese);
+  EXPECT_THAT(error_of("a: 1\na: 2"), HasSubstr("f.yaml:2:1: “a”重复出现"));
+}
+
+TEST(YamlTree, APlaceIsLeftOutWhereThereIsNone) {
+  EXPECT_EQ(at_place("f.yaml", {3, 7}, "wrong"), "f.yaml:3:7: wrong");
+  EXPECT_EQ(at_place("f.yaml", {}, "wrong"), "f.yaml: wrong");
+  EXPECT_EQ(at_place("", {}, "wrong"), "wrong");
+}
+
+}  // namespace
+}  // namespace mjarm

@@ -1,0 +1,91 @@
+#include "mjarm/execution/execution.hpp"
+
+#include <utility>
+
+#include "mjarm/core/messages/execution.hpp"
+
+namespace mjarm {
+
+Execution::Execution(const Model& model, const MotionPlan& plan, Controller controller,
+                     const ExecutionOptions& options)
+    : plan_(&plan),
+      controller_(std::move(controller)),
+      clock_(plan, model.timestep(), options.rest),
+      recorder_(options.recorder) {}
+
+Result<Execution> Execution::make(const Model& model, const MotionPlan& plan,
+                                  const ExecutionOptions& options) {
+  const Arm& arm = plan.arms.front();
+  for (const PlannedMove& move : plan.moves) {
+    const int dof = move.trajectory.dof();
+    if (dof != arm.dof()) {
+      return fail(Errc::usage, text(msg::execution_other_arm, dof, arm.name, arm.dof()));
+    }
+    if (move.close && !arm.gripper) {
+      return fail(Errc::not_available, text(msg::execution_no_gripper));
+    }
+  }
+  Result<Controller> controller = Controller::make(model, arm, options.control);
+  if (!controller) return fail(std::move(controller.error()));
+  return Execution(model, plan, std::move(*controller), options);
+}
+
+void Execution::restart() {
+  controller_.restart();
+  clock_.restart();
+  stepper_.reset();
+  motions_.clear();
+}
+
+void Execution::begin_motion(Sim& sim, std::size_t move) {
+  controller_.restart();
+  stepper_.emplace(sim, plan_->arms.front());
+  motions_.push_back({.move = move, .from = sim.time(), .to = sim.time(), .outcome = {}});
+}
+
+/// Notes down how the current motion went so far.
+void Execution::take_measures(const Sim& sim) {
+  if (motions_.empty()) return;
+  const std::size_t reached = motions_.back().outcome.reached;
+  motions_.back().to = sim.time();
+  motions_.back().outcome = stepper_->outcome(sim);
+  motions_.back().outcome.reached = reached;
+}
+
+Result<void> Execution::step(Sim& sim) {
+  const MotionClock::Step step = clock_.next();
+  if (step.close) {
+    const Gripper& gripper = *plan_->arms.front().gripper;
+    sim.set_ctrl(gripper.id, *step.close ? gripper.ctrl_closed : gripper.ctrl_open);
+  }
+  if (step.begins) begin_motion(sim, step.motion);
+  if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
+  if (auto stepped = stepper_->step(sim, controller_, step.reference, recorder_); !stepped) {
+    return stepped;
+  }
+  if (step.ends) {
+    motions_.back().outcome.reached = 1;
+    take_measures(sim);
+  }
+  return {};
+}
+
+Result<FollowOutcome> Execution::run_to_end(Sim& sim, const AfterStep& after_step) {
+  run();
+  while (state() == State::running) {
+    if (auto stepped = step(sim); !stepped) return fail(std::move(stepped.error()));
+    if (!after_step || after_step(sim)) continue;
+    take_measures(sim);
+    motions_.back().outcome.stopped = true;
+    break;
+  }
+  return outcome();
+}
+
+FollowOutcome Execution::outcome() const {
+  FollowOutcome all;
+  for (const ExecutedMotion& motion : motions_) all.add(motion.outcome);
+  return all;
+}
+
+}  // namespace mjarm

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "mjarm/control/controller.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/execution/motion_clock.hpp"
+#include "mjarm/execution/motion_plan.hpp"
+#include "mjarm/sim/recorder.hpp"
+#include "mjarm/sim/sim.hpp"
+#include "mjarm/sim/stepper.hpp"
+
+namespace mjarm {
+
+/// How a plan is executed. Every default is usable as is.
+struct ExecutionOptions {
+  ControlMode control = ControlMode::computed_torque;
+  double rest = kRestAtEnd;      ///< [s] >= 0 after the last motion
+  Recorder* recorder = nullptr;  ///< gets every step; outlives the execution; null = nobody records
+};
+
+/// A motion that was begun, and what it did.
+struct ExecutedMotion {
+  std::size_t move = 0;  ///< index in the plan
+  double from = 0;       ///< [s] of the simulation
+  double to = 0;         ///< [s] its end; up to now where it is on its way
+  FollowOutcome outcome;
+};
+
+/// Moves an arm in a simulation along the motions of a plan: the one driver of all faces. Either
+/// step by step, to be stopped and taken up again as a user likes, or all in one call. The gripper
+/// is told at the beginning of a motion what it has to do meanwhile. The arm goes on from where it
+/// stands; Sim::place() puts it at the plan's start.
+class Execution {
+ public:
+  using State = MotionClock::State;
+
+  /// @param model  of the simulations that are stepped.
+  /// @param plan   outlives this.
+  /// @return an error where the arm's actuators cannot do that control, a motion is not one of
+  ///         this arm, or it has no gripper to close.
+  [[nodiscard]] static Result<Execution> make(const Model& model, const MotionPlan& plan,
+                                              const ExecutionOptions& options = {});
+
+  /// To the end of all motions, of the current one, to rest, back to the start; step() does it.
+  void run() { clock_.run(); }
+  void run_one() { clock_.run_one(); }
+  void stop() { clock_.stop(); }
+  void restart();
+
+  /// One time step: along the plan where it runs, else the arm is held where it should be.
+  /// @param sim  the same one every time.
+  /// @return an error where the simulation broke down; it stands in its initial state then.
+  [[nodiscard]] Result<void> step(Sim& sim);
+
+  /// Called after every step (window, progress, Ctrl-C); returns false to stop.
+  using AfterStep = std::function<bool(const Sim& sim)>;
+  /// All that is left, to the end.
+  /// @param after_step  may be empty.
+  /// @return what was done so far in all, `stopped` where `after_step` asked for the end; an error
+  ///         where the simulation broke down.
+  [[nodiscard]] Result<FollowOutcome> run_to_end(Sim& sim, const AfterStep& after_step = {});
+
+  [[nodiscard]] const MotionPlan& plan() const { return *plan_; }
+  [[nodiscard]] const MotionClock& clock() const { return clock_; }
+  [[nodiscard]] State state() const { return clock_.state(); }
+  /// The motions that were begun since the start, in order.
+  [[nodiscard]] const std::vector<ExecutedMotion>& motions() const { return motions_; }
+  /// What all of them did together.
+  [[nodiscard]] FollowOutcome outcome() const;
+
+ private:
+  Execution(const Model& model, const MotionPlan& plan, Controller controller,
+            const ExecutionOptions& options);
+  void begin_motion(Sim& sim, std::size_t move);
+  void take_measures(const Sim& sim);
+
+  const MotionPlan* plan_;
+  Controller controller_;
+  MotionClock clock_;
+  Recorder* recorder_;
+  std::optional<Stepper> stepper_;
+  std::vector<ExecutedMotion> motions_;
+};
+
+}  // namespace mjarm

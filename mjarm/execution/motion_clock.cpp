@@ -1,0 +1,101 @@
+#include "mjarm/execution/motion_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mjarm {
+
+MotionClock::MotionClock(const MotionPlan& plan, double timestep, double rest_at_end)
+    : plan_(&plan), timestep_(timestep), rest_at_end_(rest_at_end) {
+  restart();
+}
+
+void MotionClock::restart() {
+  motion_ = 0;
+  at_ = 0;
+  pace_ = 0;
+  going_ = one_ = begun_ = false;
+  before_ = now_ = plan_->q_start;
+}
+
+void MotionClock::run() { set_out(false); }
+void MotionClock::run_one() { set_out(true); }
+
+void MotionClock::set_out(bool one) {
+  if (state() == State::done) return;
+  going_ = begun_ = true;
+  one_ = one;
+  // Motions begin at rest: nothing has to be taken up.
+  if (at_ == 0) pace_ = kBrakeSteps;
+}
+
+void MotionClock::stop() {
+  going_ = one_ = false;
+  if (at_ == 0) pace_ = 0;
+}
+
+bool MotionClock::is_moving() const noexcept {
+  return motion_ < plan_->moves.size() && (going_ || pace_ > 0);
+}
+
+MotionClock::State MotionClock::state() const noexcept {
+  if (motion_ == plan_->moves.size()) return State::done;
+  if (going_) return State::running;
+  if (pace_ > 0) return State::stopping;
+  return begun_ ? State::stopped : State::ready;
+}
+
+double MotionClock::steps_of(std::size_t motion) const {
+  const double rest = motion + 1 == plan_->moves.size() ? rest_at_end_ : 0;
+  return std::ceil((plan_->moves[motion].trajectory.duration() + rest) / timestep_ - 1e-9);
+}
+
+double MotionClock::duration() const {
+  double steps = 0;
+  for (std::size_t i = 0; i < plan_->moves.size(); ++i) steps += steps_of(i);
+  return steps * timestep_;
+}
+
+/// Passes what takes no time.
+void MotionClock::begin_motion(Step& step) {
+  while (is_moving() && at_ == 0) {
+    const PlannedMove& move = plan_->moves[motion_];
+    if (move.close) step.close = move.close;
+    if (steps_of(motion_) > 0) {
+      before_ = now_ = move.trajectory.at(0).q;
+      step.begins = true;
+      return;
+    }
+    end_motion();
+  }
+}
+
+void MotionClock::end_motion() {
+  ++motion_;
+  at_ = 0;
+  if (one_ || motion_ == plan_->moves.size()) going_ = one_ = false;
+  pace_ = going_ ? kBrakeSteps : 0;
+}
+
+MotionClock::Step MotionClock::next() {
+  Step step;
+  begin_motion(step);
+  step.motion = motion_;
+  JointVec q = now_;
+  const bool moving = is_moving();
+  if (moving) {
+    pace_ = std::clamp(pace_ + (going_ ? 1 : -1), 0, kBrakeSteps);
+    const double share = static_cast<double>(pace_) / kBrakeSteps;
+    // The speed of time along a cubic: its own rate does not jump either.
+    at_ = std::min(at_ + share * share * (3 - 2 * share), steps_of(motion_));
+    q = plan_->moves[motion_].trajectory.at(at_ * timestep_).q;
+  }
+  step.reference = {before_, now_, q};
+  before_ = now_;
+  now_ = q;
+  step.ends = moving && at_ == steps_of(motion_);
+  if (step.ends) end_motion();
+  return step;
+}
+
+}  // namespace mjarm

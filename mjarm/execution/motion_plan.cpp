@@ -1,0 +1,41 @@
+#include "mjarm/execution/motion_plan.hpp"
+
+#include <utility>
+
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm {
+
+MotionPlan MotionPlan::of(const Arm& arm, Trajectory trajectory) {
+  MotionPlan plan;
+  plan.arms.push_back(arm);
+  plan.q_start = trajectory.at(0).q;
+  plan.moves.push_back({.trajectory = std::move(trajectory)});
+  return plan;
+}
+
+double MotionPlan::duration() const {
+  double sum = 0;
+  for (const PlannedMove& move : moves) sum += move.trajectory.duration();
+  return sum;
+}
+
+JointVec MotionPlan::q_end() const {
+  if (moves.empty()) return q_start;
+  const Trajectory& last = moves.back().trajectory;
+  return last.at(last.duration()).q;
+}
+
+std::vector<Pose> planned_tool_path(const PlannedMove& move, const Arm& arm) {
+  constexpr int kPieces = 60;  // of a joint move
+  if (move.curve) return move.curve->poses(move.curve->stations(0.01, 0.1));
+  std::vector<Pose> out;
+  if (!move.measures && !move.is_approach()) return out;
+  for (int i = 0; i <= kPieces; ++i) {
+    const double t = move.trajectory.duration() * i / kPieces;
+    out.push_back(fk(arm, as_span(move.trajectory.at(t).q)));
+  }
+  return out;
+}
+
+}  // namespace mjarm

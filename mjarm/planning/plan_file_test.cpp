@@ -1,0 +1,161 @@
+// Plans written and read again, and files that are none.
+#include "mjarm/planning/plan_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "mjarm/core/language_scope.hpp"
+#include "mjarm/planning/plan_answer.hpp"
+#include "mjarm/planning/two_problems_test.hpp"
+#include "mjarm/planning/verify_path.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace mjarm {
+namespace {
+
+using nlohmann::json;
+
+class PlanFileTest : public ::testing::Test {
+ protected:
+  Result<std::vector<GivenPath>> read(const std::string& content) {
+    return read_plan_file(folder_.write("paths.json", content).string(), 2);
+  }
+  /// A sound entry with one thing changed.
+  Result<std::vector<GivenPath>> read_with(const char* place, const json& value) {
+    json entry = {{"ok", true},
+                  {"path", {{-1, 0}, {1, 0}}},
+                  {"tilt", {{"limit", 0.1}, {"largest", 0.05}, {"tool", {0, 0, 1}},
+                            {"world", {0, 0, -1}}}},
+                  {"spheres", 0.012},
+                  {"hold", {"cup"}},
+                  {"allow", {"cup,table"}}};
+    if (*place != '\0') entry[json::json_pointer(place)] = value;
+    return read(json{{"id", entry}}.dump());
+  }
+  void expect_refused(const std::string& content, const std::string& word) {
+    const auto file = read(content);
+    ASSERT_FALSE(file) << content;
+    EXPECT_EQ(file.error().code, Errc::bad_input);
+    EXPECT_NE(file.error().what.find("paths.json"), std::string::npos) << file.error().what;
+    EXPECT_NE(file.error().what.find(word), std::string::npos) << file.error().what;
+  }
+
+  LanguageScope english_{Language::english};
+  support::TempFolder folder_;
+};
+
+/// Every number of an answer comes back as the bits it had, with its certificates and its rules.
+TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
+  const std::string in = folder_.write("problems.json", testing::two_problems().dump()).string();
+  const ProblemFile file = read_problem_file(in).value();
+  const FastRobot robot = FastRobot::make(file.arm, file.spheres).value();
+  const PlanProblem& problem = file.problems[0];
+  PlanAnswer answer = answer_problem(robot, problem, {});
+  ASSERT_TRUE(answer.path);
+  EXPECT_GT(answer.us, 0);
+  EXPECT_GT(answer.simplify_us, 0);
+  answer.rules = {{"cup \"2\""}, {"cup,table", "a,b"}};
+  answer.spheres = 0.012;
+  answer.tilt = TiltLimit{.max = 0.1};
+  answer.path->tilt = 0.05;
+  std::string text = "{\"round\":";
+  append_answer(text, answer, robot, problem.obstacles, true);
+  text += '}';
+  const GivenPath given = read(text).value().at(0);
+  EXPECT_EQ(given.id, "round");
+  ASSERT_EQ(given.rows.size(), answer.path->q.size());
+  for (std::size_t i = 0; i < given.rows.size(); ++i) {
+    EXPECT_EQ(joint_vec(given.rows[i]), answer.path->q[i]);
+  }
+  EXPECT_EQ(given.cost, answer.path->cost);
+  ASSERT_TRUE(given.certificate);
+  ASSERT_EQ(given.certificate->size(), answer.path->proof.size());
+  for (std::size_t i = 0; i < given.certificate->size(); ++i) {
+    const GivenCertificate& one = (*given.certificate)[i];
+    EXPECT_EQ(one.step, answer.path->proof[i].step);
+    EXPECT_EQ(one.clearance, answer.path->proof[i].nearest.distance);
+    EXPECT_EQ(one.t, answer.path->proof[i].nearest_t);
+    ASSERT_EQ(one.pair.size(), 2U);
+    EXPECT_EQ(one.pair[1], "post");
+  }
+  EXPECT_EQ(given.rules.hold, answer.rules.hold);
+  EXPECT_EQ(given.rules.allow, answer.rules.allow);
+  EXPECT_EQ(given.spheres, 0.012);
+  ASSERT_TRUE(given.tilt);
+  EXPECT_EQ(given.tilt->limit, 0.1);
+  EXPECT_EQ(given.tilt->largest, 0.05);
+  EXPECT_EQ(given.tilt->world, (std::vector<double>{0, 0, -1}));
+  // And the verifier agrees with all that was stated.
+  GivenPath plain = given;
+  plain.tilt.reset();
+  EXPECT_TRUE(verify_path(file, problem, plain, {}).value().faults.empty());
+}
+
+TEST_F(PlanFileTest, AnswersWithoutAPathSayWhyAndAreReadAsNone) {
+  json content = testing::two_problems();
+  content["problems"][0]["start"] = {0, 0};
+  const std::string in = folder_.write("problems.json", content.dump()).string();
+  const ProblemFile file = read_problem_file(in).value();
+  const FastRobot robot = FastRobot::make(file.arm, file.spheres).value();
+  const PlanProblem& problem = file.problems[0];
+  const PlanAnswer answer = answer_problem(robot, problem, {});
+  ASSERT_FALSE(answer.path);
+  std::string text;
+  append_answer(text, answer, robot, problem.obstacles, false);
+  const json written = json::parse(text);
+  EXPECT_EQ(written, (json{{"ok", false},
+                           {"reason", describe(answer.path.error(), robot, problem.obstacles)}}));
+  const GivenPath given = read("{\"round\":" + text + "}").value().at(0);
+  EXPECT_TRUE(given.rows.empty());
+}
+
+TEST_F(PlanFileTest, BareRowsWillDo) {
+  const auto file = read(R"({"b": [[1, 2], [3, 4]], "a": []})").value();
+  ASSERT_EQ(file.size(), 2U);
+  EXPECT_EQ(file[0].id, "a");
+  EXPECT_TRUE(file[0].rows.empty());
+  EXPECT_EQ(file[1].rows[1], (std::vector<double>{3, 4}));
+  EXPECT_FALSE(file[1].cost || file[1].certificate || file[1].tilt || file[1].rules.any());
+}
+
+TEST_F(PlanFileTest, FilesThatAreNoneAreRefusedByTheirPlace) {
+  const auto entry = [](const std::string& value) { return "{\"crane/open/0\":" + value + "}"; };
+  expect_refused("", "JSON");
+  expect_refused("[]", "object");
+  expect_refused(entry("[[-1,0],[NaN,0]]"), "JSON");
+  expect_refused(entry("[[-1,0],[1e999,0]]"), "range");
+  expect_refused(entry("[[-1,0],[null,0]]"), "path[1]");
+  expect_refused(entry("[[-1,0],[1,0,0]]"), "path[1]");
+  expect_refused(entry("[[-1,0],7]"), "path[1]");
+  expect_refused(entry("7"), "crane/open/0");
+  expect_refused(entry("{\"ok\":true}"), "\"path\"");
+  expect_refused(entry("{\"ok\":1}"), "\"ok\"");
+  expect_refused(entry("{\"path\":3}"), "crane/open/0");
+  expect_refused(entry("{\"path\":[[-1,0]],\"cost\":\"much\"}"), "\"cost\"");
+  expect_refused(entry("{\"path\":[[-1,0]],\"certificate\":4}"), "\"certificate\"");
+  expect_refused(entry("{\"path\":[[-1,0]],\"certificate\":[{}]}"), "certificate[0]");
+  expect_refused(entry("{\"path\":[[-1,0]],\"certificate\":[{\"step\":1,\"clearance\":1,\"t\":0,"
+             "\"pair\":[1,2]}]}"),
+       "\"pair\"");
+  const auto missing = read_plan_file("/no/such.json", 2);
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().what.find("/no/such.json"), std::string::npos);
+}
+
+TEST_F(PlanFileTest, WhatIsStatedMustBePossible) {
+  EXPECT_TRUE(read_with("", {}));
+  const std::pair<const char*, json> wrong[] = {
+      {"/tilt", 3},         {"/tilt/tool", {0, 0, 0}}, {"/tilt/world", {0, 0, 2}},
+      {"/tilt/largest", 0.2}, {"/tilt/limit", 2},        {"/tilt/limit", nullptr},
+      {"/tilt/limit", -1},  {"/spheres", 1e-9},        {"/spheres", -1},
+      {"/spheres", "thin"}, {"/hold", "rod"},          {"/allow", {1, 2}}};
+  for (const auto& [place, value] : wrong) {
+    const auto file = read_with(place, value);
+    ASSERT_FALSE(file) << place << " " << value;
+    EXPECT_NE(file.error().what.find("\"id\""), std::string::npos) << file.error().what;
+  }
+}
+
+}  // namespace
+}  // namespace mjarm

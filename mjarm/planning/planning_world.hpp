@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjarm/collision/contact_rules.hpp"
+#include "mjarm/collision/cover.hpp"
+#include "mjarm/collision/fast_check.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/kinematics/ik.hpp"
+#include "mjarm/model/robot.hpp"
+#include "mjarm/planning/goal_region.hpp"
+#include "mjarm/planning/plan_path.hpp"
+
+namespace mjarm {
+
+/// [m] what WorldOptions::bounds may be.
+inline constexpr double kMinSphereBound = 1e-4, kMaxSphereBound = 0.1;
+/// [m] the widest WorldOptions::margin.
+inline constexpr double kMaxMargin = 0.5;
+
+/// How a robot and its scene are taken. Every default is usable as is.
+struct WorldOptions {
+  ContactRules rules = {};  ///< what is attached to the tool, what may touch
+  /// [m] 0 to kMaxMargin. Every configuration of a path keeps this distance between the exact
+  /// geometry of the moving links (with gripper and attached bodies) and every obstacle, and twice
+  /// as much between two of these links. Pairs that may touch by `rules` or by the model, and pairs
+  /// that are proved never to meet (ModelCover), are not held to it.
+  double margin = 0;
+  /// [m] kMinSphereBound to kMaxSphereBound: by how much spheres may stick out of the links; each
+  /// is tried where the one before may have been what was in the way.
+  std::vector<double> bounds = {0.012, 0.003};
+};
+
+/// A robot and its scene as the planner takes them, at one bound.
+struct WorldLevel {
+  double bound = 0;     ///< [m] of WorldOptions::bounds
+  ModelCover cover;     ///< its spheres grown by the margin
+  FastChecker checker;  ///< of the cover
+};
+
+/// A path, and the level that it is proved at.
+struct WorldPath : PlannedPath {
+  std::size_t level = 0;
+};
+
+enum class WorldErrc {
+  bad_model,  ///< the model cannot be covered
+  no_answer,  ///< no configuration has the tool there
+  no_path,    ///< WorldFailure::search says why
+};
+
+/// Why there is no path.
+struct WorldFailure {
+  WorldErrc code = WorldErrc::no_path;
+  std::string what;         ///< one line for people, in their language
+  PlanFailure search = {};  ///< no_path
+  std::size_t level = 0;    ///< no_path: where it was searched last
+  /// [m] no_path: by how much spheres stick out there, where that may be what is in the way; 0:
+  /// finer ones would be no help.
+  double bound = 0;
+};
+
+/// Plans paths of one robot in its scene. The model is covered with spheres when a path is asked
+/// for first, and again with finer ones when coarse ones may be what is in the way; what was made
+/// is kept. Joints off the arm stand at keyframe `home`, else at their initial values; all that a
+/// gripper can do counts. The same input gives the same path. Copy it to use it from another
+/// thread.
+class PlanningWorld {
+ public:
+  /// Covers nothing yet.
+  /// @return bad_input: check_contact_rules()'s error, or one line about the margin or the bounds.
+  [[nodiscard]] static Result<PlanningWorld> make(const Robot& robot, WorldOptions options = {});
+
+  /// From `q_start` to whichever of the goals is reached first, by plan_path().
+  /// @param q_start  shape (dof,) [rad or m].
+  /// @param goals    shape (n,), n >= 1, each (dof,).
+  /// @param times    as for plan_path(), at the level that was searched last.
+  [[nodiscard]] Result<WorldPath, WorldFailure> plan(std::span<const double> q_start,
+                                                     std::span<const JointVec> goals,
+                                                     const PlanOptions& options = {},
+                                                     PlanTimes* times = nullptr);
+
+  /// The same to anywhere in a region of the tool, by goals_in() with the seed and the tilt of
+  /// `options`. WorldPath::goal counts the configurations that were found, nearest first.
+  /// @param task  what of the pose has to be met.
+  [[nodiscard]] Result<WorldPath, WorldFailure> plan(std::span<const double> q_start,
+                                                     const GoalRegion& region,
+                                                     const PlanOptions& options = {},
+                                                     IkTask task = IkTask::pose,
+                                                     PlanTimes* times = nullptr);
+
+  /// The same to one pose of the tool in the world.
+  [[nodiscard]] Result<WorldPath, WorldFailure> plan(std::span<const double> q_start,
+                                                     const Pose& X_WT,
+                                                     const PlanOptions& options = {},
+                                                     IkTask task = IkTask::pose) {
+    return plan(q_start, GoalRegion{.X_WR = X_WT}, options, task);
+  }
+
+  /// What paths are searched in; stays in place as long as the world does.
+  /// @param index  of WorldOptions::bounds. Levels are made in order, when they are asked for.
+  /// @return cover_model()'s error; bad_input where there is no such level.
+  [[nodiscard]] Result<const WorldLevel*> level(std::size_t index);
+
+ private:
+  PlanningWorld(const Robot& robot, WorldOptions options)
+      : robot_(robot), options_(std::move(options)) {}
+
+  [[nodiscard]] Result<WorldLevel> covered(double bound) const;
+  template <class Attempt>
+  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const Attempt& attempt);
+
+  Robot robot_;
+  WorldOptions options_;
+  std::deque<WorldLevel> levels_;  // as they were needed, coarse ones first
+};
+
+}  // namespace mjarm

@@ -1,0 +1,301 @@
+#include "mjarm/planning/verify_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "apps/mjarm/messages/verify.hpp"
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/collision/first_contact.hpp"
+#include "mjarm/collision/sphere_model.hpp"
+#include "mjarm/collision/verify_edge.hpp"
+#include "mjarm/core/messages/planning.hpp"
+#include "mjarm/planning/tilt_limit.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr double kEndSlack = 1e-4;        // [rad or m] of start, goal and limits
+constexpr double kAnywhere = 1e9;         // slack with which limits and overlaps do not matter
+constexpr double kCostSlack = 1e-6;       // relative
+constexpr double kTiltSlack = 1e-6;       // [rad]
+constexpr double kClearanceAbove = 1e-6;  // [m] by which a stated clearance may be too large
+constexpr double kClearanceBelow = 1e-3;  // [m] and too small: it is a lower bound
+
+using Row = std::span<const double>;
+
+/// The largest difference of a joint.
+double farthest(Row a, Row b) {
+  double max = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) max = std::max(max, std::abs(a[i] - b[i]));
+  return max;
+}
+
+double length_of(Row a, Row b) {
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += (b[i] - a[i]) * (b[i] - a[i]);
+  return std::sqrt(squares);
+}
+
+class PathJudge {
+ public:
+  PathJudge(const ProblemFile& file, const PlanProblem& problem, const GivenPath& path,
+            const VerifyRules& rules, const std::optional<ExactChecker>& exact)
+      : arm_(file.arm),
+        set_(file.spheres),
+        problem_(problem),
+        path_(path),
+        rules_(rules),
+        exact_(exact) {}
+
+  Result<PathVerdict> run() {
+    check_ends();
+    if (Result<void> done = prove_edges(); !done) return fail(std::move(done.error()));
+    if (Result<void> done = walk_edges(); !done) return fail(std::move(done.error()));
+    check_tilt();
+    check_cost();
+    if (Result<void> done = check_certificates(); !done) return fail(std::move(done.error()));
+    return std::move(out_);
+  }
+
+ private:
+  /// A path of one row is an edge of no length.
+  int edges() const { return std::max(static_cast<int>(path_.rows.size()) - 1, 1); }
+  Row row(int i) const {
+    return path_.rows[std::min(static_cast<std::size_t>(i), path_.rows.size() - 1)];
+  }
+
+  std::vector<double> on_edge(int edge, double t) const {
+    std::vector<double> q(row(edge).begin(), row(edge).end());
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] += t * (row(edge + 1)[i] - q[i]);
+    return q;
+  }
+
+  void add(const char* kind, int edge, std::string what) {
+    out_.faults.push_back({kind, edge, std::move(what)});
+  }
+
+  void check_ends() {
+    const double off = farthest(path_.rows.front(), problem_.start);
+    if (off > kEndSlack) add("start", -1, text(msg::planning_verify_start, off));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const JointVec& goal : problem_.goals) {
+      nearest = std::min(nearest, farthest(path_.rows.back(), as_span(goal)));
+    }
+    if (nearest > kEndSlack) add("goal", -1, text(msg::planning_verify_goal, nearest));
+  }
+
+  const std::string& name_of(int link) const {
+    return set_.links[static_cast<std::size_t>(link)].name;
+  }
+  std::string other_of(const VerifyResult& found) const {
+    if (found.obstacle < 0) return name_of(found.other_link);
+    const std::string& name = obstacle_name(problem_.obstacles, found.obstacle);
+    return name.empty() ? std::to_string(found.obstacle) : name;
+  }
+
+  void add_edge_fault(int edge, const VerifyResult& found) {
+    if (found.verdict == EdgeVerdict::outside) {
+      const auto joint = static_cast<std::size_t>(found.joint);
+      const int at = edge + static_cast<int>(found.t);
+      add("limits", edge,
+          text(msg::planning_verify_limits, at, arm_.joints[joint].name, row(at)[joint],
+               arm_.limits.lower[found.joint], arm_.limits.upper[found.joint]));
+    } else if (found.verdict == EdgeVerdict::hit) {
+      add("hit", edge,
+          text(msg::planning_verify_hit, edge, found.t, name_of(found.link), other_of(found),
+               -found.distance));
+    } else {
+      add("undecided", edge,
+          text(msg::planning_verify_undecided, edge, found.t, name_of(found.link), other_of(found),
+               found.distance));
+    }
+  }
+
+  /// How deep the overlaps of an edge are, at samples: verify_edge() ends at the first.
+  Result<void> measure(int edge) {
+    const double pieces = std::ceil(length_of(row(edge), row(edge + 1)) / rules_.step);
+    for (double k = 0; k <= pieces; ++k) {
+      const std::vector<double> q = on_edge(edge, k / std::max(pieces, 1.0));
+      const Result<VerifyResult> found =
+          verify_edge(arm_, set_, problem_.obstacles, q, q,
+                      {.allow_depth = kAnywhere, .limit_slack = kAnywhere});
+      if (!found) return fail(found.error());
+      out_.clearance = std::min(out_.clearance, found->distance);
+    }
+    return {};
+  }
+
+  Result<void> prove_edges() {
+    const VerifyOptions options{.allow_depth = rules_.allow_depth, .limit_slack = kEndSlack};
+    bool is_faulty = false;
+    for (int edge = 0; edge < edges(); ++edge) {
+      const Result<VerifyResult> found =
+          verify_edge(arm_, set_, problem_.obstacles, row(edge), row(edge + 1), options);
+      if (!found) return fail(found.error());
+      if (found->verdict != EdgeVerdict::outside) {
+        out_.clearance = std::min(out_.clearance, found->distance);
+      }
+      if (found->verdict == EdgeVerdict::hit) {
+        if (Result<void> done = measure(edge); !done) return done;
+      }
+      if (found->verdict == EdgeVerdict::free || is_faulty) continue;
+      is_faulty = true;
+      add_edge_fault(edge, *found);
+    }
+    return {};
+  }
+
+  Result<void> walk_edges() {
+    if (exact_) return walk_edges(*exact_, [](const std::string& geom) { return geom; });
+    const Result<SphereModel> made = sphere_model(arm_, set_, problem_.obstacles);
+    if (!made) return fail(made.error());
+    const ExactOptions options{.margin = 0, .allow_depth = rules_.allow_depth};
+    return walk_edges(ExactChecker(made->model, made->arm, options),
+                      [&](const std::string& geom) { return made->parts.at(geom); });
+  }
+
+  template <typename NameOf>
+  Result<void> walk_edges(ExactChecker checker, const NameOf& name_of) {
+    for (int edge = 0; edge < edges(); ++edge) {
+      const auto found = first_contact(checker, row(edge), row(edge + 1), rules_.step);
+      if (!found) return fail(found.error());
+      if (!found->has_value()) continue;
+      const ContactPoint& contact = (*found)->contact;
+      add("contact", edge,
+          text(msg::planning_verify_contact, edge, (*found)->t, name_of(contact.pair.geom1),
+               name_of(contact.pair.geom2), contact.depth));
+      return {};
+    }
+    return {};
+  }
+
+  /// At samples: the tool leans by no more than is stated.
+  void check_tilt() {
+    if (!path_.tilt) return;
+    const TiltLimit stated{path_.tilt->largest,
+                           Eigen::Map<const Eigen::Vector3d>(path_.tilt->tool.data()),
+                           Eigen::Map<const Eigen::Vector3d>(path_.tilt->world.data())};
+    for (int edge = 0; edge < edges(); ++edge) {
+      const double pieces = std::ceil(length_of(row(edge), row(edge + 1)) / rules_.step);
+      for (double k = 0; k <= pieces; ++k) {
+        const double t = k / std::max(pieces, 1.0), leans = tilt(stated, arm_, on_edge(edge, t));
+        if (leans <= stated.max + kTiltSlack) continue;
+        add("tilt", edge, text(msg::planning_verify_tilt, edge, t, leans, stated.max));
+        return;
+      }
+    }
+  }
+
+  void check_cost() {
+    for (int edge = 0; edge < edges(); ++edge) out_.cost += length_of(row(edge), row(edge + 1));
+    if (!path_.cost) return;
+    const double off = std::abs(*path_.cost - out_.cost);
+    if (!(off <= kCostSlack * (1 + out_.cost))) {
+      add("cost", -1, text(msg::planning_verify_cost, *path_.cost, out_.cost));
+    }
+  }
+
+  /// What is left of the problem where only a link and an obstacle, or two links, of these names
+  /// count. A link may be in several pieces.
+  std::pair<SphereSet, Obstacles> pieces_named(const std::string& link,
+                                               const std::string& other) const {
+    std::pair<SphereSet, Obstacles> out;
+    auto& [links, solids] = out;
+    std::vector<int> new_link(set_.links.size(), -1);
+    std::vector<int> new_solid(problem_.obstacles.solids.size(), -1);
+    for (std::size_t i = 0; i < set_.links.size(); ++i) {
+      if (set_.links[i].name != link && set_.links[i].name != other) continue;
+      new_link[i] = static_cast<int>(links.links.size());
+      links.links.push_back(set_.links[i]);
+    }
+    for (std::size_t i = 0; i < problem_.obstacles.solids.size(); ++i) {
+      if (problem_.obstacles.solids[i].name != other) continue;
+      new_solid[i] = static_cast<int>(solids.solids.size());
+      solids.solids.push_back(problem_.obstacles.solids[i]);
+    }
+    for (const auto& [a, b] : set_.pairs) {
+      const int first = new_link[static_cast<std::size_t>(a)];
+      const int second = new_link[static_cast<std::size_t>(b)];
+      if (first < 0 || second < 0) continue;
+      if (links.links[static_cast<std::size_t>(first)].name ==
+          links.links[static_cast<std::size_t>(second)].name) {
+        continue;
+      }
+      links.pairs.push_back({first, second});
+    }
+    for (const IgnoredPair& pair : problem_.obstacles.ignored) {
+      const int first = new_link[static_cast<std::size_t>(pair.link)];
+      const auto solid = static_cast<std::size_t>(pair.obstacle);
+      const int second = solid < new_solid.size() ? new_solid[solid] : -1;
+      if (first >= 0 && second >= 0) solids.ignored.push_back({first, second});
+    }
+    return out;
+  }
+
+  /// Clearance of the pair that a certificate names, at its place; none where no such pair is.
+  Result<std::optional<double>> clearance_of(const GivenCertificate& given, int edge) const {
+    const auto [links, solids] = pieces_named(given.pair[0], given.pair[1]);
+    const auto count = links.links.size() * solids.solids.size();
+    if (count <= solids.ignored.size() && links.pairs.empty()) return std::nullopt;
+    const std::vector<double> q = on_edge(edge, given.t);
+    const Result<VerifyResult> found =
+        verify_edge(arm_, links, solids, q, q, {.limit_slack = kAnywhere});
+    if (!found) return fail(found.error());
+    return found->distance;
+  }
+
+  /// What is wrong with a certificate; empty where nothing is.
+  Result<std::string> fault_of(const GivenCertificate& given, int edge) const {
+    const double length = length_of(row(edge), row(edge + 1));
+    if (!(given.step >= 0 && given.step <= length * (1 + kCostSlack))) {
+      return text(msg::planning_verify_certificate_step, given.step, length);
+    }
+    if (!(given.t >= 0 && given.t <= 1)) return text(msg::planning_verify_certificate_t, given.t);
+    if (given.pair.empty()) return std::string();
+    const Result<std::optional<double>> found = clearance_of(given, edge);
+    if (!found) return fail(found.error());
+    if (!*found) return text(msg::planning_verify_certificate_pair, given.pair[0], given.pair[1]);
+    const double off = given.clearance - **found;
+    if (off <= kClearanceAbove && off >= -kClearanceBelow) return std::string();
+    return text(msg::planning_verify_certificate_clearance, given.clearance, given.t, **found);
+  }
+
+  Result<void> check_certificates() {
+    if (!path_.certificate) return {};
+    const std::size_t given = path_.certificate->size(), wanted = path_.rows.size() - 1;
+    if (given != wanted) {
+      add("certificate", -1, text(msg::planning_verify_certificate_count, given, wanted));
+      return {};
+    }
+    for (std::size_t i = 0; i < given; ++i) {
+      const int edge = static_cast<int>(i);
+      const Result<std::string> fault = fault_of((*path_.certificate)[i], edge);
+      if (!fault) return fail(fault.error());
+      if (fault->empty()) continue;
+      add("certificate", edge, text(msg::planning_verify_certificate, edge, *fault));
+      return {};
+    }
+    return {};
+  }
+
+  const Arm& arm_;
+  const SphereSet& set_;
+  const PlanProblem& problem_;
+  const GivenPath& path_;
+  const VerifyRules& rules_;
+  const std::optional<ExactChecker>& exact_;
+  PathVerdict out_;
+};
+
+}  // namespace
+
+Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
+                                const GivenPath& path, const VerifyRules& rules,
+                                const std::optional<ExactChecker>& exact) {
+  return PathJudge(file, problem, path, rules, exact).run();
+}
+
+}  // namespace mjarm

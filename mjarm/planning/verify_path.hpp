@@ -1,0 +1,45 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/planning/plan_file.hpp"
+#include "mjarm/planning/problem_file.hpp"
+
+namespace mjarm {
+
+/// How paths are judged.
+struct VerifyRules {
+  double step = 0.005;     ///< [rad or m, L2] spacing of MuJoCo's own check, > 0
+  double allow_depth = 0;  ///< [m] overlap that still counts as free, >= 0
+};
+
+/// What is wrong with a path.
+struct PathFault {
+  const char* kind;  ///< start, goal, limits, hit, undecided, contact, tilt, cost or certificate
+  int edge = -1;     ///< from 0; -1: none in particular
+  std::string what;  ///< one line
+};
+
+/// What was found out about a path.
+struct PathVerdict {
+  std::vector<PathFault> faults;                               ///< none: it is valid
+  double clearance = std::numeric_limits<double>::infinity();  ///< [m] the least that was met; of
+                                                               ///< what is hit at samples
+  double cost = 0;                                             ///< [rad or m] sum of L2 lengths
+};
+
+/// Judges a path with at least one row: its ends, its limits and edges by verify_edge(), MuJoCo's
+/// own collision detection, and what the file says of it. Of the edges the first that is faulty
+/// counts.
+/// @param exact  whose geometry MuJoCo looks at; none: that of the spheres.
+/// @return an error where MuJoCo cannot make a model of the problem.
+[[nodiscard]] Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
+                                              const GivenPath& path, const VerifyRules& rules,
+                                              const std::optional<ExactChecker>& exact = {});
+
+}  // namespace mjarm

@@ -1,0 +1,315 @@
+#include "mjarm/session/plan_drawing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <utility>
+#include <variant>
+
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/render/overlay_shapes.hpp"
+
+namespace mjarm::session {
+namespace {
+
+constexpr Rgba kStartColor = {0.15F, 0.60F, 0.30F, 1};
+constexpr Rgba kGoalColor = {0.15F, 0.35F, 0.85F, 1};
+constexpr Rgba kCornerColor = {0.15F, 0.15F, 0.18F, 1};
+constexpr Rgba kUnknownColor = {0.55F, 0.60F, 0.66F, 1};
+constexpr float kEndPosture = 0.6F;  // how dense they are
+constexpr float kCornerPosture = 0.2F;
+constexpr std::size_t kMaxPostures = 8;  // of corners
+constexpr float kSphere = 0.45F;
+constexpr float kPairSphere = 0.85F;
+constexpr double kDrawnPathStep = 0.02;  // [rad or m, L2] between places of the path
+constexpr double kPathPieces = 300;      // at most
+constexpr double kTreeStep = 0.15;       // [rad or m, L2] between places of an edge of a tree
+constexpr double kTreePieces = 12'000;   // of all edges, about
+constexpr double kMaxWork = 2e6;        // distances that are computed for one look
+constexpr double kPairRed = 0.01;        // [m]
+
+Rgba with_alpha(Rgba color, float alpha) {
+  color.a = alpha;
+  return color;
+}
+
+/// Distances that obstacle_neighbours() computes.
+double work_of(const SphereSet& set, const Obstacles& obstacles) {
+  double parts = 0;
+  for (const Obstacle& solid : obstacles.solids) {
+    const auto* mesh = std::get_if<MeshShape>(&solid.shape);
+    const auto* field = std::get_if<HeightFieldShape>(&solid.shape);
+    parts += 1;
+    if (mesh != nullptr) parts += static_cast<double>(mesh->faces.size());
+    if (field != nullptr) parts += static_cast<double>(field->heights.size());
+  }
+  for (const PointCloud& cloud : obstacles.clouds) {
+    parts += static_cast<double>(cloud.points_W.size());
+  }
+  return parts * static_cast<double>(set.size());
+}
+
+/// Where the arm stands, its joints and its tool, in the world.
+std::vector<Eigen::Vector3d> chain_of(const Arm& arm, const JointVec& q) {
+  std::vector<Pose> X_WJ(arm.joints.size());
+  const Pose X_WT = fk_all(arm, as_span(q), X_WJ);
+  std::vector<Eigen::Vector3d> out;
+  for (const Pose& X : X_WJ) out.push_back(X.p);
+  out.push_back(X_WT.p);
+  return out;
+}
+
+bool has_obstacles(const Obstacles& obstacles) {
+  return !obstacles.solids.empty() || !obstacles.clouds.empty();
+}
+
+/// The checker of a path without the pairs of links: some of these are near to each other in every
+/// posture, and would give the whole path one colour.
+FastChecker against_obstacles(const PlanSubject& subject) {
+  const FastRobot& robot = subject.checker.robot();
+  SphereSet set = robot.spheres();
+  if (has_obstacles(subject.obstacles)) set.pairs.clear();
+  Result<FastRobot> alone = FastRobot::make(robot.arm(), set);
+  if (!alone) return subject.checker;  // cannot be: it was made from them
+  Result<FastChecker> checker = FastChecker::make(std::move(*alone), subject.obstacles);
+  return checker ? std::move(*checker) : subject.checker;
+}
+
+}  // namespace
+
+void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q) {
+  sim.place(subject.arm, as_span(q));
+  const Pose X_WT = fk(subject.arm, as_span(q));
+  for (const AttachedBody& one : subject.attached) sim.place_free(one.body, X_WT * one.X_TB);
+}
+
+PathWay::PathWay(const PlannedPath& path) : q_(path.q), ends_{0} {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < q_.size(); ++i) {
+    const double length = (q_[i] - q_[i - 1]).norm();
+    if (i <= path.proof.size() && path.proof[i - 1].nearest.distance < least) {
+      least = path.proof[i - 1].nearest.distance;
+      tightest_ = ends_.back() + path.proof[i - 1].nearest_t * length;
+    }
+    ends_.push_back(ends_.back() + length);
+  }
+}
+
+std::size_t PathWay::edge_at(double s) const {
+  if (ends_.size() < 3) return 0;
+  const auto found = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, s);
+  return static_cast<std::size_t>(found - ends_.begin()) - 1;
+}
+
+JointVec PathWay::at(double s) const {
+  const std::size_t i = edge_at(s);
+  if (i + 1 >= q_.size()) return q_.back();
+  const double length = ends_[i + 1] - ends_[i];
+  const double share = length > 0 ? std::clamp((s - ends_[i]) / length, 0.0, 1.0) : 0;
+  return q_[i] + share * (q_[i + 1] - q_[i]);
+}
+
+Arm with_tool(Arm arm, const SphereSet& spheres) {
+  constexpr double kTip = 0.02;  // [m]
+  if (!arm.tip.empty()) return arm;
+  double max = 0;
+  const auto each = [&](auto&& visit) {
+    for (const LinkSpheres& link : spheres.links) {
+      if (link.joint != arm.dof() - 1) continue;
+      for (const Sphere& sphere : link.spheres) visit(sphere.center);
+    }
+  };
+  each([&](const Eigen::Vector3d& p) { max = std::max(max, p.norm()); });
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  each([&](const Eigen::Vector3d& p) {
+    if (p.norm() < max - kTip) return;
+    sum += p;
+    ++count;
+  });
+  if (count > 0) arm.X_JT.p = sum / count;
+  return arm;
+}
+
+Rgba clearance_color(double clearance) {
+  struct Stop {
+    double at;
+    Rgba color;
+  };
+  static constexpr std::array<Stop, 5> kStops{{{0, {0.84F, 0.10F, 0.12F, 1}},
+                                               {0.01, {0.96F, 0.50F, 0.12F, 1}},
+                                               {0.03, {0.97F, 0.82F, 0.22F, 1}},
+                                               {0.10, {0.30F, 0.68F, 0.33F, 1}},
+                                               {0.30, {0.20F, 0.48F, 0.80F, 1}}}};
+  if (!(clearance > 0)) return kStops.front().color;
+  for (std::size_t i = 1; i < kStops.size(); ++i) {
+    if (clearance > kStops[i].at) continue;
+    const Rgba &a = kStops[i - 1].color, &b = kStops[i].color;
+    const auto share =
+        static_cast<float>((clearance - kStops[i - 1].at) / (kStops[i].at - kStops[i - 1].at));
+    return {a.r + share * (b.r - a.r), a.g + share * (b.g - a.g), a.b + share * (b.b - a.b), 1};
+  }
+  return kStops.back().color;
+}
+
+PlanDrawing::PlanDrawing(const PlanSubject& subject) : subject_(&subject), way_(subject.path) {
+  draw_path();
+  draw_trees();
+  draw_postures();
+}
+
+void PlanDrawing::draw_path() {
+  const FastChecker obstacles = against_obstacles(*subject_);
+  const double step = std::max(kDrawnPathStep, way_.length() / kPathPieces);
+  const int pieces = std::max(1, static_cast<int>(std::ceil(way_.length() / step)));
+  constexpr double kShades = 24;
+  std::map<int, OverlaySegments> shades;  // pieces of one colour are one
+  for (int i = 0; i <= pieces; ++i) {
+    tool_way_.push_back(fk(subject_->arm, as_span(way_.at(way_.length() * i / pieces))).p);
+    if (i == 0) continue;
+    const JointVec middle = way_.at(way_.length() * (i - 0.5) / pieces);
+    const double clearance = obstacles.clearance(as_span(middle)).distance;
+    const double shade = std::round(kShades * std::sqrt(std::clamp(clearance, 0.0, 0.3) / 0.3));
+    OverlaySegments& segments = shades[static_cast<int>(shade)];
+    segments.width = 0.012;
+    segments.look = LineLook::tube;
+    segments.color = clearance_color(0.3 * (shade / kShades) * (shade / kShades));
+    segments.ends_W.insert(segments.ends_W.end(), tool_way_.end() - 2, tool_way_.end());
+  }
+  for (auto& [shade, segments] : shades) path_.segments.push_back(std::move(segments));
+  const std::vector<JointVec>& q = subject_->path.q;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const bool end = i == 0 || i + 1 == q.size();
+    path_.spheres.push_back({.p_W = fk(subject_->arm, as_span(q[i])).p,
+                             .radius = end ? 0.018 : 0.011,
+                             .color = i == 0 ? kStartColor
+                                      : end  ? kGoalColor
+                                             : kCornerColor});
+  }
+}
+
+void PlanDrawing::draw_trees() {
+  double length = 0, edges = 0;
+  const auto each_edge = [this](auto&& visit) {
+    for (std::size_t t = 0; t < subject_->path.trees.size(); ++t) {
+      const SearchTree& tree = subject_->path.trees[t];
+      for (std::size_t i = 0; i < tree.q.size(); ++i) {
+        if (tree.parents[i] >= 0)
+          visit(t, tree.q[static_cast<std::size_t>(tree.parents[i])], tree.q[i]);
+      }
+    }
+  };
+  each_edge([&](std::size_t, const JointVec& a, const JointVec& b) {
+    length += (b - a).norm();
+    edges += 1;
+  });
+  if (edges == 0) return;
+  const double step = std::max(kTreeStep, length / std::max(kTreePieces - edges, 1.0));
+  const std::array colors{kStartColor, kGoalColor};
+  for (std::size_t t = 0; t < subject_->path.trees.size(); ++t) {
+    tree_.segments.push_back({.ends_W = {},
+                              .width = 0.003,
+                              .color = with_alpha(colors[t % 2], 0.8F),
+                              .look = LineLook::thin});
+  }
+  each_edge([&](std::size_t t, const JointVec& a, const JointVec& b) {
+    const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / step)));
+    Eigen::Vector3d before = fk(subject_->arm, as_span(a)).p;
+    for (int k = 1; k <= pieces; ++k) {
+      const JointVec q = a + (b - a) * k / pieces;
+      const Eigen::Vector3d p_W = fk(subject_->arm, as_span(q)).p;
+      std::vector<Eigen::Vector3d>& ends_W = tree_.segments[t].ends_W;
+      ends_W.insert(ends_W.end(), {before, p_W});
+      before = p_W;
+    }
+  });
+}
+
+/// Rods rather than the arm once more: it would hide what it passes.
+void PlanDrawing::draw_postures() {
+  const auto add = [this](Overlay& overlay, const JointVec& q, const Rgba& color, double radius) {
+    const std::vector<Eigen::Vector3d> chain = chain_of(subject_->arm, q);
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      overlay.capsules.push_back(
+          {.from_W = chain[i - 1], .to_W = chain[i], .radius = radius, .color = color});
+    }
+  };
+  const std::vector<JointVec>& q = subject_->path.q;
+  add(ends_, q.front(), with_alpha(kStartColor, kEndPosture), 0.016);
+  add(ends_, q.back(), with_alpha(kGoalColor, kEndPosture), 0.016);
+  // Evenly some of them, where there are many.
+  const std::size_t corners = q.size() - 2, max = std::min(corners, kMaxPostures);
+  for (std::size_t i = 0; i < max; ++i) {
+    add(corners_, q[1 + i * corners / max], with_alpha(kCornerColor, kCornerPosture), 0.012);
+  }
+}
+
+PlanDrawing::Look PlanDrawing::look(const JointVec& q) const {
+  const FastRobot& robot = subject_->checker.robot();
+  Look out;
+  out.placed = place_spheres(robot, as_span(q));
+  const bool all = work_of(robot.spheres(), subject_->obstacles) <= kMaxWork;
+  SphereClearance nearest;
+  if (!all) nearest = subject_->checker.clearance(as_span(q));
+  out.neighbours = obstacle_neighbours(robot.spheres(), subject_->obstacles, out.placed,
+                                       all ? nullptr : &nearest);
+  SphereNeighbours links = link_neighbours(robot.spheres(), out.placed);
+  out.pair = closest_pair(subject_->obstacles, out.placed, out.neighbours, links);
+  if (out.pair && out.pair->to.obstacle < 0) {
+    out.obstacle_pair = closest_pair(subject_->obstacles, out.placed, out.neighbours, {});
+  }
+  if (!has_obstacles(subject_->obstacles)) out.neighbours = std::move(links);
+  return out;
+}
+
+std::string PlanDrawing::pair_line(const Look& look, const ClosestPair& pair) const {
+  const SphereSet& set = subject_->checker.robot().spheres();
+  const auto link_of = [&](int sphere) {
+    const int link = look.placed[static_cast<std::size_t>(sphere)].link;
+    return set.links[static_cast<std::size_t>(link)].name;
+  };
+  const int obstacle = pair.to.obstacle;
+  std::string other =
+      obstacle < 0 ? link_of(pair.to.sphere) : obstacle_name(subject_->obstacles, obstacle);
+  if (other.empty()) other = std::to_string(obstacle);
+  char distance[40];
+  std::snprintf(distance, sizeof(distance), ": %.1f mm", 1e3 * pair.to.distance);
+  return link_of(pair.sphere) + " - " + other + distance;
+}
+
+void PlanDrawing::add_spheres(Overlay& overlay, const Look& look) const {
+  for (std::size_t i = 0; i < look.placed.size(); ++i) {
+    const auto& neighbour = look.neighbours[i];
+    const Rgba color = neighbour ? clearance_color(neighbour->distance) : kUnknownColor;
+    overlay.spheres.push_back({.p_W = look.placed[i].p_W,
+                               .radius = look.placed[i].radius,
+                               .color = with_alpha(color, kSphere)});
+  }
+}
+
+void PlanDrawing::add_pair(Overlay& overlay, const Look& look, const ClosestPair& pair) const {
+  const Rgba color = with_alpha(clearance_color(pair.to.distance), kPairSphere);
+  for (const int sphere : {pair.sphere, pair.to.sphere}) {
+    if (sphere < 0) continue;
+    const PlacedSphere& placed = look.placed[static_cast<std::size_t>(sphere)];
+    overlay.spheres.push_back({.p_W = placed.p_W, .radius = 1.01 * placed.radius, .color = color});
+  }
+  add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.to.distance, kPairRed);
+}
+
+Overlay PlanDrawing::overlay(const PlanLayers& layers, const Look& look) const {
+  Overlay out;
+  if (layers.tree) append(out, tree_);
+  if (layers.path) append(out, path_);
+  if (layers.ends) append(out, ends_);
+  if (layers.corners) append(out, corners_);
+  if (layers.spheres) add_spheres(out, look);
+  if (layers.pair && look.pair) add_pair(out, look, *look.pair);
+  if (layers.pair && look.obstacle_pair) add_pair(out, look, *look.obstacle_pair);
+  return out;
+}
+
+}  // namespace mjarm::session

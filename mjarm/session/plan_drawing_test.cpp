@@ -1,0 +1,333 @@
+// Pictures of planned paths, and what a window shows of them.
+#include "mjarm/session/plan_drawing.hpp"
+
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "mjarm/collision/cover.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/robot.hpp"
+#include "mjarm/render/framing.hpp"
+#include "mjarm/render/offscreen.hpp"
+#include "mjarm/session/plan_player.hpp"
+#include "mjarm/session/plan_view.hpp"
+
+namespace mjarm::session {
+namespace {
+
+/// The shipped UR5e on both sides of its wall, planned once.
+class WallPlan : public ::testing::Test {
+ protected:
+  struct World {
+    Model model;
+    Arm arm;
+    ModelCover cover;
+    FastChecker checker;
+    PlannedPath path;
+  };
+  static const World& world() {
+    static const World made = [] {
+      auto [model, arm] = load_robot("universal_robots_ur5e/wall.xml").value();
+      ModelCover cover = cover_model(model, arm).value();
+      FastChecker checker =
+          FastChecker::make(FastRobot::make(arm, cover.spheres).value(), cover.scene).value();
+      const std::array start{1.9084251652,  -1.2456136770, 1.9904811714,
+                             -2.3156638212, -1.5707963268, 3.4792213440},
+          goal{0.7324199581,  -1.2456136770, 1.9904811714,
+               -2.3156638212, -1.5707963268, 2.3032162849};
+      PlannedPath path =
+          plan_path(checker, start, std::vector{joint_vec(goal)}, {.keep_trees = true}).value();
+      return World{std::move(model), std::move(arm), std::move(cover), std::move(checker),
+                   std::move(path)};
+    }();
+    return made;
+  }
+  static const PlanSubject& subject() {
+    static const PlanSubject made{world().model,       world().arm,  world().checker,
+                                  world().cover.scene, world().path, "wall"};
+    return made;
+  }
+  static const PlanDrawing& drawing() {
+    static const PlanDrawing made(subject());
+    return made;
+  }
+  static PlanDrawing::Look tightest() {
+    return drawing().look(drawing().way().at(drawing().way().tightest()));
+  }
+};
+
+TEST_F(WallPlan, TheWayIsThePathByItsLength) {
+  const PathWay& way = drawing().way();
+  const PlannedPath& path = world().path;
+  ASSERT_GT(path.q.size(), 2U);
+  EXPECT_NEAR(way.length(), path.cost, 1e-12);
+  EXPECT_EQ(way.at(0), path.q.front());
+  EXPECT_EQ(way.at(-1), path.q.front());
+  EXPECT_EQ(way.at(way.length() + 1), path.q.back());
+  double s = 0;
+  for (std::size_t i = 0; i + 1 < path.q.size(); ++i) {
+    const double length = (path.q[i + 1] - path.q[i]).norm();
+    EXPECT_EQ(way.edge_at(s + 0.5 * length), i);
+    EXPECT_LT((way.at(s + 0.5 * length) - 0.5 * (path.q[i] + path.q[i + 1])).norm(), 1e-12);
+    s += length;
+  }
+  // Nowhere on the path is the checker's clearance much below that of the tightest place.
+  const double least = world().checker.clearance(as_span(way.at(way.tightest()))).distance;
+  for (int k = 0; k <= 300; ++k) {
+    EXPECT_GT(world().checker.clearance(as_span(way.at(way.length() * k / 300))).distance,
+              least - 0.02);
+  }
+}
+
+TEST_F(WallPlan, EveryLayerAddsWhatItSays) {
+  const PlanDrawing::Look look = tightest();
+  const PlanLayers none{false, false, false, false, false, false};
+  const Overlay empty = drawing().overlay(none, look);
+  EXPECT_EQ(shapes_of(empty), 0U);
+  PlanLayers layers = none;
+  layers.spheres = true;
+  EXPECT_EQ(drawing().overlay(layers, look).spheres.size(), world().cover.spheres.size());
+  layers = none;
+  layers.pair = true;
+  const Overlay pair = drawing().overlay(layers, look);
+  ASSERT_EQ(pair.labels.size(), look.obstacle_pair ? 2U : 1U);
+  EXPECT_NE(pair.labels[0].text.find(" mm"), std::string::npos);
+  layers = none;
+  layers.path = true;
+  const Overlay path = drawing().overlay(layers, look);
+  EXPECT_EQ(path.spheres.size(), world().path.q.size());
+  EXPECT_EQ(path.spheres.front().p_W, fk(world().arm, as_span(world().path.q.front())).p);
+  layers = none;
+  layers.tree = true;
+  const Overlay tree = drawing().overlay(layers, look);
+  ASSERT_EQ(tree.segments.size(), 2U);
+  std::size_t edges = 0, pieces = 0;
+  for (const SearchTree& one : world().path.trees) edges += one.q.size() - 1;
+  for (const OverlaySegments& segments : tree.segments) pieces += segments.ends_W.size() / 2;
+  EXPECT_GT(pieces, edges);
+  layers = none;
+  layers.ends = true;
+  EXPECT_EQ(drawing().overlay(layers, look).capsules.size(), 2U * 6);  // rods of six joints
+  layers = none;
+  layers.corners = true;
+  EXPECT_EQ(drawing().overlay(layers, look).capsules.size(),
+            6 * std::min<std::size_t>(world().path.q.size() - 2, 8));
+}
+
+TEST_F(WallPlan, TheTightestPlaceIsToldByName) {
+  const PlanDrawing::Look look = tightest();
+  ASSERT_TRUE(look.pair);
+  EXPECT_GT(look.pair->to.distance, 0);
+  const std::string line = drawing().pair_line(look, *look.pair);
+  EXPECT_NE(line.find(" - "), std::string::npos) << line;
+  EXPECT_NE(line.find(" mm"), std::string::npos) << line;
+  if (look.obstacle_pair) {
+    EXPECT_GE(look.obstacle_pair->to.distance, look.pair->to.distance);
+  }
+}
+
+TEST(PlanColors, GoFromRedToBlue) {
+  EXPECT_EQ(clearance_color(-1), clearance_color(0));
+  EXPECT_EQ(clearance_color(0.3), clearance_color(5));
+  EXPECT_GT(clearance_color(0).r, clearance_color(0).g);
+  EXPECT_GT(clearance_color(0.1).g, clearance_color(0.1).r);
+  EXPECT_GT(clearance_color(1).b, clearance_color(1).r);
+}
+
+/// Where a point is in a picture [px].
+Eigen::Vector2d pixel_of(const Model& model, const CameraView& from, const Eigen::Vector3d& p_W,
+                         int width, int height) {
+  const Eigen::Vector3d forward = (from.lookat_W - camera_place(from)).normalized();
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Vector3d up = right.cross(forward), p = p_W - camera_place(from);
+  const double tangent = std::tan(0.5 * model.raw()->vis.global.fovy * std::numbers::pi / 180);
+  const double scale = 0.5 * height / (tangent * p.dot(forward));
+  return {0.5 * width + scale * p.dot(right), 0.5 * height - scale * p.dot(up)};
+}
+
+/// All of the arm on its way is in the picture, and large.
+TEST_F(WallPlan, TheViewFramesTheWay) {
+  const CameraView from = plan_view(subject(), drawing(), 1.5);
+  double low = 1e9, high = -1e9;
+  for (int k = 0; k <= 50; ++k) {
+    const JointVec q = drawing().way().at(drawing().way().length() * k / 50);
+    for (const PlacedSphere& sphere : place_spheres(world().checker.robot(), as_span(q))) {
+      const Eigen::Vector2d pixel = pixel_of(world().model, from, sphere.p_W, 600, 400);
+      EXPECT_GT(pixel.x(), -20);
+      EXPECT_LT(pixel.x(), 620);
+      EXPECT_GT(pixel.y(), -20);
+      EXPECT_LT(pixel.y(), 420);
+      low = std::min(low, pixel.y());
+      high = std::max(high, pixel.y());
+    }
+  }
+  EXPECT_GT(high - low, 100);
+}
+
+class WallPicture : public WallPlan {
+ protected:
+  static constexpr int kWidth = 480, kHeight = 320;
+  void SetUp() override {
+    Result<OffscreenRenderer> opened = OffscreenRenderer::create(
+        world().model, {.width = kWidth, .height = kHeight, .quality = RenderQuality::low});
+    if (!opened) GTEST_SKIP() << opened.error().what;
+    renderer_.emplace(std::move(*opened));
+    from_ = plan_view(subject(), drawing(), static_cast<double>(kWidth) / kHeight);
+    Sim sim(world().model);
+    sim.place(world().arm, as_span(drawing().way().at(drawing().way().tightest())));
+    standing_ = sim.snapshot();
+  }
+  Image draw(const PlanLayers& layers) {
+    return renderer_->draw(standing_, {.view = from_}, drawing().overlay(layers, tightest()))
+        .value();
+  }
+  std::optional<OffscreenRenderer> renderer_;
+  CameraView from_;
+  Snapshot standing_;
+};
+
+TEST_F(WallPicture, SpheresAreWhereTheRobotIsAndNowhereElse) {
+  const PlanLayers none{false, false, false, false, false, false};
+  PlanLayers spheres = none;
+  spheres.spheres = true;
+  const Image without = draw(none), with = draw(spheres);
+  std::vector<std::pair<Eigen::Vector2d, double>> disks;  // [px]
+  for (const PlacedSphere& sphere : tightest().placed) {
+    const Eigen::Vector2d middle = pixel_of(world().model, from_, sphere.p_W, kWidth, kHeight);
+    const Eigen::Vector3d side =
+        (from_.lookat_W - camera_place(from_)).cross(Eigen::Vector3d::UnitZ()).normalized();
+    const Eigen::Vector2d edge =
+        pixel_of(world().model, from_, sphere.p_W + sphere.radius * side, kWidth, kHeight);
+    disks.emplace_back(middle, (edge - middle).norm());
+  }
+  int changed = 0, elsewhere = 0, missing = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto a = with.pixel(x, y), b = without.pixel(x, y);
+      const bool differs =
+          std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 20;
+      const auto within = [&](double share, double more) {
+        return std::ranges::any_of(disks, [&](const auto& disk) {
+          return (Eigen::Vector2d(x + 0.5, y + 0.5) - disk.first).norm() <
+                 share * disk.second + more;
+        });
+      };
+      changed += differs ? 1 : 0;
+      elsewhere += differs && !within(1.1, 2) ? 1 : 0;
+      missing += !differs && within(0.7, 0) ? 1 : 0;  // behind the wall, or of much the same colour
+    }
+  }
+  EXPECT_GT(changed, 2000);
+  EXPECT_LT(elsewhere, changed / 100);
+  EXPECT_LT(missing, changed / 3);
+}
+
+TEST_F(WallPicture, StartAndGoalHaveTheirColours) {
+  PlanLayers layers{false, false, true, false, false, false};
+  const Image image = draw(layers);
+  const auto& q = world().path.q;
+  const auto color_at = [&](const JointVec& corner) {
+    const Eigen::Vector2d at =
+        pixel_of(world().model, from_, fk(world().arm, as_span(corner)).p, kWidth, kHeight);
+    return image.pixel(static_cast<int>(at.x()), static_cast<int>(at.y()));
+  };
+  const auto start = color_at(q.front()), goal = color_at(q.back());
+  EXPECT_GT(start[1], start[2]);  // green
+  EXPECT_GT(start[1], start[0]);
+  EXPECT_GT(goal[2], goal[1]);  // blue
+  EXPECT_GT(goal[2], goal[0]);
+}
+
+class PlanWindow : public WallPlan {
+ protected:
+  ViewFrame frame() {
+    ViewFrame out;
+    player_.fill(out);
+    return out;
+  }
+  std::vector<double> positions() {
+    Sim sim(world().model);
+    EXPECT_TRUE(sim.restore(frame().snapshot));
+    return {sim.qpos().begin(), sim.qpos().end()};
+  }
+  JointVec arm_at() {
+    const std::vector<double> qpos = positions();
+    JointVec q(world().arm.dof());
+    for (int k = 0; k < world().arm.dof(); ++k) {
+      q[k] = qpos[static_cast<std::size_t>(world().arm.joints[static_cast<std::size_t>(k)].qpos)];
+    }
+    return q;
+  }
+  PlanPlayer player_{subject(), drawing()};
+};
+
+TEST_F(PlanWindow, TheArmGoesBackAndForth) {
+  EXPECT_LT((arm_at() - world().path.q.front()).norm(), 1e-9);
+  const double length = drawing().way().length();
+  double max = 0, turns = 0, before = 0;
+  bool up = true;
+  const int steps = static_cast<int>(3.5 * length / world().model.timestep());
+  for (int i = 0; i < steps; ++i) {
+    player_.step();
+    max = std::max(max, player_.place());
+    if ((player_.place() > before) != up) {
+      up = !up;
+      turns += 1;
+    }
+    before = player_.place();
+    ASSERT_GE(before, 0);
+    ASSERT_LE(before, length);
+  }
+  EXPECT_NEAR(max, length, 1e-2);
+  EXPECT_EQ(turns, 3);
+  EXPECT_LT((arm_at() - drawing().way().at(player_.place())).norm(), 1e-9);
+}
+
+TEST_F(PlanWindow, TheUserGoesToAPlace) {
+  player_.handle(PanelEvent{kPlanTime, 1});
+  EXPECT_EQ(player_.place(), 1);
+  player_.handle(StepEvent{-5});
+  EXPECT_NEAR(player_.place(), 1 - 5 * world().model.timestep(), 1e-12);
+  player_.handle(PanelEvent{kPlanTightest, 1});
+  EXPECT_EQ(player_.place(), drawing().way().tightest());
+  EXPECT_NE(frame().status.find(" mm"), std::string::npos);
+  player_.handle(PanelEvent{kPlanTime, 1e9});
+  EXPECT_EQ(player_.place(), drawing().way().length());
+  player_.handle(PanelEvent{kPlanTime, std::nan("")});
+  EXPECT_EQ(player_.place(), drawing().way().length());
+  player_.handle(ResetEvent{});
+  EXPECT_EQ(player_.place(), 0);
+}
+
+TEST_F(PlanWindow, CheckBoxesChoose) {
+  const Overlay all = frame().overlay;
+  for (const PlanItem item : {kPlanSpheres, kPlanPair, kPlanPath, kPlanTree, kPlanEnds}) {
+    player_.handle(PanelEvent{item, 0});
+    const Overlay fewer = frame().overlay;
+    EXPECT_LT(shapes_of(fewer), shapes_of(all)) << item;
+    player_.handle(PanelEvent{item, 1});
+    EXPECT_EQ(shapes_of(frame().overlay), shapes_of(all));
+  }
+  player_.handle(PanelEvent{kPlanCorners, 1});
+  EXPECT_GT(frame().overlay.capsules.size(), all.capsules.size());
+  ASSERT_EQ(frame().panels.size(), 3U);
+}
+
+TEST(PlanTool, IsBetweenTheOutermostSpheresWhereNoneIsNamed) {
+  Arm arm;
+  arm.joints.resize(2);
+  const SphereSet set{{{"arm", 0, {{{5, 0, 0}, 0.1}}},
+                       {"hand", 1, {{{0, 0, 0.1}, 0.1}}},
+                       {"fingers", 1, {{{0, 0.04, 0.2}, 0.01}, {{0, -0.04, 0.2}, 0.01}}}},
+                      {}};
+  EXPECT_LT((with_tool(arm, set).X_JT.p - Eigen::Vector3d(0, 0, 0.2)).norm(), 1e-12);
+  arm.tip = "tool0";
+  EXPECT_EQ(with_tool(arm, set).X_JT.p, Eigen::Vector3d::Zero());
+}
+
+}  // namespace
+}  // namespace mjarm::session

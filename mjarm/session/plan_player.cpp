@@ -1,0 +1,153 @@
+#include "mjarm/session/plan_player.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace mjarm::session {
+namespace {
+
+constexpr double kPlanSpeed = 1;  // [rad/s or m/s, L2]
+
+template <class... Values>
+std::string plan_words(const char* format, Values... values) {
+  char text[80];
+  std::snprintf(text, sizeof(text), format, values...);
+  return text;
+}
+
+PanelItem plan_checkbox(PlanItem item, const char* name, bool on) {
+  return {item, name, PanelCheckbox{on}};
+}
+
+PanelItem plan_line(const char* name, std::string value) {
+  return {kPlanText, name, PanelText{std::move(value)}};
+}
+
+}  // namespace
+
+PlanPlayer::PlanPlayer(const PlanSubject& subject, const PlanDrawing& drawing)
+    : subject_(&subject),
+      drawing_(&drawing),
+      sim_(subject.model),
+      playback_(subject.model.timestep()) {
+  layers_.corners = false;  // with the arm on its way they are too many
+}
+
+void PlanPlayer::go(double ways) {
+  const double length = drawing_->way().length();
+  if (!(length > 0)) return;
+  place_ += back_ ? -ways : ways;
+  // It turns round at the ends.
+  if (place_ > length) {
+    place_ = std::max(2 * length - place_, 0.0);
+    back_ = !back_;
+  } else if (place_ < 0) {
+    place_ = std::min(-place_, length);
+    back_ = !back_;
+  }
+}
+
+void PlanPlayer::step() { go(kPlanSpeed * subject_->model.timestep()); }
+
+void PlanPlayer::press(const PanelEvent& event) {
+  const bool on = event.value != 0;
+  switch (event.id) {
+    case kPlanTime:
+      if (!std::isfinite(event.value)) return;
+      place_ = std::clamp(event.value * kPlanSpeed, 0.0, drawing_->way().length());
+      return;
+    case kPlanTightest:
+      place_ = drawing_->way().tightest();
+      return;
+    case kPlanSpheres:
+      layers_.spheres = on;
+      return;
+    case kPlanPair:
+      layers_.pair = on;
+      return;
+    case kPlanPath:
+      layers_.path = on;
+      return;
+    case kPlanTree:
+      layers_.tree = on;
+      return;
+    case kPlanEnds:
+      layers_.ends = on;
+      return;
+    case kPlanCorners:
+      layers_.corners = on;
+      return;
+    default:
+      return;
+  }
+}
+
+void PlanPlayer::handle(const ViewEvent& event) {
+  if (const auto* panel = std::get_if<PanelEvent>(&event)) {
+    press(*panel);
+  } else if (std::holds_alternative<ResetEvent>(event)) {
+    place_ = 0;
+    back_ = false;
+  } else if (const auto* steps = std::get_if<StepEvent>(&event);
+             steps != nullptr && steps->steps < 0) {
+    go(kPlanSpeed * subject_->model.timestep() * steps->steps);
+  } else {
+    (void)playback_.handle(event);
+  }
+}
+
+std::vector<PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look) const {
+  const PathWay& way = drawing_->way();
+  const PlannedPath& path = subject_->path;
+  const std::size_t edge = way.edge_at(place_), edges = path.q.size() - 1;
+  PanelSection place{
+      "Path",
+      {{kPlanTime, "",
+        PanelTimeline{place_ / kPlanSpeed, std::max(way.length() / kPlanSpeed, 1e-3)}},
+       {kPlanTightest, "Tightest place", PanelButton{}},
+       plan_line("Edge", plan_words("%zu of %zu", edge + 1, edges)),
+       plan_line("Way", plan_words("%.2f / %.2f", place_, way.length()))}};
+  if (edge < path.proof.size()) {
+    const EdgeCertificate& proof = path.proof[edge];
+    place.items.push_back(
+        plan_line("Proved clear by", plan_words("%.1f mm", 1e3 * proof.nearest.distance)));
+    place.items.push_back(plan_line("In intervals of", plan_words("%.2g", proof.step)));
+  }
+  if (look.pair) {
+    place.items.push_back(
+        plan_line("Closest now", plan_words("%.1f mm", 1e3 * look.pair->to.distance)));
+  }
+  if (look.obstacle_pair) {
+    place.items.push_back(
+        plan_line("To obstacles", plan_words("%.1f mm", 1e3 * look.obstacle_pair->to.distance)));
+  }
+  return {std::move(place),
+          {"Show",
+           {plan_checkbox(kPlanSpheres, "Spheres", layers_.spheres),
+            plan_checkbox(kPlanPair, "Closest pair", layers_.pair),
+            plan_checkbox(kPlanPath, "Path", layers_.path),
+            plan_checkbox(kPlanTree, "Search tree", layers_.tree),
+            plan_checkbox(kPlanEnds, "Start, goal", layers_.ends),
+            plan_checkbox(kPlanCorners, "Corners", layers_.corners)}},
+          {"Search",
+           {plan_line("Samples", std::to_string(path.counts.samples)),
+            plan_line("Nodes", std::to_string(path.counts.nodes)),
+            plan_line("Edges looked at", std::to_string(path.counts.edges)),
+            plan_line("Corners", std::to_string(path.q.size() - 2)),
+            plan_line("Length", plan_words("%.3f", path.cost))}}};
+}
+
+void PlanPlayer::fill(ViewFrame& frame) {
+  const JointVec q = drawing_->way().at(place_);
+  place_subject(sim_, *subject_, q);
+  const PlanDrawing::Look look = drawing_->look(q);
+  frame.snapshot = sim_.snapshot();
+  frame.snapshot.time = place_ / kPlanSpeed;
+  frame.overlay = drawing_->overlay(layers_, look);
+  frame.panels = panels(look);
+  frame.status = look.pair ? drawing_->pair_line(look, *look.pair) : std::string();
+  if (look.obstacle_pair) frame.status += "; " + drawing_->pair_line(look, *look.obstacle_pair);
+}
+
+}  // namespace mjarm::session

@@ -1,0 +1,67 @@
+#include "mjarm/session/plan_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "mjarm/render/framing.hpp"
+
+namespace mjarm::session {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kElevation = -0.5;       // [rad]
+constexpr double kAside = 0.45;           // [rad] off the straight look across, for depth
+constexpr std::size_t kMaxBlocking = 200;  // solids that are looked at
+
+/// Heading of the line of sight [rad].
+double azimuth_of(const Vector3d& base, std::span<const Vector3d> way) {
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& p_W : way) middle += p_W / static_cast<double>(way.size());
+  const Vector3d outward = middle - base, along = way.back() - way.front();
+  Vector3d look(-along.y(), along.x(), 0);  // across the path
+  if (look.norm() < 0.05) look = {-outward.x(), -outward.y(), 0};
+  if (look.dot(outward) > 0) look = -look;
+  return std::atan2(look.y(), look.x()) + kAside;
+}
+
+/// Whether a solid stands between the two, by going on as far as it is surely free.
+bool hides(const Obstacle& solid, const Vector3d& from_W, const Vector3d& to_W) {
+  constexpr double kHit = 1e-3, kEnd = 0.02;  // [m]
+  const double length = (to_W - from_W).norm();
+  for (double way = 0; way < length - kEnd;) {
+    const double free = distance(solid, from_W + way / length * (to_W - from_W));
+    if (free < kHit) return true;
+    way += free;
+  }
+  return false;
+}
+
+}  // namespace
+
+CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing, double aspect) {
+  std::vector<FramedBall> balls;
+  for (const JointVec& q : subject.path.q) {
+    for (const PlacedSphere& sphere : place_spheres(subject.checker.robot(), as_span(q))) {
+      balls.push_back({sphere.p_W, sphere.radius});
+    }
+  }
+  for (const Vector3d& p_W : drawing.tool_way()) balls.push_back({p_W, 0});
+  const double azimuth = azimuth_of(subject.arm.joints.front().X_PJ.p, drawing.tool_way());
+  return framing_view(subject.model, balls, {azimuth, kElevation, aspect});
+}
+
+std::vector<int> hiding_solids(const PlanSubject& subject, const PlanDrawing& drawing,
+                               const CameraView& view) {
+  const Vector3d place = camera_place(view);
+  const std::vector<Obstacle>& solids = subject.obstacles.solids;
+  std::vector<int> out;
+  for (std::size_t i = 0; i < std::min(solids.size(), kMaxBlocking); ++i) {
+    const auto hidden = [&](const Vector3d& p_W) { return hides(solids[i], place, p_W); };
+    if (std::ranges::any_of(drawing.tool_way(), hidden)) out.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
+}  // namespace mjarm::session

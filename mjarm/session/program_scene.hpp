@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mjarm/program/load_program.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/render/trail.hpp"
+#include "mjarm/session/arm_figures.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm::session {
+
+/// What a window shows of a program besides the arm: planned paths, the trail of the tool, the goal
+/// of a motion, figures.
+class ProgramScene {
+ public:
+  /// What of it is shown; the user chooses.
+  struct Choice {
+    bool paths = true;
+    bool trail = true;
+    bool goal = false;  ///< the arm once more, which costs as much as the arm
+  };
+
+  /// @param loaded        has no faults; outlives this.
+  /// @param first_figure  number of the first item of its figures.
+  ProgramScene(const LoadedProgram& loaded, int first_figure);
+
+  /// One more step was made, by motion `motion` of the plan.
+  /// @param time  [s] since the program was begun, for the figures.
+  void add(const Sim& sim, double time, std::size_t motion, const JointVec& q_ref);
+  /// Forgets the trail and the curves of the figures.
+  void clear();
+
+  /// @param motion  whose goal is shown; none = no goal is.
+  [[nodiscard]] Overlay overlay(const Choice& choice, std::optional<std::size_t> motion) const;
+  /// Those that the user chose; none before the first step.
+  [[nodiscard]] std::vector<LivePlot> plots() const;
+  [[nodiscard]] ArmFigures& figures() { return figures_; }
+  [[nodiscard]] const ArmFigures& figures() const { return figures_; }
+
+ private:
+  const LoadedProgram* loaded_;
+  Overlay paths_;
+  Trail trail_;
+  ArmFigures figures_;
+  bool has_curves_ = false;
+};
+
+}  // namespace mjarm::session

@@ -1,0 +1,197 @@
+#include "mjarm/session/robot_session_test.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "mjarm/kinematics/fk.hpp"
+
+namespace mjarm::session {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST_F(RobotInView, ButtonsMoveTheArm) {
+  const Pose before = target().pose();
+  use("Tool", "Move by", 2);
+  use("Tool", "+ x");
+  use("Tool", "- z");
+  use("Tool", "Frame", 1);
+  use("Tool", "Turn by", 2);
+  use("Tool", "+ rz");
+  Pose expected = before;
+  expected.p += Eigen::Vector3d(0.05, 0, -0.05);
+  expected.R = before.R * rotation_exp({0, 0, std::numbers::pi / 12});
+  EXPECT_LT((target().pose().p - expected.p).norm(), 1e-9);
+  EXPECT_LT(angle_between(target().pose().R, expected.R), 1e-9);
+  step(1500);
+  expect_there(expected);
+  EXPECT_EQ(shown("Target", "State"), "reachable");
+  EXPECT_THAT(shown("Tool", "z [mm], rz [deg]"), StartsWith("438."));
+}
+
+TEST_F(RobotInView, WithoutFollowTheArmWaitsForGo) {
+  use("Target", "Follow", 0);
+  const JointVec before = sim_.goal();
+  use("Tool", "Move by", 2);
+  use("Tool", "+ x");
+  EXPECT_EQ(sim_.goal(), before);
+  ASSERT_EQ(frame().overlay.ghosts.size(), 1U);
+  const std::vector<double>& ghost = frame().overlay.ghosts[0].qpos;
+  EXPECT_TRUE(std::equal(ghost.begin(), ghost.end(), target().goal().begin()));
+  step(300);
+  EXPECT_EQ(sim_.goal(), before);
+  use("Target", "Go");
+  EXPECT_EQ(sim_.goal(), target().goal());
+  EXPECT_TRUE(frame().overlay.ghosts.empty());
+  step(1500);
+  expect_there(target().pose());
+  // The other way: the target comes back to the arm.
+  use("Tool", "+ x");
+  EXPECT_NE(sim_.goal(), target().goal());
+  use("Target", "Back to arm");
+  EXPECT_EQ(sim_.goal(), target().goal());
+}
+
+TEST_F(RobotInView, DragsLeadTheArmAndShowItsGhost) {
+  Pose X_WT = target().pose();
+  X_WT.p.x() += 0.1;
+  drag(X_WT, true);
+  EXPECT_EQ(frame().overlay.ghosts.size(), 1U);
+  EXPECT_GT(frame().overlay.ghosts[0].color.g, 0.7F);
+  drag(X_WT, false);
+  EXPECT_TRUE(frame().overlay.ghosts.empty());
+  step(1500);
+  expect_there(X_WT);
+  // Out of the workspace the arm stays at the edge, and the line says why.
+  Pose X_far = X_WT;
+  X_far.p.x() += 3;
+  drag(X_far, true);
+  const ViewFrame& red = frame();
+  EXPECT_THAT(red.status, HasSubstr("not reachable: out of reach"));
+  ASSERT_EQ(red.overlay.ghosts.size(), 1U);
+  EXPECT_GT(red.overlay.ghosts[0].color.r, 0.8F);
+  TargetLook look;
+  ASSERT_TRUE(view_.target()->link().looks.take(look));
+  EXPECT_EQ(look.X_WT.p, X_far.p);
+  EXPECT_EQ(look.number, drags_);
+  EXPECT_EQ(look.color, color_of(TargetGrade::unreachable));
+  drag(X_far, false);
+  step(4000);
+  expect_there(fk(arm_, as_span(sim_.goal())));
+  EXPECT_LT(tool().p.x(), 1);
+  EXPECT_EQ(shown("Target", "State"), "not reachable");
+}
+
+TEST_F(RobotInView, SlidersResetsAndStepsBackTakeTheTargetAlong) {
+  view_.handle(JointEvent{arm_.joints[0].dof, "pan", 0.3});
+  EXPECT_EQ(target().goal()[0], 0.3);
+  EXPECT_LT((target().pose().p - fk(arm_, as_span(sim_.goal())).p).norm(), 1e-12);
+  step(20);
+  use("Tool", "+ x");
+  const JointVec after = target().goal();
+  step(5);
+  for (int i = 0; i < 10; ++i) view_.handle(StepEvent{-1});
+  EXPECT_NE(target().goal(), after);
+  EXPECT_EQ(target().goal()[0], 0.3);
+  view_.handle(ResetEvent{});
+  EXPECT_EQ(target().goal(), arm_.home);
+}
+
+TEST_F(RobotInView, TheKeyPutsTheTargetAway) {
+  const auto look = [this] {
+    view_.fill(frame_);
+    TargetLook taken;
+    EXPECT_TRUE(view_.target()->link().looks.take(taken));
+    return taken;
+  };
+  EXPECT_TRUE(look().shown);
+  EXPECT_FALSE(frame_.status.empty());
+  view_.handle(TargetEvent{});
+  EXPECT_FALSE(look().shown);
+  EXPECT_TRUE(frame_.status.empty());
+  use("Target", "Target", 1);
+  EXPECT_TRUE(look().shown);
+}
+
+TEST_F(RobotInView, CheckBoxesChangeTheOverlay) {
+  step(50);
+  EXPECT_TRUE(frame().overlay.ellipsoids.empty());
+  use("Show", "Ellipsoid");
+  ASSERT_EQ(frame().overlay.ellipsoids.size(), 1U);
+  EXPECT_LT((frame().overlay.ellipsoids[0].X_WE.p - tool().p).norm(), 1e-9);
+  use("Show", "Ellipsoid", 0);
+  EXPECT_TRUE(frame().overlay.ellipsoids.empty());
+
+  use("Show", "Ghost of goal");
+  EXPECT_EQ(frame().overlay.ghosts.size(), 1U);
+
+  EXPECT_TRUE(frame().overlay.labels.empty());
+  use("Show", "Closest pair");
+  ASSERT_EQ(frame().overlay.labels.size(), 1U);
+  EXPECT_THAT(frame().overlay.labels[0].text, HasSubstr(" mm"));
+  use("Show", "Closest pair", 0);
+
+  EXPECT_TRUE(frame().overlay.spheres.empty());
+  use("Show", "Contacts");
+  EXPECT_TRUE(frame().overlay.spheres.empty());
+  // The elbow folded until the arm touches itself.
+  view_.handle(JointEvent{arm_.joints[2].dof, "elbow", 3.1});
+  step(3000);
+  EXPECT_FALSE(frame().overlay.spheres.empty());
+  use("Show", "Contacts", 0);
+  EXPECT_TRUE(frame().overlay.spheres.empty());
+}
+
+TEST_F(RobotInView, TheTrailIsALineOrBallsOrOff) {
+  view_.handle(JointEvent{arm_.joints[0].dof, "pan", 0.5});
+  step(1000);
+  ASSERT_EQ(frame().overlay.lines.size(), 1U);
+  EXPECT_GT(frame().overlay.lines[0].points_W.size(), 20U);
+  EXPECT_LT((frame().overlay.lines[0].points_W.back() - tool().p).norm(), 5e-3);
+  use("Show", "Trail", 2);
+  EXPECT_TRUE(frame().overlay.lines.empty());
+  EXPECT_GT(frame().overlay.spheres.size(), 5U);
+  use("Show", "Trail", 0);
+  EXPECT_TRUE(frame().overlay.spheres.empty());
+}
+
+TEST_F(RobotInView, FiguresAreShownAsAskedFor) {
+  step(200);
+  EXPECT_TRUE(frame().plots.empty());
+  use("Plots", "Joints");
+  use("Plots", "Manipulability");
+  ASSERT_EQ(frame().plots.size(), 2U);
+  EXPECT_THAT(frame().plots[0].title, StartsWith("joints"));
+  EXPECT_THAT(frame().plots[1].title, StartsWith("manipulability"));
+  EXPECT_GT(frame().plots[1].series.at(0).x.size(), 5U);
+  use("Plots", "Joints", 0);
+  EXPECT_EQ(frame().plots.size(), 1U);
+}
+
+TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
+  const Model model = Model::load(find_model_file("ur5e").value()).value();
+  const Arm arm = find_arm(model).value();
+  FreeSim passive = FreeSim::make(model, arm, true).value();
+  RobotSession view(model, arm, passive);
+  EXPECT_EQ(view.target(), nullptr);
+  for (int i = 0; i < 20; ++i) view.step();
+  ViewFrame frame;
+  view.fill(frame);
+  EXPECT_EQ(frame.panels.size(), 2U);
+  EXPECT_TRUE(frame.status.empty());
+
+  const Model car = Model::load(find_model_file("car").value()).value();
+  FreeSim driving = FreeSim::make(car, std::nullopt, false).value();
+  RobotSession bare(car, std::nullopt, driving);
+  bare.step();
+  bare.handle(PanelEvent{1000, 1});
+  bare.handle(TargetEvent{});
+  bare.fill(frame);
+  EXPECT_TRUE(frame.panels.empty());
+}
+
+}  // namespace
+}  // namespace mjarm::session

@@ -1,0 +1,178 @@
+#include "mjarm/session/run_charts.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <limits>
+
+#include "mjarm/core/messages/run_charts.hpp"
+
+namespace mjarm::session {
+namespace {
+
+constexpr std::size_t kMaxPoints = 2000;  // a curve; more than that no page can show
+
+/// The rows of all runs to be drawn, with a gap (null) between runs.
+using Rows = std::vector<const RecordRow*>;
+using Value = std::function<double(const RecordRow& row)>;
+
+Rows rows_to_draw(std::span<const MeasuredRun> runs) {
+  std::size_t count = 0;
+  for (const MeasuredRun& run : runs) count += run.rows.size();
+  const std::size_t stride = std::max<std::size_t>(1, count / kMaxPoints);
+  Rows rows;
+  for (const MeasuredRun& run : runs) {
+    if (!rows.empty()) rows.push_back(nullptr);
+    for (std::size_t i = 0; i < run.rows.size(); i += stride) rows.push_back(&run.rows[i]);
+    if (!run.rows.empty() && rows.back() != &run.rows.back()) rows.push_back(&run.rows.back());
+  }
+  return rows;
+}
+
+std::vector<double> column(const Rows& rows, const Value& value) {
+  std::vector<double> out;
+  for (const RecordRow* row : rows) {
+    out.push_back(row != nullptr ? value(*row) : std::numeric_limits<double>::quiet_NaN());
+  }
+  return out;
+}
+
+std::vector<double> times(const Rows& rows) {
+  return column(rows, [](const RecordRow& row) { return row.time; });
+}
+
+PlotPanel over_time(Msg title, const std::string& unit) {
+  PlotPanel panel;
+  panel.title = text(title);
+  panel.x_label = text(msg::run_chart_time);
+  panel.y_label = unit;
+  return panel;
+}
+
+PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
+  static constexpr const char* kAxes[] = {"x [m]", "y [m]", "z [m]"};
+  PlotPanel panel;
+  panel.title = text(title);
+  panel.x_label = kAxes[x];
+  panel.y_label = kAxes[y];
+  panel.equal_aspect = true;
+  const auto executed = [&](int axis) {
+    return column(rows, [axis](const RecordRow& row) { return row.X_WT.p[axis]; });
+  };
+  const auto planned = [&](int axis) {
+    return column(rows, [axis](const RecordRow& row) { return row.X_ref.p[axis]; });
+  };
+  panel.lines.push_back(executed_line(executed(x), executed(y)));
+  panel.lines.push_back(planned_line(planned(x), planned(y)));
+  return panel;
+}
+
+PlotPanel a_line_a_joint(const Arm& arm, const Rows& rows, PlotPanel panel,
+                         const std::function<double(const RecordRow& row, int joint)>& value) {
+  for (int j = 0; j < arm.dof(); ++j) {
+    panel.lines.push_back({.x = times(rows),
+                           .y = column(rows, [&](const RecordRow& row) { return value(row, j); }),
+                           .label = arm.joints[static_cast<std::size_t>(j)].name});
+  }
+  return panel;
+}
+
+PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
+  PlotPanel panel = over_time(title, text(msg::run_chart_share));
+  panel.y_from_zero = true;
+  panel.lines.push_back({.x = times(rows), .y = column(rows, share)});
+  return panel;
+}
+
+}  // namespace
+
+PlotPanel front_panel(std::span<const MeasuredRun> runs) {
+  return side_view(msg::run_chart_front, rows_to_draw(runs), 0, 2);
+}
+
+PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs) {
+  const Rows rows = rows_to_draw(runs);
+  PlotPanel panel = over_time(msg::run_chart_speed, "m/s");
+  panel.y_from_zero = true;
+  PlotLine line;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool gap = rows[i] == nullptr || rows[i - 1] == nullptr;
+    const double dt = gap ? 0 : rows[i]->time - rows[i - 1]->time;
+    line.x.push_back(gap ? std::numeric_limits<double>::quiet_NaN() : rows[i]->time);
+    line.y.push_back(dt > 0 ? (rows[i]->X_WT.p - rows[i - 1]->X_WT.p).norm() / dt
+                            : std::numeric_limits<double>::quiet_NaN());
+  }
+  panel.lines.push_back(std::move(line));
+  return panel;
+}
+
+PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
+  const bool ideal =
+      std::ranges::any_of(runs, [](const MeasuredRun& run) { return run.curve != nullptr; });
+  PlotPanel panel = over_time(ideal ? msg::run_chart_error : msg::run_chart_tracking, "mm");
+  panel.y_from_zero = true;
+  PlotLine line;
+  for (const MeasuredRun& run : runs) {
+    const Rows rows = rows_to_draw({&run, 1});
+    const std::vector<double> t = times(rows);
+    const std::vector<double> error = column(rows, [&run](const RecordRow& row) {
+      const double metres = run.curve != nullptr ? run.curve->nearest(row.X_WT.p).distance
+                                                 : (row.X_WT.p - row.X_ref.p).norm();
+      return 1e3 * metres;
+    });
+    if (!line.x.empty()) {
+      line.x.push_back(std::numeric_limits<double>::quiet_NaN());
+      line.y.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+    line.x.insert(line.x.end(), t.begin(), t.end());
+    line.y.insert(line.y.end(), error.begin(), error.end());
+  }
+  panel.lines.push_back(std::move(line));
+  if (ideal) panel.bands.push_back({0, 1e3 * tolerance, text(msg::run_chart_tolerance)});
+  return panel;
+}
+
+PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
+  const Rows rows = rows_to_draw(runs);
+  PlotPanel panel = a_line_a_joint(arm, rows, over_time(msg::run_chart_joints, "rad"),
+                                   [](const RecordRow& row, int j) { return row.q[j]; });
+  if (rows.empty()) return panel;
+  std::ranges::move(limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper),
+                                rows.front()->time, rows.back()->time, text(msg::run_chart_limits)),
+                    std::back_inserter(panel.lines));
+  return panel;
+}
+
+PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
+  PlotPanel panel = over_time(msg::run_chart_joint_speeds, "rad/s");
+  const double limit = arm.limits.velocity.maxCoeff();
+  panel.bands.push_back({-limit, limit, text(msg::run_chart_limit)});
+  return a_line_a_joint(arm, rows_to_draw(runs), std::move(panel),
+                        [](const RecordRow& row, int j) { return row.v[j]; });
+}
+
+Plot motion_plot(const std::string& title, const Arm& arm, std::span<const MeasuredRun> runs,
+                 double tolerance) {
+  const Rows rows = rows_to_draw(runs);
+  const JointLimits& limits = arm.limits;
+  Plot plot;
+  plot.title = title;
+  plot.columns = 4;
+  plot.panels = {side_view(msg::run_chart_top, rows, 0, 1),
+                 side_view(msg::run_chart_front, rows, 0, 2),
+                 side_view(msg::run_chart_side, rows, 1, 2),
+                 tool_speed_panel(runs),
+                 error_panel(runs, tolerance),
+                 joint_panel(arm, runs),
+                 share_panel(msg::run_chart_velocity, rows,
+                             [&](const RecordRow& row) {
+                               return 100 *
+                                      row.v.cwiseQuotient(limits.velocity).cwiseAbs().maxCoeff();
+                             }),
+                 share_panel(msg::run_chart_torque, rows, [&](const RecordRow& row) {
+                   return 100 * row.torque.cwiseQuotient(limits.torque).cwiseAbs().maxCoeff();
+                 })};
+  return plot;
+}
+
+}  // namespace mjarm::session

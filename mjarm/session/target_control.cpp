@@ -1,0 +1,216 @@
+#include "mjarm/session/target_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/render/overlay_shapes.hpp"
+
+namespace mjarm::session {
+namespace {
+
+/// Numbers of the items; those of the jog buttons follow each other.
+enum TargetItem {
+  kShownItem = 1000,
+  kFollowItem,
+  kGoItem,
+  kBackItem,
+  kFrameItem,
+  kMoveItem,
+  kTurnItem,
+  kTextItem,
+  kJogItem = 1100,  ///< - x, + x, - y, ... + rz
+};
+
+constexpr double kMoveSteps[] = {0.001, 0.01, 0.05};  ///< [m]
+constexpr double kTurnSteps[] = {1, 5, 15};           ///< [deg]
+constexpr double kDeg = std::numbers::pi / 180;
+constexpr const char* kJogAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
+constexpr float kGhostAlpha = 0.3F;
+
+const char* word_of(TargetGrade grade) {
+  switch (grade) {
+    case TargetGrade::good:
+      return "reachable";
+    case TargetGrade::near_limit:
+      return "near a limit";
+    case TargetGrade::near_singular:
+      return "singular";
+    case TargetGrade::jump:
+      return "by a jump";
+    case TargetGrade::unreachable:
+      return "not reachable";
+  }
+  return "";
+}
+
+/// Without a minus before a zero; a panel has room for 14 characters.
+std::string pair_of(double length, double angle) {
+  const auto shown = [](double value) { return std::round(10 * value) / 10 + 0.0; };
+  char line[48];
+  std::snprintf(line, sizeof(line), "%.1f %.1f", shown(1e3 * length), shown(angle / kDeg));
+  return line;
+}
+
+}  // namespace
+
+Rgba color_of(TargetGrade grade) noexcept {
+  if (grade == TargetGrade::good) return {0.20F, 0.75F, 0.30F, 1};
+  if (grade == TargetGrade::unreachable) return {0.90F, 0.15F, 0.12F, 1};
+  return {0.98F, 0.65F, 0.08F, 1};
+}
+
+TargetControl::TargetControl(const Model& model, const Arm& arm, FreeSim& sim)
+    : sim_(sim), target_(model, arm) {
+  restart();
+}
+
+void TargetControl::restart() {
+  sent_ = sim_.goal();
+  target_.set_goal(sent_);
+}
+
+void TargetControl::follow_sim() {
+  if (sim_.goal() != sent_) restart();
+}
+
+void TargetControl::send() {
+  sim_.set_goal(target_.goal());
+  sent_ = sim_.goal();
+}
+
+void TargetControl::changed() {
+  if (follow_) send();
+}
+
+void TargetControl::toggle() {
+  shown_ = !shown_;
+  held_ = false;
+  if (shown_) restart();
+}
+
+bool TargetControl::take_drags() {
+  const std::vector<TargetDrag> drags = link_.drags.take();
+  if (drags.empty()) return false;
+  number_ = drags.back().number;
+  held_ = drags.back().held && shown_;
+  if (!shown_) return true;
+  // Between two looks of the user the way is straight; what lies between does not count.
+  target_.move_to(drags.back().X_WT);
+  changed();
+  return true;
+}
+
+void TargetControl::jog(int button) {
+  const int axis = button / 2;
+  const double step = axis < 3 ? kMoveSteps[move_step_] : kDeg * kTurnSteps[turn_step_];
+  (void)target_.jog(static_cast<JogFrame>(frame_), axis, button % 2 == 0 ? -step : step);
+  changed();
+}
+
+bool TargetControl::handle(const PanelEvent& event) {
+  const int chosen = static_cast<int>(event.value);
+  switch (event.id) {
+    case kShownItem:
+      toggle();
+      return true;
+    case kFollowItem:
+      follow_ = event.value != 0;
+      changed();
+      return true;
+    case kGoItem:
+      target_.take_jump();
+      send();
+      return true;
+    case kBackItem:
+      restart();
+      return true;
+    case kFrameItem:
+      frame_ = std::clamp(chosen, 0, 2);
+      return true;
+    case kMoveItem:
+      move_step_ = std::clamp(chosen, 0, 2);
+      return true;
+    case kTurnItem:
+      turn_step_ = std::clamp(chosen, 0, 2);
+      return true;
+    default:
+      break;
+  }
+  const int buttons = target_.turns() ? 12 : 6;
+  if (event.id < kJogItem || event.id >= kJogItem + buttons) return false;
+  jog(event.id - kJogItem);
+  return true;
+}
+
+void TargetControl::post_look() {
+  TargetLook look{shown_, target_.pose(), {}, color_of(target_.grade()), number_};
+  const auto frame = static_cast<JogFrame>(frame_);
+  if (frame != JogFrame::tool) look.R_WG = target_.axes(frame);
+  link_.looks.post(look);
+}
+
+PanelSection TargetControl::target_section() const {
+  char room[32] = "none";
+  std::string joint;
+  if (std::isfinite(target_.room())) {
+    const ArmJoint& nearest = target_.arm().joints[static_cast<std::size_t>(target_.tightest())];
+    const char* unit = nearest.type == JointType::hinge ? "rad" : "m";
+    std::snprintf(room, sizeof(room), "%.2f %s", target_.room(), unit);
+    joint = nearest.name;
+  }
+  char singular[32];
+  std::snprintf(singular, sizeof(singular), "%.3f", target_.singular().smallest);
+  return {"Target",
+          {{kShownItem, "Target", PanelCheckbox{shown_}},
+           {kFollowItem, "Follow", PanelCheckbox{follow_}},
+           {kGoItem, "Go", PanelButton{}},
+           {kBackItem, "Back to arm", PanelButton{}},
+           {kTextItem, "State", PanelText{word_of(target_.grade())}},
+           {kTextItem, "Room to limit", PanelText{room}},
+           {kTextItem, "of joint", PanelText{joint}},
+           {kTextItem, "Singular value", PanelText{singular}}}};
+}
+
+PanelSection TargetControl::tool_section() const {
+  PanelSection section{
+      "Tool",
+      {{kFrameItem, "Frame", PanelChoice{{"world", "tool", "base"}, frame_}},
+       {kMoveItem, "Move by", PanelChoice{{"1 mm", "10 mm", "50 mm"}, move_step_}}}};
+  if (target_.turns()) {
+    section.items.push_back(
+        {kTurnItem, "Turn by", PanelChoice{{"1 deg", "5 deg", "15 deg"}, turn_step_}});
+  }
+  for (int i = 0; i < (target_.turns() ? 12 : 6); ++i) {
+    const std::string sign = i % 2 == 0 ? "- " : "+ ";
+    section.items.push_back({kJogItem + i, sign + kJogAxes[i / 2], PanelButton{}});
+  }
+  const Pose& X_WT = target_.pose();
+  const Eigen::Vector3d euler = to_euler(X_WT.R);
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = std::string(kJogAxes[i]) + " [mm], " + kJogAxes[3 + i] + " [deg]";
+    section.items.push_back({kTextItem, name, PanelText{pair_of(X_WT.p[i], euler[i])}});
+  }
+  return section;
+}
+
+void TargetControl::add_sections(std::vector<PanelSection>& sections) const {
+  sections.push_back(target_section());
+  sections.push_back(tool_section());
+}
+
+void TargetControl::add_ghost(Overlay& overlay, bool always) const {
+  const JointVec& q = target_.jump() ? *target_.jump() : target_.goal();
+  const bool waits = shown_ && (q - sim_.goal()).cwiseAbs().maxCoeff() > 1e-9;
+  if (!always && !held_ && !waits) return;
+  OverlayGhost& ghost = overlay.ghosts.emplace_back(ghost_of(target_.arm(), as_span(q)));
+  ghost.color = color_of(target_.grade());
+  ghost.color.a = kGhostAlpha;
+}
+
+std::string TargetControl::line() const { return shown_ ? target_.line() : std::string(); }
+
+}  // namespace mjarm::session

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/view/view_link.hpp"
+#include "mjarm/view/window.hpp"
+
+namespace mjarm {
+
+/// Runs `work` in a thread of its own, while this one, the main thread, opens the windows that it
+/// asks for and draws them. Returns when `work` is through.
+/// @param headless  `work` runs in this thread, and there are no windows; so it is without a
+/// display.
+void run_beside_windows(bool headless, const std::function<void()>& work);
+
+/// The same for work with a result.
+template <class Work>
+[[nodiscard]] auto beside_windows(bool headless, Work&& work) {
+  std::optional<std::invoke_result_t<Work>> result;
+  run_beside_windows(headless, [&] { result.emplace(work()); });
+  return std::move(*result);
+}
+
+/// A window that another thread has asked the main thread for.
+class RemoteWindow {
+ public:
+  /// False where no main thread stands ready.
+  [[nodiscard]] static bool is_possible() noexcept;
+  /// Waits until it is open.
+  /// @return what `Window::open` says.
+  [[nodiscard]] static Result<RemoteWindow> open(const Model& model, const std::string& title,
+                                                 const WindowOptions& options);
+  /// The same; none where there is no main thread for it, no display or no OpenGL.
+  [[nodiscard]] static Result<std::optional<RemoteWindow>> open_where_possible(
+      const Model& model, const std::string& title, const WindowOptions& options);
+  /// Waits until it is gone.
+  ~RemoteWindow();
+  RemoteWindow(RemoteWindow&&) noexcept;
+  RemoteWindow& operator=(RemoteWindow&&) noexcept;
+
+  [[nodiscard]] ViewLink& link() const;
+  /// False once the user closed it or ended the program.
+  [[nodiscard]] bool is_open() const { return !link().closed; }
+
+  struct Order;
+
+ private:
+  explicit RemoteWindow(std::shared_ptr<Order> order) : order_(std::move(order)) {}
+  void close();
+  std::shared_ptr<Order> order_;
+};
+
+}  // namespace mjarm
