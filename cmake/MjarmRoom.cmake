@@ -72,6 +72,15 @@ function(mjarm_tests target)
                        DISCOVERY_TIMEOUT 60)
 endfunction()
 
+# Lets a test include "all_messages.inc": every list of messages beside it.
+function(mjarm_all_messages target)
+  file(GLOB lists CONFIGURE_DEPENDS messages/*.inc)
+  list(TRANSFORM lists REPLACE "(.+)" "#include \"\\1\"\n")
+  list(JOIN lists "" lists)
+  file(CONFIGURE OUTPUT all_messages.inc CONTENT "${lists}")
+  target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}")
+endfunction()
+
 # Sets the flags of the kernels for wider registers, and drops them where the machine has none.
 # What runs is chosen at run time, so no other file may be compiled for more than the baseline.
 function(mjarm_simd_flags list_name)

@@ -5,7 +5,7 @@
 run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libexpected-dev
   libfmt-dev libspdlog-dev nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libcli11-dev
   libpng-dev libcairo2-dev libglfw3-dev libegl-dev libgl-dev libopengl-dev libgl1-mesa-dri
-  ca-certificates libcurl4-openssl-dev libarchive-dev libssl-dev zlib1g-dev fonts-dejavu-core"
+  ca-certificates libcurl4-openssl-dev libssl-dev zlib1g-dev fonts-dejavu-core"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev ccache xvfb xauth xdotool ffmpeg
   libopenmpi-dev openmpi-bin"
 optional_packages="libosmesa6"

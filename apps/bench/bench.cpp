@@ -4,7 +4,7 @@
 
 #include "apps/bench/suites.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/messages/sim.hpp"
 
 namespace mjarm::app {

@@ -11,7 +11,6 @@
 #include "apps/bench/report.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
-#include "apps/mjarm/cli/json_doc.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/table.hpp"

@@ -3,9 +3,9 @@
 
 #include "apps/bench/ik_peers.hpp"
 #include "apps/bench/ik_report.hpp"
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
-#include "mjarm/core/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robots.hpp"
-#include "apps/mjarm/cli/json_line.hpp"
-#include "apps/mjarm/cli/line_reader.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/line_reader.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -71,11 +71,11 @@ std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
 
 Result<IkCaseSet> read_set(const fs::path& file, IkCaseSet set, const Arm& arm) {
   Rng rng(kSeed, 3);
-  const auto take = [&](const nlohmann::json& object) -> Result<void> {
+  const auto take = [&](const JsonValue& object) -> Result<void> {
     const Result<Pose> X_WT = pose_of(object);
     if (!X_WT) return fail(X_WT.error());
     IkCase entry{*X_WT, list(random_q(arm, rng))};
-    if (has_member(object, "seed")) {
+    if (object.contains("seed")) {
       auto seed = number_list(object, "seed", static_cast<std::size_t>(arm.dof()));
       if (!seed) return fail(seed.error());
       entry.seed = std::move(*seed);

@@ -34,7 +34,7 @@ Result<std::vector<IkRun>> run_ik_peers(const IkProblem& problem,
   Result<JsonDoc> job = job_of(problem, rounds);
   if (!job) return fail(std::move(job.error()));
   std::vector<IkRun> runs;
-  const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const JsonValue& line) -> Result<void> {
     IkRun run{std::move(entry)};
     run.q = rows_in(line, "q");
     runs.push_back(std::move(run));

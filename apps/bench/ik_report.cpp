@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "mjarm/core/messages/bench.hpp"
+#include "apps/bench/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "apps/bench/suites.hpp"
 #include "apps/mjarm/cli/cli.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 
 /// `mjarm-bench ik ...` and `mjarm bench ik ...`, which hands its own arguments over, are the same.
 int main(int argc, char** argv) {

@@ -2,10 +2,10 @@
 #include <memory>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/path_run.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
-#include "mjarm/core/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
 #include "apps/bench/robots.hpp"
-#include "mjarm/core/messages/bench.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/solve_path.hpp"
 
@@ -79,7 +79,7 @@ Result<std::vector<PathRun>> run_path_peers(const PathProblem& problem,
   job->set("seeds", problem.seeds);
   job->set("sets", std::move(sets));
   std::vector<PathRun> runs;
-  const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const JsonValue& line) -> Result<void> {
     PathRun run{std::move(entry)};
     for (auto& q : tables_in(line, "q")) run.paths.push_back({.q = std::move(q)});
     runs.push_back(std::move(run));

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robots.hpp"
-#include "apps/mjarm/cli/json_line.hpp"
-#include "apps/mjarm/commands/path_request.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/line_reader.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"
+#include "mjarm/path/path_request.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -74,7 +74,7 @@ PathSet make_beyond(const Arm& arm, const PathSet& lines) {
 }
 
 Result<PathSet> read_set(const fs::path& file, PathSet set, const Arm& arm) {
-  const auto take = [&](const nlohmann::json& object) -> Result<void> {
+  const auto take = [&](const JsonValue& object) -> Result<void> {
     Result<PathRequest> request = path_request_of(object, arm);
     if (!request) return fail(std::move(request.error()));
     if (request->poses.empty()) return fail(Errc::bad_input, text(msg::bench_path_no_poses));

@@ -1,12 +1,11 @@
 #include "apps/bench/peers.hpp"
 
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "apps/mjarm/cli/json_line.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -16,7 +15,6 @@ namespace mjarm::app {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 /// A folder of its own that goes with this object.
 class ScratchFolder {
@@ -50,41 +48,55 @@ Result<fs::path> find_script(const std::string& suite) {
   return fail(Errc::not_available, text(msg::bench_no_script, script.string()));
 }
 
-/// A member that may be missing.
-std::string text_or_nothing(const json& line, const char* key) {
+/// Member `key`, which satisfies `is`.
+const JsonValue& member(const JsonValue& line, const char* key, bool (JsonValue::*is)() const) {
+  const JsonValue* const found = line.find(key);
+  if (found == nullptr || !(found->*is)()) throw BrokenAnswer{key};
+  return *found;
+}
+
+/// A text that may be missing.
+std::string text_or_nothing(const JsonValue& line, const char* key) {
   return line.contains(key) ? text_in(line, key) : std::string();
 }
 
-/// All entries of a list by `read`; none of null.
+/// All entries of a list by `read`; none of null. `key` stands for the list where it is broken.
 template <class Read>
-auto list_of(const json& list, const Read& read) {
-  std::vector<decltype(read(list))> values;
-  if (list.is_null()) return values;
-  for (const json& entry : list.get_ref<const json::array_t&>()) values.push_back(read(entry));
+auto list_of(const JsonValue& list, const char* key, const Read& read) {
+  std::vector<decltype(read(list, key))> values;
+  if (!list.is_list() && !list.is_null()) throw BrokenAnswer{key};
+  for (const JsonValue& entry : list) values.push_back(read(entry, key));
   return values;
 }
 
-double number_of(const json& value) { return value.get<double>(); }
-double number_or_nan(const json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : number_of(value);
+double number_of(const JsonValue& value, const char* key) {
+  if (!value.is_number()) throw BrokenAnswer{key};
+  return value.number();
 }
-std::vector<double> row_of(const json& value) { return list_of(value, number_of); }
-std::vector<std::vector<double>> rows_of(const json& value) { return list_of(value, row_of); }
+double number_or_nan(const JsonValue& value, const char* key) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : number_of(value, key);
+}
+std::vector<double> row_of(const JsonValue& value, const char* key) {
+  return list_of(value, key, number_of);
+}
+std::vector<std::vector<double>> rows_of(const JsonValue& value, const char* key) {
+  return list_of(value, key, row_of);
+}
 
-Result<void> take_line(const std::string& line, const TakeAnswer& take) {
+Result<void> take_line(std::string_view line, const TakeAnswer& take) {
   const Result<JsonObject> object = parse_json_object(line);
   if (!object) return fail(Errc::system, text(msg::bench_bad_answer, object.error().what));
-  const json& answer = **object;
+  const JsonValue& answer = **object;
   try {
     BenchEntry entry{.who = text_in(answer, "who"),
                      .version = text_or_nothing(answer, "version"),
                      .set = text_or_nothing(answer, "set"),
                      .timed = text_or_nothing(answer, "timed"),
                      .error = text_or_nothing(answer, "error")};
-    if (answer.contains("us")) entry.us = row_of(answer.at("us"));
+    if (const JsonValue* const us = answer.find("us")) entry.us = row_of(*us, "us");
     return take(std::move(entry), answer);
-  } catch (const json::exception& error) {
-    return fail(Errc::system, text(msg::bench_bad_answer, error.what()));
+  } catch (const BrokenAnswer& broken) {
+    return fail(Errc::system, text(msg::bench_bad_answer, broken.member));
   }
 }
 
@@ -95,21 +107,31 @@ JsonDoc pose_json(const Pose& X) {
   return {{"pos", {X.p[0], X.p[1], X.p[2]}}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-std::vector<std::vector<double>> rows_in(const json& line, const char* key) {
-  return line.contains(key) ? rows_of(line.at(key)) : std::vector<std::vector<double>>();
+std::vector<std::vector<double>> rows_in(const JsonValue& line, const char* key) {
+  const JsonValue* const found = line.find(key);
+  return found != nullptr ? rows_of(*found, key) : std::vector<std::vector<double>>();
 }
 
-std::vector<std::vector<std::vector<double>>> tables_in(const json& line, const char* key) {
-  if (!line.contains(key)) return {};
-  return list_of(line.at(key), rows_of);
+std::vector<std::vector<std::vector<double>>> tables_in(const JsonValue& line, const char* key) {
+  const JsonValue* const found = line.find(key);
+  if (found == nullptr) return {};
+  return list_of(*found, key, rows_of);
 }
 
-std::vector<double> numbers_in(const json& line, const char* key) {
-  return list_of(line.at(key), number_or_nan);
+const JsonValue& list_in(const JsonValue& line, const char* key) {
+  return member(line, key, &JsonValue::is_list);
 }
 
-std::string text_in(const json& line, const char* key) {
-  return line.at(key).get_ref<const std::string&>();
+std::vector<double> numbers_in(const JsonValue& line, const char* key) {
+  return list_of(list_in(line, key), key, number_or_nan);
+}
+
+double number_in(const JsonValue& line, const char* key) {
+  return member(line, key, &JsonValue::is_number).number();
+}
+
+std::string text_in(const JsonValue& line, const char* key) {
+  return member(line, key, &JsonValue::is_string).string();
 }
 
 Result<void> run_peers(const fs::path& environment, const std::string& suite, JsonDoc job,
@@ -132,7 +154,8 @@ Result<void> run_peers(const fs::path& environment, const std::string& suite, Js
   std::size_t from = 0;
   for (std::size_t to = content->find('\n'); to != std::string::npos;
        from = to + 1, to = content->find('\n', from)) {
-    if (auto taken = take_line(content->substr(from, to - from), take); !taken) {
+    const std::string_view line(content->data() + from, to - from);
+    if (auto taken = take_line(line, take); !taken) {
       return fail(taken.error());
     }
   }

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/bench/report.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 
@@ -15,21 +15,28 @@ namespace mjarm::app {
 /// A pose as the files of cases and the peers write it.
 [[nodiscard]] JsonDoc pose_json(const Pose& X);
 
-// Members of a peer's answer. All throw json's exceptions where the member is of another type.
+/// Thrown where a member of a peer's answer is missing or of another type; `run_peers` reports it.
+struct BrokenAnswer {
+  std::string member;
+};
 
 /// Rows of numbers, one a case; empty ones for null, no rows where the member is missing.
-[[nodiscard]] std::vector<std::vector<double>> rows_in(const nlohmann::json& line, const char* key);
+[[nodiscard]] std::vector<std::vector<double>> rows_in(const JsonValue& line, const char* key);
 /// Such rows of every path; none where the member is missing.
-[[nodiscard]] std::vector<std::vector<std::vector<double>>> tables_in(const nlohmann::json& line,
+[[nodiscard]] std::vector<std::vector<std::vector<double>>> tables_in(const JsonValue& line,
                                                                       const char* key);
 /// Numbers; NaN for null. The member has to be there.
-[[nodiscard]] std::vector<double> numbers_in(const nlohmann::json& line, const char* key);
+[[nodiscard]] std::vector<double> numbers_in(const JsonValue& line, const char* key);
+/// A number; has to be there as well.
+[[nodiscard]] double number_in(const JsonValue& line, const char* key);
 /// A text; has to be there as well.
-[[nodiscard]] std::string text_in(const nlohmann::json& line, const char* key);
+[[nodiscard]] std::string text_in(const JsonValue& line, const char* key);
+/// A list of objects, texts, ...; has to be there.
+[[nodiscard]] const JsonValue& list_in(const JsonValue& line, const char* key);
 
 /// Takes one answer of a peer: the entry with everything but cells and details, and the line it
 /// came in, whose members may be of any type.
-using TakeAnswer = std::function<Result<void>(BenchEntry entry, const nlohmann::json& line)>;
+using TakeAnswer = std::function<Result<void>(BenchEntry entry, const JsonValue& line)>;
 
 /// Runs the peers of a Python environment on one job, each in a process and a loop of its own
 /// (`bench/peers/SUITE.py`). A peer that fails has an answer that says why.

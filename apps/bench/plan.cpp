@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 #include "apps/bench/plan_plot.hpp"
 #include "apps/bench/plan_suite.hpp"
 #include "apps/bench/suites.hpp"
@@ -11,9 +13,6 @@
 #include "apps/mjarm/commands/run_output.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/bench.hpp"
-#include "mjarm/core/messages/bench_plan.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

@@ -3,19 +3,19 @@
 #include <span>
 #include <utility>
 
+#include "apps/bench/messages/bench_plan.hpp"
 #include "apps/bench/plan_sets.hpp"
 #include "apps/bench/robots.hpp"
 #include "mjarm/collision/fast_check.hpp"
-#include "mjarm/core/messages/bench_plan.hpp"
 #include "mjarm/core/rng.hpp"
 
 namespace mjarm::app {
 namespace {
 
 constexpr int kPairs = 16;               // of start and goal
-constexpr int kMaxTries = 100'000;      // for each pair and for each box
+constexpr int kMaxTries = 100'000;       // for each pair and for each box
 constexpr double kLeastHalf = 0.005;     // [m] half sides of boxes
-constexpr double kMaxHalf = 0.015;      // [m]
+constexpr double kMaxHalf = 0.015;       // [m]
 constexpr double kRoom = 0.03;           // [m] left round the arm in all starts and goals
 constexpr double kPointRadius = 0.0025;  // [m]
 constexpr std::size_t kBoxes[] = {1, 10, 100, 1000};
@@ -62,8 +62,7 @@ Result<std::vector<Obstacle>> strewn_boxes(const PlanSet& like, std::size_t coun
                                            const std::vector<double>& rows, Rng& rng) {
   std::vector<Obstacle> boxes;
   for (int tries = 0; boxes.size() < count; ++tries) {
-    if (tries == kMaxTries)
-      return fail(Errc::impossible, text(msg::bench_plan_no_room, like.name));
+    if (tries == kMaxTries) return fail(Errc::impossible, text(msg::bench_plan_no_room, like.name));
     Obstacle box;
     box.X_WO = {random_place(like.arm, rng),
                 Eigen::AngleAxisd(rng.uniform(0, 3), random_direction(rng)).toRotationMatrix()};

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 #include "apps/bench/peers.hpp"
-#include "mjarm/core/messages/bench.hpp"
-#include "mjarm/core/messages/bench_plan.hpp"
 
 namespace mjarm::app {
 namespace {
-
-using nlohmann::json;
 
 /// Index of each of the problems that a peer was asked, by id.
 using KnownProblems = std::map<std::string, std::size_t>;
@@ -21,18 +18,18 @@ tl::unexpected<Error> broken(const char* member) {
   return fail(Errc::system, text(msg::bench_bad_answer, member));
 }
 
-/// Times of another clock; none where the peer has none. Throws json's exceptions.
-Result<std::vector<double>> clock_in(const json& line, const char* key, std::size_t count) {
+/// Times of another clock; none where the peer has none. Throws `BrokenAnswer`.
+Result<std::vector<double>> clock_in(const JsonValue& line, const char* key, std::size_t count) {
   if (!line.contains(key)) return std::vector<double>();
   std::vector<double> us = numbers_in(line, key);
   if (us.size() != count) return broken(key);
   return us;
 }
 
-/// The answers of one peer, judged; throws json's exceptions.
+/// The answers of one peer, judged; throws `BrokenAnswer`.
 Result<std::vector<SolvedProblem>> answers_in(const PlanSet& set, const KnownProblems& known,
-                                              const BenchEntry& entry, const json& line) {
-  const auto& ids = line.at("problems").get_ref<const json::array_t&>();
+                                              const BenchEntry& entry, const JsonValue& line) {
+  const JsonValue& ids = list_in(line, "problems");
   auto paths = tables_in(line, "paths");
   if (paths.size() != ids.size()) return broken("paths");
   if (entry.us.size() != ids.size()) return broken("us");
@@ -40,7 +37,7 @@ Result<std::vector<SolvedProblem>> answers_in(const PlanSet& set, const KnownPro
   if (!world) return fail(world.error());
   std::vector<SolvedProblem> answers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    const auto problem = known.find(ids[i].get_ref<const std::string&>());
+    const auto problem = known.find(ids[i].string());
     if (problem == known.end()) return broken("problems");
     SolvedProblem& answer = answers.emplace_back(
         SolvedProblem{.problem = problem->second, .path = std::move(paths[i]), .us = entry.us[i]});
@@ -79,7 +76,7 @@ Result<std::vector<PlanRun>> run_plan_peers(const PlanSet& set,
               {"limit", peers.limit},
               {"seconds", kStart + 2 * peers.limit * static_cast<double>(ids.size())}};
   std::vector<PlanRun> runs;
-  const auto take = [&](BenchEntry entry, const json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const JsonValue& line) -> Result<void> {
     PlanRun& run = runs.emplace_back(PlanRun{std::move(entry)});
     if (!run.error.empty()) return {};
     auto answers = answers_in(set, known, run, line);

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "mjarm/core/messages/bench_plan.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {

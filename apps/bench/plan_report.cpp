@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "apps/bench/messages/bench_plan.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/bench_plan.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "mjarm/core/messages/bench.hpp"
-#include "mjarm/core/messages/bench_plan.hpp"
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 
 namespace mjarm::app {
 namespace {

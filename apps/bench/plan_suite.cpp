@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-#include "mjarm/core/messages/bench_plan.hpp"
+#include "apps/bench/messages/bench_plan.hpp"
 
 namespace mjarm::app {
 namespace {

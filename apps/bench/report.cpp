@@ -10,10 +10,10 @@
 #include <tuple>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

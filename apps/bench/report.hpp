@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/cli/json_doc.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/messages.hpp"
 
 namespace mjarm::app {

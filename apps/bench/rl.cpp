@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "apps/bench/messages/bench_rl.hpp"
 #include "apps/bench/rl_peers.hpp"
 #include "apps/bench/rl_report.hpp"
 #include "apps/bench/rl_run.hpp"
@@ -14,8 +15,6 @@
 #include "apps/mjarm/commands/train_task.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/bench_rl.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 

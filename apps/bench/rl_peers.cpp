@@ -1,11 +1,10 @@
 #include "apps/bench/rl_peers.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
-#include "mjarm/core/messages/bench.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/sim/sim.hpp"
@@ -158,13 +157,13 @@ Result<JsonDoc> job_of(const Model& model, const LearningSet& set, std::uint64_t
                  {"goals", *goals}};
 }
 
-/// The curve of one answer; throws json's exceptions.
-Result<std::vector<LearningPoint>> curve_in(const nlohmann::json& line, std::size_t goals) {
+/// The curve of one answer; throws `BrokenAnswer`.
+Result<std::vector<LearningPoint>> curve_in(const JsonValue& line, std::size_t goals) {
   std::vector<LearningPoint> curve;
-  for (const nlohmann::json& point : line.at("curve").get_ref<const nlohmann::json::array_t&>()) {
+  for (const JsonValue& point : list_in(line, "curve")) {
     LearningPoint& taken = curve.emplace_back();
-    taken.steps = point.at("steps").get<std::int64_t>();
-    taken.seconds = point.at("seconds").get<double>();
+    taken.steps = static_cast<std::int64_t>(number_in(point, "steps"));
+    taken.seconds = number_in(point, "seconds");
     taken.distances = numbers_in(point, "distances");
     if (taken.distances.size() != goals) {
       return fail(Errc::system, text(msg::bench_bad_answer, "distances"));
@@ -181,7 +180,7 @@ Result<std::vector<LearningRun>> run_learning_peers(const Model& model, const Le
   Result<JsonDoc> job = job_of(model, set, seed);
   if (!job) return fail(std::move(job.error()));
   std::vector<LearningRun> runs;
-  const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const JsonValue& line) -> Result<void> {
     LearningRun& run = runs.emplace_back(LearningRun{std::move(entry), seed, {}});
     run.set = set.name;
     if (!run.error.empty()) return {};

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "mjarm/core/messages/bench_rl.hpp"
+#include "apps/bench/messages/bench_rl.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/cli/json_doc.hpp"
 #include "apps/mjarm/cli/robot.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/rng.hpp"

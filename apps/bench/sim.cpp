@@ -7,8 +7,8 @@
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/number.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/sim/bench.hpp"
 
 namespace mjarm::app {
@@ -25,23 +25,25 @@ struct Options {
 
 std::string to_json(const Robot& robot, const SimBenchOptions& work,
                     const std::vector<SimBenchEntry>& entries, bool timing) {
-  std::string out = "{\"model\":";
-  append_json_string(out, robot.model.name());
-  out += ",\"timestep\":" + number(robot.model.timestep()) +
-         ",\"rounds\":" + std::to_string(work.rounds) + ",\"steps\":" + std::to_string(work.steps) +
-         ",\"entries\":[";
+  std::string out;
+  JsonWriter json(out);
+  json.object()
+      .member("model", robot.model.name())
+      .member("timestep", robot.model.timestep())
+      .member("rounds", work.rounds)
+      .member("steps", work.steps)
+      .key("entries")
+      .list();
   for (const SimBenchEntry& entry : entries) {
-    if (&entry != entries.data()) out += ',';
-    out += "{\"name\":";
-    append_json_string(out, entry.name);
+    json.object().member("name", entry.name);
     // The ratio is made of times as well, so it goes with them.
     if (timing) {
-      out += ",\"us\":" + number(entry.us) + ",\"rtf\":" + number(entry.rtf) +
-             ",\"ratio\":" + number(entry.ratio);
+      json.member("us", entry.us).member("rtf", entry.rtf).member("ratio", entry.ratio);
     }
-    out += '}';
+    json.end_object();
   }
-  return out + "]}\n";
+  json.end_list().end_object();
+  return out + '\n';
 }
 
 std::string to_table(const std::vector<SimBenchEntry>& entries, bool timing) {

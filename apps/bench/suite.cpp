@@ -3,12 +3,12 @@
 #include <memory>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/bench.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 

@@ -2,11 +2,11 @@
 #include <memory>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
 #include "apps/bench/time_peers.hpp"
 #include "apps/bench/time_report.hpp"
-#include "mjarm/core/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

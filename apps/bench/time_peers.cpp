@@ -5,9 +5,9 @@
 #include <cstring>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -23,20 +23,6 @@ JsonDoc case_json(const TimeSet& set, const TimeCase& entry) {
   return {{"waypoints", std::move(points)}};
 }
 
-const char* problem_name(TimeProblem problem) {
-  switch (problem) {
-    case TimeProblem::p2p:
-      return "p2p";
-    case TimeProblem::path_va:
-      return "path_va";
-    case TimeProblem::path_vaj:
-      return "path_vaj";
-    case TimeProblem::via_vaj:
-      return "via_vaj";
-  }
-  return "";
-}
-
 JsonDoc job_of(const std::vector<TimeSet>& sets, int rounds) {
   std::vector<JsonDoc> jobs;
   for (const TimeSet& set : sets) {
@@ -44,7 +30,7 @@ JsonDoc job_of(const std::vector<TimeSet>& sets, int rounds) {
     for (const TimeCase& entry : set.cases) cases.push_back(case_json(set, entry));
     jobs.push_back(
         {{"name", set.name},
-         {"problem", problem_name(set.problem)},
+         {"problem", name(set.problem)},
          {"samples", samples_of(set.problem)},
          {"limits",
           {{"v", set.limits.velocity}, {"a", set.limits.acceleration}, {"j", set.limits.jerk}}},
@@ -65,8 +51,8 @@ std::vector<JointState> states_from(const double* values, int count, Eigen::Inde
   return states;
 }
 
-/// Judges the motions of one answer; throws json's exceptions.
-Result<void> judge(const TimeSet& set, const nlohmann::json& line, TimeRun& run) {
+/// Judges the motions of one answer; throws `BrokenAnswer`.
+Result<void> judge(const TimeSet& set, const JsonValue& line, TimeRun& run) {
   const std::string file = text_in(line, "states");
   const Result<std::string> content = read_file(file, kMaxStateBytes);
   if (!content) return fail(content.error());
@@ -98,7 +84,7 @@ Result<void> judge(const TimeSet& set, const nlohmann::json& line, TimeRun& run)
 Result<std::vector<TimeRun>> run_time_peers(const std::vector<TimeSet>& sets,
                                             const std::filesystem::path& environment, int rounds) {
   std::vector<TimeRun> runs;
-  const auto take = [&](BenchEntry entry, const nlohmann::json& line) -> Result<void> {
+  const auto take = [&](BenchEntry entry, const JsonValue& line) -> Result<void> {
     runs.push_back({std::move(entry)});
     TimeRun& run = runs.back();
     if (!run.error.empty()) return {};

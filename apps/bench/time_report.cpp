@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "mjarm/core/messages/bench.hpp"
+#include "apps/bench/messages/bench.hpp"
 
 namespace mjarm::app {
 namespace {

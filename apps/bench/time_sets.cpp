@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
+#include "apps/bench/messages/bench.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/bench.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/rng.hpp"
 
 namespace mjarm::app {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-
 constexpr std::uint64_t kSeed = 1;
 constexpr int kMoves = 500;
 constexpr int kPaths = 20;
@@ -107,27 +104,28 @@ Result<TimeCases> read_cases(const fs::path& file, TimeProblem problem) {
 }
 
 /// Member `problem` of `known`, as `best_known.json` holds it; empty unless it has all cases.
-std::vector<double> best_of(const json& known, const std::string& file, const char* problem,
+std::vector<double> best_of(const JsonValue& known, const std::string& file, const char* problem,
                             const std::vector<TimeCase>& cases) {
   std::vector<double> best;
-  const json durations = known.value(file, json::object()).value(problem, json::object());
+  const JsonValue* durations = known.find(file);
+  if (durations != nullptr) durations = durations->find(problem);
   for (const TimeCase& entry : cases) {
-    const double duration = durations.value(entry.id, 0.0);
-    if (!(duration > 0)) return {};
-    best.push_back(duration);
+    const JsonValue* const duration = durations != nullptr ? durations->find(entry.id) : nullptr;
+    if (duration == nullptr || !(duration->number() > 0)) return {};
+    best.push_back(duration->number());
   }
   return best;
 }
 
-Result<json> read_best_known(const fs::path& folder) {
+Result<JsonObject> read_best_known(const fs::path& folder) {
   const fs::path file = folder / "best_known.json";
   std::error_code ignored;
-  if (!fs::exists(file, ignored)) return json::object();
+  if (!fs::exists(file, ignored)) return JsonObject();
   const Result<std::string> content = read_file(file, kLargest);
   if (!content) return fail(content.error());
-  const Result<JsonObject> known = parse_json_object(*content);
+  Result<JsonObject> known = parse_json_object(*content);
   if (!known) return fail(known.error().code, file.string() + ": " + known.error().what);
-  return **known;
+  return known;
 }
 
 bool rests(const TimeCase& entry) {
@@ -136,7 +134,7 @@ bool rests(const TimeCase& entry) {
 }
 
 /// Point to point apart by whether it goes from rest to rest.
-Result<void> read_moves(const fs::path& file, const json& known, std::vector<TimeSet>& sets) {
+Result<void> read_moves(const fs::path& file, const JsonValue& known, std::vector<TimeSet>& sets) {
   const Result<TimeCases> all = read_cases(file, TimeProblem::p2p);
   if (!all) return fail(all.error());
   for (const bool rest : {true, false}) {
@@ -149,7 +147,7 @@ Result<void> read_moves(const fs::path& file, const json& known, std::vector<Tim
   return {};
 }
 
-Result<void> read_paths(const fs::path& file, const json& known, std::vector<TimeSet>& sets) {
+Result<void> read_paths(const fs::path& file, const JsonValue& known, std::vector<TimeSet>& sets) {
   struct Kind {
     const char *name, *best;
     TimeProblem problem;
@@ -172,17 +170,13 @@ Result<void> read_paths(const fs::path& file, const json& known, std::vector<Tim
 }
 
 Result<std::vector<TimeSet>> read_sets(const std::string& name, const fs::path& folder) {
-  const Result<json> known = read_best_known(folder);
+  const Result<JsonObject> known = read_best_known(folder);
   if (!known) return fail(known.error());
   std::vector<TimeSet> sets;
-  try {
-    Result<void> done = read_moves(folder / (name + "_p2p.json"), *known, sets);
-    if (done) done = read_paths(folder / (name + "_paths.json"), *known, sets);
-    if (done) done = read_paths(folder / (name + "_ellipse.json"), *known, sets);
-    if (!done) return fail(done.error());
-  } catch (const json::exception& error) {  // best_known.json of another form
-    return fail(Errc::bad_input, (folder / "best_known.json").string() + ": " + error.what());
-  }
+  Result<void> done = read_moves(folder / (name + "_p2p.json"), **known, sets);
+  if (done) done = read_paths(folder / (name + "_paths.json"), **known, sets);
+  if (done) done = read_paths(folder / (name + "_ellipse.json"), **known, sets);
+  if (!done) return fail(done.error());
   return sets;
 }
 

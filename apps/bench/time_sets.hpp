@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/commands/time_cases.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/trajectory/time_cases.hpp"
 
 namespace mjarm::app {
 

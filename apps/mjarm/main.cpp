@@ -4,8 +4,8 @@
 
 #include "apps/mjarm/cli/cli.hpp"
 #include "apps/mjarm/commands/commands.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 
 int main(int argc, char** argv) {
   try {

@@ -5,8 +5,7 @@
 
 namespace mjarm {
 
-/// What kind of thing went wrong. The command line maps `bad_input` and `usage` to exit code 2 and
-/// every other value to exit code 1.
+/// What kind of thing went wrong.
 enum class Errc {
   bad_input,      ///< a file or value is malformed, missing or of the wrong size
   usage,          ///< the call itself makes no sense (unknown name, contradicting options)
@@ -21,10 +20,5 @@ struct Error {
   Errc code = Errc::bad_input;
   std::string what;
 };
-
-/// Exit code of a program that ends with this failure: 2 for bad input or usage, else 1.
-[[nodiscard]] constexpr int exit_code(Errc code) noexcept {
-  return code == Errc::bad_input || code == Errc::usage ? 2 : 1;
-}
 
 }  // namespace mjarm

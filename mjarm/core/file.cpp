@@ -139,4 +139,13 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   return *this;
 }
 
+Result<void> make_folder(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code || !fs::is_directory(folder, code)) {
+    return fail(Errc::system, text(msg::core_no_folder, folder.string(), code.message()));
+  }
+  return {};
+}
+
 }  // namespace mjarm

@@ -18,6 +18,9 @@ namespace mjarm {
 /// Writes `content` to `path` in one step: either the whole new file stands there or the old state.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& path, std::string_view content);
 
+/// Makes `folder` and those above it. @return an error where it cannot be made or is a file.
+[[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
+
 /// A file that appears under its name only when `commit` succeeds; until then it grows under a
 /// temporary name beside it, which vanishes with this object. A path that is no regular file
 /// (a pipe, /dev/null) is written directly.

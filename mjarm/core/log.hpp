@@ -6,10 +6,10 @@ namespace mjarm {
 
 /// How much is said on standard error.
 enum class LogLevel {
-  debug,    ///< every detail (`--verbose`)
+  debug,    ///< every detail
   info,     ///< what a user wants to know; the default
   warning,  ///< only what may be wrong
-  error,    ///< only what went wrong (`--quiet`)
+  error,    ///< only what went wrong
 };
 
 /// Says less or more from now on.

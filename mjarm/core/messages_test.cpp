@@ -2,18 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/messages/core.hpp"
+#include "tests/support/messages.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr Msg kCatalogue[] = {
+constexpr Msg kCoreMessages[] = {
 #define MJARM_MSG(id, english, chinese) {english, chinese},
 #include "mjarm/core/messages/app.inc"
 #include "mjarm/core/messages/bench.inc"
@@ -54,104 +53,7 @@ constexpr Msg kCatalogue[] = {
 #undef MJARM_MSG
 };
 
-struct Placeholder {
-  std::string name;    ///< index in braces, usually empty
-  std::string format;  ///< after the colon
-  friend bool operator==(const Placeholder&, const Placeholder&) = default;
-};
-
-/// The placeholders of a template in order; `{{` and `}}` are not any.
-std::vector<Placeholder> placeholders(std::string_view pattern) {
-  std::vector<Placeholder> found;
-  for (std::size_t i = 0; i < pattern.size(); ++i) {
-    if (pattern[i] != '{') continue;
-    if (pattern.substr(i, 2) == "{{") {
-      ++i;
-      continue;
-    }
-    const std::size_t end = pattern.find('}', i);
-    if (end == std::string_view::npos) return {{"unbalanced", ""}};
-    const std::string inside(pattern.substr(i + 1, end - i - 1));
-    const std::size_t colon = inside.find(':');
-    if (colon == std::string::npos) {
-      found.push_back({inside, ""});
-    } else {
-      found.push_back({inside.substr(0, colon), inside.substr(colon + 1)});
-    }
-    i = end;
-  }
-  return found;
-}
-
-bool is_number_format(const std::string& format) {
-  return !format.empty() && std::string("eEfFgG").find(format.back()) != std::string::npos;
-}
-bool is_integer_format(const std::string& format) {
-  return !format.empty() && std::string("dxX").find(format.back()) != std::string::npos;
-}
-
-bool has_chinese(std::string_view text) {
-  return std::any_of(text.begin(), text.end(),
-                     [](char c) { return static_cast<unsigned char>(c) >= 0xE2; });
-}
-
-class EveryMessage : public ::testing::Test {
- protected:
-  ~EveryMessage() override { set_language(Language::english); }
-  template <class Check>
-  void for_each(Check check) {
-    for (const Msg& message : kCatalogue) {
-      SCOPED_TRACE(message.english);
-      check(message);
-    }
-  }
-};
-
-TEST_F(EveryMessage, HasBothLanguages) {
-  for_each([](const Msg& message) {
-    EXPECT_FALSE(message.in(Language::english).empty());
-    EXPECT_FALSE(message.in(Language::chinese).empty());
-    // English stays ASCII, so that it shows everywhere.
-    EXPECT_FALSE(has_chinese(message.in(Language::english)));
-  });
-}
-
-TEST_F(EveryMessage, HasTheSamePlaceholdersInBoth) {
-  for_each([](const Msg& message) {
-    const auto english = placeholders(message.in(Language::english));
-    const auto chinese = placeholders(message.in(Language::chinese));
-    EXPECT_EQ(english.size(), chinese.size());
-    // Numbered placeholders may change places, the others keep their order and format.
-    auto by_index = [](const Placeholder& a, const Placeholder& b) { return a.name < b.name; };
-    auto a = english, b = chinese;
-    std::stable_sort(a.begin(), a.end(), by_index);
-    std::stable_sort(b.begin(), b.end(), by_index);
-    EXPECT_TRUE(a == b);
-  });
-}
-
-TEST_F(EveryMessage, FormatsInBothLanguages) {
-  for_each([](const Msg& message) {
-    // As many values as placeholders, each of the kind its format asks for.
-    const auto wanted = placeholders(message.in(Language::english));
-    ASSERT_LE(wanted.size(), 9u);
-    auto value = [&](std::size_t i) -> MsgArg {
-      if (i >= wanted.size()) return std::string("unused");
-      if (is_number_format(wanted[i].format)) return 1.5;
-      if (is_integer_format(wanted[i].format)) return 7LL;
-      return std::string("X");
-    };
-    for (const Language language : {Language::english, Language::chinese}) {
-      set_language(language);
-      const std::string formatted =
-          format_message(message, {value(0), value(1), value(2), value(3), value(4), value(5),
-                                   value(6), value(7), value(8)});
-      EXPECT_TRUE(formatted.find("{}") == std::string::npos &&
-                  formatted.find("{:") == std::string::npos)
-          << formatted;
-    }
-  });
-}
+TEST(Messages, AreSound) { support::expect_sound(kCoreMessages); }
 
 TEST(Messages, LanguageOfNames) {
   EXPECT_EQ(language_of("zh-CN"), Language::chinese);

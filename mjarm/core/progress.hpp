@@ -15,8 +15,8 @@ namespace mjarm {
                                         std::uint64_t total, double seconds, int width);
 
 /// Tells a user how far a long job is. On a terminal one line is redrawn at most ten times a
-/// second; elsewhere, and with `--quiet`, it is silent. `advance` may be called from many threads.
-/// Never part of any result.
+/// second; elsewhere, and where only warnings are logged, it is silent. `advance` may be called
+/// from many threads. Never part of any result.
 class Progress {
  public:
   /// @param label  from the catalogue, a few words.

@@ -85,7 +85,7 @@ Result<LoadedModel> load_urdf(const XmlSources& files, const LoadOptions& option
   tinyxml2::XMLDocument document;
   document.Parse(main.text.data(), main.text.size());
   XMLElement& robot = *document.RootElement();
-  if (auto done = check_urdf(file, robot); !done) return fail(done.error());
+  if (auto done = validate_urdf(file, robot); !done) return fail(done.error());
   std::vector<std::string> warnings;
   if (auto done = resolve_meshes(file, robot, options, warnings); !done) return fail(done.error());
   drop_repeated_shape_names(robot);

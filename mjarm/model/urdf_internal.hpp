@@ -22,14 +22,14 @@ namespace mjarm {
 
 /// Checks what MuJoCo would pass over or would not place: names, references between links and
 /// joints, one root, joint types, numbers, limits.
-[[nodiscard]] Result<void> check_urdf(const std::filesystem::path& file,
-                                      const tinyxml2::XMLElement& robot);
+[[nodiscard]] Result<void> validate_urdf(const std::filesystem::path& file,
+                                         const tinyxml2::XMLElement& robot);
 
 /// Refuses misspelt elements and attributes, which MuJoCo passes over in silence, with the nearest
 /// right word; words that are far from all of URDF's are somebody's extension and stay. A
 /// <geometry> must hold a shape.
-[[nodiscard]] Result<void> check_urdf_words(const std::filesystem::path& file,
-                                            const tinyxml2::XMLElement& robot);
+[[nodiscard]] Result<void> validate_urdf_words(const std::filesystem::path& file,
+                                               const tinyxml2::XMLElement& robot);
 
 /// The folders whose files a URDF may name: its own, the ROS package it lies in, the packages it
 /// names by `package://` (they hold a package.xml, or the file), and what the user has named as a

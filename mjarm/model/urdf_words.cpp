@@ -103,7 +103,7 @@ Result<void> check_element(const fs::path& file, const XMLElement& element, cons
 
 }  // namespace
 
-Result<void> check_urdf_words(const fs::path& file, const XMLElement& robot) {
+Result<void> validate_urdf_words(const fs::path& file, const XMLElement& robot) {
   return check_element(file, robot, kUrdf.front());
 }
 

@@ -46,21 +46,20 @@ std::string other_of(const SphereClearance& nearest, const FastRobot& robot,
   return robot.spheres().links[static_cast<std::size_t>(nearest.other_link)].name;
 }
 
-void append_proof(std::string& out, const EdgeCertificate& proof, const FastRobot& robot,
+void append_proof(JsonWriter& json, const EdgeCertificate& proof, const FastRobot& robot,
                   const Obstacles& obstacles) {
-  out += "{\"step\":" + number(proof.step);
-  append_value(out, "clearance", proof.nearest.distance);
-  append_value(out, "t", proof.nearest_t);
+  json.object()
+      .member("step", proof.step)
+      .member("clearance", proof.nearest.distance)
+      .member("t", proof.nearest_t);
   if (proof.nearest.link >= 0) {
-    append_key(out, "pair");
-    out += '[';
-    append_json_string(out,
-                       robot.spheres().links[static_cast<std::size_t>(proof.nearest.link)].name);
-    out += ',';
-    append_json_string(out, other_of(proof.nearest, robot, obstacles));
-    out += ']';
+    json.key("pair")
+        .list()
+        .value(robot.spheres().links[static_cast<std::size_t>(proof.nearest.link)].name)
+        .value(other_of(proof.nearest, robot, obstacles))
+        .end_list();
   }
-  out += '}';
+  json.end_object();
 }
 
 void append_tilt(std::string& out, const TiltLimit& limit, double largest) {
@@ -73,14 +72,8 @@ void append_tilt(std::string& out, const TiltLimit& limit, double largest) {
 }
 
 /// A list of strings; nothing for an empty one.
-void append_words(std::string& out, const char* key, const std::vector<std::string>& words) {
-  if (words.empty()) return;
-  append_key(out, key);
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    out += i == 0 ? '[' : ',';
-    append_json_string(out, words[i]);
-  }
-  out += ']';
+void append_words(JsonWriter& json, const char* key, const std::vector<std::string>& words) {
+  if (!words.empty()) json.member(key, words);
 }
 
 }  // namespace
@@ -102,25 +95,20 @@ PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
 
 void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& robot,
                    const Obstacles& obstacles, bool timing) {
+  JsonWriter json(out);
+  json.object().member("ok", answer.path.has_value());
   if (answer.path) {
-    out += "{\"ok\":true";
-    append_rows(out, "path", answer.path->q);
-    append_value(out, "cost", answer.path->cost);
-    append_key(out, "certificate");
-    out += '[';
-    for (std::size_t i = 0; i < answer.path->proof.size(); ++i) {
-      if (i > 0) out += ',';
-      append_proof(out, answer.path->proof[i], robot, obstacles);
+    json.member("path", answer.path->q).member("cost", answer.path->cost).key("certificate").list();
+    for (const EdgeCertificate& proof : answer.path->proof) {
+      append_proof(json, proof, robot, obstacles);
     }
-    out += ']';
-    if (answer.tilt) append_tilt(out, *answer.tilt, answer.path->tilt);
-    append_words(out, "hold", answer.rules.hold);
-    append_words(out, "allow", answer.rules.allow);
-    if (answer.spheres) append_value(out, "spheres", *answer.spheres);
+    json.end_list();
+    if (answer.tilt) append_tilt(json, *answer.tilt, answer.path->tilt);
+    append_words(json, "hold", answer.rules.hold);
+    append_words(json, "allow", answer.rules.allow);
+    if (answer.spheres) json.member("spheres", *answer.spheres);
   } else {
-    out += "{\"ok\":false";
-    append_key(out, "reason");
-    append_json_string(out, describe(answer.path.error(), robot, obstacles));
+    json.member("reason", describe(answer.path.error(), robot, obstacles));
   }
   if (timing) {
     append_us(out, "us", answer.us);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
@@ -43,8 +42,8 @@ Result<void> read_rows(const json& rows, std::size_t dof, GivenPath& out) {
   return {};
 }
 
-Result<GivenCertificate> certificate_of(const json& entry) {
-  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::app_json_no_object));
+Result<GivenCertificate> certificate_of(const JsonValue& entry) {
+  if (!entry.is_object()) return fail(Errc::bad_input, text(msg::json_no_object));
   GivenCertificate out;
   const std::pair<const char*, double*> members[] = {
       {"step", &out.step}, {"clearance", &out.clearance}, {"t", &out.t}};
@@ -59,7 +58,7 @@ Result<GivenCertificate> certificate_of(const json& entry) {
       !(*pair)[1].is_string()) {
     return fail(Errc::bad_input, text(msg::planning_verify_no_pair));
   }
-  out.pair = pair->get<std::vector<std::string>>();
+  out.pair = {(*pair)[0].string(), (*pair)[1].string()};
   return out;
 }
 
@@ -76,8 +75,8 @@ Result<void> read_certificates(const json& list, GivenPath& out) {
   return {};
 }
 
-Result<void> read_tilt(const json& entry, GivenPath& out) {
-  if (!entry.is_object()) return fail(Errc::bad_input, "tilt: " + text(msg::app_json_no_object));
+Result<void> read_tilt(const JsonValue& entry, GivenPath& out) {
+  if (!entry.is_object()) return fail(Errc::bad_input, "tilt: " + text(msg::json_no_object));
   GivenTilt tilt;
   const std::pair<const char*, double*> numbers[] = {{"limit", &tilt.limit},
                                                      {"largest", &tilt.largest}};
@@ -112,7 +111,7 @@ Result<void> read_words(const json& entry, const char* key, std::vector<std::str
   if (!list->is_array() || !std::all_of(list->begin(), list->end(), is_word)) {
     return fail(Errc::bad_input, text(msg::planning_verify_no_words, key));
   }
-  out = list->get<std::vector<std::string>>();
+  for (const JsonValue& word : *list) out.push_back(word.string());
   return {};
 }
 
@@ -123,9 +122,9 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
   if (ok != entry.end() && !ok->is_boolean()) {
     return fail(Errc::bad_input, text(msg::planning_verify_no_bool, "ok"));
   }
-  if (ok != entry.end() && !ok->get<bool>()) return {};
-  const auto path = entry.find("path");
-  if (path == entry.end()) return fail(Errc::bad_input, text(msg::app_json_missing, "path"));
+  if (ok != nullptr && !ok->boolean()) return {};
+  const JsonValue* const path = entry.find("path");
+  if (path == nullptr) return fail(Errc::bad_input, text(msg::json_missing, "path"));
   if (Result<void> read = read_rows(*path, dof, out); !read) return read;
   if (entry.contains("cost")) {
     const Result<double> cost = number_at(entry, "cost");
@@ -143,11 +142,11 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
   }
   if (Result<void> read = read_words(entry, "hold", out.rules.hold); !read) return read;
   if (Result<void> read = read_words(entry, "allow", out.rules.allow); !read) return read;
-  if (const auto tilt = entry.find("tilt"); tilt != entry.end()) {
+  if (const JsonValue* const tilt = entry.find("tilt"); tilt != nullptr) {
     if (Result<void> read = read_tilt(*tilt, out); !read) return read;
   }
-  const auto certificate = entry.find("certificate");
-  return certificate == entry.end() ? Result<void>() : read_certificates(*certificate, out);
+  const JsonValue* const certificate = entry.find("certificate");
+  return certificate == nullptr ? Result<void>() : read_certificates(*certificate, out);
 }
 
 }  // namespace
@@ -158,7 +157,7 @@ Result<std::vector<GivenPath>> read_plan_file(const std::string& path, std::size
   const Result<detail::JsonObject> object = detail::parse_json_object(*content);
   if (!object) return fail(object.error().code, path + ": " + object.error().what);
   std::vector<GivenPath> out;
-  for (const auto& item : (*object)->items()) {
+  for (const JsonValue& entry : **object) {
     GivenPath given;
     given.id = item.key();
     if (Result<void> read = read_entry(item.value(), dof, given); !read) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
@@ -68,27 +67,27 @@ Result<const json*> list(const json& object, const char* key) {
   return found;
 }
 
-Result<std::string> string(const json& object, const char* key) {
-  const Result<const json*> found = member(object, key);
+Result<std::string> string(const JsonValue& object, const char* key) {
+  const Result<const JsonValue*> found = member(object, key);
   if (!found) return fail(found.error());
   if (!(*found)->is_string()) return bad(msg::planning_file_no_string, key);
   return (*found)->get<std::string>();
 }
 
-Result<double> real(const json& object, const char* key) {
-  const Result<const json*> found = member(object, key);
+Result<double> real(const JsonValue& object, const char* key) {
+  const Result<const JsonValue*> found = member(object, key);
   if (!found) return fail(found.error());
   if (!(*found)->is_number()) return bad(msg::planning_file_no_number, key);
   return (*found)->get<double>();
 }
 
-Result<Eigen::Vector3d> vector(const json& object, const char* key) {
+Result<Eigen::Vector3d> vector(const JsonValue& object, const char* key) {
   const Result<std::vector<double>> values = number_list(object, key, 3);
   if (!values) return fail(values.error());
   return Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
 }
 
-Result<Pose> pose(const json& object, const char* place) {
+Result<Pose> pose(const JsonValue& object, const char* place) {
   const Result<Eigen::Vector3d> p = vector(object, place);
   if (!p) return fail(p.error());
   const Result<std::vector<double>> quat = number_list(object, "quat", 4);
@@ -100,8 +99,8 @@ Result<Pose> pose(const json& object, const char* place) {
 
 /// Calls `take` with every entry of a list; its error gets the entry's place.
 template <class Take>
-Result<void> each(const json& object, const char* key, Take take) {
-  const Result<const json*> entries = list(object, key);
+Result<void> each(const JsonValue& object, const char* key, Take take) {
+  const Result<const JsonValue*> entries = list(object, key);
   if (!entries) return fail(entries.error());
   for (std::size_t i = 0; i < (*entries)->size(); ++i) {
     Result<void> taken = take((**entries)[i]);
@@ -115,22 +114,23 @@ class RobotReader {
  public:
   RobotReader(ProblemFile& out) : out_(out) {}
 
-  Result<void> read(const json& robot) {
+  Result<void> read(const JsonValue& robot) {
     const Result<std::string> name = string(robot, "name");
     if (!name) return fail(name.error());
     const Result<std::string> base = string(robot, "base");
     if (!base) return fail(base.error());
     out_.arm.name = *name;
     places_[*base] = {};
-    return each(robot, "joints", [&](const json& joint) { return add_joint(joint); })
+    return each(robot, "joints", [&](const JsonValue& joint) { return add_joint(joint); })
         .and_then([&] {
           out_.arm.limits.lower = joint_vec(lower_);
           out_.arm.limits.upper = joint_vec(upper_);
-          return each(robot, "spheres", [&](const json& sphere) { return add_sphere(sphere); });
+          return each(robot, "spheres",
+                      [&](const JsonValue& sphere) { return add_sphere(sphere); });
         })
         .and_then([&] {
           return each(robot, "self_collision_link_pairs",
-                      [&](const json& pair) { return add_pair(pair); });
+                      [&](const JsonValue& pair) { return add_pair(pair); });
         })
         .and_then([&] { return check_sphere_set(out_.spheres, out_.arm); });
   }
@@ -150,7 +150,7 @@ class RobotReader {
     return bad(msg::planning_file_unknown_link, link, did_you_mean(link, names));
   }
 
-  Result<void> add_joint(const json& from) {
+  Result<void> add_joint(const JsonValue& from) {
     const Result<std::string> parent = string(from, "parent");
     if (!parent) return fail(parent.error());
     const Result<std::string> child = string(from, "child");
@@ -170,7 +170,7 @@ class RobotReader {
     return {};
   }
 
-  Result<void> add_moving(const json& from, const std::string& type, const Place& place) {
+  Result<void> add_moving(const JsonValue& from, const std::string& type, const Place& place) {
     static const std::vector<std::string> kTypes{"fixed", "revolute", "continuous", "prismatic"};
     if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
       return bad(msg::planning_file_joint_type, type, listed(kTypes));
@@ -196,7 +196,7 @@ class RobotReader {
     return {};
   }
 
-  Result<void> add_sphere(const json& from) {
+  Result<void> add_sphere(const JsonValue& from) {
     const Result<std::string> link = string(from, "link");
     if (!link) return fail(link.error());
     const Result<Place> place = place_of(*link);
@@ -218,7 +218,7 @@ class RobotReader {
     }
     std::array<int, 2> pair{};
     for (std::size_t k = 0; k < 2; ++k) {
-      const std::string link = from[k].get<std::string>();
+      const std::string link = from[k].string();
       const auto found = links_.find(link);
       if (found == links_.end()) return bad(msg::planning_file_pair_link, link);
       pair[k] = found->second;
@@ -233,7 +233,7 @@ class RobotReader {
   std::vector<double> lower_, upper_;
 };
 
-Result<ObstacleShape> cylinder_of(const json& from, Cylinders cylinders) {
+Result<ObstacleShape> cylinder_of(const JsonValue& from, Cylinders cylinders) {
   const Result<double> radius = real(from, "radius");
   if (!radius) return fail(radius.error());
   const Result<double> length = real(from, "length");
@@ -249,7 +249,7 @@ Result<ObstacleShape> cylinder_of(const json& from, Cylinders cylinders) {
   return bad(msg::planning_file_replacement, *as);
 }
 
-Result<Obstacle> obstacle_of(const json& from, Cylinders cylinders) {
+Result<Obstacle> obstacle_of(const JsonValue& from, Cylinders cylinders) {
   const Result<std::string> type = string(from, "type");
   if (!type) return fail(type.error());
   Obstacle out;
@@ -285,24 +285,26 @@ Result<Obstacle> obstacle_of(const json& from, Cylinders cylinders) {
   return out;
 }
 
-Result<PlanProblem> problem_of(const json& from, std::size_t dof, Cylinders cylinders) {
+Result<PlanProblem> problem_of(const JsonValue& from, std::size_t dof, Cylinders cylinders) {
   PlanProblem out;
   Result<std::string> id = string(from, "id");
   if (!id) return fail(id.error());
   out.id = *id;
-  if (from.contains("scene") && from["scene"].is_string()) out.scene = from["scene"];
-  if (from.contains("valid") && from["valid"].is_boolean()) out.valid = from["valid"];
+  const JsonValue* const scene = from.find("scene");
+  if (scene != nullptr && scene->is_string()) out.scene = scene->string();
+  const JsonValue* const valid = from.find("valid");
+  if (valid != nullptr && valid->is_boolean()) out.valid = valid->boolean();
   Result<std::vector<double>> start = number_list(from, "start", dof);
   if (!start) return fail(start.error());
   out.start = std::move(*start);
-  Result<void> done = each(from, "goals", [&](const json& goal) -> Result<void> {
+  Result<void> done = each(from, "goals", [&](const JsonValue& goal) -> Result<void> {
     const Result<std::vector<double>> q = numbers_of(goal, "goal", dof);
     if (!q) return fail(q.error());
     out.goals.push_back(joint_vec(*q));
     return {};
   });
   if (!done) return fail(done.error());
-  done = each(from, "obstacles", [&](const json& solid) -> Result<void> {
+  done = each(from, "obstacles", [&](const JsonValue& solid) -> Result<void> {
     Result<Obstacle> obstacle = obstacle_of(solid, cylinders);
     if (!obstacle) return fail(obstacle.error());
     out.obstacles.solids.push_back(std::move(*obstacle));
@@ -314,14 +316,14 @@ Result<PlanProblem> problem_of(const json& from, std::size_t dof, Cylinders cyli
   return out;
 }
 
-Result<ProblemFile> problems_of(const json& file, Cylinders cylinders) {
+Result<ProblemFile> problems_of(const JsonValue& file, Cylinders cylinders) {
   ProblemFile out;
-  const Result<const json*> robot = member(file, "robot");
+  const Result<const JsonValue*> robot = member(file, "robot");
   if (!robot) return fail(robot.error());
   Result<void> done = RobotReader(out).read(**robot);
   if (!done) return fail(at("robot", std::move(done.error())));
   std::set<std::string> ids;
-  done = each(file, "problems", [&](const json& from) -> Result<void> {
+  done = each(file, "problems", [&](const JsonValue& from) -> Result<void> {
     Result<PlanProblem> problem =
         problem_of(from, static_cast<std::size_t>(out.arm.dof()), cylinders);
     if (!problem) return fail(problem.error());

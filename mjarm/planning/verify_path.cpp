@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "apps/mjarm/messages/verify.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/collision/first_contact.hpp"
 #include "mjarm/collision/sphere_model.hpp"

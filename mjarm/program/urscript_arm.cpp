@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "mjarm/core/messages/motion_program.hpp"
+#include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/model/find_arm.hpp"
@@ -146,7 +146,7 @@ Pose ur_flange(const UrLengths& lengths, std::span<const double> q) {
 Result<UrArm> find_ur_arm(const Model& model, const Arm& arm) {
   const std::optional<std::string> prefix = prefix_of(arm);
   if (!prefix) {
-    return fail(Errc::impossible, text(msg::motion_program_export_other_arm, arm.name));
+    return fail(Errc::impossible, text(msg::program_urscript_other_arm, arm.name));
   }
   const Axes axes = axes_of(arm);
   std::optional<UrArm> best;
@@ -160,7 +160,7 @@ Result<UrArm> find_ur_arm(const Model& model, const Arm& arm) {
     best = UrArm{lengths, *X_WB, {}};
   }
   if (!best) {
-    return fail(Errc::impossible, text(msg::motion_program_export_other_axes, arm.name));
+    return fail(Errc::impossible, text(msg::program_urscript_other_axes, arm.name));
   }
   take_named_base(model, *prefix, *best);
   best->X_JF = flange_in_joint(model, arm, *prefix, *best, axes);

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
-#include "mjarm/core/result.hpp"
+#include "mjarm/core/json.hpp"
 
 namespace mjarm::rl {
 
@@ -12,9 +11,9 @@ namespace mjarm::rl {
 /// @param part  what is parsed, for messages.
 /// @return an error that names `source` and `part` where it is malformed, is no object, nests
 ///         deeper than `max_depth` or names a key of an object twice.
-[[nodiscard]] Result<nlohmann::json> parse_json_object(std::string_view text, int max_depth,
-                                                       const std::string& source,
-                                                       const std::string& part);
+[[nodiscard]] Result<JsonObject> parse_json_object(std::string_view text, int max_depth,
+                                                   const std::string& source,
+                                                   const std::string& part);
 
 /// `name` in double quotes, on one line, cut where it is long: for messages.
 [[nodiscard]] std::string in_quotes(std::string_view name);

@@ -20,13 +20,13 @@ inline std::filesystem::path test_file(const std::string& name) {
   return std::filesystem::path(MJARM_RL_TESTDATA) / name;
 }
 
-/// A refusal is one line that names the file and holds `phrase`, with exit code 2.
+/// A refusal is one line that names the file and holds `phrase`.
 template <class T>
 void expect_refused(const Result<T>& result, const std::string& source,
                     const std::string& phrase = "") {
   ASSERT_FALSE(result) << "accepted; expected: " << phrase;
   const Error& error = result.error();
-  EXPECT_EQ(exit_code(error.code), 2) << error.what;
+  EXPECT_EQ(error.code, Errc::bad_input) << error.what;
   EXPECT_TRUE(error.what.starts_with(source)) << error.what;
   EXPECT_NE(error.what.find(phrase), std::string::npos) << error.what << "\nlacks: " << phrase;
   EXPECT_EQ(error.what.find('\n'), std::string::npos) << error.what;

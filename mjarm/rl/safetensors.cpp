@@ -16,8 +16,6 @@
 namespace mjarm::rl {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kLargestTensorFile = std::size_t{1} << 30;
 constexpr std::size_t kLargestHeader = std::size_t{4} << 20;
 constexpr std::size_t kMaxDimensions = 8;
@@ -55,12 +53,12 @@ std::optional<std::uint64_t> shape_product(const std::vector<std::int64_t>& shap
 }
 
 /// A list of whole numbers from 0; none for anything else.
-std::optional<std::vector<std::int64_t>> whole_numbers(const json& list) {
-  if (!list.is_array()) return std::nullopt;
+std::optional<std::vector<std::int64_t>> whole_numbers(const JsonValue& list) {
+  if (!list.is_list()) return std::nullopt;
   std::vector<std::int64_t> numbers;
-  for (const json& entry : list) {
-    if (!entry.is_number_unsigned()) return std::nullopt;
-    const auto number = entry.get<std::uint64_t>();
+  for (const JsonValue& entry : list) {
+    if (!entry.is_whole()) return std::nullopt;
+    const std::uint64_t number = entry.whole();
     if (number > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
       return std::nullopt;
     }
@@ -82,9 +80,9 @@ class SafetensorsReader {
   tl::unexpected<Error> bad(Msg message, const Args&... args) const {
     return fail(Errc::bad_input, text(message, source_, args...));
   }
-  Result<json> header();
-  Result<void> metadata(const json& texts);
-  Result<TensorPlace> place(const std::string& name, const json& entry) const;
+  Result<JsonObject> header();
+  Result<void> metadata(const JsonValue& texts);
+  Result<TensorPlace> place(const std::string& name, const JsonValue& entry) const;
   Result<void> check_places(std::vector<TensorPlace>& places) const;
   Tensor tensor(const TensorPlace& place) const;
 
@@ -93,7 +91,7 @@ class SafetensorsReader {
   TensorSet set_;
 };
 
-Result<json> SafetensorsReader::header() {
+Result<JsonObject> SafetensorsReader::header() {
   if (bytes_.size() < kLengthBytes) return bad(msg::policy_file_short, bytes_.size());
   const auto length = load_little<std::uint64_t>(bytes_);
   bytes_.remove_prefix(kLengthBytes);
@@ -107,35 +105,38 @@ Result<json> SafetensorsReader::header() {
   return parse_json_object(words, kDeepest, source_, text(msg::policy_file_header));
 }
 
-Result<void> SafetensorsReader::metadata(const json& texts) {
+Result<void> SafetensorsReader::metadata(const JsonValue& texts) {
   if (!texts.is_object()) return bad(msg::policy_file_metadata);
-  for (const auto& [key, value] : texts.items()) {
-    if (!value.is_string()) return bad(msg::policy_file_metadata);
-    set_.metadata[key] = value.get<std::string>();
+  for (const JsonValue& entry : texts) {
+    if (!entry.is_string()) return bad(msg::policy_file_metadata);
+    set_.metadata[std::string(entry.key())] = entry.string();
   }
   return {};
 }
 
-Result<TensorPlace> SafetensorsReader::place(const std::string& name, const json& entry) const {
-  if (!entry.is_object() || entry.size() != 3 || !entry.contains("dtype") ||
-      !entry["dtype"].is_string() || !entry.contains("shape") || !entry.contains("data_offsets")) {
+Result<TensorPlace> SafetensorsReader::place(const std::string& name,
+                                             const JsonValue& entry) const {
+  const JsonValue* const type_of = entry.find("dtype");
+  const JsonValue* const shape_of = entry.find("shape");
+  const JsonValue* const offsets_of = entry.find("data_offsets");
+  if (entry.size() != 3 || !type_of || !type_of->is_string() || !shape_of || !offsets_of) {
     return bad(msg::policy_file_fields, in_quotes(name));
   }
   TensorPlace place;
   place.name = name;
-  const auto type = entry["dtype"].get<std::string>();
+  const std::string type = type_of->string();
   const NumberType* known = std::find_if(std::begin(kNumberTypes), std::end(kNumberTypes),
                                          [&](const NumberType& one) { return type == one.name; });
   if (known == std::end(kNumberTypes)) {
     return bad(msg::policy_file_dtype, in_quotes(name), in_quotes(type));
   }
   place.type = static_cast<std::size_t>(known - kNumberTypes);
-  const auto shape = whole_numbers(entry["shape"]);
+  const auto shape = whole_numbers(*shape_of);
   if (!shape || shape->size() > kMaxDimensions) {
     return bad(msg::policy_file_shape, in_quotes(name), kMaxDimensions);
   }
   place.shape = *shape;
-  const auto offsets = whole_numbers(entry["data_offsets"]);
+  const auto offsets = whole_numbers(*offsets_of);
   if (!offsets || offsets->size() != 2 || (*offsets)[0] > (*offsets)[1]) {
     return bad(msg::policy_file_offsets, in_quotes(name));
   }
@@ -194,10 +195,11 @@ Tensor SafetensorsReader::tensor(const TensorPlace& place) const {
 }
 
 Result<TensorSet> SafetensorsReader::read() {
-  const Result<json> names = header();
+  const Result<JsonObject> names = header();
   if (!names) return fail(names.error());
   std::vector<TensorPlace> places;
-  for (const auto& [name, entry] : names->items()) {
+  for (const JsonValue& entry : **names) {
+    const std::string name(entry.key());
     if (name == kMetadataKey) {
       if (auto done = metadata(entry); !done) return fail(std::move(done.error()));
       continue;

@@ -19,8 +19,6 @@
 namespace mjarm::rl {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t kLargestZip = std::size_t{256} << 20;
 constexpr std::int64_t kMaxNumbers = std::int64_t{1} << 26;
 
@@ -52,16 +50,16 @@ std::string as_plain_json(std::string_view words) {
 }
 
 /// The text `object[key]`; empty where there is none.
-std::string text_in(const json& object, const char* key) {
-  if (!object.is_object()) return {};
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+std::string text_in(const JsonValue& object, const char* key) {
+  const JsonValue* const found = object.find(key);
+  return found != nullptr ? found->string() : std::string();
 }
 
-const json& object_in(const json& object, const char* key) {
-  static const json kNone = json::object();
-  const auto found = object.find(key);
-  return found != object.end() && found->is_object() ? *found : kNone;
+/// What stands at `object[key]`; null where there is nothing.
+const JsonValue& value_in(const JsonValue& object, const char* key) {
+  static const JsonValue kNone;
+  const JsonValue* const found = object.find(key);
+  return found != nullptr ? *found : kNone;
 }
 
 /// True where a class is named, and its last name is not `name`: "<class 'torch.nn.Tanh'>".
@@ -118,31 +116,33 @@ class Sb3Reader {
 
 Result<void> Sb3Reader::read_settings(std::string_view words) {
   constexpr int kDeepest = 32;
-  const Result<json> settings =
+  const Result<JsonObject> settings =
       parse_json_object(as_plain_json(words), kDeepest, source_, "\"data\"");
   if (!settings) return fail(settings.error());
   const auto refuse = [&](const char* what, const std::string& value) {
     return bad(msg::policy_file_sb3_field, what, in_quotes(value));
   };
-  const json& policy = object_in(*settings, "policy_kwargs");
+  const JsonValue& policy = value_in(**settings, "policy_kwargs");
   const std::string activation = text_in(policy, "activation_fn");
   if (!is_other_class(activation, "ReLU") && !activation.empty()) {
     activation_ = "relu";
   } else if (is_other_class(activation, "Tanh")) {
     return refuse("activation_fn", activation);
   }
-  const auto squash = policy.find("squash_output");
-  if (squash != policy.end() && *squash != false) return refuse("squash_output", squash->dump());
+  const JsonValue* const squash = policy.find("squash_output");
+  if (squash != nullptr && !(squash->is_boolean() && !squash->boolean())) {
+    return refuse("squash_output", squash->is_boolean() ? "true" : squash->string());
+  }
   const std::string features = text_in(policy, "features_extractor_class");
   if (is_other_class(features, "FlattenExtractor")) {
     return refuse("features_extractor_class", features);
   }
   for (const char* space : {"observation_space", "action_space"}) {
-    const std::string type = text_in(object_in(*settings, space), ":type:");
+    const std::string type = text_in(value_in(**settings, space), ":type:");
     if (is_other_class(type, "Box")) return refuse(space, type);
   }
-  low_ = text_in(object_in(*settings, "action_space"), "low");
-  high_ = text_in(object_in(*settings, "action_space"), "high");
+  low_ = text_in(value_in(**settings, "action_space"), "low");
+  high_ = text_in(value_in(**settings, "action_space"), "high");
   return {};
 }
 

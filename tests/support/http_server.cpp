@@ -106,9 +106,8 @@ void HttpServer::send_page(int client, const Served& served, const Range& range)
     body.clear();
   } else if (part) {
     const std::size_t last = std::min<std::size_t>(range->second, body.size() - 1);
-    head = "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes " +
-           std::to_string(range->first + (served.other_range ? 1 : 0)) + "-" +
-           std::to_string(last) + "/" + std::to_string(body.size()) + "\r\n";
+    head = "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes " + std::to_string(range->first) +
+           "-" + std::to_string(last) + "/" + std::to_string(body.size()) + "\r\n";
     body = body.substr(range->first, last - range->first + 1);
   }
   head += "Content-Type: " + served.type +

@@ -20,7 +20,6 @@ struct Served {
   std::string type = "application/octet-stream";
   int status = 200;
   bool ranges = true;                  ///< false: Range is ignored, all is sent
-  bool other_range = false;            ///< says that the range begins one byte later
   bool silent = false;                 ///< takes the request and never answers
   std::size_t cut_after = SIZE_MAX;    ///< bytes of body after which each connection is closed
   std::size_t announce_more = 0;       ///< added to Content-Length

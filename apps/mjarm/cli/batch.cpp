@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "apps/mjarm/cli/line_reader.hpp"
 #include "apps/mjarm/cli/options.hpp"
+#include "mjarm/core/line_reader.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -88,9 +88,10 @@ Error go_on(const Command& command, const std::vector<std::string>& arguments) {
   return {Errc::not_available, text(msg::app_no_program, command.name, program.string())};
 }
 
+/// @return the exit code.
 int report(const Error& error) {
   log_error(error.what);
-  return exit_code(error.code);
+  return error.code == Errc::bad_input || error.code == Errc::usage ? 2 : 1;
 }
 
 /// Results must have reached their reader before 0 is returned.
@@ -130,7 +131,8 @@ int run(std::span<const Command> commands, const std::vector<std::string>& argum
   GlobalOptions global;
   add_global_options(*app, global);
   std::vector<std::pair<const CLI::App*, Run>> runs;
-  if (const Command* other = handed_over(commands, arguments)) return report(go_on(*other, arguments));
+  if (const Command* other = handed_over(commands, arguments))
+    return report(go_on(*other, arguments));
   for (const Command& command : commands) {
     CLI::App& sub = add_subcommand(*app, command.name, command.summary, command.examples);
     if (command.setup != nullptr) runs.emplace_back(&sub, command.setup(sub));

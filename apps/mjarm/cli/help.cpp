@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {

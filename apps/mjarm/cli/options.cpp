@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/mjarm/cli/help.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {

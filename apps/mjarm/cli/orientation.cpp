@@ -1,8 +1,8 @@
 #include "apps/mjarm/cli/orientation.hpp"
 
-#include "apps/mjarm/cli/json_line.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/rotation.hpp"
 
 namespace mjarm::app {

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 
 namespace mjarm::app {
 

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <vector>
 
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {

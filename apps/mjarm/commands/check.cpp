@@ -3,8 +3,8 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/commands/program_text.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/motion_program.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

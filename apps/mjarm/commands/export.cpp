@@ -5,9 +5,10 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/program_load.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/program/urscript.hpp"

@@ -5,12 +5,12 @@
 
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/cli/json_line.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/number.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/rotation.hpp"
 
 namespace mjarm::app {
@@ -26,11 +26,11 @@ struct FkOptions {
 void append_pose(std::string& out, const Pose& X_WT) {
   const Quat q = to_quat(X_WT.R);
   const double wxyz[] = {q.w(), q.x(), q.y(), q.z()};
-  out += "{\"pos\":";
-  append_numbers(out, {X_WT.p.data(), 3});
-  out += ",\"quat\":";
-  append_numbers(out, wxyz);
-  out += "}";
+  JsonWriter(out)
+      .object()
+      .member("pos", X_WT.p)
+      .member("quat", std::span<const double>(wxyz))
+      .end_object();
 }
 
 Result<int> answer_one(const Arm& arm, const FkOptions& options) {

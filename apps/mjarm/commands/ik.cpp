@@ -4,16 +4,15 @@
 #include <memory>
 #include <optional>
 
-#include "apps/mjarm/cli/answer_json.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/cli/json_line.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/number.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
@@ -42,8 +41,8 @@ struct Request {
 };
 
 /// As pose_of(), but a position may stand alone where that is all that must be met.
-Result<Pose> goal_of(const nlohmann::json& object, IkTask task) {
-  if (task != IkTask::position || has_member(object, "quat")) return pose_of(object);
+Result<Pose> goal_of(const JsonValue& object, IkTask task) {
+  if (task != IkTask::position || object.contains("quat")) return pose_of(object);
   const Result<std::vector<double>> pos = number_list(object, "pos", 3);
   if (!pos) return fail(pos.error());
   return Pose{{(*pos)[0], (*pos)[1], (*pos)[2]}, Eigen::Matrix3d::Identity()};
@@ -55,7 +54,7 @@ Result<Request> read_request(std::string_view line, const IkSolver& ik) {
   if (!object) return fail(object.error());
   const Result<Pose> X_WT = goal_of(**object, ik.options().task);
   if (!X_WT) return fail(X_WT.error());
-  if (!has_member(**object, "seed")) {
+  if (!(*object)->contains("seed")) {
     return Request{*X_WT, {arm.home.begin(), arm.home.end()}};
   }
   Result<std::vector<double>> q_seed =
@@ -83,22 +82,25 @@ Result<Request> read_request(const Options& options, const IkSolver& ik) {
 void append_branches(std::string& out, const std::vector<IkSolution>& branches) {
   std::vector<JointVec> rows;
   for (const IkSolution& branch : branches) rows.push_back(branch.q);
-  append_rows(out, "branches", rows);
+  JsonWriter(out).member("branches", rows);
 }
 
 void append_solution(std::string& out, const IkSolution& solution) {
-  out += "{\"ok\":true";
-  append_value(out, "q", solution.q);
-  append_value(out, "pos_err", solution.pos_err);
-  append_value(out, "rot_err", solution.rot_err);
+  JsonWriter(out)
+      .object()
+      .member("ok", true)
+      .member("q", solution.q)
+      .member("pos_err", solution.pos_err)
+      .member("rot_err", solution.rot_err);
 }
 
 void append_failure(std::string& out, const IkFailure& failure, const std::string& why) {
-  out += "{\"ok\":false,\"reason\":";
-  append_json_string(out, name(failure.code));
-  out += ",\"detail\":";
-  append_json_string(out, why);
-  append_value(out, "best", failure.best.q);
+  JsonWriter(out)
+      .object()
+      .member("ok", false)
+      .member("reason", name(failure.code))
+      .member("detail", why)
+      .member("best", failure.best.q);
 }
 
 /// Solves one request and appends the answer. Where there is none, returns why.
@@ -124,8 +126,9 @@ std::optional<std::string> answer(const Job& job, const Request& request, std::s
     append_failure(out, solution.error(), *why);
   }
   if (job.all) append_branches(out, branches);
-  if (job.timing) append_us(out, us);
-  out += '}';
+  JsonWriter json(out);
+  if (job.timing) json.member_us("us", us);
+  json.end_object();
   return why;
 }
 

@@ -3,13 +3,13 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/model_check.hpp"
 #include "apps/mjarm/commands/model_export.hpp"
 #include "apps/mjarm/commands/model_report.hpp"
-#include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mjarm/cli/json_doc.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {

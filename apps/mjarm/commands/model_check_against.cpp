@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/mjarm/cli/json_doc.hpp"
 #include "apps/mjarm/commands/model_check.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/kinematics/compare.hpp"
 #include "mjarm/model/robot.hpp"

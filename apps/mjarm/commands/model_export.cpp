@@ -5,9 +5,9 @@
 #include <system_error>
 
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/model/export.hpp"
 
 namespace mjarm::app {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "apps/mjarm/cli/json_doc.hpp"
 #include "apps/mjarm/cli/table.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mjarm/cli/json_doc.hpp"
 #include "apps/mjarm/commands/model_report.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json_writer.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/install/install.hpp"
 #include "apps/mjarm/install/installed.hpp"
-#include "apps/mjarm/cli/json_doc.hpp"
-#include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/core.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
@@ -106,7 +106,7 @@ Result<std::string> address_of(const std::string& from) {
   return file_url(from);
 }
 
-Result<void> install_one(const MeshSet& set, MeshSources& sources) {
+Result<void> install_one(const MeshSet& set, const IndexSettings& index, const std::string& from) {
   const Result<Installed> before = look_up(set);
   if (!before) return fail(before.error());
   if (before->state.kind == MeshState::Kind::whole) {
@@ -116,7 +116,7 @@ Result<void> install_one(const MeshSet& set, MeshSources& sources) {
   if (!before->state.problem.empty()) {
     log_info(text(msg::install_mending, before->state.problem));
   }
-  if (auto done = install_meshes(before->data, set, before->scene, sources); !done) return done;
+  if (auto done = install_meshes(before->data, set, before->scene, index, from); !done) return done;
   std::printf("%s\n", text(msg::install_done, set.robot, set.files.size(), set.licence,
                            before->folder.string())
                           .c_str());
@@ -124,16 +124,15 @@ Result<void> install_one(const MeshSet& set, MeshSources& sources) {
 }
 
 Result<int> run_install(const std::vector<const MeshSet*>& sets, const Options& options) {
-  MeshSources sources = default_sources();
-  Result<std::string> from = address_of(options.from);
-  if (!from) return fail(std::move(from.error()));
-  sources.from = std::move(*from);
+  const IndexSettings index = index_settings();
+  const Result<std::string> from = address_of(options.from);
+  if (!from) return fail(from.error());
   const Result<fs::path> data = data_folder();
   if (!data) return fail(data.error());
   const Result<FolderLock> lock = lock_data_folder(*data);
   if (!lock) return fail(lock.error());
   for (const MeshSet* set : sets) {
-    if (auto done = install_one(*set, sources); !done) return fail(std::move(done.error()));
+    if (auto done = install_one(*set, index, *from); !done) return fail(std::move(done.error()));
   }
   return 0;
 }

@@ -1,24 +1,25 @@
+#include "mjarm/core/messages/path.hpp"
+
 #include <cmath>
 #include <memory>
 #include <optional>
 
-#include "apps/mjarm/cli/answer_json.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/cli/json_line.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
-#include "apps/mjarm/commands/path_answer.hpp"
-#include "apps/mjarm/commands/path_request.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/path_answer.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/path_command.hpp"
 #include "mjarm/collision/exact.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/path_command.hpp"
-#include "mjarm/core/number.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/path_measures.hpp"
+#include "mjarm/path/path_request.hpp"
 #include "mjarm/path/solve_curve.hpp"
 
 namespace mjarm::app {
@@ -91,8 +92,9 @@ std::optional<std::string> answer(const Job& job, const PathRequest& request, st
       why = text(msg::path_command_mended, *why, describe(solved.fixes.front()));
     }
   }
-  if (job.timing) append_us(out, us);
-  out += '}';
+  JsonWriter json(out);
+  if (job.timing) json.member_us("us", us);
+  json.end_object();
   return why;
 }
 
@@ -174,7 +176,7 @@ Result<PathOptions> path_options(const Options& options, const Robot& robot) {
   if (options.max_step.empty()) return path;
   const Result<double> step = parse_quantity(options.max_step, Quantity::angle);
   if (!step) return fail(in_option("--max-step", step.error()));
-  if (!(*step > 0)) return fail(Errc::bad_input, text(msg::path_command_max_step));
+  if (!(*step > 0)) return fail(Errc::bad_input, text(msg::path_request_max_step));
   path.max_step = *step;
   return path;
 }

@@ -2,108 +2,98 @@
 
 #include <cmath>
 
-#include "apps/mjarm/cli/answer_json.hpp"
-#include "mjarm/core/number.hpp"
+#include "mjarm/core/json_writer.hpp"
 
 namespace mjarm::app {
 namespace {
 
-void append_least(std::string& out, const char* key, const LeastAlong& least) {
-  append_value(out, (std::string("min_") + key).c_str(), least.value);
-  append_key(out, (std::string("min_") + key + "_at").c_str());
-  out += std::to_string(least.at);
+void append_least(JsonWriter& json, const std::string& what, const LeastAlong& least) {
+  json.member("min_" + what, least.value).member("min_" + what + "_at", least.at);
 }
 
-void append_measures(std::string& out, const PathMeasures& measures) {
-  append_least(out, "manipulability", measures.manipulability);
-  append_least(out, "singular_value", measures.singular_value);
-  if (std::isfinite(measures.clearance.value)) append_least(out, "clearance", measures.clearance);
+void append_measures(JsonWriter& json, const PathMeasures& measures) {
+  append_least(json, "manipulability", measures.manipulability);
+  append_least(json, "singular_value", measures.singular_value);
+  if (std::isfinite(measures.clearance.value)) append_least(json, "clearance", measures.clearance);
 }
 
-void append_fix(std::string& out, const PathFix& fix) {
-  out += "{\"";
-  out += name(fix.kind);
-  out += "\":";
-  const auto vector = [&](const Eigen::Vector3d& v) { append_numbers(out, {v.data(), 3}); };
+void append_fix(JsonWriter& json, const PathFix& fix) {
+  json.object().key(name(fix.kind));
   switch (fix.kind) {
     case FixKind::start:
-      append_numbers(out, as_span(fix.start));
+      json.value(fix.start);
       break;
     case FixKind::shift:
-      vector(fix.change.shift);
+      json.value(fix.change.shift);
       break;
     case FixKind::tilt:
-      vector(fix.change.tilt);
+      json.value(fix.change.tilt);
       break;
     case FixKind::max_step:
-      append_number(out, fix.max_step);
+      json.value(fix.max_step);
       break;
     case FixKind::slower:
-      append_number(out, fix.tool_speed);
+      json.value(fix.tool_speed);
       break;
   }
-  out += '}';
+  json.end_object();
 }
 
-void append_cause(std::string& out, const PathFailure& failure, const Arm& arm) {
-  append_key(out, "reason");
-  append_json_string(out, name(failure.code));
-  append_key(out, "at");
-  out += std::to_string(failure.at);
-  append_value(out, "s", failure.s);
-  append_key(out, "detail");
-  append_json_string(out, describe(failure, arm));
-  append_value(out, "amount", failure.amount);
+void append_cause(JsonWriter& json, const PathFailure& failure, const Arm& arm) {
+  json.member("reason", name(failure.code))
+      .member("at", failure.at)
+      .member("s", failure.s)
+      .member("detail", describe(failure, arm))
+      .member("amount", failure.amount);
   if (failure.joint >= 0 && failure.joint < arm.dof()) {
-    append_key(out, "joint");
-    append_json_string(out, arm.joints[static_cast<std::size_t>(failure.joint)].name);
+    json.member("joint", arm.joints[static_cast<std::size_t>(failure.joint)].name);
   }
-  if (failure.code == PathErrc::singularity) {
-    append_key(out, "kind");
-    append_json_string(out, name(failure.kind));
-  }
+  if (failure.code == PathErrc::singularity) json.member("kind", name(failure.kind));
   if (!failure.pair.geom1.empty()) {
-    append_key(out, "pair");
-    out += '[';
-    append_json_string(out, failure.pair.geom1);
-    out += ',';
-    append_json_string(out, failure.pair.geom2);
-    out += ']';
+    json.key("pair").list().value(failure.pair.geom1).value(failure.pair.geom2).end_list();
   }
 }
 
 }  // namespace
 
 void append_path(std::string& out, const JointPath& path, const PathMeasures& measures) {
-  out += "{\"ok\":true,\"fraction\":1.0";
-  append_rows(out, "q", path.q);
-  append_value(out, "max_step", path.max_step());
-  append_measures(out, measures);
+  JsonWriter json(out);
+  json.object()
+      .member("ok", true)
+      .member("fraction", 1.0)
+      .member("q", path.q)
+      .member("max_step", path.max_step());
+  append_measures(json, measures);
 }
 
 void append_path_failure(std::string& out, const PathFailure& failure,
                          std::span<const PathFix> fixes, const Arm& arm,
                          const std::optional<PathMeasures>& measures, bool partial) {
-  out += "{\"ok\":false";
-  append_value(out, "fraction", failure.fraction);
-  out += ",\"q\":[]";
-  append_value(out, "max_step", failure.partial.max_step());
-  if (measures) append_measures(out, *measures);
-  append_cause(out, failure, arm);
+  JsonWriter json(out);
+  json.object()
+      .member("ok", false)
+      .member("fraction", failure.fraction)
+      .member("q", std::span<const double>())
+      .member("max_step", failure.partial.max_step());
+  if (measures) append_measures(json, *measures);
+  append_cause(json, failure, arm);
   for (std::size_t i = 0; i < fixes.size(); ++i) {
-    out += i == 0 ? ",\"fix\":" : (i == 1 ? ",\"more_fixes\":[" : ",");
-    append_fix(out, fixes[i]);
+    if (i == 0) json.key("fix");
+    if (i == 1) json.key("more_fixes").list();
+    append_fix(json, fixes[i]);
   }
-  if (fixes.size() > 1) out += ']';
-  if (partial) append_rows(out, "partial", failure.partial.q);
+  if (fixes.size() > 1) json.end_list();
+  if (partial) json.member("partial", failure.partial.q);
 }
 
 void append_unreachable(std::string& out, std::span<const UnreachableRange> ranges) {
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    out += i == 0 ? ",\"unreachable\":[" : ",";
-    out += "[" + std::to_string(ranges[i].first) + "," + std::to_string(ranges[i].last) + "]";
+  if (ranges.empty()) return;
+  JsonWriter json(out);
+  json.key("unreachable").list();
+  for (const UnreachableRange& range : ranges) {
+    json.list().value(range.first).value(range.last).end_list();
   }
-  if (!ranges.empty()) out += ']';
+  json.end_list();
 }
 
 }  // namespace mjarm::app

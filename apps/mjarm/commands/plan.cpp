@@ -1,4 +1,4 @@
-#include "mjarm/core/messages/plan.hpp"
+#include "apps/mjarm/messages/plan.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -15,11 +15,8 @@
 #include "apps/mjarm/view/plan_show.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/plan_show.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
-#include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/threads.hpp"
@@ -114,9 +111,7 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
   std::size_t failed = 0;
   std::string first_id, first_why;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) out += ",\n ";
-    append_json_string(out, file.problems[i].id);
-    out += ':';
+    JsonWriter(out).line_break().key(file.problems[i].id);
     append_answer(out, answers[i], robot, file.problems[i].obstacles, !options.no_timing);
     if (!answers[i].path && failed++ == 0) {
       first_id = file.problems[i].id;

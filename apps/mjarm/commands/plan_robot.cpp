@@ -13,7 +13,6 @@
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/messages/plan.hpp"
 #include "mjarm/core/messages/planning.hpp"
-#include "mjarm/core/number.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/goal_region.hpp"
 #include "mjarm/planning/plan_answer.hpp"

@@ -10,7 +10,6 @@
 #include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/train.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/rl/reach_env.hpp"

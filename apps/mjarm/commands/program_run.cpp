@@ -4,7 +4,6 @@
 
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/motion_program.hpp"
 #include "mjarm/core/progress.hpp"
 
 namespace mjarm::app {

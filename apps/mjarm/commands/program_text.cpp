@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "apps/mjarm/cli/table.hpp"
-#include "mjarm/core/messages/motion_program.hpp"
+#include "apps/mjarm/messages/motion_program.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/render_command.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/render_command.hpp"
 #include "mjarm/render/video.hpp"
 
 namespace mjarm::app {
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMaxRate = 1000;     // [1/s]
 constexpr double kMaxSeconds = 3600;  // [s]
-constexpr double kGifRate = 20;        // [1/s] a whole number of the hundredths a GIF counts in
+constexpr double kGifRate = 20;       // [1/s] a whole number of the hundredths a GIF counts in
 
 Result<double> read_amount(const char* option, const std::string& words, Quantity quantity,
                            double max) {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "mjarm/core/messages/render_command.hpp"
+#include "apps/mjarm/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

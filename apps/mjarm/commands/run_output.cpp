@@ -6,7 +6,6 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/png.hpp"
 
@@ -29,15 +28,6 @@ Result<void> write_picture(const std::filesystem::path& file, const Model& model
 }
 
 }  // namespace
-
-Result<void> make_folder(const std::filesystem::path& folder) {
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
-  if (code || !std::filesystem::is_directory(folder, code)) {
-    return fail(Errc::system, text(msg::demo_no_folder, folder.string(), code.message()));
-  }
-  return {};
-}
 
 Result<void> write_output(const std::filesystem::path& folder, const Model& model,
                           const Snapshot& snapshot, const RunOutput& output) {

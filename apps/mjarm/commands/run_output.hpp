@@ -22,9 +22,6 @@ struct RunOutput {
 
 inline constexpr const char* kVideoFile = "video.mp4";
 
-/// Makes `folder`. @return an error where it cannot be made or is a file.
-[[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
-
 /// Writes report.json, plot.svg, plot.png and picture.png into `folder`. A machine without any GL
 /// back end gets everything but the picture, and a line that says so.
 [[nodiscard]] Result<void> write_output(const std::filesystem::path& folder, const Model& model,

@@ -5,26 +5,26 @@
 #include <string>
 #include <utility>
 
-#include "apps/mjarm/cli/answer_json.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/commands/time_cases.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/number.hpp"
+#include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/model/arm_dynamics.hpp"
+#include "mjarm/trajectory/time_cases.hpp"
 
 namespace mjarm::app {
 namespace {
 
-constexpr double kMaxSamples = 1e7;       // of one motion
+constexpr double kMaxSamples = 1e7;        // of one motion
 constexpr double kRounding = 1e-6;         // a limit may be passed by this share of it
 constexpr double kTorqueRounding = 1e-3;   // the same for torques
 constexpr std::size_t kLargest = 1 << 28;  // [bytes] of a file
@@ -45,15 +45,9 @@ struct Job {
   PathTimingOptions torque = {};
 };
 
-void append_sample(std::string& out, const Trajectory& motion, double t) {
+void append_sample(JsonWriter& json, const Trajectory& motion, double t) {
   const JointState x = motion.at(t);
-  out += '[';
-  append_number(out, t);
-  for (const JointVec* values : {&x.q, &x.v, &x.a}) {
-    out += ',';
-    append_numbers(out, as_span(*values));
-  }
-  out += ']';
+  json.list().value(t).value(x.q).value(x.v).value(x.a).end_list();
 }
 
 /// Appends samples every `dt` and at the end.
@@ -62,13 +56,13 @@ Result<void> append_samples(std::string& out, const Trajectory& motion, double d
   if (duration / dt > kMaxSamples) {
     return fail(Errc::impossible, text(msg::app_time_too_many, duration, dt));
   }
-  out += ",\"samples\":[";
+  JsonWriter json(out);
+  json.key("samples").list();
   for (long i = 0; static_cast<double>(i) * dt < duration; ++i) {
-    append_sample(out, motion, static_cast<double>(i) * dt);
-    out += ',';
+    append_sample(json, motion, static_cast<double>(i) * dt);
   }
-  append_sample(out, motion, duration);
-  out += ']';
+  append_sample(json, motion, duration);
+  json.end_list();
   return {};
 }
 
@@ -79,11 +73,11 @@ std::optional<std::string> append_check(std::string& out, const Trajectory& moti
   const double dt = std::max(motion.duration() / kSamples, 1e-12);
   const LimitUse use = check_limits(motion, job.limits, dt);
   std::optional<std::string> broken;
-  out += ",\"use\":{";
+  JsonWriter json(out);
+  json.key("use").object();
   const auto add = [&](const char* name, const JointVec& shares, double slack = kRounding) {
     const double worst = shares.maxCoeff();
-    if (out.back() != '{') out += ',';
-    out += '"' + std::string(name) + "\":" + number(worst);
+    json.member(name, worst);
     if (worst > 1 + slack && !broken) broken = text(msg::app_time_limit_broken, name, worst);
   };
   add("velocity", use.velocity);
@@ -93,7 +87,7 @@ std::optional<std::string> append_check(std::string& out, const Trajectory& moti
     const JointVec torque = job.torque.torque_share * job.limits.torque;
     add("torque", check_torque(motion, job.torque.dynamics, torque, dt), kTorqueRounding);
   }
-  out += '}';
+  json.end_object();
   return broken;
 }
 
@@ -105,7 +99,7 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
   std::optional<std::string> why;
   std::string body;
   if (motion) {
-    body = ",\"duration\":" + number(motion->duration());
+    JsonWriter(body).member("duration", motion->duration());
     if (job.check) why = append_check(body, *motion, job);
     if (job.dt > 0) {
       if (Result<void> done = append_samples(body, *motion, job.dt); !done) {
@@ -115,11 +109,12 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
   } else {
     why = motion.error().what;
   }
-  out += why ? "{\"ok\":false,\"reason\":" : "{\"ok\":true";
-  if (why) append_json_string(out, *why);
-  out += body;
-  if (job.timing) append_us(out, us);
-  out += '}';
+  JsonWriter json(out);
+  json.object().member("ok", !why);
+  if (why) json.member("reason", *why);
+  if (motion) out += ',' + body;
+  if (job.timing) json.member_us("us", us);
+  json.end_object();
   return why;
 }
 
@@ -145,9 +140,7 @@ Result<int> answer_all(Job job, const Options& options) {
   BatchResult result;
   for (const TimeCase& entry : cases->cases) {
     if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
-    if (out.size() > 1) out += ",\n ";
-    append_json_string(out, entry.id);
-    out += ':';
+    JsonWriter(out).line_break().key(entry.id);
     const std::optional<std::string> why = answer(job, entry, out);
     ++result.requests;
     if (why && result.failed++ == 0) {
@@ -200,11 +193,22 @@ Result<TimeCase> read_points(const Options& options, TimeProblem problem, const 
   return entry;
 }
 
+Result<TimeProblem> read_problem(const std::string& word) {
+  std::vector<std::string> names;
+  for (const TimeProblem problem : kTimeProblems) {
+    if (word == name(problem)) return problem;
+    names.emplace_back(name(problem));
+  }
+  const std::optional<std::string> near = nearest_word(word, names);
+  const std::string hint = near ? text(msg::app_time_did_you_mean, *near) : std::string();
+  return fail(Errc::usage, text(msg::app_time_unknown_problem, word, listed(names)) + hint);
+}
+
 Result<int> run(const Options& options) {
   if (Result<void> fine = one_source(options.batch.in, options.points, "--points"); !fine) {
     return fail(std::move(fine.error()));
   }
-  const Result<TimeProblem> problem = parse_time_problem(options.problem);
+  const Result<TimeProblem> problem = read_problem(options.problem);
   if (!problem) return fail(problem.error());
   Job job{*problem, {}, 0, options.check, !options.no_timing};
   if (!options.dt.empty()) {

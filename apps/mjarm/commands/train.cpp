@@ -1,4 +1,4 @@
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -15,6 +15,7 @@
 #include "apps/mjarm/commands/train_processes.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/os.hpp"

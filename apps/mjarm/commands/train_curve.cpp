@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "apps/mjarm/cli/table.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/train.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "apps/mjarm/cli/table.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/os.hpp"
 
 #ifdef MJARM_MPI

@@ -6,8 +6,9 @@
 #include <limits>
 #include <numeric>
 
+#include "apps/mjarm/messages/workspace.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/workspace.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/render/plot.hpp"
@@ -144,31 +145,35 @@ std::string workspace_summary(const WorkspaceReport& report) {
 std::string workspace_json(const WorkspaceReport& report) {
   const WorkspaceMap& map = report.map;
   const Extent extent = extent_of(report);
-  std::string out = "{\"robot\":";
-  append_json_string(out, report.arm.name);
-  out += ",\"tip\":";
-  append_json_string(out, report.arm.tip);
-  out += ",\"slice\":{\"axis\":\"" + axis_name(report.work.normal) +
-         "\",\"at\":" + number(report.work.at) + "},\"quat\":";
+  std::string out;
+  JsonWriter json(out);
+  json.object().member("robot", report.arm.name).member("tip", report.arm.tip);
+  json.key("slice")
+      .object()
+      .member("axis", axis_name(report.work.normal))
+      .member("at", report.work.at)
+      .end_object()
+      .key("quat");
   if (report.work.R_WT) {
     const Quat q = to_quat(*report.work.R_WT);
-    append_numbers(out, std::vector<double>{q.w(), q.x(), q.y(), q.z()});
+    json.value(std::vector{q.w(), q.x(), q.y(), q.z()});
   } else {
-    out += "null";
+    json.value(nullptr);
   }
-  out += ",\"step\":" + number(map.step) + ",\"reached\":" + std::to_string(extent.cells) +
-         ",\"nearest\":" + number(extent.nearest) + ",\"farthest\":" + number(extent.farthest) +
-         ",\"columns\":" + std::to_string(map.columns) + ",\"rows\":" + std::to_string(map.rows) +
-         ",\"axes\":[\"" + axis_name(map.u) + "\",\"" + axis_name(map.v) + "\"],\"first\":";
-  append_numbers(out, std::vector<double>{map.u_first, map.v_first});
-  out += std::string(",\"counted\":") + (map.counted ? "true" : "false") + ",\"branches\":[";
-  for (std::size_t i = 0; i < map.branches.size(); ++i) {
-    if (i > 0) out += ',';
-    out += std::to_string(map.branches[i]);
-  }
-  out += "],\"manipulability\":";
-  append_numbers(out, map.manipulability);
-  return out + "}\n";
+  json.member("step", map.step)
+      .member("reached", extent.cells)
+      .member("nearest", extent.nearest)
+      .member("farthest", extent.farthest)
+      .member("columns", map.columns)
+      .member("rows", map.rows)
+      .member("axes", std::vector{axis_name(map.u), axis_name(map.v)})
+      .member("first", std::vector{map.u_first, map.v_first})
+      .member("counted", map.counted)
+      .key("branches")
+      .list();
+  for (const int branches : map.branches) json.value(branches);
+  json.end_list().member("manipulability", map.manipulability).end_object();
+  return out + '\n';
 }
 
 Result<void> write_workspace(const WorkspaceReport& report, const std::string& path,

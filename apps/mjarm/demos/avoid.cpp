@@ -8,7 +8,6 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 
 #include <cstdio>
 #include <memory>

@@ -5,8 +5,8 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/naive.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 
 namespace mjarm::app {
 namespace {

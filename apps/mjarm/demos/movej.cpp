@@ -2,8 +2,8 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/path/joint_path.hpp"
 
 namespace mjarm::app {

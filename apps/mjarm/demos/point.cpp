@@ -5,7 +5,6 @@
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::app {

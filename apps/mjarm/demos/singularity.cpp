@@ -7,7 +7,6 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/naive.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/solve_curve.hpp"

@@ -4,7 +4,6 @@
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/program/start_posture.hpp"

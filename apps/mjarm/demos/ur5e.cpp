@@ -1,7 +1,6 @@
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::app {

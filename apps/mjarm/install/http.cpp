@@ -12,9 +12,9 @@
 #include <string_view>
 #include <thread>
 
+#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 
@@ -28,13 +28,28 @@ constexpr std::uint64_t kWorthSaying = 4'000'000;  // bytes to be read past
 struct FreeHandle {
   void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
 };
-struct FreeList {
-  void operator()(curl_slist* list) const { curl_slist_free_all(list); }
-};
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using Handle = std::unique_ptr<CURL, FreeHandle>;
+
+class Url {
+ public:
+  explicit Url(const std::string& text) { set(CURLUPART_URL, text.c_str()); }
+  bool set(CURLUPart part, const char* value, unsigned flags = 0) {
+    return curl_url_set(url_.get(), part, value, flags) == CURLUE_OK;
+  }
+  /// Empty where it is none.
+  std::string whole() const {
+    char* text = nullptr;
+    if (curl_url_get(url_.get(), CURLUPART_URL, &text, 0) != CURLUE_OK) return {};
+    const std::unique_ptr<char, decltype(&curl_free)> owner(text, curl_free);
+    return text;
+  }
+
+ private:
+  std::unique_ptr<CURLU, decltype(&curl_url_cleanup)> url_{curl_url(), curl_url_cleanup};
+};
 
 /// One request in progress, as the callbacks of curl see it.
 struct Transfer {
@@ -43,8 +58,6 @@ struct Transfer {
   std::uint64_t left = 0;                      ///< bytes still wanted
   std::function<bool(std::string_view)> take;  ///< false ends the transfer
   std::optional<std::uint64_t> skip;           ///< bytes before `from` still to come
-  std::optional<std::uint64_t> content_from;   ///< as Content-Range says
-  bool other_range = false;
 };
 
 /// What a request came to.
@@ -53,35 +66,15 @@ struct Outcome {
   bool worth_retrying = false;
 };
 
-std::size_t on_header(char* data, std::size_t, std::size_t size, void* user) {
-  constexpr std::string_view kName = "content-range:";
-  auto& transfer = *static_cast<Transfer*>(user);
-  std::string line(data, size);
-  std::transform(line.begin(), line.end(), line.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (line.starts_with("http/")) transfer.content_from.reset();  // after a redirect
-  if (!line.starts_with(kName)) return size;
-  unsigned long long first = 0;
-  if (std::sscanf(line.c_str() + kName.size(), " bytes %llu-", &first) == 1) {
-    transfer.content_from = first;
-  }
-  return size;
-}
-
-/// Where the body begins, once its first byte is there; false where the server sends another part.
-bool begin_body(Transfer& transfer) {
-  long status = 0;
-  curl_easy_getinfo(transfer.curl, CURLINFO_RESPONSE_CODE, &status);
-  transfer.skip = status == 200 ? transfer.from : 0;
-  if (*transfer.skip >= kWorthSaying)
-    log_info(text(msg::install_no_ranges, *transfer.skip / 1000000));
-  transfer.other_range = status == 206 && transfer.content_from != transfer.from;
-  return !transfer.other_range;
-}
-
 std::size_t on_body(char* data, std::size_t, std::size_t size, void* user) {
   auto& transfer = *static_cast<Transfer*>(user);
-  if (!transfer.skip && !begin_body(transfer)) return 0;
+  if (!transfer.skip) {  // a server that knows no ranges sends everything
+    long status = 0;
+    curl_easy_getinfo(transfer.curl, CURLINFO_RESPONSE_CODE, &status);
+    transfer.skip = status == 200 ? transfer.from : 0;
+    if (*transfer.skip >= kWorthSaying)
+      log_info(text(msg::install_no_ranges, *transfer.skip / 1000000));
+  }
   std::string_view piece(data, size);
   const auto skipped = static_cast<std::size_t>(std::min<std::uint64_t>(*transfer.skip, size));
   *transfer.skip -= skipped;
@@ -148,7 +141,6 @@ Outcome explain(const Transfer& transfer, const std::string& url, CURLcode code,
   curl_easy_getinfo(transfer.curl, CURLINFO_RESPONSE_CODE, &status);
   std::string reason = *detail == '\0' ? curl_easy_strerror(code) : detail;
   if (code == CURLE_HTTP_RETURNED_ERROR) reason = "HTTP " + std::to_string(status);
-  if (transfer.other_range) reason = text(msg::install_other_range);
   return {.error = Error{Errc::not_available,
                          text(msg::install_cannot_fetch, without_password(url), reason)},
           .worth_retrying = may_pass(code, status)};
@@ -158,7 +150,6 @@ struct Request {
   const std::string& url;
   ByteRange range;
   bool whole = false;  ///< everything, whatever its size, but no more than `range`
-  std::string accept;
   std::function<bool(std::string_view)> take;
 };
 
@@ -173,24 +164,16 @@ Outcome perform(const Request& request, const HttpOptions& options, std::string*
                     .from = request.range.from,
                     .left = request.range.size(),
                     .take = request.take,
-                    .skip = {},
-                    .content_from = {}};
+                    .skip = {}};
   char detail[CURL_ERROR_SIZE] = "";
   apply(curl, options);
   curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, detail);
   curl_easy_setopt(curl, CURLOPT_URL, request.url.c_str());
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, on_body);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, &transfer);
-  curl_easy_setopt(curl, CURLOPT_HEADERFUNCTION, on_header);
-  curl_easy_setopt(curl, CURLOPT_HEADERDATA, &transfer);
   const std::string range =
       std::to_string(request.range.from) + "-" + std::to_string(request.range.to - 1);
   if (!request.whole) curl_easy_setopt(curl, CURLOPT_RANGE, range.c_str());
-  std::unique_ptr<curl_slist, FreeList> headers;
-  if (!request.accept.empty()) {
-    headers.reset(curl_slist_append(nullptr, ("Accept: " + request.accept).c_str()));
-    curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers.get());
-  }
   const CURLcode code = curl_easy_perform(curl);
   char* effective = nullptr;
   curl_easy_getinfo(curl, CURLINFO_EFFECTIVE_URL, &effective);
@@ -230,8 +213,7 @@ Outcome append_rest(const std::string& url, ByteRange range, const std::filesyst
     return true;
   };
   Outcome outcome =
-      perform({.url = url, .range = {range.from + have, range.to}, .accept = "", .take = take},
-              options, nullptr);
+      perform({.url = url, .range = {range.from + have, range.to}, .take = take}, options, nullptr);
   if (refused) return {.error = refused};
   return outcome;
 }
@@ -265,8 +247,7 @@ Result<void> download(const std::string& url, ByteRange range, const std::filesy
               text(msg::install_short, without_password(url), size_of(file), range.size()));
 }
 
-Result<Page> get_page(const std::string& url, const std::string& accept,
-                      const HttpOptions& options) {
+Result<Page> get_page(const std::string& url, const HttpOptions& options) {
   Page page;
   for (int attempt = 1;; ++attempt) {
     page.body.clear();
@@ -275,12 +256,31 @@ Result<Page> get_page(const std::string& url, const std::string& accept,
       return true;
     };
     const Outcome outcome = perform(
-        {.url = url, .range = {0, kLargestPage}, .whole = true, .accept = accept, .take = take},
-        options, &page.url);
+        {.url = url, .range = {0, kLargestPage}, .whole = true, .take = take}, options, &page.url);
     if (!outcome.error) return page;
     if (!outcome.worth_retrying || attempt >= options.idle_attempts) return fail(*outcome.error);
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
+}
+
+std::string resolve_link(const std::string& base, const std::string& link) {
+  Url url(base);
+  return url.set(CURLUPART_URL, link.c_str()) ? url.whole() : std::string();
+}
+
+std::string without_password(const std::string& text) {
+  Url url(text);
+  for (const CURLUPart part : {CURLUPART_USER, CURLUPART_PASSWORD, CURLUPART_OPTIONS}) {
+    url.set(part, nullptr);
+  }
+  const std::string shown = url.whole();
+  return shown.empty() ? text : shown;
+}
+
+std::string file_url(const std::filesystem::path& file) {
+  Url url("file:///");
+  url.set(CURLUPART_PATH, std::filesystem::absolute(file).c_str(), CURLU_URLENCODE);
+  return url.whole();
 }
 
 }  // namespace mjarm::app

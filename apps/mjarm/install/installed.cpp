@@ -1,7 +1,7 @@
 #include "apps/mjarm/install/installed.hpp"
 
 #include "apps/mjarm/install/mesh_scene.hpp"
-#include "mjarm/core/messages/install.hpp"
+#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/model.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
+#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/install.hpp"
 
 namespace mjarm::app {
 namespace {

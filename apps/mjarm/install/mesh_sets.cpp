@@ -27,28 +27,17 @@ std::vector<MeshFile> files_of(std::string_view robot) {
 }  // namespace
 
 std::span<const MeshSet> mesh_sets() {
-  // The archives as the Python package mujoco-menagerie 2026.10.4 lists them.
-  static const RemoteFile wheel = {
-      "genesis_world-1.4.5-py3-none-any.whl", 83622446,
-      "7ce8fcc8b0af9a87907e550b5f373b27af3f6ca622e843ce12dc51e8a93a03fd"};
-  static const MeshSet sets[] = {
-      {"ur5e",
-       "universal_robots_ur5e",
-       "BSD-3-Clause",
-       {"universal_robots_ur5e-2a3464301404aba7.tar.xz", 2640784,
-        "dfecee8c3a53b2a447fdec5e253d9b6cb7fcc9843b3d424cbbb9462774e36652"},
-       wheel,
-       "genesis-world",
-       files_of("ur5e")},
-      {"panda",
-       "franka_emika_panda",
-       "Apache-2.0",
-       {"franka_emika_panda-3d2262eeb81ecec1.tar.xz", 3088140,
-        "d27e1c3e7c7cc161e81a1c12f2805d64676d7514d9069fe211cb1827fbae97e8"},
-       wheel,
-       "genesis-world",
-       files_of("panda")},
+  const auto set = [](const char* robot, const char* folder, const char* licence) -> MeshSet {
+    return {robot,
+            folder,
+            licence,
+            "genesis-world",
+            "genesis_world-1.4.5-py3-none-any.whl",
+            "7ce8fcc8b0af9a87907e550b5f373b27af3f6ca622e843ce12dc51e8a93a03fd",
+            files_of(robot)};
   };
+  static const MeshSet sets[] = {set("ur5e", "universal_robots_ur5e", "BSD-3-Clause"),
+                                 set("panda", "franka_emika_panda", "Apache-2.0")};
   return sets;
 }
 

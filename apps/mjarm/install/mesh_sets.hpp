@@ -16,21 +16,14 @@ struct MeshFile {
   std::string sha256;        ///< of the file itself
 };
 
-/// A file to fetch.
-struct RemoteFile {
-  std::string name;
-  std::uint64_t size = 0;  ///< [bytes]
-  std::string sha256;
-};
-
-/// All meshes of one robot, and where they can be had. Either source gives the same files.
+/// All meshes of one robot, and the Python package (a wheel) that carries them.
 struct MeshSet {
   std::string robot;   ///< what a user calls it
-  std::string folder;  ///< of the shipped model, of the archive, and where the meshes are kept
+  std::string folder;  ///< of the shipped model, and where the meshes are kept
   std::string licence;
-  RemoteFile archive;   ///< MuJoCo Menagerie's release archive: tar.xz with FOLDER/assets/NAME
-  RemoteFile wheel;     ///< a Python package that carries the same meshes
-  std::string project;  ///< the name of that package in the index
+  std::string project;       ///< the name of the package in the index
+  std::string wheel;         ///< its file
+  std::string wheel_sha256;  ///< of all of it
   std::vector<MeshFile> files;
 };
 

@@ -3,9 +3,9 @@
 #include <system_error>
 
 #include "apps/mjarm/install/sha256.hpp"
+#include "apps/mjarm/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/core.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 
 namespace mjarm::app {

@@ -14,7 +14,8 @@ struct IndexEntry {
   std::string sha256;  ///< as the page says; empty where it does not
 };
 
-/// Looks `file` up on a page in JSON (PEP 691) or HTML (PEP 503); never throws, whatever the page.
+/// Looks `file` up on a page of HTML, as every index serves it (PEP 503); never throws, whatever
+/// the page.
 [[nodiscard]] IndexEntry find_entry(const Page& page, std::string_view file);
 
 /// Address of one file of `project`, whose hash must be `sha256` where the index tells one.

@@ -33,25 +33,13 @@ TEST(FindEntry, InHtml) {
   EXPECT_EQ(find_entry(page, "oy-2.whl").url, "");
 }
 
-TEST(FindEntry, InJson) {
-  const Page page{kBase, R"({"meta":{"api-version":"1.0"},"files":[
-      {"filename":"toy-1.whl","url":"/f/toy-1.whl","hashes":{"sha256":"ab"}},
-      {"filename":"toy-2.whl","url":"https://o.example/toy-2.whl","hashes":{}}]})"};
-  EXPECT_EQ(find_entry(page, "toy-1.whl").url, "https://index.example/f/toy-1.whl");
-  EXPECT_EQ(find_entry(page, "toy-1.whl").sha256, "ab");
-  EXPECT_EQ(find_entry(page, "toy-2.whl").url, "https://o.example/toy-2.whl");
-  EXPECT_EQ(find_entry(page, "toy-3.whl").url, "");
-}
-
 TEST(FindEntry, BearsAnyPage) {
-  for (const char* body :
-       {"", "{", "{}", R"({"files":3})", R"({"files":[1,null,[],{"filename":"f"}]})",
-        R"({"files":[{"filename":"f","url":7,"hashes":"x"}]})", "href=", "<a href=\"", "<a href=f",
-        "<a href='#sha256=1'>", "href=\"\""}) {
+  for (const char* body : {"", "{}", "href=", "<a href=\"", "<a href=g", "<a href='#sha256=1'>",
+                           "href=\"\"", "<a href='https://[::1/g#sha256=1'>"}) {
     EXPECT_EQ(find_entry({kBase, body}, "g").url, "") << body;
   }
   Rng rng(3);
-  const std::string alphabet = "{}[]\":,#=&;<> ahref'/\\files\x01\xff";
+  const std::string alphabet = "\":,#=&;<> ahref'/\\files\x01\xff";
   for (int round = 0; round < 3000; ++round) {
     std::string body;
     for (int i = 0; i < 60; ++i) {

@@ -11,7 +11,7 @@ namespace mjarm::app {
 /// SHA-256 of `content`, as 64 lower-case hexadecimal digits.
 [[nodiscard]] std::string sha256(std::string_view content);
 
-/// SHA-256 of a file, read in pieces. @return an error that names the file.
+/// SHA-256 of a file. @return an error that names the file.
 [[nodiscard]] Result<std::string> sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace mjarm::app

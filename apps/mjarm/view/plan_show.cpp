@@ -10,7 +10,6 @@
 #include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/plan_show.hpp"
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"

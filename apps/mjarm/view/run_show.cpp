@@ -3,8 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 

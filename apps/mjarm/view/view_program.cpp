@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/session/program_player.hpp"
 #include "mjarm/session/simulate_world.hpp"

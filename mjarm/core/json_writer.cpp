@@ -1,0 +1,137 @@
+#include "mjarm/core/json_writer.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "mjarm/core/number.hpp"
+
+namespace mjarm {
+
+void JsonWriter::separate() {
+  constexpr std::string_view kNoComma = "{[: ";
+  if (!out_.empty() && kNoComma.find(out_.back()) == std::string_view::npos) out_ += ',';
+}
+
+JsonWriter& JsonWriter::open(char bracket) {
+  separate();
+  out_ += bracket;
+  return *this;
+}
+
+JsonWriter& JsonWriter::close(char bracket) {
+  out_ += bracket;
+  return *this;
+}
+
+JsonWriter& JsonWriter::literal(std::string_view word) {
+  separate();
+  out_ += word;
+  return *this;
+}
+
+JsonWriter& JsonWriter::line_break() {
+  if (out_.back() != '{' && out_.back() != '[') out_ += ",\n ";
+  return *this;
+}
+
+JsonWriter& JsonWriter::key(std::string_view key) {
+  separate();
+  append_json_string(out_, key);
+  out_ += ':';
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(double value) {
+  separate();
+  append_number(out_, value);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(std::string_view value) {
+  separate();
+  append_json_string(out_, value);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(std::nullptr_t) { return literal("null"); }
+
+JsonWriter& JsonWriter::value(std::span<const double> values) {
+  separate();
+  append_numbers(out_, values);
+  return *this;
+}
+
+JsonWriter& JsonWriter::value(std::span<const JointVec> rows) {
+  list();
+  for (const JointVec& row : rows) value(row);
+  return end_list();
+}
+
+JsonWriter& JsonWriter::value(std::span<const std::string> words) {
+  list();
+  for (const std::string& word : words) value(word);
+  return end_list();
+}
+
+JsonWriter& JsonWriter::member_us(std::string_view name, double us) {
+  return member(name, std::round(us * 10) / 10);
+}
+
+using nlohmann::ordered_json;
+
+struct JsonDoc::Tree {
+  ordered_json json;
+};
+
+JsonDoc::JsonDoc() : tree_(new Tree) {}
+JsonDoc::JsonDoc(bool value) : tree_(new Tree{value}) {}
+JsonDoc::JsonDoc(int value) : tree_(new Tree{value}) {}
+JsonDoc::JsonDoc(std::size_t value) : tree_(new Tree{value}) {}
+JsonDoc::JsonDoc(double value) : tree_(new Tree{value}) {}
+JsonDoc::JsonDoc(const char* value) : tree_(new Tree{value}) {}
+JsonDoc::JsonDoc(std::string_view value) : tree_(new Tree{value}) {}
+JsonDoc::JsonDoc(const std::string& value) : tree_(new Tree{value}) {}
+
+JsonDoc::JsonDoc(std::initializer_list<double> values) : JsonDoc(std::vector<double>(values)) {}
+JsonDoc::JsonDoc(const JointVec& values)
+    : JsonDoc(std::vector<double>(values.begin(), values.end())) {}
+JsonDoc::JsonDoc(const std::vector<double>& values) : tree_(new Tree{values}) {}
+JsonDoc::JsonDoc(const std::vector<std::vector<double>>& rows) : tree_(new Tree{rows}) {}
+JsonDoc::JsonDoc(const std::vector<std::string>& values) : tree_(new Tree{values}) {}
+
+JsonDoc::JsonDoc(std::vector<JsonDoc> values) : tree_(new Tree{ordered_json::array()}) {
+  for (JsonDoc& value : values) tree_->json.push_back(std::move(value.tree_->json));
+}
+
+JsonDoc::JsonDoc(std::initializer_list<Member> members) : tree_(new Tree{ordered_json::object()}) {
+  for (const Member& member : members) {
+    tree_->json[member.key] = std::move(member.value.tree_->json);
+  }
+}
+
+JsonDoc::JsonDoc(const JsonDoc& other) : tree_(new Tree(*other.tree_)) {}
+JsonDoc::JsonDoc(JsonDoc&& other) noexcept = default;
+JsonDoc& JsonDoc::operator=(JsonDoc other) noexcept {
+  tree_ = std::move(other.tree_);
+  return *this;
+}
+JsonDoc::~JsonDoc() = default;
+
+void JsonDoc::set(const char* key, JsonDoc value) {
+  tree_->json[key] = std::move(value.tree_->json);
+}
+
+void JsonDoc::set_all(const JsonDoc& other) {
+  for (const auto& item : other.tree_->json.items()) tree_->json[item.key()] = item.value();
+}
+
+std::string JsonDoc::document() const {
+  return tree_->json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+std::string JsonDoc::line() const {
+  return tree_->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace mjarm
