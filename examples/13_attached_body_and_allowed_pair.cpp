@@ -1,4 +1,5 @@
-// A cup in the hand goes where the hand goes: what it is attached to and may touch decides on paths.
+// A cup in the hand goes where the hand goes: what it is attached to and may touch decides on
+// paths.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

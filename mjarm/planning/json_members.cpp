@@ -1,5 +1,3 @@
-#include "mjarm/planning/json_members_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 #include "mjarm/core/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/planning/json_members_internal.hpp"
 
 namespace mjarm::detail {
 namespace {

@@ -18,7 +18,7 @@ using detail::number_list;
 using detail::numbers_of;
 using nlohmann::json;
 
-constexpr double kUnitSlack = 1e-6;                             // relative
+constexpr double kUnitSlack = 1e-6;                         // relative
 constexpr std::size_t kMaxPlanFile = std::size_t{1} << 28;  // [bytes]
 
 std::string indexed(const char* list, std::size_t i) {
@@ -161,7 +161,8 @@ Result<std::vector<GivenPath>> read_plan_file(const std::string& path, std::size
     GivenPath given;
     given.id = item.key();
     if (Result<void> read = read_entry(item.value(), dof, given); !read) {
-      return fail(read.error().code, text(msg::planning_verify_in_path, path, given.id, read.error().what));
+      return fail(read.error().code,
+                  text(msg::planning_verify_in_path, path, given.id, read.error().what));
     }
     out.push_back(std::move(given));
   }

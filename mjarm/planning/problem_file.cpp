@@ -184,7 +184,8 @@ class RobotReader {
     if (!(axis->norm() > 1e-6 && axis->norm() < 1e6)) return bad(msg::planning_file_axis);
     const Result<std::vector<double>> limits = number_list(from, "limits", 2);
     if (!limits) return fail(limits.error());
-    if (!((*limits)[0] <= (*limits)[1])) return bad(msg::planning_file_limits, (*limits)[0], (*limits)[1]);
+    if (!((*limits)[0] <= (*limits)[1]))
+      return bad(msg::planning_file_limits, (*limits)[0], (*limits)[1]);
     ArmJoint joint;
     joint.name = *name;
     joint.X_PJ = place.X;
@@ -280,7 +281,8 @@ Result<Obstacle> obstacle_of(const JsonValue& from, Cylinders cylinders) {
     out.shape = *shape;
   } else {
     static const std::vector<std::string> kTypes{"box", "cylinder", "sphere"};
-    return bad(msg::planning_file_obstacle_type, *type, listed(kTypes), did_you_mean(*type, kTypes));
+    return bad(msg::planning_file_obstacle_type, *type, listed(kTypes),
+               did_you_mean(*type, kTypes));
   }
   return out;
 }

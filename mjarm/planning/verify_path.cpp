@@ -6,12 +6,12 @@
 #include <span>
 #include <utility>
 
-#include "apps/mjarm/messages/verify.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/collision/first_contact.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/core/messages/verify.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm {

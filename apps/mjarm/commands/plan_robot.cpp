@@ -155,8 +155,8 @@ Result<WorldPath, WorldFailure> find_way(PlanningWorld& world, const Way& way,
 /// The answer as a JSON object.
 /// @param level  that it was found at, or searched last.
 std::string answer_line(const Result<WorldPath, WorldFailure>& found, const Way& way,
-                        const PlanOptions& options, const PlanTimes& times,
-                        const WorldLevel& level, bool timing) {
+                        const PlanOptions& options, const PlanTimes& times, const WorldLevel& level,
+                        bool timing) {
   PlanAnswer answer{.path = {}, .us = times.search_us, .simplify_us = times.finish_us};
   if (options.time_budget > 0) answer = {.path = {}, .us = times.search_us + times.finish_us};
   answer.tilt = options.tilt;
@@ -234,9 +234,9 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
       found ? std::nullopt : std::optional<std::string>(found.error().what);
   const Result<int> exit_code = finish_one(out, line, why, msg::plan_no_path);
   if (!exit_code || !show || !found) return exit_code;
-  const auto shown = show_plan(*show, {robot->model, robot->arm, (*level)->checker,
-                                       (*level)->cover.scene, *found, name,
-                                       way->world.rules.attached});
+  const auto shown =
+      show_plan(*show, {robot->model, robot->arm, (*level)->checker, (*level)->cover.scene, *found,
+                        name, way->world.rules.attached});
   if (!shown) return fail(shown.error());
   return exit_code;
 }
