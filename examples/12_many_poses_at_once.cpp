@@ -1,4 +1,5 @@
-// Joint values for a grid of tool poses on all cores, then a tool that is led after a moving target.
+// Joint values for a grid of tool poses on all cores, then a tool that is led after a moving
+// target.
 #include <algorithm>
 #include <cstdio>
 #include <numbers>

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "apps/bench/robots.hpp"
-#include "mjarm/planning/plan_answer.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/stopwatch.hpp"
+#include "mjarm/planning/plan_answer.hpp"
 
 namespace mjarm::app {
 namespace {

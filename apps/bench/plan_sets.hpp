@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "mjarm/planning/problem_file.hpp"
 #include "mjarm/collision/fast_robot.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/planning/problem_file.hpp"
 
 namespace mjarm::app {
 

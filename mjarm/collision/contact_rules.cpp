@@ -46,8 +46,8 @@ bool is_pose(const Pose& X) {
          X.R.determinant() > 0;
 }
 
-Result<void> check_attached(const mjModel& m, const detail::ArmBodies& bodies, const AttachedBody& attached,
-                        std::set<int>& known) {
+Result<void> check_attached(const mjModel& m, const detail::ArmBodies& bodies,
+                            const AttachedBody& attached, std::set<int>& known) {
   const int body = mj_name2id(&m, mjOBJ_BODY, attached.body.c_str());
   if (body < 0) {
     return fail(Errc::bad_input, text(msg::collision_held_unknown, attached.body,
@@ -61,7 +61,8 @@ Result<void> check_attached(const mjModel& m, const detail::ArmBodies& bodies, c
   if (carries_arm || !known.insert(body).second) {
     return fail(Errc::bad_input, text(msg::collision_held_twice, attached.body));
   }
-  if (!is_pose(attached.X_TB)) return fail(Errc::bad_input, text(msg::collision_held_pose, attached.body));
+  if (!is_pose(attached.X_TB))
+    return fail(Errc::bad_input, text(msg::collision_held_pose, attached.body));
   return {};
 }
 
@@ -86,7 +87,7 @@ Result<void> check_contact_rules(const Model& model, const Arm& arm, const Conta
 }
 
 Result<AttachedBody> attach_in_place(const Model& model, const Arm& arm, const std::string& body,
-                                  std::span<const double> q) {
+                                     std::span<const double> q) {
   if (q.size() != static_cast<std::size_t>(arm.dof()) || !all_finite(q)) {
     return fail(Errc::bad_input, text(msg::collision_bad_q, arm.dof(), q.size()));
   }

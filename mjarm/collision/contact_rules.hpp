@@ -12,9 +12,9 @@
 
 namespace mjarm {
 
-/// A body of the scene that is attached to the tool: it goes where the tool goes, and what moves with the
-/// tool (hand, fingers) does not collide with it. It needs a free joint; bodies below it come
-/// along.
+/// A body of the scene that is attached to the tool: it goes where the tool goes, and what moves
+/// with the tool (hand, fingers) does not collide with it. It needs a free joint; bodies below it
+/// come along.
 struct AttachedBody {
   std::string body;
   Pose X_TB;  ///< in the tool frame T
@@ -27,14 +27,14 @@ struct ContactRules {
   std::vector<std::array<std::string, 2>> allowed = {};
 };
 
-/// Checks that every name is one of the model, every attached body has a free joint, is attached once
-/// and does not carry the arm, and every pose is one.
+/// Checks that every name is one of the model, every attached body has a free joint, is attached
+/// once and does not carry the arm, and every pose is one.
 /// @return bad_input: one line that names the faulty word, and the nearest right one.
 [[nodiscard]] Result<void> check_contact_rules(const Model& model, const Arm& arm,
                                                const ContactRules& rules);
 
-/// A body attached as it stands in the model (keyframe `home`, else initial values) while the arm is at
-/// `q`.
+/// A body attached as it stands in the model (keyframe `home`, else initial values) while the arm
+/// is at `q`.
 /// @param q  shape (dof,) [rad or m], finite.
 /// @return check_contact_rules()'s error, or one about `q`.
 [[nodiscard]] Result<AttachedBody> attach_in_place(const Model& model, const Arm& arm,

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastBound = 1e-5;  // [m] finer ones need more points than memory has
-constexpr int kMaxPostures = 64;     // of a gripper, for each geom
+constexpr int kMaxPostures = 64;      // of a gripper, for each geom
 
 struct DeletePoses {
   void operator()(mjData* data) const { mj_deleteData(data); }

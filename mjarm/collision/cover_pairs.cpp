@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kJointsProved = 3;     // between the two; for more the search is too large
-constexpr int kMaxTried = 3000;     // boxes of one search
+constexpr int kMaxTried = 3000;      // boxes of one search
 constexpr double kKeptApart = 2e-5;  // [m] at least
 
 using Box = std::array<double, kJointsProved>;

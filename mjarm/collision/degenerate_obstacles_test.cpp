@@ -16,11 +16,8 @@ struct OneSlide {
   Arm arm = testing::make_arm("slide", {{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, -1, 1, JointType::slide}},
                               Pose());
   SphereSet set;
-  OneSlide() {
-    set.links = {{"ball", 0, {{Eigen::Vector3d::Zero(), 0.1}}}};
-  }
-  [[nodiscard]] FastChecker with(const Obstacles& world,
-                                 SimdLevel level = simd_level()) const {
+  OneSlide() { set.links = {{"ball", 0, {{Eigen::Vector3d::Zero(), 0.1}}}}; }
+  [[nodiscard]] FastChecker with(const Obstacles& world, SimdLevel level = simd_level()) const {
     return FastChecker::make(FastRobot::make(arm, set).value(), world, level).value();
   }
 };
@@ -46,10 +43,11 @@ TEST(DegenerateObstacles, HardlyThereTheyAreStillMet) {
   std::vector<Obstacles> worlds{points};
   for (const Obstacle& solid :
        {solid_at(kPlace, BallShape{kLeast}), solid_at(kPlace, CapsuleShape{kLeast, 0}),
-        solid_at(kPlace, CapsuleShape{kLeast, 0.3}), solid_at(kPlace, BoxShape{{kLeast, kLeast, kLeast}}),
+        solid_at(kPlace, CapsuleShape{kLeast, 0.3}),
+        solid_at(kPlace, BoxShape{{kLeast, kLeast, kLeast}}),
         solid_at(kPlace, BoxShape{{kLeast, 1, 1}}), solid_at(kPlace, CylinderShape{kLeast, kLeast}),
-        hull_at(kPlace, one), hull_at(kPlace, line), hull_at(kPlace, plane), solid_at(kPlace, point),
-        solid_at(kPlace, needle)}) {
+        hull_at(kPlace, one), hull_at(kPlace, line), hull_at(kPlace, plane),
+        solid_at(kPlace, point), solid_at(kPlace, needle)}) {
     worlds.push_back({{solid}});
   }
   for (std::size_t i = 0; i < worlds.size(); ++i) {
@@ -152,7 +150,8 @@ TEST(EdgesAtTheLimits, FinerResolutionProvesMoreAndNeverTurnsAVerdict) {
   // A wall beside the way, ever nearer: at last nothing but its touch is left to be seen.
   for (const double gap : {0.1, 0.01, 2e-3, 1e-3}) {
     Obstacles world;
-    world.solids = {{"wall", {{0, 1.1 + gap, 0}, Eigen::Matrix3d::Identity()}, BoxShape{{2, 1, 2}}}};
+    world.solids = {
+        {"wall", {{0, 1.1 + gap, 0}, Eigen::Matrix3d::Identity()}, BoxShape{{2, 1, 2}}}};
     const FastChecker checker = slide.with(world);
     int stations = 0;
     for (const double resolution : {1.0, 0.1, 1e-3}) {

@@ -119,9 +119,8 @@ class EdgeSearch {
                                     rate_.data(),     bend_.data(), pair_rate_.data(),
                                     pair_bend_.data()};
     const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
-    const detail::FastVerdict found =
-        FastAccess::kernels(checker_).cover(data_.tables, FastAccess::world(checker_).tables, lanes,
-                                            motion, t, half);
+    const detail::FastVerdict found = FastAccess::kernels(checker_).cover(
+        data_.tables, FastAccess::world(checker_).tables, lanes, motion, t, half);
     result_.stations += static_cast<int>(count);
     if (found.hit != 0) return end(EdgeVerdict::hit, open[__builtin_ctz(found.hit)].t);
     for (std::size_t k = 0; k < count; ++k) {

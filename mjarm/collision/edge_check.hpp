@@ -14,8 +14,8 @@ struct EdgeOptions {
   double resolution = 1e-3;  ///< [rad or m, L2] narrowest interval that is tried, > 0
 };
 
-/// What check_edge() found. `hit` is also what is as near to a collision as the padding; `undecided`
-/// an interval as narrow as the resolution that could not be proved.
+/// What check_edge() found. `hit` is also what is as near to a collision as the padding;
+/// `undecided` an interval as narrow as the resolution that could not be proved.
 struct EdgeResult {
   EdgeVerdict verdict = EdgeVerdict::free;
   double t = 0;      ///< where on the edge it is not free, 0 to 1

@@ -66,8 +66,8 @@ struct CollisionReport {
 class ExactChecker {
  public:
   /// For options that a user chose.
-  /// @return check_contact_rules()'s error; bad_input for an arm that is not of `model`, or a margin
-  /// or depth that is negative or not finite.
+  /// @return check_contact_rules()'s error; bad_input for an arm that is not of `model`, or a
+  /// margin or depth that is negative or not finite.
   [[nodiscard]] static Result<ExactChecker> create(const Model& model, const Arm& arm,
                                                    const ExactOptions& options);
   /// For an arm of `model` and options that are known to be sound: with others every check answers

@@ -321,12 +321,9 @@ TEST(ExactChecker, OptionsThatAreNotSoundAreRefusedAtOnce) {
   const World world = load(folder, slider("", R"(<geom type="sphere" size="0.2"/>)"));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
-  const std::vector<ExactOptions> bad{{.margin = -1e-9},
-                                      {.margin = nan},
-                                      {.margin = inf},
-                                      {.allow_depth = -1},
-                                      {.allow_depth = nan},
-                                      {.rules = {.allowed = {{"nobody", "nothing"}}}}};
+  const std::vector<ExactOptions> bad{
+      {.margin = -1e-9},   {.margin = nan},      {.margin = inf},
+      {.allow_depth = -1}, {.allow_depth = nan}, {.rules = {.allowed = {{"nobody", "nothing"}}}}};
   for (const ExactOptions& options : bad) {
     const auto made = ExactChecker::create(world.model, world.arm, options);
     ASSERT_FALSE(made.has_value());

@@ -14,12 +14,12 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kLeastPartPairs = 4;        // fewer are looked at as fast
+constexpr int kLeastPartPairs = 4;       // fewer are looked at as fast
 constexpr int kMaxApartTests = 200'000;  // of spheres, to make a table
-constexpr int kLeastApartBoxes = 300;     // fewer say too little
-constexpr int kApartSide = 64;            // cells along one joint
-constexpr double kApartPlenty = 0.05;     // [m] as far apart is not looked at more closely
-constexpr double kApartUnit = 1e-3;       // [m] of the numbers in the cells
+constexpr int kLeastApartBoxes = 300;    // fewer say too little
+constexpr int kApartSide = 64;           // cells along one joint
+constexpr double kApartPlenty = 0.05;    // [m] as far apart is not looked at more closely
+constexpr double kApartUnit = 1e-3;      // [m] of the numbers in the cells
 // Which cell a value is in is decided in single precision: cells reach a little farther, and
 // distances count a little less.
 constexpr double kApartWiden = 1.01, kApartSpare = 2e-5;  // [m]

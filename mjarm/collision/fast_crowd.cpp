@@ -99,8 +99,7 @@ void CrowdBuilder::build(std::span<const PointCloud> clouds, int first_id) {
     leaves.push_back(bounds_[static_cast<std::size_t>(i)]);
   }
   out_.crowd.build(leaves);
-  add_clouds(clouds, space_.R_WF[0], space_.middle_F, space_.reach + kMaxClearance, first_id,
-             out_);
+  add_clouds(clouds, space_.R_WF[0], space_.middle_F, space_.reach + kMaxClearance, first_id, out_);
   if (!items_.empty() || !out_.point_ids.empty()) build_grid();
 }
 

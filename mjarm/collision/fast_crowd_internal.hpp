@@ -14,7 +14,7 @@ struct CrowdSpace {
   Eigen::Vector3d middle_F;               ///< [m] in frame 0
   double reach = 0;                       ///< [m] from there
   double least_radius = 0;                ///< [m] of any sphere that moves
-  std::size_t max_cubes = 0;             ///< that fill one mesh
+  std::size_t max_cubes = 0;              ///< that fill one mesh
 };
 
 /// Collects what goes into trees; what is out of reach by more than kMaxClearance is left out.

@@ -8,7 +8,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMaxApart = 15;      // cells; distances are cut off there
+constexpr int kMaxApart = 15;       // cells; distances are cut off there
 constexpr int kCountsPerCell = 16;  // unit of the distances
 constexpr int kLeastSide = 24, kMaxSide = 64;
 

@@ -27,7 +27,8 @@ struct LevelScene {
 LevelScene level_scene(Rng& rng, int round) {
   LevelScene out{testing::random_arm(2 + round % 6, rng), {}, {}};
   out.set = testing::random_spheres(out.arm, rng);
-  out.world = testing::random_world(rng, std::array{0, 6, 100}[static_cast<std::size_t>(round % 3)]);
+  out.world =
+      testing::random_world(rng, std::array{0, 6, 100}[static_cast<std::size_t>(round % 3)]);
   if (round % 4 == 0) out.world.solids.push_back(testing::random_composite(rng));
   if (round % 2 == 0) out.world.clouds.push_back(testing::random_cloud(rng, 30, 0.02));
   return out;
@@ -67,7 +68,8 @@ TEST(FastLevels, CallTheSameConfigurationsFree) {
       EXPECT_EQ(checkers[i].fixed_overlap().has_value(), checkers[0].fixed_overlap().has_value());
       free[i].resize(kCount);
       checkers[i].check(rows, free[i]);
-      const bool all = std::all_of(free[i].begin(), free[i].end(), [](auto one) { return one != 0; });
+      const bool all =
+          std::all_of(free[i].begin(), free[i].end(), [](auto one) { return one != 0; });
       EXPECT_EQ(checkers[i].all_free(rows), all);
     }
     for (std::size_t k = 0; k < kCount; ++k) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxProved = 3;    // joints between two links; for more the search is too large
 constexpr int kMaxBoxes = 1000;  // of one search
-constexpr double kSpare = 1e-5;   // [m] by which spheres that never meet keep apart at least
+constexpr double kSpare = 1e-5;  // [m] by which spheres that never meet keep apart at least
 
 using Joints = std::array<double, kMaxProved>;
 

@@ -18,7 +18,7 @@ using detail::Tilt;
 
 static_assert(detail::kFastJoints == kMaxDof && detail::kFastSpheres == kMaxSpheres);
 
-constexpr double kNothing = 1e-9;          // [m], [rad] counts as 0; the padding knows
+constexpr double kNothing = 1e-9;         // [m], [rad] counts as 0; the padding knows
 constexpr std::ptrdiff_t kMaxOfPart = 8;  // spheres; more are cut in two
 
 FastJoint fast_joint(const Arm& arm, const LinkChain& chain, int i) {

@@ -1,11 +1,10 @@
-#include "mjarm/collision/fast_tree_internal.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "mjarm/collision/fast_grid_internal.hpp"
+#include "mjarm/collision/fast_tree_internal.hpp"
 #include "mjarm/collision/random_scene_test.hpp"
 
 namespace mjarm {
@@ -78,8 +77,7 @@ TEST(FastTree, EveryBoxHoldsThoseBelowIt) {
           }
           const FastNode& child = tree.nodes[level - 1][i];
           EXPECT_EQ(node.low[k][i % kFan], *std::min_element(child.low[k], child.low[k] + kFan));
-          EXPECT_EQ(node.high[k][i % kFan],
-                    *std::max_element(child.high[k], child.high[k] + kFan));
+          EXPECT_EQ(node.high[k][i % kFan], *std::max_element(child.high[k], child.high[k] + kFan));
         }
       }
       below = (below + kFan - 1) / kFan;

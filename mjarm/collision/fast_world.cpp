@@ -8,13 +8,13 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kSameTurn = 1e-7;           // [rad] two orientations that count as one
+constexpr double kSameTurn = 1e-7;          // [rad] two orientations that count as one
 constexpr std::size_t kMaxCompared = 64;    // orientations that a new one is compared with
 constexpr std::size_t kMaxListed = 64;      // solids; more go into a tree
 constexpr int kMaxOfList = 64;              // of a list: bits of a word
 constexpr std::size_t kMaxCubes = 400'000;  // that fill solid meshes
-constexpr double kFloat = 0x1p-24;           // relative rounding error
-constexpr double kEverywhere = 1e9;          // [m]
+constexpr double kFloat = 0x1p-24;          // relative rounding error
+constexpr double kEverywhere = 1e9;         // [m]
 
 enum class Kind { box, round, cylinder };
 

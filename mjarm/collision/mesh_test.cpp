@@ -1,7 +1,6 @@
-#include "mjarm/collision/mesh_internal.hpp"
-
 #include <gtest/gtest.h>
 
+#include "mjarm/collision/mesh_internal.hpp"
 #include "mjarm/collision/random_scene_test.hpp"
 
 namespace mjarm {

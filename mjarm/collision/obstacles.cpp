@@ -11,7 +11,7 @@ namespace mjarm {
 namespace {
 
 constexpr double kLeastSize = 1e-9;  // [m]
-constexpr double kMaxSize = 1e4;    // [m]
+constexpr double kMaxSize = 1e4;     // [m]
 
 /// Distance of `p`, in the frame of the solid.
 struct DistanceTo {
@@ -65,8 +65,7 @@ bool place_fits(const Eigen::Vector3d& p) {
 struct SizesFit {
   bool operator()(const BallShape& ball) const { return size_fits(ball.radius); }
   bool operator()(const CapsuleShape& capsule) const {
-    return size_fits(capsule.radius) && capsule.half_length >= 0 &&
-           capsule.half_length <= kMaxSize;
+    return size_fits(capsule.radius) && capsule.half_length >= 0 && capsule.half_length <= kMaxSize;
   }
   bool operator()(const BoxShape& box) const {
     return size_fits(box.half.x()) && size_fits(box.half.y()) && size_fits(box.half.z());

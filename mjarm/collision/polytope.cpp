@@ -13,7 +13,7 @@ namespace mjarm {
 namespace {
 
 constexpr std::size_t kMaxHullPoints = 10'000;
-constexpr double kMaxExtent = 1e4;      // [m]
+constexpr double kMaxExtent = 1e4;       // [m]
 constexpr double kEdgeStep = 0.35;       // [rad] between planes round an edge
 constexpr double kSameNormal = 1e-3;     // [rad] two planes that count as one
 constexpr std::size_t kFacePlanes = 80;  // at most

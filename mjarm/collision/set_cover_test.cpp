@@ -1,10 +1,10 @@
-#include "mjarm/collision/set_cover_internal.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+
+#include "mjarm/collision/set_cover_internal.hpp"
 
 namespace mjarm {
 namespace {

@@ -9,8 +9,8 @@ namespace mjarm {
 namespace {
 
 constexpr double kLeastRadius = 1e-6;  // [m]
-constexpr double kMaxRadius = 10;     // [m]
-constexpr double kMaxOffset = 100;    // [m]
+constexpr double kMaxRadius = 10;      // [m]
+constexpr double kMaxOffset = 100;     // [m]
 
 bool is_usable(const Sphere& sphere) {
   return sphere.center.allFinite() && sphere.center.cwiseAbs().maxCoeff() <= kMaxOffset &&

@@ -12,9 +12,9 @@ namespace mjarm {
 
 /// How an edge is verified. Every default is usable as is.
 struct VerifyOptions {
-  double allow_depth = 0;        ///< [m] overlap that still counts as free, >= 0
-  double limit_slack = 1e-4;     ///< [rad or m] by which a joint may be past its limit, >= 0
-  double least_step = 1e-6;      ///< [rad or m, L2] shortest step along the edge, > 0
+  double allow_depth = 0;       ///< [m] overlap that still counts as free, >= 0
+  double limit_slack = 1e-4;    ///< [rad or m] by which a joint may be past its limit, >= 0
+  double least_step = 1e-6;     ///< [rad or m, L2] shortest step along the edge, > 0
   long max_looks = 10'000'000;  ///< a link looked at against one obstacle or link, > 0
 };
 

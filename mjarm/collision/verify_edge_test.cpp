@@ -162,9 +162,9 @@ TEST(VerifyEdge, ProvesEveryCertifiedEdgeAmongPlatesAndWires) {
           << "edge " << certified << ": clearance " << result.distance << " at t " << result.t;
       if (++certified % testing::rounds(4, 1) != 0) continue;
       const int samples = samples_of(as_span(q0), as_span(q1), 1e-3);
-      ASSERT_GT(
-          testing::least_clearance(scene.arm, scene.set, scene.world, as_span(q0), as_span(q1), samples),
-          0)
+      ASSERT_GT(testing::least_clearance(scene.arm, scene.set, scene.world, as_span(q0),
+                                         as_span(q1), samples),
+                0)
           << "false certificate";
     }
   }
@@ -185,7 +185,8 @@ TEST(VerifyEdge, ProvesCertifiedEdgesOfThePublicProblems) {
       const JointVec q1 = q0 + rng.uniform(0.05, 1) * (testing::random_q(all.arm, rng) - q0);
       if (check_edge(checker, as_span(q0), as_span(q1)).verdict != EdgeVerdict::free) continue;
       ++certified;
-      const auto result = verify_edge(all.arm, all.set, problem.obstacles, as_span(q0), as_span(q1));
+      const auto result =
+          verify_edge(all.arm, all.set, problem.obstacles, as_span(q0), as_span(q1));
       ASSERT_TRUE(result.has_value());
       ASSERT_EQ(result->verdict, EdgeVerdict::free) << problem.id << " at t " << result->t;
       ASSERT_GE(result->distance, testing::least_clearance(all.arm, all.set, problem.obstacles,

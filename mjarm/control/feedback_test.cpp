@@ -194,8 +194,8 @@ TEST(ToolImpedance, MovesJointsToSpareWithTheToolAtRest) {
   const Pose X = fk(robot.arm, as_span(robot.arm.home));
   JointVec posture = robot.arm.home;
   posture[0] += 0.4;
-  const auto other =
-      null_space_step(ik, X, as_span(robot.arm.home), {.goal = PostureGoal::near_posture, .posture = posture});
+  const auto other = null_space_step(ik, X, as_span(robot.arm.home),
+                                     {.goal = PostureGoal::near_posture, .posture = posture});
   ASSERT_TRUE(other.has_value());
   ASSERT_GT((other->q - robot.arm.home).norm(), 0.1);
   Controller controller = controller_of(robot, ControlMode::tool_impedance);

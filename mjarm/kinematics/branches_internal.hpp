@@ -9,9 +9,9 @@
 
 /// How closed forms (SixAxis, SevenAxis) plug into IkSolver. A closed form is a value class without
 /// heap memory, so that IkSolver can hold it by value; what it is asked here is not for users. The
-/// front of IkSolver does for both: checking the input, Reach, winding each branch to the seed, limits, FK check and
-/// polish by Newton's steps, the order by nearness, the predicate, the typed answer. Without a
-/// form, or where a form that is no proof finds nothing, the numeric search runs.
+/// front of IkSolver does for both: checking the input, Reach, winding each branch to the seed,
+/// limits, FK check and polish by Newton's steps, the order by nearness, the predicate, the typed
+/// answer. Without a form, or where a form that is no proof finds nothing, the numeric search runs.
 namespace mjarm::detail {
 
 /// What is asked of a closed form.

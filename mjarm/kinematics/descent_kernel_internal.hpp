@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "mjarm/kinematics/descent_block_internal.hpp"
 #include "mjarm/core/simd/functions.hpp"
+#include "mjarm/kinematics/descent_block_internal.hpp"
 
 /// The arithmetic of descend() for kDoubles configurations at a time. Included by one file for each
 /// width of the registers.

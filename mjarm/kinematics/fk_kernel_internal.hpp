@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mjarm/kinematics/fk_batch_internal.hpp"
 #include "mjarm/core/simd/functions.hpp"
+#include "mjarm/kinematics/fk_batch_internal.hpp"
 
 /// Forward kinematics of as many configurations as a register holds. Included by one file for each
 /// width of the registers.

@@ -87,8 +87,8 @@ struct IkFailure {
 class IkSolver {
  public:
   /// For options that a user chose.
-  /// @return bad_input: one line that names the first option out of its range, or that says that the
-  /// arm has no joints or too many.
+  /// @return bad_input: one line that names the first option out of its range, or that says that
+  /// the arm has no joints or too many.
   [[nodiscard]] static Result<IkSolver> create(const Arm& arm, IkOptions options);
   /// For options that are known to be in their ranges: with others every solve is bad_input.
   explicit IkSolver(const Arm& arm, IkOptions options = {});

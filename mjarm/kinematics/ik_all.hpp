@@ -14,7 +14,7 @@ struct IkAllOptions {
   int starts = 120;       ///< without a closed form: random starts tried after q_seed, >= 0
   double same = 1e-3;     ///< [rad or m] answers nearer than this in every joint are one, > 0
   bool windings = false;  ///< every winding of each answer that the limits leave, not one
-  int max = 4096;        ///< answers at most, the nearest are kept, > 0
+  int max = 4096;         ///< answers at most, the nearest are kept, > 0
 };
 
 /// The distinct answers for X_WT. With a closed form of six axes: all its branches (at a singular

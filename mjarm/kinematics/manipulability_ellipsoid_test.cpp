@@ -20,7 +20,8 @@ Eigen::Matrix3d differenced(const Arm& arm, const JointVec& q) {
     JointVec behind = q;
     ahead[j] += kStep;
     behind[j] -= kStep;
-    const Eigen::Vector3d column = (fk(arm, as_span(ahead)).p - fk(arm, as_span(behind)).p) / (2 * kStep);
+    const Eigen::Vector3d column =
+        (fk(arm, as_span(ahead)).p - fk(arm, as_span(behind)).p) / (2 * kStep);
     JJt += column * column.transpose();
   }
   return JJt;

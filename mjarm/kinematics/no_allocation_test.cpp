@@ -49,7 +49,8 @@ TEST(NoAllocation, FkAndIkNeverAllocate) {
       sum += clamp_to_limits(arm, as_span(q)).sum() + (within_limits(arm, as_span(q)) ? 1 : 0);
       const auto answer = ik.solve(both.X_WT, as_span(arm.home));
       sum += answer ? answer->pos_err : answer.error().amount;
-      const auto settled = null_space_step(ik, both.X_WT, as_span(q), {.goal = PostureGoal::manipulability});
+      const auto settled =
+          null_space_step(ik, both.X_WT, as_span(q), {.goal = PostureGoal::manipulability});
       sum += settled ? settled->pos_err : settled.error().amount;
       Pose far = both.X_WT;
       far.p.x() += i;

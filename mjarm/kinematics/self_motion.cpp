@@ -60,8 +60,8 @@ class SelfMotion {
     double share = std::min(2 * share_, kLongest / slope);
     for (; share * slope > 0.5 * options_.tolerance; share *= 0.5) {
       const JointVec wish = at_.q + share * direction;
-      const Descent met =
-          detail::descend(ik_.chain(), goal_.X_WT, clamp_to_limits(ik_.arm(), as_span(wish)), back_);
+      const Descent met = detail::descend(ik_.chain(), goal_.X_WT,
+                                          clamp_to_limits(ik_.arm(), as_span(wish)), back_);
       const double enough = before - kEnough * share * direction.squaredNorm();
       if (!met.converged || !(cost(met.q) < enough) || !accepts(met.q)) continue;
       const double moved = (met.q - at_.q).cwiseAbs().maxCoeff();
@@ -164,8 +164,8 @@ bool make_sense(const SelfMotionOptions& options, int dof) noexcept {
 }  // namespace
 
 Result<IkSolution, IkFailure> null_space_step(const IkSolver& ik, const Pose& X_WT,
-                                     std::span<const double> from,
-                                     const SelfMotionOptions& options) noexcept {
+                                              std::span<const double> from,
+                                              const SelfMotionOptions& options) noexcept {
   IkFailure failure;
   failure.code = IkErrc::bad_input;
   failure.best.q = JointVec::Zero(ik.arm().dof());

@@ -32,8 +32,8 @@ struct SelfMotionOptions {
 ///         bad_input where `from` does not reach the pose, or the sizes or options make no sense;
 ///         collision where `valid` refuses `from`. Never throws, never allocates (but for what
 ///         `valid` does).
-[[nodiscard]] Result<IkSolution, IkFailure> null_space_step(const IkSolver& ik, const Pose& X_WT,
-                                                   std::span<const double> from,
-                                                   const SelfMotionOptions& options = {}) noexcept;
+[[nodiscard]] Result<IkSolution, IkFailure> null_space_step(
+    const IkSolver& ik, const Pose& X_WT, std::span<const double> from,
+    const SelfMotionOptions& options = {}) noexcept;
 
 }  // namespace mjarm

@@ -91,8 +91,8 @@ TEST(SelfMotion, ReachesAPostureThatTheToolAllows) {
   const auto first = null_space_step(ik, X_goal, as_span(posture), away);
   ASSERT_TRUE(first.has_value());
   EXPECT_GT((first->q - posture).norm(), 0.1);
-  const auto back =
-      null_space_step(ik, X_goal, as_span(first->q), {.goal = PostureGoal::near_posture, .posture = posture});
+  const auto back = null_space_step(ik, X_goal, as_span(first->q),
+                                    {.goal = PostureGoal::near_posture, .posture = posture});
   ASSERT_TRUE(back.has_value());
   EXPECT_LT((back->q - posture).norm(), 1e-3);
 }
@@ -101,8 +101,8 @@ TEST(SelfMotion, LeavesASingularity) {
   const Arm arm = panda();
   const JointVec q = joint_vec(std::vector<double>{0.3, 0, 1.5707963267948966, -1.5, 0, 1.5, 0.2});
   ASSERT_LT(manipulability(fk_jacobian(arm, as_span(q)).J_W), 1e-9);
-  const auto settled =
-      null_space_step(IkSolver(arm), fk(arm, as_span(q)), as_span(q), {.goal = PostureGoal::manipulability});
+  const auto settled = null_space_step(IkSolver(arm), fk(arm, as_span(q)), as_span(q),
+                                       {.goal = PostureGoal::manipulability});
   ASSERT_TRUE(settled.has_value());
   EXPECT_GT(manipulability(fk_jacobian(arm, as_span(settled->q)).J_W), 0.01);
 }

@@ -220,8 +220,7 @@ TEST(SevenAxis, WidthsOfRegistersAgree) {
   const Eigen::Vector3d p_6S =
       X_W6.R.transpose() * (Eigen::Map<const Eigen::Vector3d>(geometry.p_WS) - X_W6.p);
   std::copy_n(p_6S.data(), 3, goal.p_6S);
-  const Eigen::Matrix3d R =
-      Eigen::Map<const Eigen::Matrix3d>(geometry.R_W0).transpose() * X_W6.R;
+  const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix3d>(geometry.R_W0).transpose() * X_W6.R;
   std::copy_n(R.data(), 9, goal.R_0u6);
   for (int i = 0; i < 7; ++i) {
     goal.near_cos[i] = 1;

@@ -50,7 +50,7 @@ class Tracker {
   LinkChain chain_;
   JointVec lower_, upper_;  // [rad or m]
   TrackOptions options_;
-  JointVec max_;         // [rad or m] farthest a joint may move in a call
+  JointVec max_;          // [rad or m] farthest a joint may move in a call
   double length_ = 1;     // [m] position error that weighs as much as 1 rad
   double threshold_ = 0;  // manipulability below which the step is damped
 };

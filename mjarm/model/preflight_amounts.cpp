@@ -16,7 +16,7 @@ namespace {
 using tinyxml2::XMLElement;
 
 constexpr double kMaxElements = 200'000;  ///< that <replicate> may make
-constexpr double kLongestStep = 10;        ///< [s]
+constexpr double kLongestStep = 10;       ///< [s]
 constexpr double kMaxTexels = 1 << 26;    ///< of all textures
 constexpr double kMaxHeights = 1 << 25;   ///< of one height field
 constexpr double kMaxNodes = 1'000'000;   ///< of one flexible body

@@ -22,7 +22,8 @@ struct RobotOptions {
 };
 
 /// Loads a robot in one call: find_model_file(), Model::load(), find_arm().
-/// @param name_or_path  a shipped model (`ur5e`, `panda`, ...), or the path of an MJCF or URDF file.
+/// @param name_or_path  a shipped model (`ur5e`, `panda`, ...), or the path of an MJCF or URDF
+/// file.
 /// @return the error of whichever of the three steps failed, one line.
 [[nodiscard]] Result<Robot> load_robot(const std::string& name_or_path,
                                        const RobotOptions& options = {});

@@ -19,7 +19,7 @@ enum class Integrator {
 /// acceleration a towards -damping v with the force mass (a + damping v), at most `max`
 /// (Computation, Constraint model, "Friction loss"; Solver parameters).
 struct DryFriction {
-  double max = 0;     ///< [N m or N] >= 0; 0 = none
+  double max = 0;      ///< [N m or N] >= 0; 0 = none
   double damping = 0;  ///< [1/s]
   double mass = 0;     ///< [kg m^2 or kg] inverse of the regularisation
 };

@@ -39,8 +39,8 @@ class FixSearch {
   Solve solve_;
   std::vector<Pose> changed_;
   int max_probed_, max_solved_;  // of one kind of change; fewer where each takes long
-  int probed_ = 0;                 // changes that no proof refuted
-  int solved_ = 0;                 // changes solved as a whole
+  int probed_ = 0;               // changes that no proof refuted
+  int solved_ = 0;               // changes solved as a whole
 };
 
 }  // namespace mjarm::detail

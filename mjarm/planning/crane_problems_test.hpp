@@ -34,10 +34,12 @@ inline nlohmann::json two_joint_robot() {
           {"spheres",
            {{{"link", "world"}, {"center", {0, 1.5, 0.5}}, {"radius", 0.1}},
             {{"link", "hand"}, {"center", {0, 0.5, 0}}, {"radius", 0.02}}}},
-          {"self_collision_link_pairs", nlohmann::json::array({nlohmann::json::array({"world", "hand"})})}};
+          {"self_collision_link_pairs",
+           nlohmann::json::array({nlohmann::json::array({"world", "hand"})})}};
 }
 
-inline nlohmann::json crane_problem(const std::string& id, const std::string& scene, const nlohmann::json& obstacles) {
+inline nlohmann::json crane_problem(const std::string& id, const std::string& scene,
+                                    const nlohmann::json& obstacles) {
   return {{"id", id},
           {"scene", scene},
           {"index", 0},
@@ -49,7 +51,8 @@ inline nlohmann::json crane_problem(const std::string& id, const std::string& sc
           {"goals_free", {false, true}}};
 }
 
-inline nlohmann::json crane_box(const std::string& name, const nlohmann::json& pos, const nlohmann::json& half) {
+inline nlohmann::json crane_box(const std::string& name, const nlohmann::json& pos,
+                                const nlohmann::json& half) {
   return {{"name", name}, {"type", "box"}, {"pos", pos}, {"quat", {1, 0, 0, 0}}, {"half", half}};
 }
 
@@ -65,8 +68,9 @@ inline nlohmann::json crane_problems() {
           {"robot", two_joint_robot()},
           {"problems",
            {crane_problem("crane/open/0", "open", nlohmann::json::array()),
-            crane_problem("crane/plate/0", "plate",
-                    nlohmann::json::array({crane_box("plate", {0.3, 0.5, 0.5}, {5e-5, 0.2, 0.2})})),
+            crane_problem(
+                "crane/plate/0", "plate",
+                nlohmann::json::array({crane_box("plate", {0.3, 0.5, 0.5}, {5e-5, 0.2, 0.2})})),
             crane_problem("crane/pillar/0", "pillar", nlohmann::json::array({pillar}))}}};
 }
 

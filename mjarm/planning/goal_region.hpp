@@ -31,7 +31,7 @@ struct GoalRegion {
 /// Which configurations stand for a region. Every default is usable as is.
 struct GoalOptions {
   int poses = 16;          ///< drawn in the region besides its middle, >= 0
-  int max = 64;           ///< configurations at most, the nearest to `q_near` are kept, > 0
+  int max = 64;            ///< configurations at most, the nearest to `q_near` are kept, > 0
   std::uint64_t seed = 1;  ///< same input and seed, same goals
   /// Goals that lean farther are left out, where there are others.
   std::optional<TiltLimit> tilt = {};

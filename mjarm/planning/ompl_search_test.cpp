@@ -8,9 +8,9 @@
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
+#include "mjarm/planning/goals_test.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/plan_path.hpp"
-#include "mjarm/planning/goals_test.hpp"
 
 namespace mjarm {
 namespace {
@@ -68,7 +68,8 @@ void expect_clear(const FastChecker& checker, const Obstacles& world,
   const FastRobot& robot = checker.robot();
   ASSERT_GE(path.size(), 2u);
   for (std::size_t i = 1; i < path.size(); ++i) {
-    EXPECT_EQ(check_edge(checker, as_span(path[i - 1]), as_span(path[i])).verdict, EdgeVerdict::free);
+    EXPECT_EQ(check_edge(checker, as_span(path[i - 1]), as_span(path[i])).verdict,
+              EdgeVerdict::free);
     const JointVec way = path[i] - path[i - 1];
     const int parts = std::max(2, static_cast<int>(way.norm() / 0.01));
     for (int k = 0; k <= parts; ++k) {
@@ -92,7 +93,8 @@ TEST_P(OmplPlanner, GoesRoundAPostToTheGoalThatCanBeReached) {
   const PostWorld flat;
   const FastChecker checker = flat.checker();
   ASSERT_EQ(check_edge(checker, kHere, kThere).verdict, EdgeVerdict::hit);
-  const auto goals = goals_at({{0, 0}, {0, 5}, {-0.8, 0}});  // in collision, outside, behind the post
+  const auto goals =
+      goals_at({{0, 0}, {0, 5}, {-0.8, 0}});  // in collision, outside, behind the post
   const PlanOptions options = ompl_options(GetParam(), 700);
   const auto raw = find_path(checker, kHere, goals, options);
   ASSERT_TRUE(raw) << describe(raw.error(), checker.robot(), flat.world);

@@ -19,9 +19,9 @@ namespace ob = ompl::base;
 
 constexpr int kMaxDraws = 100'000;         // where nothing else is said: until a path;
 constexpr int kMaxWhereImproved = 10'000;  // by planners that go on: their samples cost more,
-constexpr int kMoreDraws = 3000;            // and after it
-constexpr std::int64_t kStepsOfDraw = 30;   // edges and questions whether to end
-constexpr double kTimeShare = 0.9;          // the rest is for shortening and proof
+constexpr int kMoreDraws = 3000;           // and after it
+constexpr std::int64_t kStepsOfDraw = 30;  // edges and questions whether to end
+constexpr double kTimeShare = 0.9;         // the rest is for shortening and proof
 constexpr double kEndlessJoint = 4 * std::numbers::pi;  // [rad or m] stands for no limit
 constexpr double kProvedPart = 0.9;                     // of the way up to where it is blocked
 
@@ -111,8 +111,7 @@ class EllipsoidSampler : public ob::InformedSampler {
   double measure_of(std::span<const double> goal, double max) const {
     const double straight = length_to(goal);
     if (straight >= max) return 0;
-    return ompl::prolateHyperspheroidMeasure(static_cast<unsigned int>(goal.size()), straight,
-                                             max);
+    return ompl::prolateHyperspheroidMeasure(static_cast<unsigned int>(goal.size()), straight, max);
   }
   double measure(double max) const {
     double sum = 0;
@@ -180,8 +179,8 @@ OmplBudget::OmplBudget(const PlanOptions& options, bool improves)
     : deadline_(1e6 * kTimeShare * options.time_budget),
       timed_(options.time_budget > 0),
       max_(options.samples > 0 ? options.samples
-            : improves          ? kMaxWhereImproved
-                                : kMaxDraws),
+           : improves          ? kMaxWhereImproved
+                               : kMaxDraws),
       more_(options.samples > 0 ? options.samples : kMoreDraws) {}
 
 void OmplBudget::found() {

@@ -36,7 +36,7 @@ class OmplBudget {
   PlanCounts counts_;
   Deadline deadline_;
   bool timed_;
-  int max_, more_;         // draws until there is a path, and after that
+  int max_, more_;          // draws until there is a path, and after that
   std::int64_t steps_ = 0;  // for planners that go on and on without drawing
   bool found_ = false;
 };

@@ -42,7 +42,8 @@ struct GivenPath {
   RuleWords rules;
 };
 
-/// Reads a file of plans, as `mjarm plan` writes them, `{"ID":{"ok":true,"path":[[q],...],...},...}`, or bare,
+/// Reads a file of plans, as `mjarm plan` writes them,
+/// `{"ID":{"ok":true,"path":[[q],...],...},...}`, or bare,
 /// `{"ID":[[q],...],...}`. What is not ok has no path.
 /// @param dof  how many values a row must have.
 /// @return an error that names the file, the id and the row.

@@ -23,13 +23,13 @@ class PlanFileTest : public ::testing::Test {
   }
   /// A sound entry with one thing changed.
   Result<std::vector<GivenPath>> read_with(const char* place, const json& value) {
-    json entry = {{"ok", true},
-                  {"path", {{-1, 0}, {1, 0}}},
-                  {"tilt", {{"limit", 0.1}, {"largest", 0.05}, {"tool", {0, 0, 1}},
-                            {"world", {0, 0, -1}}}},
-                  {"spheres", 0.012},
-                  {"hold", {"cup"}},
-                  {"allow", {"cup,table"}}};
+    json entry = {
+        {"ok", true},
+        {"path", {{-1, 0}, {1, 0}}},
+        {"tilt", {{"limit", 0.1}, {"largest", 0.05}, {"tool", {0, 0, 1}}, {"world", {0, 0, -1}}}},
+        {"spheres", 0.012},
+        {"hold", {"cup"}},
+        {"allow", {"cup,table"}}};
     if (*place != '\0') entry[json::json_pointer(place)] = value;
     return read(json{{"id", entry}}.dump());
   }
@@ -136,8 +136,8 @@ TEST_F(PlanFileTest, FilesThatAreNoneAreRefusedByTheirPlace) {
   expect_refused(entry("{\"path\":[[-1,0]],\"certificate\":4}"), "\"certificate\"");
   expect_refused(entry("{\"path\":[[-1,0]],\"certificate\":[{}]}"), "certificate[0]");
   expect_refused(entry("{\"path\":[[-1,0]],\"certificate\":[{\"step\":1,\"clearance\":1,\"t\":0,"
-             "\"pair\":[1,2]}]}"),
-       "\"pair\"");
+                       "\"pair\":[1,2]}]}"),
+                 "\"pair\"");
   const auto missing = read_plan_file("/no/such.json", 2);
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().what.find("/no/such.json"), std::string::npos);
@@ -146,10 +146,10 @@ TEST_F(PlanFileTest, FilesThatAreNoneAreRefusedByTheirPlace) {
 TEST_F(PlanFileTest, WhatIsStatedMustBePossible) {
   EXPECT_TRUE(read_with("", {}));
   const std::pair<const char*, json> wrong[] = {
-      {"/tilt", 3},         {"/tilt/tool", {0, 0, 0}}, {"/tilt/world", {0, 0, 2}},
+      {"/tilt", 3},           {"/tilt/tool", {0, 0, 0}}, {"/tilt/world", {0, 0, 2}},
       {"/tilt/largest", 0.2}, {"/tilt/limit", 2},        {"/tilt/limit", nullptr},
-      {"/tilt/limit", -1},  {"/spheres", 1e-9},        {"/spheres", -1},
-      {"/spheres", "thin"}, {"/hold", "rod"},          {"/allow", {1, 2}}};
+      {"/tilt/limit", -1},    {"/spheres", 1e-9},        {"/spheres", -1},
+      {"/spheres", "thin"},   {"/hold", "rod"},          {"/allow", {1, 2}}};
   for (const auto& [place, value] : wrong) {
     const auto file = read_with(place, value);
     ASSERT_FALSE(file) << place << " " << value;

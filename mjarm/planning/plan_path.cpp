@@ -41,7 +41,8 @@ double path_length(std::span<const JointVec> q) noexcept {
 }
 
 Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<const double> start,
-                                       std::span<const JointVec> goals, const PlanOptions& options) {
+                                       std::span<const JointVec> goals,
+                                       const PlanOptions& options) {
   const auto problem = detail::validate_problem(checker, start, goals, options);
   if (!problem) return tl::unexpected(problem.error());
   if (options.planner == Planner::rrt_star) return detail::rrt_star(*problem, options);

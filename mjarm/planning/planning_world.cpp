@@ -102,16 +102,14 @@ Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_st
                                                     PlanTimes* times) {
   return climb([&](const FastChecker& checker) -> Result<PlannedPath, WorldFailure> {
     const IkSolver ik(robot_.arm, {.rng_seed = options.seed, .task = task});
-    const auto goals = goals_in(checker, ik, region, q_start,
-                                {.seed = options.seed, .tilt = options.tilt});
+    const auto goals =
+        goals_in(checker, ik, region, q_start, {.seed = options.seed, .tilt = options.tilt});
     if (!goals) {
       return tl::unexpected(
           WorldFailure{WorldErrc::no_answer, describe(goals.error(), robot_.arm)});
     }
     return plan_path(checker, q_start, *goals, options, times)
-        .map_error([](const PlanFailure& why) {
-          return WorldFailure{.what = {}, .search = why};
-        });
+        .map_error([](const PlanFailure& why) { return WorldFailure{.what = {}, .search = why}; });
   });
 }
 

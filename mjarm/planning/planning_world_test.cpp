@@ -62,10 +62,13 @@ Robot beam(double gap, const std::string& more = "", const std::string& collide 
     <geom name="post" type="box" size="0.05 0.05 0.3" pos="0.5 )" +
                           std::to_string(0.1 + gap) + R"( 0"/>
     <body name="beam"><joint name="turn" axis="0 0 1" range="-3 3" limited="true"/>
-      <geom name="beam" type="box" size="0.25 0.05 0.05" pos="0.35 0 0")" + collide + R"(/>
+      <geom name="beam" type="box" size="0.25 0.05 0.05" pos="0.35 0 0")" +
+                          collide + R"(/>
       <body name="tip" pos="0.65 0 0"><joint name="bend" axis="0 1 0" range="-2 2" limited="true"/>
-        <geom name="tip" type="box" size="0.03 0.03 0.03" pos="0.06 0 0")" + collide + R"(/>
-        <site name="tcp" pos="0.1 0 0"/></body></body>)" + more + R"(</worldbody>
+        <geom name="tip" type="box" size="0.03 0.03 0.03" pos="0.06 0 0")" +
+                          collide + R"(/>
+        <site name="tcp" pos="0.1 0 0"/></body></body>)" +
+                          more + R"(</worldbody>
     <actuator><position joint="turn"/><position joint="bend"/></actuator></mujoco>)";
   return load_robot(folder.write("beam.xml", xml).string(), {.tip = "tcp"}).value();
 }
@@ -169,9 +172,9 @@ TEST(PlanningWorld, WhatCannotBeAskedHasAReason) {
   ASSERT_FALSE(far);
   EXPECT_EQ(far.error().code, WorldErrc::no_answer);
   EXPECT_NE(far.error().what.find("out of reach"), std::string::npos) << far.error().what;
-  for (const auto& path : {world.plan(kBefore, std::vector<JointVec>{}),
-                           world.plan({kBefore.data(), 5}, behind()),
-                           world.plan(kBefore, goals_at({{1, 2, 3}}))}) {
+  for (const auto& path :
+       {world.plan(kBefore, std::vector<JointVec>{}), world.plan({kBefore.data(), 5}, behind()),
+        world.plan(kBefore, goals_at({{1, 2, 3}}))}) {
     ASSERT_FALSE(path);
     EXPECT_EQ(path.error().search.reason, PlanErrc::bad_input);
     EXPECT_NE(path.error().what.find("6 finite joint values"), std::string::npos);
@@ -209,7 +212,8 @@ TEST(PlanningWorld, OptionsOutOfRangeAreRefused) {
 TEST(PlanningWorld, PathsKeepTheMargin) {
   const LanguageScope english(Language::english);
   constexpr double kMargin = 0.02;
-  PlanningWorld tight = world_of(walled_ur5e()), wide = world_of(walled_ur5e(), {.margin = kMargin});
+  PlanningWorld tight = world_of(walled_ur5e()),
+                wide = world_of(walled_ur5e(), {.margin = kMargin});
   const Pose X_WT = down_at(-0.3, -0.45, 0.2);
   const auto near = tight.plan(kBefore, X_WT), far = wide.plan(kBefore, X_WT);
   ASSERT_TRUE(near) << near.error().what;

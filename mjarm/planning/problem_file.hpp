@@ -14,8 +14,8 @@ namespace mjarm {
 /// A path to be found.
 struct PlanProblem {
   std::string id;
-  std::string scene;          ///< kind of scene, for tables; may be empty
-  std::vector<double> start;  ///< shape (dof,) [rad or m]
+  std::string scene;            ///< kind of scene, for tables; may be empty
+  std::vector<double> start;    ///< shape (dof,) [rad or m]
   std::vector<JointVec> goals;  ///< (n,) each of shape (dof,); may be empty
   Obstacles obstacles;
   bool valid = true;  ///< what the file says: start and some goal are free

@@ -211,7 +211,6 @@ const std::vector<Fault> kFaults{
 INSTANTIATE_TEST_SUITE_P(All, ProblemFileFaults, ::testing::ValuesIn(kFaults),
                          [](const auto& param) { return param.param.name; });
 
-
 TEST_F(ProblemFileTest, NumbersThatAreNone) {
   const std::string sound = one_problem().dump(), start = "\"start\":[0.8,0.0]";
   ASSERT_NE(sound.find(start), std::string::npos);

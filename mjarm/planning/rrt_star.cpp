@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kStarSamples = 3000;      // where nothing else is said
 constexpr double kNeighbourhood = 1.1;  // of the radius that makes paths tend to the shortest one
-constexpr std::size_t kMaxNear = 24;   // neighbours that are tried
+constexpr std::size_t kMaxNear = 24;    // neighbours that are tried
 constexpr double kTowardsGoal = 0.05;   // share of samples that are goals
 
 /// RRT* (S. Karaman and E. Frazzoli, IJRR 30 (2011) 846) with the samples of Informed RRT*

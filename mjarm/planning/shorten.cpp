@@ -9,7 +9,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMaxFailed = 30;       // cuts in a row that did not work: enough
+constexpr int kMaxFailed = 30;        // cuts in a row that did not work: enough
 constexpr int kPulls = 1;             // rounds over all corners at most
 constexpr double kLeastPull = 0.4;    // share of the way to the straight line
 constexpr double kLeastGain = 1e-3;   // share of the length that a cut must save
@@ -121,7 +121,8 @@ class Shortener {
     for (double share = 1; share > kLeastPull; share *= 0.5) {
       JointVec moved = q_[i] + share * (straight - q_[i]);
       if (tilt_ != nullptr && !put_back(a, b, to_a + to_b, moved)) continue;
-      if (!prover_.is_free(as_span(a), as_span(moved)) || !prover_.is_free(as_span(moved), as_span(b))) {
+      if (!prover_.is_free(as_span(a), as_span(moved)) ||
+          !prover_.is_free(as_span(moved), as_span(b))) {
         continue;
       }
       q_[i] = moved;
@@ -140,7 +141,8 @@ class Shortener {
     JointVec moved = q_[i] + way;
     if (tilt_ != nullptr && !put_back(a, b, length, moved)) return false;
     if ((moved - a).norm() + (moved - b).norm() > length - kLeastSaved * step) return false;
-    if (!prover_.is_free(as_span(a), as_span(moved)) || !prover_.is_free(as_span(moved), as_span(b))) {
+    if (!prover_.is_free(as_span(a), as_span(moved)) ||
+        !prover_.is_free(as_span(moved), as_span(b))) {
       return false;
     }
     q_[i] = moved;

@@ -15,14 +15,14 @@ namespace detail {
 namespace {
 
 constexpr double kInner = 0.3;       // share of the limit that is aimed at
-constexpr int kMaxSteps = 16;       // of Newton's method,
-constexpr double kMaxTurn = 0.5;    // [rad] each
+constexpr int kMaxSteps = 16;        // of Newton's method,
+constexpr double kMaxTurn = 0.5;     // [rad] each
 constexpr double kDamping = 1e-6;    // of its normal equations
 constexpr double kParallel = 1e-12;  // |a x b| of axes that are one
-constexpr int kMaxParts = 4096;     // of an edge that are looked at
+constexpr int kMaxParts = 4096;      // of an edge that are looked at
 constexpr double kFinest = 1e-4;     // [rad] L: narrower parts of an edge are not cut again
 constexpr double kLeastWay = 0.1;    // share of a step by which the end must come nearer
-constexpr double kMaxWay = 2;       // a step that is put back may be so many times as long
+constexpr double kMaxWay = 2;        // a step that is put back may be so many times as long
 constexpr double kRounding = 1e-8;   // share of the limit
 
 }  // namespace

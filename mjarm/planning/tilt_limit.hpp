@@ -10,7 +10,7 @@ namespace mjarm {
 /// How far a tool may lean on its way: a direction of the tool keeps within a cone round a
 /// direction of the world. Turns about that direction are free (a cup that must not be spilt).
 struct TiltLimit {
-  double max = 0.0872664625997165;                    ///< [rad] in [kLeastTilt, pi/2)
+  double max = 0.0872664625997165;                     ///< [rad] in [kLeastTilt, pi/2)
   Eigen::Vector3d axis_T = Eigen::Vector3d::UnitZ();   ///< of the tool, length 1
   Eigen::Vector3d axis_W = -Eigen::Vector3d::UnitZ();  ///< of the world, length 1
 };

@@ -9,8 +9,8 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/planning/covered_arm_test.hpp"
-#include "mjarm/planning/goals_test.hpp"
 #include "mjarm/planning/goal_region.hpp"
+#include "mjarm/planning/goals_test.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/tilt_keeper_internal.hpp"
 
@@ -126,7 +126,8 @@ TEST(TiltPlan, CarriesTheToolUprightRoundTheWall) {
   PlanOptions options;
   // Alone, as others may be reached by the base joint, on the far side of the wall.
   const JointVec goal = nearest_answer(arm, tool_down({-0.3, -0.45, 0.2}), start);
-  const auto plain = plan_path(arm.checker, as_span(start), testing::goal_at(as_span(goal)), options);
+  const auto plain =
+      plan_path(arm.checker, as_span(start), testing::goal_at(as_span(goal)), options);
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->tilt, 0);
   for (const double max : {20 * kDegree, 5 * kDegree, 1 * kDegree}) {
@@ -135,7 +136,8 @@ TEST(TiltPlan, CarriesTheToolUprightRoundTheWall) {
     for (const Planner planner : {Planner::rrt_connect, Planner::rrt_star}) {
       options.planner = planner;
       options.samples = planner == Planner::rrt_star ? 2000 : 0;
-      const auto path = plan_path(arm.checker, as_span(start), testing::goal_at(as_span(goal)), options);
+      const auto path =
+          plan_path(arm.checker, as_span(start), testing::goal_at(as_span(goal)), options);
       ASSERT_TRUE(path) << describe(path.error(), arm.checker.robot(), arm.cover.scene);
       const double largest = testing::expect_free_exactly(arm, *path, options.tilt);
       EXPECT_LE(largest, path->tilt + 1e-9);
@@ -157,7 +159,8 @@ TEST(TiltPlan, SameBytesEveryTimeAndShorterWithRounds) {
   ASSERT_TRUE(a && b);
   EXPECT_EQ(a->q, b->q);
   options.rounds = 6;
-  const auto better = plan_path(arm.checker, as_span(start), testing::goal_at(as_span(goal)), options);
+  const auto better =
+      plan_path(arm.checker, as_span(start), testing::goal_at(as_span(goal)), options);
   ASSERT_TRUE(better);
   EXPECT_LE(better->cost, a->cost);
   EXPECT_LE(testing::expect_free_exactly(arm, *better, options.tilt), 10 * kDegree);

@@ -12,7 +12,8 @@ inline nlohmann::json turning_link(const std::string& name, const std::string& p
           {"axis", {0, 0, 1}},       {"limits", {-2.9, 2.9}}};
 }
 
-/// A file of problems: a flat arm of two links and a post between start and goal of the problem "round".
+/// A file of problems: a flat arm of two links and a post between start and goal of the problem
+/// "round".
 inline nlohmann::json two_problems() {
   using nlohmann::json;
   json spheres = json::array();

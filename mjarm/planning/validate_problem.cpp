@@ -105,8 +105,7 @@ Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
   if (out.goal_index.empty()) {
     return tilted(PlanErrc::goals_tilted, *options.tilt, arm, goal_of(first_free));
   }
-  std::ranges::stable_sort(out.goal_index, {},
-                           [&](int g) { return distance(start, goal_of(g)); });
+  std::ranges::stable_sort(out.goal_index, {}, [&](int g) { return distance(start, goal_of(g)); });
   for (const int g : out.goal_index) out.goals.push_back(goal_of(g));
   return out;
 }

@@ -133,9 +133,10 @@ TEST_F(VerifyPathTest, CylindersAsGivenOrReplacedAndOverlapsThatAreAllowed) {
 
 TEST_F(VerifyPathTest, ATiltThatIsLargerThanStatedIsFound) {
   const auto with = [](double largest) {
-    return json{{"path", testing::kCraneRound},
-                {"tilt", {{"limit", 0.1}, {"largest", largest}, {"tool", {0, 0, 1}},
-                          {"world", {0, 0, 1}}}}};
+    return json{
+        {"path", testing::kCraneRound},
+        {"tilt",
+         {{"limit", 0.1}, {"largest", largest}, {"tool", {0, 0, 1}}, {"world", {0, 0, 1}}}}};
   };
   EXPECT_EQ(faults("crane/open/0", with(0)), Kinds{});  // it turns about z alone
   json leaning = with(0.05);

@@ -64,8 +64,8 @@ Result<Trajectory> time_corners(std::span<const JointVec> corners, double blend,
 
 /// The shortest path that is found to the goals that are nearest, each by itself: to all at once
 /// the first straight path that is free is taken, be it to the farthest.
-void replace_by_shorter(const FastChecker& checker, const JointVec& q, std::span<const JointVec> goals,
-             PlannedPath& path) {
+void replace_by_shorter(const FastChecker& checker, const JointVec& q,
+                        std::span<const JointVec> goals, PlannedPath& path) {
   constexpr std::size_t kMaxAlone = 8;
   PlanOptions search = kSearch;
   search.samples /= 10;
@@ -126,8 +126,8 @@ std::optional<std::string> DetourPlanner::touches(const JointVec& q) const {
 }
 
 std::optional<std::string> DetourPlanner::least_touch(const JointVec& q, const Pose& X_WT) const {
-  const auto answers =
-      solve_all(IkSolver(robot_.arm, {.task = ik_.options().task}), X_WT, as_span(q), {.max = kMaxGoals});
+  const auto answers = solve_all(IkSolver(robot_.arm, {.task = ik_.options().task}), X_WT,
+                                 as_span(q), {.max = kMaxGoals});
   if (!answers) return std::nullopt;
   std::optional<MoveMeasures> best;
   for (const IkSolution& answer : *answers) {
@@ -138,7 +138,7 @@ std::optional<std::string> DetourPlanner::least_touch(const JointVec& q, const P
 }
 
 Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& q,
-                                                                    const Pose& X_WT) const {
+                                                                const Pose& X_WT) const {
   if (const auto pair = touches(q)) {
     return no_detour("collision", text(msg::program_starts_touching, *pair));
   }
@@ -148,7 +148,8 @@ Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& 
     if (pair) return no_detour("collision", text(msg::program_no_free_answer, *pair));
   }
   if (!answers) {
-    return no_detour(std::string(name(answers.error().code)), describe(answers.error(), robot_.arm));
+    return no_detour(std::string(name(answers.error().code)),
+                     describe(answers.error(), robot_.arm));
   }
   std::vector<JointVec> out;
   for (const IkSolution& answer : *answers) out.push_back(answer.q);
@@ -156,7 +157,7 @@ Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& 
 }
 
 Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& q,
-                                                                    const JointVec& goal) const {
+                                                                const JointVec& goal) const {
   if (const auto pair = touches(q)) {
     return no_detour("collision", text(msg::program_starts_touching, *pair));
   }

@@ -9,9 +9,9 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/joint_path.hpp"
+#include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
-#include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm {
@@ -123,7 +123,8 @@ class ProgramPlanner {
     const auto found = planner.plan(q, *goals, step.share);
     if (!found) return std::nullopt;
     q = found->corners.back();
-    return Detour{found->corners.size() - 1, found->trajectory.duration(), found->measures.clearance};
+    return Detour{found->corners.size() - 1, found->trajectory.duration(),
+                  found->measures.clearance};
   }
 
   /// After a fault the arm is taken to be where the step should have ended.

@@ -167,8 +167,9 @@ class UrscriptWriter {
     constexpr double kLeastShare = 0.01;
     const double share = check_limits(move.trajectory, limits).velocity.maxCoeff();
     for (std::size_t i = 1; i < move.corners.size(); ++i) {
-      const auto edge = time_joint_move(as_span(move.corners[i - 1]), as_span(move.corners[i]), limits,
-                                        {.joint_share = std::clamp(share, kLeastShare, 1.0)});
+      const auto edge =
+          time_joint_move(as_span(move.corners[i - 1]), as_span(move.corners[i]), limits,
+                          {.joint_share = std::clamp(share, kLeastShare, 1.0)});
       if (edge) joint_move(*edge);
     }
     if (move.corners.size() == 1) comment("the arm is there already");
@@ -234,8 +235,8 @@ class UrscriptWriter {
 
 }  // namespace
 
-Result<std::string> to_urscript(const Program& program, const Robot& robot,
-                                const ProgramPlan& plan, const UrscriptOptions& options) {
+Result<std::string> to_urscript(const Program& program, const Robot& robot, const ProgramPlan& plan,
+                                const UrscriptOptions& options) {
   if (!plan.ok()) return fail(plan.faults.front().code, plan.faults.front().what);
   const Result<UrArm> ur = detail::find_ur_arm(robot.model, robot.arm);
   if (!ur) return fail(ur.error());

@@ -21,12 +21,12 @@ constexpr Rgba kBlue = {0.20F, 0.38F, 0.85F, 1};
 /// Tubes that a picture can afford. Without a GPU a tube costs some ten thin lines at low quality,
 /// and some milliseconds of processor time at high.
 constexpr std::size_t kMaxTubes = 100;
-constexpr double kPixelsPerMetre = 700;    ///< width of thin lines: 3 mm are about two pixels
-constexpr double kThinnest = 1.0;          ///< [px]
-constexpr double kThickest = 5.0;          ///< [px]
-constexpr double kUnseen = 0.15;           ///< of its width a line may be off, to need fewer pieces
+constexpr double kPixelsPerMetre = 700;   ///< width of thin lines: 3 mm are about two pixels
+constexpr double kThinnest = 1.0;         ///< [px]
+constexpr double kThickest = 5.0;         ///< [px]
+constexpr double kUnseen = 0.15;          ///< of its width a line may be off, to need fewer pieces
 constexpr std::size_t kMaxDashes = 1000;  ///< of a line
-constexpr double kFlat = 1e-3;             ///< smallest semi-axis as a share of the largest
+constexpr double kFlat = 1e-3;            ///< smallest semi-axis as a share of the largest
 
 /// Lets `room` of `wanted` things pass, evenly.
 class Sieve {

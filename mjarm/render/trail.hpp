@@ -10,7 +10,7 @@ namespace mjarm {
 
 /// How a trail is kept and drawn. Every default is usable as is.
 struct TrailOptions {
-  std::size_t max_points = 2000;  ///< then the oldest go, >= 2
+  std::size_t max_points = 2000;   ///< then the oldest go, >= 2
   double spacing = 0.002;          ///< [m] nearer points are left out, >= 0
   double width = 0.005;            ///< [m] diameter of the line, > 0
   LineLook look = LineLook::thin;  ///< the same however long it grows

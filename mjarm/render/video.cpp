@@ -17,7 +17,7 @@ namespace mjarm {
 namespace {
 
 constexpr double kMaxFps = 1000;  // [1/s]
-constexpr double kGifFps = 100;    // [1/s] a GIF counts hundredths of a second
+constexpr double kGifFps = 100;   // [1/s] a GIF counts hundredths of a second
 
 /// What ffmpeg is told about how the file is to be.
 std::vector<std::string> output_options(VideoFormat format) {

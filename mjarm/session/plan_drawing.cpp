@@ -28,7 +28,7 @@ constexpr double kDrawnPathStep = 0.02;  // [rad or m, L2] between places of the
 constexpr double kPathPieces = 300;      // at most
 constexpr double kTreeStep = 0.15;       // [rad or m, L2] between places of an edge of a tree
 constexpr double kTreePieces = 12'000;   // of all edges, about
-constexpr double kMaxWork = 2e6;        // distances that are computed for one look
+constexpr double kMaxWork = 2e6;         // distances that are computed for one look
 constexpr double kPairRed = 0.01;        // [m]
 
 Rgba with_alpha(Rgba color, float alpha) {

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "mjarm/session/near_spheres.hpp"
 #include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/collision/obstacles.hpp"
@@ -12,18 +11,19 @@
 #include "mjarm/model/model.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/render/overlay.hpp"
+#include "mjarm/session/near_spheres.hpp"
 #include "mjarm/sim/sim.hpp"
 
 namespace mjarm::session {
 
 /// A planned path and all that it was planned for. What it refers to outlives it.
 struct PlanSubject {
-  const Model& model;               ///< that is drawn
-  const Arm& arm;                   ///< of `model`, with its tool
-  const FastChecker& checker;       ///< with the spheres; of an arm of the same joints
-  const Obstacles& obstacles;       ///< of `checker`
-  const PlannedPath& path;          ///< with its trees
-  std::string title;                ///< of the problem
+  const Model& model;                       ///< that is drawn
+  const Arm& arm;                           ///< of `model`, with its tool
+  const FastChecker& checker;               ///< with the spheres; of an arm of the same joints
+  const Obstacles& obstacles;               ///< of `checker`
+  const PlannedPath& path;                  ///< with its trees
+  std::string title;                        ///< of the problem
   std::vector<AttachedBody> attached = {};  ///< to the tool
 };
 

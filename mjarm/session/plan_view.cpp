@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kElevation = -0.5;       // [rad]
-constexpr double kAside = 0.45;           // [rad] off the straight look across, for depth
+constexpr double kElevation = -0.5;        // [rad]
+constexpr double kAside = 0.45;            // [rad] off the straight look across, for depth
 constexpr std::size_t kMaxBlocking = 200;  // solids that are looked at
 
 /// Heading of the line of sight [rad].

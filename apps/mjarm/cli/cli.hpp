@@ -11,7 +11,6 @@ namespace mjarm::app {
 /// Runs the command line `arguments` (without the name of the program) of a program `mjarm` with
 /// these subcommands.
 /// @return the exit code: 0 done, 1 well-formed but cannot be done, 2 bad input or usage.
-[[nodiscard]] int run(std::span<const Command> commands,
-                      const std::vector<std::string>& arguments);
+[[nodiscard]] int run(std::span<const Command> commands, const std::vector<std::string>& arguments);
 
 }  // namespace mjarm::app

@@ -18,8 +18,8 @@ using Run = std::function<Result<int>()>;
 /// the catalogue.
 struct Command {
   const char* name;
-  Msg summary;                  ///< one line for the list of commands
-  Msg examples;                 ///< shown below the options in its help
+  Msg summary;   ///< one line for the list of commands
+  Msg examples;  ///< shown below the options in its help
   /// Adds the options; the Run owns what they are bound to. Null: `program` does all of it.
   Run (*setup)(CLI::App& app);
   /// Name of the program beside this one that takes the whole command line; null: this one.

@@ -17,8 +17,7 @@ namespace mjarm::app {
                                                 const std::string& value);
 
 /// Reads a whole number from 1 to `max`, as `--rounds 5`. @return an error that names `option`.
-[[nodiscard]] Result<int> parse_count(const std::string& option, const std::string& value,
-                                      int max);
+[[nodiscard]] Result<int> parse_count(const std::string& option, const std::string& value, int max);
 
 /// Reads the value of `--threads`, 1 to 1024.
 [[nodiscard]] Result<int> parse_threads(const std::string& value);

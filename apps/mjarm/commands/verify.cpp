@@ -1,4 +1,4 @@
-#include "apps/mjarm/messages/verify.hpp"
+#include "mjarm/core/messages/verify.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -15,9 +15,9 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/commands/rule_options.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/rule_options.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"

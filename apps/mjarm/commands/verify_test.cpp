@@ -79,7 +79,8 @@ TEST_F(Verify, APlateThinnerThanTheSpacingIsFound) {
 
 TEST_F(Verify, TheSameBytesForAnyNumberOfThreads) {
   json paths;
-  for (const char* id : {"crane/open/0", "crane/plate/0", "crane/pillar/0"}) paths[id] = kCraneStraight;
+  for (const char* id : {"crane/open/0", "crane/plate/0", "crane/pillar/0"})
+    paths[id] = kCraneStraight;
   for (const std::vector<std::string>& more : {Kinds{}, Kinds{"--json"}}) {
     std::vector<std::string> threads = more;
     threads.insert(threads.end(), {"--threads", "3"});

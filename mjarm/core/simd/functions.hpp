@@ -9,7 +9,8 @@ namespace mjarm::simd {
 
 /// Largest error of sine_cosine() of floats, for |x| <= kMaxAngle: the reduced angle is right to
 /// 3e-8 (three parts of pi/2, the first of 8 and the second of 11 bits, so that their products with
-/// the number of quarters are exact), Taylor's tails are below 3e-8, and what is left are roundings.
+/// the number of quarters are exact), Taylor's tails are below 3e-8, and what is left are
+/// roundings.
 inline constexpr double kTrigError = 3e-7;
 inline constexpr double kMaxAngle = 100;  ///< [rad]
 

@@ -10,8 +10,9 @@
 /// header is compiled. For the kernels of the rooms (`*_avx2.cpp`, `*_avx512.cpp` and what they
 /// share); it is not installed.
 ///
-/// Each width has its own namespace, MJARM_LANES, in which kernels stand too, and nothing here calls
-/// a function of the standard library: no function of one width may stand in for that of another.
+/// Each width has its own namespace, MJARM_LANES, in which kernels stand too, and nothing here
+/// calls a function of the standard library: no function of one width may stand in for that of
+/// another.
 namespace mjarm::simd {
 
 #if defined(__AVX512F__)
