@@ -10,7 +10,6 @@
 #include "apps/bench/suites.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/run_output.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"

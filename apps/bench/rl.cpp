@@ -11,12 +11,12 @@
 #include "apps/bench/suites.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/run_output.hpp"
-#include "apps/mjarm/commands/train_task.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/rl/reach_env.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -37,9 +37,7 @@ Result<std::vector<LearningSet>> sets_of(const Options& options, int seeds) {
     sets = {sets[*asked]};
   }
   for (LearningSet& set : sets) {
-    auto chosen = with_task({.task = "reach"}, std::move(set.options));
-    if (!chosen) return fail(std::move(chosen.error()));
-    set.options = std::move(*chosen);
+    set.options.task.threads = set.options.ppo.threads = rl::training_threads();
     set.peer_seeds = options.peers.empty() ? 0 : std::min(set.peer_seeds, seeds);
   }
   if (options.steps.empty()) return sets;

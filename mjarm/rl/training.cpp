@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mjarm/core/messages/rl.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/rl/progress_log_internal.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/rl/safetensors.hpp"
@@ -54,6 +55,11 @@ std::string last_name(int rank) {
 }
 
 }  // namespace
+
+int training_threads() {
+  constexpr int kMaxThreads = 16;
+  return std::min(core_count(), kMaxThreads);
+}
 
 PpoOptions reach_ppo() {
   PpoOptions options;

@@ -32,6 +32,9 @@ struct TrainingOptions {
 /// The defaults for a region: a wider one has longer ways and takes more steps to learn.
 [[nodiscard]] TrainingOptions reach_training(ReachRegion region);
 
+/// Threads for a small network on this machine: one a core, and no more than it can feed.
+[[nodiscard]] int training_threads();
+
 /// What one iteration brought.
 struct TrainingStep {
   IterationReport iteration;

@@ -6,7 +6,6 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
-#include "mjarm/core/os.hpp"
 
 namespace mjarm::app {
 
@@ -24,7 +23,6 @@ void add_task_options(CLI::App& app, TaskArguments& arguments) {
 }
 
 Result<rl::TrainingOptions> with_task(const TaskArguments& arguments, rl::TrainingOptions options) {
-  constexpr int kMaxThreads = 16;  // by itself: more than that a small network cannot feed
   if (arguments.task != "reach") {
     return fail(Errc::usage,
                 arguments.task.empty()
@@ -49,7 +47,7 @@ Result<rl::TrainingOptions> with_task(const TaskArguments& arguments, rl::Traini
     if (!seed) return fail(seed.error());
     options.ppo.seed = *seed;
   }
-  options.ppo.threads = std::min(core_count(), kMaxThreads);
+  options.ppo.threads = rl::training_threads();
   if (!arguments.threads.empty()) {
     const Result<std::uint64_t> threads = parse_whole("--threads", arguments.threads);
     if (!threads) return fail(threads.error());
