@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/bench/control_trial.hpp"
+#include "apps/bench/messages/control_suite.hpp"
 #include "apps/bench/report.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/bench/suites.hpp"
@@ -15,8 +16,7 @@
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/control_suite.hpp"
+#include "apps/mjarm/messages/app.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -3,7 +3,6 @@
 #include <limits>
 #include <utility>
 
-#include "apps/mjarm/cli/json_line.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/os.hpp"

@@ -87,6 +87,7 @@ struct JsonDoc::Tree {
 JsonDoc::JsonDoc() : tree_(new Tree) {}
 JsonDoc::JsonDoc(bool value) : tree_(new Tree{value}) {}
 JsonDoc::JsonDoc(int value) : tree_(new Tree{value}) {}
+JsonDoc::JsonDoc(long value) : tree_(new Tree{value}) {}
 JsonDoc::JsonDoc(std::size_t value) : tree_(new Tree{value}) {}
 JsonDoc::JsonDoc(double value) : tree_(new Tree{value}) {}
 JsonDoc::JsonDoc(const char* value) : tree_(new Tree{value}) {}

@@ -81,6 +81,7 @@ class JsonDoc {
   JsonDoc(std::nullptr_t) : JsonDoc() {}
   JsonDoc(bool value);
   JsonDoc(int value);
+  JsonDoc(long value);
   JsonDoc(std::size_t value);
   JsonDoc(double value);  ///< infinities and NaN are printed as null
   JsonDoc(const char* value);

@@ -1,54 +1,80 @@
 #include "mjarm/execution/report.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/path/path_measures.hpp"
 
 namespace mjarm {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json to_json(const PoseError& error) {
+JsonDoc to_json(const PoseError& error) {
   return {{"position", error.position}, {"rotation", error.rotation}};
 }
 
-void put_errors(const Report& report, Json& out) {
+void put_errors(const Report& report, JsonDoc& out) {
   if (report.path_error) {
-    out["path_error_max"] = report.path_error->max;
-    out["path_error_rms"] = report.path_error->rms;
-    out["path_error_at"] = report.path_error->at;
+    out.set("path_error_max", report.path_error->max);
+    out.set("path_error_rms", report.path_error->rms);
+    out.set("path_error_at", report.path_error->at);
   }
-  if (report.static_error) out["static_error"] = to_json(*report.static_error);
+  if (report.static_error) out.set("static_error", to_json(*report.static_error));
+  if (report.static_errors.empty()) return;
+  JsonDoc errors;
   for (const NamedError& entry : report.static_errors) {
-    out["static_errors"][entry.name] = to_json(entry.error);
+    errors.set(entry.name.c_str(), to_json(entry.error));
   }
+  out.set("static_errors", std::move(errors));
 }
 
-Json to_json(const ReportedDip& entry) {
+JsonDoc to_json(const ReportedDip& entry) {
   const SpeedDip& dip = entry.dip;
-  Json out{{"s", {dip.s_from, dip.s_to}}, {"t", {dip.t_from, dip.t_to}},
-           {"least", dip.least},          {"least_s", dip.s_least},
-           {"joint", entry.joint},        {"limit", name(dip.limit)}};
-  if (dip.kind != SingularKind::none) out["singularity"] = name(dip.kind);
+  JsonDoc out{{"s", {dip.s_from, dip.s_to}}, {"t", {dip.t_from, dip.t_to}},
+              {"least", dip.least},          {"least_s", dip.s_least},
+              {"joint", entry.joint},        {"limit", name(dip.limit)}};
+  if (dip.kind != SingularKind::none) out.set("singularity", name(dip.kind));
   return out;
 }
 
-Json to_json(const ReportedMove& move) {
-  Json out{{"line", move.line}, {"instruction", move.word}, {"duration", move.duration}};
+JsonDoc to_json(const ReportedMove& move) {
+  JsonDoc out{{"line", move.line}, {"instruction", move.word}, {"duration", move.duration}};
   if (move.path_error) {
-    out["path_error_max"] = move.path_error->max;
-    out["path_error_rms"] = move.path_error->rms;
-    out["coverage"] = move.path_error->coverage;
+    out.set("path_error_max", move.path_error->max);
+    out.set("path_error_rms", move.path_error->rms);
+    out.set("coverage", move.path_error->coverage);
   }
   return out;
 }
 
-void put_planned(const Report& report, Json& out) {
-  for (const ReportedDip& entry : report.speed_dips) out["speed_dips"].push_back(to_json(entry));
-  if (report.min_manipulability) out["min_manipulability"] = *report.min_manipulability;
-  if (report.min_singular_value) out["min_singular_value"] = *report.min_singular_value;
+JsonDoc to_json(const std::map<std::string, double>& figures) {
+  JsonDoc out{std::initializer_list<JsonDoc::Member>{}};
+  for (const auto& [name, value] : figures) out.set(name.c_str(), value);
+  return out;
+}
+
+/// A list as member `key`; nothing for an empty one.
+template <class List, class ToDoc>
+void put_list(const char* key, const List& list, const ToDoc& to_doc, JsonDoc& out) {
+  std::vector<JsonDoc> docs;
+  for (const auto& entry : list) docs.push_back(to_doc(entry));
+  if (!docs.empty()) out.set(key, std::move(docs));
+}
+
+void put_planned(const Report& report, JsonDoc& out) {
+  put_list("speed_dips", report.speed_dips, [](const auto& dip) { return to_json(dip); }, out);
+  if (report.min_manipulability) out.set("min_manipulability", *report.min_manipulability);
+  if (report.min_singular_value) out.set("min_singular_value", *report.min_singular_value);
+}
+
+void put_fact(const Fact& fact, JsonDoc& out) {
+  const char* const key = fact.name.c_str();
+  if (const auto* const figures = std::get_if<std::map<std::string, double>>(&fact.value)) {
+    out.set(key, to_json(*figures));
+  } else if (const auto* const word = std::get_if<std::string>(&fact.value)) {
+    out.set(key, *word);
+  } else {
+    out.set(key, std::get<double>(fact.value));
+  }
 }
 
 /// Keeps the least of each.
@@ -84,34 +110,32 @@ void add_motion(const PlannedMove& move, const Arm& arm, Report& report) {
 }
 
 std::string to_json(const Report& report) {
-  Json out;
-  out["name"] = report.name;
-  out["model"] = report.model;
-  out["ok"] = report.ok;
+  JsonDoc out{{"name", report.name}, {"model", report.model}, {"ok", report.ok}};
   if (!report.ok) {
-    out["reason"] = report.reason;
-    out["detail"] = report.detail;
+    out.set("reason", report.reason);
+    out.set("detail", report.detail);
   }
-  if (!report.control.empty()) out["control"] = report.control;
-  out["duration"] = report.duration;
-  out["steps"] = report.steps;
+  if (!report.control.empty()) out.set("control", report.control);
+  out.set("duration", report.duration);
+  out.set("steps", report.steps);
   put_errors(report, out);
-  out["coverage"] = report.done;
-  out["max_joint_step"] = report.max_joint_step;
-  if (report.tool_speed_max) out["tool_speed_max"] = *report.tool_speed_max;
+  out.set("coverage", report.done);
+  out.set("max_joint_step", report.max_joint_step);
+  if (report.tool_speed_max) out.set("tool_speed_max", *report.tool_speed_max);
   put_planned(report, out);
-  out["limits_used"] = {{"velocity", report.velocity_use},
-                        {"torque", report.torque_use},
-                        {"saturated_steps", report.saturated_steps}};
-  out["first_contact"] = report.first_contact.empty() ? Json() : Json(report.first_contact);
-  if (!report.unreachable.empty()) out["unreachable"] = report.unreachable;
-  if (report.shift) out["fix"]["shift"] = {report.shift->x(), report.shift->y(), report.shift->z()};
-  for (const Fact& fact : report.facts) {
-    std::visit([&](const auto& value) { out[fact.name] = value; }, fact.value);
+  out.set("limits_used", {{"velocity", report.velocity_use},
+                          {"torque", report.torque_use},
+                          {"saturated_steps", report.saturated_steps}});
+  out.set("first_contact",
+          report.first_contact.empty() ? JsonDoc() : JsonDoc(report.first_contact));
+  put_list("unreachable", report.unreachable, [](std::size_t i) { return JsonDoc(i); }, out);
+  if (report.shift) {
+    out.set("fix", {{"shift", {report.shift->x(), report.shift->y(), report.shift->z()}}});
   }
-  for (const ReportedMove& move : report.moves) out["moves"].push_back(to_json(move));
-  if (report.rtf) out["rtf"] = *report.rtf;
-  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  for (const Fact& fact : report.facts) put_fact(fact, out);
+  put_list("moves", report.moves, [](const auto& move) { return to_json(move); }, out);
+  if (report.rtf) out.set("rtf", *report.rtf);
+  return out.document();
 }
 
 }  // namespace mjarm

@@ -1,42 +1,13 @@
 #include "mjarm/planning/plan_answer.hpp"
 
 #include <cassert>
-#include <cmath>
 #include <utility>
 
-#include "mjarm/core/number.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/stopwatch.hpp"
 
 namespace mjarm {
 namespace {
-
-// Members of a JSON object, each with the comma before it.
-void append_key(std::string& out, const char* key) { out += std::string(",\"") + key + "\":"; }
-
-void append_value(std::string& out, const char* key, double value) {
-  append_key(out, key);
-  append_number(out, value);
-}
-
-void append_axis(std::string& out, const char* key, const Eigen::Vector3d& axis) {
-  append_key(out, key);
-  append_numbers(out, {axis.data(), 3});
-}
-
-void append_rows(std::string& out, const char* key, std::span<const JointVec> rows) {
-  append_key(out, key);
-  out += '[';
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i > 0) out += ',';
-    append_numbers(out, as_span(rows[i]));
-  }
-  out += ']';
-}
-
-/// To a tenth of a microsecond.
-void append_us(std::string& out, const char* key, double us) {
-  append_value(out, key, std::round(us * 10) / 10);
-}
 
 std::string other_of(const SphereClearance& nearest, const FastRobot& robot,
                      const Obstacles& obstacles) {
@@ -62,13 +33,14 @@ void append_proof(JsonWriter& json, const EdgeCertificate& proof, const FastRobo
   json.end_object();
 }
 
-void append_tilt(std::string& out, const TiltLimit& limit, double largest) {
-  append_key(out, "tilt");
-  out += "{\"limit\":" + number(limit.max);
-  append_value(out, "largest", largest);
-  append_axis(out, "tool", limit.axis_T);
-  append_axis(out, "world", limit.axis_W);
-  out += '}';
+void append_tilt(JsonWriter& json, const TiltLimit& limit, double largest) {
+  json.key("tilt")
+      .object()
+      .member("limit", limit.max)
+      .member("largest", largest)
+      .member("tool", limit.axis_T)
+      .member("world", limit.axis_W)
+      .end_object();
 }
 
 /// A list of strings; nothing for an empty one.
@@ -110,11 +82,8 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
   } else {
     json.member("reason", describe(answer.path.error(), robot, obstacles));
   }
-  if (timing) {
-    append_us(out, "us", answer.us);
-    append_us(out, "simplify_us", answer.simplify_us);
-  }
-  out += '}';
+  if (timing) json.member_us("us", answer.us).member_us("simplify_us", answer.simplify_us);
+  json.end_object();
 }
 
 }  // namespace mjarm

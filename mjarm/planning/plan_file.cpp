@@ -6,17 +6,13 @@
 #include <utility>
 
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/messages/app.hpp"
+#include "mjarm/core/json.hpp"
+#include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/messages/planning.hpp"
-#include "mjarm/planning/json_members_internal.hpp"
 #include "mjarm/planning/planning_world.hpp"
 
 namespace mjarm {
 namespace {
-
-using detail::number_list;
-using detail::numbers_of;
-using nlohmann::json;
 
 constexpr double kUnitSlack = 1e-6;                         // relative
 constexpr std::size_t kMaxPlanFile = std::size_t{1} << 28;  // [bytes]
@@ -25,15 +21,15 @@ std::string indexed(const char* list, std::size_t i) {
   return std::string(list) + '[' + std::to_string(i) + ']';
 }
 
-Result<double> number_at(const json& object, const char* key) {
-  const auto found = object.find(key);
-  if (found == object.end()) return fail(Errc::bad_input, text(msg::app_json_missing, key));
+Result<double> number_at(const JsonValue& object, const char* key) {
+  const JsonValue* const found = object.find(key);
+  if (found == nullptr) return fail(Errc::bad_input, text(msg::json_missing, key));
   if (!found->is_number()) return fail(Errc::bad_input, text(msg::planning_verify_no_number, key));
-  return found->get<double>();
+  return found->number();
 }
 
-Result<void> read_rows(const json& rows, std::size_t dof, GivenPath& out) {
-  if (!rows.is_array()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
+Result<void> read_rows(const JsonValue& rows, std::size_t dof, GivenPath& out) {
+  if (!rows.is_list()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Result<std::vector<double>> row = numbers_of(rows[i], indexed("path", i), dof);
     if (!row) return fail(std::move(row.error()));
@@ -52,18 +48,17 @@ Result<GivenCertificate> certificate_of(const JsonValue& entry) {
     if (!value) return fail(value.error());
     *target = *value;
   }
-  const auto pair = entry.find("pair");
-  if (pair == entry.end()) return out;
-  if (!pair->is_array() || pair->size() != 2 || !(*pair)[0].is_string() ||
-      !(*pair)[1].is_string()) {
+  const JsonValue* const pair = entry.find("pair");
+  if (pair == nullptr) return out;
+  if (!pair->is_list() || pair->size() != 2 || !(*pair)[0].is_string() || !(*pair)[1].is_string()) {
     return fail(Errc::bad_input, text(msg::planning_verify_no_pair));
   }
   out.pair = {(*pair)[0].string(), (*pair)[1].string()};
   return out;
 }
 
-Result<void> read_certificates(const json& list, GivenPath& out) {
-  if (!list.is_array()) return fail(Errc::bad_input, text(msg::planning_verify_no_certificates));
+Result<void> read_certificates(const JsonValue& list, GivenPath& out) {
+  if (!list.is_list()) return fail(Errc::bad_input, text(msg::planning_verify_no_certificates));
   out.certificate.emplace();
   for (std::size_t i = 0; i < list.size(); ++i) {
     Result<GivenCertificate> entry = certificate_of(list[i]);
@@ -104,22 +99,22 @@ Result<void> read_tilt(const JsonValue& entry, GivenPath& out) {
 }
 
 /// A list of strings, or none.
-Result<void> read_words(const json& entry, const char* key, std::vector<std::string>& out) {
-  const auto list = entry.find(key);
-  if (list == entry.end()) return {};
-  const auto is_word = [](const json& word) { return word.is_string(); };
-  if (!list->is_array() || !std::all_of(list->begin(), list->end(), is_word)) {
+Result<void> read_words(const JsonValue& entry, const char* key, std::vector<std::string>& out) {
+  const JsonValue* const list = entry.find(key);
+  if (list == nullptr) return {};
+  const auto is_word = [](const JsonValue& word) { return word.is_string(); };
+  if (!list->is_list() || !std::all_of(list->begin(), list->end(), is_word)) {
     return fail(Errc::bad_input, text(msg::planning_verify_no_words, key));
   }
   for (const JsonValue& word : *list) out.push_back(word.string());
   return {};
 }
 
-Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
-  if (entry.is_array()) return read_rows(entry, dof, out);
+Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out) {
+  if (entry.is_list()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
-  const auto ok = entry.find("ok");
-  if (ok != entry.end() && !ok->is_boolean()) {
+  const JsonValue* const ok = entry.find("ok");
+  if (ok != nullptr && !ok->is_boolean()) {
     return fail(Errc::bad_input, text(msg::planning_verify_no_bool, "ok"));
   }
   if (ok != nullptr && !ok->boolean()) return {};
@@ -154,13 +149,13 @@ Result<void> read_entry(const json& entry, std::size_t dof, GivenPath& out) {
 Result<std::vector<GivenPath>> read_plan_file(const std::string& path, std::size_t dof) {
   const Result<std::string> content = read_file(path, kMaxPlanFile);
   if (!content) return fail(content.error());
-  const Result<detail::JsonObject> object = detail::parse_json_object(*content);
+  const Result<JsonObject> object = parse_json_object(*content);
   if (!object) return fail(object.error().code, path + ": " + object.error().what);
   std::vector<GivenPath> out;
   for (const JsonValue& entry : **object) {
     GivenPath given;
-    given.id = item.key();
-    if (Result<void> read = read_entry(item.value(), dof, given); !read) {
+    given.id = entry.key();
+    if (Result<void> read = read_entry(entry, dof, given); !read) {
       return fail(read.error().code,
                   text(msg::planning_verify_in_path, path, given.id, read.error().what));
     }

@@ -9,16 +9,12 @@
 #include <set>
 #include <utility>
 
+#include "mjarm/core/json.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
-#include "mjarm/planning/json_members_internal.hpp"
 
 namespace mjarm {
 namespace {
-
-using detail::number_list;
-using detail::numbers_of;
-using nlohmann::json;
 
 constexpr std::size_t kLargest = std::size_t{1} << 28;  // [bytes], unpacked
 
@@ -52,18 +48,18 @@ Result<std::string> unpacked(const std::string& path) {
   }
 }
 
-Result<const json*> member(const json& object, const char* key) {
+Result<const JsonValue*> member(const JsonValue& object, const char* key) {
   if (!object.is_object()) return bad(msg::planning_file_no_object);
-  const auto found = object.find(key);
-  if (found != object.end()) return &*found;
+  const JsonValue* const found = object.find(key);
+  if (found != nullptr) return found;
   std::vector<std::string> keys;
-  for (const auto& item : object.items()) keys.push_back(item.key());
+  for (const JsonValue& item : object) keys.emplace_back(item.key());
   return bad(msg::planning_file_missing, key, did_you_mean(key, keys));
 }
 
-Result<const json*> list(const json& object, const char* key) {
-  Result<const json*> found = member(object, key);
-  if (found && !(*found)->is_array()) return bad(msg::planning_file_no_list, key);
+Result<const JsonValue*> list(const JsonValue& object, const char* key) {
+  Result<const JsonValue*> found = member(object, key);
+  if (found && !(*found)->is_list()) return bad(msg::planning_file_no_list, key);
   return found;
 }
 
@@ -71,14 +67,14 @@ Result<std::string> string(const JsonValue& object, const char* key) {
   const Result<const JsonValue*> found = member(object, key);
   if (!found) return fail(found.error());
   if (!(*found)->is_string()) return bad(msg::planning_file_no_string, key);
-  return (*found)->get<std::string>();
+  return (*found)->string();
 }
 
 Result<double> real(const JsonValue& object, const char* key) {
   const Result<const JsonValue*> found = member(object, key);
   if (!found) return fail(found.error());
   if (!(*found)->is_number()) return bad(msg::planning_file_no_number, key);
-  return (*found)->get<double>();
+  return (*found)->number();
 }
 
 Result<Eigen::Vector3d> vector(const JsonValue& object, const char* key) {
@@ -92,7 +88,7 @@ Result<Pose> pose(const JsonValue& object, const char* place) {
   if (!p) return fail(p.error());
   const Result<std::vector<double>> quat = number_list(object, "quat", 4);
   if (!quat) return fail(quat.error());
-  const Result<Eigen::Matrix3d> R = detail::rotation_of_quat(*quat);
+  const Result<Eigen::Matrix3d> R = rotation_of_quat(*quat);
   if (!R) return fail(R.error());
   return Pose{*p, *R};
 }
@@ -213,8 +209,8 @@ class RobotReader {
     return {};
   }
 
-  Result<void> add_pair(const json& from) {
-    if (!from.is_array() || from.size() != 2 || !from[0].is_string() || !from[1].is_string()) {
+  Result<void> add_pair(const JsonValue& from) {
+    if (!from.is_list() || from.size() != 2 || !from[0].is_string() || !from[1].is_string()) {
       return bad(msg::planning_file_pair);
     }
     std::array<int, 2> pair{};
@@ -342,7 +338,7 @@ Result<ProblemFile> problems_of(const JsonValue& file, Cylinders cylinders) {
 Result<ProblemFile> read_problem_file(const std::string& path, Cylinders cylinders) {
   const Result<std::string> content = unpacked(path);
   if (!content) return fail(content.error());
-  const Result<detail::JsonObject> object = detail::parse_json_object(*content);
+  const Result<JsonObject> object = parse_json_object(*content);
   if (!object) return fail(at(path, object.error()));
   Result<ProblemFile> out = problems_of(**object, cylinders);
   if (!out) return fail(at(path, std::move(out.error())));

@@ -7,8 +7,8 @@
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
-#include "mjarm/core/messages/demo.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/demo.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/view/remote_window.hpp"
 

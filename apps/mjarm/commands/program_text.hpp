@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/mjarm/cli/json_doc.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/program/load_program.hpp"
 
 namespace mjarm::app {

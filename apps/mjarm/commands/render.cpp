@@ -9,7 +9,7 @@
 #include "apps/mjarm/commands/render_options.hpp"
 #include "apps/mjarm/commands/render_program.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
-#include "mjarm/core/messages/render_command.hpp"
+#include "apps/mjarm/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/model/find_arm.hpp"

@@ -4,7 +4,7 @@
 
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/plan.hpp"
+#include "apps/mjarm/messages/plan.hpp"
 
 namespace mjarm::app {
 

@@ -5,9 +5,9 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
-#include "mjarm/core/messages/app.hpp"
-#include "mjarm/core/messages/demo.hpp"
-#include "mjarm/core/messages/motion_program.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/demo.hpp"
+#include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/view/remote_window.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/messages/demo.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/render/camera.hpp"
 #include "mjarm/session/run_charts.hpp"

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "apps/mjarm/cli/command.hpp"
-#include "apps/mjarm/cli/json_doc.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/commands/run_output.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/messages/train.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "apps/mjarm/install/installed.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/collision/exact.hpp"
-#include "mjarm/core/messages/demo.hpp"
 
 namespace mjarm::app {
 

@@ -5,7 +5,7 @@
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "mjarm/core/messages/demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/path/path_fix.hpp"
 
 namespace mjarm::app {
