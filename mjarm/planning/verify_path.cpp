@@ -11,7 +11,6 @@
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
 #include "mjarm/core/messages/planning.hpp"
-#include "mjarm/core/messages/verify.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm {

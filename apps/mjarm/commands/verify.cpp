@@ -1,4 +1,4 @@
-#include "mjarm/core/messages/verify.hpp"
+#include "apps/mjarm/messages/verify.hpp"
 
 #include <algorithm>
 #include <atomic>
