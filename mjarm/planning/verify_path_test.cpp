@@ -166,7 +166,8 @@ TEST_F(VerifyPathTest, PlannedPathsAreValidAndBentOnesAreNot) {
 
   given.rows = {given.rows.front(), given.rows.back()};
   Kinds kinds;
-  for (const PathFault& fault : verify_path(file, problem, given, {}, exact).value().faults) {
+  const PathVerdict bent = verify_path(file, problem, given, {}, exact).value();
+  for (const PathFault& fault : bent.faults) {
     kinds.push_back(fault.kind);
   }
   EXPECT_EQ(kinds, (Kinds{"hit", "contact", "cost"}));
