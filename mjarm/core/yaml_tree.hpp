@@ -5,15 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "mjarm/core/file_place.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm {
-
-/// Where something stands in a file, both from 1; 0 where it comes from no file.
-struct FilePlace {
-  int line = 0;
-  int column = 0;
-};
 
 /// A YAML document as a tree that knows where everything stands, without yaml-cpp's headers.
 struct YamlNode {

@@ -9,7 +9,6 @@
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/file_place.hpp"
 #include "mjarm/core/pose.hpp"
-#include "mjarm/core/yaml_tree.hpp"
 
 namespace mjarm {
 
