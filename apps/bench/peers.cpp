@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/os.hpp"

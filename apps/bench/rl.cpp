@@ -13,6 +13,7 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
+#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"

@@ -80,7 +80,9 @@ TEST(FastLevels, CallTheSameConfigurationsFree) {
       const double truth = testing::true_clearance(scene.arm, scene.set, scene.world, q);
       EXPECT_GT(truth, 0) << "some level calls it free";
       // Solid meshes are thicker where spheres are small.
-      if (round % 4 != 0) EXPECT_LT(truth, padding);
+      if (round % 4 != 0) {
+        EXPECT_LT(truth, padding);
+      }
     }
   }
   EXPECT_GT(free_of_all, 200);

@@ -165,9 +165,11 @@ TEST_F(VerifyPathTest, PlannedPathsAreValidAndBentOnesAreNot) {
   EXPECT_NEAR(sound.cost, path.cost, 1e-9);
 
   given.rows = {given.rows.front(), given.rows.back()};
-  const PathVerdict bent = verify_path(file, problem, given, {}, exact).value();
   Kinds kinds;
-  for (const PathFault& fault : bent.faults) kinds.push_back(fault.kind);
+  const PathVerdict bent = verify_path(file, problem, given, {}, exact).value();
+  for (const PathFault& fault : bent.faults) {
+    kinds.push_back(fault.kind);
+  }
   EXPECT_EQ(kinds, (Kinds{"hit", "contact", "cost"}));
 }
 

@@ -4,25 +4,14 @@
 
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/kinematics/fk.hpp"
-#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/robot.hpp"
 
 namespace mjarm {
 namespace {
 
-struct Robot {
-  Model model;
-  Arm arm;
-};
-
-Robot load(const char* name) {
-  auto model = Model::load(find_model_file(name).value());
-  auto arm = find_arm(model.value());
-  return {model.value(), arm.value()};
-}
-
 TEST(StartPosture, HomeIsTakenWhereItIsFit) {
   for (const char* name : {"ur5e", "panda"}) {
-    const Robot robot = load(name);
+    const Robot robot = load_robot(name).value();
     Rng rng(1);
     const auto postures =
         start_postures(robot.arm, ExactChecker(robot.model, robot.arm).predicate(), rng);
@@ -33,7 +22,7 @@ TEST(StartPosture, HomeIsTakenWhereItIsFit) {
 }
 
 TEST(StartPosture, StretchedHomeGivesWayToBentOnes) {
-  Robot robot = load("ur5e");
+  Robot robot = load_robot("ur5e").value();
   robot.arm.home.setZero();  // stretched out, a singularity
   EXPECT_LT(dexterity(robot.arm, as_span(robot.arm.home)), 1e-6);
   ExactChecker checker(robot.model, robot.arm);
@@ -54,7 +43,7 @@ TEST(StartPosture, StretchedHomeGivesWayToBentOnes) {
 }
 
 TEST(StartPosture, NoneWhereAllAreRefused) {
-  const Robot robot = load("ur5e");
+  const Robot robot = load_robot("ur5e").value();
   Rng rng(1);
   const auto nothing = [](std::span<const double>) { return false; };
   EXPECT_TRUE(start_postures(robot.arm, nothing, rng).empty());
@@ -63,7 +52,7 @@ TEST(StartPosture, NoneWhereAllAreRefused) {
 /// Of fewer than six joints only the tool's place counts: two links in a plane lose a direction
 /// everywhere, three that turn on a column lose it stretched.
 TEST(StartPosture, FewJointsAreJudgedByPosition) {
-  Arm arm = load("ur5e").arm;
+  Arm arm = load_robot("ur5e").value().arm;
   arm.joints.resize(3);
   for (JointVec* v : {&arm.limits.lower, &arm.limits.upper, &arm.home}) v->conservativeResize(3);
   arm.X_JT = {{0, 0, 0.4}, Eigen::Matrix3d::Identity()};

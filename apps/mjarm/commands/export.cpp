@@ -5,7 +5,6 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/file.hpp"

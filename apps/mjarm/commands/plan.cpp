@@ -23,6 +23,8 @@
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/plan_answer.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/plan_show.hpp"
 
 namespace mjarm::app {
 namespace {

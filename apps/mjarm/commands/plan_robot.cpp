@@ -13,6 +13,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/plan.hpp"
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/core/number.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/goal_region.hpp"
 #include "mjarm/planning/plan_answer.hpp"

@@ -7,6 +7,7 @@
 
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
+#include "apps/mjarm/messages/train.hpp"
 #include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "apps/mjarm/messages/motion_program.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/progress.hpp"

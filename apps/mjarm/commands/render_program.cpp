@@ -6,7 +6,6 @@
 
 #include "apps/mjarm/commands/render_video.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
-#include "apps/mjarm/view/program_scene.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/execution/execution.hpp"

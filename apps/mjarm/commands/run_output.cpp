@@ -4,6 +4,7 @@
 #include <numbers>
 #include <system_error>
 
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/render/offscreen.hpp"

@@ -6,6 +6,7 @@
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/render/camera.hpp"

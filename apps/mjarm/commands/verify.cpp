@@ -26,6 +26,7 @@
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/planning_world.hpp"
 #include "mjarm/planning/verify_path.hpp"
+#include "apps/mjarm/messages/app.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -7,7 +7,6 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/program_load.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "apps/mjarm/view/view_show.hpp"

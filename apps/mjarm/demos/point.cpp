@@ -3,6 +3,7 @@
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"

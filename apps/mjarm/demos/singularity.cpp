@@ -6,6 +6,7 @@
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/naive.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/path_fix.hpp"

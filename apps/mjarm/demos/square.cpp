@@ -3,6 +3,7 @@
 
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/kinematics/fk.hpp"

@@ -7,6 +7,7 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/render_program.hpp"
 #include "apps/mjarm/commands/render_video.hpp"
+#include "apps/mjarm/messages/plan_show.hpp"
 #include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/core/log.hpp"

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/session/program_player.hpp"
