@@ -3,10 +3,10 @@
 #include <numbers>
 
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/execution/follow.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/path/joint_polyline.hpp"
 #include "mjarm/planning/planning_world.hpp"
-#include "mjarm/sim/follow.hpp"
 #include "mjarm/trajectory/path_timing.hpp"
 
 int main() {

@@ -80,7 +80,7 @@ JointVec draw(const Arm& arm, Rng& rng) {
   return q;
 }
 
-TEST(ContactRules, AHeldBodyCollidesAsAPartOfTheHandDoes) {
+TEST(ContactRules, AnAttachedBodyCollidesAsAPartOfTheHandDoes) {
   const Crane &free = free_bar(), &grown = grown_bar();
   ExactChecker attached(free.model, free.arm, {.rules = attached_bar()});
   ExactChecker part(grown.model, grown.arm);

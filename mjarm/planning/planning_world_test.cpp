@@ -54,18 +54,19 @@ double exact_clearance(const Robot& robot, const PlannedPath& path, double reach
   return least;
 }
 
-/// A turning beam with flat sides, its tip, and a post beside it; `gap` [m] is left between them
-/// where the beam stands at 0.
+/// A turning beam with flat sides 40 mm apart, a ball at its end, and a post beside it; `gap` [m]
+/// is left between beam and post where the beam stands at 0. One row of balls along the beam sticks
+/// out of its sides by 8.3 mm at least.
 Robot beam(double gap, const std::string& more = "", const std::string& collide = "") {
   const support::TempFolder folder;
   const std::string xml = R"(<mujoco><compiler angle="radian"/><worldbody>
     <geom name="post" type="box" size="0.05 0.05 0.3" pos="0.5 )" +
-                          std::to_string(0.1 + gap) + R"( 0"/>
+                          std::to_string(0.07 + gap) + R"( 0"/>
     <body name="beam"><joint name="turn" axis="0 0 1" range="-3 3" limited="true"/>
-      <geom name="beam" type="box" size="0.25 0.05 0.05" pos="0.35 0 0")" +
+      <geom name="beam" type="box" size="0.25 0.02 0.02" pos="0.35 0 0")" +
                           collide + R"(/>
       <body name="tip" pos="0.65 0 0"><joint name="bend" axis="0 1 0" range="-2 2" limited="true"/>
-        <geom name="tip" type="box" size="0.03 0.03 0.03" pos="0.06 0 0")" +
+        <geom name="tip" type="sphere" size="0.03" pos="0.06 0 0")" +
                           collide + R"(/>
         <site name="tcp" pos="0.1 0 0"/></body></body>)" +
                           more + R"(</worldbody>
@@ -101,7 +102,8 @@ TEST(PlanningWorld, PlansToJointsAPoseAndARegion) {
   EXPECT_NEAR(p_W.y(), -0.3, 1e-4);
   EXPECT_LT(p_W.x(), -0.5);
 
-  const auto anyhow = world.plan(kBefore, Pose{X_WT.p, {}}, {}, IkTask::position);
+  const auto anyhow =
+      world.plan(kBefore, Pose{X_WT.p, Eigen::Matrix3d::Identity()}, {}, IkTask::position);
   ASSERT_TRUE(anyhow) << anyhow.error().what;
   EXPECT_LT((fk(walled_ur5e().arm, as_span(anyhow->q.back())).p - X_WT.p).norm(), 1e-4);
 }
@@ -219,7 +221,7 @@ TEST(PlanningWorld, PathsKeepTheMargin) {
   ASSERT_TRUE(near) << near.error().what;
   ASSERT_TRUE(far) << far.error().what;
   EXPECT_GE(exact_clearance(walled_ur5e(), *far, 0.1), kMargin);
-  // The beam passes over a sill; without a margin it nearly grazes it.
+  // Beside the post there is room for 30 mm.
   const Robot robot = beam(0.03);
   const std::vector<double> start{-1, 0};
   const auto goals = goals_at({{0, 0}});
@@ -228,7 +230,9 @@ TEST(PlanningWorld, PathsKeepTheMargin) {
   ASSERT_TRUE(beside);
   EXPECT_NEAR(exact_clearance(robot, *beside, 0.1), 0.03, 1e-6);
   PlanningWorld kept = world_of(robot, {.margin = 0.025});
-  ASSERT_TRUE(kept.plan(start, goals));
+  const auto clear = kept.plan(start, goals);
+  ASSERT_TRUE(clear) << clear.error().what;
+  EXPECT_GE(exact_clearance(robot, *clear, 0.1), 0.025);
   // Where the margin is wider than the room there is no path, and it is told what is too near.
   PlanningWorld too_wide = world_of(robot, {.margin = 0.031});
   const auto none = too_wide.plan(start, goals);

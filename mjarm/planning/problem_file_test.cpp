@@ -265,7 +265,8 @@ TEST_F(ProblemFileTest, EndsThatCannotBeAreTold) {
             std::string::npos);
   EXPECT_NE(reason(with("start", {3.5, 0})).find("outside of the limits"), std::string::npos);
   EXPECT_NE(reason(with("goals", {{0, 1e300}})).find("outside of the limits"), std::string::npos);
-  EXPECT_NE(reason(with("obstacles", {box("all", 0, 0, 1e4)})).find("\"all\""), std::string::npos);
+  EXPECT_NE(reason(with("obstacles", json::array({box("all", 0, 0, 1e4)}))).find("\"all\""),
+            std::string::npos);
   json many = json::array();
   Rng rng(5);
   while (many.size() < 100'000) many.push_back({rng.uniform(-1, 1) * 1e-3, 0});

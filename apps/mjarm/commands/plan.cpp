@@ -13,7 +13,10 @@
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/plan_robot.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/plan_show.hpp"
 #include "apps/mjarm/view/plan_show.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
@@ -23,8 +26,6 @@
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/plan_answer.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/plan_show.hpp"
 
 namespace mjarm::app {
 namespace {

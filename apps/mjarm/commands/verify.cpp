@@ -18,6 +18,8 @@
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/rule_options.hpp"
+#include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -26,7 +28,6 @@
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/planning_world.hpp"
 #include "mjarm/planning/verify_path.hpp"
-#include "apps/mjarm/messages/app.hpp"
 
 namespace mjarm::app {
 namespace {
