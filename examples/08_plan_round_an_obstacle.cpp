@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "mjarm/core/rotation.hpp"
-#include "mjarm/execution/follow.hpp"
+#include "mjarm/execution/execution.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/path/joint_polyline.hpp"
 #include "mjarm/planning/planning_world.hpp"
@@ -27,13 +27,13 @@ int main() {
   const auto motion = mjarm::time_waypoint_path(line->path.q, arm.limits);
   if (!motion) return std::fprintf(stderr, "%s\n", motion.error().what.c_str()), 1;
 
-  auto controller = mjarm::Controller::make(model, arm, mjarm::ControlMode::computed_torque);
-  if (!controller) return std::fprintf(stderr, "%s\n", controller.error().what.c_str()), 1;
+  const mjarm::MotionPlan plan = mjarm::MotionPlan::of(arm, *motion);
   mjarm::Sim sim(model);
   sim.place(arm, mjarm::as_span(arm.home));
-  const auto done =
-      mjarm::follow_time({.sim = sim, .controller = *controller, .arm = arm}, *motion);
-  if (!done) return std::fprintf(stderr, "%s\n", describe(done.error(), arm).c_str()), 1;
+  auto execution = mjarm::Execution::make(model, plan);
+  if (!execution) return std::fprintf(stderr, "%s\n", execution.error().what.c_str()), 1;
+  const auto done = execution->run_to_end(sim);
+  if (!done) return std::fprintf(stderr, "%s\n", done.error().what.c_str()), 1;
   std::printf("%zu edges of %.2f rad in %.2f s, %s\n", path->proof.size(), path->cost,
               motion->duration(), done->first_contact ? "with a contact" : "without a contact");
   return done->first_contact ? 1 : 0;

@@ -172,12 +172,12 @@ TEST_P(MeshScene, RealMeshesLieWhereTheShapesAre) {
   MJARM_TEST_FILE(archive, "menagerie/" + set.folder + ".tar.xz");
   ASSERT_NO_FATAL_FAILURE(load_with([&](const fs::path& assets) {
     // Not from the wheel, but the same files: every mesh has the hash of our table.
-    const support::TempFolder folder;
+    const support::TempFolder unpacked;
     const auto done =
-        support::run_program("/bin/tar", {"xf", archive.string(), "-C", folder.path().string()});
+        support::run_program("/bin/tar", {"xf", archive.string(), "-C", unpacked.path().string()});
     ASSERT_EQ(done.exit_code, 0) << done.err;
     for (const MeshFile& mesh : set.files) {
-      const fs::path from = folder.path() / set.folder / "assets" / mesh.name;
+      const fs::path from = unpacked.path() / set.folder / "assets" / mesh.name;
       ASSERT_EQ(sha256_of_file(from).value_or(""), mesh.sha256) << from;
       fs::copy_file(from, assets / mesh.name);
     }
