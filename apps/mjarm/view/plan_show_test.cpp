@@ -34,7 +34,7 @@ class PlanShown : public ::testing::Test {
   support::ProgramResult plan(std::vector<std::string> more,
                               const support::RunOptions& options = {}) {
     more.insert(more.begin(), {"plan", "--in", in_});
-    return mjarm(more, options);
+    return support::run_program(MJARM_PROGRAM, more, options);
   }
   [[nodiscard]] std::string file(const char* name) const {
     return (folder_.path() / name).string();
