@@ -13,11 +13,9 @@ namespace {
 
 using ::testing::HasSubstr;
 using testing::kDown;
-using testing::kSeed;
 using testing::load_shipped;
 using testing::load_text;
 using testing::Loaded;
-using testing::rest_to_rest;
 using testing::shifted;
 using testing::small_world;
 using testing::there_and_half_back;
@@ -25,19 +23,23 @@ using testing::there_and_half_back;
 constexpr ControlMode kMode = ControlMode::computed_torque;
 constexpr double kTolerance = 5e-4;  // [m]
 
-/// A line of 0.2 m that the UR5e draws from `kSeed`.
+/// A line of 0.2 m in front of the UR5e.
 struct Line {
   Loaded robot = load_shipped("ur5e");
-  ToolMotion motion =
-      plan_tool_motion(IkSolver(robot.arm),
-                       Curve::line({{-0.1, 0.4, 0.2}, kDown}, {{0.1, 0.4, 0.2}, kDown}).value(),
-                       kSeed)
-          .value();
+  ToolMotion motion = plan_tool_motion(IkSolver(robot.arm), line_from({{0.1, -0.45, 0.4}, kDown}),
+                                       as_span(robot.arm.home))
+                          .value();
 
-  /// An approach to it, and the line.
+  static Curve line_from(const Pose& X) {
+    return Curve::line(X, {X.p - Eigen::Vector3d(0.2, 0, 0), X.R}).value();
+  }
+
+  /// An approach to it from home, and the line.
   [[nodiscard]] MotionPlan plan() const {
-    MotionPlan plan =
-        MotionPlan::of(robot.arm, rest_to_rest(joint_vec(kSeed), motion.path.q.front(), 1));
+    const Arm& arm = robot.arm;
+    MotionPlan plan = MotionPlan::of(
+        arm,
+        time_joint_move(as_span(arm.home), as_span(motion.path.q.front()), arm.limits).value());
     plan.moves.front().word = "approach";
     plan.moves.push_back(
         {.word = "movel", .place = {7, 5}, .trajectory = motion.trajectory, .curve = motion.curve});
@@ -52,7 +54,7 @@ TEST(MotionRun, ReportsWhatAPlanDid) {
   ASSERT_TRUE(run.execute(plan, kMode));
   const std::vector<MeasuredRun> runs = run.measured_runs();
   ASSERT_EQ(runs.size(), 1U) << "the approach is not measured";
-  EXPECT_GE(runs.front().rows.front().time, 1);
+  EXPECT_GE(runs.front().rows.front().time, plan.moves.front().trajectory.duration() - 1e-9);
   const Report report = run.report(plan, runs, kTolerance);
   EXPECT_TRUE(report.ok) << report.detail;
   EXPECT_EQ(report.model, line.robot.model.name());
@@ -172,8 +174,12 @@ TEST(MotionRun, TellsApproachesFromWhatIsMeasured) {
 }
 
 TEST(MeasuredRuns, ErrorsOfSeveralCurvesAreWeighedByRowsAndLengths) {
-  const Curve shorter = Curve::line({}, {{1, 0, 0}, {}}).value();
-  const Curve longer = Curve::line({}, {{3, 0, 0}, {}}).value();
+  const auto line = [](double length) {
+    Pose to;
+    to.p.x() = length;
+    return Curve::line({}, to).value();
+  };
+  const Curve shorter = line(1), longer = line(3);
   MeasuredRun a{.rows = std::vector<RecordRow>(1), .curve = &shorter};
   a.error = PathError{.max = 1, .rms = 1, .at = 0.5, .coverage = 1};
   MeasuredRun b{.rows = std::vector<RecordRow>(3), .curve = &longer};
