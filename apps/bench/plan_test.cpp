@@ -145,7 +145,7 @@ TEST(BenchPlan, BrokenAnswersAreOneLine) {
                                        {answer("\"p0\",\"p0\"", path + "," + path), "us"},
                                        {answer("\"p0\"", path, ",\"own\":[1,2]"), "own"},
                                        {answer("\"p0\"", path, ",\"world\":[]"), "world"},
-                                       {answer("\"p0\"", "[[0,\"x\"]]"), "type"}}) {
+                                       {answer("\"p0\"", "[[0,\"x\"]]"), "paths"}}) {
     const support::TempFolder folder;
     const std::string peers = write_peers(folder, broken);
     const auto result = mjarm(plan(folder, {"--set", "panda", "--peers", peers, "--quiet"}));

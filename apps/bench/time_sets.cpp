@@ -9,6 +9,7 @@
 #include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
+#include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/rng.hpp"
 
 namespace mjarm::app {
@@ -125,6 +126,11 @@ Result<JsonObject> read_best_known(const fs::path& folder) {
   if (!content) return fail(content.error());
   Result<JsonObject> known = parse_json_object(*content);
   if (!known) return fail(known.error().code, file.string() + ": " + known.error().what);
+  for (const JsonValue& cases : **known) {
+    if (cases.is_object()) continue;
+    return fail(Errc::bad_input, file.string() + ": \"" + std::string(cases.key()) +
+                                     "\": " + text(msg::json_no_object));
+  }
   return known;
 }
 

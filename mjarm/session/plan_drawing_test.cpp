@@ -230,16 +230,25 @@ TEST_F(WallPicture, StartAndGoalHaveTheirColours) {
   PlanLayers layers{false, false, true, false, false, false};
   const Image image = draw(layers);
   const auto& q = world().path.q;
-  const auto color_at = [&](const JointVec& corner) {
+  // How much more of one colour than of the others there is at most, near the tool at a corner.
+  const auto most_of = [&](std::size_t color, const JointVec& corner) {
+    constexpr int kNear = 8;  // [pixels]
     const Eigen::Vector2d at =
         pixel_of(world().model, from_, fk(world().arm, as_span(corner)).p, kWidth, kHeight);
-    return image.pixel(static_cast<int>(at.x()), static_cast<int>(at.y()));
+    int most = -255;
+    for (int y = -kNear; y <= kNear; ++y) {
+      for (int x = -kNear; x <= kNear; ++x) {
+        const auto pixel = image.pixel(static_cast<int>(at.x()) + x, static_cast<int>(at.y()) + y);
+        const int other = std::max(pixel[(color + 1) % 3], pixel[(color + 2) % 3]);
+        most = std::max(most, pixel[color] - other);
+      }
+    }
+    return most;
   };
-  const auto start = color_at(q.front()), goal = color_at(q.back());
-  EXPECT_GT(start[1], start[2]);  // green
-  EXPECT_GT(start[1], start[0]);
-  EXPECT_GT(goal[2], goal[1]);  // blue
-  EXPECT_GT(goal[2], goal[0]);
+  EXPECT_GT(most_of(1, q.front()), 60);  // green
+  EXPECT_LT(most_of(2, q.front()), 60);
+  EXPECT_GT(most_of(2, q.back()), 60);  // blue
+  EXPECT_LT(most_of(1, q.back()), 60);
 }
 
 class PlanWindow : public WallPlan {
