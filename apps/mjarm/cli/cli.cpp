@@ -69,8 +69,11 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
 const Command* handed_over(std::span<const Command> commands,
                            const std::vector<std::string>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (arguments[i] == "--lang") ++i;  // a value follows
-    if (i >= arguments.size() || arguments[i].starts_with('-')) continue;
+    if (arguments[i] == "--lang") {
+      ++i;  // its value
+      continue;
+    }
+    if (arguments[i].starts_with('-')) continue;
     const auto named = [&](const Command& c) { return c.name == arguments[i]; };
     const auto found = std::ranges::find_if(commands, named);
     return found != commands.end() && found->program != nullptr ? &*found : nullptr;
