@@ -6,7 +6,8 @@
 namespace mjarm::app {
 namespace {
 
-const std::filesystem::path kBench = std::filesystem::path(MJARM_PROGRAM).parent_path() / "mjarm-bench";
+const std::filesystem::path kBench =
+    std::filesystem::path(MJARM_PROGRAM).parent_path() / "mjarm-bench";
 
 TEST(Handover, IsTheSameProgram) {
   const auto alone = support::run_program(kBench, {"sim", "--help"});
@@ -21,7 +22,8 @@ TEST(Handover, GlobalOptionsMayStandBeforeIt) {
   const std::string chinese = mjarm({"bench", "sim", "--help", "--lang", "zh-CN"}).out;
   EXPECT_EQ(mjarm({"--lang", "zh-CN", "bench", "sim", "--help"}).out, chinese);
   EXPECT_EQ(mjarm({"--lang=zh-CN", "bench", "sim", "--help"}).out, chinese);
-  EXPECT_EQ(mjarm({"--quiet", "bench", "sim", "--help"}).out, mjarm({"bench", "sim", "--help"}).out);
+  EXPECT_EQ(mjarm({"--quiet", "bench", "sim", "--help"}).out,
+            mjarm({"bench", "sim", "--help"}).out);
   EXPECT_NE(chinese, mjarm({"bench", "sim", "--help"}).out);
 }
 
