@@ -52,12 +52,18 @@ void Execution::take_measures(const Sim& sim) {
   motions_.back().outcome.reached = reached;
 }
 
-Result<void> Execution::step(Sim& sim) {
-  const MotionClock::Step step = clock_.next();
+MotionClock::Step Execution::next(Sim& sim) {
+  MotionClock::Step step = clock_.next();
   if (step.close) {
     const Gripper& gripper = *plan_->arms.front().gripper;
     sim.set_ctrl(gripper.id, *step.close ? gripper.ctrl_closed : gripper.ctrl_open);
   }
+  return step;
+}
+
+Result<void> Execution::step(Sim& sim) { return make_step(sim, next(sim)); }
+
+Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
   if (step.begins) begin_motion(sim, step.motion);
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
   if (auto stepped = stepper_->step(sim, controller_, step.reference, recorder_); !stepped) {
@@ -73,7 +79,9 @@ Result<void> Execution::step(Sim& sim) {
 Result<FollowOutcome> Execution::run_to_end(Sim& sim, const AfterStep& after_step) {
   run();
   while (state() == State::running) {
-    if (auto stepped = step(sim); !stepped) return fail(std::move(stepped.error()));
+    const MotionClock::Step step = next(sim);
+    if (!step.moves) break;  // what was left takes no time
+    if (auto stepped = make_step(sim, step); !stepped) return fail(std::move(stepped.error()));
     if (!after_step || after_step(sim)) continue;
     take_measures(sim);
     motions_.back().outcome.stopped = true;

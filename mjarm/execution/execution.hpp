@@ -75,6 +75,9 @@ class Execution {
  private:
   Execution(const Model& model, const MotionPlan& plan, Controller controller,
             const ExecutionOptions& options);
+  /// What the next step is; the gripper is told what it has to do from then on.
+  [[nodiscard]] MotionClock::Step next(Sim& sim);
+  [[nodiscard]] Result<void> make_step(Sim& sim, const MotionClock::Step& step);
   void begin_motion(Sim& sim, std::size_t move);
   void take_measures(const Sim& sim);
 

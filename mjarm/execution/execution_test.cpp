@@ -255,6 +255,23 @@ TEST(Execution, WhatTheArmCannotDoIsRefusedBeforeAnythingMoves) {
   EXPECT_EQ(world.sim.time(), 0);
 }
 
+TEST(Execution, APlanThatTakesNoTimeIsDoneAndAsksNobody) {
+  World world(load_shipped("ur5e"));
+  const JointVec home = world.robot.arm.home;
+  const MotionPlan plan =
+      MotionPlan::of(world.robot.arm, *Trajectory::through({0.0}, {JointState::at_rest(home)}));
+  int asked = 0;
+  const auto outcome = world.run(plan, {.rest = 0}, [&](const Sim&) {
+    ++asked;
+    return false;
+  });
+  ASSERT_TRUE(outcome) << outcome.error().what;
+  EXPECT_EQ(asked, 0);
+  EXPECT_EQ(outcome->steps, 0);
+  EXPECT_FALSE(outcome->stopped);
+  EXPECT_EQ(world.q(), home);
+}
+
 TEST(Execution, APlanWithoutMotionsIsDone) {
   World world(load_text(small_world()));
   MotionPlan plan;

@@ -82,8 +82,8 @@ MotionClock::Step MotionClock::next() {
   begin_motion(step);
   step.motion = motion_;
   JointVec q = now_;
-  const bool moving = is_moving();
-  if (moving) {
+  step.moves = is_moving();
+  if (step.moves) {
     pace_ = std::clamp(pace_ + (going_ ? 1 : -1), 0, kBrakeSteps);
     const double share = static_cast<double>(pace_) / kBrakeSteps;
     // The speed of time along a cubic: its own rate does not jump either.
@@ -93,7 +93,7 @@ MotionClock::Step MotionClock::next() {
   step.reference = {before_, now_, q};
   before_ = now_;
   now_ = q;
-  step.ends = moving && at_ == steps_of(motion_);
+  step.ends = step.moves && at_ == steps_of(motion_);
   if (step.ends) end_motion();
   return step;
 }

@@ -44,6 +44,7 @@ class MotionClock {
   struct Step {
     StepReference reference;
     std::size_t motion = 0;          ///< whose step it is; where it stands, as motion()
+    bool moves = false;              ///< along that motion; else the arm is held where it is
     bool begins = false;             ///< it is the first one of that motion
     bool ends = false;               ///< it is the last one
     std::optional<bool> close = {};  ///< the gripper closes or opens at its beginning
