@@ -27,6 +27,15 @@ TEST(Handover, GlobalOptionsMayStandBeforeIt) {
   EXPECT_NE(chinese, mjarm({"bench", "sim", "--help"}).out);
 }
 
+TEST(Handover, AValueThatIsCalledBenchIsNoCommand) {
+  const support::TempFolder folder;
+  const auto result =
+      support::run_program(kBench, {"sim", "--robot", "bench", "--rounds", "1", "--steps", "9"},
+                           {.folder = folder.path()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(only_line(result).find("\"bench\""), std::string::npos) << result.err;
+}
+
 TEST(Handover, MistakesKeepTheirExitCode) {
   const auto result = mjarm({"bench", "smi"});
   EXPECT_EQ(result.exit_code, 2);

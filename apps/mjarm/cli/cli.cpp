@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -68,17 +69,10 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
 /// The command that the arguments begin with, where another program does it.
 const Command* handed_over(std::span<const Command> commands,
                            const std::vector<std::string>& arguments) {
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (arguments[i] == "--lang") {
-      ++i;  // its value
-      continue;
-    }
-    if (arguments[i].starts_with('-')) continue;
-    const auto named = [&](const Command& c) { return c.name == arguments[i]; };
-    const auto found = std::ranges::find_if(commands, named);
-    return found != commands.end() && found->program != nullptr ? &*found : nullptr;
-  }
-  return nullptr;
+  const std::size_t word = command_word(arguments);
+  if (word == arguments.size()) return nullptr;
+  const auto found = std::ranges::find(commands, arguments[word], &Command::name);
+  return found != commands.end() && found->program != nullptr ? &*found : nullptr;
 }
 
 /// Returns only where the other program cannot be started.
@@ -123,19 +117,18 @@ int run_parsed(const CLI::App& app, const GlobalOptions& global,
   return report({Errc::usage, text(msg::app_no_command)});
 }
 
-}  // namespace
-
-int run(std::span<const Command> commands, const std::vector<std::string>& arguments) {
+int run_guarded(std::span<const Command> commands, const std::vector<std::string>& arguments) {
   if (const Result<void> chosen = choose_language(arguments); !chosen) {
     return report(chosen.error());
+  }
+  if (const Command* other = handed_over(commands, arguments)) {
+    return report(go_on(*other, arguments));
   }
   catch_interrupts();
   const AppPtr app = make_program("mjarm", msg::app_summary, msg::app_examples);
   GlobalOptions global;
   add_global_options(*app, global);
   std::vector<std::pair<const CLI::App*, Run>> runs;
-  if (const Command* other = handed_over(commands, arguments))
-    return report(go_on(*other, arguments));
   for (const Command& command : commands) {
     CLI::App& sub = add_subcommand(*app, command.name, command.summary, command.examples);
     if (command.setup != nullptr) runs.emplace_back(&sub, command.setup(sub));
@@ -145,6 +138,24 @@ int run(std::span<const Command> commands, const std::vector<std::string>& argum
   if (*parsed) return run_parsed(*app, global, runs);
   std::fputs(help_of(*app).c_str(), stdout);
   return finish(0);
+}
+
+}  // namespace
+
+std::size_t command_word(const std::vector<std::string>& arguments) noexcept {
+  std::size_t i = 0;
+  while (i < arguments.size() && arguments[i].starts_with('-'))
+    i += arguments[i] == "--lang" ? 2 : 1;
+  return std::min(i, arguments.size());
+}
+
+int run(std::span<const Command> commands, const std::vector<std::string>& arguments) noexcept {
+  try {
+    return run_guarded(commands, arguments);
+  } catch (const std::exception& error) {
+    // Nothing of ours throws; what comes here is memory that ran out, or a fault of ours.
+    return report({Errc::impossible, text(msg::app_internal_error, error.what())});
+  }
 }
 
 }  // namespace mjarm::app
