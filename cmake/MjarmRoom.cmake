@@ -72,13 +72,14 @@ function(mjarm_tests target)
                        DISCOVERY_TIMEOUT 60)
 endfunction()
 
-# Lets a test include "all_messages.inc": every list of messages beside it.
+# Adds to a test program that of every list of messages in the folder.
 function(mjarm_all_messages target)
   file(GLOB lists CONFIGURE_DEPENDS messages/*.inc)
   list(TRANSFORM lists REPLACE "(.+)" "#include \"\\1\"\n")
   list(JOIN lists "" lists)
   file(CONFIGURE OUTPUT all_messages.inc CONTENT "${lists}")
   target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}")
+  target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/all_messages_test.cpp")
 endfunction()
 
 # Sets the flags of the kernels for wider registers, and drops them where the machine has none.

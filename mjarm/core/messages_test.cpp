@@ -7,18 +7,9 @@
 
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/messages/core.hpp"
-#include "tests/support/messages.hpp"
 
 namespace mjarm {
 namespace {
-
-constexpr Msg kCoreMessages[] = {
-#define MJARM_MSG(id, english, chinese) {english, chinese},
-#include "all_messages.inc"
-#undef MJARM_MSG
-};
-
-TEST(Messages, AreSound) { support::expect_sound(kCoreMessages); }
 
 TEST(Messages, LanguageOfNames) {
   EXPECT_EQ(language_of("zh-CN"), Language::chinese);
