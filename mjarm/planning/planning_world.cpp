@@ -24,6 +24,16 @@ Result<void> check_world_options(const WorldOptions& options) {
   return fail(Errc::bad_input, text(msg::planning_bad_bounds, kMinSphereBound, kMaxSphereBound));
 }
 
+/// plan_path() as an attempt at one level.
+Result<PlannedPath, WorldFailure> search(const FastChecker& checker,
+                                         std::span<const double> q_start,
+                                         std::span<const JointVec> goals,
+                                         const PlanOptions& options, PlanTimes* times) {
+  return plan_path(checker, q_start, goals, options, times).map_error([](const PlanFailure& why) {
+    return WorldFailure{.what = {}, .search = why};
+  });
+}
+
 WorldFailure not_found(const PlanFailure& search, const WorldLevel& level, std::size_t index) {
   return {.code = WorldErrc::no_path,
           .what = describe(search, level.checker.robot(), level.cover.scene),
@@ -89,11 +99,8 @@ Result<WorldPath, WorldFailure> PlanningWorld::climb(const Attempt& attempt) {
 Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
                                                     std::span<const JointVec> goals,
                                                     const PlanOptions& options, PlanTimes* times) {
-  return climb([&](const FastChecker& checker) {
-    return plan_path(checker, q_start, goals, options, times).map_error([](const PlanFailure& why) {
-      return WorldFailure{.what = {}, .search = why};
-    });
-  });
+  return climb(
+      [&](const FastChecker& checker) { return search(checker, q_start, goals, options, times); });
 }
 
 Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
@@ -108,8 +115,7 @@ Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_st
       return tl::unexpected(
           WorldFailure{WorldErrc::no_answer, describe(goals.error(), robot_.arm)});
     }
-    return plan_path(checker, q_start, *goals, options, times)
-        .map_error([](const PlanFailure& why) { return WorldFailure{.what = {}, .search = why}; });
+    return search(checker, q_start, *goals, options, times);
   });
 }
 

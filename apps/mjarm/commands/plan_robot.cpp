@@ -12,8 +12,8 @@
 #include "apps/mjarm/commands/rule_options.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/plan.hpp"
+#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/messages/planning.hpp"
-#include "mjarm/core/number.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/goal_region.hpp"
 #include "mjarm/planning/plan_answer.hpp"
@@ -153,11 +153,11 @@ Result<WorldPath, WorldFailure> find_way(PlanningWorld& world, const Way& way,
   return world.plan(way.start, std::vector{joint_vec(way.goal)}, options, &times);
 }
 
-/// The answer as a JSON object.
+/// Appends the answer as a JSON object.
 /// @param level  that it was found at, or searched last.
-std::string answer_line(const Result<WorldPath, WorldFailure>& found, const Way& way,
-                        const PlanOptions& options, const PlanTimes& times, const WorldLevel& level,
-                        bool timing) {
+void write_found(std::string& out, const Result<WorldPath, WorldFailure>& found, const Way& way,
+                 const PlanOptions& options, const PlanTimes& times, const WorldLevel& level,
+                 bool timing) {
   PlanAnswer answer{.path = {}, .us = times.search_us, .simplify_us = times.finish_us};
   if (options.time_budget > 0) answer = {.path = {}, .us = times.search_us + times.finish_us};
   answer.tilt = options.tilt;
@@ -168,9 +168,7 @@ std::string answer_line(const Result<WorldPath, WorldFailure>& found, const Way&
   } else {
     answer.path = tl::unexpected(found.error().search);
   }
-  std::string line;
-  append_answer(line, answer, level.checker.robot(), level.cover.scene, timing);
-  return line;
+  append_answer(out, answer, level.checker.robot(), level.cover.scene, timing);
 }
 
 }  // namespace
@@ -220,17 +218,15 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   const Result<const WorldLevel*> level = world->level(found ? found->level : found.error().level);
   if (!level) return fail(level.error());
   const std::string& name = robot->arm.name;
-  std::string line = "{";
-  append_json_string(line, name);
-  line += ':';
+  std::string line;
+  JsonWriter json(line);
+  json.object().key(name);
   if (code == WorldErrc::no_answer) {
-    line += "{\"ok\":false,\"reason\":";
-    append_json_string(line, found.error().what);
-    line += '}';
+    json.object().member("ok", false).member("reason", found.error().what).end_object();
   } else {
-    line += answer_line(found, *way, how, times, **level, timing);
+    write_found(line, found, *way, how, times, **level, timing);
   }
-  line += '}';
+  json.end_object();
   const std::optional<std::string> why =
       found ? std::nullopt : std::optional<std::string>(found.error().what);
   const Result<int> exit_code = finish_one(out, line, why, msg::plan_no_path);

@@ -14,6 +14,7 @@
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/execution/motion_clock.hpp"
 #include "mjarm/render/video.hpp"
 #include "mjarm/session/plan_player.hpp"
 #include "mjarm/session/plan_view.hpp"
@@ -27,8 +28,7 @@ using session::PlanLayers;
 using session::PlanPlayer;
 using session::PlanSubject;
 
-constexpr double kFilmSpeed = 1;   // [rad/s or m/s, L2]
-constexpr double kFilmRest = 0.5;  // [s] at the end
+constexpr double kFilmSpeed = 1;  // [rad/s or m/s, L2]
 
 /// Width by height of what is drawn; in a window, of what its panel leaves.
 double aspect_of(const PlanShow& show) {
@@ -69,7 +69,7 @@ Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& 
   layers.corners = false;
   const double length = drawing.way().length();
   const auto frames =
-      static_cast<int>(std::ceil((length / kFilmSpeed + kFilmRest) * options.fps)) + 1;
+      static_cast<int>(std::ceil((length / kFilmSpeed + kRestAtEnd) * options.fps)) + 1;
   Progress progress(text(msg::plan_show_progress), static_cast<std::uint64_t>(frames));
   for (int i = 0; i < frames; ++i) {
     const JointVec q = drawing.way().at(std::min(length, kFilmSpeed * i / options.fps));
