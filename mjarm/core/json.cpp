@@ -96,12 +96,12 @@ class JsonBuilder {
     if (!out.root_.is_object()) return tl::unexpected(JsonFailure{JsonErrc::no_object, 0, {}});
     out.values_ = std::move(values_);
     out.chars_ = std::move(chars_);
-    const auto settle = [&](JsonValue& value) {
+    const auto point_to_entries = [&](JsonValue& value) {
       if (value.kind_ < JsonValue::Kind::list) return;
       value.data_.first = out.values_.data() + value.data_.whole;
     };
-    settle(out.root_);
-    std::ranges::for_each(out.values_, settle);
+    point_to_entries(out.root_);
+    std::ranges::for_each(out.values_, point_to_entries);
     return out;
   }
 
