@@ -14,6 +14,11 @@ struct LoadedProgram {
   Program program;
   Robot robot;
   ProgramPlan plan;
+
+  /// How it is run: as the program asks, else by computed torque.
+  [[nodiscard]] ControlMode control() const {
+    return program.control.value_or(ControlMode::computed_torque);
+  }
 };
 
 /// File of a shipped program, by its name with or without `.yaml`.

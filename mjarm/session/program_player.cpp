@@ -27,8 +27,7 @@ ProgramPlayer::ProgramPlayer(const LoadedProgram& loaded, Execution execution)
 
 Result<ProgramPlayer> ProgramPlayer::make(const LoadedProgram& loaded) {
   Result<Execution> execution =
-      Execution::make(loaded.robot.model, loaded.plan,
-                      {.control = loaded.program.control.value_or(ControlMode::computed_torque)});
+      Execution::make(loaded.robot.model, loaded.plan, {.control = loaded.control()});
   if (!execution) return fail(std::move(execution.error()));
   return ProgramPlayer(loaded, std::move(*execution));
 }

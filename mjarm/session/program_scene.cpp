@@ -11,6 +11,13 @@ constexpr Rgba kJointMoveColor = {0.55F, 0.55F, 0.60F, 1};
 
 }  // namespace
 
+void add_planned_paths(Overlay& overlay, const MotionPlan& plan) {
+  for (const PlannedMove& move : plan.moves) {
+    if (!move.curve && move.corners.empty()) continue;
+    add_planned_path(overlay, planned_tool_path(move, plan.arms[move.tool]));
+  }
+}
+
 ProgramScene::ProgramScene(const LoadedProgram& loaded, int first_figure)
     : loaded_(&loaded), figures_(loaded.robot.arm, first_figure, {true, true}) {
   for (const PlannedMove& move : loaded.plan.moves) {

@@ -11,6 +11,9 @@
 
 namespace mjarm::session {
 
+/// Draws where a plan leads the tool: along its curves, and round what stands in the way.
+void add_planned_paths(Overlay& overlay, const MotionPlan& plan);
+
 /// What a window shows of a program besides the arm: planned paths, the trail of the tool, the goal
 /// of a motion, figures.
 class ProgramScene {

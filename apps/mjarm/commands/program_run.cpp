@@ -6,6 +6,7 @@
 #include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/session/program_scene.hpp"
 
 namespace mjarm::app {
 
@@ -15,12 +16,12 @@ Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolera
   Progress progress(text(msg::motion_program_running), static_cast<std::uint64_t>(steps));
   stage.set_tick([&progress] { progress.advance(); });
   for (const PlannedMove& move : plan.moves) {
-    const Arm& arm = plan.arms[move.tool];
-    if (move.curve || !move.corners.empty()) stage.show().add_line(planned_tool_path(move, arm));
-    for (const SpeedDip& dip : move.dips) log_info(describe(dip, arm));
+    for (const SpeedDip& dip : move.dips) log_info(describe(dip, plan.arms[move.tool]));
   }
-  const ControlMode mode =
-      stage.control(loaded.program.control.value_or(ControlMode::computed_torque));
+  Overlay paths;
+  session::add_planned_paths(paths, plan);
+  stage.show().add(paths);
+  const ControlMode mode = stage.control(loaded.control());
   auto done = stage.move([&](MotionRun& run) { return run.execute(plan, mode); });
   if (!done) return fail(std::move(done.error()));
   stage.set_tick({});

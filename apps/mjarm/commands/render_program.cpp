@@ -10,9 +10,9 @@
 #include "mjarm/core/progress.hpp"
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/program/load_program.hpp"
-#include "mjarm/render/overlay_shapes.hpp"
 #include "mjarm/render/png.hpp"
 #include "mjarm/render/trail.hpp"
+#include "mjarm/session/program_scene.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -22,10 +22,7 @@ class ProgramRun {
  public:
   explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
     sim_.place(loaded.robot.arm, as_span(loaded.plan.q_start));
-    for (const PlannedMove& move : loaded.plan.moves) {
-      if (!move.curve && move.corners.empty()) continue;
-      add_planned_path(planned_, planned_tool_path(move, loaded.plan.arms[move.tool]));
-    }
+    session::add_planned_paths(planned_, loaded.plan);
   }
 
   /// @param seconds     [s] of simulated time at most.
@@ -33,9 +30,8 @@ class ProgramRun {
   Result<void> run(std::optional<double> seconds, const std::function<bool()>& after_step) {
     if (!after_step()) return {};
     const ProgramPlan& plan = loaded_.plan;
-    Result<Execution> execution = Execution::make(
-        loaded_.robot.model, plan,
-        {.control = loaded_.program.control.value_or(ControlMode::computed_torque)});
+    Result<Execution> execution =
+        Execution::make(loaded_.robot.model, plan, {.control = loaded_.control()});
     if (!execution) return fail(std::move(execution.error()));
     const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
       const PlannedMove& move = plan.moves[execution->motions().back().move];
