@@ -26,6 +26,7 @@ ALLOWED = {
     "view": "core model sim render",
     "serve": "core model sim",
     "rl": "core model kinematics control sim",
+    "install": "core model",
     "session": "core model kinematics collision path planning trajectory control sim render execution program view rl",
 }
 

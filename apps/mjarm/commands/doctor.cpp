@@ -5,9 +5,10 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/install/installed.hpp"
+#include "mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/install.hpp"
+#include "apps/mjarm/messages/models.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/json_writer.hpp"
@@ -116,18 +117,18 @@ void look_at_models(Findings& findings) {
 void look_at_meshes(Findings& findings) {
   std::vector<JsonDoc> found;
   std::string shown, known;
-  for (const MeshSet& set : mesh_sets()) {
+  for (const install::MeshSet& set : install::mesh_sets()) {
     known += (known.empty() ? "" : ", ") + set.robot;
-    const Result<Installed> meshes = look_up(set);
-    if (!meshes || meshes->state.kind == MeshState::Kind::absent) continue;
-    const MeshState& state = meshes->state;
-    const bool whole = state.kind == MeshState::Kind::whole;
+    const Result<install::Installed> meshes = install::look_up(set);
+    if (!meshes || meshes->state.kind == install::MeshState::Kind::absent) continue;
+    const install::MeshState& state = meshes->state;
+    const bool whole = state.kind == install::MeshState::Kind::whole;
     found.push_back({{"robot", set.robot}, {"whole", whole}, {"folder", meshes->folder.string()}});
     shown += (shown.empty() ? "" : ", ") +
              (whole ? set.robot : text(msg::install_mend, state.problem, set.robot));
   }
-  add(findings, "meshes", text(msg::install_doctor), std::move(found),
-      shown.empty() ? text(msg::install_doctor_none, known) : shown);
+  add(findings, "meshes", text(msg::models_doctor), std::move(found),
+      shown.empty() ? text(msg::models_doctor_none, known) : shown);
 }
 
 Result<int> run(bool json) {

@@ -4,10 +4,11 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "apps/mjarm/install/install.hpp"
-#include "apps/mjarm/install/installed.hpp"
+#include "mjarm/install/install.hpp"
+#include "mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/install.hpp"
+#include "apps/mjarm/messages/models.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
@@ -25,37 +26,37 @@ struct Options {
 };
 
 /// The meshes named, each once; all where none is named.
-Result<std::vector<const MeshSet*>> chosen(const Options& options) {
-  std::vector<const MeshSet*> sets;
-  for (const MeshSet& set : mesh_sets()) {
+Result<std::vector<const install::MeshSet*>> chosen(const Options& options) {
+  std::vector<const install::MeshSet*> sets;
+  for (const install::MeshSet& set : install::mesh_sets()) {
     if (options.names.empty()) sets.push_back(&set);
   }
   for (const std::string& name : options.names) {
-    const Result<const MeshSet*> set = find_mesh_set(name);
+    const Result<const install::MeshSet*> set = install::find_mesh_set(name);
     if (!set) return fail(set.error());
     if (std::find(sets.begin(), sets.end(), *set) == sets.end()) sets.push_back(*set);
   }
   return sets;
 }
 
-std::string_view name(MeshState::Kind kind) {
+std::string_view name(install::MeshState::Kind kind) {
   constexpr std::string_view kNames[] = {"absent", "damaged", "outdated", "whole"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::string words(MeshState::Kind kind) {
-  constexpr Msg kWords[] = {msg::install_state_absent, msg::install_state_damaged,
-                            msg::install_state_outdated, msg::install_state_whole};
+std::string words(install::MeshState::Kind kind) {
+  constexpr Msg kWords[] = {msg::models_state_absent, msg::models_state_damaged,
+                            msg::models_state_outdated, msg::models_state_whole};
   return text(kWords[static_cast<std::size_t>(kind)]);
 }
 
-Result<int> run_list(const std::vector<const MeshSet*>& sets, bool json) {
+Result<int> run_list(const std::vector<const install::MeshSet*>& sets, bool json) {
   std::vector<JsonDoc> entries;
   std::string lines, worst;
-  for (const MeshSet* set : sets) {
-    const Result<Installed> found = look_up(*set);
+  for (const install::MeshSet* set : sets) {
+    const Result<install::Installed> found = install::look_up(*set);
     if (!found) return fail(found.error());
-    const MeshState& state = found->state;
+    const install::MeshState& state = found->state;
     entries.push_back({{"robot", set->robot},
                        {"state", name(state.kind)},
                        {"folder", found->folder.string()},
@@ -73,21 +74,21 @@ Result<int> run_list(const std::vector<const MeshSet*>& sets, bool json) {
   return 1;
 }
 
-Result<int> run_remove(const std::vector<const MeshSet*>& sets) {
-  const Result<fs::path> data = data_folder();
+Result<int> run_remove(const std::vector<const install::MeshSet*>& sets) {
+  const Result<fs::path> data = install::data_folder();
   if (!data) return fail(data.error());
   std::error_code ignored;
   const bool any_there = fs::exists(*data, ignored);
   std::optional<FolderLock> lock;
   if (any_there) {
-    Result<FolderLock> locked = lock_data_folder(*data);
+    Result<FolderLock> locked = install::lock_data_folder(*data);
     if (!locked) return fail(std::move(locked.error()));
     lock.emplace(std::move(*locked));
   }
-  for (const MeshSet* set : sets) {
-    const Result<bool> removed = any_there ? remove_meshes(*data, *set) : Result<bool>(false);
+  for (const install::MeshSet* set : sets) {
+    const Result<bool> removed = any_there ? install::remove_meshes(*data, *set) : Result<bool>(false);
     if (!removed) return fail(removed.error());
-    const Msg said = *removed ? msg::install_removed : msg::install_nothing_to_remove;
+    const Msg said = *removed ? msg::models_removed : msg::models_nothing_to_remove;
     std::printf("%s\n", text(said, set->robot).c_str());
   }
   return 0;
@@ -103,35 +104,35 @@ Result<std::string> address_of(const std::string& from) {
   if (!fs::is_directory(from, ignored)) {
     return fail(Errc::bad_input, "--from: " + text(msg::core_no_such_folder, from));
   }
-  return file_url(from);
+  return install::file_url(from);
 }
 
-Result<void> install_one(const MeshSet& set, const IndexSettings& index, const std::string& from) {
-  const Result<Installed> before = look_up(set);
+Result<void> install_one(const install::MeshSet& set, const install::IndexSettings& index, const std::string& from) {
+  const Result<install::Installed> before = install::look_up(set);
   if (!before) return fail(before.error());
-  if (before->state.kind == MeshState::Kind::whole) {
-    std::printf("%s\n", text(msg::install_already, set.robot, before->folder.string()).c_str());
+  if (before->state.kind == install::MeshState::Kind::whole) {
+    std::printf("%s\n", text(msg::models_already, set.robot, before->folder.string()).c_str());
     return {};
   }
   if (!before->state.problem.empty()) {
-    log_info(text(msg::install_mending, before->state.problem));
+    log_info(text(msg::models_mending, before->state.problem));
   }
-  if (auto done = install_meshes(before->data, set, before->scene, index, from); !done) return done;
-  std::printf("%s\n", text(msg::install_done, set.robot, set.files.size(), set.licence,
+  if (auto done = install::install_meshes(before->data, set, before->scene, index, from); !done) return done;
+  std::printf("%s\n", text(msg::models_done, set.robot, set.files.size(), set.licence,
                            before->folder.string())
                           .c_str());
   return {};
 }
 
-Result<int> run_install(const std::vector<const MeshSet*>& sets, const Options& options) {
-  const IndexSettings index = index_settings();
+Result<int> run_install(const std::vector<const install::MeshSet*>& sets, const Options& options) {
+  const install::IndexSettings index = install::index_settings();
   const Result<std::string> from = address_of(options.from);
   if (!from) return fail(from.error());
-  const Result<fs::path> data = data_folder();
+  const Result<fs::path> data = install::data_folder();
   if (!data) return fail(data.error());
-  const Result<FolderLock> lock = lock_data_folder(*data);
+  const Result<FolderLock> lock = install::lock_data_folder(*data);
   if (!lock) return fail(lock.error());
-  for (const MeshSet* set : sets) {
+  for (const install::MeshSet* set : sets) {
     if (auto done = install_one(*set, index, *from); !done) return fail(std::move(done.error()));
   }
   return 0;
@@ -143,7 +144,7 @@ Result<int> run(const Options& options) {
   if (*first != '\0' && ((options.list && options.remove) || !options.from.empty())) {
     return fail(Errc::usage, text(msg::app_exclusive_options, first, second));
   }
-  const Result<std::vector<const MeshSet*>> sets = chosen(options);
+  const Result<std::vector<const install::MeshSet*>> sets = chosen(options);
   if (!sets) return fail(sets.error());
   if (options.list) return run_list(*sets, options.json);
   if (options.remove) return run_remove(*sets);
@@ -152,21 +153,21 @@ Result<int> run(const Options& options) {
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App& install =
-      add_subcommand(app, "install", msg::install_install_summary, msg::install_install_examples);
-  add_option(install, "names", options->names, msg::install_option_names, "[NAME...]");
-  add_flag(install, "--list", options->list, msg::install_option_list);
-  add_flag(install, "--remove", options->remove, msg::install_option_remove);
-  add_option(install, "--from", options->from, msg::install_option_from, "DIR_OR_URL");
-  add_flag(install, "--json", options->json, msg::app_option_json);
-  return [options, &install]() -> Result<int> {
-    if (is_called(install)) return run(*options);
+  CLI::App\& command =
+      add_subcommand(app, "install", msg::models_install_summary, msg::models_install_examples);
+  add_option(command, "names", options->names, msg::models_option_names, "[NAME...]");
+  add_flag(command, "--list", options->list, msg::models_option_list);
+  add_flag(command, "--remove", options->remove, msg::models_option_remove);
+  add_option(command, "--from", options->from, msg::models_option_from, "DIR_OR_URL");
+  add_flag(command, "--json", options->json, msg::app_option_json);
+  return [options, &command]() -> Result<int> {
+    if (is_called(command)) return run(*options);
     return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm models", "install"));
   };
 }
 
 }  // namespace
 
-Command models_command() { return {"models", msg::install_summary, msg::install_examples, setup}; }
+Command models_command() { return {"models", msg::models_summary, msg::models_examples, setup}; }
 
 }  // namespace mjarm::app

@@ -4,7 +4,7 @@
 
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/install/installed.hpp"
+#include "mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
@@ -138,7 +138,7 @@ Report report_of(const Drive& drive, const Sim& sim) {
 
 Result<Report> run_car(const DemoOptions& options) {
   const auto model =
-      (options.meshes ? find_mesh_scene("car") : find_model_file("car"))
+      (options.meshes ? install::find_mesh_scene("car") : find_model_file("car"))
           .and_then([](const std::filesystem::path& file) { return Model::load(file); });
   if (!model) return fail(model.error());
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));

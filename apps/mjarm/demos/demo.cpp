@@ -9,7 +9,7 @@
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/install.hpp"
+#include "apps/mjarm/messages/models.hpp"
 #include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -88,7 +88,7 @@ Run setup(CLI::App& app) {
   add_option(app, "name", arguments->name, msg::demo_option_name, "NAME");
   add_option(app, "--out", arguments->out, msg::demo_option_out, "DIR");
   add_flag(app, "--headless", arguments->headless, msg::demo_option_headless);
-  add_flag(app, "--meshes", arguments->meshes, msg::install_option_meshes);
+  add_flag(app, "--meshes", arguments->meshes, msg::models_option_meshes);
   add_flag(app, "--guide", arguments->guide, msg::demo_option_guide);
   add_flag(app, "--video", arguments->video, msg::demo_option_video);
   add_option(app, "--seconds", arguments->seconds, msg::demo_option_seconds, "S");

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "apps/mjarm/install/installed.hpp"
+#include "mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/collision/exact.hpp"
 
@@ -11,7 +11,7 @@ namespace mjarm::app {
 Result<Robot> load_demo_robot(const std::string& demo, const DemoOptions& options, int dof) {
   RobotChoice chosen = options.robot;
   if (options.meshes) {
-    const Result<std::filesystem::path> scene = find_mesh_scene(chosen.robot);
+    const Result<std::filesystem::path> scene = install::find_mesh_scene(chosen.robot);
     if (!scene) return fail(scene.error());
     chosen.robot = scene->string();
   }

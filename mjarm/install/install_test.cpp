@@ -1,4 +1,4 @@
-#include "apps/mjarm/install/install.hpp"
+#include "mjarm/install/install.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <csignal>
 
-#include "apps/mjarm/install/mesh_package_test.hpp"
-#include "apps/mjarm/install/mesh_store.hpp"
+#include "mjarm/install/mesh_package_test.hpp"
+#include "mjarm/install/mesh_store.hpp"
 #include "tests/support/http_server.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 using support::HttpServer;
@@ -284,4 +284,4 @@ TEST_F(Install, OneAtATime) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -4,6 +4,6 @@
 
 namespace mjarm::msg {
 #define MJARM_MSG(id, english, chinese) inline constexpr Msg id{english, chinese};
-#include "apps/mjarm/messages/install.inc"
+#include "mjarm/core/messages/install.inc"
 #undef MJARM_MSG
 }  // namespace mjarm::msg

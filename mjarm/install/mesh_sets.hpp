@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// One mesh, and where its bytes lie (deflated) in the wheel.
 struct MeshFile {
@@ -30,4 +30,4 @@ struct MeshSet {
 /// The robots whose meshes are known.
 [[nodiscard]] std::span<const MeshSet> mesh_sets();
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

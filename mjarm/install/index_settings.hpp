@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "apps/mjarm/install/http.hpp"
+#include "mjarm/install/http.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// Which package index this machine uses, and how it is reached.
 struct IndexSettings {
@@ -17,4 +17,4 @@ struct IndexSettings {
 /// CURL_CA_BUNDLE or SSL_CERT_FILE. Files that cannot be read are passed over.
 [[nodiscard]] IndexSettings index_settings();
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -5,11 +5,11 @@
 #include <map>
 #include <string>
 
-#include "apps/mjarm/install/mesh_sets.hpp"
-#include "apps/mjarm/install/sha256.hpp"
+#include "mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/sha256_internal.hpp"
 #include "mjarm/core/rng.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// A set of small made-up meshes, and the wheel that carries them.
 struct MeshPackage {
@@ -62,4 +62,4 @@ inline MeshPackage toy_package() {
   return package;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

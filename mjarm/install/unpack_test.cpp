@@ -1,11 +1,11 @@
-#include "apps/mjarm/install/unpack.hpp"
+#include "mjarm/install/unpack_internal.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/mjarm/install/mesh_package_test.hpp"
+#include "mjarm/install/mesh_package_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 class Unpack : public ::testing::Test {
@@ -76,4 +76,4 @@ TEST_F(Unpack, AMeshOfAnotherSizeIsRefused) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,13 +1,13 @@
-#include "apps/mjarm/install/mesh_scene.hpp"
+#include "mjarm/install/mesh_scene_internal.hpp"
 
 #include <tinyxml2.h>
 
 #include <string_view>
 
-#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ Result<std::string> mesh_scene(const fs::path& scene) {
   return std::string(printer.CStr());
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

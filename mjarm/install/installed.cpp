@@ -1,11 +1,11 @@
-#include "apps/mjarm/install/installed.hpp"
+#include "mjarm/install/installed.hpp"
 
-#include "apps/mjarm/install/mesh_scene.hpp"
-#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/install/mesh_scene_internal.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/model.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 namespace fs = std::filesystem;
 
@@ -49,4 +49,4 @@ Result<fs::path> find_mesh_scene(const std::string& robot) {
   return fail(Errc::not_available, text(msg::install_mend, installed->state.problem, robot));
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

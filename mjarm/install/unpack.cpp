@@ -1,12 +1,12 @@
-#include "apps/mjarm/install/unpack.hpp"
+#include "mjarm/install/unpack_internal.hpp"
 
 #include <zlib.h>
 
-#include "apps/mjarm/install/sha256.hpp"
-#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/install/sha256_internal.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,4 +47,4 @@ Result<void> unpack(const fs::path& part, std::uint64_t offset, const MeshSet& s
   return {};
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

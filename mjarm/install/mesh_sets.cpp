@@ -1,8 +1,8 @@
-#include "apps/mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/mesh_sets.hpp"
 
 #include <string_view>
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 struct Row {
@@ -14,7 +14,7 @@ std::vector<MeshFile> files_of(std::string_view robot) {
   static const Row rows[] = {
 #define MJARM_MESH(robot, name, size, offset, packed, sha256) \
   {#robot, {name, size, offset, packed, sha256}},
-#include "apps/mjarm/install/mesh_files.inc"
+#include "mjarm/install/mesh_files.inc"
 #undef MJARM_MESH
   };
   std::vector<MeshFile> files;
@@ -41,4 +41,4 @@ std::span<const MeshSet> mesh_sets() {
   return sets;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/mjarm/install/index_settings.hpp"
-#include "apps/mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/index_settings.hpp"
+#include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/core/os_lock.hpp"
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// Waits until no other process installs, and makes the folder where it is missing.
 [[nodiscard]] Result<FolderLock> lock_data_folder(const std::filesystem::path& data);
@@ -21,4 +21,4 @@ namespace mjarm::app {
                                           const std::string& scene, const IndexSettings& index,
                                           const std::string& from);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

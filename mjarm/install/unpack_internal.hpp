@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
-#include "apps/mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// Takes one unpacked mesh whose size and hash are right.
 using MeshSink = std::function<Result<void>(const MeshFile& mesh, const std::string& content)>;
@@ -18,4 +18,4 @@ using MeshSink = std::function<Result<void>(const MeshFile& mesh, const std::str
 [[nodiscard]] Result<void> unpack(const std::filesystem::path& part, std::uint64_t offset,
                                   const MeshSet& set, const MeshSink& sink);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,13 +1,13 @@
-#include "apps/mjarm/install/http.hpp"
+#include "mjarm/install/http.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/mjarm/install/mesh_package_test.hpp"
-#include "apps/mjarm/install/sha256.hpp"
+#include "mjarm/install/mesh_package_test.hpp"
+#include "mjarm/install/sha256_internal.hpp"
 #include "tests/support/http_server.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 using support::HttpServer;
@@ -161,4 +161,4 @@ TEST_F(Download, PagesComeWhole) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,4 +1,4 @@
-#include "apps/mjarm/install/install.hpp"
+#include "mjarm/install/install.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -6,16 +6,16 @@
 #include <system_error>
 #include <thread>
 
-#include "apps/mjarm/install/mesh_store.hpp"
-#include "apps/mjarm/install/package_index.hpp"
-#include "apps/mjarm/install/unpack.hpp"
-#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/install/mesh_store.hpp"
+#include "mjarm/install/package_index_internal.hpp"
+#include "mjarm/install/unpack_internal.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,4 +130,4 @@ Result<void> install_meshes(const fs::path& data, const MeshSet& set, const std:
   return done;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,12 +1,12 @@
-#include "apps/mjarm/install/mesh_scene.hpp"
+#include "mjarm/install/mesh_scene_internal.hpp"
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
 #include <memory>
 
-#include "apps/mjarm/install/mesh_sets.hpp"
-#include "apps/mjarm/install/sha256.hpp"
+#include "mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/sha256_internal.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/find_arm.hpp"
@@ -15,7 +15,7 @@
 #include "tests/support/temp_folder.hpp"
 #include "tests/support/test_data.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 namespace fs = std::filesystem;
@@ -228,4 +228,4 @@ TEST(MeshSets, ListEveryMeshOnce) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,10 +1,10 @@
-#include "apps/mjarm/install/sha256.hpp"
+#include "mjarm/install/sha256_internal.hpp"
 
 #include <openssl/evp.h>
 
 #include "mjarm/core/file.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 std::string sha256(std::string_view content) {
   constexpr char kDigits[] = "0123456789abcdef";
@@ -21,4 +21,4 @@ Result<std::string> sha256_of_file(const std::filesystem::path& file) {
   return read_file(file).map([](const std::string& content) { return sha256(content); });
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,11 +1,11 @@
-#include "apps/mjarm/install/package_index.hpp"
+#include "mjarm/install/package_index_internal.hpp"
 
 #include <algorithm>
 #include <optional>
 
-#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/core/messages/install.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 /// The value of the `href` that stands next at or after `at`; moves `at` behind it.
@@ -57,4 +57,4 @@ Result<std::string> find_in_index(const IndexSettings& index, const std::string&
   return entry.url;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// `$XDG_DATA_HOME/mjarm`, else `~/.local/share/mjarm`: the one folder that mjarm writes to without
 /// being told so. It need not exist.
@@ -37,4 +37,4 @@ struct MeshState {
 /// data folder stay. @return whether there was anything.
 [[nodiscard]] Result<bool> remove_meshes(const std::filesystem::path& data, const MeshSet& set);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,14 +1,14 @@
-#include "apps/mjarm/install/mesh_store.hpp"
+#include "mjarm/install/mesh_store.hpp"
 
 #include <system_error>
 
-#include "apps/mjarm/install/sha256.hpp"
-#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/install/sha256_internal.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 namespace fs = std::filesystem;
 
@@ -64,4 +64,4 @@ Result<bool> remove_meshes(const fs::path& data, const MeshSet& set) {
   return any;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

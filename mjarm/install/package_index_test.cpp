@@ -1,4 +1,4 @@
-#include "apps/mjarm/install/package_index.hpp"
+#include "mjarm/install/package_index_internal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/http_server.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 using support::HttpServer;
@@ -137,4 +137,4 @@ TEST_F(PipSettings, CertificatesOfOtherPrograms) {
 }
 
 }  // namespace
-}  // namespace mjarm::app
+}  // namespace mjarm::install

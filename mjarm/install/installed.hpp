@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/mjarm/install/mesh_sets.hpp"
-#include "apps/mjarm/install/mesh_store.hpp"
+#include "mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/mesh_store.hpp"
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// The meshes of one robot on this machine.
 struct Installed {
@@ -27,4 +27,4 @@ struct Installed {
 /// @return an error that says how to get them where they are missing or damaged.
 [[nodiscard]] Result<std::filesystem::path> find_mesh_scene(const std::string& robot);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -1,4 +1,4 @@
-#include "apps/mjarm/install/http.hpp"
+#include "mjarm/install/http.hpp"
 
 #include <curl/curl.h>
 
@@ -12,13 +12,13 @@
 #include <string_view>
 #include <thread>
 
-#include "apps/mjarm/messages/install.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 constexpr std::uint64_t kLargestPage = std::uint64_t{64} << 20;
@@ -283,4 +283,4 @@ std::string file_url(const std::filesystem::path& file) {
   return url.whole();
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -6,7 +6,7 @@
 
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// How to reach servers. Proxies come from the environment (`https_proxy`, `no_proxy`, ...) as
 /// well.
@@ -52,4 +52,4 @@ struct Page {
 /// Address of a file of this machine.
 [[nodiscard]] std::string file_url(const std::filesystem::path& file);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

@@ -3,10 +3,10 @@
 #include <string>
 #include <string_view>
 
-#include "apps/mjarm/install/http.hpp"
-#include "apps/mjarm/install/index_settings.hpp"
+#include "mjarm/install/http.hpp"
+#include "mjarm/install/index_settings.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 
 /// Where `file` lies according to a page of a simple package index.
 struct IndexEntry {
@@ -23,4 +23,4 @@ struct IndexEntry {
                                                 const std::string& project, const std::string& file,
                                                 const std::string& sha256);
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install

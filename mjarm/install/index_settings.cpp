@@ -1,4 +1,4 @@
-#include "apps/mjarm/install/index_settings.hpp"
+#include "mjarm/install/index_settings.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,7 +10,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/os.hpp"
 
-namespace mjarm::app {
+namespace mjarm::install {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ IndexSettings index_settings() {
   return settings;
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::install
