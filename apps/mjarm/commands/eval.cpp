@@ -49,7 +49,7 @@ Result<int> run(const Options& options) {
     if (!seed) return fail(seed.error());
     trial.seed = *seed;
   }
-  StageOptions chosen;
+  session::StageOptions chosen;
   chosen.out = options.out.empty() ? std::filesystem::path("mjarm-out") / "eval"
                                    : std::filesystem::path(options.out);
   chosen.headless = !options.view;

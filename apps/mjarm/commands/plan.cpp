@@ -13,9 +13,9 @@
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/plan_robot.hpp"
+#include "apps/mjarm/commands/plan_show.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/plan_show.hpp"
-#include "apps/mjarm/view/plan_show.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/planning.hpp"
@@ -98,7 +98,8 @@ Result<void> select(const Options& options, ProblemFile& file) {
 
 /// @param show  how the only problem is shown, after its answer is written.
 Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const PlanOptions& plan,
-                       int threads, const Options& options, const std::optional<PlanShow>& show) {
+                       int threads, const Options& options,
+                       const std::optional<session::PlanShow>& show) {
   const std::size_t count = file.problems.size();
   std::vector<PlanAnswer> answers(count);
   Progress progress(text(msg::plan_progress), count);
@@ -126,7 +127,8 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
     return fail(std::move(written.error()));
   }
   if (failed == 0 && show) {
-    const auto shown = show_plan_of_spheres(*show, robot, file.problems[0], *answers[0].path);
+    const auto shown =
+        session::show_plan_of_spheres(*show, robot, file.problems[0], *answers[0].path);
     if (!shown) return fail(shown.error());
   }
   if (failed == 0) return 0;
@@ -140,7 +142,7 @@ Result<int> run(const Options& options) {
   }
   Result<PlanOptions> plan = read_options(options);
   if (!plan) return fail(plan.error());
-  const Result<std::optional<PlanShow>> show = read_plan_show(options.show);
+  const Result<std::optional<session::PlanShow>> show = read_plan_show(options.show);
   if (!show) return fail(show.error());
   plan->keep_trees = show->has_value();
   if (is_given(options.request)) {

@@ -199,7 +199,7 @@ bool is_given(const RobotRequest& request) {
 }
 
 Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
-                           const std::optional<PlanShow>& show, const std::string& out,
+                           const std::optional<session::PlanShow>& show, const std::string& out,
                            bool timing) {
   const Result<Robot> robot = load_robot(request.robot);
   if (!robot) return fail(robot.error());
@@ -232,8 +232,8 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   const Result<int> exit_code = finish_one(out, line, why, msg::plan_no_path);
   if (!exit_code || !show || !found) return exit_code;
   const auto shown =
-      show_plan(*show, {robot->model, robot->arm, (*level)->checker, (*level)->cover.scene, *found,
-                        name, way->world.rules.attached});
+      session::show_plan(*show, {robot->model, robot->arm, (*level)->checker, (*level)->cover.scene,
+                                 *found, name, way->world.rules.attached});
   if (!shown) return fail(shown.error());
   return exit_code;
 }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/view/plan_show.hpp"
+#include "apps/mjarm/commands/plan_show.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/planning/plan_file.hpp"
 #include "mjarm/planning/plan_path.hpp"
@@ -35,7 +35,7 @@ void add_robot_request(CLI::App& app, RobotRequest& request);
 /// @param show  how it is shown then.
 /// @return the exit code, or what is wrong with the request.
 [[nodiscard]] Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
-                                         const std::optional<PlanShow>& show,
+                                         const std::optional<session::PlanShow>& show,
                                          const std::string& out, bool timing);
 
 }  // namespace mjarm::app

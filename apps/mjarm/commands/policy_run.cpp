@@ -5,16 +5,16 @@
 #include <utility>
 #include <vector>
 
-#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/messages/train.hpp"
-#include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/session/policy_player.hpp"
+#include "mjarm/session/run_output.hpp"
+#include "mjarm/session/run_show.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -50,7 +50,8 @@ void add_row(int episode, double time, const JointVec& q, const PolicyPlayer& pl
 }
 
 /// One episode, until its end or that of the window.
-Result<void> play_episode(int episode, PolicyPlayer& player, Show& show, Played& played) {
+Result<void> play_episode(int episode, PolicyPlayer& player, session::RunShow& show,
+                          Played& played) {
   if (auto begun = player.begin_episode(); !begun) return begun;
   Sim& sim = player.sim();
   show.begin_goal(sim, player.goal());
@@ -75,7 +76,7 @@ Result<void> play_episode(int episode, PolicyPlayer& player, Show& show, Played&
 }
 
 /// Shows the first goals; with a window, more of them until it is closed.
-Result<Played> play(PolicyPlayer& player, const PolicyTrial& trial, Show& show) {
+Result<Played> play(PolicyPlayer& player, const PolicyTrial& trial, session::RunShow& show) {
   Played played;
   played.csv = heading(player.arm());
   for (int i = 0; i < trial.shown && !played.ended_by_user; ++i) {
@@ -127,7 +128,7 @@ Report report_of(const PolicyTrial& trial, const Model& model, const rl::ReachOp
 }  // namespace
 
 Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTrial& trial,
-                                 const StageOptions& options) {
+                                 const session::StageOptions& options) {
   const Result<Model> model = rl::reach_model(loaded.task);
   if (!model) return fail(model.error());
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
@@ -142,23 +143,26 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
 
   Result<PolicyPlayer> player = PolicyPlayer::make(*model, loaded.task, loaded.policy, trial.seed);
   if (!player) return fail(std::move(player.error()));
-  Result<Show> show = Show::open(*model, "mjarm " + trial.name, options.headless);
+  Result<session::RunShow> show =
+      session::RunShow::open(*model, "mjarm " + trial.name, options.headless);
   if (!show) return fail(std::move(show.error()));
   show->set_trail(true);
   if (options.video) {
-    auto filming = show->film(*model, options.out / kVideoFile, "");
+    auto filming = show->film(*model, options.out / session::kVideoFile, {});
     if (!filming) return fail(std::move(filming.error()));
   }
   Result<Played> played = play(*player, trial, *show);
   if (!played) return fail(std::move(played.error()));
   Report report = report_of(trial, *model, loaded.task, *evaluation, *played);
   if (options.timing) report.rtf = report.duration / seconds;
-  const RunOutput output{report, plot_of(trial.name, *evaluation, *played), show->overlay(), ""};
-  auto written = write_file(options.out / "log.csv", played->csv)
-                     .and_then([&] {
-                       return write_output(options.out, *model, player->sim().snapshot(), output);
-                     })
-                     .and_then([&] { return show->end_film(); });
+  const session::RunOutput output{
+      report, plot_of(trial.name, *evaluation, *played), show->overlay(), {}};
+  auto written =
+      write_file(options.out / "log.csv", played->csv)
+          .and_then([&] {
+            return session::write_output(options.out, *model, player->sim().snapshot(), output);
+          })
+          .and_then([&] { return show->end_film(); });
   if (!written) return fail(std::move(written.error()));
   return PolicyOutcome{std::move(report), std::move(*evaluation)};
 }

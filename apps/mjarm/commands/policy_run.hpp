@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/mjarm/commands/stage.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/execution/report.hpp"
 #include "mjarm/rl/evaluate.hpp"
 #include "mjarm/rl/trained_policy.hpp"
+#include "mjarm/session/stage.hpp"
 
 namespace mjarm::app {
 
@@ -30,6 +30,6 @@ struct PolicyOutcome {
 /// picture into `options.out`.
 [[nodiscard]] Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded,
                                                const PolicyTrial& trial,
-                                               const StageOptions& options);
+                                               const session::StageOptions& options);
 
 }  // namespace mjarm::app

@@ -3,14 +3,15 @@
 #include <utility>
 
 #include "apps/mjarm/messages/motion_program.hpp"
-#include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/session/program_scene.hpp"
+#include "mjarm/session/show_program.hpp"
 
 namespace mjarm::app {
 
-Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolerance, Report begun) {
+Result<Report> run_plan(session::Stage& stage, const LoadedProgram& loaded, double tolerance,
+                        Report begun) {
   const ProgramPlan& plan = loaded.plan;
   const double steps = (plan.duration() + kRestAtEnd) / loaded.robot.model.timestep();
   Progress progress(text(msg::motion_program_running), static_cast<std::uint64_t>(steps));
@@ -29,20 +30,21 @@ Result<Report> run_plan(Stage& stage, const LoadedProgram& loaded, double tolera
   return stage.finish(stage.run().report(plan, runs, tolerance, std::move(begun)), tolerance, runs);
 }
 
-StageOptions out_of_sight(StageOptions options) {
+session::StageOptions out_of_sight(session::StageOptions options) {
   options.headless = true;
   return options;
 }
 
-Result<Report> run_and_show(const LoadedProgram& loaded, const StageOptions& options,
+Result<Report> run_and_show(const LoadedProgram& loaded, const session::StageOptions& options,
                             double tolerance, const std::string& camera) {
-  const Result<std::unique_ptr<Stage>> stage =
-      Stage::open(loaded.program.name, out_of_sight(options), loaded.robot);
+  const Result<std::unique_ptr<session::Stage>> stage =
+      session::Stage::open(loaded.program.name, out_of_sight(options), loaded.robot);
   if (!stage) return fail(stage.error());
   (*stage)->set_camera(camera);
   Result<Report> report = run_plan(**stage, loaded, tolerance);
   if (!report || options.headless) return report;
-  if (auto shown = show_program(loaded, options.seconds); !shown) return fail(shown.error());
+  if (auto shown = session::show_program(loaded, options.seconds); !shown)
+    return fail(shown.error());
   return report;
 }
 

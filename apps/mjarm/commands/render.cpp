@@ -7,13 +7,13 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/render_options.hpp"
-#include "apps/mjarm/commands/render_program.hpp"
-#include "apps/mjarm/commands/render_video.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/load_program.hpp"
+#include "mjarm/session/render_program.hpp"
+#include "mjarm/session/run_video.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -32,14 +32,15 @@ Snapshot home_of(const Model& model) {
 }
 
 /// Once around, from where the camera stands; the last frame goes on to the first.
-Result<std::string> turntable(const Model& model, const PictureOptions& options) {
+Result<std::string> turntable(const Model& model, const PictureRequest& options) {
   constexpr double kSeconds = 5;
-  Result<VideoOfRun> video = VideoOfRun::open(model, options);
+  const Result<Camera> camera = choose_camera(model, options.camera);
+  if (!camera) return fail(camera.error());
+  Result<session::VideoOfRun> video = session::VideoOfRun::open(model, options, *camera);
   if (!video) return fail(std::move(video.error()));
   const Snapshot home = home_of(model);
   Scene scene(model, RenderQuality::low);  // knows where cameras stand
-  Result<void> set =
-      scene.set_state(home).and_then([&] { return scene.set_camera(video->camera()); });
+  Result<void> set = scene.set_state(home).and_then([&] { return scene.set_camera(*camera); });
   if (!set) return fail(std::move(set.error()));
   const CameraView from = scene.view();
   const auto frames =
@@ -55,19 +56,28 @@ Result<std::string> turntable(const Model& model, const PictureOptions& options)
   return video->summary();
 }
 
-Result<std::string> picture(const Model& model, const PictureOptions& options) {
+Result<std::string> picture(const Model& model, const PictureRequest& options) {
   if (options.seconds) {
     return fail(Errc::usage, text(msg::render_command_video_only, "--seconds"));
   }
   const Result<Camera> camera = choose_camera(model, options.camera);
   if (!camera) return fail(camera.error());
-  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model, offscreen_options(options));
+  Result<OffscreenRenderer> renderer =
+      OffscreenRenderer::create(model, session::offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
-  return write_picture(*renderer, options, home_of(model), *camera, {});
+  return session::write_picture(*renderer, options, home_of(model), *camera, {});
 }
 
-Result<std::string> render(const Options& options, const PictureOptions& wanted) {
-  if (is_program(options.robot.robot)) return render_program(options.robot.robot, wanted);
+Result<std::string> program_picture(const std::string& file, const PictureRequest& wanted) {
+  const Result<LoadedProgram> loaded = load_sound_program(file);
+  if (!loaded) return fail(loaded.error());
+  const Result<Camera> camera = choose_camera(loaded->robot.model, wanted.camera);
+  if (!camera) return fail(camera.error());
+  return session::render_program(*loaded, wanted, *camera, wanted.seconds);
+}
+
+Result<std::string> render(const Options& options, const PictureRequest& wanted) {
+  if (is_program(options.robot.robot)) return program_picture(options.robot.robot, wanted);
   const Result<Model> model = load_model(options.robot);
   if (!model) return fail(model.error());
   tell_warnings(*model);
@@ -76,7 +86,7 @@ Result<std::string> render(const Options& options, const PictureOptions& wanted)
 
 Result<int> run(const Options& options) {
   if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::render_command_which));
-  const Result<PictureOptions> wanted = read_picture_options(options.picture);
+  const Result<PictureRequest> wanted = read_picture_options(options.picture);
   if (!wanted) return fail(wanted.error());
   const Result<std::string> line = render(options, *wanted);
   if (!line) return fail(line.error());

@@ -1,6 +1,5 @@
 #include "apps/mjarm/commands/render_options.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -25,7 +24,7 @@ Result<double> read_amount(const char* option, const std::string& words, Quantit
   return fail(Errc::usage, text(msg::render_command_range, option, words, max));
 }
 
-Result<void> read_times(const PictureArguments& arguments, PictureOptions& options) {
+Result<void> read_times(const PictureArguments& arguments, PictureRequest& options) {
   if (!arguments.fps.empty()) {
     const Result<double> fps = read_amount("--fps", arguments.fps, Quantity::number, kMaxRate);
     if (!fps) return fail(fps.error());
@@ -73,9 +72,9 @@ void add_picture_options(CLI::App& app, PictureArguments& arguments) {
   add_option(app, "--seconds", arguments.seconds, msg::render_command_option_seconds, "S");
 }
 
-Result<PictureOptions> read_picture_options(const PictureArguments& arguments) {
+Result<PictureRequest> read_picture_options(const PictureArguments& arguments) {
   if (arguments.out.empty()) return fail(Errc::usage, text(msg::app_option_missing, "--out"));
-  PictureOptions options;
+  PictureRequest options;
   options.out = arguments.out;
   options.camera = arguments.camera;
   const std::optional<VideoFormat> format = video_format(options.out);
@@ -105,22 +104,9 @@ Result<PictureOptions> read_picture_options(const PictureArguments& arguments) {
   return options;
 }
 
-OffscreenOptions offscreen_options(const PictureOptions& options) {
-  OffscreenOptions out{.width = options.width, .height = options.height};
-  if (options.quality) {
-    out.quality = *options.quality;
-  } else if (options.video) {
-    out.software_quality = RenderQuality::low;
-  }
-  return out;
-}
-
 Result<Camera> choose_camera(const Model& model, const std::string& words) {
+  if (words.empty()) return session::default_camera(model);
   Camera camera;
-  if (words.empty()) {
-    if (std::ranges::count(camera_names(model), "overview") > 0) camera.name = "overview";
-    return camera;
-  }
   if (words.find(',') != std::string::npos) {
     const Result<CameraView> view = read_view(model, words);
     if (!view) return fail(view.error());

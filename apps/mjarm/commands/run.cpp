@@ -19,8 +19,8 @@ struct Options {
   bool headless = false, video = false, no_timing = false;
 };
 
-Result<StageOptions> stage_options(const Options& options) {
-  StageOptions out;
+Result<session::StageOptions> stage_options(const Options& options) {
+  session::StageOptions out;
   out.out = options.out;
   out.headless = options.headless;
   out.video = options.video;
@@ -45,7 +45,7 @@ Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
   const Result<double> tolerance = tolerance_of(options);
   if (!tolerance) return fail(tolerance.error());
-  Result<StageOptions> chosen = stage_options(options);
+  Result<session::StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
   Result<LoadedProgram> loaded = load_sound_program(options.file);

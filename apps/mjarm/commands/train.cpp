@@ -107,7 +107,7 @@ Result<void> write_report(const std::filesystem::path& folder, const TrainedSeed
 Result<void> film_best(const std::filesystem::path& folder, bool timing) {
   const Result<rl::TrainedPolicy> best = rl::load_policy(folder / rl::Training::kBest);
   if (!best) return fail(best.error());
-  StageOptions options;
+  session::StageOptions options;
   options.out = folder / "result";
   options.headless = options.video = true;
   options.timing = timing;

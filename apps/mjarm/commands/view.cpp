@@ -1,5 +1,6 @@
 #include "mjarm/core/messages/view.hpp"
 
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,8 +9,6 @@
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/view/view_program.hpp"
-#include "apps/mjarm/view/view_show.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
@@ -17,8 +16,10 @@
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/session/free_sim.hpp"
 #include "mjarm/session/robot_session.hpp"
+#include "mjarm/session/show_program.hpp"
 #include "mjarm/session/simulate_world.hpp"
 #include "mjarm/view/controls.hpp"
+#include "mjarm/view/show_in_window.hpp"
 #include "mjarm/view/target_handle.hpp"
 
 namespace mjarm::app {
@@ -85,6 +86,17 @@ Result<double> seconds_of(const Options& options) {
   return seconds;
 }
 
+/// Tells how the window was drawn, where that was asked for.
+Result<int> told(const Options& options, const Result<ViewStats>& stats) {
+  if (!stats) return fail(stats.error());
+  if (options.stats) {
+    std::printf("%s\n", text(msg::view_stats, stats->frames, stats->fps, stats->frame_ms,
+                             stats->first_frame_ms, stats->sim_rate)
+                            .c_str());
+  }
+  return 0;
+}
+
 Result<int> run(const Options& options) {
   const Result<double> seconds = seconds_of(options);
   if (!seconds) return fail(seconds.error());
@@ -99,13 +111,14 @@ Result<int> run(const Options& options) {
   if (options.paused) sim->handle(PauseEvent{true});
   session::RobotSession view(loaded->model, loaded->arm, *sim);
   std::optional<TargetHandle> handle;
-  ShowOptions show{*seconds, options.stats};
+  ShowOptions show{*seconds};
   if (session::TargetControl* target = view.target()) {
     handle.emplace(target->link(), target->target().turns());
     show.on_open = [&handle](Window& window) { handle->attach(window); };
   }
-  return show_in_window(loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen, show,
-                        [&view](ViewLink& link) { session::simulate_world(view, link); });
+  return told(options, show_in_window(
+                           loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen,
+                           show, [&view](ViewLink& link) { session::simulate_world(view, link); }));
 }
 
 /// A program brings its robot and tool along, and holds it.
@@ -119,7 +132,10 @@ Result<int> run_program(const Options& options) {
   }
   const Result<WindowOptions> window = window_options(options, {});
   if (!window) return fail(window.error());
-  return view_program(robot.robot, *window, {*seconds, options.stats});
+  catch_interrupts();
+  const Result<LoadedProgram> loaded = load_sound_program(robot.robot);
+  if (!loaded) return fail(loaded.error());
+  return told(options, session::view_program(*loaded, *window, {*seconds}));
 }
 
 /// Examples, and below them every control, in one language.

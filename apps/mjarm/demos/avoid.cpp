@@ -63,7 +63,7 @@ std::optional<NearestPair> nearest_pair(ExactChecker& checker, const ProgramPlan
 
 /// Tries the straight way of the tool to where the last way round ends, in geometry alone, and
 /// tells and draws what it would hit.
-Result<void> try_straight(Stage& stage, ExactChecker& checker, const PlannedMove& round,
+Result<void> try_straight(session::Stage& stage, ExactChecker& checker, const PlannedMove& round,
                           Report& report) {
   const JointVec q = round.corners.front();
   const Result<Curve> line =
@@ -99,7 +99,7 @@ Result<void> try_straight(Stage& stage, ExactChecker& checker, const PlannedMove
 }
 
 /// Tells of the way round and draws where the arm comes nearest to something on it.
-void tell_round(Stage& stage, ExactChecker& checker, const ProgramPlan& plan,
+void tell_round(session::Stage& stage, ExactChecker& checker, const ProgramPlan& plan,
                 const PlannedMove& round, Report& report) {
   double length = 0;
   for (std::size_t i = 1; i < round.corners.size(); ++i) {
@@ -144,9 +144,10 @@ Result<Report> run_avoid(const DemoOptions& options) {
   constexpr double kTolerance = 5e-4;  // [m]
   const Result<LoadedProgram> loaded = plan_in_its_scene(options);
   if (!loaded) return fail(loaded.error());
-  const Result<std::unique_ptr<Stage>> opened = Stage::open("avoid", options, loaded->robot);
+  const Result<std::unique_ptr<session::Stage>> opened =
+      session::Stage::open("avoid", options, loaded->robot);
   if (!opened) return fail(opened.error());
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const ProgramPlan& plan = loaded->plan;
   if (!plan.ok()) {
     return stage.refuse(plan.faults.front().reason, first_fault(*loaded).what);

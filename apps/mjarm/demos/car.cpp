@@ -2,16 +2,16 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/demos/demos.hpp"
-#include "mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/demo.hpp"
-#include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/run_charts.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/install/installed.hpp"
+#include "mjarm/session/run_output.hpp"
+#include "mjarm/session/run_show.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -54,7 +54,7 @@ void sample(const Sim& sim, Drive& drive) {
   drive.right.push_back(sim.sensor_data()[1]);
 }
 
-Result<void> drive_phase(const Phase& phase, double max_seconds, Sim& sim, Show& show,
+Result<void> drive_phase(const Phase& phase, double max_seconds, Sim& sim, session::RunShow& show,
                          Drive& drive) {
   std::array<double, 2> ctrl{};
   ctrl[kForward] = phase.forward;
@@ -143,11 +143,12 @@ Result<Report> run_car(const DemoOptions& options) {
   if (!model) return fail(model.error());
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
   Sim sim(*model);
-  Result<Show> show = Show::open(*model, "mjarm car", options.headless);
+  Result<session::RunShow> show = session::RunShow::open(*model, "mjarm car", options.headless);
   if (!show) return fail(std::move(show.error()));
   show->set_trail(true);
   if (options.video) {
-    auto filming = show->film(*model, options.out / kVideoFile, "overview");
+    auto filming =
+        show->film(*model, options.out / session::kVideoFile, session::default_camera(*model));
     if (!filming) return fail(std::move(filming.error()));
   }
 
@@ -160,11 +161,13 @@ Result<Report> run_car(const DemoOptions& options) {
     if (phase.turn == 0) drive.straight = drive.time.size();
   }
   Report report = report_of(drive, sim);
-  const RunOutput output{report, plot_of(drive), show->overlay(), "overview"};
-  auto written =
-      write_file(options.out / "log.csv", to_csv(drive))
-          .and_then([&] { return write_output(options.out, *model, sim.snapshot(), output); })
-          .and_then([&] { return show->end_film(); });
+  const session::RunOutput output{report, plot_of(drive), show->overlay(),
+                                  session::default_camera(*model)};
+  auto written = write_file(options.out / "log.csv", to_csv(drive))
+                     .and_then([&] {
+                       return session::write_output(options.out, *model, sim.snapshot(), output);
+                     })
+                     .and_then([&] { return show->end_film(); });
   if (!written) return fail(std::move(written.error()));
   show->linger(sim);
   return report;

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/collision/exact.hpp"
+#include "mjarm/install/installed.hpp"
 
 namespace mjarm::app {
 
@@ -24,11 +24,11 @@ Result<Robot> load_demo_robot(const std::string& demo, const DemoOptions& option
   return robot;
 }
 
-Result<std::unique_ptr<Stage>> open_stage(const std::string& demo, const DemoOptions& options,
-                                          int dof) {
+Result<std::unique_ptr<session::Stage>> open_stage(const std::string& demo,
+                                                   const DemoOptions& options, int dof) {
   const Result<Robot> robot = load_demo_robot(demo, options, dof);
   if (!robot) return fail(robot.error());
-  return Stage::open(demo, options, *robot);
+  return session::Stage::open(demo, options, *robot);
 }
 
 IkSolver reach_solver(const Robot& robot) {

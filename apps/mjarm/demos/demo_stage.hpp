@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "apps/mjarm/commands/stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/session/stage.hpp"
 
 namespace mjarm::app {
 
@@ -15,8 +15,9 @@ namespace mjarm::app {
                                             int dof = 0);
 
 /// A stage with that robot.
-[[nodiscard]] Result<std::unique_ptr<Stage>> open_stage(const std::string& demo,
-                                                        const DemoOptions& options, int dof = 0);
+[[nodiscard]] Result<std::unique_ptr<session::Stage>> open_stage(const std::string& demo,
+                                                                 const DemoOptions& options,
+                                                                 int dof = 0);
 
 /// Geometry alone: what the arm can reach.
 [[nodiscard]] IkSolver reach_solver(const Robot& robot);

@@ -4,15 +4,15 @@
 #include <string>
 
 #include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/commands/stage.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/execution/report.hpp"
+#include "mjarm/session/stage.hpp"
 
 namespace mjarm::app {
 
 /// What the user chose for a demo.
-struct DemoOptions : StageOptions {
+struct DemoOptions : session::StageOptions {
   RobotChoice robot;    ///< which arm, and which frame of it is the tool
   bool meshes = false;  ///< the robot's real meshes, which must be installed
   bool guide = false;   ///< do it the tutorial's way

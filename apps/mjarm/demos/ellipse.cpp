@@ -15,7 +15,7 @@ constexpr int kPoints = 200;
 constexpr double kGuideY = -0.2;  // [m] of the tutorial's centre, part of whose ellipse is too near
 
 /// Says which points cannot be reached, why, and which shift of the whole curve mends it.
-Result<Report> refuse(Stage& stage, std::span<const Pose> points,
+Result<Report> refuse(session::Stage& stage, std::span<const Pose> points,
                       std::span<const UnreachableRange> ranges) {
   Report report;
   std::string detail;
@@ -48,7 +48,8 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   if (!loaded) return fail(loaded.error());
   if (loaded->plan.ok()) return run_demo_plan(*loaded, options);
 
-  Result<std::unique_ptr<Stage>> stage = Stage::open("ellipse", options, loaded->robot);
+  Result<std::unique_ptr<session::Stage>> stage =
+      session::Stage::open("ellipse", options, loaded->robot);
   if (!stage) return fail(std::move(stage.error()));
   const std::vector<Pose> points = ellipse_points(ellipse, kPoints);
   (*stage)->show().add_points(points, 2);

@@ -40,9 +40,9 @@ void tell_naive(const NaiveMotion& naive, const MeasuredRun& run, const Arm& arm
 }  // namespace
 
 Result<Report> run_flip(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = open_stage("flip", options, 6);
+  Result<std::unique_ptr<session::Stage>> opened = open_stage("flip", options, 6);
   if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const IkSolver ik = free_solver(stage.robot());
   const Result<Curve> line = Curve::line(pose_at(-0.1), pose_at(0.6));
   if (!line) return fail(line.error());

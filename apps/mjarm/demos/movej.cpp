@@ -11,9 +11,9 @@ namespace {
 
 /// 100 joint waypoints, each waited for until all joints are within 0.02 rad, as the tutorial does.
 Result<Report> run_waypoints(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = open_stage("movej", options, 6);
+  Result<std::unique_ptr<session::Stage>> opened = open_stage("movej", options, 6);
   if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const Pose goal = tutorial_goal();
   const std::vector<double> seed = tutorial_seed();
   const Result<IkSolution, IkFailure> solution = free_solver(stage.robot()).solve(goal, seed);

@@ -10,9 +10,9 @@ namespace {
 
 /// The tutorial's follower: 100 poses, each commanded until the tool is within 10 mm of it.
 Result<Report> run_follower(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = open_stage("movel", options, 6);
+  Result<std::unique_ptr<session::Stage>> opened = open_stage("movel", options, 6);
   if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const std::vector<double> seed = tutorial_seed();
   const Result<Curve> line = Curve::line(fk(stage.arm(), seed), tutorial_goal());
   if (!line) return fail(line.error());

@@ -4,9 +4,9 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/messages/demo.hpp"
-#include "apps/mjarm/view/view_program.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/session/show_program.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -23,10 +23,10 @@ Result<Report> run_point(const DemoOptions& options) {
   const Result<LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());
   if (!loaded->plan.ok()) return run_demo_plan(*loaded, options);
-  Result<std::unique_ptr<Stage>> opened =
-      Stage::open("point", out_of_sight(options), loaded->robot);
+  Result<std::unique_ptr<session::Stage>> opened =
+      session::Stage::open("point", out_of_sight(options), loaded->robot);
   if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const ProgramPlan& plan = loaded->plan;
   const Pose goal = fk(stage.arm(), as_span(plan.q_end()));
   stage.show().add_points({&goal, 1}, 1);
@@ -47,7 +47,8 @@ Result<Report> run_point(const DemoOptions& options) {
   }
   Result<Report> finished = stage.finish(std::move(report), kTolerance);
   if (!finished || options.headless) return finished;
-  if (auto shown = show_program(*loaded, options.seconds); !shown) return fail(shown.error());
+  if (auto shown = session::show_program(*loaded, options.seconds); !shown)
+    return fail(shown.error());
   return finished;
 }
 

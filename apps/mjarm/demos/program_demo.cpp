@@ -27,8 +27,8 @@ Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& opt
                              const std::string& camera) {
   constexpr double kTolerance = 5e-4;  // [m]
   if (loaded.plan.ok()) return run_and_show(loaded, options, kTolerance, camera);
-  const Result<std::unique_ptr<Stage>> stage =
-      Stage::open(loaded.program.name, options, loaded.robot);
+  const Result<std::unique_ptr<session::Stage>> stage =
+      session::Stage::open(loaded.program.name, options, loaded.robot);
   if (!stage) return fail(stage.error());
   return (*stage)->refuse(loaded.plan.faults.front().reason, first_fault(loaded).what);
 }

@@ -55,9 +55,10 @@ std::optional<PathFix> ask_for_speed(const IkSolver& ik, const Curve& line,
 }
 
 /// The same line with the tool turned, in a world apart.
-Result<std::optional<MeasuredRun>> run_tilted(Stage& stage, const IkSolver& ik, const Curve& line,
-                                              const PathFix& tilt, std::span<const double> q_start,
-                                              ControlMode mode, Report& report) {
+Result<std::optional<MeasuredRun>> run_tilted(session::Stage& stage, const IkSolver& ik,
+                                              const Curve& line, const PathFix& tilt,
+                                              std::span<const double> q_start, ControlMode mode,
+                                              Report& report) {
   const Result<Curve> turned = line_with(tilt.change);
   if (!turned) return fail(turned.error());
   const Result<ToolMotion, MotionFailure> motion = plan(ik, *turned, q_start);
@@ -73,7 +74,7 @@ Result<std::optional<MeasuredRun>> run_tilted(Stage& stage, const IkSolver& ik, 
 }
 
 /// What both did, for people and for the report. @return the note of the page.
-std::string tell(const Stage& stage, const MeasuredRun& naive, const MeasuredRun& ours,
+std::string tell(const session::Stage& stage, const MeasuredRun& naive, const MeasuredRun& ours,
                  Report& report) {
   const PeakSpeed whip = peak_speed(naive), calm = peak_speed(ours);
   const std::string& joint = stage.arm().joints[static_cast<std::size_t>(whip.joint)].name;
@@ -92,9 +93,9 @@ std::string tell(const Stage& stage, const MeasuredRun& naive, const MeasuredRun
 }  // namespace
 
 Result<Report> run_singularity(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = open_stage("singularity", options, 6);
+  Result<std::unique_ptr<session::Stage>> opened = open_stage("singularity", options, 6);
   if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const IkSolver ik = free_solver(stage.robot());
   const Result<Curve> line = line_with({});
   if (!line) return fail(line.error());

@@ -69,7 +69,7 @@ Result<Choice, MotionFailure> choose(const IkSolver& ik, std::span<const StartPo
   return fail(std::move(nearest));
 }
 
-void tell(const Stage& stage, const Choice& choice) {
+void tell(const session::Stage& stage, const Choice& choice) {
   const Pose X_WT = fk(stage.arm(), as_span(choice.start.q));
   std::string q;
   append_numbers(q, as_span(choice.start.q));
@@ -81,9 +81,9 @@ void tell(const Stage& stage, const Choice& choice) {
 }  // namespace
 
 Result<Report> run_square(const DemoOptions& options) {
-  Result<std::unique_ptr<Stage>> opened = open_stage("square", options);
+  Result<std::unique_ptr<session::Stage>> opened = open_stage("square", options);
   if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const IkSolver ik = free_solver(stage.robot());
   Rng rng(1);
   const std::vector<StartPosture> starts = start_postures(stage.arm(), ik.options().valid, rng);

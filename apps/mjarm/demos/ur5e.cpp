@@ -11,9 +11,9 @@ constexpr double kSeconds = 3;  // [s] the tutorial's servo has settled long bef
 
 /// The tutorial's first move: the arm starts at one posture and all servos jump to another.
 Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vision) {
-  Result<std::unique_ptr<Stage>> opened = open_stage(demo, options, 6);
+  Result<std::unique_ptr<session::Stage>> opened = open_stage(demo, options, 6);
   if (!opened) return fail(std::move(opened.error()));
-  Stage& stage = **opened;
+  session::Stage& stage = **opened;
   const JointVec start = joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
   const JointVec goal = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
   const Pose X_start = fk(stage.arm(), as_span(start));

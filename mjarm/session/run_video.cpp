@@ -1,21 +1,20 @@
-#include "apps/mjarm/commands/render_video.hpp"
+#include "mjarm/session/run_video.hpp"
 
 #include <utility>
 
-#include "apps/mjarm/messages/render_command.hpp"
+#include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/os.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-Result<VideoOfRun> VideoOfRun::open(const Model& model, const PictureOptions& options) {
-  Result<Camera> camera = choose_camera(model, options.camera);
-  if (!camera) return fail(std::move(camera.error()));
+Result<VideoOfRun> VideoOfRun::open(const Model& model, const PictureOptions& options,
+                                    const Camera& camera) {
   Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model, offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
   Result<VideoWriter> writer = VideoWriter::create(
       options.out, {.width = options.width, .height = options.height, .fps = options.fps});
   if (!writer) return fail(std::move(writer.error()));
-  return VideoOfRun(options, std::move(*camera), std::move(*renderer), std::move(*writer));
+  return VideoOfRun(options, camera, std::move(*renderer), std::move(*writer));
 }
 
 bool VideoOfRun::add(const Snapshot& snapshot, const Camera& camera, const Overlay& overlay) {
@@ -48,14 +47,14 @@ Result<void> VideoOfRun::finish() {
     error_ = std::move(finished.error());
   }
   if (interrupted()) {
-    return fail(Errc::system, text(msg::render_command_stopped, options_.out.string()));
+    return fail(Errc::system, text(msg::show_stopped, options_.out.string()));
   }
   return fail(*error_);
 }
 
 std::string VideoOfRun::summary() const {
-  return text(msg::render_command_video, options_.out.string(), options_.width, options_.height,
-              frames(), frames() / options_.fps);
+  return text(msg::show_video, options_.out.string(), options_.width, options_.height, frames(),
+              frames() / options_.fps);
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/commands/render_video.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/trail.hpp"
+#include "mjarm/session/run_video.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/view/history.hpp"
 #include "mjarm/view/live_plot.hpp"
@@ -19,18 +19,18 @@
 #include "mjarm/view/thinned_record.hpp"
 #include "mjarm/view/view_link.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-/// What people see of a demo: the window where there is one, the planned path and the trail, the
+/// What people see of a run: the window where there is one, the planned path and the trail, the
 /// live plots. Headless it only keeps the overlay, for the picture at the end. It belongs to the
 /// thread that simulates; the window is drawn by the main thread (`run_beside_windows`), and
 /// nothing in it changes what is simulated but a push of the user. Steps back show what was, and
-/// change nothing: a demo follows its plan.
-class Show {
+/// change nothing: a run follows its plan.
+class RunShow {
  public:
   /// Opens a window unless `headless`; without a display it says so and goes on headless.
-  [[nodiscard]] static Result<Show> open(const Model& model, const std::string& title,
-                                         bool headless);
+  [[nodiscard]] static Result<RunShow> open(const Model& model, const std::string& title,
+                                            bool headless);
 
   /// Red balls at every `every`-th of the positions.
   void add_points(std::span<const Pose> X_WT, std::size_t every);
@@ -49,9 +49,8 @@ class Show {
   void plot_tool() { plots_tool_ = true; }
 
   /// From now on every step is filmed into `file`, an MP4, in simulated time.
-  /// @param camera  of the model; empty = its own view.
   [[nodiscard]] Result<void> film(const Model& model, const std::filesystem::path& file,
-                                  const std::string& camera);
+                                  const Camera& camera);
   /// Leaves out steps, or goes on.
   void set_filming(bool on) { filming_ = on; }
   /// Puts the video in its place, if there is one. A run that the user ends has none, which is
@@ -75,7 +74,7 @@ class Show {
 
  private:
   static constexpr std::size_t kMaxToolPoints = 2000;
-  explicit Show(double timestep) : playback_(timestep) {}
+  explicit RunShow(double timestep) : playback_(timestep) {}
   [[nodiscard]] std::vector<LivePlot> plots() const;
   void handle_events();
   void handle(const ViewEvent& event);
@@ -100,4 +99,4 @@ class Show {
   bool plots_tool_ = false;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,14 +1,14 @@
-#include "apps/mjarm/view/run_show.hpp"
+#include "mjarm/session/run_show.hpp"
 
 #include <chrono>
 #include <thread>
 
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 namespace {
 
 constexpr auto kRest = std::chrono::microseconds(500);
@@ -17,8 +17,8 @@ constexpr Rgba kGoal = {0.15F, 0.70F, 0.30F, 0.6F};
 
 }  // namespace
 
-Result<Show> Show::open(const Model& model, const std::string& title, bool headless) {
-  Show show(model.timestep());
+Result<RunShow> RunShow::open(const Model& model, const std::string& title, bool headless) {
+  RunShow show(model.timestep());
   if (headless) return show;
   Result<std::optional<RemoteWindow>> window =
       RemoteWindow::open_where_possible(model, title, {.can_reset = false});
@@ -27,28 +27,28 @@ Result<Show> Show::open(const Model& model, const std::string& title, bool headl
   return show;
 }
 
-void Show::add_points(std::span<const Pose> X_WT, std::size_t every) {
+void RunShow::add_points(std::span<const Pose> X_WT, std::size_t every) {
   for (std::size_t i = 0; i < X_WT.size(); i += every) {
     planned_.spheres.push_back({.p_W = X_WT[i].p, .radius = 0.005, .color = kPlanned});
   }
 }
 
-void Show::add_line(std::span<const Pose> X_WT) { add_planned_path(planned_, X_WT); }
+void RunShow::add_line(std::span<const Pose> X_WT) { add_planned_path(planned_, X_WT); }
 
-void Show::begin_goal(const Sim& sim, const Eigen::Vector3d& p_W) {
+void RunShow::begin_goal(const Sim& sim, const Eigen::Vector3d& p_W) {
   goal_ = OverlaySphere{.p_W = p_W, .radius = 0.02, .color = kGoal};
   trail_.clear();
   if (video_) video_->begin_again(sim);
 }
 
-Overlay Show::overlay() const {
+Overlay RunShow::overlay() const {
   Overlay all = planned_;
   if (goal_) all.spheres.push_back(*goal_);
   trail_.draw(all);
   return all;
 }
 
-std::vector<LivePlot> Show::plots() const {
+std::vector<LivePlot> RunShow::plots() const {
   if (!plots_tool_) return {};
   LivePlot path{.title = "tool from above [m]", .x_label = "x [m]", .series = {}};
   path.equal_aspect = true;
@@ -70,7 +70,7 @@ std::vector<LivePlot> Show::plots() const {
   return {std::move(path), std::move(time)};
 }
 
-bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
+bool RunShow::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   if (interrupted()) return false;
   if (trail_on_) trail_.add(p_WT);
   if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
@@ -93,16 +93,15 @@ bool Show::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   return true;
 }
 
-Result<void> Show::film(const Model& model, const std::filesystem::path& file,
-                        const std::string& camera) {
-  Result<VideoOfRun> video =
-      VideoOfRun::open(model, {.out = file, .video = true, .camera = camera});
+Result<void> RunShow::film(const Model& model, const std::filesystem::path& file,
+                           const Camera& camera) {
+  Result<VideoOfRun> video = VideoOfRun::open(model, {.out = file, .video = true}, camera);
   if (!video) return fail(std::move(video.error()));
   video_.emplace(std::move(*video));
   return {};
 }
 
-Result<void> Show::end_film() {
+Result<void> RunShow::end_film() {
   if (!video_) return {};
   Result<void> done = video_->finish();
   if (done) {
@@ -114,11 +113,11 @@ Result<void> Show::end_film() {
   return done;
 }
 
-void Show::handle_events() {
+void RunShow::handle_events() {
   for (const ViewEvent& event : window_->link().events.take()) handle(event);
 }
 
-void Show::handle(const ViewEvent& event) {
+void RunShow::handle(const ViewEvent& event) {
   changed_ = true;
   if (const auto* push = std::get_if<PushEvent>(&event); push != nullptr && pushed_ != nullptr) {
     pushed_->set_external_force(push->body, push->force_W, push->torque_W);
@@ -133,7 +132,7 @@ void Show::handle(const ViewEvent& event) {
   if (!playback_.paused()) history_.to_present();
 }
 
-void Show::offer() {
+void RunShow::offer() {
   Mailbox<ViewFrame>& frames = window_->link().frames;
   if (!changed_ || !frames.is_empty() || history_.size() == 0) return;
   changed_ = false;
@@ -145,9 +144,9 @@ void Show::offer() {
   frames.post(frame_);
 }
 
-void Show::linger(const Sim& sim) {
+void RunShow::linger(const Sim& sim) {
   if (!window_ || !window_->is_open() || interrupted()) return;
-  log_info(text(msg::demo_close_window));
+  log_info(text(msg::show_close_window));
   history_.add(sim.snapshot());
   changed_ = true;
   while (window_->is_open() && !interrupted()) {
@@ -157,4 +156,4 @@ void Show::linger(const Sim& sim) {
   }
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

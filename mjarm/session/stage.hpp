@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/view/run_show.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/execution/motion_run.hpp"
 #include "mjarm/execution/report.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/render/plot.hpp"
+#include "mjarm/session/run_show.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
 /// What the user chose for a run that is shown and kept.
 struct StageOptions {
@@ -41,12 +41,12 @@ class Stage {
   [[nodiscard]] const Robot& robot() const { return robot_; }
   [[nodiscard]] const Arm& arm() const { return robot_.arm; }
   [[nodiscard]] MotionRun& run() { return run_; }
-  [[nodiscard]] Show& show() { return show_; }
+  [[nodiscard]] RunShow& show() { return show_; }
   /// The control the user chose, else `fallback`; the report names it.
   [[nodiscard]] ControlMode control(ControlMode fallback);
 
   /// Camera of the picture at the end, where the model has it (default: `overview`).
-  void set_camera(const std::string& name) { camera_ = name; }
+  void set_camera(const std::string& name) { camera_name_ = name; }
   /// `tick` is called after every step of the simulation.
   void set_tick(std::function<void()> tick) { tick_ = std::move(tick); }
 
@@ -85,23 +85,23 @@ class Stage {
   [[nodiscard]] Result<Report> refuse(const MotionFailure& failure);
 
  private:
-  Stage(std::string name, const StageOptions& options, const Robot& robot, Show show);
+  Stage(std::string name, const StageOptions& options, const Robot& robot, RunShow show);
   /// Shows a step of any world; false when the user or a limit ended it.
   [[nodiscard]] bool show_step(const Sim& sim);
   [[nodiscard]] Result<void> begin_film();
-  /// The camera that was chosen, where the model has it; else empty.
-  [[nodiscard]] std::string known_camera() const;
+  /// The camera that was chosen, where the model has it; else the model's own view.
+  [[nodiscard]] Camera camera() const;
   [[nodiscard]] Result<Report> write(Report report, Plot plot);
 
   std::string name_;
   StageOptions options_;
   Robot robot_;
   MotionRun run_;
-  Show show_;
+  RunShow show_;
   std::string control_;
-  std::string camera_ = "overview";
+  std::string camera_name_ = "overview";
   std::function<void()> tick_;
   double wall_seconds_ = 0;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,20 +1,19 @@
-#include "apps/mjarm/commands/stage.hpp"
+#include "mjarm/session/stage.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/commands/run_output.hpp"
-#include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/show.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/render/camera.hpp"
 #include "mjarm/session/run_charts.hpp"
+#include "mjarm/session/run_output.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
-Stage::Stage(std::string name, const StageOptions& options, const Robot& robot, Show show)
+Stage::Stage(std::string name, const StageOptions& options, const Robot& robot, RunShow show)
     : name_(std::move(name)),
       options_(options),
       robot_(robot),
@@ -30,12 +29,12 @@ Stage::Stage(std::string name, const StageOptions& options, const Robot& robot, 
 
 Result<std::unique_ptr<Stage>> Stage::open(const std::string& name, const StageOptions& options,
                                            const Robot& robot) {
-  tell_warnings(robot.model);
+  for (const std::string& warning : robot.model.warnings()) log_info(warning);
   if (task_for(robot.arm) == IkTask::position) {
-    log_info(text(msg::demo_position_only, robot.arm.dof()));
+    log_info(text(msg::show_position_only, robot.arm.dof()));
   }
   if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
-  Result<Show> show = Show::open(robot.model, "mjarm " + name, options.headless);
+  Result<RunShow> show = RunShow::open(robot.model, "mjarm " + name, options.headless);
   if (!show) return fail(std::move(show.error()));
   return std::unique_ptr<Stage>(new Stage(name, options, robot, std::move(*show)));
 }
@@ -52,14 +51,16 @@ bool Stage::show_step(const Sim& sim) {
   return show_.step(sim, sim.tool(robot_.arm).p);
 }
 
-std::string Stage::known_camera() const {
+Camera Stage::camera() const {
   const std::vector<std::string> cameras = camera_names(robot_.model);
-  return std::ranges::find(cameras, camera_) != cameras.end() ? camera_ : std::string();
+  Camera camera;
+  if (std::ranges::find(cameras, camera_name_) != cameras.end()) camera.name = camera_name_;
+  return camera;
 }
 
 Result<void> Stage::begin_film() {
   if (!options_.video || show_.is_filming()) return {};
-  return show_.film(robot_.model, options_.out / kVideoFile, known_camera());
+  return show_.film(robot_.model, options_.out / kVideoFile, camera());
 }
 
 Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mode,
@@ -87,7 +88,7 @@ void Stage::tell(const ToolMotion& motion, Report& report) const {
 
 Result<void> Stage::save_comparison(const Plot& page) const {
   const std::filesystem::path stem = options_.out / "comparison";
-  log_info(text(msg::demo_compared, stem.string() + ".png"));
+  log_info(text(msg::show_compared, stem.string() + ".png"));
   return save_plot(page, stem);
 }
 
@@ -97,9 +98,9 @@ Result<Report> Stage::finish(Report begun, double tolerance) {
 }
 
 Result<Report> Stage::finish(Report report, double tolerance, std::span<const MeasuredRun> runs) {
-  Plot plot = session::motion_plot(name_, robot_.arm, runs, tolerance);
+  Plot plot = motion_plot(name_, robot_.arm, runs, tolerance);
   if (report.path_error) {
-    plot.note = text(msg::demo_plot_note, control_, 1e3 * report.path_error->max,
+    plot.note = text(msg::show_plot_note, control_, 1e3 * report.path_error->max,
                      1e3 * report.path_error->rms, 100 * report.done);
   }
   return write(std::move(report), std::move(plot));
@@ -111,7 +112,7 @@ Result<Report> Stage::write(Report report, Plot plot) {
   if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {
     report.rtf = run_.outcome().duration / wall_seconds_;
   }
-  const RunOutput output{report, std::move(plot), show_.overlay(), known_camera()};
+  const RunOutput output{report, std::move(plot), show_.overlay(), camera()};
   auto written = run_.recorder().write_csv(options_.out / "log.csv").and_then([&] {
     return write_output(options_.out, robot_.model, run_.sim().snapshot(), output);
   });
@@ -134,4 +135,4 @@ Result<Report> Stage::refuse(const MotionFailure& failure) {
                 describe(failure, robot_.arm));
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

@@ -1,18 +1,16 @@
-#include "apps/mjarm/view/view_show.hpp"
+#include "mjarm/view/show_in_window.hpp"
 
 #include <chrono>
-#include <cstdio>
 #include <thread>
 #include <utility>
 
-#include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 
-namespace mjarm::app {
+namespace mjarm {
 
-Result<int> show_in_window(const Model& model, const std::string& title,
-                           const WindowOptions& window_options, const ShowOptions& options,
-                           const std::function<void(ViewLink&)>& simulate) {
+Result<ViewStats> show_in_window(const Model& model, const std::string& title,
+                                 const WindowOptions& window_options, const ShowOptions& options,
+                                 const std::function<void(ViewLink&)>& simulate) {
   using Clock = std::chrono::steady_clock;
   Result<Window> window = Window::open(model, title, window_options);
   if (!window) {
@@ -29,13 +27,7 @@ Result<int> show_in_window(const Model& model, const std::string& title,
       *window, link, [&] { return interrupted() || (options.seconds > 0 && Clock::now() >= end); });
   worker.join();
   if (!drawn) return fail(drawn.error());
-  if (options.stats) {
-    const ViewStats stats = window->stats();
-    const std::string line = text(msg::view_stats, stats.frames, stats.fps, stats.frame_ms,
-                                  stats.first_frame_ms, stats.sim_rate);
-    std::printf("%s\n", line.c_str());
-  }
-  return 0;
+  return window->stats();
 }
 
-}  // namespace mjarm::app
+}  // namespace mjarm

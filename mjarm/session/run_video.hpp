@@ -1,28 +1,30 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
-#include "apps/mjarm/commands/render_options.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/video.hpp"
+#include "mjarm/session/picture.hpp"
 #include "mjarm/sim/sim.hpp"
 
-namespace mjarm::app {
+namespace mjarm::session {
 
 /// Takes the frames of a video from a simulation as it runs, in simulated time. It only reads: the
 /// simulation goes on as if nobody looked.
 ///
-///   Result<VideoOfRun> video = VideoOfRun::open(model, options);
+///   Result<VideoOfRun> video = VideoOfRun::open(model, options, camera);
 ///   (void)video->step(sim, overlay);                       // the first frame, before it moves
 ///   setup.after_step = [&](const Sim& sim, const JointVec&) { return video->step(sim, overlay); };
 ///   ... run ...
 ///   Result<void> done = video->finish();
 class VideoOfRun {
  public:
-  /// Checks the camera, opens OpenGL and starts ffmpeg; nothing stands under the name of the file
+  /// Opens OpenGL and starts ffmpeg; nothing stands under the name of the file
   /// before `finish`.
-  [[nodiscard]] static Result<VideoOfRun> open(const Model& model, const PictureOptions& options);
+  [[nodiscard]] static Result<VideoOfRun> open(const Model& model, const PictureOptions& options,
+                                               const Camera& camera);
 
   /// Whether `step` would take a frame now; spares making an overlay for nothing.
   [[nodiscard]] bool is_due(const Sim& sim) const;
@@ -62,4 +64,4 @@ class VideoOfRun {
   std::optional<Error> error_;
 };
 
-}  // namespace mjarm::app
+}  // namespace mjarm::session

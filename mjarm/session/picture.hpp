@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/render/offscreen.hpp"
+#include "mjarm/render/overlay.hpp"
+
+namespace mjarm::session {
+
+/// A picture or a video that can be made.
+struct PictureOptions {
+  std::filesystem::path out;
+  bool video = false;
+  int width = 1280;                           ///< [px]
+  int height = 720;                           ///< [px]
+  std::optional<RenderQuality> quality = {};  ///< default: as `offscreen_options` chooses
+  double fps = 30;                            ///< [1/s]
+};
+
+/// How to draw: without a quality asked for, high; low for a video without a GPU.
+[[nodiscard]] OffscreenOptions offscreen_options(const PictureOptions& options);
+
+/// `overview` where the model has a camera of that name, else the model's own view.
+[[nodiscard]] Camera default_camera(const Model& model);
+
+/// Draws one picture and writes it. @return the line to tell.
+[[nodiscard]] Result<std::string> write_picture(OffscreenRenderer& renderer,
+                                                const PictureOptions& options,
+                                                const Snapshot& snapshot, const Camera& camera,
+                                                const Overlay& overlay);
+
+}  // namespace mjarm::session

@@ -1,0 +1,107 @@
+#include "mjarm/session/render_program.hpp"
+
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "mjarm/core/messages/show.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/progress.hpp"
+#include "mjarm/execution/execution.hpp"
+#include "mjarm/render/trail.hpp"
+#include "mjarm/session/program_scene.hpp"
+#include "mjarm/session/run_video.hpp"
+
+namespace mjarm::session {
+namespace {
+
+/// Executes a plan, with the trail of the tool in an overlay.
+class ProgramRun {
+ public:
+  explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
+    sim_.place(loaded.robot.arm, as_span(loaded.plan.q_start));
+    add_planned_paths(planned_, loaded.plan);
+  }
+
+  /// @param seconds     [s] of simulated time at most.
+  /// @param after_step  returns false to stop; called once before anything moves.
+  Result<void> run(std::optional<double> seconds, const std::function<bool()>& after_step) {
+    if (!after_step()) return {};
+    const ProgramPlan& plan = loaded_.plan;
+    Result<Execution> execution =
+        Execution::make(loaded_.robot.model, plan, {.control = loaded_.control()});
+    if (!execution) return fail(std::move(execution.error()));
+    const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
+      const PlannedMove& move = plan.moves[execution->motions().back().move];
+      trail_.add(sim.tool(plan.arms[move.tool]).p);
+      return after_step() && !(seconds && sim.time() >= *seconds);
+    });
+    if (!done) return fail(Errc::impossible, done.error().what);
+    return {};
+  }
+
+  [[nodiscard]] const Sim& sim() const { return sim_; }
+  [[nodiscard]] Overlay overlay() const {
+    Overlay all = planned_;
+    trail_.draw(all);
+    return all;
+  }
+
+ private:
+  const LoadedProgram& loaded_;
+  Sim sim_;
+  Overlay planned_;
+  Trail trail_{{.max_points = 10000}};
+};
+
+/// What is asked of a picture or a video.
+struct Job {
+  const Model& model;
+  const PictureOptions& options;
+  const Camera& camera;
+  std::optional<double> seconds;
+};
+
+Result<std::string> video_of(ProgramRun& run, const Job& job, Progress& progress) {
+  Result<VideoOfRun> video = VideoOfRun::open(job.model, job.options, job.camera);
+  if (!video) return fail(std::move(video.error()));
+  const auto after_step = [&] {
+    progress.advance();
+    return video->is_due(run.sim()) ? video->step(run.sim(), run.overlay()) : !interrupted();
+  };
+  if (Result<void> ran = run.run(job.seconds, after_step); !ran) return fail(ran.error());
+  if (Result<void> finished = video->finish(); !finished) return fail(finished.error());
+  return video->summary();
+}
+
+Result<std::string> picture_of(ProgramRun& run, const Job& job, Progress& progress) {
+  const PictureOptions& options = job.options;
+  Result<OffscreenRenderer> renderer =
+      OffscreenRenderer::create(job.model, offscreen_options(options));
+  if (!renderer) return fail(std::move(renderer.error()));
+  const auto after_step = [&progress] {
+    progress.advance();
+    return !interrupted();
+  };
+  if (Result<void> ran = run.run(job.seconds, after_step); !ran) return fail(ran.error());
+  if (interrupted()) {
+    return fail(Errc::system, text(msg::show_stopped, options.out.string()));
+  }
+  return write_picture(*renderer, options, run.sim().snapshot(), job.camera, run.overlay());
+}
+
+}  // namespace
+
+Result<std::string> render_program(const LoadedProgram& loaded, const PictureOptions& options,
+                                   const Camera& camera, std::optional<double> seconds) {
+  const Model& model = loaded.robot.model;
+  double duration = loaded.plan.duration() + kRestAtEnd;
+  if (seconds) duration = std::min(duration, *seconds);
+  Progress progress(text(msg::show_running),
+                    static_cast<std::uint64_t>(duration / model.timestep()));
+  ProgramRun run(loaded);
+  const Job job{model, options, camera, seconds};
+  return options.video ? video_of(run, job, progress) : picture_of(run, job, progress);
+}
+
+}  // namespace mjarm::session

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mjarm/program/load_program.hpp"
+#include "mjarm/session/picture.hpp"
+
+namespace mjarm::session {
+
+/// Runs a plan without faults and makes a picture of its end or a video of all of it.
+/// @param seconds  [s] of simulated time at most.
+/// @return the line to tell, or why there is no file.
+[[nodiscard]] Result<std::string> render_program(const LoadedProgram& loaded,
+                                                 const PictureOptions& options,
+                                                 const Camera& camera,
+                                                 std::optional<double> seconds = {});
+
+}  // namespace mjarm::session

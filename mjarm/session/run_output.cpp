@@ -1,0 +1,37 @@
+#include "mjarm/session/run_output.hpp"
+
+#include "mjarm/core/messages/show.hpp"
+#include "mjarm/core/file.hpp"
+#include "mjarm/core/log.hpp"
+#include "mjarm/render/offscreen.hpp"
+#include "mjarm/render/png.hpp"
+
+namespace mjarm::session {
+namespace {
+
+Result<void> write_picture(const std::filesystem::path& file, const Model& model,
+                           const Snapshot& snapshot, const RunOutput& output) {
+  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model);
+  if (!renderer) {
+    if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
+    log_warning(text(msg::show_no_picture, renderer.error().what));
+    return {};
+  }
+  const Result<Image> image = renderer->draw(snapshot, output.camera, output.overlay);
+  if (!image) return fail(image.error());
+  return write_png(*image, file);
+}
+
+}  // namespace
+
+Result<void> write_output(const std::filesystem::path& folder, const Model& model,
+                          const Snapshot& snapshot, const RunOutput& output) {
+  return write_file(folder / "report.json", to_json(output.report))
+      .and_then([&] {
+        return output.plot.panels.empty() ? Result<void>()
+                                          : save_plot(output.plot, folder / "plot");
+      })
+      .and_then([&] { return write_picture(folder / "picture.png", model, snapshot, output); });
+}
+
+}  // namespace mjarm::session

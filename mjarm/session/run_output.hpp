@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+
+#include "mjarm/core/result.hpp"
+#include "mjarm/execution/report.hpp"
+#include "mjarm/model/model.hpp"
+#include "mjarm/render/camera.hpp"
+#include "mjarm/render/overlay.hpp"
+#include "mjarm/render/plot.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm::session {
+
+/// What a run leaves behind besides its log.
+struct RunOutput {
+  Report report;
+  Plot plot;
+  Overlay overlay;     ///< drawn into the picture
+  Camera camera;       ///< of the picture
+};
+
+inline constexpr const char* kVideoFile = "video.mp4";
+
+/// Writes report.json, plot.svg, plot.png and picture.png into `folder`. A machine without any GL
+/// back end gets everything but the picture, and a line that says so.
+[[nodiscard]] Result<void> write_output(const std::filesystem::path& folder, const Model& model,
+                                        const Snapshot& snapshot, const RunOutput& output);
+
+}  // namespace mjarm::session
