@@ -6,9 +6,9 @@
 
 int main(int argc, char** argv) {
   // A path, or the name of a shipped program.
-  const auto loaded = mjarm::load_program(argc > 1 ? argv[1] : "ellipse");
+  const auto loaded = mjarm::program::load_program(argc > 1 ? argv[1] : "ellipse");
   if (!loaded) return std::fprintf(stderr, "%s\n", loaded.error().what.c_str()), 1;
-  for (const mjarm::ProgramFault& fault : loaded->plan.faults) {
+  for (const mjarm::program::ProgramFault& fault : loaded->plan.faults) {
     std::fprintf(stderr, "%s\n", line_of(*loaded, fault).c_str());
   }
   if (!loaded->plan.ok()) return 1;

@@ -14,15 +14,15 @@ using testing::RandomProgram;
 
 const Robot& ur5e_scene() {
   static const Robot kRobot = [] {
-    Program program;
+    program::Program program;
     program.robot = "ur5e";
-    return load_program_robot(program, "test.yaml").value();
+    return program::load_program_robot(program, "test.yaml").value();
   }();
   return kRobot;
 }
 
-ProgramPlan plan_of(const Program& program) {
-  return plan_program(ur5e_scene().model, ur5e_scene().arm, program);
+program::ProgramPlan plan_of(const program::Program& program) {
+  return program::plan_program(ur5e_scene().model, ur5e_scene().arm, program);
 }
 
 /// The line in `test.yaml:LINE:COLUMN: ...`.
@@ -34,7 +34,7 @@ int line_in(const std::string& message) {
 
 void expect_caught(const std::string& kind, const RandomProgram& made) {
   SCOPED_TRACE(kind + "\n" + made.text);
-  const Result<Program> program = parse_program(made.text, "test.yaml");
+  const Result<program::Program> program = program::parse_program(made.text, "test.yaml");
   if (!program) {
     EXPECT_EQ(program.error().code, Errc::bad_input);
     EXPECT_EQ(line_in(program.error().what), made.line) << program.error().what;
@@ -42,9 +42,9 @@ void expect_caught(const std::string& kind, const RandomProgram& made) {
         << program.error().what;
     return;
   }
-  const ProgramPlan plan = plan_of(*program);
+  const program::ProgramPlan plan = plan_of(*program);
   ASSERT_EQ(plan.faults.size(), 1U);
-  const ProgramFault& fault = plan.faults.front();
+  const program::ProgramFault& fault = plan.faults.front();
   EXPECT_EQ(fault.place.line, made.line) << fault.what;
   EXPECT_THAT(made.reasons, ::testing::Contains(fault.reason)) << fault.what;
   EXPECT_FALSE(fault.what.empty());
@@ -77,10 +77,10 @@ TEST_P(GoodPrograms, AreNotRefused) {
   for (int i = 0; i < kPrograms; ++i) {
     const RandomProgram made = testing::good_program(rng);
     SCOPED_TRACE(made.text);
-    const Result<Program> program = parse_program(made.text, "test.yaml");
+    const Result<program::Program> program = program::parse_program(made.text, "test.yaml");
     ASSERT_TRUE(program.has_value()) << program.error().what;
-    const ProgramPlan plan = plan_of(*program);
-    for (const ProgramFault& fault : plan.faults) {
+    const program::ProgramPlan plan = plan_of(*program);
+    for (const program::ProgramFault& fault : plan.faults) {
       ADD_FAILURE() << "line " << fault.place.line << ": " << fault.reason << ": " << fault.what;
     }
     EXPECT_GT(plan.duration(), 0);

@@ -10,7 +10,7 @@
 #include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/trajectory/path_timing.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 namespace {
 
 constexpr double kWayStep = 5e-3;  // [rad or m]
@@ -215,4 +215,4 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
   return motion;
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

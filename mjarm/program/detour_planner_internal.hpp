@@ -15,7 +15,7 @@
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 
 /// A motion round what stands between two configurations.
 struct DetourMotion {
@@ -66,4 +66,4 @@ class DetourPlanner {
   std::optional<PlanningWorld> world_;  // made when a detour is asked for first
 };
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

@@ -8,7 +8,7 @@
 #include "mjarm/program/program_reader.hpp"
 #include "mjarm/trajectory/tool_down_test.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using ::testing::AllOf;
@@ -183,4 +183,4 @@ TEST(DetourPlanner, WordsThatAreNoneGetTheNearestOne) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

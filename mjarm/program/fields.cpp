@@ -8,7 +8,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/program/fields_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 namespace {
 
 constexpr double kMaxTurn = 4 * std::numbers::pi;  // [rad] more than that was meant in degrees
@@ -224,4 +224,4 @@ std::vector<double> joints_of(const YamlNode& node, std::string_view what,
   return numbers_of(node, what, Quantity::angle);
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

@@ -11,7 +11,7 @@
 #include "mjarm/core/yaml_tree.hpp"
 #include "mjarm/program/program.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 
 /// What is wrong with a program, and where. Thrown within the reader, where every line can fail;
 /// never leaves it.
@@ -84,4 +84,4 @@ std::vector<Instruction> instructions_of(const YamlNode& node, std::string_view 
 /// What `set:` holds, and what stands at the top of a program.
 Set set_of(const Fields& fields);
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

@@ -6,7 +6,7 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/program/fields_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 namespace {
 
 constexpr double kMaxRepeats = 10000;
@@ -233,4 +233,4 @@ std::vector<Instruction> instructions_of(const YamlNode& node, std::string_view 
   return out;
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

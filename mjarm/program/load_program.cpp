@@ -10,7 +10,7 @@
 #include "mjarm/core/share.hpp"
 #include "mjarm/program/program_reader.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 namespace {
 
@@ -91,4 +91,4 @@ Error first_fault(const LoadedProgram& loaded) {
   return {faults.front().code, std::move(line)};
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

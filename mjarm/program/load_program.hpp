@@ -6,7 +6,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/program/program_plan.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 /// A program, what it runs on, and the plan of it.
 struct LoadedProgram {
@@ -49,4 +49,4 @@ struct LoadedProgram {
 /// The first fault as an error, and how many more there are; of a plan with faults.
 [[nodiscard]] Error first_fault(const LoadedProgram& loaded);
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -5,7 +5,7 @@
 
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using ::testing::EndsWith;
@@ -91,4 +91,4 @@ TEST(LoadProgram, AFaultOfNoFileHasNoPlace) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -7,7 +7,7 @@
 #include "mjarm/path/path_measures.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 std::vector<JointVec> joint_way(const JointVec& from, const JointVec& to) {
   constexpr double kStep = 0.02;  // [rad or m]
@@ -72,4 +72,4 @@ std::optional<std::string> MoveJudge::touches(const MoveMeasures& measures) {
               -1e3 * measures.clearance);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

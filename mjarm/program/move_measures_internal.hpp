@@ -8,7 +8,7 @@
 #include "mjarm/path/clearance.hpp"
 #include "mjarm/program/program_plan.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 /// Waypoints of a straight joint move, near enough to each other to look at contact.
 [[nodiscard]] std::vector<JointVec> joint_way(const JointVec& from, const JointVec& to);
@@ -31,4 +31,4 @@ class MoveJudge {
   ClearanceCheck clearance_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::program

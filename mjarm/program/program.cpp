@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-namespace mjarm {
+namespace mjarm::program {
 
 std::string_view word(const Instruction& instruction) noexcept {
   static constexpr std::array<std::string_view, 11> kWords{"movej",    "movel", "movec", "ellipse",
@@ -36,4 +36,4 @@ Instruction repeat(int times, std::vector<Instruction> body) {
   return {Repeat{times, std::move(body)}};
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

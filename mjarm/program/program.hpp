@@ -10,7 +10,7 @@
 #include "mjarm/core/file_place.hpp"
 #include "mjarm/core/pose.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 /// The name of a frame of the program or of the model; empty = the frame that is set then.
 struct FrameName {
@@ -142,4 +142,4 @@ struct Program {
 [[nodiscard]] Instruction wait(double seconds);
 [[nodiscard]] Instruction repeat(int times, std::vector<Instruction> body);
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -14,7 +14,7 @@
 #include "mjarm/program/program_steps_internal.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using detail::Step;
@@ -478,4 +478,4 @@ ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& prog
       .plan();
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -12,7 +12,7 @@
 #include "mjarm/model/robot.hpp"
 #include "mjarm/program/program.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 /// Loads scene and robot of a program.
 /// @param file  of the program: relative paths in it start from its folder. Messages name it.
@@ -64,4 +64,4 @@ struct ProgramPlanOptions {
 [[nodiscard]] ProgramPlan plan_program(const Model& model, const Arm& arm, const Program& program,
                                        const ProgramPlanOptions& options = {});
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -9,7 +9,7 @@
 #include "mjarm/program/program_reader.hpp"
 #include "mjarm/trajectory/tool_down_test.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using ::testing::HasSubstr;
@@ -358,4 +358,4 @@ TEST(ProgramPlan, MeasuresEveryMotion) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -7,7 +7,7 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/program/fields_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using detail::Fields;
@@ -109,4 +109,4 @@ Result<Program> read_program(const std::filesystem::path& file) {
   return program;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

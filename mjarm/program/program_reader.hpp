@@ -6,7 +6,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/program/program.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 /// Reads a motion program from YAML, as docs/programs.md describes it. Names of poses and postures
 /// are put in; names of frames and of the robot stay names, as the robot is not loaded. Numbers may
@@ -18,4 +18,4 @@ namespace mjarm {
 /// The same of a file of at most 16 MB.
 [[nodiscard]] Result<Program> read_program(const std::filesystem::path& file);
 
-}  // namespace mjarm
+}  // namespace mjarm::program

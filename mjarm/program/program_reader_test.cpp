@@ -7,7 +7,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using ::testing::HasSubstr;
@@ -204,4 +204,4 @@ TEST(ProgramReader, ReadsAFileAndTakesItsName) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

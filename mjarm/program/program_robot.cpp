@@ -3,7 +3,7 @@
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/program_plan.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 /// A path of a program: from its folder, or a name that a model is known by.
@@ -31,4 +31,4 @@ Result<Robot> load_program_robot(const Program& program, const std::filesystem::
   return Robot{std::move(*model), std::move(*arm)};
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -11,7 +11,7 @@
 #include "mjarm/path/letters.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 namespace {
 
 constexpr std::size_t kMaxSteps = 100'000;
@@ -312,4 +312,4 @@ Steps steps_of(const Program& program, const Model& model, const Arm& arm) {
   return StepWriter(program, model, arm).write();
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

@@ -10,7 +10,7 @@
 #include "mjarm/path/curve.hpp"
 #include "mjarm/program/program_plan.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 
 /// One thing to be done, with all that holds at that moment; repeats are unrolled.
 struct Step {
@@ -47,4 +47,4 @@ void add_fault(std::vector<ProgramFault>& faults, ProgramFault fault);
 /// Resolves frames, tools and settings of every instruction in the order in which they run.
 [[nodiscard]] Steps steps_of(const Program& program, const Model& model, const Arm& arm);
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

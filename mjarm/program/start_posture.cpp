@@ -7,7 +7,7 @@
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 /// [m] the tool of a good posture is this high above the plane z = 0 of the world.
@@ -109,4 +109,4 @@ std::vector<StartPosture> start_postures(
   return postures;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -7,7 +7,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/arm.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 /// A posture from which an arm can move its tool in every direction.
 struct StartPosture {
@@ -38,4 +38,4 @@ struct StartOptions {
     const Arm& arm, const std::function<bool(std::span<const double> q)>& valid, Rng& rng,
     const StartOptions& options = {});
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -6,7 +6,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/model/robot.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 TEST(StartPosture, HomeIsTakenWhereItIsFit) {
@@ -63,4 +63,4 @@ TEST(StartPosture, FewJointsAreJudgedByPosition) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

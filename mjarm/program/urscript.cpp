@@ -13,7 +13,7 @@
 #include "mjarm/program/urscript_clock_internal.hpp"
 #include "mjarm/program/urscript_targets_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using detail::UrArm;
@@ -243,4 +243,4 @@ Result<std::string> to_urscript(const Program& program, const Robot& robot, cons
   return UrscriptWriter(program, plan, options, *ur).write();
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::program

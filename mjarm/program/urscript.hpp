@@ -5,7 +5,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/program/program_plan.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 
 /// How a plan is written for a controller of Universal Robots. Every default is usable as is.
 struct UrscriptOptions {
@@ -28,4 +28,4 @@ struct UrscriptOptions {
                                               const ProgramPlan& plan,
                                               const UrscriptOptions& options = {});
 
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -12,7 +12,7 @@
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/urscript_arm_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 namespace {
 
 using Eigen::Vector3d;
@@ -167,4 +167,4 @@ Result<UrArm> find_ur_arm(const Model& model, const Arm& arm) {
   return *best;
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

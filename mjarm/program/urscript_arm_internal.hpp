@@ -7,7 +7,7 @@
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 
 /// Lengths [m] of an arm of Universal Robots in its Denavit-Hartenberg chain, as the controller
 /// knows them: Universal Robots, "DH Parameters for calculations of kinematics and dynamics".
@@ -32,4 +32,4 @@ struct UrArm {
 /// @return an error that says what does not fit.
 [[nodiscard]] Result<UrArm> find_ur_arm(const Model& model, const Arm& arm);
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

@@ -48,7 +48,7 @@ inline Pose ur_pose(const std::vector<double>& p) {
 class UrCheck {
  public:
   /// @param X_WB  the controller's base frame in the world, known from elsewhere.
-  UrCheck(const UrScript& script, const ProgramPlan& plan, const Pose& X_WB = {})
+  UrCheck(const UrScript& script, const program::ProgramPlan& plan, const Pose& X_WB = {})
       : script_(script), plan_(plan), X_WB_(X_WB) {}
 
   /// What is wrong, a line each; empty where script and plan are the same motion.
@@ -259,7 +259,7 @@ class UrCheck {
   }
 
   const UrScript& script_;
-  const ProgramPlan& plan_;
+  const program::ProgramPlan& plan_;
   Pose X_WB_;
   Pose X_FT_;
   std::vector<double> q_;

@@ -4,7 +4,7 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/program/urscript_clock_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 
 ToolClock::ToolClock(const Arm& arm, const Trajectory& trajectory, const Curve& curve) {
   constexpr double kStep = 0.002;  // [s]
@@ -53,4 +53,4 @@ Trapezoid trapezoid(double way, double seconds, double peak) {
   return {peak, peak / std::max(seconds - way / peak, kShortest)};
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

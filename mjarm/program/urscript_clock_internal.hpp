@@ -6,7 +6,7 @@
 #include "mjarm/path/curve.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 
 /// When a tool motion passes each place of its curve, and how fast; sampled, good to about 1e-4.
 class ToolClock {
@@ -34,4 +34,4 @@ struct Trapezoid {
 };
 [[nodiscard]] Trapezoid trapezoid(double way, double seconds, double peak);
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

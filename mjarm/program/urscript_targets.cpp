@@ -6,7 +6,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/program/urscript_targets_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 namespace {
 
 constexpr double kOnTheSpot = 1e-9;  // [m] shorter legs are turns
@@ -274,4 +274,4 @@ std::vector<UrTarget> ur_targets(const PlannedMove& move, const Arm& arm,
   return TargetMaker(move, arm, options).make();
 }
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

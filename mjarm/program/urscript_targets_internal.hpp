@@ -6,7 +6,7 @@
 #include "mjarm/program/urscript.hpp"
 #include "mjarm/program/urscript_clock_internal.hpp"
 
-namespace mjarm::detail {
+namespace mjarm::program::detail {
 
 /// Where one statement of a script brings the tool.
 struct UrTarget {
@@ -27,4 +27,4 @@ struct UrTarget {
 [[nodiscard]] std::vector<UrTarget> ur_targets(const PlannedMove& move, const Arm& arm,
                                                const UrscriptOptions& options);
 
-}  // namespace mjarm::detail
+}  // namespace mjarm::program::detail

@@ -9,7 +9,7 @@
 #include "mjarm/program/urscript_check_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using ::testing::HasSubstr;
@@ -219,4 +219,4 @@ TEST(Urscript, NamesBecomeIdentifiersAndComments) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -52,7 +52,7 @@ void Extent::add(double value) {
   seen_ = true;
 }
 
-PlotRange Extent::range(double margin) const {
+render::PlotRange Extent::range(double margin) const {
   if (!seen_) return {0, 1};
   const double middle = lower_ / 2 + upper_ / 2;
   // Below this the marks on the axis could not be told apart in the digits of a double.
@@ -62,7 +62,7 @@ PlotRange Extent::range(double margin) const {
   return {middle - half, middle + half};
 }
 
-Ticks ticks_for(const PlotRange& range, int count) {
+Ticks ticks_for(const render::PlotRange& range, int count) {
   const Step step = nice_step((range.upper - range.lower) / std::max(count, 1));
   Ticks ticks;
   const double slack = 1e-9 * step.size;
@@ -84,11 +84,11 @@ Ticks ticks_for(const PlotRange& range, int count) {
   return ticks;
 }
 
-void equalise(PlotRange& x, PlotRange& y, double width, double height) {
+void equalise(render::PlotRange& x, render::PlotRange& y, double width, double height) {
   const double x_unit = (x.upper - x.lower) / width;
   const double y_unit = (y.upper - y.lower) / height;
   const double unit = std::max(x_unit, y_unit);
-  const auto widen = [](PlotRange& range, double length) {
+  const auto widen = [](render::PlotRange& range, double length) {
     const double middle = range.lower / 2 + range.upper / 2;
     range = {middle - length / 2, middle + length / 2};
   };

@@ -14,7 +14,7 @@ class Extent {
   void add(double value);
   /// What was seen, widened by `margin` (a share of its length) at both ends and to a length that
   /// can be drawn; [0, 1] where nothing was seen.
-  [[nodiscard]] PlotRange range(double margin) const;
+  [[nodiscard]] render::PlotRange range(double margin) const;
 
  private:
   bool seen_ = false;
@@ -31,10 +31,10 @@ struct Ticks {
 
 /// About `count` ticks at multiples of 1, 2 or 5 times a power of ten.
 /// @param range lower < upper, both finite.
-[[nodiscard]] Ticks ticks_for(const PlotRange& range, int count);
+[[nodiscard]] Ticks ticks_for(const render::PlotRange& range, int count);
 
 /// Widens the range whose unit is drawn longer, so that a unit has one length on both axes.
 /// @param width, height of the drawn area, > 0.
-void equalise(PlotRange& x, PlotRange& y, double width, double height);
+void equalise(render::PlotRange& x, render::PlotRange& y, double width, double height);
 
 }  // namespace mjarm::axis

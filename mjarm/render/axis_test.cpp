@@ -38,7 +38,7 @@ TEST(Ticks, OfRandomRangesAreInsideEvenAndSayWhatTheyAre) {
   for (int i = 0; i < 5000; ++i) {
     const double length = std::pow(10.0, rng.uniform(-9, 9));
     const double lower = length * rng.uniform(-30, 30);
-    const PlotRange range = {lower, lower + length};
+    const render::PlotRange range = {lower, lower + length};
     const int count = 2 + static_cast<int>(rng.uniform(0, 8));
     const Ticks ticks = ticks_for(range, count);
     ASSERT_EQ(ticks.at.size(), ticks.labels.size());
@@ -70,19 +70,19 @@ TEST(Extent, ShowsAllThatIsFinite) {
   for (const double value : {1.0, std::nan(""), 3.0, std::numeric_limits<double>::infinity()}) {
     extent.add(value);
   }
-  const PlotRange range = extent.range(0.1);
+  const render::PlotRange range = extent.range(0.1);
   EXPECT_NEAR(range.lower, 0.8, 1e-12);
   EXPECT_NEAR(range.upper, 3.2, 1e-12);
 }
 
 TEST(Extent, OfOneValueOrNoneCanBeDrawn) {
-  const PlotRange none = Extent().range(0.1);
+  const render::PlotRange none = Extent().range(0.1);
   EXPECT_LT(none.lower, none.upper);
   for (const double value : {0.0, 1.5, -3e5, 1e-12}) {
     Extent extent;
     extent.add(value);
     extent.add(value * (1 + 1e-15));
-    const PlotRange range = extent.range(0);
+    const render::PlotRange range = extent.range(0);
     EXPECT_LT(range.lower, value);
     EXPECT_GT(range.upper, value);
   }
@@ -91,12 +91,12 @@ TEST(Extent, OfOneValueOrNoneCanBeDrawn) {
 TEST(Equalise, GivesBothAxesOneUnitAndHidesNothing) {
   Rng rng(5);
   for (int i = 0; i < 1000; ++i) {
-    const PlotRange x0 = {rng.uniform(-2, 0), rng.uniform(0.1, 2)};
-    const PlotRange y0 = {rng.uniform(-2, 0), rng.uniform(0.1, 2)};
+    const render::PlotRange x0 = {rng.uniform(-2, 0), rng.uniform(0.1, 2)};
+    const render::PlotRange y0 = {rng.uniform(-2, 0), rng.uniform(0.1, 2)};
     const double width = rng.uniform(50, 300);
     const double height = rng.uniform(50, 300);
-    PlotRange x = x0;
-    PlotRange y = y0;
+    render::PlotRange x = x0;
+    render::PlotRange y = y0;
     equalise(x, y, width, height);
     ASSERT_NEAR((x.upper - x.lower) / width, (y.upper - y.lower) / height, 1e-12);
     ASSERT_LE(x.lower, x0.lower + 1e-12);

@@ -9,7 +9,7 @@
 #include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180;
@@ -63,4 +63,4 @@ Result<void> check_camera(const Model& model, const Camera& camera) {
                                     did_you_mean(camera.name, names), list));
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -8,7 +8,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/model.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// Where a free camera stands, told by the point it looks at, in the world frame W.
 struct CameraView {
@@ -36,4 +36,4 @@ struct Camera {
 /// @return bad_input that names the cameras there are, or says which number of `view` is bad.
 [[nodiscard]] Result<void> check_camera(const Model& model, const Camera& camera);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -10,7 +10,7 @@
 #include "mjarm/render/scene.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr const char* kScene = R"(
@@ -93,4 +93,4 @@ TEST_F(Cameras, SnapshotOfAnotherModelIsRefused) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -81,7 +81,7 @@ double width_of(cairo_t* cr, std::string_view text, const TextStyle& style) {
 struct Painter {
   cairo_t* cr;
 
-  void set_color(const Rgba& color) const {
+  void set_color(const render::Rgba& color) const {
     cairo_set_source_rgba(cr, color.r, color.g, color.b, color.a);
   }
   void add_box(const Box& box) const { cairo_rectangle(cr, box.x, box.y, box.width, box.height); }
@@ -131,11 +131,11 @@ struct Painter {
 };
 
 /// Cairo's pixels are 0xAARRGGBB in rows that may be padded.
-Image image_of(cairo_surface_t* surface, int width, int height) {
+render::Image image_of(cairo_surface_t* surface, int width, int height) {
   cairo_surface_flush(surface);
   const unsigned char* data = cairo_image_surface_get_data(surface);
   const int stride = cairo_image_surface_get_stride(surface);
-  Image image{width, height, {}};
+  render::Image image{width, height, {}};
   image.rgb.reserve(3 * static_cast<std::size_t>(width) * height);
   for (int y = 0; y < height; ++y) {
     const auto* row = reinterpret_cast<const std::uint32_t*>(data + std::size_t{1} * y * stride);
@@ -157,7 +157,7 @@ double text_width(std::string_view text, const TextStyle& style) {
   return width_of(cr.get(), text, style);
 }
 
-Result<Image> to_image(const Page& page, double pixels_per_point) {
+Result<render::Image> to_image(const Page& page, double pixels_per_point) {
   const int width = static_cast<int>(std::lround(page.width * pixels_per_point));
   const int height = static_cast<int>(std::lround(page.height * pixels_per_point));
   const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));

@@ -27,7 +27,7 @@ struct Box {
 
 /// How a line is drawn.
 struct Stroke {
-  Rgba color;
+  render::Rgba color;
   double width = 1;
   std::vector<double> dash = {};  ///< lengths on, off, ...; empty = unbroken
 };
@@ -39,7 +39,7 @@ struct TextStyle {
   bool bold = false;
   Align align = Align::left;
   bool upright = false;  ///< turned to read from bottom to top
-  Rgba color = {0.2F, 0.2F, 0.2F, 1};
+  render::Rgba color = {0.2F, 0.2F, 0.2F, 1};
 };
 
 struct Polyline {
@@ -49,11 +49,11 @@ struct Polyline {
 struct Dots {
   std::vector<Point> centres;
   double radius = 1;
-  Rgba color;
+  render::Rgba color;
 };
 struct Fill {
   Box box;
-  Rgba color;
+  render::Rgba color;
 };
 struct Text {
   Point at;  ///< on the base line
@@ -85,6 +85,6 @@ struct Run {
 [[nodiscard]] double text_width(std::string_view text, const TextStyle& style);
 
 [[nodiscard]] std::string to_svg(const Page& page);
-[[nodiscard]] Result<Image> to_image(const Page& page, double pixels_per_point);
+[[nodiscard]] Result<render::Image> to_image(const Page& page, double pixels_per_point);
 
 }  // namespace mjarm::canvas

@@ -21,7 +21,7 @@ std::string coordinate(double value) {
 
 std::string pair_of(const Point& p) { return coordinate(p.x) + "," + coordinate(p.y); }
 
-std::string hex(const Rgba& color) {
+std::string hex(const render::Rgba& color) {
   std::string text = "#";
   for (const float part : {color.r, color.g, color.b}) {
     const int level = static_cast<int>(std::lround(std::clamp(part, 0.0F, 1.0F) * 255));
@@ -31,7 +31,7 @@ std::string hex(const Rgba& color) {
   return text;
 }
 
-std::string opacity(const char* what, const Rgba& color) {
+std::string opacity(const char* what, const render::Rgba& color) {
   if (color.a >= 1) return {};
   return std::string(" ") + what + "-opacity=\"" + coordinate(color.a) + "\"";
 }

@@ -12,7 +12,7 @@ using canvas::Box;
 using canvas::Page;
 
 /// From dark to bright through blue and green, so that it reads in grey and by colour-blind eyes.
-constexpr std::array<Rgba, 6> kColors = {{{0.27F, 0.00F, 0.33F, 1},
+constexpr std::array<render::Rgba, 6> kColors = {{{0.27F, 0.00F, 0.33F, 1},
                                           {0.25F, 0.27F, 0.53F, 1},
                                           {0.16F, 0.47F, 0.56F, 1},
                                           {0.13F, 0.66F, 0.52F, 1},
@@ -27,7 +27,7 @@ constexpr canvas::TextStyle kTick{.size = 7, .color = {0.3F, 0.3F, 0.3F, 1}};
 
 /// How values become colours.
 struct Scale {
-  PlotRange range;  ///< of whole numbers: half a number wider at both ends
+  render::PlotRange range;  ///< of whole numbers: half a number wider at both ends
   int levels = kLevels;
 
   /// Number of the colour; -1 for a bare cell.
@@ -36,20 +36,20 @@ struct Scale {
     const double share = (value - range.lower) / (range.upper - range.lower);
     return static_cast<int>(std::clamp(std::floor(share * levels), 0.0, levels - 1.0));
   }
-  [[nodiscard]] Rgba color(int level) const {
+  [[nodiscard]] render::Rgba color(int level) const {
     const double at = levels == 1 ? 0 : (kColors.size() - 1.0) * level / (levels - 1.0);
     const auto below = std::min(static_cast<std::size_t>(at), kColors.size() - 2);
     const auto t = static_cast<float>(at - static_cast<double>(below));
-    const Rgba& a = kColors[below];
-    const Rgba& b = kColors[below + 1];
+    const render::Rgba& a = kColors[below];
+    const render::Rgba& b = kColors[below + 1];
     return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b), 1};
   }
 };
 
-Scale scale_of(const PlotField& field) {
+Scale scale_of(const render::PlotField& field) {
   axis::Extent extent;
   for (const double value : field.values) extent.add(value);
-  const PlotRange range = field.colors.value_or(extent.range(0));
+  const render::PlotRange range = field.colors.value_or(extent.range(0));
   if (!field.whole_numbers) return {range};
   const double lower = std::round(range.lower);
   const double upper = std::max(std::round(range.upper), lower);
@@ -57,7 +57,7 @@ Scale scale_of(const PlotField& field) {
   return {{lower - 0.5, upper + 0.5}, levels};
 }
 
-axis::Ticks ticks_of(const PlotField& field, const Scale& scale, double height) {
+axis::Ticks ticks_of(const render::PlotField& field, const Scale& scale, double height) {
   axis::Ticks ticks = axis::ticks_for(scale.range, static_cast<int>(height / 16));
   if (!field.whole_numbers) return ticks;
   axis::Ticks whole;
@@ -71,7 +71,7 @@ axis::Ticks ticks_of(const PlotField& field, const Scale& scale, double height) 
 
 }  // namespace
 
-void draw_cells(const PlotField& field, const Box& box, Page& page) {
+void draw_cells(const render::PlotField& field, const Box& box, Page& page) {
   const Scale scale = scale_of(field);
   const auto columns = static_cast<std::size_t>(field.columns);
   const std::size_t rows = field.values.size() / columns;
@@ -91,7 +91,7 @@ void draw_cells(const PlotField& field, const Box& box, Page& page) {
   }
 }
 
-void draw_scale(const PlotField& field, const Box& box, Page& page) {
+void draw_scale(const render::PlotField& field, const Box& box, Page& page) {
   const Scale scale = scale_of(field);
   const double left = box.x + box.width + kBarDistance;
   const double step = box.height / scale.levels;

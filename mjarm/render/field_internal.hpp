@@ -10,9 +10,9 @@ namespace mjarm::field {
 inline constexpr double kScaleWidth = 42;
 
 /// Fills `box` with the cells.
-void draw_cells(const PlotField& field, const canvas::Box& box, canvas::Page& page);
+void draw_cells(const render::PlotField& field, const canvas::Box& box, canvas::Page& page);
 
 /// Draws the scale at the right of the axes `box`.
-void draw_scale(const PlotField& field, const canvas::Box& box, canvas::Page& page);
+void draw_scale(const render::PlotField& field, const canvas::Box& box, canvas::Page& page);
 
 }  // namespace mjarm::field

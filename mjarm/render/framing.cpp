@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using Eigen::Vector3d;
@@ -72,4 +72,4 @@ Vector3d camera_place(const CameraView& view) {
   return view.lookat_W - view.distance * forward_of(view);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

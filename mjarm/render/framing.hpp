@@ -6,7 +6,7 @@
 #include "mjarm/model/model.hpp"
 #include "mjarm/render/camera.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// A ball that has to be in a picture, in the world frame W; a point where its radius is 0.
 struct FramedBall {
@@ -32,4 +32,4 @@ struct LineOfSight {
 /// [m] where the camera itself stands, in the world.
 [[nodiscard]] Eigen::Vector3d camera_place(const CameraView& view);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -11,7 +11,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/render/scene.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 Model empty_room() {
@@ -79,4 +79,4 @@ TEST(Framing, TheCameraStandsBehindWhatItLooksAt) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -3,7 +3,7 @@
 
 #include "mjarm/render/ghost_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr double kSamePlace = 1e-6;  ///< [m], and for entries of rotation matrices
@@ -93,4 +93,4 @@ void Ghosts::draw_one(const OverlayGhost& ghost, const mjvOption& option, const 
   scene.ngeom = kept;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

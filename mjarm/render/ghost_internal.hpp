@@ -7,7 +7,7 @@
 
 #include "mjarm/render/overlay.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// Draws a model at other joint values beside what is drawn of it already.
 class Ghosts {
@@ -32,4 +32,4 @@ class Ghosts {
   std::unique_ptr<mjData, Delete> d_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -9,7 +9,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/gl_context_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr unsigned kGlRenderer = 0x1F01;    // GL_RENDERER
@@ -129,4 +129,4 @@ std::vector<GlBackend> probe_gl_backends() {
   return found;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

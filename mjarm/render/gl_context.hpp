@@ -6,7 +6,7 @@
 
 #include "mjarm/core/result.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// The ways to draw without a window.
 enum class GlKind {
@@ -71,4 +71,4 @@ struct GlBackend {
 /// Tries every way, in the order of preference; leaves no context current.
 [[nodiscard]] std::vector<GlBackend> probe_gl_backends();
 
-}  // namespace mjarm
+}  // namespace mjarm::render

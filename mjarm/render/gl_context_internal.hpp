@@ -5,7 +5,7 @@
 
 #include "mjarm/render/gl_context.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// A context of one kind.
 struct GlContext::Impl {
@@ -26,4 +26,4 @@ struct GlContext::Impl {
 [[nodiscard]] Result<std::unique_ptr<GlContext::Impl>> make_egl_context();
 [[nodiscard]] Result<std::unique_ptr<GlContext::Impl>> make_osmesa_context();
 
-}  // namespace mjarm
+}  // namespace mjarm::render

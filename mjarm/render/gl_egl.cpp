@@ -10,7 +10,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/gl_context_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr const char* kLibrary = "libEGL.so.1";
@@ -165,4 +165,4 @@ Result<std::unique_ptr<GlContext::Impl>> make_egl_context() {
   return fail(std::move(reason));
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -5,7 +5,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/gl_context_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 // From GL/osmesa.h, which need not be installed.
@@ -94,4 +94,4 @@ Result<std::unique_ptr<GlContext::Impl>> make_osmesa_context() {
   return context;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// A picture: 8-bit red, green, blue (sRGB) for each pixel, rows from top to bottom.
 struct Image {
@@ -21,4 +21,4 @@ struct Image {
   }
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -8,7 +8,7 @@
 #include "mjarm/core/messages/render.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr int kMaxSize = 8192;
@@ -107,4 +107,4 @@ Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& ca
 const GlContext& OffscreenRenderer::gl() const noexcept { return impl_->gl; }
 RenderQuality OffscreenRenderer::quality() const noexcept { return impl_->quality; }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -13,7 +13,7 @@
 #include "mjarm/render/scene.hpp"
 #include "mjarm/sim/sim.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// How to draw. Every default is usable as is.
 struct OffscreenOptions {
@@ -52,4 +52,4 @@ class OffscreenRenderer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -5,7 +5,7 @@
 
 #include "mjarm/render/offscreen.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr const char* kScene = "models/universal_robots_ur5e/scene.xml";
@@ -48,4 +48,4 @@ MJARM_BENCH(low_trail, RenderQuality::low, 600);
 MJARM_BENCH(high_trail, RenderQuality::high, 600);
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -9,7 +9,7 @@
 
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 /// A camera on -y that looks along +y: x runs to the right, z upwards, one metre in the middle is a
@@ -261,4 +261,4 @@ TEST(GlBackends, OnlyOneKindDrawsInAProcess) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

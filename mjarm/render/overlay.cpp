@@ -9,7 +9,7 @@
 #include "mjarm/render/overlay_internal.hpp"
 #include "mjarm/render/polyline.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using Eigen::Vector3d;
@@ -286,4 +286,4 @@ void add_overlay(const Overlay& overlay, mjvScene& scene) {
   for (const Strokes& one : strokes) add_strokes(one, many, scene);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

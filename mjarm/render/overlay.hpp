@@ -7,7 +7,7 @@
 
 #include "mjarm/core/pose.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// A colour, each part in [0, 1]; `a` = 1 is opaque.
 struct Rgba {
@@ -133,4 +133,4 @@ inline constexpr std::size_t kMaxGhosts = 8;
 /// Adds all of `more` to `overlay`.
 void append(Overlay& overlay, const Overlay& more);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

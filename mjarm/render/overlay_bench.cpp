@@ -7,7 +7,7 @@
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/trail.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 /// Frames of the UR5e with a trail of so many points, drawn in the look and quality given. The
@@ -69,4 +69,4 @@ BENCHMARK(bm_trail_high)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -6,7 +6,7 @@
 
 #include "mjarm/render/overlay.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// Most geoms that `overlay` is given in a scene of the model, ghosts included.
 [[nodiscard]] std::size_t geoms_of(const Overlay& overlay, const mjModel& m);
@@ -15,4 +15,4 @@ namespace mjarm {
 /// kMaxOverlayShapes or than there is room for, it is thinned evenly.
 void add_overlay(const Overlay& overlay, mjvScene& scene);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

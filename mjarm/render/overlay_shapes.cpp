@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr Rgba kFar = {0.20F, 0.60F, 0.35F, 1};
@@ -66,4 +66,4 @@ OverlayGhost ghost_of(const Arm& arm, std::span<const double> q) {
   return ghost;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -10,7 +10,7 @@
 #include "mjarm/model/arm.hpp"
 #include "mjarm/render/overlay.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// A place where two things touch.
 struct ContactMark {
@@ -56,4 +56,4 @@ void add_velocity_ellipsoid(Overlay& overlay, const Eigen::Vector3d& p_WT,
 /// The arm once more at `q`, shape (dof,) [rad or m].
 [[nodiscard]] OverlayGhost ghost_of(const Arm& arm, std::span<const double> q);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

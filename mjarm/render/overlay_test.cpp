@@ -16,7 +16,7 @@
 #include "mjarm/render/scene.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using Eigen::Vector3d;
@@ -330,4 +330,4 @@ TEST(OverlayShapes, AGhostNamesTheJointsOfTheArm) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

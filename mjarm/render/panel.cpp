@@ -16,7 +16,7 @@ using canvas::TextStyle;
 
 /// Colours that readers with any common kind of colour blindness can tell apart: the set of Okabe
 /// and Ito without its yellow, which is too pale for lines, and two of Paul Tol.
-constexpr std::array<Rgba, 8> kPalette = {{{0.000F, 0.447F, 0.698F, 1},    // blue
+constexpr std::array<render::Rgba, 8> kPalette = {{{0.000F, 0.447F, 0.698F, 1},    // blue
                                            {0.835F, 0.369F, 0.000F, 1},    // vermilion
                                            {0.000F, 0.620F, 0.451F, 1},    // green
                                            {0.800F, 0.475F, 0.655F, 1},    // pink
@@ -24,10 +24,10 @@ constexpr std::array<Rgba, 8> kPalette = {{{0.000F, 0.447F, 0.698F, 1},    // bl
                                            {0.337F, 0.706F, 0.914F, 1},    // sky
                                            {0.533F, 0.133F, 0.333F, 1},    // wine
                                            {0.600F, 0.600F, 0.200F, 1}}};  // olive
-constexpr Rgba kInk = {0.20F, 0.20F, 0.20F, 1};
-constexpr Rgba kAxis = {0.40F, 0.40F, 0.40F, 1};
-constexpr Rgba kGrid = {0.90F, 0.90F, 0.90F, 1};
-constexpr Rgba kBand = {0.00F, 0.62F, 0.45F, 0.13F};
+constexpr render::Rgba kInk = {0.20F, 0.20F, 0.20F, 1};
+constexpr render::Rgba kAxis = {0.40F, 0.40F, 0.40F, 1};
+constexpr render::Rgba kGrid = {0.90F, 0.90F, 0.90F, 1};
+constexpr render::Rgba kBand = {0.00F, 0.62F, 0.45F, 0.13F};
 
 constexpr TextStyle kTitle{.size = 9, .bold = true};
 constexpr TextStyle kLabel{.size = 8, .align = Align::middle};
@@ -41,8 +41,8 @@ constexpr double kMarginShare = 0.04;
 
 struct Axes {
   Box box;
-  PlotRange x;
-  PlotRange y;
+  render::PlotRange x;
+  render::PlotRange y;
 
   [[nodiscard]] double to_x(double value) const {
     return box.x + (value - x.lower) / (x.upper - x.lower) * box.width;
@@ -53,9 +53,9 @@ struct Axes {
 };
 
 struct Entry {
-  const PlotLine* line = nullptr;  ///< null for a band
+  const render::PlotLine* line = nullptr;  ///< null for a band
   std::string label;
-  Rgba color;
+  render::Rgba color;
   double x = 0;  ///< from the left of the axes
   int row = 0;
 };
@@ -66,30 +66,30 @@ TextStyle aligned(TextStyle style, Align align) {
 }
 
 /// The colour of each line.
-std::vector<Rgba> colors_of(const PlotPanel& panel) {
-  std::vector<Rgba> colors;
+std::vector<render::Rgba> colors_of(const render::PlotPanel& panel) {
+  std::vector<render::Rgba> colors;
   std::size_t next = 0;
-  for (const PlotLine& line : panel.lines) {
-    if (line.color == PlotLine::kInk) {
+  for (const render::PlotLine& line : panel.lines) {
+    if (line.color == render::PlotLine::kInk) {
       colors.push_back(kInk);
     } else {
       const std::size_t index = line.color < 0 ? next++ : static_cast<std::size_t>(line.color);
-      colors.push_back(plot_color(static_cast<int>(index)));
+      colors.push_back(render::plot_color(static_cast<int>(index)));
     }
   }
   return colors;
 }
 
 /// Legend entries in rows no wider than `width`.
-std::vector<Entry> legend_of(const PlotPanel& panel, double width) {
+std::vector<Entry> legend_of(const render::PlotPanel& panel, double width) {
   std::vector<Entry> entries;
   if (!panel.legend) return entries;
-  const std::vector<Rgba> colors = colors_of(panel);
+  const std::vector<render::Rgba> colors = colors_of(panel);
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     if (panel.lines[i].label.empty()) continue;
     entries.push_back({&panel.lines[i], panel.lines[i].label, colors[i]});
   }
-  for (const PlotBand& band : panel.bands) {
+  for (const render::PlotBand& band : panel.bands) {
     if (!band.label.empty()) entries.push_back({nullptr, band.label, kBand});
   }
   double x = 0;
@@ -110,10 +110,10 @@ std::vector<Entry> legend_of(const PlotPanel& panel, double width) {
 int rows_of(const std::vector<Entry>& legend) { return legend.empty() ? 0 : legend.back().row + 1; }
 
 /// The ranges that show all that counts, before they are fitted to a box.
-Axes ranges_of(const PlotPanel& panel) {
+Axes ranges_of(const render::PlotPanel& panel) {
   axis::Extent x;
   axis::Extent y;
-  for (const PlotLine& line : panel.lines) {
+  for (const render::PlotLine& line : panel.lines) {
     if (!line.fits) continue;
     for (std::size_t i = 0; i < line.x.size(); ++i) {
       if (std::isnan(line.x[i]) || std::isnan(line.y[i])) continue;
@@ -121,7 +121,7 @@ Axes ranges_of(const PlotPanel& panel) {
       y.add(line.y[i]);
     }
   }
-  for (const PlotBand& band : panel.bands) {
+  for (const render::PlotBand& band : panel.bands) {
     if (!band.fits) continue;
     y.add(band.lower);
     y.add(band.upper);
@@ -137,7 +137,7 @@ Axes ranges_of(const PlotPanel& panel) {
   return axes;
 }
 
-Axes fitted(const PlotPanel& panel, const Layout& layout) {
+Axes fitted(const render::PlotPanel& panel, const Layout& layout) {
   Axes axes = ranges_of(panel);
   const Margins& m = layout.margins;
   axes.box = {layout.place.x + m.left, layout.place.y + m.top,
@@ -161,14 +161,14 @@ double widest(const axis::Ticks& ticks) {
   return width;
 }
 
-std::vector<double> dash_of(LineStyle style) {
-  if (style == LineStyle::dashed) return {4.5, 2.5};
-  if (style == LineStyle::dotted) return {1.2, 1.8};
+std::vector<double> dash_of(render::LineStyle style) {
+  if (style == render::LineStyle::dashed) return {4.5, 2.5};
+  if (style == render::LineStyle::dotted) return {1.2, 1.8};
   return {};
 }
 
-void add_line(Page& page, std::vector<Point> points, const Rgba& color, double width,
-              LineStyle style = LineStyle::solid) {
+void add_line(Page& page, std::vector<Point> points, const render::Rgba& color, double width,
+              render::LineStyle style = render::LineStyle::solid) {
   page.items.push_back(canvas::Polyline{std::move(points), {color, width, dash_of(style)}});
 }
 
@@ -196,7 +196,7 @@ void draw_grid(const Axes& axes, const axis::Ticks& xs, const axis::Ticks& ys, P
   }
 }
 
-void draw_frame(const PlotPanel& panel, const Layout& layout, const Axes& axes, Page& page) {
+void draw_frame(const render::PlotPanel& panel, const Layout& layout, const Axes& axes, Page& page) {
   const Box& box = axes.box;
   const double bottom = box.y + box.height;
   add_line(page, {{box.x, box.y}, {box.x, bottom}, {box.x + box.width, bottom}}, kAxis, 0.7);
@@ -215,11 +215,11 @@ void draw_frame(const PlotPanel& panel, const Layout& layout, const Axes& axes, 
 }
 
 /// Points closer together than the eye can see are left out.
-void draw_curve(const PlotLine& line, const Rgba& color, const Axes& axes, Page& page) {
+void draw_curve(const render::PlotLine& line, const render::Rgba& color, const Axes& axes, Page& page) {
   constexpr double kNearest = 0.2;  // [pt]
   std::vector<Point> points;
   const auto end_part = [&] {
-    if (line.style == LineStyle::points) {
+    if (line.style == render::LineStyle::points) {
       if (!points.empty()) page.items.push_back(canvas::Dots{points, line.width, color});
     } else if (points.size() > 1) {
       add_line(page, points, color, line.width, line.style);
@@ -249,7 +249,7 @@ void draw_legend(const std::vector<Entry>& legend, const Axes& axes, double top,
     const double middle = y - 2.7;
     if (entry.line == nullptr) {
       page.items.push_back(canvas::Fill{{x, y - 6.2, kSample, 7}, entry.color});
-    } else if (entry.line->style == LineStyle::points) {
+    } else if (entry.line->style == render::LineStyle::points) {
       page.items.push_back(
           canvas::Dots{{{x + kSample / 2, middle}}, entry.line->width, entry.color});
     } else {
@@ -260,11 +260,11 @@ void draw_legend(const std::vector<Entry>& legend, const Axes& axes, double top,
   }
 }
 
-double title_height(const PlotPanel& panel) { return panel.title.empty() ? 4 : 17; }
+double title_height(const render::PlotPanel& panel) { return panel.title.empty() ? 4 : 17; }
 
 }  // namespace
 
-Layout measure(const PlotPanel& panel, const Box& place) {
+Layout measure(const render::PlotPanel& panel, const Box& place) {
   Layout layout{place, {40, 20, 8, 28}};
   if (panel.x_label.empty()) layout.margins.bottom = 17;
   if (panel.field) layout.margins.right += field::kScaleWidth;
@@ -280,24 +280,24 @@ Layout measure(const PlotPanel& panel, const Box& place) {
   return layout;
 }
 
-void draw(const PlotPanel& panel, const Layout& layout, Page& page) {
+void draw(const render::PlotPanel& panel, const Layout& layout, Page& page) {
   const Axes axes = fitted(panel, layout);
   draw_grid(axes, x_ticks(axes), y_ticks(axes), page);
   page.items.push_back(canvas::Clip{axes.box});
   if (panel.field) {
-    const PlotRange& y = panel.field->y;
+    const render::PlotRange& y = panel.field->y;
     const double left = axes.to_x(panel.field->x.lower);
     const double top = axes.to_y(y.upper);
     field::draw_cells(*panel.field,
                       {left, top, axes.to_x(panel.field->x.upper) - left, axes.to_y(y.lower) - top},
                       page);
   }
-  for (const PlotBand& band : panel.bands) {
+  for (const render::PlotBand& band : panel.bands) {
     const double top = axes.to_y(band.upper);
     page.items.push_back(
         canvas::Fill{{axes.box.x, top, axes.box.width, axes.to_y(band.lower) - top}, kBand});
   }
-  const std::vector<Rgba> colors = colors_of(panel);
+  const std::vector<render::Rgba> colors = colors_of(panel);
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {
     draw_curve(panel.lines[i], colors[i], axes, page);
   }
@@ -309,6 +309,6 @@ void draw(const PlotPanel& panel, const Layout& layout, Page& page) {
 
 }  // namespace mjarm::panel
 
-mjarm::Rgba mjarm::plot_color(int index) {
+mjarm::render::Rgba mjarm::render::plot_color(int index) {
   return panel::kPalette[static_cast<std::size_t>(index) % panel::kPalette.size()];
 }

@@ -22,9 +22,9 @@ struct Layout {
 };
 
 /// Measures a panel that fills `place`.
-[[nodiscard]] Layout measure(const PlotPanel& panel, const canvas::Box& place);
+[[nodiscard]] Layout measure(const render::PlotPanel& panel, const canvas::Box& place);
 
 /// Adds the panel to a page.
-void draw(const PlotPanel& panel, const Layout& layout, canvas::Page& page);
+void draw(const render::PlotPanel& panel, const Layout& layout, canvas::Page& page);
 
 }  // namespace mjarm::panel

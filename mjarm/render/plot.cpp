@@ -8,7 +8,7 @@
 #include "mjarm/render/panel_internal.hpp"
 #include "mjarm/render/png.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using canvas::Box;
@@ -164,4 +164,4 @@ Result<void> save_plot(const Plot& plot, const std::filesystem::path& stem) {
   return write_png(*image, stem.string() + ".png");
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -10,7 +10,7 @@
 #include "mjarm/render/image.hpp"
 #include "mjarm/render/overlay.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// How a curve is drawn. Habit of mjarm: planned = dashed, executed = solid, limits = dotted.
 enum class LineStyle { solid, dashed, dotted, points };
@@ -106,4 +106,4 @@ struct Plot {
 /// @param stem path without extension, e.g. "out/plot".
 [[nodiscard]] Result<void> save_plot(const Plot& plot, const std::filesystem::path& stem);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -12,7 +12,7 @@
 #include "mjarm/render/canvas_internal.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using ::testing::HasSubstr;
@@ -257,4 +257,4 @@ TEST(Runs, CutTextByFontAndMendBadBytes) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

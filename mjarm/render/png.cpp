@@ -5,7 +5,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/render.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 Result<std::string> encode_png(const Image& image) {
   const auto needed = image.width > 0 && image.height > 0
@@ -37,4 +37,4 @@ Result<void> write_png(const Image& image, const std::filesystem::path& path) {
   return write_file(path, *bytes);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -6,7 +6,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/image.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// The picture as a PNG file in memory; equal pictures give equal bytes.
 /// @return an error where the picture is empty or its size does not fit its data.
@@ -15,4 +15,4 @@ namespace mjarm {
 /// Writes the picture to `path` in one step: the whole new file or the old state.
 [[nodiscard]] Result<void> write_png(const Image& image, const std::filesystem::path& path);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -6,7 +6,7 @@
 #include "mjarm/core/rng.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 Image random_image(int width, int height, std::uint64_t seed) {
@@ -58,4 +58,4 @@ TEST(Png, NamesTheFileThatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

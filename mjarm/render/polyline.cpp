@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using Eigen::Vector3d;
@@ -85,4 +85,4 @@ std::vector<Vector3d> simplified(std::span<const Vector3d> points, double tolera
   return kept;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

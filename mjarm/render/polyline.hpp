@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// Cuts a polyline into dashes along its length. A dash that goes round a corner is two pieces.
 /// @param points  shape (n,), finite; any unit, also that of a plot (z = 0).
@@ -21,4 +21,4 @@ namespace mjarm {
 [[nodiscard]] std::vector<Eigen::Vector3d> simplified(std::span<const Eigen::Vector3d> points,
                                                       double tolerance);
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -9,7 +9,7 @@
 #include "mjarm/render/offscreen.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 /// A ball above a grey floor under a light from straight above: its shadow is a disc of its own
@@ -174,4 +174,4 @@ TEST(GlBackends, NeedNoDisplay) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -13,7 +13,7 @@
 #include "mjarm/render/ghost_internal.hpp"
 #include "mjarm/render/overlay_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180;
@@ -267,4 +267,4 @@ mjvCamera& Scene::camera() noexcept { return impl_->camera; }
 mjvPerturb& Scene::perturb() noexcept { return impl_->perturb; }
 mjvScene& Scene::raw() noexcept { return impl_->scene; }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

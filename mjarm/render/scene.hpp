@@ -14,7 +14,7 @@ struct mjvOption_;
 struct mjvPerturb_;
 struct mjvScene_;
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// How much work goes into a picture.
 enum class RenderQuality {
@@ -69,4 +69,4 @@ class Scene {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::render

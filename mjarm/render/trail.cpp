@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mjarm {
+namespace mjarm::render {
 
 Trail::Trail(const TrailOptions& options) : options_(options) {
   options_.max_points = std::max<std::size_t>(options_.max_points, 2);
@@ -57,4 +57,4 @@ void Trail::draw(Overlay& overlay) const {
   }
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

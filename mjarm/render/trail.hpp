@@ -6,7 +6,7 @@
 
 #include "mjarm/render/overlay.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// How a trail is kept and drawn. Every default is usable as is.
 struct TrailOptions {
@@ -45,4 +45,4 @@ class Trail {
   Eigen::Vector3d newest_ = Eigen::Vector3d::Zero();
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 TEST(Trail, KeepsTheNewestOfALongWay) {
@@ -62,4 +62,4 @@ TEST(Trail, IsALineOrBalls) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

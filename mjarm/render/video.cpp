@@ -13,7 +13,7 @@
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os_child_input.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 constexpr double kMaxFps = 1000;  // [1/s]
@@ -183,4 +183,4 @@ Result<void> VideoWriter::finish() {
 
 int VideoWriter::frames() const noexcept { return impl_->frames; }
 
-}  // namespace mjarm
+}  // namespace mjarm::render

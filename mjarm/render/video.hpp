@@ -7,7 +7,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/image.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 
 /// What a video is written as.
 enum class VideoFormat {
@@ -54,4 +54,4 @@ class VideoWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -11,7 +11,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using ::testing::HasSubstr;
@@ -247,4 +247,4 @@ TEST(VideoWithBadFfmpeg, SaysWhatItSaysAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

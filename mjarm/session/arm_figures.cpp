@@ -16,18 +16,18 @@ constexpr const char* kFigureNames[kLiveFigures] = {
 ArmFigures::ArmFigures(const Arm& arm, int first_item, const Choice& shown)
     : plots_(arm), first_item_(first_item), shown_(shown) {}
 
-bool ArmFigures::handle(const PanelEvent& event) {
+bool ArmFigures::handle(const view::PanelEvent& event) {
   const int figure = event.id - first_item_;
   if (figure < 0 || figure >= static_cast<int>(kLiveFigures)) return false;
   shown_[static_cast<std::size_t>(figure)] = event.value != 0;
   return true;
 }
 
-PanelSection ArmFigures::section() const {
-  PanelSection out{"Plots", {}};
+view::PanelSection ArmFigures::section() const {
+  view::PanelSection out{"Plots", {}};
   for (std::size_t i = 0; i < kLiveFigures; ++i) {
     out.items.push_back(
-        {first_item_ + static_cast<int>(i), kFigureNames[i], PanelCheckbox{shown_[i]}});
+        {first_item_ + static_cast<int>(i), kFigureNames[i], view::PanelCheckbox{shown_[i]}});
   }
   return out;
 }
@@ -36,7 +36,7 @@ void ArmFigures::add(const Sim& sim, double time, const Arm& arm, const JointVec
   // Time may have gone back, and then a row is due at once.
   if (time < next_row_ && time > next_row_ - 2 * kRowPeriod) return;
   next_row_ = time + kRowPeriod;
-  LiveRow row{.time = time,
+  view::LiveRow row{.time = time,
               .q = sim.arm_state(arm).q,
               .q_ref = q_ref,
               .X_WT = sim.tool(arm),
@@ -51,10 +51,10 @@ void ArmFigures::clear() {
   next_row_ = 0;
 }
 
-std::vector<LivePlot> ArmFigures::plots() const {
-  std::vector<LivePlot> out;
+std::vector<view::LivePlot> ArmFigures::plots() const {
+  std::vector<view::LivePlot> out;
   for (std::size_t i = 0; i < kLiveFigures; ++i) {
-    if (shown_[i]) out.push_back(plots_.figure(static_cast<LiveFigure>(i)));
+    if (shown_[i]) out.push_back(plots_.figure(static_cast<view::LiveFigure>(i)));
   }
   return out;
 }

@@ -25,9 +25,9 @@ class ArmFigures {
 
   /// Does what an item of the section asks for.
   /// @return false where the item is of another one.
-  bool handle(const PanelEvent& event);
+  bool handle(const view::PanelEvent& event);
   /// The section Plots: one check box a figure.
-  [[nodiscard]] PanelSection section() const;
+  [[nodiscard]] view::PanelSection section() const;
 
   /// Takes note of the arm, every 10 ms of `time`; call it after each step.
   /// @param time   [s] of the figures.
@@ -36,10 +36,10 @@ class ArmFigures {
   void add(const Sim& sim, double time, const Arm& arm, const JointVec& q_ref);
   void clear();
   /// Those that are shown.
-  [[nodiscard]] std::vector<LivePlot> plots() const;
+  [[nodiscard]] std::vector<view::LivePlot> plots() const;
 
  private:
-  LivePlotSet plots_;
+  view::LivePlotSet plots_;
   int first_item_;
   Choice shown_;
   double next_row_ = 0;  ///< [s]

@@ -28,10 +28,10 @@ class Figures : public ::testing::Test {
 };
 
 TEST_F(Figures, TheUserChoosesWhichAreShown) {
-  const PanelSection section = figures_.section();
+  const view::PanelSection section = figures_.section();
   ASSERT_EQ(section.items.size(), kLiveFigures);
-  EXPECT_TRUE(std::get<PanelCheckbox>(section.items[0].what).on);
-  EXPECT_FALSE(std::get<PanelCheckbox>(section.items[1].what).on);
+  EXPECT_TRUE(std::get<view::PanelCheckbox>(section.items[0].what).on);
+  EXPECT_FALSE(std::get<view::PanelCheckbox>(section.items[1].what).on);
   EXPECT_EQ(figures_.plots().size(), 1U);
   for (int i = 0; i < static_cast<int>(kLiveFigures); ++i) {
     EXPECT_EQ(section.items[static_cast<std::size_t>(i)].id, kFirst + i);

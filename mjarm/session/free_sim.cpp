@@ -96,7 +96,7 @@ void FreeSim::set_goal(const JointVec& q) {
   q_goal_ = q.cwiseMax(arm_->limits.lower).cwiseMin(arm_->limits.upper);
 }
 
-void FreeSim::jog(const JointEvent& event) {
+void FreeSim::jog(const view::JointEvent& event) {
   if (!controller_) return;
   for (int i = 0; i < arm_->dof(); ++i) {
     if (arm_->joints[static_cast<std::size_t>(i)].dof != event.dof) continue;
@@ -104,16 +104,16 @@ void FreeSim::jog(const JointEvent& event) {
   }
 }
 
-void FreeSim::handle(const ViewEvent& event) {
-  if (const auto* push = std::get_if<PushEvent>(&event)) {
+void FreeSim::handle(const view::ViewEvent& event) {
+  if (const auto* push = std::get_if<view::PushEvent>(&event)) {
     sim_.set_external_force(push->body, push->force_W, push->torque_W);
-  } else if (std::holds_alternative<ReleaseEvent>(event)) {
+  } else if (std::holds_alternative<view::ReleaseEvent>(event)) {
     sim_.clear_external_forces();
-  } else if (std::holds_alternative<ResetEvent>(event)) {
+  } else if (std::holds_alternative<view::ResetEvent>(event)) {
     reset();
-  } else if (const auto* joint = std::get_if<JointEvent>(&event)) {
+  } else if (const auto* joint = std::get_if<view::JointEvent>(&event)) {
     jog(*joint);
-  } else if (const auto* step = std::get_if<StepEvent>(&event)) {
+  } else if (const auto* step = std::get_if<view::StepEvent>(&event)) {
     const Moment* moment = step->steps < 0 ? history_.back() : history_.forward();
     if (moment != nullptr) {
       go_to(*moment);

@@ -24,7 +24,7 @@ class FreeSim {
                                             bool passive);
 
   /// Does what the user asked for.
-  void handle(const ViewEvent& event);
+  void handle(const view::ViewEvent& event);
   /// Steps to run now.
   [[nodiscard]] int steps_due() { return playback_.steps_due(); }
   /// One step of the simulation. One that became unstable begins anew, and `status` says so.
@@ -33,7 +33,7 @@ class FreeSim {
   void reset();
 
   [[nodiscard]] const Sim& sim() const { return sim_; }
-  [[nodiscard]] const Playback& playback() const { return playback_; }
+  [[nodiscard]] const view::Playback& playback() const { return playback_; }
   /// One line for the window, ASCII; empty = nothing to say.
   [[nodiscard]] const std::string& status() const { return status_; }
   /// True where an arm is held, which goes where it is sent.
@@ -56,7 +56,7 @@ class FreeSim {
   FreeSim(const Model& model, std::optional<Arm> arm, std::optional<Controller> controller);
   void go_to(const Moment& moment);
   void remember();
-  void jog(const JointEvent& event);
+  void jog(const view::JointEvent& event);
   /// The next position on the way to the goal: as a spring without overshoot, no faster than half
   /// the joint's limit.
   [[nodiscard]] JointVec next_reference() const;
@@ -64,8 +64,8 @@ class FreeSim {
   Sim sim_;
   std::optional<Arm> arm_;
   std::optional<Controller> controller_;
-  Playback playback_;
-  History<Moment> history_;
+  view::Playback playback_;
+  view::History<Moment> history_;
   std::vector<double> ctrl_;
   JointVec q_before_, q_now_, q_goal_;
   std::string status_;

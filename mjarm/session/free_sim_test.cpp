@@ -50,7 +50,7 @@ TEST(FreeSim, JogsWithinTheSpeedLimit) {
   const int dof = robot.arm.joints[2].dof;
   ASSERT_EQ(world.jog_dofs().size(), 6U);
   const double goal = robot.arm.home[2] - 0.5;
-  world.handle(JointEvent{dof, "elbow", goal});
+  world.handle(view::JointEvent{dof, "elbow", goal});
   double fastest = 0;
   for (int i = 0; i < 2000; ++i) {
     world.step();
@@ -60,8 +60,8 @@ TEST(FreeSim, JogsWithinTheSpeedLimit) {
   EXPECT_GT(fastest, 0.1);
   EXPECT_LT(fastest, robot.arm.limits.velocity[2]);
   // Beyond the limits it goes to the limit, and what is no joint of the arm is left alone.
-  world.handle(JointEvent{dof, "elbow", 100});
-  world.handle(JointEvent{99, "none", 1});
+  world.handle(view::JointEvent{dof, "elbow", 100});
+  world.handle(view::JointEvent{99, "none", 1});
   run(world, 5000);
   EXPECT_LE(world.sim().arm_state(robot.arm).q[2], robot.arm.limits.upper[2] + 1e-2);
 }
@@ -69,19 +69,19 @@ TEST(FreeSim, JogsWithinTheSpeedLimit) {
 TEST(FreeSim, StepsBackAndForthAreTheSameToTheLastBit) {
   const TestArm robot = shipped_arm("ur5e");
   FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
-  world.handle(JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
+  world.handle(view::JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
   run(world, 40);
   std::vector<Snapshot> seen;
   for (int i = 0; i < 20; ++i) {
     world.step();
     seen.push_back(world.sim().snapshot());
   }
-  world.handle(PauseEvent{true});
+  world.handle(view::PauseEvent{true});
   for (int i = 18; i >= 10; --i) {
-    world.handle(StepEvent{-1});
+    world.handle(view::StepEvent{-1});
     ASSERT_EQ(world.sim().snapshot().state, seen[static_cast<std::size_t>(i)].state);
   }
-  world.handle(StepEvent{1});
+  world.handle(view::StepEvent{1});
   EXPECT_EQ(world.sim().snapshot().state, seen[11].state);
   // Going on from there gives what came the first time.
   for (std::size_t i = 12; i < seen.size(); ++i) {
@@ -89,7 +89,7 @@ TEST(FreeSim, StepsBackAndForthAreTheSameToTheLastBit) {
     ASSERT_EQ(world.sim().snapshot().state, seen[i].state) << i;
   }
   EXPECT_EQ(world.steps_due(), 0);
-  world.handle(StepEvent{1});
+  world.handle(view::StepEvent{1});
   EXPECT_EQ(world.steps_due(), 1);
 }
 
@@ -99,14 +99,14 @@ TEST(FreeSim, PushesMoveTheArmUntilLetGo) {
   const std::vector<double> before = positions(world);
   const int body = robot.model.raw()->dof_bodyid[robot.arm.joints.back().dof];
   for (int i = 0; i < 300; ++i) {
-    world.handle(PushEvent{.body = body, .force_W = {60, 0, 0}});
+    world.handle(view::PushEvent{.body = body, .force_W = {60, 0, 0}});
     world.step();
   }
   const std::vector<double> pushed = positions(world);
   double moved = 0;
   for (std::size_t i = 0; i < 6; ++i) moved = std::max(moved, std::abs(pushed[i] - before[i]));
   EXPECT_GT(moved, 1e-3);
-  world.handle(ReleaseEvent{body});
+  world.handle(view::ReleaseEvent{body});
   run(world, 3000);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(positions(world)[i], before[i], 1e-3);
 }
@@ -117,9 +117,9 @@ TEST(FreeSim, ResetBeginsAnew) {
   const Snapshot first = world.sim().snapshot();
   run(world, 30);
   const Snapshot later = world.sim().snapshot();
-  world.handle(PushEvent{.body = 3, .force_W = {0, 9, 0}});
+  world.handle(view::PushEvent{.body = 3, .force_W = {0, 9, 0}});
   run(world, 30);
-  world.handle(ResetEvent{});
+  world.handle(view::ResetEvent{});
   EXPECT_EQ(world.sim().snapshot().state, first.state);
   run(world, 30);
   EXPECT_EQ(world.sim().snapshot().state, later.state);
@@ -136,20 +136,20 @@ TEST(FreeSim, OneThatBecameUnstableBeginsAnewAndSaysSo) {
   const TestArm robot = shipped_arm("ur5e");
   FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
   const Snapshot first = world.sim().snapshot();
-  world.handle(JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
+  world.handle(view::JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
   run(world, 10);
   const int body = robot.model.raw()->dof_bodyid[robot.arm.joints.back().dof];
   for (int i = 0; i < 50 && world.status().empty(); ++i) {
-    world.handle(PushEvent{.body = body, .force_W = {1e15, 0, 0}});
+    world.handle(view::PushEvent{.body = body, .force_W = {1e15, 0, 0}});
     world.step();
   }
   EXPECT_THAT(world.status(), ::testing::HasSubstr("unstable"));
   EXPECT_EQ(world.sim().snapshot().state, first.state);
   EXPECT_EQ(world.goal(), robot.arm.home);
-  world.handle(ReleaseEvent{body});
+  world.handle(view::ReleaseEvent{body});
   run(world, 100);
   EXPECT_LT((world.sim().arm_state(robot.arm).q - robot.arm.home).cwiseAbs().maxCoeff(), 1e-3);
-  world.handle(ResetEvent{});
+  world.handle(view::ResetEvent{});
   EXPECT_EQ(world.status(), "");
 }
 
@@ -173,7 +173,7 @@ TEST(FreeSim, GoalsAreClampedAndOnlyForAnArmThatIsHeld) {
 
   FreeSim passive = FreeSim::make(robot.model, robot.arm, true).value();
   passive.set_goal(far);
-  passive.handle(JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
+  passive.handle(view::JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
   EXPECT_EQ(passive.goal(), robot.arm.home);
   EXPECT_FALSE(passive.is_held());
 }

@@ -7,28 +7,28 @@
 
 namespace mjarm::session {
 
-OffscreenOptions offscreen_options(const PictureOptions& options) {
-  OffscreenOptions out{.width = options.width, .height = options.height};
+render::OffscreenOptions offscreen_options(const PictureOptions& options) {
+  render::OffscreenOptions out{.width = options.width, .height = options.height};
   if (options.quality) {
     out.quality = *options.quality;
   } else if (options.video) {
-    out.software_quality = RenderQuality::low;
+    out.software_quality = render::RenderQuality::low;
   }
   return out;
 }
 
-Camera default_camera(const Model& model) {
-  Camera camera;
-  if (std::ranges::count(camera_names(model), "overview") > 0) camera.name = "overview";
+render::Camera default_camera(const Model& model) {
+  render::Camera camera;
+  if (std::ranges::count(render::camera_names(model), "overview") > 0) camera.name = "overview";
   return camera;
 }
 
-Result<std::string> write_picture(OffscreenRenderer& renderer, const PictureOptions& options,
-                                  const Snapshot& snapshot, const Camera& camera,
-                                  const Overlay& overlay) {
-  const Result<Image> image = renderer.draw(snapshot, camera, overlay);
+Result<std::string> write_picture(render::OffscreenRenderer& renderer, const PictureOptions& options,
+                                  const Snapshot& snapshot, const render::Camera& camera,
+                                  const render::Overlay& overlay) {
+  const Result<render::Image> image = renderer.draw(snapshot, camera, overlay);
   if (!image) return fail(image.error());
-  if (Result<void> written = write_png(*image, options.out); !written) {
+  if (Result<void> written = render::write_png(*image, options.out); !written) {
     return fail(std::move(written.error()));
   }
   return text(msg::show_picture, options.out.string(), image->width, image->height);

@@ -16,20 +16,20 @@ struct PictureOptions {
   bool video = false;
   int width = 1280;                           ///< [px]
   int height = 720;                           ///< [px]
-  std::optional<RenderQuality> quality = {};  ///< default: as `offscreen_options` chooses
+  std::optional<render::RenderQuality> quality = {};  ///< default: as `offscreen_options` chooses
   double fps = 30;                            ///< [1/s]
 };
 
 /// How to draw: without a quality asked for, high; low for a video without a GPU.
-[[nodiscard]] OffscreenOptions offscreen_options(const PictureOptions& options);
+[[nodiscard]] render::OffscreenOptions offscreen_options(const PictureOptions& options);
 
 /// `overview` where the model has a camera of that name, else the model's own view.
-[[nodiscard]] Camera default_camera(const Model& model);
+[[nodiscard]] render::Camera default_camera(const Model& model);
 
 /// Draws one picture and writes it. @return the line to tell.
-[[nodiscard]] Result<std::string> write_picture(OffscreenRenderer& renderer,
+[[nodiscard]] Result<std::string> write_picture(render::OffscreenRenderer& renderer,
                                                 const PictureOptions& options,
-                                                const Snapshot& snapshot, const Camera& camera,
-                                                const Overlay& overlay);
+                                                const Snapshot& snapshot, const render::Camera& camera,
+                                                const render::Overlay& overlay);
 
 }  // namespace mjarm::session

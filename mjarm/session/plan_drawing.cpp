@@ -15,10 +15,10 @@
 namespace mjarm::session {
 namespace {
 
-constexpr Rgba kStartColor = {0.15F, 0.60F, 0.30F, 1};
-constexpr Rgba kGoalColor = {0.15F, 0.35F, 0.85F, 1};
-constexpr Rgba kCornerColor = {0.15F, 0.15F, 0.18F, 1};
-constexpr Rgba kUnknownColor = {0.55F, 0.60F, 0.66F, 1};
+constexpr render::Rgba kStartColor = {0.15F, 0.60F, 0.30F, 1};
+constexpr render::Rgba kGoalColor = {0.15F, 0.35F, 0.85F, 1};
+constexpr render::Rgba kCornerColor = {0.15F, 0.15F, 0.18F, 1};
+constexpr render::Rgba kUnknownColor = {0.55F, 0.60F, 0.66F, 1};
 constexpr float kEndPosture = 0.6F;  // how dense they are
 constexpr float kCornerPosture = 0.2F;
 constexpr std::size_t kMaxPostures = 8;  // of corners
@@ -31,7 +31,7 @@ constexpr double kTreePieces = 12'000;   // of all edges, about
 constexpr double kMaxWork = 2e6;         // distances that are computed for one look
 constexpr double kPairRed = 0.01;        // [m]
 
-Rgba with_alpha(Rgba color, float alpha) {
+render::Rgba with_alpha(render::Rgba color, float alpha) {
   color.a = alpha;
   return color;
 }
@@ -134,10 +134,10 @@ Arm with_tool(Arm arm, const SphereSet& spheres) {
   return arm;
 }
 
-Rgba clearance_color(double clearance) {
+render::Rgba clearance_color(double clearance) {
   struct Stop {
     double at;
-    Rgba color;
+    render::Rgba color;
   };
   static constexpr std::array<Stop, 5> kStops{{{0, {0.84F, 0.10F, 0.12F, 1}},
                                                {0.01, {0.96F, 0.50F, 0.12F, 1}},
@@ -147,7 +147,7 @@ Rgba clearance_color(double clearance) {
   if (!(clearance > 0)) return kStops.front().color;
   for (std::size_t i = 1; i < kStops.size(); ++i) {
     if (clearance > kStops[i].at) continue;
-    const Rgba &a = kStops[i - 1].color, &b = kStops[i].color;
+    const render::Rgba &a = kStops[i - 1].color, &b = kStops[i].color;
     const auto share =
         static_cast<float>((clearance - kStops[i - 1].at) / (kStops[i].at - kStops[i - 1].at));
     return {a.r + share * (b.r - a.r), a.g + share * (b.g - a.g), a.b + share * (b.b - a.b), 1};
@@ -166,16 +166,16 @@ void PlanDrawing::draw_path() {
   const double step = std::max(kDrawnPathStep, way_.length() / kPathPieces);
   const int pieces = std::max(1, static_cast<int>(std::ceil(way_.length() / step)));
   constexpr double kShades = 24;
-  std::map<int, OverlaySegments> shades;  // pieces of one colour are one
+  std::map<int, render::OverlaySegments> shades;  // pieces of one colour are one
   for (int i = 0; i <= pieces; ++i) {
     tool_way_.push_back(fk(subject_->arm, as_span(way_.at(way_.length() * i / pieces))).p);
     if (i == 0) continue;
     const JointVec middle = way_.at(way_.length() * (i - 0.5) / pieces);
     const double clearance = obstacles.clearance(as_span(middle)).distance;
     const double shade = std::round(kShades * std::sqrt(std::clamp(clearance, 0.0, 0.3) / 0.3));
-    OverlaySegments& segments = shades[static_cast<int>(shade)];
+    render::OverlaySegments& segments = shades[static_cast<int>(shade)];
     segments.width = 0.012;
-    segments.look = LineLook::tube;
+    segments.look = render::LineLook::tube;
     segments.color = clearance_color(0.3 * (shade / kShades) * (shade / kShades));
     segments.ends_W.insert(segments.ends_W.end(), tool_way_.end() - 2, tool_way_.end());
   }
@@ -213,7 +213,7 @@ void PlanDrawing::draw_trees() {
     tree_.segments.push_back({.ends_W = {},
                               .width = 0.003,
                               .color = with_alpha(colors[t % 2], 0.8F),
-                              .look = LineLook::thin});
+                              .look = render::LineLook::thin});
   }
   each_edge([&](std::size_t t, const JointVec& a, const JointVec& b) {
     const int pieces = std::max(1, static_cast<int>(std::ceil((b - a).norm() / step)));
@@ -230,7 +230,7 @@ void PlanDrawing::draw_trees() {
 
 /// Rods rather than the arm once more: it would hide what it passes.
 void PlanDrawing::draw_postures() {
-  const auto add = [this](Overlay& overlay, const JointVec& q, const Rgba& color, double radius) {
+  const auto add = [this](render::Overlay& overlay, const JointVec& q, const render::Rgba& color, double radius) {
     const std::vector<Eigen::Vector3d> chain = chain_of(subject_->arm, q);
     for (std::size_t i = 1; i < chain.size(); ++i) {
       overlay.capsules.push_back(
@@ -280,28 +280,28 @@ std::string PlanDrawing::pair_line(const Look& look, const ClosestPair& pair) co
   return link_of(pair.sphere) + " - " + other + distance;
 }
 
-void PlanDrawing::add_spheres(Overlay& overlay, const Look& look) const {
+void PlanDrawing::add_spheres(render::Overlay& overlay, const Look& look) const {
   for (std::size_t i = 0; i < look.placed.size(); ++i) {
     const auto& neighbour = look.neighbours[i];
-    const Rgba color = neighbour ? clearance_color(neighbour->distance) : kUnknownColor;
+    const render::Rgba color = neighbour ? clearance_color(neighbour->distance) : kUnknownColor;
     overlay.spheres.push_back({.p_W = look.placed[i].p_W,
                                .radius = look.placed[i].radius,
                                .color = with_alpha(color, kSphere)});
   }
 }
 
-void PlanDrawing::add_pair(Overlay& overlay, const Look& look, const ClosestPair& pair) const {
-  const Rgba color = with_alpha(clearance_color(pair.to.distance), kPairSphere);
+void PlanDrawing::add_pair(render::Overlay& overlay, const Look& look, const ClosestPair& pair) const {
+  const render::Rgba color = with_alpha(clearance_color(pair.to.distance), kPairSphere);
   for (const int sphere : {pair.sphere, pair.to.sphere}) {
     if (sphere < 0) continue;
     const PlacedSphere& placed = look.placed[static_cast<std::size_t>(sphere)];
     overlay.spheres.push_back({.p_W = placed.p_W, .radius = 1.01 * placed.radius, .color = color});
   }
-  add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.to.distance, kPairRed);
+  render::add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.to.distance, kPairRed);
 }
 
-Overlay PlanDrawing::overlay(const PlanLayers& layers, const Look& look) const {
-  Overlay out;
+render::Overlay PlanDrawing::overlay(const PlanLayers& layers, const Look& look) const {
+  render::Overlay out;
   if (layers.tree) append(out, tree_);
   if (layers.path) append(out, path_);
   if (layers.ends) append(out, ends_);

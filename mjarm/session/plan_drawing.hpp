@@ -64,7 +64,7 @@ struct PlanLayers {
 
 /// Colour of a clearance [m]: red where there is none, amber at 1 cm, yellow at 3 cm, green at
 /// 10 cm, blue from 30 cm on.
-[[nodiscard]] Rgba clearance_color(double clearance);
+[[nodiscard]] render::Rgba clearance_color(double clearance);
 
 /// What is drawn of a planned path on top of its model.
 class PlanDrawing {
@@ -83,7 +83,7 @@ class PlanDrawing {
   /// @param q  shape (dof,).
   [[nodiscard]] Look look(const JointVec& q) const;
   /// @param look  where the arm stands.
-  [[nodiscard]] Overlay overlay(const PlanLayers& layers, const Look& look) const;
+  [[nodiscard]] render::Overlay overlay(const PlanLayers& layers, const Look& look) const;
   /// "link - obstacle: 12.3 mm", for people.
   [[nodiscard]] std::string pair_line(const Look& look, const ClosestPair& pair) const;
 
@@ -95,13 +95,13 @@ class PlanDrawing {
   void draw_path();
   void draw_trees();
   void draw_postures();
-  void add_spheres(Overlay& overlay, const Look& look) const;
-  void add_pair(Overlay& overlay, const Look& look, const ClosestPair& pair) const;
+  void add_spheres(render::Overlay& overlay, const Look& look) const;
+  void add_pair(render::Overlay& overlay, const Look& look, const ClosestPair& pair) const;
 
   const PlanSubject* subject_;
   PathWay way_;
   std::vector<Eigen::Vector3d> tool_way_;
-  Overlay path_, tree_, ends_, corners_;
+  render::Overlay path_, tree_, ends_, corners_;
 };
 
 }  // namespace mjarm::session

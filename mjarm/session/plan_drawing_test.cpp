@@ -86,28 +86,28 @@ TEST_F(WallPlan, TheWayIsThePathByItsLength) {
 TEST_F(WallPlan, EveryLayerAddsWhatItSays) {
   const PlanDrawing::Look look = tightest();
   const PlanLayers none{false, false, false, false, false, false};
-  const Overlay empty = drawing().overlay(none, look);
+  const render::Overlay empty = drawing().overlay(none, look);
   EXPECT_EQ(shapes_of(empty), 0U);
   PlanLayers layers = none;
   layers.spheres = true;
   EXPECT_EQ(drawing().overlay(layers, look).spheres.size(), world().cover.spheres.size());
   layers = none;
   layers.pair = true;
-  const Overlay pair = drawing().overlay(layers, look);
+  const render::Overlay pair = drawing().overlay(layers, look);
   ASSERT_EQ(pair.labels.size(), look.obstacle_pair ? 2U : 1U);
   EXPECT_NE(pair.labels[0].text.find(" mm"), std::string::npos);
   layers = none;
   layers.path = true;
-  const Overlay path = drawing().overlay(layers, look);
+  const render::Overlay path = drawing().overlay(layers, look);
   EXPECT_EQ(path.spheres.size(), world().path.q.size());
   EXPECT_EQ(path.spheres.front().p_W, fk(world().arm, as_span(world().path.q.front())).p);
   layers = none;
   layers.tree = true;
-  const Overlay tree = drawing().overlay(layers, look);
+  const render::Overlay tree = drawing().overlay(layers, look);
   ASSERT_EQ(tree.segments.size(), 2U);
   std::size_t edges = 0, pieces = 0;
   for (const SearchTree& one : world().path.trees) edges += one.q.size() - 1;
-  for (const OverlaySegments& segments : tree.segments) pieces += segments.ends_W.size() / 2;
+  for (const render::OverlaySegments& segments : tree.segments) pieces += segments.ends_W.size() / 2;
   EXPECT_GT(pieces, edges);
   layers = none;
   layers.ends = true;
@@ -139,11 +139,11 @@ TEST(PlanColors, GoFromRedToBlue) {
 }
 
 /// Where a point is in a picture [px].
-Eigen::Vector2d pixel_of(const Model& model, const CameraView& from, const Eigen::Vector3d& p_W,
+Eigen::Vector2d pixel_of(const Model& model, const render::CameraView& from, const Eigen::Vector3d& p_W,
                          int width, int height) {
-  const Eigen::Vector3d forward = (from.lookat_W - camera_place(from)).normalized();
+  const Eigen::Vector3d forward = (from.lookat_W - render::camera_place(from)).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-  const Eigen::Vector3d up = right.cross(forward), p = p_W - camera_place(from);
+  const Eigen::Vector3d up = right.cross(forward), p = p_W - render::camera_place(from);
   const double tangent = std::tan(0.5 * model.raw()->vis.global.fovy * std::numbers::pi / 180);
   const double scale = 0.5 * height / (tangent * p.dot(forward));
   return {0.5 * width + scale * p.dot(right), 0.5 * height - scale * p.dot(up)};
@@ -151,7 +151,7 @@ Eigen::Vector2d pixel_of(const Model& model, const CameraView& from, const Eigen
 
 /// All of the arm on its way is in the picture, and large.
 TEST_F(WallPlan, TheViewFramesTheWay) {
-  const CameraView from = plan_view(subject(), drawing(), 1.5);
+  const render::CameraView from = plan_view(subject(), drawing(), 1.5);
   double low = 1e9, high = -1e9;
   for (int k = 0; k <= 50; ++k) {
     const JointVec q = drawing().way().at(drawing().way().length() * k / 50);
@@ -172,8 +172,8 @@ class WallPicture : public WallPlan {
  protected:
   static constexpr int kWidth = 480, kHeight = 320;
   void SetUp() override {
-    Result<OffscreenRenderer> opened = OffscreenRenderer::create(
-        world().model, {.width = kWidth, .height = kHeight, .quality = RenderQuality::low});
+    Result<render::OffscreenRenderer> opened = render::OffscreenRenderer::create(
+        world().model, {.width = kWidth, .height = kHeight, .quality = render::RenderQuality::low});
     if (!opened) GTEST_SKIP() << opened.error().what;
     renderer_.emplace(std::move(*opened));
     from_ = plan_view(subject(), drawing(), static_cast<double>(kWidth) / kHeight);
@@ -181,12 +181,12 @@ class WallPicture : public WallPlan {
     sim.place(world().arm, as_span(drawing().way().at(drawing().way().tightest())));
     standing_ = sim.snapshot();
   }
-  Image draw(const PlanLayers& layers) {
+  render::Image draw(const PlanLayers& layers) {
     return renderer_->draw(standing_, {.view = from_}, drawing().overlay(layers, tightest()))
         .value();
   }
-  std::optional<OffscreenRenderer> renderer_;
-  CameraView from_;
+  std::optional<render::OffscreenRenderer> renderer_;
+  render::CameraView from_;
   Snapshot standing_;
 };
 
@@ -194,12 +194,12 @@ TEST_F(WallPicture, SpheresAreWhereTheRobotIsAndNowhereElse) {
   const PlanLayers none{false, false, false, false, false, false};
   PlanLayers spheres = none;
   spheres.spheres = true;
-  const Image without = draw(none), with = draw(spheres);
+  const render::Image without = draw(none), with = draw(spheres);
   std::vector<std::pair<Eigen::Vector2d, double>> disks;  // [px]
   for (const PlacedSphere& sphere : tightest().placed) {
     const Eigen::Vector2d middle = pixel_of(world().model, from_, sphere.p_W, kWidth, kHeight);
     const Eigen::Vector3d side =
-        (from_.lookat_W - camera_place(from_)).cross(Eigen::Vector3d::UnitZ()).normalized();
+        (from_.lookat_W - render::camera_place(from_)).cross(Eigen::Vector3d::UnitZ()).normalized();
     const Eigen::Vector2d edge =
         pixel_of(world().model, from_, sphere.p_W + sphere.radius * side, kWidth, kHeight);
     disks.emplace_back(middle, (edge - middle).norm());
@@ -228,7 +228,7 @@ TEST_F(WallPicture, SpheresAreWhereTheRobotIsAndNowhereElse) {
 
 TEST_F(WallPicture, StartAndGoalHaveTheirColours) {
   PlanLayers layers{false, false, true, false, false, false};
-  const Image image = draw(layers);
+  const render::Image image = draw(layers);
   const auto& q = world().path.q;
   // How much more of one colour than of the others there is at most, near the tool at a corner.
   const auto most_of = [&](std::size_t color, const JointVec& corner) {
@@ -252,8 +252,8 @@ TEST_F(WallPicture, StartAndGoalHaveTheirColours) {
 
 class PlanWindow : public WallPlan {
  protected:
-  ViewFrame frame() {
-    ViewFrame out;
+  view::ViewFrame frame() {
+    view::ViewFrame out;
     player_.fill(out);
     return out;
   }
@@ -296,31 +296,31 @@ TEST_F(PlanWindow, TheArmGoesBackAndForth) {
 }
 
 TEST_F(PlanWindow, TheUserGoesToAPlace) {
-  player_.handle(PanelEvent{kPlanTime, 1});
+  player_.handle(view::PanelEvent{kPlanTime, 1});
   EXPECT_EQ(player_.place(), 1);
-  player_.handle(StepEvent{-5});
+  player_.handle(view::StepEvent{-5});
   EXPECT_NEAR(player_.place(), 1 - 5 * world().model.timestep(), 1e-12);
-  player_.handle(PanelEvent{kPlanTightest, 1});
+  player_.handle(view::PanelEvent{kPlanTightest, 1});
   EXPECT_EQ(player_.place(), drawing().way().tightest());
   EXPECT_NE(frame().status.find(" mm"), std::string::npos);
-  player_.handle(PanelEvent{kPlanTime, 1e9});
+  player_.handle(view::PanelEvent{kPlanTime, 1e9});
   EXPECT_EQ(player_.place(), drawing().way().length());
-  player_.handle(PanelEvent{kPlanTime, std::nan("")});
+  player_.handle(view::PanelEvent{kPlanTime, std::nan("")});
   EXPECT_EQ(player_.place(), drawing().way().length());
-  player_.handle(ResetEvent{});
+  player_.handle(view::ResetEvent{});
   EXPECT_EQ(player_.place(), 0);
 }
 
 TEST_F(PlanWindow, CheckBoxesChoose) {
-  const Overlay all = frame().overlay;
+  const render::Overlay all = frame().overlay;
   for (const PlanItem item : {kPlanSpheres, kPlanPair, kPlanPath, kPlanTree, kPlanEnds}) {
-    player_.handle(PanelEvent{item, 0});
-    const Overlay fewer = frame().overlay;
+    player_.handle(view::PanelEvent{item, 0});
+    const render::Overlay fewer = frame().overlay;
     EXPECT_LT(shapes_of(fewer), shapes_of(all)) << item;
-    player_.handle(PanelEvent{item, 1});
+    player_.handle(view::PanelEvent{item, 1});
     EXPECT_EQ(shapes_of(frame().overlay), shapes_of(all));
   }
-  player_.handle(PanelEvent{kPlanCorners, 1});
+  player_.handle(view::PanelEvent{kPlanCorners, 1});
   EXPECT_GT(frame().overlay.capsules.size(), all.capsules.size());
   ASSERT_EQ(frame().panels.size(), 3U);
 }

@@ -16,12 +16,12 @@ std::string plan_words(const char* format, Values... values) {
   return text;
 }
 
-PanelItem plan_checkbox(PlanItem item, const char* name, bool on) {
-  return {item, name, PanelCheckbox{on}};
+view::PanelItem plan_checkbox(PlanItem item, const char* name, bool on) {
+  return {item, name, view::PanelCheckbox{on}};
 }
 
-PanelItem plan_line(const char* name, std::string value) {
-  return {kPlanText, name, PanelText{std::move(value)}};
+view::PanelItem plan_line(const char* name, std::string value) {
+  return {kPlanText, name, view::PanelText{std::move(value)}};
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ void PlanPlayer::go(double ways) {
 
 void PlanPlayer::step() { go(kPlanSpeed * subject_->model.timestep()); }
 
-void PlanPlayer::press(const PanelEvent& event) {
+void PlanPlayer::press(const view::PanelEvent& event) {
   const bool on = event.value != 0;
   switch (event.id) {
     case kPlanTime:
@@ -83,13 +83,13 @@ void PlanPlayer::press(const PanelEvent& event) {
   }
 }
 
-void PlanPlayer::handle(const ViewEvent& event) {
-  if (const auto* panel = std::get_if<PanelEvent>(&event)) {
+void PlanPlayer::handle(const view::ViewEvent& event) {
+  if (const auto* panel = std::get_if<view::PanelEvent>(&event)) {
     press(*panel);
-  } else if (std::holds_alternative<ResetEvent>(event)) {
+  } else if (std::holds_alternative<view::ResetEvent>(event)) {
     place_ = 0;
     back_ = false;
-  } else if (const auto* steps = std::get_if<StepEvent>(&event);
+  } else if (const auto* steps = std::get_if<view::StepEvent>(&event);
              steps != nullptr && steps->steps < 0) {
     go(kPlanSpeed * subject_->model.timestep() * steps->steps);
   } else {
@@ -97,15 +97,15 @@ void PlanPlayer::handle(const ViewEvent& event) {
   }
 }
 
-std::vector<PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look) const {
+std::vector<view::PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look) const {
   const PathWay& way = drawing_->way();
   const PlannedPath& path = subject_->path;
   const std::size_t edge = way.edge_at(place_), edges = path.q.size() - 1;
-  PanelSection place{
+  view::PanelSection place{
       "Path",
       {{kPlanTime, "",
-        PanelTimeline{place_ / kPlanSpeed, std::max(way.length() / kPlanSpeed, 1e-3)}},
-       {kPlanTightest, "Tightest place", PanelButton{}},
+        view::PanelTimeline{place_ / kPlanSpeed, std::max(way.length() / kPlanSpeed, 1e-3)}},
+       {kPlanTightest, "Tightest place", view::PanelButton{}},
        plan_line("Edge", plan_words("%zu of %zu", edge + 1, edges)),
        plan_line("Way", plan_words("%.2f / %.2f", place_, way.length()))}};
   if (edge < path.proof.size()) {
@@ -138,7 +138,7 @@ std::vector<PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look) cons
             plan_line("Length", plan_words("%.3f", path.cost))}}};
 }
 
-void PlanPlayer::fill(ViewFrame& frame) {
+void PlanPlayer::fill(view::ViewFrame& frame) {
   const JointVec q = drawing_->way().at(place_);
   place_subject(sim_, *subject_, q);
   const PlanDrawing::Look look = drawing_->look(q);

@@ -31,26 +31,26 @@ class PlanPlayer {
   PlanPlayer(const PlanSubject& subject, const PlanDrawing& drawing);
 
   /// Does what the user asked for.
-  void handle(const ViewEvent& event);
+  void handle(const view::ViewEvent& event);
   /// Time steps to make now.
   [[nodiscard]] int steps_due() { return playback_.steps_due(); }
   void step();
   /// What there is to be seen now.
-  void fill(ViewFrame& frame);
+  void fill(view::ViewFrame& frame);
 
   /// Where it is [rad or m, L2 along the path].
   [[nodiscard]] double place() const { return place_; }
   [[nodiscard]] const PlanLayers& layers() const { return layers_; }
 
  private:
-  void press(const PanelEvent& event);
+  void press(const view::PanelEvent& event);
   void go(double ways);
-  [[nodiscard]] std::vector<PanelSection> panels(const PlanDrawing::Look& look) const;
+  [[nodiscard]] std::vector<view::PanelSection> panels(const PlanDrawing::Look& look) const;
 
   const PlanSubject* subject_;
   const PlanDrawing* drawing_;
   Sim sim_;
-  Playback playback_;
+  view::Playback playback_;
   PlanLayers layers_;
   double place_ = 0;
   bool back_ = false;

@@ -40,8 +40,8 @@ bool hides(const Obstacle& solid, const Vector3d& from_W, const Vector3d& to_W) 
 
 }  // namespace
 
-CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing, double aspect) {
-  std::vector<FramedBall> balls;
+render::CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing, double aspect) {
+  std::vector<render::FramedBall> balls;
   for (const JointVec& q : subject.path.q) {
     for (const PlacedSphere& sphere : place_spheres(subject.checker.robot(), as_span(q))) {
       balls.push_back({sphere.p_W, sphere.radius});
@@ -49,12 +49,12 @@ CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing, dou
   }
   for (const Vector3d& p_W : drawing.tool_way()) balls.push_back({p_W, 0});
   const double azimuth = azimuth_of(subject.arm.joints.front().X_PJ.p, drawing.tool_way());
-  return framing_view(subject.model, balls, {azimuth, kElevation, aspect});
+  return render::framing_view(subject.model, balls, {azimuth, kElevation, aspect});
 }
 
 std::vector<int> hiding_solids(const PlanSubject& subject, const PlanDrawing& drawing,
-                               const CameraView& view) {
-  const Vector3d place = camera_place(view);
+                               const render::CameraView& view) {
+  const Vector3d place = render::camera_place(view);
   const std::vector<Obstacle>& solids = subject.obstacles.solids;
   std::vector<int> out;
   for (std::size_t i = 0; i < std::min(solids.size(), kMaxBlocking); ++i) {

@@ -10,11 +10,11 @@ namespace mjarm::session {
 /// A view of a planned path with all of the arm on its way in the picture, half from above and
 /// across the line from start to goal, from the side of the base on which the path lies.
 /// @param aspect  width of the picture by its height, > 0.
-[[nodiscard]] CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing,
+[[nodiscard]] render::CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing,
                                    double aspect);
 
 /// The solids, by index, that hide places of the tool on its way from there.
 [[nodiscard]] std::vector<int> hiding_solids(const PlanSubject& subject, const PlanDrawing& drawing,
-                                             const CameraView& view);
+                                             const render::CameraView& view);
 
 }  // namespace mjarm::session

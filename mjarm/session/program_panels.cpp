@@ -9,16 +9,16 @@ namespace {
 constexpr const char* kProgramStateWords[] = {"ready", "running", "stopping", "stopped", "done"};
 constexpr const char* kProgramLookWords[] = {"now", "the past", "replay"};
 
-PanelItem program_button(ProgramItem item, const char* name, bool enabled = true) {
-  return {item, name, PanelButton{}, enabled};
+view::PanelItem program_button(ProgramItem item, const char* name, bool enabled = true) {
+  return {item, name, view::PanelButton{}, enabled};
 }
 
-PanelItem program_checkbox(int item, const char* name, bool on) {
-  return {item, name, PanelCheckbox{on}};
+view::PanelItem program_checkbox(int item, const char* name, bool on) {
+  return {item, name, view::PanelCheckbox{on}};
 }
 
-PanelItem program_line(const char* name, std::string value) {
-  return {kProgramText, name, PanelText{std::move(value)}};
+view::PanelItem program_line(const char* name, std::string value) {
+  return {kProgramText, name, view::PanelText{std::move(value)}};
 }
 
 std::string part_of(double part, double whole) {
@@ -27,7 +27,7 @@ std::string part_of(double part, double whole) {
   return text;
 }
 
-PanelSection program_section(const ProgramFacts& facts, const std::vector<std::string>& lines) {
+view::PanelSection program_section(const ProgramFacts& facts, const std::vector<std::string>& lines) {
   const bool done = facts.state == MotionClock::State::done;
   const std::size_t last = lines.empty() ? 0 : lines.size() - 1;
   return {"Program",
@@ -37,15 +37,15 @@ PanelSection program_section(const ProgramFacts& facts, const std::vector<std::s
            program_button(kProgramRestart, "Restart"),
            program_line("State", kProgramStateWords[static_cast<int>(facts.state)]),
            program_line("Motion", part_of(facts.time, facts.duration)),
-           {kProgramLines, "", PanelList{lines, static_cast<int>(std::min(facts.motion, last))}}}};
+           {kProgramLines, "", view::PanelList{lines, static_cast<int>(std::min(facts.motion, last))}}}};
 }
 
-PanelSection time_section(const ProgramFacts& facts) {
+view::PanelSection time_section(const ProgramFacts& facts) {
   // The line gets longer in a few large steps: with each of them the panel is made anew.
   double end = std::max(facts.expected, 1.0);
   while (end < facts.recorded) end *= 1.5;
   return {"Time",
-          {{kProgramTime, "", PanelTimeline{facts.shown, end}},
+          {{kProgramTime, "", view::PanelTimeline{facts.shown, end}},
            program_button(kProgramReplay, "Replay"),
            program_button(kProgramNow, "Now"),
            program_line("Shown", kProgramLookWords[static_cast<int>(facts.look)]),
@@ -54,7 +54,7 @@ PanelSection time_section(const ProgramFacts& facts) {
 
 }  // namespace
 
-std::vector<std::string> program_lines(const ProgramPlan& plan) {
+std::vector<std::string> program_lines(const program::ProgramPlan& plan) {
   std::vector<std::string> lines;
   for (const PlannedMove& move : plan.moves) {
     std::string& line = lines.emplace_back(std::to_string(move.place.line) + " " + move.word);
@@ -63,11 +63,11 @@ std::vector<std::string> program_lines(const ProgramPlan& plan) {
   return lines;
 }
 
-std::vector<PanelSection> program_panels(const ProgramFacts& facts,
+std::vector<view::PanelSection> program_panels(const ProgramFacts& facts,
                                          const std::vector<std::string>& lines,
-                                         const ProgramScene::Choice& choice, PanelSection plots) {
+                                         const ProgramScene::Choice& choice, view::PanelSection plots) {
   return {time_section(facts), program_section(facts, lines),
-          PanelSection{"Show",
+          view::PanelSection{"Show",
                        {program_checkbox(kProgramPaths, "Planned paths", choice.paths),
                         program_checkbox(kProgramTrail, "Trail", choice.trail),
                         program_checkbox(kProgramGoal, "Goal", choice.goal)}},

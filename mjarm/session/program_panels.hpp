@@ -46,14 +46,14 @@ struct ProgramFacts {
 };
 
 /// One line a motion: "4 movel", "19 movel x3".
-[[nodiscard]] std::vector<std::string> program_lines(const ProgramPlan& plan);
+[[nodiscard]] std::vector<std::string> program_lines(const program::ProgramPlan& plan);
 
 /// The sections Time, Program, Show and Plots; a long list comes after what has to be at hand.
 /// @param lines  as program_lines() gives them.
 /// @param plots  the section Plots.
-[[nodiscard]] std::vector<PanelSection> program_panels(const ProgramFacts& facts,
+[[nodiscard]] std::vector<view::PanelSection> program_panels(const ProgramFacts& facts,
                                                        const std::vector<std::string>& lines,
                                                        const ProgramScene::Choice& choice,
-                                                       PanelSection plots);
+                                                       view::PanelSection plots);
 
 }  // namespace mjarm::session

@@ -14,7 +14,7 @@ constexpr std::size_t kMaxRecorded = 5000;  // moments
 
 }  // namespace
 
-ProgramPlayer::ProgramPlayer(const LoadedProgram& loaded, Execution execution)
+ProgramPlayer::ProgramPlayer(const program::LoadedProgram& loaded, Execution execution)
     : loaded_(&loaded),
       sim_(loaded.robot.model),
       execution_(std::move(execution)),
@@ -25,7 +25,7 @@ ProgramPlayer::ProgramPlayer(const LoadedProgram& loaded, Execution execution)
   restart();
 }
 
-Result<ProgramPlayer> ProgramPlayer::make(const LoadedProgram& loaded) {
+Result<ProgramPlayer> ProgramPlayer::make(const program::LoadedProgram& loaded) {
   Result<Execution> execution =
       Execution::make(loaded.robot.model, loaded.plan, {.control = loaded.control()});
   if (!execution) return fail(std::move(execution.error()));
@@ -93,7 +93,7 @@ void ProgramPlayer::step_moments(int steps) {
   look_at(record_.time(i));
 }
 
-void ProgramPlayer::press(const PanelEvent& event) {
+void ProgramPlayer::press(const view::PanelEvent& event) {
   switch (event.id) {
     case kProgramRun:
       to_present();
@@ -131,7 +131,7 @@ void ProgramPlayer::press(const PanelEvent& event) {
   }
 }
 
-void ProgramPlayer::choose(const PanelEvent& event) {
+void ProgramPlayer::choose(const view::PanelEvent& event) {
   const bool on = event.value != 0;
   if (event.id == kProgramPaths) choice_.paths = on;
   if (event.id == kProgramTrail) choice_.trail = on;
@@ -139,24 +139,24 @@ void ProgramPlayer::choose(const PanelEvent& event) {
   (void)scene_.figures().handle(event);
 }
 
-void ProgramPlayer::handle(const ViewEvent& event) {
+void ProgramPlayer::handle(const view::ViewEvent& event) {
   note_.clear();
   const bool present = look_ == ProgramLook::present;
-  if (const auto* panel = std::get_if<PanelEvent>(&event)) {
+  if (const auto* panel = std::get_if<view::PanelEvent>(&event)) {
     press(*panel);
-  } else if (const auto* push = std::get_if<PushEvent>(&event)) {
+  } else if (const auto* push = std::get_if<view::PushEvent>(&event)) {
     if (present) sim_.set_external_force(push->body, push->force_W, push->torque_W);
-  } else if (std::holds_alternative<ReleaseEvent>(event)) {
+  } else if (std::holds_alternative<view::ReleaseEvent>(event)) {
     sim_.clear_external_forces();
-  } else if (std::holds_alternative<ResetEvent>(event)) {
+  } else if (std::holds_alternative<view::ResetEvent>(event)) {
     restart();
-  } else if (const auto* step = std::get_if<StepEvent>(&event);
+  } else if (const auto* step = std::get_if<view::StepEvent>(&event);
              step != nullptr && (step->steps < 0 || !present)) {
     step_moments(step->steps);
   } else {
     (void)playback_.handle(event);
     // Whoever lets time go on wants to see it.
-    const auto* pause = std::get_if<PauseEvent>(&event);
+    const auto* pause = std::get_if<view::PauseEvent>(&event);
     if (pause != nullptr && !pause->paused && look_ == ProgramLook::past) to_present();
   }
 }
@@ -191,7 +191,7 @@ std::string ProgramPlayer::status() const {
   return line;
 }
 
-void ProgramPlayer::fill(ViewFrame& frame) const {
+void ProgramPlayer::fill(view::ViewFrame& frame) const {
   const bool present = look_ == ProgramLook::present;
   frame.snapshot = present ? sim_.snapshot() : shown().snapshot;
   frame.overlay = scene_.overlay(choice_, present ? std::optional(clock().motion()) : std::nullopt);

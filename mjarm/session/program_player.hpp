@@ -22,17 +22,17 @@ class ProgramPlayer {
   /// The arm stands where the program starts.
   /// @param loaded  has no faults; outlives this.
   /// @return an error where the arm's actuators cannot follow the program's control.
-  [[nodiscard]] static Result<ProgramPlayer> make(const LoadedProgram& loaded);
+  [[nodiscard]] static Result<ProgramPlayer> make(const program::LoadedProgram& loaded);
 
   /// Does what the user asked for.
-  void handle(const ViewEvent& event);
+  void handle(const view::ViewEvent& event);
   /// Time steps to make now.
   [[nodiscard]] int steps_due();
   /// One time step: of the simulation, or of a replay. A simulation that became unstable begins
   /// anew, and the status says so.
   void step();
   /// What there is to be seen now.
-  void fill(ViewFrame& frame) const;
+  void fill(view::ViewFrame& frame) const;
 
   [[nodiscard]] const Sim& sim() const { return sim_; }
   [[nodiscard]] const MotionClock& clock() const { return execution_.clock(); }
@@ -47,10 +47,10 @@ class ProgramPlayer {
     double time = 0;  ///< [s] of the motion
   };
 
-  ProgramPlayer(const LoadedProgram& loaded, Execution execution);
+  ProgramPlayer(const program::LoadedProgram& loaded, Execution execution);
   void restart();
-  void press(const PanelEvent& event);
-  void choose(const PanelEvent& event);
+  void press(const view::PanelEvent& event);
+  void choose(const view::PanelEvent& event);
   void step_moments(int steps);
   void step_simulation();
   void keep();
@@ -59,11 +59,11 @@ class ProgramPlayer {
   [[nodiscard]] const Moment& shown() const { return record_.at(record_.nearest(cursor_)); }
   [[nodiscard]] std::string status() const;
 
-  const LoadedProgram* loaded_;
+  const program::LoadedProgram* loaded_;
   Sim sim_;
   Execution execution_;
-  Playback playback_;
-  ThinnedRecord<Moment> record_;  ///< from the first motion on
+  view::Playback playback_;
+  view::ThinnedRecord<Moment> record_;  ///< from the first motion on
   ProgramScene scene_;
   ProgramScene::Choice choice_;
   std::vector<std::string> lines_;

@@ -13,7 +13,7 @@ namespace mjarm::session {
 namespace {
 
 TEST(ProgramPlayer, GoesAsARunWithoutAWindowDoes) {
-  const LoadedProgram& loaded = there_and_back();
+  const program::LoadedProgram& loaded = there_and_back();
   std::vector<JointVec> q;
   MotionRun run(loaded.robot.model, loaded.robot.arm);
   run.set_after_step([&](const Sim& sim, bool) {
@@ -36,7 +36,7 @@ TEST(ProgramPlayer, GoesAsARunWithoutAWindowDoes) {
 
 TEST(ProgramPlayer, StepStopsAtTheEndOfEachMotion) {
   ProgramPlayer world = new_player();
-  const ProgramPlan& plan = there_and_back().plan;
+  const program::ProgramPlan& plan = there_and_back().plan;
   ASSERT_EQ(plan.moves.size(), 4U);
   make_steps(world, 20);
   EXPECT_EQ(world.clock().state(), State::ready);
@@ -80,9 +80,9 @@ TEST(ProgramPlayer, RestartBeginsAnew) {
   press_item(world, kProgramRun);
   make_steps(world, 300);
   const std::vector<double> later = state_shown(world);
-  for (const ViewEvent& event :
-       {ViewEvent{ResetEvent{}}, ViewEvent{PanelEvent{kProgramRestart, 1}}}) {
-    world.handle(PushEvent{.body = 4, .force_W = {5, 0, 0}});
+  for (const view::ViewEvent& event :
+       {view::ViewEvent{view::ResetEvent{}}, view::ViewEvent{view::PanelEvent{kProgramRestart, 1}}}) {
+    world.handle(view::PushEvent{.body = 4, .force_W = {5, 0, 0}});
     make_steps(world, 40);
     press_item(world, kProgramTime, 0.1);
     world.handle(event);
@@ -99,7 +99,7 @@ TEST(ProgramPlayer, RestartBeginsAnew) {
 TEST(ProgramPlayer, WhatIsShownIsChosen) {
   ProgramPlayer world = new_player();
   make_steps(world, 40);
-  ViewFrame frame;
+  view::ViewFrame frame;
   world.fill(frame);
   EXPECT_TRUE(frame.plots.empty());
   press_item(world, kProgramRun);
@@ -115,7 +115,7 @@ TEST(ProgramPlayer, WhatIsShownIsChosen) {
   press_item(world, kProgramGoal, 1);
   press_item(world, kProgramTrail, 0);
   for (int i = 0; i < static_cast<int>(kLiveFigures); ++i) {
-    world.handle(PanelEvent{kProgramFigure + i, 1});
+    world.handle(view::PanelEvent{kProgramFigure + i, 1});
   }
   world.fill(frame);
   EXPECT_EQ(frame.plots.size(), kLiveFigures);
@@ -133,7 +133,7 @@ TEST(ProgramPlayer, WhatIsShownIsChosen) {
 
 TEST(ProgramPlayer, GripsWhereTheProgramSaysSo) {
   const support::TempFolder folder;
-  const LoadedProgram loaded = load_program(folder
+  const program::LoadedProgram loaded = program::load_program(folder
                                                 .write("grip.yaml", R"(robot: panda
 program:
   - grip: open
@@ -159,7 +159,7 @@ program:
   EXPECT_EQ(ctrl(), gripper.ctrl_open);
 }
 
-ViewEvent any_event(Rng& rng) {
+view::ViewEvent any_event(Rng& rng) {
   constexpr double kOdd[] = {0,
                              1,
                              -1,
@@ -170,18 +170,18 @@ ViewEvent any_event(Rng& rng) {
                              std::numeric_limits<double>::infinity()};
   switch (rng.below(8)) {
     case 0:
-      return PauseEvent{rng.below(2) == 0};
+      return view::PauseEvent{rng.below(2) == 0};
     case 1:
-      return StepEvent{rng.below(2) == 0 ? 1 : -1};
+      return view::StepEvent{rng.below(2) == 0 ? 1 : -1};
     case 2:
-      return PushEvent{.body = static_cast<int>(rng.below(7)), .force_W = {rng.uniform(), 0, 0}};
+      return view::PushEvent{.body = static_cast<int>(rng.below(7)), .force_W = {rng.uniform(), 0, 0}};
     case 3:
-      return ReleaseEvent{};
+      return view::ReleaseEvent{};
     case 4:
-      return rng.below(20) == 0 ? ViewEvent{ResetEvent{}} : ViewEvent{SelectEvent{}};
+      return rng.below(20) == 0 ? view::ViewEvent{view::ResetEvent{}} : view::ViewEvent{view::SelectEvent{}};
     default:
-      if (rng.below(10) != 0 && rng.below(3) == 0) return PanelEvent{kProgramRun, 1};
-      return PanelEvent{static_cast<int>(rng.below(kProgramFigure + 8)) - 1, kOdd[rng.below(8)]};
+      if (rng.below(10) != 0 && rng.below(3) == 0) return view::PanelEvent{kProgramRun, 1};
+      return view::PanelEvent{static_cast<int>(rng.below(kProgramFigure + 8)) - 1, kOdd[rng.below(8)]};
   }
 }
 

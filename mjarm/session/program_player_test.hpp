@@ -20,17 +20,17 @@ program:
 )";
 
 /// The program of all tests, planned once.
-inline const LoadedProgram& there_and_back() {
+inline const program::LoadedProgram& there_and_back() {
   static const support::TempFolder folder;
-  static const LoadedProgram loaded =
-      load_program(folder.write("there.yaml", kThereAndBack).string()).value();
+  static const program::LoadedProgram loaded =
+      program::load_program(folder.write("there.yaml", kThereAndBack).string()).value();
   return loaded;
 }
 
 inline ProgramPlayer new_player() { return ProgramPlayer::make(there_and_back()).value(); }
 
 inline void press_item(ProgramPlayer& player, ProgramItem item, double value = 1) {
-  player.handle(PanelEvent{item, value});
+  player.handle(view::PanelEvent{item, value});
 }
 
 inline void make_steps(ProgramPlayer& player, int steps) {
@@ -45,7 +45,7 @@ inline int steps_until(ProgramPlayer& player, State state) {
 }
 
 inline std::vector<double> state_shown(const ProgramPlayer& player) {
-  ViewFrame frame;
+  view::ViewFrame frame;
   player.fill(frame);
   return frame.snapshot.state;
 }

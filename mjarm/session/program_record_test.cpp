@@ -43,8 +43,8 @@ TEST(ProgramRecord, TheSimulationWaitsWhileSomebodyLooksBack) {
   make_steps(curious, 50);
   press_item(curious, kProgramReplay);
   make_steps(curious, 30);
-  curious.handle(PushEvent{.body = 5, .force_W = {0, 0, 500}});
-  curious.handle(StepEvent{-1});
+  curious.handle(view::PushEvent{.body = 5, .force_W = {0, 0, 500}});
+  curious.handle(view::StepEvent{-1});
   EXPECT_EQ(curious.look(), ProgramLook::past);
   press_item(curious, kProgramNow);
   for (int i = 0; i < 300; ++i) {
@@ -57,7 +57,7 @@ TEST(ProgramRecord, TheSimulationWaitsWhileSomebodyLooksBack) {
   press_item(curious, kProgramRun);
   EXPECT_EQ(state_shown(curious), state_shown(plain));
   press_item(curious, kProgramTime, 0.1);
-  curious.handle(PauseEvent{false});
+  curious.handle(view::PauseEvent{false});
   EXPECT_EQ(state_shown(curious), state_shown(plain));
 }
 
@@ -91,7 +91,7 @@ TEST(ProgramRecord, ReplayShowsAllOfTheRecord) {
 
 TEST(ProgramRecord, SingleStepsGoThroughTheRecordAndOutOfIt) {
   ProgramPlayer world = new_player();
-  world.handle(StepEvent{-1});
+  world.handle(view::StepEvent{-1});
   EXPECT_EQ(world.look(), ProgramLook::present);
   press_item(world, kProgramRun);
   std::vector<std::vector<double>> seen = {world.sim().snapshot().state};
@@ -99,22 +99,22 @@ TEST(ProgramRecord, SingleStepsGoThroughTheRecordAndOutOfIt) {
     world.step();
     seen.push_back(world.sim().snapshot().state);
   }
-  world.handle(PauseEvent{true});
+  world.handle(view::PauseEvent{true});
   for (std::size_t i = 19; i < 20; --i) {
-    world.handle(StepEvent{-1});
+    world.handle(view::StepEvent{-1});
     ASSERT_EQ(state_shown(world), seen[i]);
   }
-  world.handle(StepEvent{-1});
+  world.handle(view::StepEvent{-1});
   EXPECT_EQ(state_shown(world), seen[0]);
   for (std::size_t i = 1; i <= 20; ++i) {
-    world.handle(StepEvent{1});
+    world.handle(view::StepEvent{1});
     ASSERT_EQ(state_shown(world), seen[i]);
   }
   EXPECT_EQ(world.steps_due(), 0);
-  world.handle(StepEvent{1});
+  world.handle(view::StepEvent{1});
   EXPECT_EQ(world.look(), ProgramLook::present);
   EXPECT_EQ(world.steps_due(), 0);
-  world.handle(StepEvent{1});
+  world.handle(view::StepEvent{1});
   EXPECT_EQ(world.steps_due(), 1);
 }
 
@@ -130,10 +130,10 @@ TEST(ProgramRecord, ALineShowsHowItBegan) {
     EXPECT_EQ(world.facts().motion, static_cast<std::size_t>(line));
     EXPECT_LT(world.facts().time, 1e-9);
   }
-  ViewFrame frame;
+  view::ViewFrame frame;
   world.fill(frame);
   const auto& items = frame.panels.at(1).items;
-  const auto& list = std::get<PanelList>(items.back().what);
+  const auto& list = std::get<view::PanelList>(items.back().what);
   const std::vector<std::string> lines = {"3 movej", "4 movel x2", "6 wait", "7 movej"};
   EXPECT_EQ(list.lines, lines);
   EXPECT_EQ(list.current, 0);

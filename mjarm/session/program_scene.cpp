@@ -7,29 +7,29 @@
 namespace mjarm::session {
 namespace {
 
-constexpr Rgba kJointMoveColor = {0.55F, 0.55F, 0.60F, 1};
+constexpr render::Rgba kJointMoveColor = {0.55F, 0.55F, 0.60F, 1};
 
 }  // namespace
 
-void add_planned_paths(Overlay& overlay, const MotionPlan& plan) {
+void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan) {
   for (const PlannedMove& move : plan.moves) {
     if (!move.curve && move.corners.empty()) continue;
-    add_planned_path(overlay, planned_tool_path(move, plan.arms[move.tool]));
+    render::add_planned_path(overlay, planned_tool_path(move, plan.arms[move.tool]));
   }
 }
 
-ProgramScene::ProgramScene(const LoadedProgram& loaded, int first_figure)
+ProgramScene::ProgramScene(const program::LoadedProgram& loaded, int first_figure)
     : loaded_(&loaded), figures_(loaded.robot.arm, first_figure, {true, true}) {
   for (const PlannedMove& move : loaded.plan.moves) {
-    PathLook look;
+    render::PathLook look;
     if (!move.curve) look.color = kJointMoveColor;
     const std::vector<Pose> X_WT = planned_tool_path(move, loaded.plan.arms[move.tool]);
-    if (X_WT.size() > 1) add_planned_path(paths_, X_WT, look);
+    if (X_WT.size() > 1) render::add_planned_path(paths_, X_WT, look);
   }
 }
 
 void ProgramScene::add(const Sim& sim, double time, std::size_t motion, const JointVec& q_ref) {
-  const ProgramPlan& plan = loaded_->plan;
+  const program::ProgramPlan& plan = loaded_->plan;
   if (plan.moves.empty()) return;
   const Arm& arm = plan.arms[plan.moves[std::min(motion, plan.moves.size() - 1)].tool];
   trail_.add(sim.tool(arm).p);
@@ -43,20 +43,20 @@ void ProgramScene::clear() {
   has_curves_ = false;
 }
 
-Overlay ProgramScene::overlay(const Choice& choice, std::optional<std::size_t> motion) const {
-  Overlay out;
+render::Overlay ProgramScene::overlay(const Choice& choice, std::optional<std::size_t> motion) const {
+  render::Overlay out;
   if (choice.paths) out = paths_;
   if (choice.trail) trail_.draw(out);
   const std::vector<PlannedMove>& moves = loaded_->plan.moves;
   if (choice.goal && motion && *motion < moves.size()) {
     const Trajectory& way = moves[*motion].trajectory;
-    out.ghosts.push_back(ghost_of(loaded_->robot.arm, as_span(way.at(way.duration()).q)));
+    out.ghosts.push_back(render::ghost_of(loaded_->robot.arm, as_span(way.at(way.duration()).q)));
   }
   return out;
 }
 
-std::vector<LivePlot> ProgramScene::plots() const {
-  return has_curves_ ? figures_.plots() : std::vector<LivePlot>();
+std::vector<view::LivePlot> ProgramScene::plots() const {
+  return has_curves_ ? figures_.plots() : std::vector<view::LivePlot>();
 }
 
 }  // namespace mjarm::session

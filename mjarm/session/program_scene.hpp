@@ -12,7 +12,7 @@
 namespace mjarm::session {
 
 /// Draws where a plan leads the tool: along its curves, and round what stands in the way.
-void add_planned_paths(Overlay& overlay, const MotionPlan& plan);
+void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan);
 
 /// What a window shows of a program besides the arm: planned paths, the trail of the tool, the goal
 /// of a motion, figures.
@@ -27,7 +27,7 @@ class ProgramScene {
 
   /// @param loaded        has no faults; outlives this.
   /// @param first_figure  number of the first item of its figures.
-  ProgramScene(const LoadedProgram& loaded, int first_figure);
+  ProgramScene(const program::LoadedProgram& loaded, int first_figure);
 
   /// One more step was made, by motion `motion` of the plan.
   /// @param time  [s] since the program was begun, for the figures.
@@ -36,16 +36,16 @@ class ProgramScene {
   void clear();
 
   /// @param motion  whose goal is shown; none = no goal is.
-  [[nodiscard]] Overlay overlay(const Choice& choice, std::optional<std::size_t> motion) const;
+  [[nodiscard]] render::Overlay overlay(const Choice& choice, std::optional<std::size_t> motion) const;
   /// Those that the user chose; none before the first step.
-  [[nodiscard]] std::vector<LivePlot> plots() const;
+  [[nodiscard]] std::vector<view::LivePlot> plots() const;
   [[nodiscard]] ArmFigures& figures() { return figures_; }
   [[nodiscard]] const ArmFigures& figures() const { return figures_; }
 
  private:
-  const LoadedProgram* loaded_;
-  Overlay paths_;
-  Trail trail_;
+  const program::LoadedProgram* loaded_;
+  render::Overlay paths_;
+  render::Trail trail_;
   ArmFigures figures_;
   bool has_curves_ = false;
 };

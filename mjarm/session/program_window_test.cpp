@@ -15,18 +15,18 @@ program:
   - movej: {joints: home}
 )";
 
-LoadedProgram waves() {
+program::LoadedProgram waves() {
   const support::TempFolder folder;
-  return load_program(folder.write("waves.yaml", kWaves).string()).value();
+  return program::load_program(folder.write("waves.yaml", kWaves).string()).value();
 }
 
 class ProgramWindow : public mjarm::testing::RealWindow {
  protected:
   ProgramWindow() { model_ = loaded_.robot.model; }
-  WindowOptions options() override {
+  view::WindowOptions options() override {
     return {.width = 800,
             .height = 700,
-            .quality = RenderQuality::low,
+            .quality = render::RenderQuality::low,
             .right_panel = true,
             .joints_open = false};
   }
@@ -40,7 +40,7 @@ class ProgramWindow : public mjarm::testing::RealWindow {
   bool until(const std::function<bool()>& holds, double seconds = 20) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     while (std::chrono::steady_clock::now() < end) {
-      for (const ViewEvent& event : window_->take_events()) player_.handle(event);
+      for (const view::ViewEvent& event : window_->take_events()) player_.handle(event);
       for (int due = player_.steps_due(); due > 0; --due) player_.step();
       player_.fill(frame_);
       window_->set_status(frame_.status);
@@ -77,14 +77,14 @@ class ProgramWindow : public mjarm::testing::RealWindow {
     return state() == wanted && player_.look() == look;
   }
 
-  LoadedProgram loaded_ = waves();
+  program::LoadedProgram loaded_ = waves();
   ProgramPlayer player_ = ProgramPlayer::make(loaded_).value();
-  ViewFrame frame_;
+  view::ViewFrame frame_;
 };
 
 TEST_F(ProgramWindow, RunStopStepRestart) {
   EXPECT_TRUE(is(State::ready));
-  player_.handle(SpeedEvent{0.2});  // so that a click may get lost and be repeated
+  player_.handle(view::SpeedEvent{0.2});  // so that a click may get lost and be repeated
   ASSERT_TRUE(click(kProgramRun, [this] { return is(State::running); }));
   EXPECT_TRUE(until([this] { return player_.facts().recorded > 0.1; }));
   ASSERT_TRUE(click(kProgramStop, [this] { return state() != State::running; }));
@@ -97,7 +97,7 @@ TEST_F(ProgramWindow, RunStopStepRestart) {
   ASSERT_TRUE(click(kProgramStep, [&] { return player_.clock().motion() == motion + 1; }));
   EXPECT_TRUE(is(State::stopped));
   ASSERT_TRUE(click(kProgramRun, [this] { return state() == State::running; }));
-  player_.handle(SpeedEvent{4});
+  player_.handle(view::SpeedEvent{4});
   EXPECT_TRUE(until([this] { return is(State::done); }, 60));
   const Trajectory& last = loaded_.plan.moves.back().trajectory;
   EXPECT_EQ(player_.clock().q_ref(), last.at(last.duration()).q);
@@ -106,7 +106,7 @@ TEST_F(ProgramWindow, RunStopStepRestart) {
 }
 
 TEST_F(ProgramWindow, ScrubReplayNowAndLines) {
-  player_.handle(SpeedEvent{4});
+  player_.handle(view::SpeedEvent{4});
   ASSERT_TRUE(click(kProgramRun, [this] { return state() == State::running; }));
   ASSERT_TRUE(until([this] { return is(State::done); }, 60));
   const double all = player_.facts().recorded;
@@ -118,7 +118,7 @@ TEST_F(ProgramWindow, ScrubReplayNowAndLines) {
   EXPECT_NEAR(player_.facts().shown, 0.5 * end, 0.03 * end);
   EXPECT_LT(frame_.snapshot.time, present - 0.4 * end);
   // Replay goes on from there to the end.
-  player_.handle(SpeedEvent{0.5});
+  player_.handle(view::SpeedEvent{0.5});
   const double from = player_.facts().shown;
   ASSERT_TRUE(click(kProgramReplay, [this] { return player_.look() == ProgramLook::replay; }));
   EXPECT_TRUE(until([&] { return player_.facts().shown > from + 0.2; }));
@@ -131,7 +131,7 @@ TEST_F(ProgramWindow, ScrubReplayNowAndLines) {
 }
 
 TEST_F(ProgramWindow, KeysPauseAndStepThroughTheRecord) {
-  player_.handle(SpeedEvent{0.2});
+  player_.handle(view::SpeedEvent{0.2});
   ASSERT_TRUE(click(kProgramRun, [this] { return state() == State::running; }));
   ASSERT_TRUE(until([this] { return player_.facts().recorded > 0.1; }));
   // Of the picture, not of the panel.

@@ -18,7 +18,7 @@ namespace {
 /// Executes a plan, with the trail of the tool in an overlay.
 class ProgramRun {
  public:
-  explicit ProgramRun(const LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
+  explicit ProgramRun(const program::LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
     sim_.place(loaded.robot.arm, as_span(loaded.plan.q_start));
     add_planned_paths(planned_, loaded.plan);
   }
@@ -27,7 +27,7 @@ class ProgramRun {
   /// @param after_step  returns false to stop; called once before anything moves.
   Result<void> run(std::optional<double> seconds, const std::function<bool()>& after_step) {
     if (!after_step()) return {};
-    const ProgramPlan& plan = loaded_.plan;
+    const program::ProgramPlan& plan = loaded_.plan;
     Result<Execution> execution =
         Execution::make(loaded_.robot.model, plan, {.control = loaded_.control()});
     if (!execution) return fail(std::move(execution.error()));
@@ -41,24 +41,24 @@ class ProgramRun {
   }
 
   [[nodiscard]] const Sim& sim() const { return sim_; }
-  [[nodiscard]] Overlay overlay() const {
-    Overlay all = planned_;
+  [[nodiscard]] render::Overlay overlay() const {
+    render::Overlay all = planned_;
     trail_.draw(all);
     return all;
   }
 
  private:
-  const LoadedProgram& loaded_;
+  const program::LoadedProgram& loaded_;
   Sim sim_;
-  Overlay planned_;
-  Trail trail_{{.max_points = 10000}};
+  render::Overlay planned_;
+  render::Trail trail_{{.max_points = 10000}};
 };
 
 /// What is asked of a picture or a video.
 struct Job {
   const Model& model;
   const PictureOptions& options;
-  const Camera& camera;
+  const render::Camera& camera;
   std::optional<double> seconds;
 };
 
@@ -76,8 +76,8 @@ Result<std::string> video_of(ProgramRun& run, const Job& job, Progress& progress
 
 Result<std::string> picture_of(ProgramRun& run, const Job& job, Progress& progress) {
   const PictureOptions& options = job.options;
-  Result<OffscreenRenderer> renderer =
-      OffscreenRenderer::create(job.model, offscreen_options(options));
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(job.model, offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
   const auto after_step = [&progress] {
     progress.advance();
@@ -92,8 +92,8 @@ Result<std::string> picture_of(ProgramRun& run, const Job& job, Progress& progre
 
 }  // namespace
 
-Result<std::string> render_program(const LoadedProgram& loaded, const PictureOptions& options,
-                                   const Camera& camera, std::optional<double> seconds) {
+Result<std::string> render_program(const program::LoadedProgram& loaded, const PictureOptions& options,
+                                   const render::Camera& camera, std::optional<double> seconds) {
   const Model& model = loaded.robot.model;
   double duration = loaded.plan.duration() + kRestAtEnd;
   if (seconds) duration = std::min(duration, *seconds);

@@ -11,9 +11,9 @@ namespace mjarm::session {
 /// Runs a plan without faults and makes a picture of its end or a video of all of it.
 /// @param seconds  [s] of simulated time at most.
 /// @return the line to tell, or why there is no file.
-[[nodiscard]] Result<std::string> render_program(const LoadedProgram& loaded,
+[[nodiscard]] Result<std::string> render_program(const program::LoadedProgram& loaded,
                                                  const PictureOptions& options,
-                                                 const Camera& camera,
+                                                 const render::Camera& camera,
                                                  std::optional<double> seconds = {});
 
 }  // namespace mjarm::session

@@ -11,18 +11,18 @@ RobotSession::RobotSession(const Model& model, const std::optional<Arm>& arm, Fr
   show_.emplace(model, *arm);
 }
 
-void RobotSession::handle(const ViewEvent& event) {
-  if (const auto* used = std::get_if<PanelEvent>(&event)) {
+void RobotSession::handle(const view::ViewEvent& event) {
+  if (const auto* used = std::get_if<view::PanelEvent>(&event)) {
     if (target_ && target_->handle(*used)) return;
     if (show_) (void)show_->handle(*used);
     return;
   }
-  if (std::holds_alternative<TargetEvent>(event)) {
+  if (std::holds_alternative<view::TargetEvent>(event)) {
     if (target_) target_->toggle();
     return;
   }
   sim_.handle(event);
-  const bool anew = std::holds_alternative<ResetEvent>(event);
+  const bool anew = std::holds_alternative<view::ResetEvent>(event);
   if (anew && show_) show_->clear();
   if (!target_) return;
   if (anew) target_->restart();
@@ -37,7 +37,7 @@ void RobotSession::step() {
   if (target_) target_->follow_sim();
 }
 
-void RobotSession::fill(ViewFrame& frame) {
+void RobotSession::fill(view::ViewFrame& frame) {
   frame.snapshot = sim_.sim().snapshot();
   frame.overlay = {};
   frame.panels.clear();
@@ -54,7 +54,7 @@ void RobotSession::fill(ViewFrame& frame) {
   // The window's font is ASCII.
   const LanguageScope english(Language::english);
   frame.status = sim_.status();
-  if (frame.status.empty()) frame.status = overlay_notice(frame.overlay);
+  if (frame.status.empty()) frame.status = render::overlay_notice(frame.overlay);
   if (frame.status.empty() && target_) frame.status = target_->line();
 }
 

@@ -19,14 +19,14 @@ class RobotSession {
   RobotSession(const Model& model, const std::optional<Arm>& arm, FreeSim& sim);
 
   /// Does what the user asked for, in the panels as in the scene.
-  void handle(const ViewEvent& event);
+  void handle(const view::ViewEvent& event);
   /// Leads the arm where the target was dragged since the last call.
   /// @return false where nothing was dragged.
   bool take_drags();
   [[nodiscard]] int steps_due() { return sim_.steps_due(); }
   void step();
   /// Writes the next frame, and hands over how the target is to be shown.
-  void fill(ViewFrame& frame);
+  void fill(view::ViewFrame& frame);
 
   /// None without an arm that is held.
   [[nodiscard]] TargetControl* target() noexcept { return target_ ? &*target_ : nullptr; }

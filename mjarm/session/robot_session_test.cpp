@@ -69,11 +69,11 @@ TEST_F(RobotInView, DragsLeadTheArmAndShowItsGhost) {
   Pose X_far = X_WT;
   X_far.p.x() += 3;
   drag(X_far, true);
-  const ViewFrame& red = frame();
+  const view::ViewFrame& red = frame();
   EXPECT_THAT(red.status, HasSubstr("not reachable: out of reach"));
   ASSERT_EQ(red.overlay.ghosts.size(), 1U);
   EXPECT_GT(red.overlay.ghosts[0].color.r, 0.8F);
-  TargetLook look;
+  view::TargetLook look;
   ASSERT_TRUE(view_.target()->link().looks.take(look));
   EXPECT_EQ(look.X_WT.p, X_far.p);
   EXPECT_EQ(look.number, drags_);
@@ -86,30 +86,30 @@ TEST_F(RobotInView, DragsLeadTheArmAndShowItsGhost) {
 }
 
 TEST_F(RobotInView, SlidersResetsAndStepsBackTakeTheTargetAlong) {
-  view_.handle(JointEvent{arm_.joints[0].dof, "pan", 0.3});
+  view_.handle(view::JointEvent{arm_.joints[0].dof, "pan", 0.3});
   EXPECT_EQ(target().goal()[0], 0.3);
   EXPECT_LT((target().pose().p - fk(arm_, as_span(sim_.goal())).p).norm(), 1e-12);
   step(20);
   use("Tool", "+ x");
   const JointVec after = target().goal();
   step(5);
-  for (int i = 0; i < 10; ++i) view_.handle(StepEvent{-1});
+  for (int i = 0; i < 10; ++i) view_.handle(view::StepEvent{-1});
   EXPECT_NE(target().goal(), after);
   EXPECT_EQ(target().goal()[0], 0.3);
-  view_.handle(ResetEvent{});
+  view_.handle(view::ResetEvent{});
   EXPECT_EQ(target().goal(), arm_.home);
 }
 
 TEST_F(RobotInView, TheKeyPutsTheTargetAway) {
   const auto look = [this] {
     view_.fill(frame_);
-    TargetLook taken;
+    view::TargetLook taken;
     EXPECT_TRUE(view_.target()->link().looks.take(taken));
     return taken;
   };
   EXPECT_TRUE(look().shown);
   EXPECT_FALSE(frame_.status.empty());
-  view_.handle(TargetEvent{});
+  view_.handle(view::TargetEvent{});
   EXPECT_FALSE(look().shown);
   EXPECT_TRUE(frame_.status.empty());
   use("Target", "Target", 1);
@@ -138,7 +138,7 @@ TEST_F(RobotInView, CheckBoxesChangeTheOverlay) {
   use("Show", "Contacts");
   EXPECT_TRUE(frame().overlay.spheres.empty());
   // The elbow folded until the arm touches itself.
-  view_.handle(JointEvent{arm_.joints[2].dof, "elbow", 3.1});
+  view_.handle(view::JointEvent{arm_.joints[2].dof, "elbow", 3.1});
   step(3000);
   EXPECT_FALSE(frame().overlay.spheres.empty());
   use("Show", "Contacts", 0);
@@ -146,7 +146,7 @@ TEST_F(RobotInView, CheckBoxesChangeTheOverlay) {
 }
 
 TEST_F(RobotInView, TheTrailIsALineOrBallsOrOff) {
-  view_.handle(JointEvent{arm_.joints[0].dof, "pan", 0.5});
+  view_.handle(view::JointEvent{arm_.joints[0].dof, "pan", 0.5});
   step(1000);
   ASSERT_EQ(frame().overlay.lines.size(), 1U);
   EXPECT_GT(frame().overlay.lines[0].points_W.size(), 20U);
@@ -178,7 +178,7 @@ TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
   RobotSession view(model, arm, passive);
   EXPECT_EQ(view.target(), nullptr);
   for (int i = 0; i < 20; ++i) view.step();
-  ViewFrame frame;
+  view::ViewFrame frame;
   view.fill(frame);
   EXPECT_EQ(frame.panels.size(), 2U);
   EXPECT_TRUE(frame.status.empty());
@@ -187,8 +187,8 @@ TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
   FreeSim driving = FreeSim::make(car, std::nullopt, false).value();
   RobotSession bare(car, std::nullopt, driving);
   bare.step();
-  bare.handle(PanelEvent{1000, 1});
-  bare.handle(TargetEvent{});
+  bare.handle(view::PanelEvent{1000, 1});
+  bare.handle(view::TargetEvent{});
   bare.fill(frame);
   EXPECT_TRUE(frame.panels.empty());
 }

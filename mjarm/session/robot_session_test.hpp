@@ -18,22 +18,22 @@ class RobotInView : public ::testing::Test {
   void step(int steps) {
     for (int i = 0; i < steps; ++i) view_.step();
   }
-  const ViewFrame& frame() {
+  const view::ViewFrame& frame() {
     view_.fill(frame_);
     return frame_;
   }
   /// The item with this name; its section and place in the panel as well.
   struct Place {
-    const PanelItem* item = nullptr;
+    const view::PanelItem* item = nullptr;
     int section = -1;
     int index = -1;
   };
   Place place(const std::string& title, const std::string& name) {
-    const std::vector<PanelSection>& panels = frame().panels;
+    const std::vector<view::PanelSection>& panels = frame().panels;
     for (std::size_t i = 0; i < panels.size(); ++i) {
       if (panels[i].title != title) continue;
       for (std::size_t k = 0; k < panels[i].items.size(); ++k) {
-        const PanelItem& item = panels[i].items[k];
+        const view::PanelItem& item = panels[i].items[k];
         if (item.name == name) return {&item, static_cast<int>(i), static_cast<int>(k)};
       }
     }
@@ -41,10 +41,10 @@ class RobotInView : public ::testing::Test {
     std::abort();
   }
   void use(const std::string& title, const std::string& name, double value = 1) {
-    view_.handle(PanelEvent{place(title, name).item->id, value});
+    view_.handle(view::PanelEvent{place(title, name).item->id, value});
   }
   std::string shown(const std::string& title, const std::string& name) {
-    return std::get<PanelText>(place(title, name).item->what).value;
+    return std::get<view::PanelText>(place(title, name).item->what).value;
   }
   [[nodiscard]] const ToolTarget& target() { return view_.target()->target(); }
   [[nodiscard]] Pose tool() const { return sim_.sim().tool(arm_); }
@@ -62,7 +62,7 @@ class RobotInView : public ::testing::Test {
   Arm arm_ = find_arm(model_).value();
   FreeSim sim_ = FreeSim::make(model_, arm_, false).value();
   RobotSession view_{model_, arm_, sim_};
-  ViewFrame frame_;
+  view::ViewFrame frame_;
   long drags_ = 0;
 };
 

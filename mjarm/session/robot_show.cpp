@@ -28,7 +28,7 @@ constexpr double kNearestRed = 0.02;    ///< [m]
 RobotShow::RobotShow(const Model& model, const Arm& arm)
     : arm_(arm), checker_(model, arm, {.margin = kNearestWithin}), figures_(arm, kFigureItem) {}
 
-bool RobotShow::handle(const PanelEvent& event) {
+bool RobotShow::handle(const view::PanelEvent& event) {
   const bool on = event.value != 0;
   if (event.id == kGhostItem) {
     ghost_ = on;
@@ -57,38 +57,38 @@ void RobotShow::add(const FreeSim& sim) {
   trail_.add(sim.sim().tool(arm_).p);
 }
 
-void RobotShow::add_sections(std::vector<PanelSection>& sections) const {
+void RobotShow::add_sections(std::vector<view::PanelSection>& sections) const {
   sections.push_back({"Show",
-                      {{kGhostItem, "Ghost of goal", PanelCheckbox{ghost_}},
-                       {kEllipsoidItem, "Ellipsoid", PanelCheckbox{ellipsoid_}},
-                       {kContactItem, "Contacts", PanelCheckbox{contacts_}},
-                       {kNearestItem, "Closest pair", PanelCheckbox{nearest_}},
-                       {kTrailItem, "Trail", PanelChoice{{"off", "line", "balls"}, trail_look_}}}});
+                      {{kGhostItem, "Ghost of goal", view::PanelCheckbox{ghost_}},
+                       {kEllipsoidItem, "Ellipsoid", view::PanelCheckbox{ellipsoid_}},
+                       {kContactItem, "Contacts", view::PanelCheckbox{contacts_}},
+                       {kNearestItem, "Closest pair", view::PanelCheckbox{nearest_}},
+                       {kTrailItem, "Trail", view::PanelChoice{{"off", "line", "balls"}, trail_look_}}}});
   sections.push_back(figures_.section());
 }
 
-void RobotShow::add_contact(Overlay& overlay, const JointVec& q) {
+void RobotShow::add_contact(render::Overlay& overlay, const JointVec& q) {
   const Result<CollisionReport> report = checker_.check(as_span(q));
   if (!report) return;
   if (contacts_) {
-    std::vector<ContactMark> marks;
+    std::vector<render::ContactMark> marks;
     for (const ContactPoint& contact : report->contacts) marks.push_back({contact.point_W, {}});
-    add_contacts(overlay, marks);
+    render::add_contacts(overlay, marks);
   }
   if (nearest_ && report->nearest) {
     const NearestPair& pair = *report->nearest;
-    add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.distance, kNearestRed);
+    render::add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.distance, kNearestRed);
   }
 }
 
-void RobotShow::add_overlay(Overlay& overlay, const FreeSim& sim) {
+void RobotShow::add_overlay(render::Overlay& overlay, const FreeSim& sim) {
   if (trail_look_ != 0) trail_.draw(overlay);
   if (!ellipsoid_ && !contacts_ && !nearest_) return;
   const JointVec q = sim.sim().arm_state(arm_).q;
   if (contacts_ || nearest_) add_contact(overlay, q);
   if (ellipsoid_) {
     const VelocityEllipsoid ellipsoid = manipulability_ellipsoid(arm_, as_span(q));
-    add_velocity_ellipsoid(overlay, sim.sim().tool(arm_).p, ellipsoid.R_WE, ellipsoid.semi_axes);
+    render::add_velocity_ellipsoid(overlay, sim.sim().tool(arm_).p, ellipsoid.R_WE, ellipsoid.semi_axes);
   }
 }
 

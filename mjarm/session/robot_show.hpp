@@ -20,7 +20,7 @@ class RobotShow {
 
   /// Does what an item of its panels asks for.
   /// @return false where the item is not of these panels.
-  bool handle(const PanelEvent& event);
+  bool handle(const view::PanelEvent& event);
   /// Takes note of where the arm is; call it after each step.
   void add(const FreeSim& sim);
   /// Forgets all that was.
@@ -28,16 +28,16 @@ class RobotShow {
 
   /// The ghost of the goal is wanted at all times.
   [[nodiscard]] bool wants_ghost() const noexcept { return ghost_; }
-  void add_sections(std::vector<PanelSection>& sections) const;
-  void add_overlay(Overlay& overlay, const FreeSim& sim);
-  [[nodiscard]] std::vector<LivePlot> plots() const { return figures_.plots(); }
+  void add_sections(std::vector<view::PanelSection>& sections) const;
+  void add_overlay(render::Overlay& overlay, const FreeSim& sim);
+  [[nodiscard]] std::vector<view::LivePlot> plots() const { return figures_.plots(); }
 
  private:
-  void add_contact(Overlay& overlay, const JointVec& q);
+  void add_contact(render::Overlay& overlay, const JointVec& q);
 
   Arm arm_;
   ExactChecker checker_;
-  Trail trail_;
+  render::Trail trail_;
   ArmFigures figures_;
   bool ghost_ = false;
   bool ellipsoid_ = false;

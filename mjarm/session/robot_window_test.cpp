@@ -32,14 +32,14 @@ class RobotInWindow : public RobotInView {
   void SetUp() override {
     if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "DISPLAY is not set";
     if (!std::filesystem::exists(testing::kXdotool)) GTEST_SKIP() << "xdotool is not installed";
-    Result<Window> opened = Window::open(model_, kTitle,
+    Result<view::Window> opened = view::Window::open(model_, kTitle,
                                          {.width = kWidth,
                                           .height = kHeight,
-                                          .quality = RenderQuality::low,
+                                          .quality = render::RenderQuality::low,
                                           .can_target = true,
                                           .jog_dofs = sim_.jog_dofs()});
     ASSERT_TRUE(opened) << opened.error().what;
-    window_ = std::make_unique<Window>(std::move(*opened));
+    window_ = std::make_unique<view::Window>(std::move(*opened));
     handle_.attach(*window_);
     ASSERT_TRUE(frames_until([] { return id() != ""; })) << "the window does not appear";
     xdotool({"windowmove", "--sync", id(), "0", "0", "windowfocus", "--sync", id()});
@@ -47,7 +47,7 @@ class RobotInWindow : public RobotInView {
   }
   /// One round of the simulation and of the window, in one thread: nothing depends on the clock.
   void round() {
-    for (const ViewEvent& event : window_->take_events()) view_.handle(event);
+    for (const view::ViewEvent& event : window_->take_events()) view_.handle(event);
     (void)view_.take_drags();
     step(5);
     view_.fill(frame_);
@@ -84,15 +84,15 @@ class RobotInWindow : public RobotInView {
     }
     return false;
   }
-  [[nodiscard]] Eye eye() const {
-    return eye_of(window_->view(), model_.raw()->vis.global.fovy * std::numbers::pi / 180);
+  [[nodiscard]] view::Eye eye() const {
+    return view::eye_of(window_->view(), model_.raw()->vis.global.fovy * std::numbers::pi / 180);
   }
   [[nodiscard]] Eigen::Vector2d pixel(const Eigen::Vector3d& p_W) const {
-    return pixel_of_point(eye(), kWidth, kHeight, p_W).value();
+    return view::pixel_of_point(eye(), kWidth, kHeight, p_W).value();
   }
   /// [m] of the handles' arrows.
   [[nodiscard]] double size() const {
-    return GizmoOptions{}.size * eye().height_at(target_pose().p);
+    return view::GizmoOptions{}.size * eye().height_at(target_pose().p);
   }
   [[nodiscard]] Pose target_pose() const { return handle_.gizmo().pose(); }
   void press(const Eigen::Vector2d& at) {
@@ -109,7 +109,7 @@ class RobotInWindow : public RobotInView {
   }
   static std::string word(double pixels) { return std::to_string(std::lround(pixels)); }
   /// Takes the handle that is seen at a point.
-  void take(GizmoHandle handle, const Eigen::Vector3d& p_W) {
+  void take(view::GizmoHandle handle, const Eigen::Vector3d& p_W) {
     const auto is_held = [&] { return handle_.gizmo().held().has_value(); };
     for (int attempt = 0; attempt < 4 && !is_held(); ++attempt) {
       if (attempt > 0) let_go();
@@ -122,17 +122,17 @@ class RobotInWindow : public RobotInView {
 
   static constexpr const char* kTitle = "mjarm robot test";
   testing::Turn turn_;
-  TargetHandle handle_{view_.target()->link(), true};
-  std::unique_ptr<Window> window_;
+  view::TargetHandle handle_{view_.target()->link(), true};
+  std::unique_ptr<view::Window> window_;
 };
 
 TEST_F(RobotInWindow, AnArrowMovesTheToolAlongItsAxisOnly) {
   for (const int axis : {0, 2}) {
     const Pose before = target().pose();
-    const CameraView camera = window_->view();
+    const render::CameraView camera = window_->view();
     const Eigen::Vector3d along = Eigen::Vector3d::Unit(axis);
     const Eigen::Vector3d held = before.p + 0.9 * size() * along;
-    take(static_cast<GizmoHandle>(axis), held);
+    take(static_cast<view::GizmoHandle>(axis), held);
     drag_to(pixel(held - 0.1 * along));
     ASSERT_TRUE(frames_until([&] { return target().pose().p[axis] < before.p[axis] - 0.05; }));
     const Eigen::Vector3d way = target().pose().p - before.p;
@@ -157,7 +157,7 @@ TEST_F(RobotInWindow, ARingTurnsTheToolAboutItsAxisOnly) {
   const auto on_ring = [&](double angle) -> Eigen::Vector3d {
     return before.p + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
   };
-  take(GizmoHandle::turn_z, on_ring(side));
+  take(view::GizmoHandle::turn_z, on_ring(side));
   drag_to(pixel(on_ring(side + 0.4)));
   ASSERT_TRUE(frames_until([&] { return angle_between(target().pose().R, before.R) > 0.2; }));
   let_go();
@@ -172,7 +172,7 @@ TEST_F(RobotInWindow, ARingTurnsTheToolAboutItsAxisOnly) {
 TEST_F(RobotInWindow, BeyondTheWorkspaceItIsRedAndSaysWhy) {
   const Pose before = target().pose();
   const Eigen::Vector3d held = before.p + 0.9 * size() * Eigen::Vector3d::UnitZ();
-  take(GizmoHandle::move_z, held);
+  take(view::GizmoHandle::move_z, held);
   drag_to({pixel(held).x(), 1});
   ASSERT_TRUE(frames_until([&] { return target().grade() == TargetGrade::unreachable; }));
   EXPECT_THAT(frame_.status, HasSubstr("out of reach"));
@@ -187,7 +187,7 @@ TEST_F(RobotInWindow, BeyondTheWorkspaceItIsRedAndSaysWhy) {
 }
 
 TEST_F(RobotInWindow, TheRestOfThePictureBelongsToTheCamera) {
-  const CameraView before = window_->view();
+  const render::CameraView before = window_->view();
   const Pose target_before = target().pose();
   press({60, 100});
   drag_to({160, 120});
@@ -212,7 +212,7 @@ TEST_F(RobotInWindow, KeyAndPanelAreConnected) {
   EXPECT_TRUE(
       act_until({"windowfocus", id(), "key", "ctrl+t"}, [&] { return handle_.look().shown; }));
   EXPECT_TRUE(click_until("Target", "Follow", [&] {
-    return !std::get<PanelCheckbox>(place("Target", "Follow").item->what).on;
+    return !std::get<view::PanelCheckbox>(place("Target", "Follow").item->what).on;
   }));
 }
 
@@ -222,7 +222,7 @@ TEST_F(RobotInWindow, InItsOwnThreadTheArmFollowsAsWell) {
   const Eigen::Vector3d held = before.p + 0.9 * size() * Eigen::Vector3d::UnitX();
   const Eigen::Vector2d from = pixel(held);
   const Eigen::Vector2d to = pixel(held - 0.1 * Eigen::Vector3d::UnitX());
-  ViewLink link;
+  view::ViewLink link;
   std::thread worker([&] { simulate_world(view_, link); });
   std::atomic<bool> moved{false};
   std::atomic<bool> given_up{false};
@@ -234,7 +234,7 @@ TEST_F(RobotInWindow, InItsOwnThreadTheArmFollowsAsWell) {
     }
     given_up = true;
   });
-  const Result<void> drawn = draw_until_closed(*window_, link, [&] {
+  const Result<void> drawn = view::draw_until_closed(*window_, link, [&] {
     moved = moved || (!handle_.gizmo().held() && target_pose().p.x() < before.p.x() - 0.05);
     return moved || given_up;
   });

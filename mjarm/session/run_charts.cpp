@@ -41,17 +41,17 @@ std::vector<double> times(const Rows& rows) {
   return column(rows, [](const RecordRow& row) { return row.time; });
 }
 
-PlotPanel over_time(Msg title, const std::string& unit) {
-  PlotPanel panel;
+render::PlotPanel over_time(Msg title, const std::string& unit) {
+  render::PlotPanel panel;
   panel.title = text(title);
   panel.x_label = text(msg::run_chart_time);
   panel.y_label = unit;
   return panel;
 }
 
-PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
+render::PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
   static constexpr const char* kAxes[] = {"x [m]", "y [m]", "z [m]"};
-  PlotPanel panel;
+  render::PlotPanel panel;
   panel.title = text(title);
   panel.x_label = kAxes[x];
   panel.y_label = kAxes[y];
@@ -62,12 +62,12 @@ PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
   const auto planned = [&](int axis) {
     return column(rows, [axis](const RecordRow& row) { return row.X_ref.p[axis]; });
   };
-  panel.lines.push_back(executed_line(executed(x), executed(y)));
-  panel.lines.push_back(planned_line(planned(x), planned(y)));
+  panel.lines.push_back(render::executed_line(executed(x), executed(y)));
+  panel.lines.push_back(render::planned_line(planned(x), planned(y)));
   return panel;
 }
 
-PlotPanel a_line_a_joint(const Arm& arm, const Rows& rows, PlotPanel panel,
+render::PlotPanel a_line_a_joint(const Arm& arm, const Rows& rows, render::PlotPanel panel,
                          const std::function<double(const RecordRow& row, int joint)>& value) {
   for (int j = 0; j < arm.dof(); ++j) {
     panel.lines.push_back({.x = times(rows),
@@ -77,8 +77,8 @@ PlotPanel a_line_a_joint(const Arm& arm, const Rows& rows, PlotPanel panel,
   return panel;
 }
 
-PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
-  PlotPanel panel = over_time(title, text(msg::run_chart_share));
+render::PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
+  render::PlotPanel panel = over_time(title, text(msg::run_chart_share));
   panel.y_from_zero = true;
   panel.lines.push_back({.x = times(rows), .y = column(rows, share)});
   return panel;
@@ -86,15 +86,15 @@ PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
 
 }  // namespace
 
-PlotPanel front_panel(std::span<const MeasuredRun> runs) {
+render::PlotPanel front_panel(std::span<const MeasuredRun> runs) {
   return side_view(msg::run_chart_front, rows_to_draw(runs), 0, 2);
 }
 
-PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs) {
+render::PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs) {
   const Rows rows = rows_to_draw(runs);
-  PlotPanel panel = over_time(msg::run_chart_speed, "m/s");
+  render::PlotPanel panel = over_time(msg::run_chart_speed, "m/s");
   panel.y_from_zero = true;
-  PlotLine line;
+  render::PlotLine line;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const bool gap = rows[i] == nullptr || rows[i - 1] == nullptr;
     const double dt = gap ? 0 : rows[i]->time - rows[i - 1]->time;
@@ -106,12 +106,12 @@ PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs) {
   return panel;
 }
 
-PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
+render::PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
   const bool ideal =
       std::ranges::any_of(runs, [](const MeasuredRun& run) { return run.curve != nullptr; });
-  PlotPanel panel = over_time(ideal ? msg::run_chart_error : msg::run_chart_tracking, "mm");
+  render::PlotPanel panel = over_time(ideal ? msg::run_chart_error : msg::run_chart_tracking, "mm");
   panel.y_from_zero = true;
-  PlotLine line;
+  render::PlotLine line;
   for (const MeasuredRun& run : runs) {
     const Rows rows = rows_to_draw({&run, 1});
     const std::vector<double> t = times(rows);
@@ -132,30 +132,30 @@ PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance) {
   return panel;
 }
 
-PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
+render::PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
   const Rows rows = rows_to_draw(runs);
-  PlotPanel panel = a_line_a_joint(arm, rows, over_time(msg::run_chart_joints, "rad"),
+  render::PlotPanel panel = a_line_a_joint(arm, rows, over_time(msg::run_chart_joints, "rad"),
                                    [](const RecordRow& row, int j) { return row.q[j]; });
   if (rows.empty()) return panel;
-  std::ranges::move(limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper),
+  std::ranges::move(render::limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper),
                                 rows.front()->time, rows.back()->time, text(msg::run_chart_limits)),
                     std::back_inserter(panel.lines));
   return panel;
 }
 
-PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
-  PlotPanel panel = over_time(msg::run_chart_joint_speeds, "rad/s");
+render::PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
+  render::PlotPanel panel = over_time(msg::run_chart_joint_speeds, "rad/s");
   const double limit = arm.limits.velocity.maxCoeff();
   panel.bands.push_back({-limit, limit, text(msg::run_chart_limit)});
   return a_line_a_joint(arm, rows_to_draw(runs), std::move(panel),
                         [](const RecordRow& row, int j) { return row.v[j]; });
 }
 
-Plot motion_plot(const std::string& title, const Arm& arm, std::span<const MeasuredRun> runs,
+render::Plot motion_plot(const std::string& title, const Arm& arm, std::span<const MeasuredRun> runs,
                  double tolerance) {
   const Rows rows = rows_to_draw(runs);
   const JointLimits& limits = arm.limits;
-  Plot plot;
+  render::Plot plot;
   plot.title = title;
   plot.columns = 4;
   plot.panels = {side_view(msg::run_chart_top, rows, 0, 1),

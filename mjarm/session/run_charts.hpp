@@ -12,15 +12,15 @@ namespace mjarm::session {
 
 /// Single charts of a run; the tool speed [m/s], the distance to the curve [mm], joint values
 /// [rad] with their limits, and joint speeds [rad/s] with the largest limit as a strip.
-[[nodiscard]] PlotPanel front_panel(std::span<const MeasuredRun> runs);
-[[nodiscard]] PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs);
-[[nodiscard]] PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance);
-[[nodiscard]] PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs);
-[[nodiscard]] PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs);
+[[nodiscard]] render::PlotPanel front_panel(std::span<const MeasuredRun> runs);
+[[nodiscard]] render::PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs);
+[[nodiscard]] render::PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance);
+[[nodiscard]] render::PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs);
+[[nodiscard]] render::PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs);
 
 /// One page about a run: tool path from three sides (planned dashed, executed solid), tool speed,
 /// error with its tolerance [m], joint values, worst use of velocity and torque limits.
-[[nodiscard]] Plot motion_plot(const std::string& title, const Arm& arm,
+[[nodiscard]] render::Plot motion_plot(const std::string& title, const Arm& arm,
                                std::span<const MeasuredRun> runs, double tolerance);
 
 }  // namespace mjarm::session

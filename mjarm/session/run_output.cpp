@@ -11,15 +11,15 @@ namespace {
 
 Result<void> write_picture(const std::filesystem::path& file, const Model& model,
                            const Snapshot& snapshot, const RunOutput& output) {
-  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model);
+  Result<render::OffscreenRenderer> renderer = render::OffscreenRenderer::create(model);
   if (!renderer) {
     if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
     log_warning(text(msg::show_no_picture, renderer.error().what));
     return {};
   }
-  const Result<Image> image = renderer->draw(snapshot, output.camera, output.overlay);
+  const Result<render::Image> image = renderer->draw(snapshot, output.camera, output.overlay);
   if (!image) return fail(image.error());
-  return write_png(*image, file);
+  return render::write_png(*image, file);
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ Result<void> write_output(const std::filesystem::path& folder, const Model& mode
   return write_file(folder / "report.json", to_json(output.report))
       .and_then([&] {
         return output.plot.panels.empty() ? Result<void>()
-                                          : save_plot(output.plot, folder / "plot");
+                                          : render::save_plot(output.plot, folder / "plot");
       })
       .and_then([&] { return write_picture(folder / "picture.png", model, snapshot, output); });
 }

@@ -15,9 +15,9 @@ namespace mjarm::session {
 /// What a run leaves behind besides its log.
 struct RunOutput {
   Report report;
-  Plot plot;
-  Overlay overlay;     ///< drawn into the picture
-  Camera camera;       ///< of the picture
+  render::Plot plot;
+  render::Overlay overlay;     ///< drawn into the picture
+  render::Camera camera;       ///< of the picture
 };
 
 inline constexpr const char* kVideoFile = "video.mp4";

@@ -12,16 +12,16 @@ namespace mjarm::session {
 namespace {
 
 constexpr auto kRest = std::chrono::microseconds(500);
-constexpr Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
-constexpr Rgba kGoal = {0.15F, 0.70F, 0.30F, 0.6F};
+constexpr render::Rgba kPlanned = {0.85F, 0.15F, 0.15F, 1};
+constexpr render::Rgba kGoal = {0.15F, 0.70F, 0.30F, 0.6F};
 
 }  // namespace
 
 Result<RunShow> RunShow::open(const Model& model, const std::string& title, bool headless) {
   RunShow show(model.timestep());
   if (headless) return show;
-  Result<std::optional<RemoteWindow>> window =
-      RemoteWindow::open_where_possible(model, title, {.can_reset = false});
+  Result<std::optional<view::RemoteWindow>> window =
+      view::RemoteWindow::open_where_possible(model, title, {.can_reset = false});
   if (!window) return fail(std::move(window.error()));
   show.window_ = std::move(*window);
   return show;
@@ -33,27 +33,27 @@ void RunShow::add_points(std::span<const Pose> X_WT, std::size_t every) {
   }
 }
 
-void RunShow::add_line(std::span<const Pose> X_WT) { add_planned_path(planned_, X_WT); }
+void RunShow::add_line(std::span<const Pose> X_WT) { render::add_planned_path(planned_, X_WT); }
 
 void RunShow::begin_goal(const Sim& sim, const Eigen::Vector3d& p_W) {
-  goal_ = OverlaySphere{.p_W = p_W, .radius = 0.02, .color = kGoal};
+  goal_ = render::OverlaySphere{.p_W = p_W, .radius = 0.02, .color = kGoal};
   trail_.clear();
   if (video_) video_->begin_again(sim);
 }
 
-Overlay RunShow::overlay() const {
-  Overlay all = planned_;
+render::Overlay RunShow::overlay() const {
+  render::Overlay all = planned_;
   if (goal_) all.spheres.push_back(*goal_);
   trail_.draw(all);
   return all;
 }
 
-std::vector<LivePlot> RunShow::plots() const {
+std::vector<view::LivePlot> RunShow::plots() const {
   if (!plots_tool_) return {};
-  LivePlot path{.title = "tool from above [m]", .x_label = "x [m]", .series = {}};
+  view::LivePlot path{.title = "tool from above [m]", .x_label = "x [m]", .series = {}};
   path.equal_aspect = true;
   path.series.push_back({.name = ""});
-  LivePlot time{.title = "tool position [m]", .x_label = "time [s]", .series = {}};
+  view::LivePlot time{.title = "tool position [m]", .x_label = "time [s]", .series = {}};
   time.series = {{.name = "x", .color = {0.90F, 0.35F, 0.30F, 1}},
                  {.name = "y", .color = {0.30F, 0.75F, 0.35F, 1}},
                  {.name = "z", .color = {0.35F, 0.55F, 0.95F, 1}}};
@@ -62,7 +62,7 @@ std::vector<LivePlot> RunShow::plots() const {
     path.series[0].x.push_back(p_W.x());
     path.series[0].y.push_back(p_W.y());
     for (int axis = 0; axis < 3; ++axis) {
-      LiveSeries& series = time.series[static_cast<std::size_t>(axis)];
+      view::LiveSeries& series = time.series[static_cast<std::size_t>(axis)];
       series.x.push_back(tool_.time(i));
       series.y.push_back(p_W[axis]);
     }
@@ -94,7 +94,7 @@ bool RunShow::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
 }
 
 Result<void> RunShow::film(const Model& model, const std::filesystem::path& file,
-                           const Camera& camera) {
+                           const render::Camera& camera) {
   Result<VideoOfRun> video = VideoOfRun::open(model, {.out = file, .video = true}, camera);
   if (!video) return fail(std::move(video.error()));
   video_.emplace(std::move(*video));
@@ -114,17 +114,17 @@ Result<void> RunShow::end_film() {
 }
 
 void RunShow::handle_events() {
-  for (const ViewEvent& event : window_->link().events.take()) handle(event);
+  for (const view::ViewEvent& event : window_->link().events.take()) handle(event);
 }
 
-void RunShow::handle(const ViewEvent& event) {
+void RunShow::handle(const view::ViewEvent& event) {
   changed_ = true;
-  if (const auto* push = std::get_if<PushEvent>(&event); push != nullptr && pushed_ != nullptr) {
+  if (const auto* push = std::get_if<view::PushEvent>(&event); push != nullptr && pushed_ != nullptr) {
     pushed_->set_external_force(push->body, push->force_W, push->torque_W);
-  } else if (std::holds_alternative<ReleaseEvent>(event) && pushed_ != nullptr) {
+  } else if (std::holds_alternative<view::ReleaseEvent>(event) && pushed_ != nullptr) {
     pushed_->clear_external_forces();
   }
-  if (const auto* step = std::get_if<StepEvent>(&event)) {
+  if (const auto* step = std::get_if<view::StepEvent>(&event)) {
     if (step->steps < 0) (void)history_.back();
     if (step->steps < 0 || history_.forward() != nullptr) return;
   }
@@ -133,14 +133,14 @@ void RunShow::handle(const ViewEvent& event) {
 }
 
 void RunShow::offer() {
-  Mailbox<ViewFrame>& frames = window_->link().frames;
+  view::Mailbox<view::ViewFrame>& frames = window_->link().frames;
   if (!changed_ || !frames.is_empty() || history_.size() == 0) return;
   changed_ = false;
   frame_.snapshot = history_.at();
   frame_.overlay = overlay();
   frame_.plots = plots();
   frame_.status =
-      history_.is_past() ? "looking back; space goes on from now" : overlay_notice(frame_.overlay);
+      history_.is_past() ? "looking back; space goes on from now" : render::overlay_notice(frame_.overlay);
   frames.post(frame_);
 }
 

@@ -41,7 +41,7 @@ class RunShow {
   /// The way of the tool as it is planned, dashed.
   void add_line(std::span<const Pose> X_WT);
   /// More that is drawn all the time.
-  void add(const Overlay& overlay) { append(planned_, overlay); }
+  void add(const render::Overlay& overlay) { append(planned_, overlay); }
   /// A green ball at `p_W` [m], in the place of the one before, and a new trail: another run to
   /// another goal begins, which may set the clock back.
   void begin_goal(const Sim& sim, const Eigen::Vector3d& p_W);
@@ -50,7 +50,7 @@ class RunShow {
 
   /// From now on every step is filmed into `file`, an MP4, in simulated time.
   [[nodiscard]] Result<void> film(const Model& model, const std::filesystem::path& file,
-                                  const Camera& camera);
+                                  const render::Camera& camera);
   /// Leaves out steps, or goes on.
   void set_filming(bool on) { filming_ = on; }
   /// Puts the video in its place, if there is one. A run that the user ends has none, which is
@@ -70,31 +70,31 @@ class RunShow {
 
   [[nodiscard]] bool has_window() const { return window_.has_value(); }
   /// What is planned, and the trail so far.
-  [[nodiscard]] Overlay overlay() const;
+  [[nodiscard]] render::Overlay overlay() const;
 
  private:
   static constexpr std::size_t kMaxToolPoints = 2000;
   explicit RunShow(double timestep) : playback_(timestep) {}
-  [[nodiscard]] std::vector<LivePlot> plots() const;
+  [[nodiscard]] std::vector<view::LivePlot> plots() const;
   void handle_events();
-  void handle(const ViewEvent& event);
+  void handle(const view::ViewEvent& event);
   /// Hands a frame to the window where it took the last one.
   void offer();
 
-  std::optional<RemoteWindow> window_;
-  Playback playback_;
-  History<Snapshot> history_{2000};
+  std::optional<view::RemoteWindow> window_;
+  view::Playback playback_;
+  view::History<Snapshot> history_{2000};
   Sim* pushed_ = nullptr;
   int due_ = 0;
   bool changed_ = true;  ///< since the last frame
-  ViewFrame frame_;      ///< memory that is used again
+  view::ViewFrame frame_;      ///< memory that is used again
   bool trail_on_ = false;
   bool filming_ = true;
   std::optional<VideoOfRun> video_;
-  Trail trail_{{.max_points = 10000}};
-  Overlay planned_;
-  std::optional<OverlaySphere> goal_;
-  ThinnedRecord<Eigen::Vector3d> tool_{kMaxToolPoints};  ///< [m] what is plotted of it
+  render::Trail trail_{{.max_points = 10000}};
+  render::Overlay planned_;
+  std::optional<render::OverlaySphere> goal_;
+  view::ThinnedRecord<Eigen::Vector3d> tool_{kMaxToolPoints};  ///< [m] what is plotted of it
   double last_time_ = 0;                                 ///< [s] of the last step
   bool plots_tool_ = false;
 };

@@ -8,18 +8,18 @@
 namespace mjarm::session {
 
 Result<VideoOfRun> VideoOfRun::open(const Model& model, const PictureOptions& options,
-                                    const Camera& camera) {
-  Result<OffscreenRenderer> renderer = OffscreenRenderer::create(model, offscreen_options(options));
+                                    const render::Camera& camera) {
+  Result<render::OffscreenRenderer> renderer = render::OffscreenRenderer::create(model, offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
-  Result<VideoWriter> writer = VideoWriter::create(
+  Result<render::VideoWriter> writer = render::VideoWriter::create(
       options.out, {.width = options.width, .height = options.height, .fps = options.fps});
   if (!writer) return fail(std::move(writer.error()));
   return VideoOfRun(options, camera, std::move(*renderer), std::move(*writer));
 }
 
-bool VideoOfRun::add(const Snapshot& snapshot, const Camera& camera, const Overlay& overlay) {
+bool VideoOfRun::add(const Snapshot& snapshot, const render::Camera& camera, const render::Overlay& overlay) {
   if (error_ || interrupted()) return false;
-  const Result<Image> image = renderer_.draw(snapshot, camera, overlay);
+  const Result<render::Image> image = renderer_.draw(snapshot, camera, overlay);
   const Result<void> added = image ? writer_.add(*image) : fail(image.error());
   if (!added) error_ = added.error();
   return !error_;
@@ -31,7 +31,7 @@ bool VideoOfRun::is_due(const Sim& sim) const {
   return !start_ || *start_ + frames() / options_.fps <= sim.time() + half;
 }
 
-bool VideoOfRun::step(const Sim& sim, const Overlay& overlay) {
+bool VideoOfRun::step(const Sim& sim, const render::Overlay& overlay) {
   if (error_ || interrupted()) return false;
   if (!start_) start_ = sim.time();
   while (is_due(sim)) {

@@ -29,10 +29,10 @@ double aspect_of(const PlanShow& show) {
 }
 
 /// The camera asked for; without one, that of the path.
-Result<Camera> camera_of(const PlanShow& show, const PlanSubject& subject,
+Result<render::Camera> camera_of(const PlanShow& show, const PlanSubject& subject,
                          const PlanDrawing& drawing) {
   if (show.camera) return show.camera(subject.model);
-  return Camera{.view = plan_view(subject, drawing, aspect_of(show))};
+  return render::Camera{.view = plan_view(subject, drawing, aspect_of(show))};
 }
 
 Snapshot standing(const PlanSubject& subject, const JointVec& q) {
@@ -42,9 +42,9 @@ Snapshot standing(const PlanSubject& subject, const JointVec& q) {
 }
 
 Result<std::string> draw_picture(const PictureOptions& options, const PlanSubject& subject,
-                                 const PlanDrawing& drawing, const Camera& camera) {
-  Result<OffscreenRenderer> renderer =
-      OffscreenRenderer::create(subject.model, offscreen_options(options));
+                                 const PlanDrawing& drawing, const render::Camera& camera) {
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(subject.model, offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
   const JointVec q = drawing.way().at(drawing.way().tightest());
   return write_picture(*renderer, options, standing(subject, q), camera,
@@ -53,7 +53,7 @@ Result<std::string> draw_picture(const PictureOptions& options, const PlanSubjec
 
 /// The arm goes from start to goal.
 Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& subject,
-                              const PlanDrawing& drawing, const Camera& camera) {
+                              const PlanDrawing& drawing, const render::Camera& camera) {
   Result<VideoOfRun> video = VideoOfRun::open(subject.model, options, camera);
   if (!video) return fail(std::move(video.error()));
   PlanLayers layers;
@@ -64,7 +64,7 @@ Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& 
   Progress progress(text(msg::show_plan_progress), static_cast<std::uint64_t>(frames));
   for (int i = 0; i < frames; ++i) {
     const JointVec q = drawing.way().at(std::min(length, kFilmSpeed * i / options.fps));
-    const Overlay overlay = drawing.overlay(layers, drawing.look(q));
+    const render::Overlay overlay = drawing.overlay(layers, drawing.look(q));
     if (!video->add(standing(subject, q), camera, overlay)) break;
     progress.advance();
   }
@@ -75,7 +75,7 @@ Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& 
 Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject,
                           const PlanDrawing& drawing) {
   const PictureOptions& options = *show.picture;
-  const Result<Camera> camera = camera_of(show, subject, drawing);
+  const Result<render::Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
   const Result<std::string> line = options.video ? draw_film(options, subject, drawing, *camera)
                                                  : draw_picture(options, subject, drawing, *camera);
@@ -86,10 +86,10 @@ Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject,
 
 Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
                               const PlanDrawing& drawing) {
-  Result<Camera> camera = camera_of(show, subject, drawing);
+  Result<render::Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
   PlanPlayer player(subject, drawing);
-  const WindowOptions window{.width = show.width,
+  const view::WindowOptions window{.width = show.width,
                              .height = show.height,
                              .camera = std::move(*camera),
                              .quality = show.quality,
@@ -97,9 +97,9 @@ Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
                              .right_panel = true,
                              .joints_open = false};
   catch_interrupts();
-  const Result<ViewStats> shown =
-      show_in_window(subject.model, "mjarm plan " + subject.title, window, {show.seconds},
-                     [&player](ViewLink& link) { simulate_world(player, link); });
+  const Result<view::ViewStats> shown =
+      view::show_in_window(subject.model, "mjarm plan " + subject.title, window, {show.seconds},
+                     [&player](view::ViewLink& link) { simulate_world(player, link); });
   if (!shown) return fail(shown.error());
   return {};
 }
@@ -131,7 +131,7 @@ Result<void> show_plan_of_spheres(const PlanShow& show, const FastRobot& robot,
   const PlanSubject subject{made->model, made->arm, *checker, problem.obstacles, path, problem.id};
   // What stands in the way of the eye is made again, to be seen through.
   const PlanDrawing drawing(subject);
-  const Result<Camera> camera = camera_of(show, subject, drawing);
+  const Result<render::Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
   if (camera->view) look.see_through = hiding_solids(subject, drawing, *camera->view);
   if (look.see_through.empty()) return show_plan(show, subject);

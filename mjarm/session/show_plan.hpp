@@ -16,8 +16,8 @@ struct PlanShow {
   int width = 1280;  ///< [px] of the window
   int height = 800;  ///< [px] of the window
   /// The camera for the model that is shown; empty = chosen for the path.
-  std::function<Result<Camera>(const Model&)> camera = {};
-  std::optional<RenderQuality> quality = {};
+  std::function<Result<render::Camera>(const Model&)> camera = {};
+  std::optional<render::RenderQuality> quality = {};
   double seconds = 0;  ///< [s] after which the window closes; 0 = never
 };
 

@@ -18,24 +18,24 @@ class ProgramUntil {
   /// @param seconds  [s] 0 = never.
   ProgramUntil(ProgramPlayer& player, double seconds) : player_(player), seconds_(seconds) {}
 
-  void handle(const ViewEvent& event) { player_.handle(event); }
+  void handle(const view::ViewEvent& event) { player_.handle(event); }
   [[nodiscard]] int steps_due() { return player_.steps_due(); }
   void step() {
     player_.step();
     if (!(seconds_ > 0) || player_.sim().time() < seconds_) return;
-    player_.handle(PanelEvent{kProgramStop, 1});
+    player_.handle(view::PanelEvent{kProgramStop, 1});
     seconds_ = 0;
   }
-  void fill(ViewFrame& frame) const { player_.fill(frame); }
+  void fill(view::ViewFrame& frame) const { player_.fill(frame); }
 
  private:
   ProgramPlayer& player_;
   double seconds_;
 };
 
-std::string window_title(const LoadedProgram& loaded) { return "mjarm " + loaded.program.name; }
+std::string window_title(const program::LoadedProgram& loaded) { return "mjarm " + loaded.program.name; }
 
-WindowOptions with_panel(WindowOptions window) {
+view::WindowOptions with_panel(view::WindowOptions window) {
   window.right_panel = true;
   window.joints_open = false;
   return window;
@@ -43,25 +43,25 @@ WindowOptions with_panel(WindowOptions window) {
 
 }  // namespace
 
-Result<ViewStats> view_program(const LoadedProgram& loaded, WindowOptions window,
-                               const ShowOptions& options) {
+Result<view::ViewStats> view_program(const program::LoadedProgram& loaded, view::WindowOptions window,
+                               const view::ShowOptions& options) {
   Result<ProgramPlayer> player = ProgramPlayer::make(loaded);
   if (!player) return fail(std::move(player.error()));
-  if (window.paused) player->handle(PauseEvent{true});
-  return show_in_window(loaded.robot.model, window_title(loaded), with_panel(std::move(window)),
-                        options, [&player](ViewLink& link) { simulate_world(*player, link); });
+  if (window.paused) player->handle(view::PauseEvent{true});
+  return view::show_in_window(loaded.robot.model, window_title(loaded), with_panel(std::move(window)),
+                        options, [&player](view::ViewLink& link) { simulate_world(*player, link); });
 }
 
-Result<void> show_program(const LoadedProgram& loaded, double seconds) {
+Result<void> show_program(const program::LoadedProgram& loaded, double seconds) {
   if (interrupted()) return {};
   Result<ProgramPlayer> player = ProgramPlayer::make(loaded);
   if (!player) return fail(std::move(player.error()));
-  const Result<std::optional<RemoteWindow>> window =
-      RemoteWindow::open_where_possible(loaded.robot.model, window_title(loaded), with_panel({}));
+  const Result<std::optional<view::RemoteWindow>> window =
+      view::RemoteWindow::open_where_possible(loaded.robot.model, window_title(loaded), with_panel({}));
   if (!window) return fail(window.error());
   if (!*window) return {};
   log_info(text(msg::show_close_window));
-  player->handle(PanelEvent{kProgramRun, 1});
+  player->handle(view::PanelEvent{kProgramRun, 1});
   ProgramUntil world(*player, seconds);
   simulate_world(world, (*window)->link());
   return {};

@@ -17,8 +17,8 @@ namespace mjarm::session {
 ///     void fill(ViewFrame& frame);          // what there is to be seen
 ///     bool take_drags();                    // optional: whether something was dragged
 template <class World>
-void simulate_world(World& world, ViewLink& link) {
-  ViewFrame frame;
+void simulate_world(World& world, view::ViewLink& link) {
+  view::ViewFrame frame;
   bool changed = true;
   const auto offer = [&] {
     if (!changed || !link.frames.is_empty()) return;
@@ -27,7 +27,7 @@ void simulate_world(World& world, ViewLink& link) {
     link.frames.post(frame);
   };
   while (!link.closed) {
-    for (const ViewEvent& event : link.events.take()) {
+    for (const view::ViewEvent& event : link.events.take()) {
       world.handle(event);
       changed = true;
     }

@@ -12,12 +12,12 @@ namespace {
 
 /// Steps as often as the user asks for.
 struct CountingWorld {
-  void handle(const ViewEvent& event) {
-    if (const auto* step = std::get_if<StepEvent>(&event)) due += step->steps;
+  void handle(const view::ViewEvent& event) {
+    if (const auto* step = std::get_if<view::StepEvent>(&event)) due += step->steps;
   }
   int steps_due() { return std::exchange(due, 0); }
   void step() { ++steps; }
-  void fill(ViewFrame& frame) const { frame.status = std::to_string(steps); }
+  void fill(view::ViewFrame& frame) const { frame.status = std::to_string(steps); }
   int due = 0;
   int steps = 0;
 };
@@ -25,14 +25,14 @@ struct CountingWorld {
 /// The same with something that is dragged once.
 struct DraggedWorld : CountingWorld {
   bool take_drags() { return std::exchange(drags, 0) > 0; }
-  void fill(ViewFrame& frame) const { frame.status = drags > 0 ? "before" : "after"; }
+  void fill(view::ViewFrame& frame) const { frame.status = drags > 0 ? "before" : "after"; }
   int drags = 1;
 };
 
 /// Waits for a frame that says so.
-bool shows(ViewLink& link, const std::string& status) {
+bool shows(view::ViewLink& link, const std::string& status) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  ViewFrame frame;
+  view::ViewFrame frame;
   while (std::chrono::steady_clock::now() < end) {
     if (link.frames.take(frame) && frame.status == status) return true;
     std::this_thread::yield();
@@ -41,14 +41,14 @@ bool shows(ViewLink& link, const std::string& status) {
 }
 
 TEST(SimulateWorld, DoesWhatIsAskedForAndShowsIt) {
-  ViewLink link;
+  view::ViewLink link;
   CountingWorld world;
   std::thread worker([&] { simulate_world(world, link); });
   EXPECT_TRUE(shows(link, "0")) << "the first frame comes without any event";
-  link.events.push({StepEvent{3}, PauseEvent{true}, StepEvent{4}});
+  link.events.push({view::StepEvent{3}, view::PauseEvent{true}, view::StepEvent{4}});
   EXPECT_TRUE(shows(link, "7"));
   // Nothing changes: no frame.
-  ViewFrame frame;
+  view::ViewFrame frame;
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_FALSE(link.frames.take(frame));
   link.closed = true;
@@ -57,10 +57,10 @@ TEST(SimulateWorld, DoesWhatIsAskedForAndShowsIt) {
 }
 
 TEST(SimulateWorld, EndsInTheMiddleOfManySteps) {
-  ViewLink link;
+  view::ViewLink link;
   CountingWorld world;
   std::thread worker([&] { simulate_world(world, link); });
-  link.events.push({StepEvent{2'000'000'000}});
+  link.events.push({view::StepEvent{2'000'000'000}});
   while (link.frames.is_empty()) std::this_thread::yield();
   link.closed = true;
   worker.join();
@@ -68,7 +68,7 @@ TEST(SimulateWorld, EndsInTheMiddleOfManySteps) {
 }
 
 TEST(SimulateWorld, ADragIsAChangeToBeShown) {
-  ViewLink link;
+  view::ViewLink link;
   DraggedWorld world;
   std::thread worker([&] { simulate_world(world, link); });
   EXPECT_TRUE(shows(link, "after"));

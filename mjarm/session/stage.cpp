@@ -51,9 +51,9 @@ bool Stage::show_step(const Sim& sim) {
   return show_.step(sim, sim.tool(robot_.arm).p);
 }
 
-Camera Stage::camera() const {
-  const std::vector<std::string> cameras = camera_names(robot_.model);
-  Camera camera;
+render::Camera Stage::camera() const {
+  const std::vector<std::string> cameras = render::camera_names(robot_.model);
+  render::Camera camera;
   if (std::ranges::find(cameras, camera_name_) != cameras.end()) camera.name = camera_name_;
   return camera;
 }
@@ -86,10 +86,10 @@ void Stage::tell(const ToolMotion& motion, Report& report) const {
   for (const SpeedDip& dip : motion.dips) log_info(describe(dip, robot_.arm));
 }
 
-Result<void> Stage::save_comparison(const Plot& page) const {
+Result<void> Stage::save_comparison(const render::Plot& page) const {
   const std::filesystem::path stem = options_.out / "comparison";
   log_info(text(msg::show_compared, stem.string() + ".png"));
-  return save_plot(page, stem);
+  return render::save_plot(page, stem);
 }
 
 Result<Report> Stage::finish(Report begun, double tolerance) {
@@ -98,7 +98,7 @@ Result<Report> Stage::finish(Report begun, double tolerance) {
 }
 
 Result<Report> Stage::finish(Report report, double tolerance, std::span<const MeasuredRun> runs) {
-  Plot plot = motion_plot(name_, robot_.arm, runs, tolerance);
+  render::Plot plot = motion_plot(name_, robot_.arm, runs, tolerance);
   if (report.path_error) {
     plot.note = text(msg::show_plot_note, control_, 1e3 * report.path_error->max,
                      1e3 * report.path_error->rms, 100 * report.done);
@@ -106,7 +106,7 @@ Result<Report> Stage::finish(Report report, double tolerance, std::span<const Me
   return write(std::move(report), std::move(plot));
 }
 
-Result<Report> Stage::write(Report report, Plot plot) {
+Result<Report> Stage::write(Report report, render::Plot plot) {
   report.name = name_;
   if (report.control.empty()) report.control = control_;
   if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {

@@ -66,7 +66,7 @@ class Stage {
   [[nodiscard]] Result<MeasuredRun> rehearse(const Trajectory& trajectory, ControlMode mode,
                                              const Curve& curve);
   /// Writes the page of a comparison into the folder, as comparison.png and .svg.
-  [[nodiscard]] Result<void> save_comparison(const Plot& page) const;
+  [[nodiscard]] Result<void> save_comparison(const render::Plot& page) const;
 
   /// Adds a planned motion to the report and tells where its tool is slower than asked.
   void tell(const ToolMotion& motion, Report& report) const;
@@ -90,8 +90,8 @@ class Stage {
   [[nodiscard]] bool show_step(const Sim& sim);
   [[nodiscard]] Result<void> begin_film();
   /// The camera that was chosen, where the model has it; else the model's own view.
-  [[nodiscard]] Camera camera() const;
-  [[nodiscard]] Result<Report> write(Report report, Plot plot);
+  [[nodiscard]] render::Camera camera() const;
+  [[nodiscard]] Result<Report> write(Report report, render::Plot plot);
 
   std::string name_;
   StageOptions options_;

@@ -57,7 +57,7 @@ std::string pair_of(double length, double angle) {
 
 }  // namespace
 
-Rgba color_of(TargetGrade grade) noexcept {
+render::Rgba color_of(TargetGrade grade) noexcept {
   if (grade == TargetGrade::good) return {0.20F, 0.75F, 0.30F, 1};
   if (grade == TargetGrade::unreachable) return {0.90F, 0.15F, 0.12F, 1};
   return {0.98F, 0.65F, 0.08F, 1};
@@ -93,7 +93,7 @@ void TargetControl::toggle() {
 }
 
 bool TargetControl::take_drags() {
-  const std::vector<TargetDrag> drags = link_.drags.take();
+  const std::vector<view::TargetDrag> drags = link_.drags.take();
   if (drags.empty()) return false;
   number_ = drags.back().number;
   held_ = drags.back().held && shown_;
@@ -111,7 +111,7 @@ void TargetControl::jog(int button) {
   changed();
 }
 
-bool TargetControl::handle(const PanelEvent& event) {
+bool TargetControl::handle(const view::PanelEvent& event) {
   const int chosen = static_cast<int>(event.value);
   switch (event.id) {
     case kShownItem:
@@ -147,13 +147,13 @@ bool TargetControl::handle(const PanelEvent& event) {
 }
 
 void TargetControl::post_look() {
-  TargetLook look{shown_, target_.pose(), {}, color_of(target_.grade()), number_};
+  view::TargetLook look{shown_, target_.pose(), {}, color_of(target_.grade()), number_};
   const auto frame = static_cast<JogFrame>(frame_);
   if (frame != JogFrame::tool) look.R_WG = target_.axes(frame);
   link_.looks.post(look);
 }
 
-PanelSection TargetControl::target_section() const {
+view::PanelSection TargetControl::target_section() const {
   char room[32] = "none";
   std::string joint;
   if (std::isfinite(target_.room())) {
@@ -165,48 +165,48 @@ PanelSection TargetControl::target_section() const {
   char singular[32];
   std::snprintf(singular, sizeof(singular), "%.3f", target_.singular().smallest);
   return {"Target",
-          {{kShownItem, "Target", PanelCheckbox{shown_}},
-           {kFollowItem, "Follow", PanelCheckbox{follow_}},
-           {kGoItem, "Go", PanelButton{}},
-           {kBackItem, "Back to arm", PanelButton{}},
-           {kTextItem, "State", PanelText{word_of(target_.grade())}},
-           {kTextItem, "Room to limit", PanelText{room}},
-           {kTextItem, "of joint", PanelText{joint}},
-           {kTextItem, "Singular value", PanelText{singular}}}};
+          {{kShownItem, "Target", view::PanelCheckbox{shown_}},
+           {kFollowItem, "Follow", view::PanelCheckbox{follow_}},
+           {kGoItem, "Go", view::PanelButton{}},
+           {kBackItem, "Back to arm", view::PanelButton{}},
+           {kTextItem, "State", view::PanelText{word_of(target_.grade())}},
+           {kTextItem, "Room to limit", view::PanelText{room}},
+           {kTextItem, "of joint", view::PanelText{joint}},
+           {kTextItem, "Singular value", view::PanelText{singular}}}};
 }
 
-PanelSection TargetControl::tool_section() const {
-  PanelSection section{
+view::PanelSection TargetControl::tool_section() const {
+  view::PanelSection section{
       "Tool",
-      {{kFrameItem, "Frame", PanelChoice{{"world", "tool", "base"}, frame_}},
-       {kMoveItem, "Move by", PanelChoice{{"1 mm", "10 mm", "50 mm"}, move_step_}}}};
+      {{kFrameItem, "Frame", view::PanelChoice{{"world", "tool", "base"}, frame_}},
+       {kMoveItem, "Move by", view::PanelChoice{{"1 mm", "10 mm", "50 mm"}, move_step_}}}};
   if (target_.turns()) {
     section.items.push_back(
-        {kTurnItem, "Turn by", PanelChoice{{"1 deg", "5 deg", "15 deg"}, turn_step_}});
+        {kTurnItem, "Turn by", view::PanelChoice{{"1 deg", "5 deg", "15 deg"}, turn_step_}});
   }
   for (int i = 0; i < (target_.turns() ? 12 : 6); ++i) {
     const std::string sign = i % 2 == 0 ? "- " : "+ ";
-    section.items.push_back({kJogItem + i, sign + kJogAxes[i / 2], PanelButton{}});
+    section.items.push_back({kJogItem + i, sign + kJogAxes[i / 2], view::PanelButton{}});
   }
   const Pose& X_WT = target_.pose();
   const Eigen::Vector3d euler = to_euler(X_WT.R);
   for (int i = 0; i < 3; ++i) {
     const std::string name = std::string(kJogAxes[i]) + " [mm], " + kJogAxes[3 + i] + " [deg]";
-    section.items.push_back({kTextItem, name, PanelText{pair_of(X_WT.p[i], euler[i])}});
+    section.items.push_back({kTextItem, name, view::PanelText{pair_of(X_WT.p[i], euler[i])}});
   }
   return section;
 }
 
-void TargetControl::add_sections(std::vector<PanelSection>& sections) const {
+void TargetControl::add_sections(std::vector<view::PanelSection>& sections) const {
   sections.push_back(target_section());
   sections.push_back(tool_section());
 }
 
-void TargetControl::add_ghost(Overlay& overlay, bool always) const {
+void TargetControl::add_ghost(render::Overlay& overlay, bool always) const {
   const JointVec& q = target_.jump() ? *target_.jump() : target_.goal();
   const bool waits = shown_ && (q - sim_.goal()).cwiseAbs().maxCoeff() > 1e-9;
   if (!always && !held_ && !waits) return;
-  OverlayGhost& ghost = overlay.ghosts.emplace_back(ghost_of(target_.arm(), as_span(q)));
+  render::OverlayGhost& ghost = overlay.ghosts.emplace_back(render::ghost_of(target_.arm(), as_span(q)));
   ghost.color = color_of(target_.grade());
   ghost.color.a = kGhostAlpha;
 }

@@ -11,7 +11,7 @@
 namespace mjarm::session {
 
 /// Green, amber (near a limit or a singularity, a jump), red.
-[[nodiscard]] Rgba color_of(TargetGrade grade) noexcept;
+[[nodiscard]] render::Rgba color_of(TargetGrade grade) noexcept;
 
 /// The target of the tool in a session: dragged by its handles, jogged by buttons; the arm of
 /// the simulation follows it. In the thread of the simulation.
@@ -22,7 +22,7 @@ class TargetControl {
 
   /// Does what an item of its panels asks for.
   /// @return false where the item is not of these panels.
-  bool handle(const PanelEvent& event);
+  bool handle(const view::PanelEvent& event);
   /// Shows the target, or puts it away.
   void toggle();
   /// Follows the mouse.
@@ -34,13 +34,13 @@ class TargetControl {
   void restart();
 
   [[nodiscard]] const ToolTarget& target() const noexcept { return target_; }
-  [[nodiscard]] TargetLink& link() noexcept { return link_; }
+  [[nodiscard]] view::TargetLink& link() noexcept { return link_; }
   /// Hands the state to the window.
   void post_look();
-  void add_sections(std::vector<PanelSection>& sections) const;
+  void add_sections(std::vector<view::PanelSection>& sections) const;
   /// Appends the robot as it would stand, in the colour of the target's state: while the target is
   /// dragged, while the arm is not sent there, or `always`.
-  void add_ghost(Overlay& overlay, bool always) const;
+  void add_ghost(render::Overlay& overlay, bool always) const;
   /// One line in the language in use; empty while the target is not shown.
   [[nodiscard]] std::string line() const;
 
@@ -48,12 +48,12 @@ class TargetControl {
   void jog(int button);
   void changed();
   void send();
-  [[nodiscard]] PanelSection target_section() const;
-  [[nodiscard]] PanelSection tool_section() const;
+  [[nodiscard]] view::PanelSection target_section() const;
+  [[nodiscard]] view::PanelSection tool_section() const;
 
   FreeSim& sim_;
   ToolTarget target_;
-  TargetLink link_;
+  view::TargetLink link_;
   JointVec sent_;  ///< the goal of the simulation as it was last seen
   bool shown_ = true;
   bool follow_ = true;

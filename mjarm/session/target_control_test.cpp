@@ -25,11 +25,11 @@ class Control : public ::testing::Test {
     EXPECT_TRUE(control_.take_drags());
   }
   /// The item with this name.
-  PanelItem item(const std::string& name) {
-    std::vector<PanelSection> sections;
+  view::PanelItem item(const std::string& name) {
+    std::vector<view::PanelSection> sections;
     control_.add_sections(sections);
-    for (const PanelSection& section : sections) {
-      for (const PanelItem& found : section.items) {
+    for (const view::PanelSection& section : sections) {
+      for (const view::PanelItem& found : section.items) {
         if (found.name == name) return found;
       }
     }
@@ -39,7 +39,7 @@ class Control : public ::testing::Test {
   void use(const std::string& name, double value = 1) {
     EXPECT_TRUE(control_.handle({item(name).id, value})) << name;
   }
-  std::string shown(const std::string& name) { return std::get<PanelText>(item(name).what).value; }
+  std::string shown(const std::string& name) { return std::get<view::PanelText>(item(name).what).value; }
 
   TestArm robot_ = shipped_arm("ur5e");
   FreeSim sim_ = FreeSim::make(robot_.model, robot_.arm, false).value();
@@ -68,7 +68,7 @@ TEST_F(Control, OutOfReachTheReasonIsToldInTheLanguageInUse) {
   // The arm goes as far as it can, no further.
   EXPECT_GT(goal_pose().p.x(), fk(robot_.arm, as_span(robot_.arm.home)).p.x());
   EXPECT_LT(goal_pose().p.x(), 1.2);
-  Overlay overlay;
+  render::Overlay overlay;
   control_.add_ghost(overlay, false);
   ASSERT_EQ(overlay.ghosts.size(), 1U);
   EXPECT_EQ(overlay.ghosts[0].color.r, color_of(TargetGrade::unreachable).r);
@@ -83,7 +83,7 @@ TEST_F(Control, NothingDraggedIsNoChange) {
 /// What lies between two looks does not count, however many drags there were.
 TEST_F(Control, OnlyTheLastOfManyDragsCounts) {
   const Pose X_home = control_.target().pose();
-  std::vector<TargetDrag> drags;
+  std::vector<view::TargetDrag> drags;
   for (int i = 1; i <= 20; ++i) {
     Pose X_WT = X_home;
     X_WT.p.z() += i == 20 ? 0.05 : 5;
@@ -93,7 +93,7 @@ TEST_F(Control, OnlyTheLastOfManyDragsCounts) {
   EXPECT_TRUE(control_.take_drags());
   EXPECT_NEAR(goal_pose().p.z(), X_home.p.z() + 0.05, 1e-6);
   control_.post_look();
-  TargetLook look;
+  view::TargetLook look;
   ASSERT_TRUE(control_.link().looks.take(look));
   EXPECT_EQ(look.number, 20);
 }
@@ -104,7 +104,7 @@ TEST_F(Control, PutAwayItIsNotDragged) {
   drag({0, 0, 0.05});
   EXPECT_EQ(sim_.goal(), before);
   EXPECT_EQ(control_.line(), "");
-  Overlay overlay;
+  render::Overlay overlay;
   control_.add_ghost(overlay, false);
   EXPECT_TRUE(overlay.ghosts.empty());
   control_.add_ghost(overlay, true);

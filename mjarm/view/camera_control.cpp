@@ -5,7 +5,7 @@
 
 #include "mjarm/view/camera_control_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr double kDegPerHeight = 180;  // a drag over the height of the view turns this far
@@ -65,4 +65,4 @@ std::string CameraControl::name() const {
   return name != nullptr ? name : "camera " + std::to_string(camera.fixedcamid);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

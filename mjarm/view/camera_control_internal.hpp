@@ -4,13 +4,13 @@
 
 #include "mjarm/render/scene.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Moves the camera of a scene as the user asks. A camera of the model is left where it stands: the
 /// free camera goes on from there.
 class CameraControl {
  public:
-  explicit CameraControl(Scene& scene) : scene_(scene) {}
+  explicit CameraControl(render::Scene& scene) : scene_(scene) {}
 
   /// Remembers the view as it is, and makes it a free one.
   void begin();
@@ -27,8 +27,8 @@ class CameraControl {
  private:
   void make_free();
 
-  Scene& scene_;
-  CameraView first_;
+  render::Scene& scene_;
+  render::CameraView first_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

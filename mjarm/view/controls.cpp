@@ -6,7 +6,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using enum KeyModifier;
@@ -73,4 +73,4 @@ std::vector<ControlHelp> control_help() {
   return rows;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -7,7 +7,7 @@
 
 #include "mjarm/core/messages.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What a key of a window does, beside switching a setting.
 enum class ViewAction {
@@ -57,4 +57,4 @@ struct ControlHelp {
 /// The speeds that + and - go through, simulated seconds a second.
 [[nodiscard]] std::span<const double> view_speeds() noexcept;
 
-}  // namespace mjarm
+}  // namespace mjarm::view

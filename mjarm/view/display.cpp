@@ -11,7 +11,7 @@
 /// From GLFW/glfw3native.h, which would bring in all of X11: the X11 display, or null on others.
 extern "C" void* glfwGetX11Display(void);
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr unsigned kGlRenderer = 0x1F01;  // GL_RENDERER
@@ -89,15 +89,15 @@ void close_display() noexcept {
 bool display_lost() noexcept { return lost; }
 
 Result<GlWindow> open_gl_window(int width, int height, const std::string& title,
-                                std::optional<RenderQuality> quality) {
+                                std::optional<render::RenderQuality> quality) {
   // A smoothed window takes long to open without a GPU, so it comes second where nobody asked.
-  bool smooth = quality == RenderQuality::high;
+  bool smooth = quality == render::RenderQuality::high;
   Result<GLFWwindow*> window = create(width, height, title, smooth);
   if (!window && smooth) window = create(width, height, title, smooth = false);
   if (!window) return fail(std::move(window.error()));
   const bool slow = is_software(gl_string(kGlRenderer));
-  const RenderQuality chosen = quality.value_or(slow ? RenderQuality::low : RenderQuality::high);
-  if (!quality && chosen == RenderQuality::high) {
+  const render::RenderQuality chosen = quality.value_or(slow ? render::RenderQuality::low : render::RenderQuality::high);
+  if (!quality && chosen == render::RenderQuality::high) {
     glfwDestroyWindow(*window);
     window = create(width, height, title, true);
     if (!window) window = create(width, height, title, false);
@@ -111,4 +111,4 @@ Result<GlWindow> open_gl_window(int width, int height, const std::string& title,
   return GlWindow{*window, chosen, slow};
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

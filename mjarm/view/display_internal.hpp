@@ -7,7 +7,7 @@
 
 struct GLFWwindow;
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Starts the window system. Closed with `close_display`.
 [[nodiscard]] Result<void> open_display();
@@ -19,12 +19,12 @@ void close_display() noexcept;
 /// A window with a current OpenGL context, and the quality it can afford.
 struct GlWindow {
   GLFWwindow* handle = nullptr;
-  RenderQuality quality = RenderQuality::high;
+  render::RenderQuality quality = render::RenderQuality::high;
   bool software = false;  ///< the processor draws
 };
 
 /// Opens a window; smoothed where the picture is drawn by a GPU or `high` is asked for.
 [[nodiscard]] Result<GlWindow> open_gl_window(int width, int height, const std::string& title,
-                                              std::optional<RenderQuality> quality);
+                                              std::optional<render::RenderQuality> quality);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// The user paused the simulation or lets it go on.
 struct PauseEvent {
@@ -64,4 +64,4 @@ using ViewEvent =
     std::variant<PauseEvent, StepEvent, SpeedEvent, ResetEvent, PushEvent, ReleaseEvent,
                  SelectEvent, JointEvent, PanelEvent, TargetEvent, ScreenshotEvent>;
 
-}  // namespace mjarm
+}  // namespace mjarm::view

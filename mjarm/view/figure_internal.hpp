@@ -4,10 +4,10 @@
 
 #include "mjarm/view/live_plot.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Fills a figure that is drawn as wide as high. Curves of more points than a figure
 /// holds are thinned evenly; their last point stays.
 void fill_figure(const LivePlot& plot, mjvFigure& figure);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// The last moments of a simulation, for going back in time and forth again.
 template <class T>
@@ -61,4 +61,4 @@ class History {
   std::size_t back_ = 0;  ///< moments between the one looked at and the latest one
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

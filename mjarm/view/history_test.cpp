@@ -6,7 +6,7 @@
 
 #include "mjarm/core/rng.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 TEST(History, GoesBackAndForth) {
@@ -67,4 +67,4 @@ TEST(History, IsTheSameAsAListThatIsCut) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

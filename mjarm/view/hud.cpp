@@ -6,7 +6,7 @@
 #include "mjarm/view/controls.hpp"
 #include "mjarm/view/hud_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr std::size_t kMaxText = 480;  // mjMAXOVERLAY and what MuJoCo adds
@@ -110,4 +110,4 @@ void draw_hud(const HudText& text, const mjrRect& view, const mjrContext& contex
   if (text.help) draw_help(view, context);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -8,7 +8,7 @@
 #include "mjarm/view/pick_internal.hpp"
 #include "mjarm/view/view_stats.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What stands as text over the picture.
 struct HudText {
@@ -27,4 +27,4 @@ struct HudText {
 /// the middle.
 void draw_hud(const HudText& text, const mjrRect& view, const mjrContext& context);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

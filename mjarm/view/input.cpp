@@ -3,7 +3,7 @@
 
 #include "mjarm/view/input_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 RawInputs& inputs_of(GLFWwindow* window) {
@@ -75,4 +75,4 @@ void gather_inputs(GLFWwindow* window, RawInputs& inputs) {
   glfwSetKeyCallback(window, on_key);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -4,7 +4,7 @@
 
 struct GLFWwindow;
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Something a user did, as the window system told it, with the mouse in pixels of the window's
 /// picture, from its lower left.
@@ -31,4 +31,4 @@ struct RawInputs {
 /// on later, when OpenGL can be used.
 void gather_inputs(GLFWwindow* window, RawInputs& inputs);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -6,7 +6,7 @@
 #include "mjarm/view/ray.hpp"
 #include "mjarm/view/settings_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr double kDoubleClick = 0.4;  // [s] between two presses
@@ -17,7 +17,7 @@ constexpr int kButtons[] = {mjBUTTON_LEFT, mjBUTTON_RIGHT, mjBUTTON_MIDDLE};
 
 }  // namespace
 
-Interaction::Interaction(Scene& scene, Panels& panels, const Permissions& may, bool paused)
+Interaction::Interaction(render::Scene& scene, Panels& panels, const Permissions& may, bool paused)
     : settings(settings_of(scene)),
       camera(scene),
       picker(scene),
@@ -289,4 +289,4 @@ void Interaction::update() {
   if (const auto push = picker.push()) events_.push_back(*push);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

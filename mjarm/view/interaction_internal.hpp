@@ -10,7 +10,7 @@
 #include "mjarm/view/panels_internal.hpp"
 #include "mjarm/view/pick_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What the application lets the user do.
 struct Permissions {
@@ -24,7 +24,7 @@ struct Permissions {
 /// context is current while it handles input.
 class Interaction {
  public:
-  Interaction(Scene& scene, Panels& panels, const Permissions& may, bool paused);
+  Interaction(render::Scene& scene, Panels& panels, const Permissions& may, bool paused);
 
   void handle(const RawInput& input, const mjrContext& context);
   void act(ViewAction action);
@@ -65,7 +65,7 @@ class Interaction {
   [[nodiscard]] PicturePoint point_of(const RawInput& input) const;
   void copy_to_state(const RawInput& input);
 
-  Scene& scene_;
+  render::Scene& scene_;
   Panels& panels_;
   Permissions may_;
   MouseHook hook_;
@@ -81,4 +81,4 @@ class Interaction {
   double way_ = 0;  ///< [pixels] of the drag so far
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

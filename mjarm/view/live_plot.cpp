@@ -12,7 +12,7 @@
 #include "mjarm/render/polyline.hpp"
 #include "mjarm/view/figure_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr int kIntervals = 4;  ///< most grid cells along an axis
@@ -143,12 +143,12 @@ class Pen {
   mjvFigure& figure_;
   int line_ = -1;
   std::string name_;
-  Rgba color_;
+  render::Rgba color_;
 };
 
 void draw_pieces(const LiveSeries& series, std::vector<Eigen::Vector3d> part,
                  const mjvFigure& figure, Pen& pen) {
-  if (series.style == LineStyle::solid) {
+  if (series.style == render::LineStyle::solid) {
     for (std::size_t i = 1; i < part.size(); ++i) pen.add_piece(part[i - 1], part[i]);
     return;
   }
@@ -157,9 +157,9 @@ void draw_pieces(const LiveSeries& series, std::vector<Eigen::Vector3d> part,
   const Eigen::Vector3d size(figure.range[0][1] - figure.range[0][0],
                              figure.range[1][1] - figure.range[1][0], 1);
   for (Eigen::Vector3d& point : part) point = (point - origin).cwiseQuotient(size);
-  const bool dashed = series.style == LineStyle::dashed;
+  const bool dashed = series.style == render::LineStyle::dashed;
   const std::vector<Eigen::Vector3d> ends =
-      dashes(part, dashed ? 0.025 : 0.006, dashed ? 0.015 : 0.012);
+      render::dashes(part, dashed ? 0.025 : 0.006, dashed ? 0.015 : 0.012);
   for (std::size_t i = 1; i < ends.size(); i += 2) {
     pen.add_piece(origin + ends[i - 1].cwiseProduct(size), origin + ends[i].cwiseProduct(size));
   }
@@ -201,7 +201,7 @@ void fill_figure(const LivePlot& plot, mjvFigure& figure) {
   bool apart = false;
   for (const LiveSeries& series : plot.series) {
     curves.push_back(parts_of(series));
-    apart = apart || series.style != LineStyle::solid || curves.back().size() > 1;
+    apart = apart || series.style != render::LineStyle::solid || curves.back().size() > 1;
   }
   Pen pen(figure, apart);
   for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -216,4 +216,4 @@ void fill_figure(const LivePlot& plot, mjvFigure& figure) {
   }
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -6,15 +6,15 @@
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/plot.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// One curve of a live plot. The caller appends while it runs; long curves are thinned for display.
 struct LiveSeries {
   std::string name = {};  ///< in the legend; ASCII; empty = not in the legend
-  Rgba color = {0.90F, 0.35F, 0.30F, 1};
+  render::Rgba color = {0.90F, 0.35F, 0.30F, 1};
   std::vector<double> x = {};          ///< shape (n,)
   std::vector<double> y = {};          ///< shape (n,); NaN leaves a gap
-  LineStyle style = LineStyle::solid;  ///< points are drawn as dots along the curve
+  render::LineStyle style = render::LineStyle::solid;  ///< points are drawn as dots along the curve
   bool operator==(const LiveSeries&) const = default;
 };
 
@@ -28,4 +28,4 @@ struct LivePlot {
   bool operator==(const LivePlot&) const = default;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

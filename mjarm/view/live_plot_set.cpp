@@ -8,13 +8,13 @@
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/view/plot_history_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr LiveFigure kFigures[] = {LiveFigure::tool_position, LiveFigure::tracking_error,
                                    LiveFigure::joint_error,   LiveFigure::joints,
                                    LiveFigure::torque,        LiveFigure::manipulability};
-constexpr Rgba kReference = {0.75F, 0.75F, 0.78F, 1};
+constexpr render::Rgba kReference = {0.75F, 0.75F, 0.78F, 1};
 
 /// Where the columns of a row stand.
 struct Columns {
@@ -33,14 +33,14 @@ struct Columns {
 struct Chart {
   Msg title;
   std::string unit;
-  std::vector<PlotLine> lines;
+  std::vector<render::PlotLine> lines;
   bool from_zero = false;
 };
 
 void add_curve(Chart& chart, const std::vector<TimedValue>& values, std::string name, int color,
-               LineStyle style = LineStyle::solid) {
-  PlotLine line{.label = std::move(name), .style = style, .color = color};
-  if (style != LineStyle::solid) line.width = 0.9;
+               render::LineStyle style = render::LineStyle::solid) {
+  render::PlotLine line{.label = std::move(name), .style = style, .color = color};
+  if (style != render::LineStyle::solid) line.width = 0.9;
   for (const TimedValue& value : values) {
     line.x.push_back(value.time);
     line.y.push_back(value.value);
@@ -52,7 +52,7 @@ void add_curve(Chart& chart, const std::vector<TimedValue>& values, std::string 
 void add_limits(Chart& chart, const JointVec& lower, const JointVec& upper) {
   if (chart.lines.empty() || chart.lines.front().x.empty()) return;
   const std::vector<double>& times = chart.lines.front().x;
-  std::ranges::move(limit_lines(as_span(lower), as_span(upper), times.front(), times.back()),
+  std::ranges::move(render::limit_lines(as_span(lower), as_span(upper), times.front(), times.back()),
                     std::back_inserter(chart.lines));
 }
 
@@ -72,10 +72,10 @@ std::string short_name(std::string name) {
   return name;
 }
 
-Rgba figure_color(const PlotLine& line) {
-  if (line.color == PlotLine::kInk) return kReference;
+render::Rgba figure_color(const render::PlotLine& line) {
+  if (line.color == render::PlotLine::kInk) return kReference;
   // The figure is dark: colours made for paper are lifted.
-  const Rgba color = plot_color(line.color);
+  const render::Rgba color = render::plot_color(line.color);
   const auto lift = [](float part) { return 0.35F + 0.65F * part; };
   return {lift(color.r), lift(color.g), lift(color.b), 1};
 }
@@ -122,8 +122,8 @@ Chart LivePlotSet::Impl::chart(LiveFigure which, LiveSpan span) const {
         add_curve(chart, history.column(columns.tool() + i), kNames[i], static_cast<int>(i));
       }
       for (std::size_t i = 0; i < 3; ++i) {
-        add_curve(chart, history.column(columns.reference() + i), "", PlotLine::kInk,
-                  LineStyle::dashed);
+        add_curve(chart, history.column(columns.reference() + i), "", render::PlotLine::kInk,
+                  render::LineStyle::dashed);
       }
       return chart;
     }
@@ -195,15 +195,15 @@ LivePlot LivePlotSet::figure(LiveFigure which, LiveSpan span) const {
   plot.title = std::string(chart.title.in(Language::english)) + " [" + chart.unit + "]";
   plot.x_label = std::string(msg::view_plot_time.in(Language::english));
   plot.y_from_zero = chart.from_zero;
-  for (const PlotLine& line : chart.lines) {
+  for (const render::PlotLine& line : chart.lines) {
     plot.series.push_back({line.label, figure_color(line), line.x, line.y, line.style});
   }
   return plot;
 }
 
-PlotPanel LivePlotSet::panel(LiveFigure which, LiveSpan span) const {
+render::PlotPanel LivePlotSet::panel(LiveFigure which, LiveSpan span) const {
   Chart chart = impl_->chart(which, span);
-  PlotPanel panel;
+  render::PlotPanel panel;
   panel.title = text(chart.title);
   panel.x_label = text(msg::view_plot_time);
   panel.y_label = chart.unit;
@@ -212,12 +212,12 @@ PlotPanel LivePlotSet::panel(LiveFigure which, LiveSpan span) const {
   return panel;
 }
 
-Plot LivePlotSet::page(const std::string& title, LiveSpan span) const {
-  Plot page;
+render::Plot LivePlotSet::page(const std::string& title, LiveSpan span) const {
+  render::Plot page;
   page.title = title;
   page.columns = 3;
   for (const LiveFigure which : kFigures) page.panels.push_back(panel(which, span));
   return page;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

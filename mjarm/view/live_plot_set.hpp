@@ -11,7 +11,7 @@
 #include "mjarm/render/plot.hpp"
 #include "mjarm/view/live_plot.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What an arm did at one time. Vectors of another size than (dof,) count as not known.
 struct LiveRow {
@@ -60,13 +60,13 @@ class LivePlotSet {
   /// A figure for a window, in English (its font is ASCII).
   [[nodiscard]] LivePlot figure(LiveFigure which, LiveSpan span = LiveSpan::latest) const;
   /// The same curves as axes of a page, in the language in use.
-  [[nodiscard]] PlotPanel panel(LiveFigure which, LiveSpan span = LiveSpan::all) const;
+  [[nodiscard]] render::PlotPanel panel(LiveFigure which, LiveSpan span = LiveSpan::all) const;
   /// A page with all figures, for `save_plot`.
-  [[nodiscard]] Plot page(const std::string& title, LiveSpan span = LiveSpan::all) const;
+  [[nodiscard]] render::Plot page(const std::string& title, LiveSpan span = LiveSpan::all) const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

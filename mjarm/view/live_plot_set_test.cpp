@@ -10,7 +10,7 @@
 
 #include "mjarm/view/figure_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using ::testing::HasSubstr;
@@ -73,7 +73,7 @@ TEST(LivePlotSet, LimitsAreDottedAndEqualOnesDrawnOnce) {
   const LivePlot joints = plots.figure(LiveFigure::joints);
   std::vector<double> limits;
   for (const LiveSeries& series : joints.series) {
-    if (series.style != LineStyle::dotted) continue;
+    if (series.style != render::LineStyle::dotted) continue;
     EXPECT_EQ(series.x, (std::vector<double>{0, 2}));
     EXPECT_EQ(series.y[0], series.y[1]);
     limits.push_back(series.y[0]);
@@ -81,7 +81,7 @@ TEST(LivePlotSet, LimitsAreDottedAndEqualOnesDrawnOnce) {
   EXPECT_THAT(limits, ::testing::UnorderedElementsAre(-3, -2, 3, 2));
   limits.clear();
   for (const LiveSeries& series : plots.figure(LiveFigure::torque).series) {
-    if (series.style == LineStyle::dotted) limits.push_back(series.y[0]);
+    if (series.style == render::LineStyle::dotted) limits.push_back(series.y[0]);
   }
   EXPECT_THAT(limits, ::testing::UnorderedElementsAre(-50, 50));
   const auto figure = std::make_unique<mjvFigure>();
@@ -127,10 +127,10 @@ TEST(LivePlotSet, AnHourTakesBoundedMemoryAndKeepsEveryPeak) {
 TEST(LivePlotSet, ThePageHoldsTheSameCurves) {
   LivePlotSet plots(two_joints());
   for (int i = 0; i < 100; ++i) plots.add(row_at(0.05 * i));
-  const Plot page = plots.page("run", LiveSpan::latest);
+  const render::Plot page = plots.page("run", LiveSpan::latest);
   ASSERT_EQ(page.panels.size(), 6U);
   const LivePlot figure = plots.figure(LiveFigure::joints);
-  const PlotPanel& panel = page.panels[3];
+  const render::PlotPanel& panel = page.panels[3];
   EXPECT_EQ(panel.title, "joints");
   EXPECT_EQ(panel.y_label, "rad");
   ASSERT_EQ(panel.lines.size(), figure.series.size());
@@ -139,7 +139,7 @@ TEST(LivePlotSet, ThePageHoldsTheSameCurves) {
     EXPECT_EQ(panel.lines[i].y, figure.series[i].y);
     EXPECT_EQ(panel.lines[i].style, figure.series[i].style);
   }
-  const Result<std::string> svg = plot_svg(page);
+  const Result<std::string> svg = render::plot_svg(page);
   ASSERT_TRUE(svg) << svg.error().what;
   EXPECT_THAT(*svg, HasSubstr("manipulability"));
   EXPECT_THAT(*svg, HasSubstr("stroke-dasharray"));
@@ -147,7 +147,7 @@ TEST(LivePlotSet, ThePageHoldsTheSameCurves) {
 
 TEST(LivePlotSet, TakesAnything) {
   LivePlotSet plots(two_joints());
-  EXPECT_TRUE(plot_svg(plots.page("empty")));
+  EXPECT_TRUE(render::plot_svg(plots.page("empty")));
   const auto figure = std::make_unique<mjvFigure>();
   fill_figure(plots.figure(LiveFigure::joints), *figure);
   LiveRow row;
@@ -161,7 +161,7 @@ TEST(LivePlotSet, TakesAnything) {
                                  LiveFigure::manipulability}) {
     fill_figure(plots.figure(which), *figure);
   }
-  EXPECT_TRUE(plot_svg(plots.page("odd")));
+  EXPECT_TRUE(render::plot_svg(plots.page("odd")));
   // Time that goes back is a new run.
   plots.add(row_at(5));
   plots.add(row_at(0.5));
@@ -169,4 +169,4 @@ TEST(LivePlotSet, TakesAnything) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

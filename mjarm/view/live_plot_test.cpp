@@ -7,7 +7,7 @@
 
 #include "mjarm/view/figure_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 class Figures : public ::testing::Test {
@@ -107,7 +107,7 @@ TEST_F(Figures, TheYAxisEndsWhereMujocoLeavesIt) {
 }
 
 TEST_F(Figures, DashesAndGapsAreSeparatePieces) {
-  LivePlot plot = {.series = {{.name = "a"}, {.style = LineStyle::dashed}}};
+  LivePlot plot = {.series = {{.name = "a"}, {.style = render::LineStyle::dashed}}};
   for (int i = 0; i < 900; ++i) {
     plot.series[0].x.push_back(i);
     plot.series[0].y.push_back(std::sin(0.01 * i));
@@ -142,4 +142,4 @@ TEST_F(Figures, HaveRoomForSoManyCurvesOnly) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Hands the latest of many values from one thread to another: older ones that nobody took are
 /// lost. The lock is held only while two values are swapped, so neither waits for the other's work;
@@ -61,4 +61,4 @@ class Queue {
   std::atomic<bool> full_{false};
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <thread>
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 TEST(Mailbox, KeepsTheLatestOnly) {
@@ -82,4 +82,4 @@ TEST(Queue, ThreadsGetAllInOrder) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

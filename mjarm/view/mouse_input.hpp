@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Something the mouse did over the picture (not over panels), for tools that live in the scene.
 struct MouseInput {
@@ -24,4 +24,4 @@ struct MouseInput {
 /// gets all that follows up to the release.
 using MouseHook = std::function<bool(const MouseInput& input)>;
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What a panel of a window shows: plain data that the application hands over with every frame.
 /// What the user does with it comes back as a `PanelEvent`; the application decides what it means
@@ -60,4 +60,4 @@ struct PanelSection {
   bool open = true;  ///< at first
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -6,7 +6,7 @@
 
 #include "mjarm/view/panels_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 /// Numbers of the items of the left panel; those of settings follow each other.
@@ -180,4 +180,4 @@ std::optional<mjrRect> Panels::place(bool left, int section, int item) const {
   return (left ? left_ : right_).place(section, item, state_);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

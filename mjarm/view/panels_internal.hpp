@@ -12,7 +12,7 @@
 #include "mjarm/view/settings.hpp"
 #include "mjarm/view/ui_column_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What the panels tell of the simulation.
 struct PanelFacts {
@@ -80,4 +80,4 @@ class Panels {
   std::vector<PanelSection> right_sections_;  ///< as shown last
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

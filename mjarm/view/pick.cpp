@@ -6,7 +6,7 @@
 
 #include "mjarm/view/pick_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using Eigen::Vector3d;
@@ -143,4 +143,4 @@ std::vector<Picker::Row> Picker::describe() const {
   return rows;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -7,7 +7,7 @@
 #include "mjarm/render/scene.hpp"
 #include "mjarm/view/events.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// A point of the picture: shares of its width and height, from the lower left, and its shape.
 struct PicturePoint {
@@ -20,7 +20,7 @@ struct PicturePoint {
 /// both.
 class Picker {
  public:
-  explicit Picker(Scene& scene) : scene_(scene) {}
+  explicit Picker(render::Scene& scene) : scene_(scene) {}
 
   /// Selects what is drawn at `point`; nothing is selected where there is nothing.
   SelectEvent select(const PicturePoint& point);
@@ -46,9 +46,9 @@ class Picker {
  private:
   [[nodiscard]] bool can_move(int body) const;
 
-  Scene& scene_;
+  render::Scene& scene_;
   int geom_ = -1;
   bool twist_ = false;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

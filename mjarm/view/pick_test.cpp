@@ -10,7 +10,7 @@
 #include "mjarm/view/settings_internal.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 /// A ball on a slide in the middle, resting on a floor at its lower end; a wall that is for show.
@@ -41,7 +41,7 @@ class PickTest : public ::testing::Test {
     return Model::load(folder.write("scene.xml", kPickScene)).value();
   }
   Model model_ = load();
-  Scene scene_{model_, RenderQuality::low};
+  render::Scene scene_{model_, render::RenderQuality::low};
   Picker picker_{scene_};
   const PicturePoint middle_{0.5, 0.5, 4.0 / 3};
 };
@@ -160,7 +160,7 @@ TEST_F(PickTest, ContactsAreDrawnAndTheWallForShowIsNot) {
 TEST_F(PickTest, CamerasGoRoundAndADragMakesAFreeOne) {
   CameraControl camera(scene_);
   camera.begin();
-  const CameraView first = scene_.view();
+  const render::CameraView first = scene_.view();
   EXPECT_EQ(camera.name(), "");
   camera.cycle(1);
   EXPECT_EQ(camera.name(), "front");
@@ -170,7 +170,7 @@ TEST_F(PickTest, CamerasGoRoundAndADragMakesAFreeOne) {
   EXPECT_EQ(camera.name(), "front");
   camera.cycle(-1);
   EXPECT_EQ(camera.name(), "side");
-  const CameraView side = scene_.view();
+  const render::CameraView side = scene_.view();
   camera.zoom(1);
   EXPECT_EQ(camera.name(), "");
   EXPECT_NEAR(scene_.view().azimuth, side.azimuth, 1e-9);
@@ -226,4 +226,4 @@ TEST(ControlTable, SettingsHaveMuJoCosKeys) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

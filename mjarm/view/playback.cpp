@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace mjarm {
+namespace mjarm::view {
 
 Playback::Playback(double timestep, bool paused) : pacer_(timestep), paused_(paused) {}
 
@@ -32,4 +32,4 @@ int Playback::steps_due_at(double now) {
   return paused_ ? std::exchange(asked_, 0) : steps;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -3,7 +3,7 @@
 #include "mjarm/view/events.hpp"
 #include "mjarm/view/real_time.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// How fast a simulation goes on, as the user of a window asks for it: pause, single steps, speed.
 class Playback {
@@ -30,4 +30,4 @@ class Playback {
   int asked_ = 0;  ///< single steps not yet run
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -4,7 +4,7 @@
 
 #include "mjarm/view/view_stats.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 TEST(Playback, FollowsPauseSpeedAndSteps) {
@@ -51,4 +51,4 @@ TEST(FrameCounter, CountsFramesAndSimulatedTime) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

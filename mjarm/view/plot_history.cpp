@@ -3,7 +3,7 @@
 
 #include "mjarm/view/plot_history_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 /// `more` may be NaN (nothing), `into` as well.
@@ -96,4 +96,4 @@ std::vector<TimedValue> PlotHistory::column(std::size_t index) const {
   return out;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

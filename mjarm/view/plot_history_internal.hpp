@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// A value at a time.
 struct TimedValue {
@@ -50,4 +50,4 @@ class PlotHistory {
   std::vector<TimedValue> last_;    ///< (columns,)
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace mjarm {
+namespace mjarm::view {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -14,7 +14,7 @@ double Eye::height_at(const Vector3d& point_W) const {
   return (upper - lower) * (orthographic ? 1 : (point_W - p_W).dot(forward_W));
 }
 
-Eye eye_of(const CameraView& view, double fovy) {
+Eye eye_of(const render::CameraView& view, double fovy) {
   const double ca = std::cos(view.azimuth);
   const double sa = std::sin(view.azimuth);
   const double ce = std::cos(view.elevation);
@@ -28,7 +28,7 @@ Eye eye_of(const CameraView& view, double fovy) {
   return eye;
 }
 
-Eye eye_of(Scene& scene) {
+Eye eye_of(render::Scene& scene) {
   const mjvScene& raw = scene.raw();
   const mjvGLCamera camera = mjv_averageCamera(&raw.camera[0], &raw.camera[1]);
   const auto vector = [](const float* v) { return Vector3d(v[0], v[1], v[2]); };
@@ -70,4 +70,4 @@ std::optional<Vector2d> pixel_of_point(const Eye& eye, int width, int height, co
                   scale * (eye.upper - share * way.dot(eye.up_W)));
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

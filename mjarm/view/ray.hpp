@@ -6,7 +6,7 @@
 #include "mjarm/render/camera.hpp"
 #include "mjarm/render/scene.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// A half line in the world frame W.
 struct Ray {
@@ -38,9 +38,9 @@ struct Eye {
 
 /// The eye of a free camera as MuJoCo places it.
 /// @param fovy  [rad] vertical field of view, in (0, pi).
-[[nodiscard]] Eye eye_of(const CameraView& view, double fovy);
+[[nodiscard]] Eye eye_of(const render::CameraView& view, double fovy);
 /// The eye with which `scene` was last updated, whatever its camera.
-[[nodiscard]] Eye eye_of(Scene& scene);
+[[nodiscard]] Eye eye_of(render::Scene& scene);
 
 /// The ray into the world through a place of a picture.
 /// @param width, height  [px] of the picture, > 0.
@@ -55,4 +55,4 @@ struct Eye {
 [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of_point(const Eye& eye, int width, int height,
                                                             const Eigen::Vector3d& p_W);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

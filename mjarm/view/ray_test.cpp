@@ -12,7 +12,7 @@
 #include "mjarm/render/offscreen.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using Eigen::Vector2d;
@@ -41,9 +41,9 @@ class Rays : public ::testing::TestWithParam<bool> {
     Result<Model> loaded = Model::load(folder_.write("room.xml", xml));
     ASSERT_TRUE(loaded) << loaded.error().what;
     model_ = std::make_unique<Model>(*loaded);
-    scene_ = std::make_unique<Scene>(*model_, RenderQuality::low);
+    scene_ = std::make_unique<render::Scene>(*model_, render::RenderQuality::low);
   }
-  static CameraView random_view(Rng& rng) {
+  static render::CameraView random_view(Rng& rng) {
     return {.lookat_W = {rng.uniform(-0.2, 0.2), rng.uniform(-0.2, 0.2), rng.uniform(0.2, 0.6)},
             .distance = rng.uniform(1.5, 4),
             .azimuth = rng.uniform(-3, 3),
@@ -51,7 +51,7 @@ class Rays : public ::testing::TestWithParam<bool> {
   }
   support::TempFolder folder_;
   std::unique_ptr<Model> model_;
-  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<render::Scene> scene_;
 };
 
 /// MuJoCo's own selection with the mouse finds points on our rays.
@@ -64,7 +64,7 @@ TEST_P(Rays, AgreeWithMujocosSelection) {
   Rng rng(7);
   int found = 0;
   for (int i = 0; i < 300; ++i) {
-    const Camera camera = i % 10 == 0 ? Camera{.name = "side"} : Camera{.view = random_view(rng)};
+    const render::Camera camera = i % 10 == 0 ? render::Camera{.name = "side"} : render::Camera{.view = random_view(rng)};
     ASSERT_TRUE(scene_->set_camera(camera));
     scene_->update({});
     const Eye eye = eye_of(*scene_);
@@ -95,7 +95,7 @@ TEST_P(Rays, TheFreeCameraIsWhereMujocoPutsIt) {
   if (GetParam()) GTEST_SKIP() << "eye_of(CameraView) is for cameras with perspective";
   Rng rng(8);
   for (int i = 0; i < 100; ++i) {
-    const CameraView view = random_view(rng);
+    const render::CameraView view = random_view(rng);
     ASSERT_TRUE(scene_->set_camera({.view = view}));
     scene_->update({});
     const Eye theirs = eye_of(*scene_);
@@ -111,16 +111,16 @@ TEST_P(Rays, TheFreeCameraIsWhereMujocoPutsIt) {
 
 /// A ball of the overlay is seen at the pixel that `pixel_of_point` tells.
 TEST_P(Rays, PointsAreSeenWhereTheyAreSaidToBe) {
-  Result<OffscreenRenderer> made = OffscreenRenderer::create(
-      *model_, {.width = kWide, .height = kHigh, .quality = RenderQuality::low});
+  Result<render::OffscreenRenderer> made = render::OffscreenRenderer::create(
+      *model_, {.width = kWide, .height = kHigh, .quality = render::RenderQuality::low});
   if (!made) GTEST_SKIP() << made.error().what;
   Rng rng(9);
   for (int i = 0; i < 10; ++i) {
-    const Camera camera{.view = random_view(rng)};
+    const render::Camera camera{.view = random_view(rng)};
     const Vector3d p(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3), rng.uniform(0.9, 1.2));
-    Overlay overlay;
+    render::Overlay overlay;
     overlay.spheres.push_back({p, 0.03, {0, 1, 0, 1}});
-    const Result<Image> image = made->draw({}, camera, overlay);
+    const Result<render::Image> image = made->draw({}, camera, overlay);
     ASSERT_TRUE(image) << image.error().what;
     Vector2d sum = Vector2d::Zero();
     int count = 0;
@@ -159,4 +159,4 @@ TEST(RaysAlone, NothingBehindTheEyeHasAPixel) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr double kMaxAtOnce = 0.25;  // [s] of the clock
@@ -37,4 +37,4 @@ int RealTimePacer::steps_due_at(double now, bool paused) {
   return steps;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Tells how many physics steps are due so that simulated time keeps up with the clock on the wall.
 /// The only place that looks at that clock; results never depend on it.
@@ -29,4 +29,4 @@ class RealTimePacer {
   std::optional<double> last_;  ///< [s] time of the call before
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -4,7 +4,7 @@
 
 #include "mjarm/core/rng.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 TEST(RealTimePacer, KeepsUpWithTheClockWhateverTheFrames) {
@@ -46,4 +46,4 @@ TEST(RealTimePacer, AHiccupIsCaughtUpInPart) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

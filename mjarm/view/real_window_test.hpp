@@ -46,15 +46,15 @@ inline Model window_scene() {
 /// A window that a stand-in for the user drives.
 class RealWindow : public ::testing::Test {
  protected:
-  virtual WindowOptions options() {
+  virtual view::WindowOptions options() {
     return {.width = 400, .height = 300, .camera = {.name = "front"}};
   }
   void SetUp() override {
     if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "DISPLAY is not set";
     if (!std::filesystem::exists(kXdotool)) GTEST_SKIP() << "xdotool is not installed";
-    Result<Window> opened = Window::open(model_, kWindowTitle, options());
+    Result<view::Window> opened = view::Window::open(model_, kWindowTitle, options());
     ASSERT_TRUE(opened) << opened.error().what;
-    window_ = std::make_unique<Window>(std::move(*opened));
+    window_ = std::make_unique<view::Window>(std::move(*opened));
     ASSERT_TRUE(frames_until([this] { return id() != ""; })) << "the window does not appear";
     xdotool({"windowmove", "--sync", id(), "0", "0", "windowfocus", "--sync", id()});
     frames_until([] { return false; }, 0.2);
@@ -66,7 +66,7 @@ class RealWindow : public ::testing::Test {
     while (std::chrono::steady_clock::now() < end) {
       const Result<void> drawn = window_->draw({}, {}, {}, panels_);
       if (!drawn) ADD_FAILURE() << drawn.error().what;
-      for (ViewEvent& event : window_->take_events()) events_.push_back(std::move(event));
+      for (view::ViewEvent& event : window_->take_events()) events_.push_back(std::move(event));
       if (holds()) return true;
     }
     return holds();
@@ -118,10 +118,10 @@ class RealWindow : public ::testing::Test {
   }
 
   Turn turn_;
-  std::vector<ViewEvent> events_;
-  std::vector<PanelSection> panels_;
+  std::vector<view::ViewEvent> events_;
+  std::vector<view::PanelSection> panels_;
   Model model_ = window_scene();
-  std::unique_ptr<Window> window_;
+  std::unique_ptr<view::Window> window_;
 };
 
 }  // namespace mjarm::testing

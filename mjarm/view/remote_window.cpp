@@ -11,7 +11,7 @@
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// A window as it was asked for, shared by the two threads.
 struct RemoteWindow::Order {
@@ -136,4 +136,4 @@ RemoteWindow& RemoteWindow::operator=(RemoteWindow&& other) noexcept {
 }
 ViewLink& RemoteWindow::link() const { return order_->link; }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

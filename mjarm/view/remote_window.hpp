@@ -11,7 +11,7 @@
 #include "mjarm/view/view_link.hpp"
 #include "mjarm/view/window.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Runs `work` in a thread of its own, while this one, the main thread, opens the windows that it
 /// asks for and draws them. Returns when `work` is through.
@@ -56,4 +56,4 @@ class RemoteWindow {
   std::shared_ptr<Order> order_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

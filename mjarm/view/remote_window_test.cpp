@@ -7,7 +7,7 @@
 
 #include "mjarm/view/real_window_test.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 TEST(RemoteWindow, WithoutAMainThreadThatStandsReadyThereIsNone) {
@@ -56,4 +56,4 @@ TEST(BesideWindows, WorkOpensAWindowAndClosesIt) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

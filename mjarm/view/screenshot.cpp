@@ -5,9 +5,9 @@
 #include "mjarm/render/png.hpp"
 #include "mjarm/view/screenshot_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
-Result<std::filesystem::path> save_screenshot(const Image& image,
+Result<std::filesystem::path> save_screenshot(const render::Image& image,
                                               const std::filesystem::path& folder) {
   constexpr int kMax = 9999;
   std::error_code ignored;  // a folder that cannot be made shows when the file is written
@@ -17,10 +17,10 @@ Result<std::filesystem::path> save_screenshot(const Image& image,
     std::snprintf(name, sizeof(name), "mjarm-%03d.png", i);
     const std::filesystem::path file = folder / name;
     if (std::filesystem::exists(file, ignored)) continue;
-    if (auto written = write_png(image, file); !written) return fail(std::move(written.error()));
+    if (auto written = render::write_png(image, file); !written) return fail(std::move(written.error()));
     return file;
   }
   return fail(Errc::system, text(msg::view_many_screenshots, folder.string(), kMax));
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

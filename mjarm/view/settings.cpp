@@ -7,7 +7,7 @@
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/view/settings_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr SettingRow kRows[] = {
@@ -68,7 +68,7 @@ std::span<const SettingRow> setting_rows() noexcept { return kRows; }
 std::span<const char* const> view_label_names() noexcept { return mjLABELSTRING; }
 std::span<const char* const> view_frame_names() noexcept { return mjFRAMESTRING; }
 
-ViewSettings settings_of(Scene& scene) {
+ViewSettings settings_of(render::Scene& scene) {
   ViewSettings settings;
   const mjvOption& option = scene.option();
   for (std::size_t i = 0; i < kViewFlags; ++i) {
@@ -85,7 +85,7 @@ ViewSettings settings_of(Scene& scene) {
   return settings;
 }
 
-void apply(const ViewSettings& settings, Scene& scene) {
+void apply(const ViewSettings& settings, render::Scene& scene) {
   mjvOption& option = scene.option();
   for (std::size_t i = 0; i < kViewFlags; ++i) {
     const Place& place = kPlaces[i];
@@ -108,4 +108,4 @@ bool needs_dynamics(const ViewSettings& settings) {
          settings.label == mjLABEL_ISLAND || settings.frame == mjFRAME_CONTACT;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -5,7 +5,7 @@
 
 #include "mjarm/core/messages.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What can be switched on and off in a window.
 enum class ViewFlag {
@@ -65,4 +65,4 @@ struct SettingRow {
 [[nodiscard]] std::span<const char* const> view_label_names() noexcept;
 [[nodiscard]] std::span<const char* const> view_frame_names() noexcept;
 
-}  // namespace mjarm
+}  // namespace mjarm::view

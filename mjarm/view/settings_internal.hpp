@@ -3,13 +3,13 @@
 #include "mjarm/render/scene.hpp"
 #include "mjarm/view/settings.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What `scene` shows as it stands.
-[[nodiscard]] ViewSettings settings_of(Scene& scene);
+[[nodiscard]] ViewSettings settings_of(render::Scene& scene);
 /// Makes `scene` show that.
-void apply(const ViewSettings& settings, Scene& scene);
+void apply(const ViewSettings& settings, render::Scene& scene);
 /// True where drawing needs contacts and forces.
 [[nodiscard]] bool needs_dynamics(const ViewSettings& settings);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

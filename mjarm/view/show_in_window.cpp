@@ -6,7 +6,7 @@
 
 #include "mjarm/core/os.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 Result<ViewStats> show_in_window(const Model& model, const std::string& title,
                                  const WindowOptions& window_options, const ShowOptions& options,
@@ -30,4 +30,4 @@ Result<ViewStats> show_in_window(const Model& model, const std::string& title,
   return window->stats();
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -8,7 +8,7 @@
 #include "mjarm/view/view_stats.hpp"
 #include "mjarm/view/window.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// How long a window stays.
 struct ShowOptions {
@@ -25,4 +25,4 @@ struct ShowOptions {
                                                const ShowOptions& options,
                                                const std::function<void(ViewLink&)>& simulate);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

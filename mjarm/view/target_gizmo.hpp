@@ -7,7 +7,7 @@
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/view/ray.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// What of the target can be taken hold of.
 enum class GizmoHandle {
@@ -68,7 +68,7 @@ class TargetGizmo {
 
   /// Appends the handles, in front of all that stands in their way.
   /// @param state  colour of the ball: whether the pose can be reached.
-  void draw(Overlay& overlay, const Rgba& state) const;
+  void draw(render::Overlay& overlay, const render::Rgba& state) const;
 
  private:
   /// What a drag goes by, set when it begins.
@@ -93,17 +93,17 @@ class TargetGizmo {
   [[nodiscard]] Eigen::Matrix3d axes() const { return R_WG_.value_or(X_WT_.R); }
   [[nodiscard]] double scale() const;
   [[nodiscard]] std::optional<Hit> find(const Ray& mouse) const;
-  [[nodiscard]] std::optional<Grip> grip_of(const Hit& hit, const Ray& mouse) const;
-  void hold_axis(Grip& grip, const Eigen::Vector3d& sight) const;
-  void hold_ring(Grip& grip, const Eigen::Vector3d& sight) const;
-  void turn(Grip& grip, const Eigen::Vector3d& met);
+  [[nodiscard]] std::optional<program::Grip> grip_of(const Hit& hit, const Ray& mouse) const;
+  void hold_axis(program::Grip& grip, const Eigen::Vector3d& sight) const;
+  void hold_ring(program::Grip& grip, const Eigen::Vector3d& sight) const;
+  void turn(program::Grip& grip, const Eigen::Vector3d& met);
 
   Pose X_WT_;
   GizmoOptions options_;
   std::optional<Eigen::Matrix3d> R_WG_;
   Eye eye_;
   std::optional<GizmoHandle> hovered_;
-  std::optional<Grip> grip_;
+  std::optional<program::Grip> grip_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

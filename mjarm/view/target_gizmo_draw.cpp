@@ -7,14 +7,14 @@
 #include "mjarm/view/gizmo_shape_internal.hpp"
 #include "mjarm/view/target_gizmo.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr Rgba kAxisColors[3] = {
+constexpr render::Rgba kAxisColors[3] = {
     {0.90F, 0.20F, 0.18F, 1}, {0.20F, 0.72F, 0.25F, 1}, {0.20F, 0.42F, 0.95F, 1}};
-constexpr Rgba kBright = {1.00F, 0.85F, 0.10F, 1};
+constexpr render::Rgba kBright = {1.00F, 0.85F, 0.10F, 1};
 constexpr double kArrowWidth = 0.045;  ///< in lengths of the arrows, as all that follows
 constexpr double kRingWidth = 0.022;
 constexpr double kBrightWidth = 1.5;
@@ -43,28 +43,28 @@ class Front {
 
 /// Colour and thickness of a handle.
 struct Look {
-  Rgba color;
+  render::Rgba color;
   double wide = 1;
 };
 
 Look look_of(GizmoHandle handle, std::optional<GizmoHandle> hovered,
-             std::optional<GizmoHandle> held, Rgba color) {
+             std::optional<GizmoHandle> held, render::Rgba color) {
   if (held && *held != handle) color.a *= kOthers;
   if (held.value_or(hovered.value_or(handle)) != handle || (!held && !hovered)) return {color, 1};
   return {{kBright.r, kBright.g, kBright.b, color.a}, kBrightWidth};
 }
 
 /// The ring as two polylines: the half that faces the eye, and the other.
-void draw_ring(Overlay& overlay, const Front& front, const Pose& X_WG, int axis, double s,
+void draw_ring(render::Overlay& overlay, const Front& front, const Pose& X_WG, int axis, double s,
                const Vector3d& to_eye, const Look& look) {
   const Vector3d u = gizmo::kRing * s * X_WG.R.col((axis + 1) % 3);
   const Vector3d v = gizmo::kRing * s * X_WG.R.col((axis + 2) % 3);
   const double nearest = std::atan2(v.dot(to_eye), u.dot(to_eye));
   for (const bool far : {false, true}) {
-    OverlayLine& line = overlay.lines.emplace_back();
+    render::OverlayLine& line = overlay.lines.emplace_back();
     line.width = front.length(look.wide * kRingWidth * s);
     line.color = look.color;
-    line.look = LineLook::tube;
+    line.look = render::LineLook::tube;
     if (far) line.color.a *= kBehind;
     for (int i = 0; i <= gizmo::kRingPieces / 2; ++i) {
       const double share = 2.0 * i / gizmo::kRingPieces - 0.5 + (far ? 1 : 0);
@@ -84,14 +84,14 @@ std::string amount_text(GizmoHandle handle, double amount) {
 
 }  // namespace
 
-void TargetGizmo::draw(Overlay& overlay, const Rgba& state) const {
+void TargetGizmo::draw(render::Overlay& overlay, const render::Rgba& state) const {
   const double s = scale();
   if (!(s > 0)) return;
   const Pose X_WG{X_WT_.p, axes()};
   const Front front(eye_, X_WG.p, s);
   const Vector3d to_eye =
       eye_.orthographic ? Vector3d(-eye_.forward_W) : Vector3d(eye_.p_W - X_WG.p);
-  const auto look = [&](GizmoHandle handle, const Rgba& color) {
+  const auto look = [&](GizmoHandle handle, const render::Rgba& color) {
     return look_of(handle, hovered_, held(), color);
   };
   for (int i = 0; i < 3; ++i) {
@@ -103,7 +103,7 @@ void TargetGizmo::draw(Overlay& overlay, const Rgba& state) const {
                               .color = arrow.color});
     const auto square = static_cast<GizmoHandle>(3 + i);
     if (is_visible(square)) {
-      Rgba pale = kAxisColors[i];
+      render::Rgba pale = kAxisColors[i];
       pale.a = 0.6F;
       const Vector3d centre =
           X_WG.p + gizmo::kSquare * s * (X_WG.R.col((i + 1) % 3) + X_WG.R.col((i + 2) % 3));
@@ -125,8 +125,8 @@ void TargetGizmo::draw(Overlay& overlay, const Rgba& state) const {
   const Vector3d way[2] = {front.at(grip_->X_start.p), front.at(X_WG.p)};
   if ((way[1] - way[0]).norm() > 0) {
     overlay.lines.push_back(
-        {.points_W = {way[0], way[1]}, .color = kBright, .look = LineLook::thin});
+        {.points_W = {way[0], way[1]}, .color = kBright, .look = render::LineLook::thin});
   }
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

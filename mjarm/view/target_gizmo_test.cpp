@@ -10,7 +10,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using Eigen::Vector2d;
@@ -56,18 +56,18 @@ Ray at_pixel(const Eye& eye, const Vector2d& pixel) {
 std::vector<Vector3d> drawn_points(const TargetGizmo& gizmo, GizmoHandle handle) {
   std::vector<Vector3d> out;
   if (!gizmo.is_visible(handle)) return out;
-  Overlay overlay;
+  render::Overlay overlay;
   gizmo.draw(overlay, {});
   const int k = static_cast<int>(handle);
   if (handle <= GizmoHandle::move_z) {
-    const OverlayArrow& arrow = overlay.arrows.at(static_cast<std::size_t>(k));
+    const render::OverlayArrow& arrow = overlay.arrows.at(static_cast<std::size_t>(k));
     for (int i = 0; i <= 16; ++i) {
       out.push_back(arrow.from_W + i / 16.0 * (arrow.to_W - arrow.from_W));
     }
   } else if (handle <= GizmoHandle::move_xy) {
     std::size_t box = 0;
     for (int i = 3; i < k; ++i) box += gizmo.is_visible(static_cast<GizmoHandle>(i)) ? 1U : 0U;
-    const OverlayBox& square = overlay.boxes.at(box);
+    const render::OverlayBox& square = overlay.boxes.at(box);
     for (int i = 0; i < 81; ++i) {
       Vector3d at = Vector3d::Zero();
       at[(k + 1) % 3] = (i % 9 - 4) / 4.1;
@@ -80,7 +80,7 @@ std::vector<Vector3d> drawn_points(const TargetGizmo& gizmo, GizmoHandle handle)
       out.insert(out.end(), points.begin(), points.end());
     }
   } else {
-    const OverlaySphere& ball = overlay.spheres.at(0);
+    const render::OverlaySphere& ball = overlay.spheres.at(0);
     for (int i = 0; i < 125; ++i) {
       const Vector3d share(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
       if (share.norm() < 2.5) out.push_back(ball.p_W + ball.radius / 2.5 * share);
@@ -115,11 +115,11 @@ Case random_case(Rng& rng) {
 }
 
 Eigen::Matrix3d axes_of(const Case& c) {
-  Overlay overlay;
+  render::Overlay overlay;
   c.gizmo.draw(overlay, {});
   Eigen::Matrix3d axes;
   for (int i = 0; i < 3; ++i) {
-    const OverlayArrow& arrow = overlay.arrows.at(static_cast<std::size_t>(i));
+    const render::OverlayArrow& arrow = overlay.arrows.at(static_cast<std::size_t>(i));
     axes.col(i) = (arrow.to_W - arrow.from_W).normalized();
   }
   return axes;
@@ -151,10 +151,10 @@ TEST(TargetGizmo, IsAsLargeOnTheScreenFromAnyDistance) {
     const Eye eye = eye_of({.distance = distance, .azimuth = 0.4, .elevation = -0.5}, 0.8);
     TargetGizmo gizmo;
     gizmo.set_eye(eye);
-    Overlay overlay;
+    render::Overlay overlay;
     gizmo.draw(overlay, {});
     double furthest = 0;
-    for (const OverlayArrow& arrow : overlay.arrows) {
+    for (const render::OverlayArrow& arrow : overlay.arrows) {
       const auto pixel = pixel_of_point(eye, kPictureWidth, kPictureHeight, arrow.to_W);
       ASSERT_TRUE(pixel);
       furthest =
@@ -357,7 +357,7 @@ TEST(TargetGizmo, DegenerateRaysChangeNothing) {
 TEST(TargetGizmo, BehindTheEyeItIsNeitherDrawnNorHit) {
   TargetGizmo gizmo;
   gizmo.set_eye(eye_of({.lookat_W = {5, 0, 0}, .distance = 1}, 0.8));
-  Overlay overlay;
+  render::Overlay overlay;
   gizmo.draw(overlay, {});
   EXPECT_EQ(shapes_of(overlay), 0U);
   EXPECT_FALSE(gizmo.hover({{4, 0, 0}, {-1, 0, 0}}));
@@ -369,7 +369,7 @@ TEST(TargetGizmo, WithoutRingsNothingTurns) {
   TargetGizmo without({}, {.turns = false});
   with.set_eye(eye);
   without.set_eye(eye);
-  Overlay rings, none;
+  render::Overlay rings, none;
   with.draw(rings, {});
   without.draw(none, {});
   EXPECT_EQ(rings.lines.size(), 6U);
@@ -391,21 +391,21 @@ TEST(TargetGizmo, DrawingShowsWhatIsHoveredAndHeld) {
   const Eye eye = eye_of({.distance = 2, .azimuth = 0.6, .elevation = -0.5}, 0.8);
   TargetGizmo gizmo;
   gizmo.set_eye(eye);
-  const Rgba state{0.1F, 0.2F, 0.3F, 1};
-  Overlay plain;
+  const render::Rgba state{0.1F, 0.2F, 0.3F, 1};
+  render::Overlay plain;
   gizmo.draw(plain, state);
   EXPECT_EQ(plain.spheres.at(0).color, state);
   EXPECT_TRUE(plain.labels.empty());
   const auto pixel = pixel_of(gizmo, eye, GizmoHandle::move_z);
   ASSERT_TRUE(pixel);
   gizmo.hover(at_pixel(eye, *pixel));
-  Overlay hovered;
+  render::Overlay hovered;
   gizmo.draw(hovered, state);
   EXPECT_NE(hovered.arrows.at(2).color, plain.arrows.at(2).color);
   EXPECT_EQ(hovered.arrows.at(0).color, plain.arrows.at(0).color);
   gizmo.grab(at_pixel(eye, *pixel));
   gizmo.drag(at_pixel(eye, *pixel + Vector2d(0, -50)));
-  Overlay held;
+  render::Overlay held;
   gizmo.draw(held, state);
   EXPECT_LT(held.arrows.at(0).color.a, 0.5F);
   EXPECT_GT(held.arrows.at(2).color.a, 0.9F);
@@ -415,4 +415,4 @@ TEST(TargetGizmo, DrawingShowsWhatIsHoveredAndHeld) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

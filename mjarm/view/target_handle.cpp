@@ -1,10 +1,10 @@
 #include "mjarm/view/target_handle.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 void TargetHandle::attach(Window& window) {
   window.set_mouse_hook([this](const MouseInput& input) { return use(input); });
-  window.set_draw_hook([this](const Eye& eye, Overlay& overlay) { draw(eye, overlay); });
+  window.set_draw_hook([this](const Eye& eye, render::Overlay& overlay) { draw(eye, overlay); });
 }
 
 void TargetHandle::tell(bool held) { link_.drags.push({{gizmo_.pose(), held, ++number_}}); }
@@ -35,7 +35,7 @@ bool TargetHandle::use(const MouseInput& input) {
   return false;
 }
 
-void TargetHandle::draw(const Eye& eye, Overlay& overlay) {
+void TargetHandle::draw(const Eye& eye, render::Overlay& overlay) {
   if (link_.looks.take(look_)) {
     // What was made before the last drag would throw the target back.
     const bool is_answer = look_.number == number_;
@@ -50,4 +50,4 @@ void TargetHandle::draw(const Eye& eye, Overlay& overlay) {
   gizmo_.draw(overlay, look_.color);
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

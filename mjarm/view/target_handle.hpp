@@ -6,7 +6,7 @@
 #include "mjarm/view/target_link.hpp"
 #include "mjarm/view/window.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// The handles of the target in a window; in the main thread. Once it is gone, the window
 /// is not drawn any more.
@@ -25,7 +25,7 @@ class TargetHandle {
 
  private:
   bool use(const MouseInput& input);
-  void draw(const Eye& eye, Overlay& overlay);
+  void draw(const Eye& eye, render::Overlay& overlay);
   void tell(bool held);
 
   TargetLink& link_;
@@ -34,4 +34,4 @@ class TargetHandle {
   long number_ = 0;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

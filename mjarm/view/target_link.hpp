@@ -7,7 +7,7 @@
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/view/mailbox.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// Where the user drags the target.
 struct TargetDrag {
@@ -21,7 +21,7 @@ struct TargetLook {
   bool shown = false;
   Pose X_WT = {};
   std::optional<Eigen::Matrix3d> R_WG = {};  ///< directions of the handles; none = the target's
-  Rgba color = {};                           ///< of the ball
+  render::Rgba color = {};                           ///< of the ball
   long number = 0;                           ///< of the last drag that this is the answer to
 };
 
@@ -31,4 +31,4 @@ struct TargetLink {
   Mailbox<TargetLook> looks;  ///< to the window
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

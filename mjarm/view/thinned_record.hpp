@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// The moments of a run from its beginning on, in bounded memory. When it is full every second
 /// moment goes, and from then on half as many are kept: they are evenly spaced however long the run
@@ -70,4 +70,4 @@ class ThinnedRecord {
   std::size_t spacing_ = 1;  ///< [steps]
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr double kStep = 0.002;  // [s]
@@ -64,4 +64,4 @@ TEST(ThinnedRecord, FindsTheNearestMoment) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

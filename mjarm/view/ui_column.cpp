@@ -6,7 +6,7 @@
 
 #include "mjarm/view/ui_column_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr int kWidth = 300;  // of a plain screen's pixels
@@ -251,4 +251,4 @@ std::optional<mjrRect> UiColumn::place(int section, int item, const mjuiState& s
   return rect;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -10,7 +10,7 @@
 
 #include "mjarm/view/panel_section.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// An item that the user changed.
 struct UiChange {
@@ -60,4 +60,4 @@ class UiColumn {
   std::vector<std::deque<Cell>> cells_;  ///< of each section and item; they never move
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -2,7 +2,7 @@
 
 #include "mjarm/view/window.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 Result<void> draw_until_closed(Window& window, ViewLink& link, const std::function<bool()>& ended) {
   ViewFrame frame;
@@ -21,4 +21,4 @@ Result<void> draw_until_closed(Window& window, ViewLink& link, const std::functi
   return drawn;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -13,14 +13,14 @@
 #include "mjarm/view/mailbox.hpp"
 #include "mjarm/view/panel_section.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 class Window;
 
 /// All that one frame of a window shows.
 struct ViewFrame {
   Snapshot snapshot = {};
-  Overlay overlay = {};
+  render::Overlay overlay = {};
   std::vector<LivePlot> plots = {};
   std::vector<PanelSection> panels = {};
   std::string status = {};  ///< see `Window::set_status`
@@ -40,4 +40,4 @@ struct ViewLink {
 [[nodiscard]] Result<void> draw_until_closed(Window& window, ViewLink& link,
                                              const std::function<bool()>& ended);
 
-}  // namespace mjarm
+}  // namespace mjarm::view

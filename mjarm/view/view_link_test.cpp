@@ -6,7 +6,7 @@
 
 #include "mjarm/view/real_window_test.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using LinkedWindow = testing::RealWindow;
@@ -53,4 +53,4 @@ TEST_F(LinkedWindow, EndsWhenItIsTold) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -1,6 +1,6 @@
 #include "mjarm/view/view_stats.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 void FrameCounter::add(double begin, double end, double sim_time, bool paused) {
   if (frames_++ == 0) first_end_ = end;
@@ -24,4 +24,4 @@ ViewStats FrameCounter::stats() const {
   return stats;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

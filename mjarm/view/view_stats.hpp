@@ -2,7 +2,7 @@
 
 #include <optional>
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// How well a window keeps up.
 struct ViewStats {
@@ -38,4 +38,4 @@ class FrameCounter {
   std::optional<Frame> last_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

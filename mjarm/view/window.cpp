@@ -21,7 +21,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 constexpr int kMaxSize = 16384;
@@ -43,7 +43,7 @@ int font_scale(float scale) {
                     static_cast<int>(mjFONTSCALE_300));
 }
 
-void flip_rows(Image& image) {
+void flip_rows(render::Image& image) {
   const auto row = 3 * static_cast<std::ptrdiff_t>(image.width);
   for (auto top = image.rgb.begin(), bottom = image.rgb.end() - row; top < bottom;
        top += row, bottom -= row) {
@@ -83,16 +83,16 @@ struct Window::Impl {
   [[nodiscard]] bool is_icon() const;
   void fill_figures(std::span<const LivePlot> plots);
   void handle_inputs();
-  void prepare(const Overlay& overlay, std::span<const PanelSection> sections);
+  void prepare(const render::Overlay& overlay, std::span<const PanelSection> sections);
   void render();
   void render_plots(const mjrRect& view);
   [[nodiscard]] HudText hud() const;
-  [[nodiscard]] Image read_picture();
+  [[nodiscard]] render::Image read_picture();
   void save_picture();
 
   GLFWwindow* handle;
   WindowOptions options;
-  Scene scene;
+  render::Scene scene;
   Panels panels;
   Interaction user;
   FrameCounter counter;
@@ -155,13 +155,13 @@ void Window::Impl::handle_inputs() {
   if (user.close_wanted()) glfwSetWindowShouldClose(handle, GLFW_TRUE);
 }
 
-void Window::Impl::prepare(const Overlay& overlay, std::span<const PanelSection> sections) {
+void Window::Impl::prepare(const render::Overlay& overlay, std::span<const PanelSection> sections) {
   user.update();
   apply(user.settings, scene);
   scene.set_dynamics(needs_dynamics(user.settings) || user.picker.body() >= 0);
   if (draw_hook) {
     mjv_updateCamera(&scene.model(), &scene.data(), &scene.camera(), &scene.raw());
-    Overlay with_tools = overlay;
+    render::Overlay with_tools = overlay;
     draw_hook(eye_of(scene), with_tools);
     scene.update(with_tools);
   } else {
@@ -209,9 +209,9 @@ void Window::Impl::render_plots(const mjrRect& view) {
   }
 }
 
-Image Window::Impl::read_picture() {
+render::Image Window::Impl::read_picture() {
   const mjrRect& whole = panels.state().rect[0];
-  Image image{whole.width, whole.height, {}};
+  render::Image image{whole.width, whole.height, {}};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
   mjr_readPixels(image.rgb.data(), nullptr, whole, &context);
   flip_rows(image);
@@ -240,11 +240,11 @@ Result<Window> Window::open(const Model& model, const std::string& title,
   if (!fits(options.width) || !fits(options.height)) {
     return fail(Errc::bad_input, text(msg::view_bad_size, options.width, options.height, kMaxSize));
   }
-  if (Result<void> checked = check_camera(model, options.camera); !checked) {
+  if (Result<void> checked = render::check_camera(model, options.camera); !checked) {
     return fail(std::move(checked.error()));
   }
   if (Result<void> display = open_display(); !display) return fail(std::move(display.error()));
-  Result<void> claimed = claim_gl(GlKind::egl);
+  Result<void> claimed = render::claim_gl(render::GlKind::egl);
   Result<GlWindow> window =
       claimed ? open_gl_window(options.width, options.height, title, options.quality)
               : fail(std::move(claimed.error()));
@@ -280,7 +280,7 @@ void Window::set_settings(const ViewSettings& settings) { impl_->user.settings =
 void Window::set_mouse_hook(MouseHook hook) { impl_->user.set_hook(std::move(hook)); }
 void Window::set_draw_hook(DrawHook hook) { impl_->draw_hook = std::move(hook); }
 std::vector<ViewEvent> Window::take_events() { return impl_->user.take_events(); }
-CameraView Window::view() const { return impl_->scene.view(); }
+render::CameraView Window::view() const { return impl_->scene.view(); }
 std::string Window::camera_name() const { return impl_->user.camera.name(); }
 ViewStats Window::stats() const { return impl_->counter.stats(); }
 
@@ -291,7 +291,7 @@ std::optional<Window::Spot> Window::item_spot(bool left, int section, int item) 
               impl_->panels.state().rect[0].height - rect->bottom - 0.5 * rect->height};
 }
 
-Result<void> Window::draw(const Snapshot& snapshot, const Overlay& overlay,
+Result<void> Window::draw(const Snapshot& snapshot, const render::Overlay& overlay,
                           std::span<const LivePlot> plots, std::span<const PanelSection> panels) {
   if (display_lost()) return fail(display_lost_error());
   const double begin = seconds_now();
@@ -324,13 +324,13 @@ Result<void> Window::draw(const Snapshot& snapshot, const Overlay& overlay,
   return {};
 }
 
-Result<Image> Window::picture() {
+Result<render::Image> Window::picture() {
   if (display_lost()) return fail(display_lost_error());
   glfwMakeContextCurrent(impl_->handle);
   impl_->render();
-  Image image = impl_->read_picture();
+  render::Image image = impl_->read_picture();
   glfwMakeContextCurrent(nullptr);
   return image;
 }
 
-}  // namespace mjarm
+}  // namespace mjarm::view

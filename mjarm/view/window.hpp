@@ -22,14 +22,14 @@
 #include "mjarm/view/settings.hpp"
 #include "mjarm/view/view_stats.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 
 /// How a window opens. Every default is usable as is.
 struct WindowOptions {
   int width = 1280;                           ///< [screen units] > 0
   int height = 800;                           ///< [screen units] > 0
-  Camera camera = {};                         ///< a named camera is where the free camera starts
-  std::optional<RenderQuality> quality = {};  ///< default: high with a GPU, low without
+  render::Camera camera = {};                         ///< a named camera is where the free camera starts
+  std::optional<render::RenderQuality> quality = {};  ///< default: high with a GPU, low without
   bool paused = false;                        ///< starts paused
   bool can_step = true;                       ///< the application follows StepEvent
   bool can_reset = true;                      ///< ... and ResetEvent
@@ -84,14 +84,14 @@ class Window {
   /// act; before that it rests for at most two milliseconds. Never waits for the screen.
   /// @param panels  the application's own sections of the right panel.
   /// @return system where the display was lost; bad_input where the snapshot does not fit.
-  [[nodiscard]] Result<void> draw(const Snapshot& snapshot, const Overlay& overlay = {},
+  [[nodiscard]] Result<void> draw(const Snapshot& snapshot, const render::Overlay& overlay = {},
                                   std::span<const LivePlot> plots = {},
                                   std::span<const PanelSection> panels = {});
 
   /// The last frame again, as a picture of the size of the window's framebuffer.
-  [[nodiscard]] Result<Image> picture();
+  [[nodiscard]] Result<render::Image> picture();
   /// Where the camera stands now.
-  [[nodiscard]] CameraView view() const;
+  [[nodiscard]] render::CameraView view() const;
   /// Name of the model's camera that is looked through; empty for the free camera.
   [[nodiscard]] std::string camera_name() const;
   /// How well it keeps up.
@@ -111,4 +111,4 @@ class Window {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -7,7 +7,7 @@
 #include "mjarm/view/controls.hpp"
 #include "mjarm/view/real_window_test.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 /// A window that a stand-in for the user drives, with everything allowed.
@@ -52,7 +52,7 @@ TEST_F(Controls, DigitsToggleGroups) {
 
 TEST_F(Controls, GroupsAndFlagsReachThePicture) {
   const auto middle = [this] {
-    const Image image = window_->picture().value();
+    const render::Image image = window_->picture().value();
     return image.pixel(image.width / 2, image.height / 2)[0];
   };
   EXPECT_GT(middle(), 150);
@@ -99,13 +99,13 @@ TEST_F(Controls, CtrlTAsksForTheTarget) {
 /// The eye is the one of this frame, after the mouse has moved the camera.
 TEST_F(Controls, TheDrawHookSeesTheEyeAndAddsToThePicture) {
   const auto middle = [this] {
-    const Image image = window_->picture().value();
+    const render::Image image = window_->picture().value();
     return image.pixel(image.width / 2, image.height / 2)[2];
   };
   frames_until([] { return false; }, 0.1);
   EXPECT_LT(middle(), 100);
   Eye seen;
-  window_->set_draw_hook([&seen](const Eye& eye, Overlay& overlay) {
+  window_->set_draw_hook([&seen](const Eye& eye, render::Overlay& overlay) {
     seen = eye;
     overlay.spheres.push_back({eye.p_W + eye.forward_W, 0.1, {0, 0, 1, 1}});
   });
@@ -133,7 +133,7 @@ TEST_F(Controls, TabAndRightClickShowThePanels) {
   EXPECT_TRUE(key_until("shift+Tab", right));
   EXPECT_FALSE(left());
   EXPECT_TRUE(key_until("shift+Tab", [&] { return !right(); }));
-  const CameraView before = window_->view();
+  const render::CameraView before = window_->view();
   EXPECT_TRUE(act_until({"mousemove", "350", "150", "click", "3"}, left));
   EXPECT_TRUE(act_until({"mousemove", "350", "150", "click", "3"}, [&] { return !left(); }));
   EXPECT_EQ(window_->view().lookat_W, before.lookat_W);
@@ -147,7 +147,7 @@ TEST_F(Controls, TabAndRightClickShowThePanels) {
 TEST_F(Controls, HelpCoversThePicture) {
   const std::vector<std::uint8_t> plain = window_->picture()->rgb;
   EXPECT_TRUE(key_until("F1", [&] {
-    const Image image = window_->picture().value();
+    const render::Image image = window_->picture().value();
     return image.pixel(image.width / 2, image.height / 2 + 20)[0] < 150;
   }));
 }
@@ -172,7 +172,7 @@ TEST_F(Controls, DoubleClickSelects) {
 
 TEST_F(Controls, ControlDragPushesUntilTheButtonIsReleased) {
   for (const std::string button : {"3", "1"}) {
-    const CameraView before = window_->view();
+    const render::CameraView before = window_->view();
     const auto pushes = [this] {
       const auto* push = last<PushEvent>();
       return push != nullptr && push->force_W.norm() + push->torque_W.norm() > 1e-3;
@@ -202,7 +202,7 @@ TEST_F(Controls, AToolInTheSceneTakesTheMouseFirst) {
     seen.push_back(input);
     return input.x < 0.6;
   });
-  const CameraView before = window_->view();
+  const render::CameraView before = window_->view();
   ASSERT_TRUE(act_until(drag("1", 60, 30), [&] {
     return !seen.empty() && seen.back().kind == MouseInput::Kind::release;
   }));
@@ -221,7 +221,7 @@ TEST_F(Controls, ResizingAndHidingAreSurvived) {
     EXPECT_TRUE(
         act_until({"windowsize", "--sync", id(), std::to_string(width), std::to_string(height)},
                   [&] {
-                    const Result<Image> image = window_->picture();
+                    const Result<render::Image> image = window_->picture();
                     return image && image->width == width && image->height == height;
                   }))
         << width;
@@ -383,4 +383,4 @@ TEST_F(Refusals, GiveNoEvents) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

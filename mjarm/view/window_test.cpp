@@ -11,7 +11,7 @@
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/view/real_window_test.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using testing::kWindowTitle;
@@ -19,11 +19,11 @@ using testing::RealWindow;
 using testing::window_scene;
 
 TEST_F(RealWindow, ShowsTheModelTheOverlayAndPlots) {
-  Overlay overlay;
+  render::Overlay overlay;
   overlay.spheres.push_back({{-0.7, 0, 0.6}, 0.2, {0, 0, 1, 1}});
   ASSERT_TRUE(window_->draw({}, overlay));
   const auto color_at = [this](double x, double y) {
-    const Image image = window_->picture().value();
+    const render::Image image = window_->picture().value();
     return image.pixel(static_cast<int>(x * image.width), static_cast<int>(y * image.height));
   };
   EXPECT_GT(color_at(0.5, 0.5)[0], 150);
@@ -38,10 +38,10 @@ TEST_F(RealWindow, ShowsTheModelTheOverlayAndPlots) {
 }
 
 TEST_F(RealWindow, LeftDragTurns) {
-  const CameraView before = window_->view();
+  const render::CameraView before = window_->view();
   ASSERT_TRUE(
       act_until(drag("1", 60, 30), [&] { return window_->view().elevation != before.elevation; }));
-  const CameraView after = window_->view();
+  const render::CameraView after = window_->view();
   // To the right and down by 60 and 30 of 300 pixels, half a turn over the height.
   EXPECT_NEAR(after.azimuth - before.azimuth, -0.2 * 3.14159, 0.02);
   EXPECT_NEAR(after.elevation - before.elevation, -0.1 * 3.14159, 0.02);
@@ -50,11 +50,11 @@ TEST_F(RealWindow, LeftDragTurns) {
 }
 
 TEST_F(RealWindow, WheelZooms) {
-  const CameraView before = window_->view();
+  const render::CameraView before = window_->view();
   ASSERT_TRUE(act_until({"mousemove", "200", "150", "click", "4"},
                         [&] { return window_->view().distance != before.distance; }));
   EXPECT_LT(window_->view().distance, before.distance);
-  const CameraView near = window_->view();
+  const render::CameraView near = window_->view();
   ASSERT_TRUE(act_until({"mousemove", "200", "150", "click", "--repeat", "2", "5"},
                         [&] { return window_->view().distance > before.distance; }));
   EXPECT_EQ(window_->view().azimuth, near.azimuth);
@@ -62,7 +62,7 @@ TEST_F(RealWindow, WheelZooms) {
 
 TEST_F(RealWindow, RightAndMiddleDragPan) {
   for (const char* button : {"3", "2"}) {
-    const CameraView before = window_->view();
+    const render::CameraView before = window_->view();
     ASSERT_TRUE(act_until(drag(button, 60, 0),
                           [&] { return window_->view().lookat_W != before.lookat_W; }));
     // The world follows the hand to the right, so the camera goes to the left: -x here.
@@ -72,7 +72,7 @@ TEST_F(RealWindow, RightAndMiddleDragPan) {
 }
 
 TEST_F(RealWindow, MovingWithoutAButtonDoesNothing) {
-  const CameraView before = window_->view();
+  const render::CameraView before = window_->view();
   xdotool({"mousemove", "50", "50", "mousemove", "300", "200"});
   frames_until([] { return false; }, 0.3);
   EXPECT_EQ(window_->view().azimuth, before.azimuth);
@@ -85,7 +85,7 @@ TEST_F(RealWindow, SpacePausesAndControlAGoesBack) {
   EXPECT_TRUE(act_until({"key", "space"}, [&] { return !window_->paused(); }));
   window_->set_paused(true);
   EXPECT_TRUE(window_->paused());
-  const CameraView before = window_->view();
+  const render::CameraView before = window_->view();
   ASSERT_TRUE(
       act_until(drag("1", 60, 30), [&] { return window_->view().azimuth != before.azimuth; }));
   EXPECT_TRUE(
@@ -98,10 +98,10 @@ TEST_F(RealWindow, EscapeCloses) {
 }
 
 TEST_F(RealWindow, PicturesCanBeDrawnBesideIt) {
-  Result<OffscreenRenderer> renderer =
-      OffscreenRenderer::create(model_, {.width = 60, .height = 40});
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(model_, {.width = 60, .height = 40});
   if (!renderer) GTEST_SKIP() << renderer.error().what;
-  const Result<Image> image = renderer->draw({}, {.name = "front"});
+  const Result<render::Image> image = renderer->draw({}, {.name = "front"});
   ASSERT_TRUE(image) << image.error().what;
   EXPECT_GT(image->pixel(30, 20)[0], 150);
   EXPECT_TRUE(window_->draw({}));
@@ -227,4 +227,4 @@ TEST_F(WindowDeathTest, ADisplayWithoutOpenGlIsAnErrorAndNoCrash) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

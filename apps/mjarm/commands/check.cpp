@@ -18,11 +18,11 @@ struct Options {
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which));
   catch_interrupts();
-  const Result<LoadedProgram> loaded = load_program(options.file);
+  const Result<program::LoadedProgram> loaded = program::load_program(options.file);
   if (!loaded) return fail(loaded.error());
   const std::string out = options.json ? plan_json(*loaded).document() : plan_text(*loaded);
   std::fputs(out.c_str(), stdout);
-  if (!loaded->plan.ok()) return fail(first_fault(*loaded));
+  if (!loaded->plan.ok()) return fail(program::first_fault(*loaded));
   return 0;
 }
 

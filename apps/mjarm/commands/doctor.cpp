@@ -69,7 +69,7 @@ void look_at_machine(Findings& findings) {
 void look_at_graphics(Findings& findings) {
   std::vector<JsonDoc> ways;
   bool any = false;
-  for (const GlBackend& way : probe_gl_backends()) {
+  for (const render::GlBackend& way : render::probe_gl_backends()) {
     ways.push_back({{"name", way.name},
                     {"works", way.works},
                     {"renderer", way.renderer},

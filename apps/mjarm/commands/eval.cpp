@@ -57,7 +57,7 @@ Result<int> run(const Options& options) {
   chosen.timing = !options.no_timing;
   catch_interrupts();
   const Result<PolicyOutcome> outcome =
-      beside_windows(chosen.headless, [&] { return run_policy(*loaded, trial, chosen); });
+      view::beside_windows(chosen.headless, [&] { return run_policy(*loaded, trial, chosen); });
   if (!outcome) return fail(outcome.error());
   std::printf("%s", evaluation_table(outcome->evaluation).c_str());
   return conclude(outcome->report, chosen.out);

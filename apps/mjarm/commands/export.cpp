@@ -36,10 +36,10 @@ Result<int> run(const Options& options) {
     return fail(Errc::usage, text(msg::motion_program_export_over, options.out));
   }
   catch_interrupts();
-  const Result<LoadedProgram> loaded = load_sound_program(options.file);
+  const Result<program::LoadedProgram> loaded = program::load_sound_program(options.file);
   if (!loaded) return fail(loaded.error());
   const Result<std::string> script =
-      to_urscript(loaded->program, loaded->robot, loaded->plan, {.version = MJARM_VERSION});
+      program::to_urscript(loaded->program, loaded->robot, loaded->plan, {.version = MJARM_VERSION});
   if (!script) return fail(script.error().code, options.file + ": " + script.error().what);
   if (options.out.empty()) {
     std::fwrite(script->data(), 1, script->size(), stdout);

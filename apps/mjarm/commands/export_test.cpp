@@ -24,10 +24,10 @@ TEST(Export, ShippedProgramsAreTheSameMotion) {
     const std::string file = shipped_program(name);
     const auto result = mjarm({"export", file, "--to", "urscript"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    const Program program = read_program(file).value();
+    const program::Program program = program::read_program(file).value();
     const Model model = Model::load(kUr5eScene).value();
     const Arm arm = find_arm(model).value();
-    const ProgramPlan plan = plan_program(model, arm, program);
+    const program::ProgramPlan plan = program::plan_program(model, arm, program);
     const testing::UrScript script = testing::UrReader::read(result.out);
     EXPECT_EQ(script.name, "mjarm_" + name);
     testing::UrCheck check(script, plan);

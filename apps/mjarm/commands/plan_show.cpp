@@ -50,7 +50,7 @@ Result<std::optional<session::PlanShow>> read_plan_show(const PlanShowArguments&
   // Sizes and qualities are read as those of pictures.
   const std::string file = arguments.view ? "window.png" : arguments.picture;
   const std::filesystem::path ending = std::filesystem::path(file).extension();
-  if (ending != ".png" && ending != ".PNG" && !video_format(file)) {
+  if (ending != ".png" && ending != ".PNG" && !render::video_format(file)) {
     return fail(Errc::usage, text(msg::plan_show_ending, file));
   }
   const Result<PictureRequest> picture = read_picture_options({.out = file,

@@ -24,7 +24,7 @@ using session::PolicyPlayer;
 /// What was measured of the episodes that were shown.
 struct Played {
   std::string csv;
-  std::vector<PlotLine> distances;  ///< [mm] over time [s], one an episode
+  std::vector<render::PlotLine> distances;  ///< [mm] over time [s], one an episode
   double max_joint_step = 0;        ///< [rad]
   bool ended_by_user = false;
 };
@@ -95,8 +95,8 @@ Result<Played> play(PolicyPlayer& player, const PolicyTrial& trial, session::Run
   return played;
 }
 
-Plot plot_of(const std::string& title, const rl::Evaluation& evaluation, Played& played) {
-  PlotPanel over_time{.title = text(msg::train_plot_over_time),
+render::Plot plot_of(const std::string& title, const rl::Evaluation& evaluation, Played& played) {
+  render::PlotPanel over_time{.title = text(msg::train_plot_over_time),
                       .x_label = text(msg::train_plot_time),
                       .y_label = text(msg::train_plot_mm)};
   over_time.lines = std::move(played.distances);

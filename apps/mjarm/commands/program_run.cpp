@@ -10,16 +10,16 @@
 
 namespace mjarm::app {
 
-Result<Report> run_plan(session::Stage& stage, const LoadedProgram& loaded, double tolerance,
+Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loaded, double tolerance,
                         Report begun) {
-  const ProgramPlan& plan = loaded.plan;
+  const program::ProgramPlan& plan = loaded.plan;
   const double steps = (plan.duration() + kRestAtEnd) / loaded.robot.model.timestep();
   Progress progress(text(msg::motion_program_running), static_cast<std::uint64_t>(steps));
   stage.set_tick([&progress] { progress.advance(); });
   for (const PlannedMove& move : plan.moves) {
     for (const SpeedDip& dip : move.dips) log_info(describe(dip, plan.arms[move.tool]));
   }
-  Overlay paths;
+  render::Overlay paths;
   session::add_planned_paths(paths, plan);
   stage.show().add(paths);
   const ControlMode mode = stage.control(loaded.control());
@@ -35,7 +35,7 @@ session::StageOptions out_of_sight(session::StageOptions options) {
   return options;
 }
 
-Result<Report> run_and_show(const LoadedProgram& loaded, const session::StageOptions& options,
+Result<Report> run_and_show(const program::LoadedProgram& loaded, const session::StageOptions& options,
                             double tolerance, const std::string& camera) {
   const Result<std::unique_ptr<session::Stage>> stage =
       session::Stage::open(loaded.program.name, out_of_sight(options), loaded.robot);

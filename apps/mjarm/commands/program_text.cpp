@@ -14,7 +14,7 @@ std::string or_dash(bool known, const std::string& words) { return known ? words
 
 std::string pair_of(const GeomPair& pair) { return pair.geom1 + " - " + pair.geom2; }
 
-std::vector<std::string> row_of(const ProgramPlan& plan, const PlannedMove& move) {
+std::vector<std::string> row_of(const program::ProgramPlan& plan, const PlannedMove& move) {
   const Arm& arm = plan.arms[move.tool];
   const bool moves = move.measures.has_value();
   const MoveMeasures measures = move.measures.value_or(MoveMeasures{});
@@ -39,7 +39,7 @@ std::vector<std::string> row_of(const ProgramPlan& plan, const PlannedMove& move
                   : text(msg::motion_program_far))};
 }
 
-JsonDoc move_json(const ProgramPlan& plan, const PlannedMove& move) {
+JsonDoc move_json(const program::ProgramPlan& plan, const PlannedMove& move) {
   const Arm& arm = plan.arms[move.tool];
   JsonDoc out = {{"line", move.place.line},
                  {"instruction", move.word},
@@ -65,8 +65,8 @@ JsonDoc move_json(const ProgramPlan& plan, const PlannedMove& move) {
 
 }  // namespace
 
-std::string plan_text(const LoadedProgram& loaded) {
-  const ProgramPlan& plan = loaded.plan;
+std::string plan_text(const program::LoadedProgram& loaded) {
+  const program::ProgramPlan& plan = loaded.plan;
   std::vector<std::vector<std::string>> rows{
       {text(msg::motion_program_line), text(msg::motion_program_instruction),
        text(msg::motion_program_time), text(msg::motion_program_way),
@@ -80,7 +80,7 @@ std::string plan_text(const LoadedProgram& loaded) {
              "\n";
     }
   }
-  for (const ProgramFault& fault : plan.faults) {
+  for (const program::ProgramFault& fault : plan.faults) {
     out += line_of(loaded, fault) + "\n";
     if (!fault.detour) continue;
     out += text(msg::motion_program_detour, fault.place.line, fault.word, fault.detour->edges,
@@ -91,11 +91,11 @@ std::string plan_text(const LoadedProgram& loaded) {
   return out;
 }
 
-JsonDoc plan_json(const LoadedProgram& loaded) {
-  const ProgramPlan& plan = loaded.plan;
+JsonDoc plan_json(const program::LoadedProgram& loaded) {
+  const program::ProgramPlan& plan = loaded.plan;
   std::vector<JsonDoc> moves, faults;
   for (const PlannedMove& move : plan.moves) moves.push_back(move_json(plan, move));
-  for (const ProgramFault& fault : plan.faults) {
+  for (const program::ProgramFault& fault : plan.faults) {
     JsonDoc& told = faults.emplace_back(JsonDoc{{"line", fault.place.line},
                                                 {"column", fault.place.column},
                                                 {"instruction", fault.word},

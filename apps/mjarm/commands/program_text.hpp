@@ -8,8 +8,8 @@
 namespace mjarm::app {
 
 /// A table of the motions, what slows the tool down, and the faults, for people.
-[[nodiscard]] std::string plan_text(const LoadedProgram& loaded);
+[[nodiscard]] std::string plan_text(const program::LoadedProgram& loaded);
 /// The same as one document.
-[[nodiscard]] JsonDoc plan_json(const LoadedProgram& loaded);
+[[nodiscard]] JsonDoc plan_json(const program::LoadedProgram& loaded);
 
 }  // namespace mjarm::app

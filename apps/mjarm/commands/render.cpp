@@ -34,20 +34,20 @@ Snapshot home_of(const Model& model) {
 /// Once around, from where the camera stands; the last frame goes on to the first.
 Result<std::string> turntable(const Model& model, const PictureRequest& options) {
   constexpr double kSeconds = 5;
-  const Result<Camera> camera = choose_camera(model, options.camera);
+  const Result<render::Camera> camera = choose_camera(model, options.camera);
   if (!camera) return fail(camera.error());
   Result<session::VideoOfRun> video = session::VideoOfRun::open(model, options, *camera);
   if (!video) return fail(std::move(video.error()));
   const Snapshot home = home_of(model);
-  Scene scene(model, RenderQuality::low);  // knows where cameras stand
+  render::Scene scene(model, render::RenderQuality::low);  // knows where cameras stand
   Result<void> set = scene.set_state(home).and_then([&] { return scene.set_camera(*camera); });
   if (!set) return fail(std::move(set.error()));
-  const CameraView from = scene.view();
+  const render::CameraView from = scene.view();
   const auto frames =
       static_cast<int>(std::max(1.0, std::round(options.seconds.value_or(kSeconds) * options.fps)));
   Progress progress(text(msg::render_command_progress), static_cast<std::uint64_t>(frames));
   for (int i = 0; i < frames; ++i) {
-    CameraView around = from;
+    render::CameraView around = from;
     around.azimuth += 2 * std::numbers::pi * i / frames;
     if (!video->add(home, {.view = around}, {})) break;
     progress.advance();
@@ -60,18 +60,18 @@ Result<std::string> picture(const Model& model, const PictureRequest& options) {
   if (options.seconds) {
     return fail(Errc::usage, text(msg::render_command_video_only, "--seconds"));
   }
-  const Result<Camera> camera = choose_camera(model, options.camera);
+  const Result<render::Camera> camera = choose_camera(model, options.camera);
   if (!camera) return fail(camera.error());
-  Result<OffscreenRenderer> renderer =
-      OffscreenRenderer::create(model, session::offscreen_options(options));
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(model, session::offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
   return session::write_picture(*renderer, options, home_of(model), *camera, {});
 }
 
 Result<std::string> program_picture(const std::string& file, const PictureRequest& wanted) {
-  const Result<LoadedProgram> loaded = load_sound_program(file);
+  const Result<program::LoadedProgram> loaded = program::load_sound_program(file);
   if (!loaded) return fail(loaded.error());
-  const Result<Camera> camera = choose_camera(loaded->robot.model, wanted.camera);
+  const Result<render::Camera> camera = choose_camera(loaded->robot.model, wanted.camera);
   if (!camera) return fail(camera.error());
   return session::render_program(*loaded, wanted, *camera, wanted.seconds);
 }

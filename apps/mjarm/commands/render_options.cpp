@@ -41,7 +41,7 @@ Result<void> read_times(const PictureArguments& arguments, PictureRequest& optio
 }
 
 /// Reads `azimuth,elevation,distance[,x,y,z]`.
-Result<CameraView> read_view(const Model& model, const std::string& words) {
+Result<render::CameraView> read_view(const Model& model, const std::string& words) {
   const std::vector<std::string_view> parts = split_list(words);
   if (parts.size() != 3 && parts.size() != 6) {
     return fail(Errc::usage, text(msg::render_command_camera_values, words, parts.size()));
@@ -53,7 +53,7 @@ Result<CameraView> read_view(const Model& model, const std::string& words) {
     if (!value) return fail(in_option("--camera", value.error()));
     values[i] = *value;
   }
-  CameraView view = default_view(model);
+  render::CameraView view = render::default_view(model);
   view.azimuth = values[0];
   view.elevation = values[1];
   view.distance = values[2];
@@ -77,13 +77,13 @@ Result<PictureRequest> read_picture_options(const PictureArguments& arguments) {
   PictureRequest options;
   options.out = arguments.out;
   options.camera = arguments.camera;
-  const std::optional<VideoFormat> format = video_format(options.out);
+  const std::optional<render::VideoFormat> format = render::video_format(options.out);
   const std::string ending = options.out.extension().string();
   if (!format && ending != ".png" && ending != ".PNG") {
     return fail(Errc::usage, text(msg::render_command_ending, arguments.out));
   }
   options.video = format.has_value();
-  if (format == VideoFormat::gif) {
+  if (format == render::VideoFormat::gif) {
     options.width /= 2;
     options.height /= 2;
     options.fps = kGifRate;
@@ -98,23 +98,23 @@ Result<PictureRequest> read_picture_options(const PictureArguments& arguments) {
     static const std::array<std::string, 3> kWords = {"low", "medium", "high"};
     const Result<std::size_t> word = parse_choice("--quality", arguments.quality, kWords);
     if (!word) return fail(word.error());
-    options.quality = static_cast<RenderQuality>(*word);
+    options.quality = static_cast<render::RenderQuality>(*word);
   }
   if (Result<void> read = read_times(arguments, options); !read) return fail(read.error());
   return options;
 }
 
-Result<Camera> choose_camera(const Model& model, const std::string& words) {
+Result<render::Camera> choose_camera(const Model& model, const std::string& words) {
   if (words.empty()) return session::default_camera(model);
-  Camera camera;
+  render::Camera camera;
   if (words.find(',') != std::string::npos) {
-    const Result<CameraView> view = read_view(model, words);
+    const Result<render::CameraView> view = read_view(model, words);
     if (!view) return fail(view.error());
     camera.view = *view;
   } else {
     camera.name = words;
   }
-  if (Result<void> checked = check_camera(model, camera); !checked) {
+  if (Result<void> checked = render::check_camera(model, camera); !checked) {
     return fail(in_option("--camera", std::move(checked.error())));
   }
   return camera;

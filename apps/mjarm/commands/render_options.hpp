@@ -31,6 +31,6 @@ struct PictureRequest : session::PictureOptions {
 /// The camera meant by `words`: the name of one of the model's, or azimuth, elevation, distance and
 /// maybe the point looked at; empty = `overview` where the model has it, else its own view.
 /// @return bad_input with the nearest name, or a usage error.
-[[nodiscard]] Result<Camera> choose_camera(const Model& model, const std::string& words);
+[[nodiscard]] Result<render::Camera> choose_camera(const Model& model, const std::string& words);
 
 }  // namespace mjarm::app

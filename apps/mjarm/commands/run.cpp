@@ -48,12 +48,12 @@ Result<int> run(const Options& options) {
   Result<session::StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
-  Result<LoadedProgram> loaded = load_sound_program(options.file);
+  Result<program::LoadedProgram> loaded = program::load_sound_program(options.file);
   if (!loaded) return fail(loaded.error());
   if (chosen->control) loaded->program.control = chosen->control;
   if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
   const Result<Report> report =
-      beside_windows(chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
+      view::beside_windows(chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
   if (!report) return fail(report.error());
   return conclude(*report, chosen->out);
 }

@@ -60,8 +60,8 @@ Columns read_columns(std::string_view csv) {
 }
 
 /// One column over the steps, without its gaps.
-PlotLine line_of(const Columns& table, const char* name, double scale, std::string label) {
-  PlotLine line{.label = std::move(label)};
+render::PlotLine line_of(const Columns& table, const char* name, double scale, std::string label) {
+  render::PlotLine line{.label = std::move(label)};
   const auto *steps = table.find("step"), *values = table.find(name);
   for (std::size_t i = 0; steps && values && i < steps->size(); ++i) {
     if (!std::isfinite((*values)[i])) continue;
@@ -96,7 +96,7 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
   const Result<std::string> csv = read_file(folder / rl::Training::kProgress);
   if (!csv) return fail(csv.error());
   const Columns table = read_columns(*csv);
-  PlotPanel success{.title = text(msg::train_plot_success),
+  render::PlotPanel success{.title = text(msg::train_plot_success),
                     .x_label = text(msg::train_plot_steps),
                     .y_label = text(msg::train_plot_share)};
   for (const auto& [name, label] :
@@ -104,23 +104,23 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
         std::pair{"within_1cm", "1 cm"}, std::pair{"within_5mm", "5 mm"}}) {
     success.lines.push_back(line_of(table, name, 100, label));
   }
-  success.y_range = PlotRange{0, 100};
-  PlotPanel reward{.title = text(msg::train_plot_return),
+  success.y_range = render::PlotRange{0, 100};
+  render::PlotPanel reward{.title = text(msg::train_plot_return),
                    .x_label = text(msg::train_plot_steps),
                    .y_label = text(msg::train_plot_return)};
   reward.lines.push_back(line_of(table, "mean_return", 1, {}));
-  PlotPanel distance{.title = text(msg::train_plot_distance_over),
+  render::PlotPanel distance{.title = text(msg::train_plot_distance_over),
                      .x_label = text(msg::train_plot_steps),
                      .y_label = "mm"};
   distance.lines.push_back(line_of(table, "median", 1e3, text(msg::train_plot_median)));
   distance.lines.push_back(line_of(table, "p95", 1e3, "95 %"));
   distance.y_from_zero = true;
-  PlotPanel spread{.title = text(msg::train_plot_std),
+  render::PlotPanel spread{.title = text(msg::train_plot_std),
                    .x_label = text(msg::train_plot_steps),
                    .y_label = text(msg::train_plot_std)};
   spread.lines.push_back(line_of(table, "mean_std", 1, {}));
   spread.y_from_zero = true;
-  return save_plot(
+  return render::save_plot(
       {.title = text(msg::train_plot_title),
        .panels = {std::move(success), std::move(reward), std::move(distance), std::move(spread)}},
       folder / "curve");

@@ -63,14 +63,14 @@ std::vector<Fact> facts_of(const rl::Evaluation& evaluation) {
   return facts;
 }
 
-PlotPanel distance_panel(const rl::Evaluation& evaluation) {
-  PlotPanel panel{.title = text(msg::train_plot_distances),
+render::PlotPanel distance_panel(const rl::Evaluation& evaluation) {
+  render::PlotPanel panel{.title = text(msg::train_plot_distances),
                   .x_label = text(msg::train_plot_distance),
                   .y_label = text(msg::train_plot_share)};
   std::vector<double> sorted = evaluation.distances;
   std::ranges::sort(sorted);
   constexpr double kMax = 50;  // [mm]
-  PlotLine line{.x = {0}, .y = {0}};
+  render::PlotLine line{.x = {0}, .y = {0}};
   const auto count = static_cast<double>(sorted.size());
   for (std::size_t i = 0; i < sorted.size() && 1e3 * sorted[i] <= kMax; ++i) {
     line.x.insert(line.x.end(), 2, 1e3 * sorted[i]);
@@ -80,8 +80,8 @@ PlotPanel distance_panel(const rl::Evaluation& evaluation) {
   line.x.push_back(kMax);
   line.y.push_back(line.y.back());
   panel.lines.push_back(std::move(line));
-  panel.x_range = PlotRange{0, kMax};
-  panel.y_range = PlotRange{0, 100};
+  panel.x_range = render::PlotRange{0, kMax};
+  panel.y_range = render::PlotRange{0, 100};
   return panel;
 }
 

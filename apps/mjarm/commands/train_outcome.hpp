@@ -19,6 +19,6 @@ namespace mjarm::app {
 [[nodiscard]] std::vector<Fact> facts_of(const rl::Evaluation& evaluation);
 
 /// Which share of the goals is reached within which distance, from 1 mm to 20 cm.
-[[nodiscard]] PlotPanel distance_panel(const rl::Evaluation& evaluation);
+[[nodiscard]] render::PlotPanel distance_panel(const rl::Evaluation& evaluation);
 
 }  // namespace mjarm::app

@@ -59,7 +59,7 @@ Result<FreeSim> make_sim(const Loaded& loaded, bool passive) {
 }
 
 /// @param out  with what the user has no say in.
-Result<WindowOptions> window_options(const Options& options, WindowOptions out) {
+Result<view::WindowOptions> window_options(const Options& options, view::WindowOptions out) {
   out.paused = options.paused;
   out.camera.name = options.camera;
   out.screenshots = options.out;
@@ -73,7 +73,7 @@ Result<WindowOptions> window_options(const Options& options, WindowOptions out) 
     const std::string words[] = {"low", "high"};
     const auto chosen = parse_choice("--quality", options.quality, words);
     if (!chosen) return fail(chosen.error());
-    out.quality = *chosen == 0 ? RenderQuality::low : RenderQuality::high;
+    out.quality = *chosen == 0 ? render::RenderQuality::low : render::RenderQuality::high;
   }
   return out;
 }
@@ -87,7 +87,7 @@ Result<double> seconds_of(const Options& options) {
 }
 
 /// Tells how the window was drawn, where that was asked for.
-Result<int> told(const Options& options, const Result<ViewStats>& stats) {
+Result<int> told(const Options& options, const Result<view::ViewStats>& stats) {
   if (!stats) return fail(stats.error());
   if (options.stats) {
     std::printf("%s\n", text(msg::view_stats, stats->frames, stats->fps, stats->frame_ms,
@@ -104,21 +104,21 @@ Result<int> run(const Options& options) {
   if (!loaded) return fail(loaded.error());
   Result<FreeSim> sim = make_sim(*loaded, options.passive);
   if (!sim) return fail(std::move(sim.error()));
-  const Result<WindowOptions> chosen =
+  const Result<view::WindowOptions> chosen =
       window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
-  if (options.paused) sim->handle(PauseEvent{true});
+  if (options.paused) sim->handle(view::PauseEvent{true});
   session::RobotSession view(loaded->model, loaded->arm, *sim);
-  std::optional<TargetHandle> handle;
-  ShowOptions show{*seconds};
+  std::optional<view::TargetHandle> handle;
+  view::ShowOptions show{*seconds};
   if (session::TargetControl* target = view.target()) {
     handle.emplace(target->link(), target->target().turns());
-    show.on_open = [&handle](Window& window) { handle->attach(window); };
+    show.on_open = [&handle](view::Window& window) { handle->attach(window); };
   }
-  return told(options, show_in_window(
+  return told(options, view::show_in_window(
                            loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen,
-                           show, [&view](ViewLink& link) { session::simulate_world(view, link); }));
+                           show, [&view](view::ViewLink& link) { session::simulate_world(view, link); }));
 }
 
 /// A program brings its robot and tool along, and holds it.
@@ -130,10 +130,10 @@ Result<int> run_program(const Options& options) {
       !robot.package_paths.empty()) {
     return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
   }
-  const Result<WindowOptions> window = window_options(options, {});
+  const Result<view::WindowOptions> window = window_options(options, {});
   if (!window) return fail(window.error());
   catch_interrupts();
-  const Result<LoadedProgram> loaded = load_sound_program(robot.robot);
+  const Result<program::LoadedProgram> loaded = program::load_sound_program(robot.robot);
   if (!loaded) return fail(loaded.error());
   return told(options, session::view_program(*loaded, *window, {*seconds}));
 }
@@ -143,7 +143,7 @@ std::string help_end(Language language) {
   std::string lines(msg::view_examples.in(language));
   lines += "\n\n";
   lines += msg::view_controls.in(language);
-  for (const ControlHelp& row : control_help()) {
+  for (const view::ControlHelp& row : view::control_help()) {
     lines += "\n  " + padded(row.keys, 20) + std::string(row.about.in(language));
   }
   return lines;

@@ -75,15 +75,15 @@ std::string csv_of(const WorkspaceReport& report) {
   return out;
 }
 
-PlotPanel panel_of(const WorkspaceReport& report, const std::string& title,
+render::PlotPanel panel_of(const WorkspaceReport& report, const std::string& title,
                    std::vector<double> values) {
   const WorkspaceMap& map = report.map;
   const double half = map.step / 2;
-  PlotPanel panel{.title = title,
+  render::PlotPanel panel{.title = title,
                   .x_label = text(msg::workspace_axis, axis_name(map.u)),
                   .y_label = text(msg::workspace_axis, axis_name(map.v)),
                   .equal_aspect = true};
-  panel.field = PlotField{.x = {map.u_first - half, map.u_at(map.columns - 1) + half},
+  panel.field = render::PlotField{.x = {map.u_first - half, map.u_at(map.columns - 1) + half},
                           .y = {map.v_first - half, map.v_at(map.rows - 1) + half},
                           .columns = map.columns,
                           .values = std::move(values)};
@@ -99,16 +99,16 @@ PlotPanel panel_of(const WorkspaceReport& report, const std::string& title,
   return panel;
 }
 
-Plot plot_of(const WorkspaceReport& report) {
+render::Plot plot_of(const WorkspaceReport& report) {
   const WorkspaceMap& map = report.map;
   std::vector<double> counts;
   for (const int branches : map.branches) counts.push_back(branches > 0 ? branches : kNone);
-  PlotPanel branches = panel_of(
+  render::PlotPanel branches = panel_of(
       report, text(map.counted ? msg::workspace_branches : msg::workspace_reached), counts);
   branches.field->whole_numbers = true;
   const int max = *std::max_element(map.branches.begin(), map.branches.end());
   branches.field->colors = {.lower = 1, .upper = std::max(max, 2) * 1.0};
-  PlotPanel manipulability =
+  render::PlotPanel manipulability =
       panel_of(report, text(msg::workspace_manipulability), map.manipulability);
   const double best = std::transform_reduce(
       map.manipulability.begin(), map.manipulability.end(), 0.0,
@@ -186,12 +186,12 @@ Result<void> write_workspace(const WorkspaceReport& report, const std::string& p
     case WorkspaceFormat::json:
       return write_file(path, workspace_json(report));
     case WorkspaceFormat::svg: {
-      const Result<std::string> svg = plot_svg(plot_of(report));
+      const Result<std::string> svg = render::plot_svg(plot_of(report));
       return svg ? write_file(path, *svg) : fail(svg.error());
     }
     case WorkspaceFormat::png: {
-      const Result<Image> image = plot_image(plot_of(report));
-      return image ? write_png(*image, path) : fail(image.error());
+      const Result<render::Image> image = render::plot_image(plot_of(report));
+      return image ? render::write_png(*image, path) : fail(image.error());
     }
   }
   return {};

@@ -15,8 +15,8 @@
 namespace mjarm::app {
 namespace {
 
-constexpr Rgba kHit = {0.90F, 0.15F, 0.10F, 0.35F};
-constexpr Rgba kNearest = {0.95F, 0.65F, 0.10F, 1};
+constexpr render::Rgba kHit = {0.90F, 0.15F, 0.10F, 0.35F};
+constexpr render::Rgba kNearest = {0.95F, 0.65F, 0.10F, 1};
 constexpr double kStep = 0.005;  // [rad] between configurations that are looked at
 
 /// Where a motion touches something first.
@@ -46,7 +46,7 @@ std::optional<FirstTouch> first_touch(ExactChecker& checker, const Trajectory& m
 }
 
 /// The two geoms that come nearest to each other during the planned ways round.
-std::optional<NearestPair> nearest_pair(ExactChecker& checker, const ProgramPlan& plan,
+std::optional<NearestPair> nearest_pair(ExactChecker& checker, const program::ProgramPlan& plan,
                                         const JointLimits& limits) {
   std::optional<NearestPair> out;
   for (const PlannedMove& move : plan.moves) {
@@ -87,11 +87,11 @@ Result<void> try_straight(session::Stage& stage, ExactChecker& checker, const Pl
   report.facts.push_back({"straight_reason", "collision"});
   report.facts.push_back({"straight_hits", contact.pair.geom1 + " - " + contact.pair.geom2});
   report.facts.push_back({"straight_free", way / line->length()});
-  Overlay overlay;
-  add_planned_path(overlay, std::vector<Pose>{line->at(0), line->at(line->end())});
+  render::Overlay overlay;
+  render::add_planned_path(overlay, std::vector<Pose>{line->at(0), line->at(line->end())});
   overlay.spheres.push_back({.p_W = contact.point_W, .radius = 0.015, .color = {0.9F, 0, 0, 1}});
   overlay.labels.push_back({contact.point_W, contact.pair.geom1 + " - " + contact.pair.geom2});
-  OverlayGhost ghost = ghost_of(stage.arm(), as_span(touch->q));
+  render::OverlayGhost ghost = render::ghost_of(stage.arm(), as_span(touch->q));
   ghost.color = kHit;
   overlay.ghosts.push_back(std::move(ghost));
   stage.show().add(overlay);
@@ -99,7 +99,7 @@ Result<void> try_straight(session::Stage& stage, ExactChecker& checker, const Pl
 }
 
 /// Tells of the way round and draws where the arm comes nearest to something on it.
-void tell_round(session::Stage& stage, ExactChecker& checker, const ProgramPlan& plan,
+void tell_round(session::Stage& stage, ExactChecker& checker, const program::ProgramPlan& plan,
                 const PlannedMove& round, Report& report) {
   double length = 0;
   for (std::size_t i = 1; i < round.corners.size(); ++i) {
@@ -115,7 +115,7 @@ void tell_round(session::Stage& stage, ExactChecker& checker, const ProgramPlan&
   report.facts.push_back({"clearance", nearest->distance});
   report.facts.push_back({"nearest", pair.geom1 + " - " + pair.geom2});
   log_info(text(msg::demo_avoid_nearest, pair.geom1, pair.geom2, 1e3 * nearest->distance));
-  Overlay overlay;
+  render::Overlay overlay;
   overlay.lines.push_back(
       {.points_W = {nearest->p1_W, nearest->p2_W}, .width = 0.006, .color = kNearest});
   for (const Eigen::Vector3d& p_W : {nearest->p1_W, nearest->p2_W}) {
@@ -125,32 +125,32 @@ void tell_round(session::Stage& stage, ExactChecker& checker, const ProgramPlan&
 }
 
 /// The program in its own scene.
-Result<LoadedProgram> plan_in_its_scene(const DemoOptions& options) {
+Result<program::LoadedProgram> plan_in_its_scene(const DemoOptions& options) {
   if (options.robot.robot != "ur5e" || options.meshes) {
     return fail(Errc::usage, text(msg::demo_avoid_scene));
   }
-  Result<Program> program = demo_program("avoid");
+  Result<program::Program> program = demo_program("avoid");
   if (!program) return fail(std::move(program.error()));
   if (!options.robot.tip.empty()) program->tool = options.robot.tip;
   if (options.control) program->control = options.control;
-  Result<Robot> robot = load_program_robot(*program, "avoid.yaml");
+  Result<Robot> robot = program::load_program_robot(*program, "avoid.yaml");
   if (!robot) return fail(std::move(robot.error()));
-  return plan_loaded("avoid.yaml", std::move(*program), std::move(*robot));
+  return program::plan_loaded("avoid.yaml", std::move(*program), std::move(*robot));
 }
 
 }  // namespace
 
 Result<Report> run_avoid(const DemoOptions& options) {
   constexpr double kTolerance = 5e-4;  // [m]
-  const Result<LoadedProgram> loaded = plan_in_its_scene(options);
+  const Result<program::LoadedProgram> loaded = plan_in_its_scene(options);
   if (!loaded) return fail(loaded.error());
   const Result<std::unique_ptr<session::Stage>> opened =
       session::Stage::open("avoid", options, loaded->robot);
   if (!opened) return fail(opened.error());
   session::Stage& stage = **opened;
-  const ProgramPlan& plan = loaded->plan;
+  const program::ProgramPlan& plan = loaded->plan;
   if (!plan.ok()) {
-    return stage.refuse(plan.faults.front().reason, first_fault(*loaded).what);
+    return stage.refuse(plan.faults.front().reason, program::first_fault(*loaded).what);
   }
   Report report;
   ExactChecker checker(loaded->robot.model, loaded->robot.arm, {.margin = 0.3});

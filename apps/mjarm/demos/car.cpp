@@ -88,16 +88,16 @@ std::string to_csv(const Drive& drive) {
   return csv;
 }
 
-Plot plot_of(const Drive& drive) {
-  PlotPanel path{.title = text(msg::run_chart_top), .x_label = "x [m]", .y_label = "y [m]"};
+render::Plot plot_of(const Drive& drive) {
+  render::PlotPanel path{.title = text(msg::run_chart_top), .x_label = "x [m]", .y_label = "y [m]"};
   path.equal_aspect = true;
-  PlotLine line;
+  render::PlotLine line;
   for (const Eigen::Vector3d& p : drive.p_W) {
     line.x.push_back(p.x());
     line.y.push_back(p.y());
   }
   path.lines.push_back(std::move(line));
-  PlotPanel torque{.title = text(msg::demo_plot_sensors),
+  render::PlotPanel torque{.title = text(msg::demo_plot_sensors),
                    .x_label = text(msg::run_chart_time),
                    .y_label = "N m"};
   torque.lines.push_back({.x = drive.time, .y = drive.left, .label = "left_torque"});

@@ -18,17 +18,17 @@ MeasuredRun from_zero(MeasuredRun run) {
 }
 
 /// The curve itself: a run that leaves it must not count as planned so.
-PlotLine front_line(const Curve& curve) {
+render::PlotLine front_line(const Curve& curve) {
   std::vector<double> x, z;
   for (const double s : curve.stations(0.01, std::numeric_limits<double>::infinity())) {
     const Pose X = curve.at(s);
     x.push_back(X.p.x());
     z.push_back(X.p.z());
   }
-  return planned_line(std::move(x), std::move(z));
+  return render::planned_line(std::move(x), std::move(z));
 }
 
-PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) {
+render::PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) {
   const std::span<const MeasuredRun> runs(&run, 1);
   switch (chart) {
     case Chart::joint_speeds:
@@ -36,7 +36,7 @@ PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) {
     case Chart::joints:
       return session::joint_panel(arm, runs);
     case Chart::front: {
-      PlotPanel panel = session::front_panel(runs);
+      render::PlotPanel panel = session::front_panel(runs);
       panel.lines.back() = front_line(*run.curve);
       return panel;
     }
@@ -45,16 +45,16 @@ PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) {
     case Chart::error:
       break;
   }
-  PlotPanel panel = session::error_panel(runs, 0);
+  render::PlotPanel panel = session::error_panel(runs, 0);
   panel.bands.clear();
   return panel;
 }
 
 /// The range of one coordinate over all lines of the panels, with a little room.
-PlotRange common_range(std::span<const PlotPanel> panels, std::vector<double> PlotLine::* values) {
+render::PlotRange common_range(std::span<const render::PlotPanel> panels, std::vector<double> render::PlotLine::* values) {
   double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-  for (const PlotPanel& panel : panels) {
-    for (const PlotLine& line : panel.lines) {
+  for (const render::PlotPanel& panel : panels) {
+    for (const render::PlotLine& line : panel.lines) {
       for (const double x : line.*values) {
         if (std::isnan(x)) continue;
         lower = std::min(lower, x);
@@ -62,7 +62,7 @@ PlotRange common_range(std::span<const PlotPanel> panels, std::vector<double> Pl
       }
     }
   }
-  if (panels.front().y_from_zero && values == &PlotLine::y) lower = 0;
+  if (panels.front().y_from_zero && values == &render::PlotLine::y) lower = 0;
   const double room = 0.05 * (upper - lower) + 1e-9;
   return {lower >= 0 && lower < room ? 0 : lower - room, upper + room};  // time begins at 0
 }
@@ -87,22 +87,22 @@ double largest_distance(const MeasuredRun& run) {
   return largest;
 }
 
-Plot comparison_plot(const ComparisonText& about, const Arm& arm, std::span<const ComparedRun> runs,
+render::Plot comparison_plot(const ComparisonText& about, const Arm& arm, std::span<const ComparedRun> runs,
                      std::span<const Chart> rows) {
-  Plot page;
+  render::Plot page;
   page.title = about.title;
   page.note = about.note;
   page.columns = static_cast<int>(runs.size());
   page.panel_width = 330;
   for (const Chart chart : rows) {
-    std::vector<PlotPanel> row;
+    std::vector<render::PlotPanel> row;
     for (const ComparedRun& side : runs) {
-      PlotPanel panel = panel_of(chart, arm, from_zero(side.run));
+      render::PlotPanel panel = panel_of(chart, arm, from_zero(side.run));
       panel.title = text(msg::demo_side_title, side.title, panel.title);
       row.push_back(std::move(panel));
     }
-    const PlotRange x = common_range(row, &PlotLine::x), y = common_range(row, &PlotLine::y);
-    for (PlotPanel& panel : row) {
+    const render::PlotRange x = common_range(row, &render::PlotLine::x), y = common_range(row, &render::PlotLine::y);
+    for (render::PlotPanel& panel : row) {
       panel.x_range = x;
       panel.y_range = y;
       page.panels.push_back(std::move(panel));

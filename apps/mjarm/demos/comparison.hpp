@@ -34,7 +34,7 @@ struct ComparedRun {
 };
 
 /// Runs side by side, in axes of the same scale, time counted from the beginning of each.
-[[nodiscard]] Plot comparison_plot(const ComparisonText& about, const Arm& arm,
+[[nodiscard]] render::Plot comparison_plot(const ComparisonText& about, const Arm& arm,
                                    std::span<const ComparedRun> runs, std::span<const Chart> rows);
 
 }  // namespace mjarm::app

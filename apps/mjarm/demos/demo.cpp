@@ -78,7 +78,7 @@ Result<int> run_demo(const DemoArguments& arguments) {
   if (!options) return fail(options.error());
   catch_interrupts();
   const Result<Report> report =
-      beside_windows(options->headless, [&] { return (*demo)->run(*options); });
+      view::beside_windows(options->headless, [&] { return (*demo)->run(*options); });
   if (!report) return fail(report.error());
   return conclude(*report, options->out);
 }

@@ -38,13 +38,13 @@ Result<Report> refuse(session::Stage& stage, std::span<const Pose> points,
 }  // namespace
 
 Result<Report> run_ellipse(const DemoOptions& options) {
-  Result<Program> program = demo_program("ellipse");
+  Result<program::Program> program = demo_program("ellipse");
   if (!program) return fail(std::move(program.error()));
-  auto* drawn = std::get_if<DrawEllipse>(&program->instructions.front().what);
+  auto* drawn = std::get_if<program::DrawEllipse>(&program->instructions.front().what);
   if (drawn == nullptr) return fail(Errc::bad_input, text(msg::demo_no_ellipse));
   if (options.guide) drawn->center.y() = kGuideY;
   const Ellipse ellipse{drawn->center, drawn->a, drawn->b, drawn->normal, drawn->R_FT};
-  const Result<LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());
   if (loaded->plan.ok()) return run_demo_plan(*loaded, options);
 
@@ -56,7 +56,7 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   const std::vector<UnreachableRange> ranges =
       unreachable_ranges(reach_solver(loaded->robot), points, as_span(loaded->robot.arm.home));
   if (!ranges.empty()) return refuse(**stage, points, ranges);
-  return (*stage)->refuse(loaded->plan.faults.front().reason, first_fault(*loaded).what);
+  return (*stage)->refuse(loaded->plan.faults.front().reason, program::first_fault(*loaded).what);
 }
 
 }  // namespace mjarm::app

@@ -16,7 +16,7 @@ constexpr double kBottom = 0.35;  // [m]
 
 /// `text` upright in front of the arm, centred, smaller where it would get too wide; one polyline a
 /// stroke.
-Result<Program> written(const std::string& text) {
+Result<program::Program> written(const std::string& text) {
   const auto flat = letter_strokes(text, 1);
   if (!flat) return fail(flat.error());
   double width = 0;
@@ -24,10 +24,10 @@ Result<Program> written(const std::string& text) {
     for (const Eigen::Vector2d& p : points) width = std::max(width, p.x());
   }
   const double scale = std::min(kHeight, kWidest / std::max(width, 1e-9));
-  Program program;
+  program::Program program;
   program.name = "letters";
   for (const Stroke& points : *flat) {
-    DrawPolyline stroke;
+    program::DrawPolyline stroke;
     for (const Eigen::Vector2d& p : points) {
       const Eigen::Vector3d p_W(scale * (p.x() - width / 2), kPlane, kBottom + scale * p.y());
       stroke.points.push_back({{p_W, tool_down()}});
@@ -40,9 +40,9 @@ Result<Program> written(const std::string& text) {
 }  // namespace
 
 Result<Report> run_letters(const DemoOptions& options) {
-  Result<Program> program = options.text.empty() ? demo_program("letters") : written(options.text);
+  Result<program::Program> program = options.text.empty() ? demo_program("letters") : written(options.text);
   if (!program) return fail(std::move(program.error()));
-  const Result<LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());
   return run_demo_plan(*loaded, options, "front");
 }

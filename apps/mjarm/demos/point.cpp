@@ -18,16 +18,16 @@ constexpr ControlMode kModes[] = {ControlMode::servo, ControlMode::servo_gravity
 }  // namespace
 
 Result<Report> run_point(const DemoOptions& options) {
-  Result<Program> program = demo_program("point");
+  Result<program::Program> program = demo_program("point");
   if (!program) return fail(std::move(program.error()));
-  const Result<LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());
   if (!loaded->plan.ok()) return run_demo_plan(*loaded, options);
   Result<std::unique_ptr<session::Stage>> opened =
       session::Stage::open("point", out_of_sight(options), loaded->robot);
   if (!opened) return fail(std::move(opened.error()));
   session::Stage& stage = **opened;
-  const ProgramPlan& plan = loaded->plan;
+  const program::ProgramPlan& plan = loaded->plan;
   const Pose goal = fk(stage.arm(), as_span(plan.q_end()));
   stage.show().add_points({&goal, 1}, 1);
 

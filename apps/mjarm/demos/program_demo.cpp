@@ -8,35 +8,35 @@
 
 namespace mjarm::app {
 
-Result<Program> demo_program(const std::string& demo) {
+Result<program::Program> demo_program(const std::string& demo) {
   // Not a file of that name in the working directory.
-  return find_shipped_program(demo).and_then(
-      [](const std::filesystem::path& file) { return read_program(file); });
+  return program::find_shipped_program(demo).and_then(
+      [](const std::filesystem::path& file) { return program::read_program(file); });
 }
 
-Result<LoadedProgram> plan_demo(Program program, const DemoOptions& options) {
+Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOptions& options) {
   Result<Robot> robot =
       load_demo_robot(program.name, options, static_cast<int>(program.start.size()));
   if (!robot) return fail(std::move(robot.error()));
   const std::string file = program.name + ".yaml";
   if (options.control) program.control = options.control;
-  return plan_loaded(file, std::move(program), std::move(*robot));
+  return program::plan_loaded(file, std::move(program), std::move(*robot));
 }
 
-Result<Report> run_demo_plan(const LoadedProgram& loaded, const DemoOptions& options,
+Result<Report> run_demo_plan(const program::LoadedProgram& loaded, const DemoOptions& options,
                              const std::string& camera) {
   constexpr double kTolerance = 5e-4;  // [m]
   if (loaded.plan.ok()) return run_and_show(loaded, options, kTolerance, camera);
   const Result<std::unique_ptr<session::Stage>> stage =
       session::Stage::open(loaded.program.name, options, loaded.robot);
   if (!stage) return fail(stage.error());
-  return (*stage)->refuse(loaded.plan.faults.front().reason, first_fault(loaded).what);
+  return (*stage)->refuse(loaded.plan.faults.front().reason, program::first_fault(loaded).what);
 }
 
 Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options) {
-  Result<Program> program = demo_program(demo);
+  Result<program::Program> program = demo_program(demo);
   if (!program) return fail(std::move(program.error()));
-  const Result<LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());
   return run_demo_plan(*loaded, options);
 }
