@@ -20,7 +20,7 @@ int main() {
   for (const mjarm::ControlMode mode : {servo, servo_gravity, computed_torque}) {
     mjarm::Sim sim(model);
     sim.place(arm, mjarm::as_span(arm.home));
-    auto execution = mjarm::Execution::make(model, plan, {.control = mode, .rest = 2});
+    auto execution = mjarm::Execution::create(model, plan, {.control = mode, .rest = 2});
     if (!execution) return std::fprintf(stderr, "%s\n", execution.error().what.c_str()), 1;
     const auto outcome = execution->run_to_end(sim);
     if (!outcome) return std::fprintf(stderr, "%s\n", outcome.error().what.c_str()), 1;

@@ -16,16 +16,17 @@ int main() {
   mjarm::program::Program program;
   program.instructions = {
       mjarm::program::move_j(pose(0.2, -0.45, 0.4)),
-      mjarm::repeat(2, {mjarm::program::move_l(pose(-0.2, -0.45, 0.4), 0.3, 0.02),  // 20 mm of blend
-                        mjarm::program::move_l(pose(-0.2, -0.45, 0.25), 0.1), mjarm::wait(0.2),
-                        mjarm::program::move_c(pose(0, -0.35, 0.35), pose(0.2, -0.45, 0.4))})};
+      mjarm::repeat(2,
+                    {mjarm::program::move_l(pose(-0.2, -0.45, 0.4), 0.3, 0.02),  // 20 mm of blend
+                     mjarm::program::move_l(pose(-0.2, -0.45, 0.25), 0.1), mjarm::wait(0.2),
+                     mjarm::program::move_c(pose(0, -0.35, 0.35), pose(0.2, -0.45, 0.4))})};
   const mjarm::program::ProgramPlan plan = mjarm::program::plan_program(model, arm, program);
   for (const auto& fault : plan.faults) std::fprintf(stderr, "%s\n", fault.what.c_str());
   if (!plan.ok()) return 1;
 
   mjarm::Sim sim(model);
   sim.place(arm, mjarm::as_span(plan.q_start));
-  auto execution = mjarm::Execution::make(model, plan);
+  auto execution = mjarm::Execution::create(model, plan);
   if (!execution) return std::fprintf(stderr, "%s\n", execution.error().what.c_str()), 1;
   const auto outcome = execution->run_to_end(sim);
   if (!outcome) return std::fprintf(stderr, "%s\n", outcome.error().what.c_str()), 1;

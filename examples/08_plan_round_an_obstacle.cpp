@@ -15,7 +15,7 @@ int main() {
   const auto& [model, arm] = *robot;
 
   // 20 mm are kept to everything, which leaves room to round the corners off.
-  auto world = mjarm::PlanningWorld::make(*robot, {.margin = 0.02});
+  auto world = mjarm::PlanningWorld::create(*robot, {.margin = 0.02});
   if (!world) return std::fprintf(stderr, "%s\n", world.error().what.c_str()), 1;
   const Eigen::Matrix3d down = mjarm::from_euler({std::numbers::pi, 0, 0});
   const mjarm::Pose behind{{-0.3, -0.45, 0.2}, down};
@@ -30,7 +30,7 @@ int main() {
   const mjarm::MotionPlan plan = mjarm::MotionPlan::of(arm, *motion);
   mjarm::Sim sim(model);
   sim.place(arm, mjarm::as_span(arm.home));
-  auto execution = mjarm::Execution::make(model, plan);
+  auto execution = mjarm::Execution::create(model, plan);
   if (!execution) return std::fprintf(stderr, "%s\n", execution.error().what.c_str()), 1;
   const auto done = execution->run_to_end(sim);
   if (!done) return std::fprintf(stderr, "%s\n", done.error().what.c_str()), 1;

@@ -25,7 +25,7 @@ int main() {
   mjarm::Sim sim(model);
   sim.place(arm, mjarm::as_span(waypoints.front()));
   const auto plan = mjarm::MotionPlan::of(arm, motion->trajectory);
-  auto execution = mjarm::Execution::make(model, plan);
+  auto execution = mjarm::Execution::create(model, plan);
   if (!execution) return std::fprintf(stderr, "%s\n", execution.error().what.c_str()), 1;
   const auto outcome = execution->run_to_end(sim);
   if (!outcome) return std::fprintf(stderr, "%s\n", outcome.error().what.c_str()), 1;

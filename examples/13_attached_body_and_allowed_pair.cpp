@@ -26,7 +26,7 @@ const std::vector<double> kGoal = {-5.551, -1.2456, 1.9905, -2.3157, -1.5708, 0}
 
 /// Tells the path from start to goal, or why there is none; whether there is one.
 bool plan(const char* what, const mjarm::Robot& robot, const mjarm::ContactRules& rules) {
-  auto world = mjarm::PlanningWorld::make(robot, {.rules = rules});
+  auto world = mjarm::PlanningWorld::create(robot, {.rules = rules});
   if (!world) return std::printf("%s: %s\n", what, world.error().what.c_str()), false;
   const auto path = world->plan(kStart, std::vector{mjarm::joint_vec(kGoal)});
   if (!path) return std::printf("%s: %s\n", what, path.error().what.c_str()), false;

@@ -12,7 +12,8 @@ namespace mjarm::app {
 namespace {
 
 /// Steps up by one problem at each time that a valid path took.
-render::PlotLine share_over_time(const render::PlotLine& style, std::vector<double> us, std::size_t problems) {
+render::PlotLine share_over_time(const render::PlotLine& style, std::vector<double> us,
+                                 std::size_t problems) {
   render::PlotLine line = style;
   std::sort(us.begin(), us.end());
   for (std::size_t i = 0; i < us.size(); ++i) {
@@ -34,8 +35,8 @@ std::vector<std::string> contestants(const PlanTable& table) {
 
 render::PlotPanel panel_of(const PlanTable& table) {
   render::PlotPanel panel{.title = table.set->name,
-                  .x_label = text(msg::bench_plan_time_axis),
-                  .y_label = text(msg::bench_plan_share_axis)};
+                          .x_label = text(msg::bench_plan_time_axis),
+                          .y_label = text(msg::bench_plan_share_axis)};
   panel.y_range = render::PlotRange{0, 100};
   int color = 0;
   for (const std::string& who : contestants(table)) {
@@ -57,7 +58,7 @@ render::PlotPanel panel_of(const PlanTable& table) {
 /// log10 of `value` of each crowd over log10 of its size: one line for boxes, one for points.
 template <class Value>
 render::PlotPanel panel_over_crowds(const std::vector<CrowdedSet>& crowds, Msg title, Msg axis,
-                            const Value& value) {
+                                    const Value& value) {
   render::PlotPanel panel{
       .title = text(title), .x_label = text(msg::bench_plan_count_axis), .y_label = text(axis)};
   render::PlotLine boxes{.label = text(msg::bench_plan_boxes)};

@@ -30,7 +30,7 @@ Result<PlanSet> load_plan_set(const fs::path& folder, const std::string& name) {
   }
   Result<ProblemFile> content = read_problem_file(file.string());
   if (!content) return fail(std::move(content.error()));
-  Result<FastRobot> robot = FastRobot::make(content->arm, content->spheres);
+  Result<FastRobot> robot = FastRobot::create(content->arm, content->spheres);
   if (!robot) return fail(std::move(robot.error()));
   PlanSet set{name, file, content->arm, content->spheres, std::move(*robot), {}};
   for (PlanProblem& problem : content->problems) {

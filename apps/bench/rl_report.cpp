@@ -120,11 +120,11 @@ BenchEntry entry_of(const Seeds& seeds, bool timing) {
 }
 
 /// One panel: the share within the distance of a mark, on one set.
-render::PlotPanel panel_of(const std::vector<LearningRun>& runs, const std::string& set, const Mark& mark,
-                   bool timing) {
+render::PlotPanel panel_of(const std::vector<LearningRun>& runs, const std::string& set,
+                           const Mark& mark, bool timing) {
   render::PlotPanel panel{.title = text(msg::bench_rl_panel, set, 1e3 * mark.distance),
-                  .x_label = text(timing ? msg::bench_rl_seconds : msg::bench_rl_steps),
-                  .y_label = text(msg::bench_rl_goals)};
+                          .x_label = text(timing ? msg::bench_rl_seconds : msg::bench_rl_steps),
+                          .y_label = text(msg::bench_rl_goals)};
   panel.y_range = render::PlotRange{0, 100};
   std::map<std::string, int> colors;
   for (const LearningRun& run : runs) {

@@ -118,7 +118,7 @@ TEST(ContactRules, TheCoverHoldsTheBodyToo) {
   EXPECT_EQ(stands(cover), 0);
   EXPECT_GT(cover.spheres.size(), without.spheres.size());
   const FastChecker fast =
-      FastChecker::make(FastRobot::make(crane.arm, cover.spheres).value(), cover.scene).value();
+      FastChecker::create(FastRobot::create(crane.arm, cover.spheres).value(), cover.scene).value();
   ExactChecker exact(crane.model, crane.arm, {.rules = attached_bar()});
   Rng rng(5);
   int free = 0;
@@ -146,7 +146,7 @@ TEST(ContactRules, PairsThatMayTouchDoNotCount) {
   };
   const auto fast_free = [&] {
     const ModelCover cover = cover_model(crane.model, crane.arm, {.rules = rules}).value();
-    return FastChecker::make(FastRobot::make(crane.arm, cover.spheres).value(), cover.scene)
+    return FastChecker::create(FastRobot::create(crane.arm, cover.spheres).value(), cover.scene)
         .value()
         .is_free(q);
   };

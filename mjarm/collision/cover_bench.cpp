@@ -38,7 +38,7 @@ void cover_check_random_states(benchmark::State& state) {
   const CoveredRobot robot(state.range(0));
   const ModelCover cover = cover_model(robot.model, robot.arm).value();
   const FastChecker checker =
-      FastChecker::make(FastRobot::make(robot.arm, cover.spheres).value(), cover.scene).value();
+      FastChecker::create(FastRobot::create(robot.arm, cover.spheres).value(), cover.scene).value();
   Rng rng(1);
   std::vector<double> rows;
   for (int k = 0; k < 4096; ++k) {

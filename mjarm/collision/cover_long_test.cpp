@@ -55,9 +55,9 @@ void compare_with_exact(const CoveredRobot& robot, int states, std::uint64_t see
                         CoverTally& tally, const CoverOptions& options = {}) {
   const auto cover = cover_model(robot.model, robot.arm, options);
   ASSERT_TRUE(cover.has_value()) << cover.error().what;
-  const auto fast = FastRobot::make(robot.arm, cover->spheres);
+  const auto fast = FastRobot::create(robot.arm, cover->spheres);
   ASSERT_TRUE(fast.has_value()) << fast.error().what;
-  const auto checker = FastChecker::make(*fast, cover->scene);
+  const auto checker = FastChecker::create(*fast, cover->scene);
   ASSERT_TRUE(checker.has_value()) << checker.error().what;
   const double reach = 2 * (cover->bound + fast->padding()) + 1e-4;
   ExactChecker exact(robot.model, robot.arm, {.margin = reach});

@@ -18,7 +18,7 @@ struct OneSlide {
   SphereSet set;
   OneSlide() { set.links = {{"ball", 0, {{Eigen::Vector3d::Zero(), 0.1}}}}; }
   [[nodiscard]] FastChecker with(const Obstacles& world, SimdLevel level = simd_level()) const {
-    return FastChecker::make(FastRobot::make(arm, set).value(), world, level).value();
+    return FastChecker::create(FastRobot::create(arm, set).value(), world, level).value();
   }
 };
 
@@ -77,14 +77,14 @@ TEST(DegenerateObstacles, OneSolidManyTimesIsOneSolid) {
   for (int round = 0; round < 20; ++round) {
     const Arm arm = testing::random_arm(2 + round % 6, rng);
     const SphereSet set = testing::random_spheres(arm, rng);
-    const FastRobot robot = FastRobot::make(arm, set).value();
+    const FastRobot robot = FastRobot::create(arm, set).value();
     const Obstacles one = testing::random_world(rng, 1);
     Obstacles many;  // enough of them stand in a tree instead of in lists
     for (int k = 0; k < 150; ++k) many.solids.push_back(one.solids.front());
     const std::vector<double> rows = random_rows(arm, rng, 50);
     std::vector<SphereClearance> of_one(50), of_many(50);
-    FastChecker::make(robot, one).value().clearances(rows, of_one);
-    FastChecker::make(robot, many).value().clearances(rows, of_many);
+    FastChecker::create(robot, one).value().clearances(rows, of_one);
+    FastChecker::create(robot, many).value().clearances(rows, of_many);
     for (std::size_t k = 0; k < 50; ++k) {
       if (of_one[k].distance < 1e-3 && of_many[k].distance < 1e-3) continue;
       EXPECT_NEAR(of_one[k].distance, of_many[k].distance, 1e-4);

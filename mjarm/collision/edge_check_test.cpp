@@ -56,8 +56,8 @@ TEST(CheckEdge, NoFalseCertificateAmongPlatesAndWires) {
       for (Sphere& sphere : link.spheres) sphere.radius *= 0.3;
     }
     const Obstacles world = testing::random_world(rng, 5, true);
-    const auto robot = FastRobot::make(arm, set).value();
-    const auto checker = FastChecker::make(robot, world, kEdgeLevels[round % 3]).value();
+    const auto robot = FastRobot::create(arm, set).value();
+    const auto checker = FastChecker::create(robot, world, kEdgeLevels[round % 3]).value();
     if (checker.fixed_overlap()) continue;
     for (int k = 0; k < 40; ++k) {
       const JointVec q0 = testing::random_q(arm, rng);
@@ -75,11 +75,11 @@ TEST(CheckEdge, CertificatesCoverTheEdge) {
   Rng rng(22);
   const Arm arm = testing::panda();
   const SphereSet set = testing::random_spheres(arm, rng);
-  const auto robot = FastRobot::make(arm, set).value();
+  const auto robot = FastRobot::create(arm, set).value();
   int proved = 0;
   for (int round = 0; round < 300; ++round) {
     const Obstacles world = testing::random_world(rng, 3);
-    const auto checker = FastChecker::make(robot, world, kEdgeLevels[round % 3]).value();
+    const auto checker = FastChecker::create(robot, world, kEdgeLevels[round % 3]).value();
     const JointVec q0 = testing::random_q(arm, rng);
     const JointVec q1 = testing::random_q(arm, rng);
     const auto proof = certify_edge(checker, as_span(q0), as_span(q1));
@@ -110,7 +110,7 @@ TEST(CheckEdge, EndsOutsideOfTheLimitsAndEdgesOfNoLength) {
   const Arm arm = testing::panda();
   SphereSet set;
   set.links = {{"hand", 6, {{Eigen::Vector3d::Zero(), 0.05}}}};
-  const auto checker = FastChecker::make(FastRobot::make(arm, set).value(), {}).value();
+  const auto checker = FastChecker::create(FastRobot::create(arm, set).value(), {}).value();
   const JointVec home = arm.home;
   JointVec out = home;
   out[1] = arm.limits.upper[1] + 0.01;
@@ -126,13 +126,13 @@ TEST(CheckEdge, EndsOutsideOfTheLimitsAndEdgesOfNoLength) {
 TEST(CheckEdge, PublicProblemsAgreeWithDenseSamples) {
   MJARM_TEST_FILE(file, "motionbenchmaker/mbm_panda_public.json.gz");
   const testing::PlanningProblems all = testing::read_problems(file);
-  const auto robot = FastRobot::make(all.arm, all.set).value();
+  const auto robot = FastRobot::create(all.arm, all.set).value();
   Rng rng(23);
   EdgeTally tally;
   for (std::size_t i = 0; i < all.problems.size(); i += 5) {
     const testing::PlanningProblem& problem = all.problems[i];
     const auto checker =
-        FastChecker::make(robot, problem.obstacles, kEdgeLevels[i / 5 % 3]).value();
+        FastChecker::create(robot, problem.obstacles, kEdgeLevels[i / 5 % 3]).value();
     compare_edge(checker, problem.obstacles, problem.start, problem.goals.front(), tally);
     for (int k = 0; k < 3; ++k) {
       const JointVec q1 = testing::random_q(all.arm, rng);

@@ -37,7 +37,7 @@ TEST(FastApart, NeverFreeWhereWristsCollide) {
   for (int i = 0; i < testing::rounds(40, 2000); ++i) {
     const Arm arm = i % 2 == 0 ? testing::panda() : testing::ur5e();
     const SphereSet set = random_wrist(arm, rng);
-    tables += static_cast<int>(detail::FastAccess::data(*FastRobot::make(arm, set)).apart.size());
+    tables += static_cast<int>(detail::FastAccess::data(*FastRobot::create(arm, set)).apart.size());
     testing::compare(arm, set, {}, testing::kLevels[static_cast<std::size_t>(i) % 3], rng, 300,
                      tally);
   }
@@ -52,7 +52,7 @@ TEST(FastApart, ProvedEdgesOfWristsAreFree) {
   for (int i = 0; i < testing::rounds(200, 5000); ++i) {
     const Arm arm = i % 2 == 0 ? testing::panda() : testing::ur5e();
     const SphereSet set = random_wrist(arm, rng);
-    const auto checker = FastChecker::make(FastRobot::make(arm, set).value(), {}).value();
+    const auto checker = FastChecker::create(FastRobot::create(arm, set).value(), {}).value();
     for (int k = 0; k < 60; ++k) {
       const JointVec a = testing::random_q(arm, rng);
       const JointVec b = a + rng.uniform(0.05, 0.5) * (testing::random_q(arm, rng) - a);

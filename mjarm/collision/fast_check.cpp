@@ -81,8 +81,8 @@ FastChecker::FastChecker(FastRobot robot, const Obstacles& obstacles, SimdLevel 
       kernels_(&fast_kernels(level)),
       fixed_overlap_(find_fixed_overlap(robot_.spheres(), obstacles)) {}
 
-Result<FastChecker> FastChecker::make(FastRobot robot, const Obstacles& obstacles,
-                                      SimdLevel level) {
+Result<FastChecker> FastChecker::create(FastRobot robot, const Obstacles& obstacles,
+                                        SimdLevel level) {
   if (const Result<void> fine =
           check_obstacles(obstacles, static_cast<int>(robot.spheres().links.size()));
       !fine) {

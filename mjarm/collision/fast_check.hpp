@@ -42,8 +42,8 @@ class FastChecker {
   /// Takes the obstacles apart; they are not needed afterwards.
   /// @param level  instructions to use; more than this machine has are not taken.
   /// @return check_obstacles()'s error.
-  [[nodiscard]] static Result<FastChecker> make(FastRobot robot, const Obstacles& obstacles,
-                                                SimdLevel level = simd_level());
+  [[nodiscard]] static Result<FastChecker> create(FastRobot robot, const Obstacles& obstacles,
+                                                  SimdLevel level = simd_level());
 
   /// Whether each configuration is free; one outside of the limits (by more than 2e-4) or with a
   /// number that is not finite is not.

@@ -47,14 +47,14 @@ std::vector<Scene> scenes(benchmark::State& state) {
     return {};
   }
   const testing::PlanningProblems all = testing::read_problems(*file);
-  const FastRobot robot = FastRobot::make(all.arm, all.set).value();
+  const FastRobot robot = FastRobot::create(all.arm, all.set).value();
   const auto level = static_cast<SimdLevel>(state.range(0));
   Rng rng(1);
   std::vector<Scene> out;
   for (std::size_t i = 0; i < all.problems.size(); i += kEvery) {
     const Obstacles& obstacles = all.problems[i].obstacles;
     out.push_back(
-        {FastChecker::make(robot, obstacles, level).value(), obstacles.solids, {}, {}, {}});
+        {FastChecker::create(robot, obstacles, level).value(), obstacles.solids, {}, {}, {}});
     for (std::size_t k = 0; k < kStates; ++k) {
       add_row(testing::random_q(all.arm, rng), out.back().random);
     }
@@ -221,10 +221,10 @@ void fast_check_make(benchmark::State& state) {
     return;
   }
   const testing::PlanningProblems all = testing::read_problems(*file);
-  const FastRobot robot = FastRobot::make(all.arm, all.set).value();
+  const FastRobot robot = FastRobot::create(all.arm, all.set).value();
   std::size_t i = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(FastChecker::make(robot, all.problems[i].obstacles));
+    benchmark::DoNotOptimize(FastChecker::create(robot, all.problems[i].obstacles));
     i = (i + 1) % all.problems.size();
   }
 }

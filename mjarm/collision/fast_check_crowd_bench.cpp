@@ -48,7 +48,7 @@ const FastRobot* bench_robot(benchmark::State& state) {
     const auto file = support::test_data_file("motionbenchmaker/mbm_panda_public.json.gz");
     if (!file) return static_cast<FastRobot*>(nullptr);
     const testing::PlanningProblems all = testing::read_problems(*file);
-    return new FastRobot(FastRobot::make(all.arm, all.set).value());
+    return new FastRobot(FastRobot::create(all.arm, all.set).value());
   }();
   if (robot == nullptr) state.SkipWithError("MJARM_TEST_DATA is not set");
   return robot;
@@ -78,7 +78,7 @@ void check_states(benchmark::State& state, Obstacles (*world)(Rng&, int)) {
   std::vector<FastChecker> checkers;
   for (int k = 0; k < 4; ++k) {
     checkers.push_back(
-        FastChecker::make(*robot, world(rng, static_cast<int>(state.range(0)))).value());
+        FastChecker::create(*robot, world(rng, static_cast<int>(state.range(0)))).value());
   }
   const std::vector<double> rows = states_of(robot->arm(), rng);
   std::vector<std::uint8_t> free(rows.size() / 7);
@@ -105,7 +105,7 @@ void make_checker(benchmark::State& state, Obstacles (*world)(Rng&, int)) {
   if (robot == nullptr) return;
   Rng rng(4);
   const Obstacles obstacles = world(rng, static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(FastChecker::make(*robot, obstacles));
+  for (auto _ : state) benchmark::DoNotOptimize(FastChecker::create(*robot, obstacles));
 }
 
 void fast_check_make_boxes(benchmark::State& state) { make_checker(state, boxes_round); }

@@ -39,10 +39,10 @@ TEST(FastChecker, AllAreFreeWhereEachIs) {
   int free_lists = 0, blocked_lists = 0;
   for (int round = 0; round < 300; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
-    const FastRobot robot = FastRobot::make(arm, testing::random_spheres(arm, rng)).value();
+    const FastRobot robot = FastRobot::create(arm, testing::random_spheres(arm, rng)).value();
     const Obstacles world = testing::random_world(rng, static_cast<int>(rng.below(4)));
     for (const SimdLevel level : kLevels) {
-      const FastChecker checker = FastChecker::make(robot, world, level).value();
+      const FastChecker checker = FastChecker::create(robot, world, level).value();
       for (int i = 0; i < 20; ++i) {
         const int count = static_cast<int>(rng.below(40));
         const std::vector<double> q = random_rows(arm, rng, count);
@@ -86,11 +86,12 @@ TEST(FastChecker, WhatIsAskedDoesNotDependOnNeighboursOrRuns) {
   const Arm arm = testing::panda();
   const SphereSet set = testing::random_spheres(arm, rng);
   const Obstacles world = testing::random_world(rng, 8);
-  const auto robot = FastRobot::make(arm, set).value();
+  const auto robot = FastRobot::create(arm, set).value();
   const std::vector<double> rows = random_rows(arm, rng, 333);
   for (const SimdLevel level : kLevels) {
-    const auto checker = FastChecker::make(robot, world, level).value();
-    const auto again = FastChecker::make(FastRobot::make(arm, set).value(), world, level).value();
+    const auto checker = FastChecker::create(robot, world, level).value();
+    const auto again =
+        FastChecker::create(FastRobot::create(arm, set).value(), world, level).value();
     std::vector<std::uint8_t> free(333), once(333);
     checker.check(rows, free);
     again.check(rows, once);
@@ -111,9 +112,9 @@ TEST(FastChecker, NearestPairIsNamed) {
   const SphereSet set = testing::random_spheres(arm, rng);
   const Obstacles world = testing::random_world(rng, 12);
   const std::vector<double> rows = random_rows(arm, rng, 500);
-  const auto robot = FastRobot::make(arm, set).value();
+  const auto robot = FastRobot::create(arm, set).value();
   for (const SimdLevel level : kLevels) {
-    const auto checker = FastChecker::make(robot, world, level).value();
+    const auto checker = FastChecker::create(robot, world, level).value();
     for (std::size_t i = 0; i < 500; ++i) {
       const std::span<const double> q(&rows[7 * i], 7);
       const SphereClearance found = checker.clearance(q);
@@ -140,7 +141,7 @@ TEST(FastChecker, LimitsAndNumbers) {
   const Arm arm = testing::panda();
   SphereSet set;
   set.links = {{"hand", 6, {{Eigen::Vector3d::Zero(), 0.05}}}};
-  const auto checker = FastChecker::make(FastRobot::make(arm, set).value(), {}).value();
+  const auto checker = FastChecker::create(FastRobot::create(arm, set).value(), {}).value();
   std::vector<double> q(arm.home.data(), arm.home.data() + 7);
   EXPECT_TRUE(checker.is_free(q));
   q[3] = arm.limits.upper[3] + 1e-4;
@@ -160,7 +161,7 @@ TEST(FastChecker, PieceAtRestInAnObstacle) {
   Obstacles world;
   world.solids = {{"far", {{5, 5, 5}, Eigen::Matrix3d::Identity()}, BallShape{0.1}},
                   {"table", {{0, 0, -0.2}, Eigen::Matrix3d::Identity()}, BoxShape{{1, 1, 0.18}}}};
-  const auto checker = FastChecker::make(FastRobot::make(arm, set).value(), world).value();
+  const auto checker = FastChecker::create(FastRobot::create(arm, set).value(), world).value();
   ASSERT_TRUE(checker.fixed_overlap().has_value());
   EXPECT_EQ(checker.fixed_overlap()->link, 0);
   EXPECT_EQ(checker.fixed_overlap()->obstacle, 1);
@@ -170,10 +171,10 @@ TEST(FastChecker, PieceAtRestInAnObstacle) {
 /// Starts and goals of the public problems are what their file says.
 void check_problem_states(const std::filesystem::path& file, int expected_valid) {
   const testing::PlanningProblems all = testing::read_problems(file);
-  const auto robot = FastRobot::make(all.arm, all.set).value();
+  const auto robot = FastRobot::create(all.arm, all.set).value();
   int valid = 0;
   for (const testing::PlanningProblem& problem : all.problems) {
-    const auto checker = FastChecker::make(robot, problem.obstacles).value();
+    const auto checker = FastChecker::create(robot, problem.obstacles).value();
     EXPECT_EQ(checker.is_free(problem.start), problem.start_free) << problem.id;
     for (std::size_t i = 0; i < problem.goals.size(); ++i) {
       EXPECT_EQ(checker.is_free(problem.goals[i]), problem.goals_free[i]) << problem.id;
@@ -212,9 +213,9 @@ TEST(FastRobot, WhatItRefuses) {
   Arm arm = testing::panda();
   SphereSet set;
   set.links = {{"hand", 6, {{Eigen::Vector3d::Zero(), 0.05}}}};
-  EXPECT_TRUE(FastRobot::make(arm, set).has_value());
+  EXPECT_TRUE(FastRobot::create(arm, set).has_value());
   arm.joints.clear();
-  EXPECT_EQ(FastRobot::make(arm, set).error().code, Errc::bad_input);
+  EXPECT_EQ(FastRobot::create(arm, set).error().code, Errc::bad_input);
 }
 
 }  // namespace

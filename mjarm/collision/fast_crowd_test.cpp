@@ -76,8 +76,8 @@ TEST(FastCrowd, NothingIsFreeInsideOfASolidMesh) {
     Obstacles world;
     world.solids = {{"mesh", {}, testing::random_closed_mesh(rng, round % 2 == 0 ? 1 : 3)}};
     world.solids[0].X_WO.p = testing::random_vector(rng, 0.5);
-    const auto robot = FastRobot::make(arm, set).value();
-    const auto checker = FastChecker::make(robot, world, kLevels[round % 3]).value();
+    const auto robot = FastRobot::create(arm, set).value();
+    const auto checker = FastChecker::create(robot, world, kLevels[round % 3]).value();
     const double thick = round % 2 == 0 ? 0.03 : 0.09;
     for (int k = 0; k < 500; ++k) {
       const JointVec q = testing::random_q(arm, rng);
@@ -107,8 +107,8 @@ TEST(FastCrowd, NoFalseCertificateOfEdges) {
     const Obstacles world = round % 3 == 0   ? crowded_world(rng, 70, 0, 0)
                             : round % 3 == 1 ? crowded_world(rng, 0, 1, 60)
                                              : composite_world(rng, 1);
-    const auto robot = FastRobot::make(arm, set).value();
-    const auto checker = FastChecker::make(robot, world, kLevels[round % 3]).value();
+    const auto robot = FastRobot::create(arm, set).value();
+    const auto checker = FastChecker::create(robot, world, kLevels[round % 3]).value();
     if (checker.fixed_overlap()) continue;
     for (int k = 0; k < 20; ++k) {
       const JointVec q0 = testing::random_q(arm, rng);
@@ -136,10 +136,10 @@ TEST(FastCrowd, NearestObstacleIsNamed) {
   const Arm arm = testing::panda();
   SphereSet set = testing::random_spheres(arm, rng);
   set.pairs.clear();
-  const auto robot = FastRobot::make(arm, set).value();
+  const auto robot = FastRobot::create(arm, set).value();
   for (int round = 0; round < 12; ++round) {
     const Obstacles world = crowded_world(rng, round % 3 == 0 ? 3 : 100, 2, 200);
-    const auto checker = FastChecker::make(robot, world, kLevels[round % 3]).value();
+    const auto checker = FastChecker::create(robot, world, kLevels[round % 3]).value();
     for (int i = 0; i < 40; ++i) {
       const JointVec q = testing::random_q(arm, rng);
       const SphereClearance found = checker.clearance(as_span(q));
@@ -163,7 +163,7 @@ TEST(FastCrowd, PointsInOnePlaceOrFarAway) {
   Rng rng(54);
   const Arm arm = testing::panda();
   const SphereSet set = testing::random_spheres(arm, rng);
-  const auto robot = FastRobot::make(arm, set).value();
+  const auto robot = FastRobot::create(arm, set).value();
   const Eigen::Vector3d far(9e3, -9e3, 9e3);
   for (int kind = 0; kind < 4; ++kind) {
     Obstacles world;
@@ -174,7 +174,7 @@ TEST(FastCrowd, PointsInOnePlaceOrFarAway) {
       if (kind == 2 && i % 2 == 0) points[i] = far;
     }
     if (kind == 3) points.clear();
-    const auto checker = FastChecker::make(robot, world).value();
+    const auto checker = FastChecker::create(robot, world).value();
     Obstacles few = world;
     if (kind == 0 || kind == 2) few.clouds[0].points_W = {{0.5, 0.2, 0.4}, far};
     for (int i = 0; i < (kind == 1 ? 5 : 200); ++i) {
@@ -193,7 +193,7 @@ TEST(FastCrowd, PieceAtRestInACloud) {
   Obstacles world;
   world.solids = {{"far", {{5, 5, 5}, Eigen::Matrix3d::Identity()}, BallShape{0.1}}};
   world.clouds = {{"away", {{3, 3, 3}}, 0.1}, {"floor", {{3, 3, 3}, {0, 0.1, 0}}, 0.05}};
-  const auto checker = FastChecker::make(FastRobot::make(arm, set).value(), world).value();
+  const auto checker = FastChecker::create(FastRobot::create(arm, set).value(), world).value();
   ASSERT_TRUE(checker.fixed_overlap().has_value());
   EXPECT_EQ(checker.fixed_overlap()->obstacle, 2);
   EXPECT_EQ(obstacle_name(world, checker.fixed_overlap()->obstacle), "floor");

@@ -42,8 +42,8 @@ TEST(IgnoredPairs, AreLeftOutOfEveryCheck) {
         }
       }
     }
-    const FastRobot robot = FastRobot::make(arm, set).value();
-    const FastChecker checker = FastChecker::make(robot, world).value();
+    const FastRobot robot = FastRobot::create(arm, set).value();
+    const FastChecker checker = FastChecker::create(robot, world).value();
     EXPECT_FALSE(checker.fixed_overlap().has_value());
     const double padding = 2 * robot.padding();
     for (int k = 0; k < 100; ++k) {

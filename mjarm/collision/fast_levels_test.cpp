@@ -35,10 +35,10 @@ LevelScene level_scene(Rng& rng, int round) {
 }
 
 std::vector<FastChecker> checkers_of(const LevelScene& scene) {
-  const FastRobot robot = FastRobot::make(scene.arm, scene.set).value();
+  const FastRobot robot = FastRobot::create(scene.arm, scene.set).value();
   std::vector<FastChecker> out;
   for (const SimdLevel level : kLevels) {
-    out.push_back(FastChecker::make(robot, scene.world, level).value());
+    out.push_back(FastChecker::create(robot, scene.world, level).value());
   }
   return out;
 }

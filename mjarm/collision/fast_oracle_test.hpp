@@ -35,9 +35,9 @@ struct Slack {
 /// Holds the answers of one level for random configurations against the oracle.
 inline void compare(const Arm& arm, const SphereSet& set, const Obstacles& world, SimdLevel level,
                     Rng& rng, int count, Tally& tally, const Slack& slack = {}) {
-  const auto robot = FastRobot::make(arm, set);
+  const auto robot = FastRobot::create(arm, set);
   ASSERT_TRUE(robot.has_value()) << robot.error().what;
-  const auto checker = FastChecker::make(*robot, world, level);
+  const auto checker = FastChecker::create(*robot, world, level);
   ASSERT_TRUE(checker.has_value()) << checker.error().what;
   EXPECT_LT(robot->padding(), 4e-4);
   const auto dof = static_cast<std::size_t>(arm.dof());

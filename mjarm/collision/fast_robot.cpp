@@ -206,7 +206,7 @@ std::vector<std::vector<Sphere>> spheres_in_bodies(const SphereSet& set, const A
 
 }  // namespace detail
 
-Result<FastRobot> FastRobot::make(const Arm& arm, const SphereSet& set) {
+Result<FastRobot> FastRobot::create(const Arm& arm, const SphereSet& set) {
   const Chain chain(arm);
   if (chain.dof == 0) {
     return fail(Errc::bad_input, text(msg::collision_arm_joints, arm.dof(), kMaxDof));

@@ -19,7 +19,7 @@ class FastRobot {
  public:
   /// A joint without stops is taken within two turns (a slide: 10 m) to either side.
   /// @return check_sphere_set()'s error; bad_input for an arm without joints or with too many.
-  [[nodiscard]] static Result<FastRobot> make(const Arm& arm, const SphereSet& set);
+  [[nodiscard]] static Result<FastRobot> create(const Arm& arm, const SphereSet& set);
 
   [[nodiscard]] int dof() const noexcept;
   [[nodiscard]] const Arm& arm() const noexcept;

@@ -123,8 +123,8 @@ TEST(VerifyEdge, AgreesWithDenseSamplesInCrowds) {
     Scene scene = random_scene(2 + round % 6, 1, true, rng);
     for (int k = 0; k < 2; ++k) scene.world.solids.push_back(testing::random_composite(rng));
     scene.world.clouds = {testing::random_cloud(rng, 50, 0.002)};
-    const auto robot = FastRobot::make(scene.arm, scene.set).value();
-    const auto checker = FastChecker::make(robot, scene.world).value();
+    const auto robot = FastRobot::create(scene.arm, scene.set).value();
+    const auto checker = FastChecker::create(robot, scene.world).value();
     for (int k = 0; k < 5; ++k) {
       const JointVec q0 = testing::random_q(scene.arm, rng);
       const JointVec q1 = q0 + rng.uniform(0, 0.5) * (testing::random_q(scene.arm, rng) - q0);
@@ -150,8 +150,8 @@ TEST(VerifyEdge, ProvesEveryCertifiedEdgeAmongPlatesAndWires) {
   int certified = 0;
   for (int round = 0; certified < wanted; ++round) {
     const Scene scene = random_scene(2 + round % 6, 5, true, rng);
-    const auto robot = FastRobot::make(scene.arm, scene.set).value();
-    const auto checker = FastChecker::make(robot, scene.world, kVerifyLevels[round % 3]).value();
+    const auto robot = FastRobot::create(scene.arm, scene.set).value();
+    const auto checker = FastChecker::create(robot, scene.world, kVerifyLevels[round % 3]).value();
     if (checker.fixed_overlap()) continue;
     for (int k = 0; k < 20; ++k) {
       const JointVec q0 = testing::random_q(scene.arm, rng);
@@ -173,13 +173,13 @@ TEST(VerifyEdge, ProvesEveryCertifiedEdgeAmongPlatesAndWires) {
 TEST(VerifyEdge, ProvesCertifiedEdgesOfThePublicProblems) {
   MJARM_TEST_FILE(file, "motionbenchmaker/mbm_panda_public.json.gz");
   const testing::PlanningProblems all = testing::read_problems(file);
-  const auto robot = FastRobot::make(all.arm, all.set).value();
+  const auto robot = FastRobot::create(all.arm, all.set).value();
   Rng rng(43);
   int certified = 0;
   const std::size_t stride = static_cast<std::size_t>(testing::rounds(7, 1));
   for (std::size_t i = 0; i < all.problems.size(); i += stride) {
     const testing::PlanningProblem& problem = all.problems[i];
-    const auto checker = FastChecker::make(robot, problem.obstacles).value();
+    const auto checker = FastChecker::create(robot, problem.obstacles).value();
     for (int k = 0; k < 8; ++k) {
       const JointVec q0 = joint_vec(problem.start);
       const JointVec q1 = q0 + rng.uniform(0.05, 1) * (testing::random_q(all.arm, rng) - q0);

@@ -175,8 +175,8 @@ Controller::~Controller() = default;
 Controller::Controller(Controller&&) noexcept = default;
 Controller& Controller::operator=(Controller&&) noexcept = default;
 
-Result<Controller> Controller::make(const Model& model, const Arm& arm, ControlMode mode,
-                                    const ControlOptions& options) {
+Result<Controller> Controller::create(const Model& model, const Arm& arm, ControlMode mode,
+                                      const ControlOptions& options) {
   for (const ArmJoint& joint : arm.joints) {
     if (const auto usable = check_joint(arm, joint, mode); !usable) return fail(usable.error());
   }

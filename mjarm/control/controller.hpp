@@ -41,8 +41,9 @@ struct ControlOptions {
 class Controller {
  public:
   /// @return an error that names the joint whose actuator cannot be used this way.
-  [[nodiscard]] static Result<Controller> make(const Model& model, const Arm& arm, ControlMode mode,
-                                               const ControlOptions& options = {});
+  [[nodiscard]] static Result<Controller> create(const Model& model, const Arm& arm,
+                                                 ControlMode mode,
+                                                 const ControlOptions& options = {});
   ~Controller();
   Controller(Controller&&) noexcept;
   Controller& operator=(Controller&&) noexcept;

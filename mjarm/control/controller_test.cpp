@@ -133,21 +133,21 @@ TEST(Controller, KeepsCtrlWithinItsRangeAndLeavesOthersAlone) {
 
 TEST(Controller, NamesTheJointThatCannotBeControlled) {
   const Loaded robot = load_text(odd_arm("integrator=\"Euler\""));
-  const auto servo = Controller::make(robot.model, robot.arm, ControlMode::servo);
+  const auto servo = Controller::create(robot.model, robot.arm, ControlMode::servo);
   ASSERT_FALSE(servo);
   EXPECT_THAT(servo.error().what, HasSubstr("\"third\""));
   EXPECT_THAT(servo.error().what, HasSubstr("computed_torque"));
 
   Arm arm = robot.arm;
   arm.joints[1].actuator.reset();
-  const auto bare = Controller::make(robot.model, arm, ControlMode::computed_torque);
+  const auto bare = Controller::create(robot.model, arm, ControlMode::computed_torque);
   ASSERT_FALSE(bare);
   EXPECT_THAT(bare.error().what, HasSubstr("\"second\""));
   EXPECT_THAT(bare.error().what, HasSubstr("<position"));
 
   arm = robot.arm;
   arm.joints[0].actuator->gain = 0;
-  const auto dead = Controller::make(robot.model, arm, ControlMode::computed_torque);
+  const auto dead = Controller::create(robot.model, arm, ControlMode::computed_torque);
   ASSERT_FALSE(dead);
   EXPECT_THAT(dead.error().what, HasSubstr("\"first\""));
 }
@@ -155,8 +155,8 @@ TEST(Controller, NamesTheJointThatCannotBeControlled) {
 TEST(Controller, RefusesFeedbackThatIsUnstableAtTheTimeStep) {
   const Loaded robot = load_shipped("ur5e");
   const auto make_with = [&](double stiffness, double damping) {
-    return Controller::make(robot.model, robot.arm, ControlMode::computed_torque,
-                            {.stiffness = stiffness, .damping = damping});
+    return Controller::create(robot.model, robot.arm, ControlMode::computed_torque,
+                              {.stiffness = stiffness, .damping = damping});
   };
   EXPECT_TRUE(make_with(900, 60));
   EXPECT_TRUE(make_with(1, 990));

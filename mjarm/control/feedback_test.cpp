@@ -118,7 +118,7 @@ TEST(Integral, LoopsAreRefusedExactlyWhereTheyAreUnstable) {
     const double radius = spectral_radius(options, h);
     if (std::abs(radius - 1) < 1e-9) continue;
     const auto controller =
-        Controller::make(robot.model, robot.arm, ControlMode::computed_torque, options);
+        Controller::create(robot.model, robot.arm, ControlMode::computed_torque, options);
     EXPECT_EQ(controller.has_value(), radius < 1)
         << radius << ": " << options.stiffness << ' ' << options.damping << ' ' << options.integral;
     ++(radius < 1 ? stable : unstable);
@@ -212,8 +212,8 @@ TEST(ToolImpedance, MovesJointsToSpareWithTheToolAtRest) {
 TEST(Impedance, RefusesSpringsThatAreNone) {
   const Loaded robot = load_shipped("ur5e");
   const auto refused = [&](const Impedance& impedance) {
-    const auto made = Controller::make(robot.model, robot.arm, ControlMode::tool_impedance,
-                                       {.impedance = impedance});
+    const auto made = Controller::create(robot.model, robot.arm, ControlMode::tool_impedance,
+                                         {.impedance = impedance});
     return made ? std::string() : made.error().what;
   };
   EXPECT_EQ(refused({}), "");

@@ -40,7 +40,7 @@ inline Loaded load_shipped(const std::string& name) {
 
 inline Controller controller_of(const Loaded& robot, ControlMode mode,
                                 const ControlOptions& options = {}) {
-  auto controller = Controller::make(robot.model, robot.arm, mode, options);
+  auto controller = Controller::create(robot.model, robot.arm, mode, options);
   if (!controller) throw std::runtime_error(controller.error().what);
   return std::move(*controller);
 }

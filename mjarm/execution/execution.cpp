@@ -13,8 +13,8 @@ Execution::Execution(const Model& model, const MotionPlan& plan, Controller cont
       clock_(plan, model.timestep(), options.rest),
       recorder_(options.recorder) {}
 
-Result<Execution> Execution::make(const Model& model, const MotionPlan& plan,
-                                  const ExecutionOptions& options) {
+Result<Execution> Execution::create(const Model& model, const MotionPlan& plan,
+                                    const ExecutionOptions& options) {
   const Arm& arm = plan.arms.front();
   for (const PlannedMove& move : plan.moves) {
     const int dof = move.trajectory.dof();
@@ -25,7 +25,7 @@ Result<Execution> Execution::make(const Model& model, const MotionPlan& plan,
       return fail(Errc::not_available, text(msg::execution_no_gripper));
     }
   }
-  Result<Controller> controller = Controller::make(model, arm, options.control);
+  Result<Controller> controller = Controller::create(model, arm, options.control);
   if (!controller) return fail(std::move(controller.error()));
   return Execution(model, plan, std::move(*controller), options);
 }

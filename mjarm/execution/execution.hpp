@@ -42,8 +42,8 @@ class Execution {
   /// @param plan   outlives this.
   /// @return an error where the arm's actuators cannot do that control, a motion is not one of
   ///         this arm, or it has no gripper to close.
-  [[nodiscard]] static Result<Execution> make(const Model& model, const MotionPlan& plan,
-                                              const ExecutionOptions& options = {});
+  [[nodiscard]] static Result<Execution> create(const Model& model, const MotionPlan& plan,
+                                                const ExecutionOptions& options = {});
 
   /// To the end of all motions, of the current one, to rest, back to the start; step() does it.
   void run() { clock_.run(); }

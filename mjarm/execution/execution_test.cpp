@@ -29,7 +29,7 @@ struct World {
   }
   [[nodiscard]] Result<FollowOutcome> run(const MotionPlan& plan, const ExecutionOptions& options,
                                           const Execution::AfterStep& after_step = {}) {
-    return Execution::make(robot.model, plan, options).and_then([&](Execution&& execution) {
+    return Execution::create(robot.model, plan, options).and_then([&](Execution&& execution) {
       return execution.run_to_end(sim, after_step);
     });
   }
@@ -75,7 +75,7 @@ TEST(Execution, ServoSagsByMillimetresAndGravityFeedForwardMendsIt) {
 TEST(Execution, TellsEachMotionAndTheirSum) {
   World world(load_text(small_world()));
   const MotionPlan plan = there_and_half_back(world.robot.arm);
-  Execution execution = Execution::make(world.robot.model, plan, {.rest = 0.1}).value();
+  Execution execution = Execution::create(world.robot.model, plan, {.rest = 0.1}).value();
   const auto outcome = execution.run_to_end(world.sim);
   ASSERT_TRUE(outcome);
   EXPECT_EQ(execution.state(), State::done);
@@ -111,7 +111,7 @@ TEST(Execution, StepByStepIsTheSameAsAllAtOnceAndSoIsTheSecondTime) {
   const MotionPlan plan = there_and_half_back(robot.arm);
   World whole(robot), singly(robot);
   ASSERT_TRUE(whole.run(plan, {}));
-  Execution execution = Execution::make(robot.model, plan).value();
+  Execution execution = Execution::create(robot.model, plan).value();
   for (int time = 0; time < 2; ++time) {
     EXPECT_EQ(execution.state(), State::ready);
     for (std::size_t i = 0; i < plan.moves.size(); ++i) {
@@ -137,7 +137,7 @@ TEST(Execution, WithPausesItEndsWhereItEndsWithoutThem) {
   Rng rng(5);
   for (int trial = 0; trial < 10; ++trial) {
     World world(robot);
-    Execution execution = Execution::make(robot.model, plan).value();
+    Execution execution = Execution::create(robot.model, plan).value();
     execution.run();
     int stops = 0;
     double fastest = 0;
@@ -159,7 +159,7 @@ TEST(Execution, WithPausesItEndsWhereItEndsWithoutThem) {
 TEST(Execution, HoldsTheArmWhereItWasStopped) {
   World world(load_text(small_world()));
   const MotionPlan plan = there_and_half_back(world.robot.arm);
-  Execution execution = Execution::make(world.robot.model, plan).value();
+  Execution execution = Execution::create(world.robot.model, plan).value();
   execution.run();
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(execution.step(world.sim));
   execution.stop();
@@ -216,7 +216,7 @@ TEST(Execution, TheGripperKeepsWhatItWasToldUntilItIsToldAnew) {
                           .close = true});
     plan.moves.push_back({.trajectory = rest_to_rest(there.q, home, 0.2), .close = std::nullopt});
     world.sim.set_ctrl(gripper.id, 77);
-    Execution execution = Execution::make(world.robot.model, plan).value();
+    Execution execution = Execution::create(world.robot.model, plan).value();
     execution.run_one();
     while (execution.state() == State::running) ASSERT_TRUE(execution.step(world.sim));
     EXPECT_EQ(ctrl(), 77);

@@ -58,7 +58,7 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
   if (ended_early()) return {};
   q_command_ = plan.q_end();
   Result<Execution> execution =
-      Execution::make(model_, plan, {.control = mode, .rest = rest, .recorder = &recorder_});
+      Execution::create(model_, plan, {.control = mode, .rest = rest, .recorder = &recorder_});
   if (!execution) return fail(std::move(execution.error()));
   const Result<FollowOutcome> outcome = execution->run_to_end(sim_, [&](const Sim& sim) {
     const PlannedMove& move = plan.moves[execution->motions().back().move];
@@ -103,7 +103,7 @@ Result<void> MotionRun::wait_through(std::span<const JointVec> waypoints,
                                      const Curve* curve) {
   if (ended_early()) return {};
   if (!waypoints.empty()) q_command_ = waypoints.back();
-  Result<Controller> controller = Controller::make(model_, arm_, mode);
+  Result<Controller> controller = Controller::create(model_, arm_, mode);
   if (!controller) return fail(std::move(controller.error()));
   const FollowSetup setup{
       .sim = sim_,

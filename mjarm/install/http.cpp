@@ -12,9 +12,9 @@
 #include <string_view>
 #include <thread>
 
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 

@@ -6,14 +6,14 @@
 #include <system_error>
 #include <thread>
 
-#include "mjarm/install/mesh_store.hpp"
-#include "mjarm/install/package_index_internal.hpp"
-#include "mjarm/install/unpack_internal.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/install/mesh_store.hpp"
+#include "mjarm/install/package_index_internal.hpp"
+#include "mjarm/install/unpack_internal.hpp"
 
 namespace mjarm::install {
 namespace {

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string>
 
-#include "mjarm/install/index_settings.hpp"
-#include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/core/os_lock.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/install/index_settings.hpp"
+#include "mjarm/install/mesh_sets.hpp"
 
 namespace mjarm::install {
 

@@ -1,8 +1,8 @@
 #include "mjarm/install/installed.hpp"
 
-#include "mjarm/install/mesh_scene_internal.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/install/mesh_scene_internal.hpp"
 #include "mjarm/model/model.hpp"
 
 namespace mjarm::install {

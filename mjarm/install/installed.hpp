@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
+#include "mjarm/core/result.hpp"
 #include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/install/mesh_store.hpp"
-#include "mjarm/core/result.hpp"
 
 namespace mjarm::install {
 

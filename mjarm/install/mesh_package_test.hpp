@@ -5,9 +5,9 @@
 #include <map>
 #include <string>
 
+#include "mjarm/core/rng.hpp"
 #include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/install/sha256_internal.hpp"
-#include "mjarm/core/rng.hpp"
 
 namespace mjarm::install {
 

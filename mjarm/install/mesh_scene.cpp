@@ -1,11 +1,10 @@
-#include "mjarm/install/mesh_scene_internal.hpp"
-
 #include <tinyxml2.h>
 
 #include <string_view>
 
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/install.hpp"
+#include "mjarm/install/mesh_scene_internal.hpp"
 
 namespace mjarm::install {
 namespace {

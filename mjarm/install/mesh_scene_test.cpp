@@ -1,14 +1,13 @@
-#include "mjarm/install/mesh_scene_internal.hpp"
-
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
 #include <memory>
 
-#include "mjarm/install/mesh_sets.hpp"
-#include "mjarm/install/sha256_internal.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/rng.hpp"
+#include "mjarm/install/mesh_scene_internal.hpp"
+#include "mjarm/install/mesh_sets.hpp"
+#include "mjarm/install/sha256_internal.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/model.hpp"
 #include "tests/support/run_program.hpp"

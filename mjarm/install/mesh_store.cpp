@@ -2,11 +2,11 @@
 
 #include <system_error>
 
-#include "mjarm/install/sha256_internal.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/install/sha256_internal.hpp"
 
 namespace mjarm::install {
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/install/mesh_sets.hpp"
 
 namespace mjarm::install {
 

@@ -1,9 +1,8 @@
-#include "mjarm/install/package_index_internal.hpp"
-
 #include <algorithm>
 #include <optional>
 
 #include "mjarm/core/messages/install.hpp"
+#include "mjarm/install/package_index_internal.hpp"
 
 namespace mjarm::install {
 namespace {

@@ -1,5 +1,3 @@
-#include "mjarm/install/package_index_internal.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -7,6 +5,7 @@
 
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/rng.hpp"
+#include "mjarm/install/package_index_internal.hpp"
 #include "tests/support/http_server.hpp"
 #include "tests/support/temp_folder.hpp"
 

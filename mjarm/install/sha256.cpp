@@ -1,8 +1,7 @@
-#include "mjarm/install/sha256_internal.hpp"
-
 #include <openssl/evp.h>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/install/sha256_internal.hpp"
 
 namespace mjarm::install {
 

@@ -1,10 +1,9 @@
-#include "mjarm/install/unpack_internal.hpp"
-
 #include <zlib.h>
 
-#include "mjarm/install/sha256_internal.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/install.hpp"
+#include "mjarm/install/sha256_internal.hpp"
+#include "mjarm/install/unpack_internal.hpp"
 
 namespace mjarm::install {
 namespace {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "mjarm/install/mesh_sets.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/install/mesh_sets.hpp"
 
 namespace mjarm::install {
 

@@ -1,8 +1,7 @@
-#include "mjarm/install/unpack_internal.hpp"
-
 #include <gtest/gtest.h>
 
 #include "mjarm/install/mesh_package_test.hpp"
+#include "mjarm/install/unpack_internal.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::install {

@@ -52,7 +52,7 @@ struct IkOptions {
   double rot_tol = 1e-7;       ///< [rad] angle of R^T R_goal, or between the z axes, > 0
   int max_iterations = 100;    ///< steps a start, > 0
   int restarts = 100;          ///< random seeds tried after q_seed, >= 0
-  std::uint64_t rng_seed = 1;  ///< same inputs and seed, same answer
+  std::uint64_t seed = 1;      ///< same inputs and seed, same answer
   bool closed_form = true;     ///< false: by the numeric search even where a closed form is known
   IkTask task = IkTask::pose;  ///< with `position`, rot_tol plays no part
   /// [rad or m] farthest that any joint may be from the seed, > 0: rather no answer than a flip.

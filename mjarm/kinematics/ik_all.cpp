@@ -50,7 +50,7 @@ void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answ
 void add_samples(const IkSolver& ik, const IkGoal& goal, int starts, Answers& answers) {
   const IkOptions& options = ik.options();
   const detail::DescentOptions descent_options = detail::descent_options(options, ik.length());
-  Rng rng(options.rng_seed, 1);  // another stream than that of solve()
+  Rng rng(options.seed, 1);  // another stream than that of solve()
   for (int start = 1; start <= starts; ++start) {
     const JointVec q_start = detail::random_start(ik.chain(), goal.seed, rng);
     const auto descent = detail::descend(ik.chain(), goal.X_WT, q_start, descent_options);

@@ -22,7 +22,7 @@ struct IkAllOptions {
 /// branches of an arm of six joints, samples for a redundant one. Each stands in the winding
 /// nearest to `q_seed`, or with `options.windings` in every one (a joint without stops: in that),
 /// is within the limits and `max_step`, and accepted by `ik.options().valid`. Sorted by the largest
-/// joint distance to `q_seed`, then the sum, nearest first. Same inputs and options().rng_seed,
+/// joint distance to `q_seed`, then the sum, nearest first. Same inputs and options().seed,
 /// same answer.
 /// @return at least one answer, or the failure of `ik.solve()`.
 [[nodiscard]] Result<std::vector<IkSolution>, IkFailure> solve_all(

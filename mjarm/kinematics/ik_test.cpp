@@ -103,7 +103,7 @@ TEST(Ik, SameSeedSameBits) {
 
 TEST(Ik, OtherRngSeedOtherRestarts) {
   const IkSolver ik(panda(), {.closed_form = false});
-  const IkSolver other(panda(), {.rng_seed = 99, .closed_form = false});
+  const IkSolver other(panda(), {.seed = 99, .closed_form = false});
   Rng rng(37);
   int differ = 0;
   for (int i = 0; i < 200; ++i) {

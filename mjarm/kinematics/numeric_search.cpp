@@ -18,7 +18,7 @@ class Search {
         options_(options),
         descent_(descent_options(options, length)),
         goal_(goal),
-        rng_(options.rng_seed) {}
+        rng_(options.seed) {}
 
   /// The seed and random starts, until an answer is found that `valid` accepts.
   std::optional<IkSolution> run() noexcept {

@@ -35,7 +35,7 @@ std::optional<CurvePolynomial> bend_between(const BendEnd& from, const BendEnd& 
   c.col(3) = 2 * radius * change + 10 * bow - 1.5 * a0 + 0.5 * a1;
   c.col(4) = -radius * change - 15 * bow + 1.5 * a0 - a1;
   c.col(5) = 6 * bow - 0.5 * a0 + 0.5 * a1;
-  return CurvePolynomial::make(c);
+  return CurvePolynomial::create(c);
 }
 
 bool turns_back(const Eigen::Vector3d& t0, const Eigen::Vector3d& t1) {

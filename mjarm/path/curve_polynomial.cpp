@@ -114,7 +114,7 @@ double foot(const Coefficients& c, const Eigen::Vector3d& p, double lower, doubl
 
 }  // namespace
 
-std::optional<CurvePolynomial> CurvePolynomial::make(const Coefficients& c) {
+std::optional<CurvePolynomial> CurvePolynomial::create(const Coefficients& c) {
   constexpr double kExact = 1e-14;  // of the length
   CurvePolynomial curve;
   curve.c_ = c;

@@ -15,7 +15,7 @@ class CurvePolynomial {
   using Coefficients = Eigen::Matrix<double, 3, kDegree + 1>;  ///< [m] column k: c_k
 
   /// None where the curve comes to a stop, or so near to one that its direction breaks (a cusp).
-  [[nodiscard]] static std::optional<CurvePolynomial> make(const Coefficients& c);
+  [[nodiscard]] static std::optional<CurvePolynomial> create(const Coefficients& c);
 
   [[nodiscard]] double length() const noexcept;             ///< [m] > 0, exact to about 1e-14 of it
   [[nodiscard]] Eigen::Vector3d at(double s) const;         ///< [m] s is clamped

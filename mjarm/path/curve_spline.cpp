@@ -60,7 +60,7 @@ Result<Curve> Curve::spline(std::span<const Pose> given) {
     c.col(2) = chords[i] * (3 * secants[i] - 2 * v0 - v1);
     c.col(3) = chords[i] * (v0 + v1 - 2 * secants[i]);
     pieces[i].p0 = (*poses)[i].p;
-    pieces[i].bend = CurvePolynomial::make(c);
+    pieces[i].bend = CurvePolynomial::create(c);
     if (!pieces[i].bend) return fail(Errc::bad_input, text(msg::path_spline_stops, i, i + 1));
     pieces[i].length = pieces[i].span = lengths[i] = pieces[i].bend->length();
   }

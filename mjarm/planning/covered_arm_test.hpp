@@ -23,7 +23,7 @@ inline CoveredArm covered_arm(const char* name) {
   CoveredRobot robot = covered_robot(name);
   ModelCover cover = cover_model(robot.model, robot.arm).value();
   FastChecker checker =
-      FastChecker::make(FastRobot::make(robot.arm, cover.spheres).value(), cover.scene).value();
+      FastChecker::create(FastRobot::create(robot.arm, cover.spheres).value(), cover.scene).value();
   return {std::move(robot), std::move(cover), std::move(checker)};
 }
 

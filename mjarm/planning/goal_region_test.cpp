@@ -89,7 +89,7 @@ TEST(GoalRegion, WhereAllCollidesTheyAreGivenSoThatThePlannerSaysWithWhat) {
   for (const JointVec& q : *goals) EXPECT_FALSE(arm.checker.is_free(as_span(q)));
   const auto path = plan_path(arm.checker, as_span(near()), std::span(*goals).first(1));
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().reason, PlanErrc::goals_hit);
+  EXPECT_EQ(path.error().code, PlanErrc::goals_hit);
 }
 
 TEST(GoalRegion, GoalsThatLeanAreLeftOutWhereOthersDoNot) {

@@ -107,7 +107,7 @@ constexpr Offer kOffers[] = {
 
 tl::unexpected<PlanFailure> failed(PlanErrc reason) {
   PlanFailure failure;
-  failure.reason = reason;
+  failure.code = reason;
   return tl::unexpected(failure);
 }
 
@@ -132,7 +132,7 @@ class OmplSearch {
         planner->solve(ob::PlannerTerminationCondition([this] { return budget_.spent(); }));
     if (status == ob::PlannerStatus::EXACT_SOLUTION) return take_path(prover);
     PlanFailure failure;
-    failure.reason = PlanErrc::budget_spent;
+    failure.code = PlanErrc::budget_spent;
     failure.samples = budget_.counts().samples;
     const double difference = definition_->getSolutionDifference();  // < 0: not known
     failure.nearest = difference >= 0 ? difference : distance(problem_.start, nearest);
@@ -231,7 +231,7 @@ Result<RawPath, PlanFailure> ompl_search(const SearchProblem& problem, const Pla
 
 Result<RawPath, PlanFailure> ompl_search(const SearchProblem&, const PlanOptions&) {
   PlanFailure failure;
-  failure.reason = PlanErrc::not_available;
+  failure.code = PlanErrc::not_available;
   return tl::unexpected(failure);
 }
 

@@ -41,7 +41,7 @@ struct PostWorld {
         {"post", {{x, y, 0}, Eigen::Matrix3d::Identity()}, CapsuleShape{radius, 0.3}});
   }
   FastChecker checker() const {
-    return FastChecker::make(FastRobot::make(arm, spheres).value(), world).value();
+    return FastChecker::create(FastRobot::create(arm, spheres).value(), world).value();
   }
 };
 
@@ -153,7 +153,7 @@ TEST_P(OmplPlanner, AGoalWalledInSpendsTheBudget) {
   ASSERT_TRUE(checker.is_free(kThere));
   const auto path = plan_path(checker, kHere, goal_at(kThere), ompl_options(GetParam(), 1200));
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().reason, PlanErrc::budget_spent);
+  EXPECT_EQ(path.error().code, PlanErrc::budget_spent);
   EXPECT_LE(path.error().samples, 1200 + 1000);  // some draw in batches
   EXPECT_GT(path.error().nearest, 0.1);
   EXPECT_LE(path.error().nearest, 1.6);
@@ -166,17 +166,17 @@ TEST_P(OmplPlanner, EveryPathInRandomWorldsIsFree) {
     const Arm arm = testing::random_arm(2 + static_cast<int>(rng.below(6)), rng);
     const SphereSet set = testing::random_spheres(arm, rng);
     const Obstacles world = testing::random_world(rng, 6);
-    const auto robot = FastRobot::make(arm, set);
+    const auto robot = FastRobot::create(arm, set);
     if (!robot) continue;
-    const FastChecker checker = FastChecker::make(*robot, world).value();
+    const FastChecker checker = FastChecker::create(*robot, world).value();
     const JointVec start = testing::random_q(arm, rng), goal = testing::random_q(arm, rng);
     PlanOptions options = ompl_options(GetParam(), 400);
     options.seed = static_cast<std::uint64_t>(round);
     const auto path = plan_path(checker, as_span(start), goal_at(as_span(goal)), options);
     if (!path) {
-      EXPECT_NE(path.error().reason, PlanErrc::unproved);
-      EXPECT_NE(path.error().reason, PlanErrc::back_end);
-      EXPECT_NE(path.error().reason, PlanErrc::not_available);
+      EXPECT_NE(path.error().code, PlanErrc::unproved);
+      EXPECT_NE(path.error().code, PlanErrc::back_end);
+      EXPECT_NE(path.error().code, PlanErrc::not_available);
       continue;
     }
     ++planned;
@@ -196,7 +196,7 @@ TEST_F(Ompl, FailuresAreThoseOfThePlannersHere) {
   const std::array<double, 2> inside{0, 0}, beyond{0, 3.5};
   const auto reason = [&](std::span<const double> start, const std::vector<JointVec>& goals) {
     const auto path = plan_path(checker, start, goals, ompl_options("RRTConnect", 100));
-    return path ? PlanErrc::unproved : path.error().reason;
+    return path ? PlanErrc::unproved : path.error().code;
   };
   EXPECT_EQ(reason(inside, goal_at(kThere)), PlanErrc::start_hit);
   EXPECT_EQ(reason(beyond, goal_at(kThere)), PlanErrc::start_outside);
@@ -244,7 +244,7 @@ TEST_F(Ompl, TimeEndsASearchThatFindsNothing) {
   const Stopwatch watch;
   const auto path = plan_path(flat.checker(), kHere, goal_at(kThere), options);
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().reason, PlanErrc::budget_spent);
+  EXPECT_EQ(path.error().code, PlanErrc::budget_spent);
   EXPECT_LT(path.error().samples, 1'000'000);
   EXPECT_LT(watch.us(), 10e6);
 }
@@ -254,7 +254,7 @@ TEST_F(Ompl, UnknownPlannersAreNotAvailable) {
   const FastChecker checker = flat.checker();
   const auto path = plan_path(checker, kHere, goal_at(kThere), ompl_options("Dijkstra", 100));
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().reason, PlanErrc::not_available);
+  EXPECT_EQ(path.error().code, PlanErrc::not_available);
   const std::string line = describe(path.error(), checker.robot(), flat.world);
   EXPECT_NE(line.find("known: RRTConnect, RRT"), std::string::npos) << line;
 }
@@ -265,7 +265,7 @@ TEST(OmplNotBuiltIn, SaysHowToGetIt) {
   const FastChecker checker = flat.checker();
   const auto path = plan_path(checker, kHere, goal_at(kThere), ompl_options("RRTConnect", 100));
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().reason, PlanErrc::not_available);
+  EXPECT_EQ(path.error().code, PlanErrc::not_available);
   const std::string line = describe(path.error(), checker.robot(), flat.world);
   EXPECT_NE(line.find("libompl-dev"), std::string::npos) << line;
 }

@@ -54,7 +54,7 @@ PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
                           const PlanOptions& options) {
   PlanAnswer out{.path = {}, .tilt = options.tilt};
   const Stopwatch watch;
-  const Result<FastChecker> checker = FastChecker::make(robot, problem.obstacles);
+  const Result<FastChecker> checker = FastChecker::create(robot, problem.obstacles);
   assert(checker);  // the obstacles were checked when they were read
   PlanTimes times;
   out.path = plan_path(*checker, problem.start, problem.goals, options, &times);

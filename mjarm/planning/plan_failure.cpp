@@ -39,7 +39,7 @@ std::string overlap(const Msg& message, const SphereClearance& pair, const FastR
 
 std::string describe(const PlanFailure& failure, const FastRobot& robot,
                      const Obstacles& obstacles) {
-  switch (failure.reason) {
+  switch (failure.code) {
     case PlanErrc::bad_input:
       break;
     case PlanErrc::base_hit:

@@ -49,7 +49,7 @@ class PlanFileTest : public ::testing::Test {
 TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   const std::string in = folder_.write("problems.json", testing::two_problems().dump()).string();
   const ProblemFile file = read_problem_file(in).value();
-  const FastRobot robot = FastRobot::make(file.arm, file.spheres).value();
+  const FastRobot robot = FastRobot::create(file.arm, file.spheres).value();
   const PlanProblem& problem = file.problems[0];
   PlanAnswer answer = answer_problem(robot, problem, {});
   ASSERT_TRUE(answer.path);
@@ -97,7 +97,7 @@ TEST_F(PlanFileTest, AnswersWithoutAPathSayWhyAndAreReadAsNone) {
   content["problems"][0]["start"] = {0, 0};
   const std::string in = folder_.write("problems.json", content.dump()).string();
   const ProblemFile file = read_problem_file(in).value();
-  const FastRobot robot = FastRobot::make(file.arm, file.spheres).value();
+  const FastRobot robot = FastRobot::create(file.arm, file.spheres).value();
   const PlanProblem& problem = file.problems[0];
   const PlanAnswer answer = answer_problem(robot, problem, {});
   ASSERT_FALSE(answer.path);

@@ -55,7 +55,7 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
   PlannedPath out;
   out.goal = path.goal;
   std::vector<JointVec> found = path.q;
-  const auto tilt = detail::TiltKeeper::make(options.tilt, checker.robot().arm());
+  const auto tilt = detail::TiltKeeper::create(options.tilt, checker.robot().arm());
   detail::shorten(checker, tilt ? &*tilt : nullptr, options, options.shortcuts, path);
   // Parts of proved edges are free, but the proof of a part is another one and may need more.
   for (std::vector<JointVec>* q : {&path.q, &found}) {
@@ -70,7 +70,7 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
     }
   }
   PlanFailure failure;
-  failure.reason = PlanErrc::unproved;
+  failure.code = PlanErrc::unproved;
   return tl::unexpected(failure);
 }
 

@@ -66,7 +66,7 @@ enum class PlanErrc {
 
 /// Why there is no path.
 struct PlanFailure {
-  PlanErrc reason = PlanErrc::bad_input;
+  PlanErrc code = PlanErrc::bad_input;
   SphereClearance
       pair;            ///< what overlaps: start_hit, goals_hit (least deep of all goals), base_hit
   int joint = -1;      ///< the first outside of its limits: start_outside, goals_outside

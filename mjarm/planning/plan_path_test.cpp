@@ -46,7 +46,7 @@ Obstacles post(double radius = 0.05) {
 constexpr std::array<double, 2> kLeft{0.8, 0}, kRight{-0.8, 0};
 
 FastChecker checker_of(const Arm& arm, const SphereSet& set, const Obstacles& world) {
-  return FastChecker::make(FastRobot::make(arm, set).value(), world).value();
+  return FastChecker::create(FastRobot::create(arm, set).value(), world).value();
 }
 
 /// Looks at every edge at many places, with plain double-precision code.
@@ -183,7 +183,7 @@ TEST(PlanPath, SaysWhyThereIsNone) {
   const std::array<double, 2> inside{0, 0}, beyond{0, 3.5};
   const auto reason = [&](std::span<const double> start, const std::vector<JointVec>& goals) {
     const auto path = plan_path(checker, start, goals);
-    return path ? PlanErrc::unproved : path.error().reason;
+    return path ? PlanErrc::unproved : path.error().code;
   };
   EXPECT_EQ(reason(inside, goal_at(kRight)), PlanErrc::start_hit);
   EXPECT_EQ(reason(beyond, goal_at(kRight)), PlanErrc::start_outside);
@@ -220,7 +220,7 @@ TEST(PlanPath, ALinkAtRestThatOverlapsIsNamed) {
   const FastChecker checker = checker_of(flat_arm(), set, world);
   const auto path = plan_path(checker, kLeft, goal_at(kRight));
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().reason, PlanErrc::base_hit);
+  EXPECT_EQ(path.error().code, PlanErrc::base_hit);
   EXPECT_EQ(describe(path.error(), checker.robot(), world),
             "link \"foot\" stands still and overlaps obstacle \"floor\": no motion can undo that");
 }
@@ -240,7 +240,7 @@ TEST(PlanPath, AGoalWalledInSpendsTheBudgetAndSaysHowNearItCame) {
     options.samples = 500;
     const auto path = plan_path(checker, kLeft, goal_at(kRight), options);
     ASSERT_FALSE(path);
-    EXPECT_EQ(path.error().reason, PlanErrc::budget_spent);
+    EXPECT_EQ(path.error().code, PlanErrc::budget_spent);
     EXPECT_EQ(path.error().samples, 500);
     EXPECT_GT(path.error().nearest, 0.1);
     EXPECT_LT(path.error().nearest, 1.6);
@@ -320,9 +320,9 @@ TEST_P(PlanRandomWorlds, EveryPathIsFree) {
     const Arm arm = testing::random_arm(2 + static_cast<int>(rng.below(6)), rng);
     SphereSet set = testing::random_spheres(arm, rng);
     const Obstacles world = testing::random_world(rng, 6);
-    const auto robot = FastRobot::make(arm, set);
+    const auto robot = FastRobot::create(arm, set);
     if (!robot) continue;
-    const FastChecker checker = FastChecker::make(*robot, world).value();
+    const FastChecker checker = FastChecker::create(*robot, world).value();
     const JointVec start = testing::random_q(arm, rng), goal = testing::random_q(arm, rng);
     PlanOptions options;
     options.planner = GetParam();
@@ -331,8 +331,8 @@ TEST_P(PlanRandomWorlds, EveryPathIsFree) {
     const auto path = plan_path(checker, as_span(start), goal_at(as_span(goal)), options);
     if (!path) {
       EXPECT_FALSE(describe(path.error(), *robot, world).empty());
-      EXPECT_NE(path.error().reason, PlanErrc::unproved);
-      EXPECT_NE(path.error().reason, PlanErrc::bad_input);
+      EXPECT_NE(path.error().code, PlanErrc::unproved);
+      EXPECT_NE(path.error().code, PlanErrc::bad_input);
       continue;
     }
     ++planned;

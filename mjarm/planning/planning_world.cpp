@@ -39,12 +39,12 @@ WorldFailure not_found(const PlanFailure& search, const WorldLevel& level, std::
           .what = describe(search, level.checker.robot(), level.cover.scene),
           .search = search,
           .level = index,
-          .bound = is_coarse(search.reason) ? level.cover.bound : 0};
+          .bound = is_coarse(search.code) ? level.cover.bound : 0};
 }
 
 }  // namespace
 
-Result<PlanningWorld> PlanningWorld::make(const Robot& robot, WorldOptions options) {
+Result<PlanningWorld> PlanningWorld::create(const Robot& robot, WorldOptions options) {
   if (Result<void> fine = check_world_options(options); !fine) return fail(fine.error());
   Result<void> fine = check_contact_rules(robot.model, robot.arm, options.rules);
   if (!fine) return fail(std::move(fine.error()));
@@ -59,9 +59,9 @@ Result<WorldLevel> PlanningWorld::covered(double bound) const {
   for (LinkSpheres& link : cover->spheres.links) {
     for (Sphere& sphere : link.spheres) sphere.radius += options_.margin;
   }
-  const Result<FastRobot> fast = FastRobot::make(robot_.arm, cover->spheres);
+  const Result<FastRobot> fast = FastRobot::create(robot_.arm, cover->spheres);
   if (!fast) return fail(fast.error());
-  Result<FastChecker> checker = FastChecker::make(*fast, cover->scene);
+  Result<FastChecker> checker = FastChecker::create(*fast, cover->scene);
   if (!checker) return fail(std::move(checker.error()));
   return WorldLevel{bound, std::move(*cover), std::move(*checker)};
 }
@@ -108,7 +108,7 @@ Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_st
                                                     const PlanOptions& options, IkTask task,
                                                     PlanTimes* times) {
   return climb([&](const FastChecker& checker) -> Result<PlannedPath, WorldFailure> {
-    const IkSolver ik(robot_.arm, {.rng_seed = options.seed, .task = task});
+    const IkSolver ik(robot_.arm, {.seed = options.seed, .task = task});
     const auto goals =
         goals_in(checker, ik, region, q_start, {.seed = options.seed, .tilt = options.tilt});
     if (!goals) {

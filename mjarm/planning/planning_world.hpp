@@ -74,7 +74,7 @@ class PlanningWorld {
  public:
   /// Covers nothing yet.
   /// @return bad_input: check_contact_rules()'s error, or one line about the margin or the bounds.
-  [[nodiscard]] static Result<PlanningWorld> make(const Robot& robot, WorldOptions options = {});
+  [[nodiscard]] static Result<PlanningWorld> create(const Robot& robot, WorldOptions options = {});
 
   /// From `q_start` to whichever of the goals is reached first, by plan_path().
   /// @param q_start  shape (dof,) [rad or m].

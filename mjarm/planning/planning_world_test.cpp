@@ -34,7 +34,7 @@ std::vector<JointVec> behind() {
 Pose down_at(double x, double y, double z) { return {{x, y, z}, from_euler({kPi, 0, 0})}; }
 
 PlanningWorld world_of(const Robot& robot, WorldOptions options = {}) {
-  return PlanningWorld::make(robot, std::move(options)).value();
+  return PlanningWorld::create(robot, std::move(options)).value();
 }
 
 /// [m] the least distance on a path by MuJoCo's own geometry, every 0.005 rad; `reach` where
@@ -133,7 +133,7 @@ TEST(PlanningWorld, FinerSpheresAreTriedWhereCoarseOnesAreInTheWay) {
   const auto hit = coarse.plan(start, goals);
   ASSERT_FALSE(hit);
   EXPECT_EQ(hit.error().code, WorldErrc::no_path);
-  EXPECT_EQ(hit.error().search.reason, PlanErrc::start_hit);
+  EXPECT_EQ(hit.error().search.code, PlanErrc::start_hit);
   EXPECT_EQ(hit.error().bound, coarse.level(0).value()->cover.bound);
   EXPECT_NE(hit.error().what.find("obstacle \"post\""), std::string::npos) << hit.error().what;
 
@@ -154,14 +154,14 @@ TEST(PlanningWorld, FinerSpheresAreNotTriedWhereTheyAreNoHelp) {
   outside[2] = 9;
   const auto path = world.plan(outside, behind());
   ASSERT_FALSE(path);
-  EXPECT_EQ(path.error().search.reason, PlanErrc::start_outside);
+  EXPECT_EQ(path.error().search.code, PlanErrc::start_outside);
   EXPECT_EQ(path.error().bound, 0);
   EXPECT_EQ(path.error().level, 0U);
   EXPECT_NE(path.error().what.find("outside of the limits"), std::string::npos);
   // In the wall no spheres help: both levels are tried, and the last one tells.
   const auto inside = world.plan(kBefore, down_at(0, -0.45, 0.2));
   ASSERT_FALSE(inside);
-  EXPECT_EQ(inside.error().search.reason, PlanErrc::goals_hit);
+  EXPECT_EQ(inside.error().search.code, PlanErrc::goals_hit);
   EXPECT_EQ(inside.error().level, 1U);
   EXPECT_EQ(inside.error().bound, world.level(1).value()->cover.bound);
   EXPECT_NE(inside.error().what.find("every goal is in collision"), std::string::npos);
@@ -178,7 +178,7 @@ TEST(PlanningWorld, WhatCannotBeAskedHasAReason) {
        {world.plan(kBefore, std::vector<JointVec>{}), world.plan({kBefore.data(), 5}, behind()),
         world.plan(kBefore, goals_at({{1, 2, 3}}))}) {
     ASSERT_FALSE(path);
-    EXPECT_EQ(path.error().search.reason, PlanErrc::bad_input);
+    EXPECT_EQ(path.error().search.code, PlanErrc::bad_input);
     EXPECT_NE(path.error().what.find("6 finite joint values"), std::string::npos);
   }
   EXPECT_EQ(world.plan({kBefore.data(), 5}, down_at(-0.3, -0.45, 0.2)).error().code,
@@ -196,7 +196,7 @@ TEST(PlanningWorld, OptionsOutOfRangeAreRefused) {
   const LanguageScope english(Language::english);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto why = [](const WorldOptions& options) {
-    const auto world = PlanningWorld::make(walled_ur5e(), options);
+    const auto world = PlanningWorld::create(walled_ur5e(), options);
     return world ? std::string() : world.error().what;
   };
   for (const double margin : {-1e-9, 0.51, nan}) {
@@ -237,7 +237,7 @@ TEST(PlanningWorld, PathsKeepTheMargin) {
   PlanningWorld too_wide = world_of(robot, {.margin = 0.031});
   const auto none = too_wide.plan(start, goals);
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().search.reason, PlanErrc::goals_hit);
+  EXPECT_EQ(none.error().search.code, PlanErrc::goals_hit);
   EXPECT_NE(none.error().what.find("obstacle \"post\""), std::string::npos) << none.error().what;
 }
 
@@ -253,7 +253,7 @@ TEST(PlanningWorld, AttachedBodiesCountAndAllowedPairsDoNot) {
   PlanningWorld held = world_of(robot, {.rules = {.attached = {rod}}});
   const auto stuck = held.plan(start, goals);
   ASSERT_FALSE(stuck);
-  EXPECT_EQ(stuck.error().search.reason, PlanErrc::start_hit);
+  EXPECT_EQ(stuck.error().search.code, PlanErrc::start_hit);
   const ContactRules rules{.attached = {rod}, .allowed = {{{"rod", "plate"}}}};
   PlanningWorld allowed = world_of(robot, {.rules = rules});
   const auto path = allowed.plan(start, goals);

@@ -46,7 +46,7 @@ class ProblemFileTest : public ::testing::Test {
     if (found.path) return "";
     return describe(found.path.error(), robot(), file_.problems[0].obstacles);
   }
-  FastRobot robot() { return FastRobot::make(file_.arm, file_.spheres).value(); }
+  FastRobot robot() { return FastRobot::create(file_.arm, file_.spheres).value(); }
 
   LanguageScope english_{Language::english};
   support::TempFolder folder_;

@@ -60,7 +60,7 @@ class Connector {
       if (other->size() < grown->size() || node < 0) std::swap(grown, other);
     }
     PlanFailure failure;
-    failure.reason = PlanErrc::budget_spent;
+    failure.code = PlanErrc::budget_spent;
     failure.nearest = nearest_;
     failure.samples = path_.counts.samples;
     return tl::unexpected(failure);

@@ -18,8 +18,8 @@ class TiltKeeper {
   TiltKeeper(const TiltLimit& limit, const Arm& arm);
 
   /// That of a limit, where there is one.
-  [[nodiscard]] static std::optional<TiltKeeper> make(const std::optional<TiltLimit>& limit,
-                                                      const Arm& arm) {
+  [[nodiscard]] static std::optional<TiltKeeper> create(const std::optional<TiltLimit>& limit,
+                                                        const Arm& arm) {
     if (!limit) return std::nullopt;
     return TiltKeeper(*limit, arm);
   }

@@ -9,13 +9,13 @@ namespace {
 
 tl::unexpected<PlanFailure> no_path(PlanErrc reason) {
   PlanFailure failure;
-  failure.reason = reason;
+  failure.code = reason;
   return tl::unexpected(failure);
 }
 
 tl::unexpected<PlanFailure> outside(PlanErrc reason, std::span<const double> q, int joint) {
   PlanFailure failure;
-  failure.reason = reason;
+  failure.code = reason;
   failure.joint = joint;
   failure.value = q[static_cast<std::size_t>(joint)];
   return tl::unexpected(failure);
@@ -23,7 +23,7 @@ tl::unexpected<PlanFailure> outside(PlanErrc reason, std::span<const double> q, 
 
 tl::unexpected<PlanFailure> start_hit(const FastChecker& checker, std::span<const double> q) {
   PlanFailure failure;
-  failure.reason = PlanErrc::start_hit;
+  failure.code = PlanErrc::start_hit;
   failure.pair = checker.clearance(q);
   return tl::unexpected(failure);
 }
@@ -31,7 +31,7 @@ tl::unexpected<PlanFailure> start_hit(const FastChecker& checker, std::span<cons
 /// Of the goals within the limits, the one that overlaps least.
 tl::unexpected<PlanFailure> all_hit(const FastChecker& checker, std::span<const JointVec> goals) {
   PlanFailure failure;
-  failure.reason = PlanErrc::goals_hit;
+  failure.code = PlanErrc::goals_hit;
   failure.pair.distance = -std::numeric_limits<double>::infinity();
   for (const JointVec& goal : goals) {
     if (outside_joint(checker.robot().arm(), as_span(goal)) >= 0) continue;
@@ -44,7 +44,7 @@ tl::unexpected<PlanFailure> all_hit(const FastChecker& checker, std::span<const 
 tl::unexpected<PlanFailure> tilted(PlanErrc reason, const TiltLimit& limit, const Arm& arm,
                                    std::span<const double> q) {
   PlanFailure failure;
-  failure.reason = reason;
+  failure.code = reason;
   failure.value = tilt(limit, arm, q);
   failure.limit = limit.max;
   return tl::unexpected(failure);
@@ -76,7 +76,7 @@ Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
   if (options.tilt && !is_sound(*options.tilt)) return no_path(PlanErrc::bad_tilt);
   if (checker.fixed_overlap()) {
     PlanFailure failure;
-    failure.reason = PlanErrc::base_hit;
+    failure.code = PlanErrc::base_hit;
     failure.pair = {0, checker.fixed_overlap()->link, checker.fixed_overlap()->obstacle, -1};
     return tl::unexpected(failure);
   }
@@ -84,7 +84,7 @@ Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
     return outside(PlanErrc::start_outside, start, k);
   }
   if (!checker.is_free(start)) return start_hit(checker, start);
-  SearchProblem out{checker, start, {}, {}, TiltKeeper::make(options.tilt, arm)};
+  SearchProblem out{checker, start, {}, {}, TiltKeeper::create(options.tilt, arm)};
   if (out.tilt && !out.tilt->keeps(start)) {
     return tilted(PlanErrc::start_tilted, *options.tilt, arm, start);
   }

@@ -197,7 +197,7 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
   limits.velocity *= share;
   limits.acceleration *= share;
   if (!world_) {
-    Result<PlanningWorld> made = PlanningWorld::make(robot_);
+    Result<PlanningWorld> made = PlanningWorld::create(robot_);
     if (!made) return no_detour("bad_input", made.error().what);
     world_ = std::move(*made);
   }

@@ -13,11 +13,11 @@ using canvas::Page;
 
 /// From dark to bright through blue and green, so that it reads in grey and by colour-blind eyes.
 constexpr std::array<render::Rgba, 6> kColors = {{{0.27F, 0.00F, 0.33F, 1},
-                                          {0.25F, 0.27F, 0.53F, 1},
-                                          {0.16F, 0.47F, 0.56F, 1},
-                                          {0.13F, 0.66F, 0.52F, 1},
-                                          {0.48F, 0.82F, 0.32F, 1},
-                                          {0.99F, 0.91F, 0.14F, 1}}};
+                                                  {0.25F, 0.27F, 0.53F, 1},
+                                                  {0.16F, 0.47F, 0.56F, 1},
+                                                  {0.13F, 0.66F, 0.52F, 1},
+                                                  {0.48F, 0.82F, 0.32F, 1},
+                                                  {0.99F, 0.91F, 0.14F, 1}}};
 constexpr int kLevels = 64;          // shades of a continuous scale
 constexpr double kOverlap = 0.25;    // [pt] neighbours overlap, so that no seam shows
 constexpr double kBarWidth = 9;      // [pt]

@@ -17,13 +17,13 @@ using canvas::TextStyle;
 /// Colours that readers with any common kind of colour blindness can tell apart: the set of Okabe
 /// and Ito without its yellow, which is too pale for lines, and two of Paul Tol.
 constexpr std::array<render::Rgba, 8> kPalette = {{{0.000F, 0.447F, 0.698F, 1},    // blue
-                                           {0.835F, 0.369F, 0.000F, 1},    // vermilion
-                                           {0.000F, 0.620F, 0.451F, 1},    // green
-                                           {0.800F, 0.475F, 0.655F, 1},    // pink
-                                           {0.902F, 0.624F, 0.000F, 1},    // orange
-                                           {0.337F, 0.706F, 0.914F, 1},    // sky
-                                           {0.533F, 0.133F, 0.333F, 1},    // wine
-                                           {0.600F, 0.600F, 0.200F, 1}}};  // olive
+                                                   {0.835F, 0.369F, 0.000F, 1},    // vermilion
+                                                   {0.000F, 0.620F, 0.451F, 1},    // green
+                                                   {0.800F, 0.475F, 0.655F, 1},    // pink
+                                                   {0.902F, 0.624F, 0.000F, 1},    // orange
+                                                   {0.337F, 0.706F, 0.914F, 1},    // sky
+                                                   {0.533F, 0.133F, 0.333F, 1},    // wine
+                                                   {0.600F, 0.600F, 0.200F, 1}}};  // olive
 constexpr render::Rgba kInk = {0.20F, 0.20F, 0.20F, 1};
 constexpr render::Rgba kAxis = {0.40F, 0.40F, 0.40F, 1};
 constexpr render::Rgba kGrid = {0.90F, 0.90F, 0.90F, 1};
@@ -196,7 +196,8 @@ void draw_grid(const Axes& axes, const axis::Ticks& xs, const axis::Ticks& ys, P
   }
 }
 
-void draw_frame(const render::PlotPanel& panel, const Layout& layout, const Axes& axes, Page& page) {
+void draw_frame(const render::PlotPanel& panel, const Layout& layout, const Axes& axes,
+                Page& page) {
   const Box& box = axes.box;
   const double bottom = box.y + box.height;
   add_line(page, {{box.x, box.y}, {box.x, bottom}, {box.x + box.width, bottom}}, kAxis, 0.7);
@@ -215,7 +216,8 @@ void draw_frame(const render::PlotPanel& panel, const Layout& layout, const Axes
 }
 
 /// Points closer together than the eye can see are left out.
-void draw_curve(const render::PlotLine& line, const render::Rgba& color, const Axes& axes, Page& page) {
+void draw_curve(const render::PlotLine& line, const render::Rgba& color, const Axes& axes,
+                Page& page) {
   constexpr double kNearest = 0.2;  // [pt]
   std::vector<Point> points;
   const auto end_part = [&] {

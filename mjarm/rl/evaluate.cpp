@@ -88,7 +88,7 @@ Evaluation summary(const std::vector<Trial>& trials) {
 Result<ReachEnv> judged_env(const Model& model, ReachOptions options, const EvaluateOptions& how) {
   options.environments = how.episodes;
   options.held_out = true;
-  auto env = ReachEnv::make(model, options);
+  auto env = ReachEnv::create(model, options);
   if (!env) return env;
   if (auto begun = env->reset(how.seed); !begun) return fail(std::move(begun.error()));
   return env;

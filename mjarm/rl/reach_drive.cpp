@@ -15,7 +15,7 @@ constexpr double kMaxAhead = 3;
 
 }  // namespace
 
-Result<ReachDrive> ReachDrive::make(const Arm& arm, const ReachOptions& options, double period) {
+Result<ReachDrive> ReachDrive::create(const Arm& arm, const ReachOptions& options, double period) {
   for (const ArmJoint& joint : arm.joints) {
     if (!joint.actuator) return fail(Errc::bad_input, text(msg::reach_no_actuator, joint.name));
     if (options.action != ReachAction::torque && servo_stiffness(*joint.actuator) <= 0) {

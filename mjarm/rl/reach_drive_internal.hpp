@@ -23,8 +23,8 @@ class ReachDrive {
  public:
   /// @param period  [s] that an action lasts.
   /// @return an error that names the joint that cannot be driven so.
-  [[nodiscard]] static Result<ReachDrive> make(const Arm& arm, const ReachOptions& options,
-                                               double period);
+  [[nodiscard]] static Result<ReachDrive> create(const Arm& arm, const ReachOptions& options,
+                                                 double period);
 
   /// @param actions    (dof,), finite; clamped to -1 to 1
   /// @param reference  [rad or m] (dof,) where the joints should be by now, moved on

@@ -198,18 +198,18 @@ Result<Model> reach_model(const ReachOptions& options) {
   return Model::load(*scene);
 }
 
-Result<ReachEnv> ReachEnv::make(const Model& model, const ReachOptions& options) {
+Result<ReachEnv> ReachEnv::create(const Model& model, const ReachOptions& options) {
   if (auto fine = check(options); !fine) return fail(std::move(fine.error()));
   auto arm = find_arm(model);
   if (!arm) return fail(std::move(arm.error()));
   if (options.guide && (arm->dof() != 7 || arm->tip != "hand_tcp")) {
     return fail(Errc::usage, text(msg::reach_guide_arm, arm->name));
   }
-  auto drive = ReachDrive::make(*arm, options, options.frame_skip * model.timestep());
+  auto drive = ReachDrive::create(*arm, options, options.frame_skip * model.timestep());
   if (!drive) return fail(std::move(drive.error()));
-  auto episodes = ReachEpisodes::make(model, *arm, options, *drive);
+  auto episodes = ReachEpisodes::create(model, *arm, options, *drive);
   if (!episodes) return fail(std::move(episodes.error()));
-  auto batch = BatchSim::make(model, *arm, options.environments, options.threads);
+  auto batch = BatchSim::create(model, *arm, options.environments, options.threads);
   if (!batch) return fail(std::move(batch.error()));
   ReachEnv env(std::make_unique<Impl>(Impl{model, std::move(*arm), options, std::move(*drive),
                                            std::move(*episodes), std::move(*batch)}));

@@ -43,7 +43,8 @@ class ReachEnv : public VecEnv {
   /// @return an error for options out of range, a model without an arm or whose joints have no
   ///         actuators, a start that touches something, a region without a goal that can be
   ///         reached.
-  [[nodiscard]] static Result<ReachEnv> make(const Model& model, const ReachOptions& options = {});
+  [[nodiscard]] static Result<ReachEnv> create(const Model& model,
+                                               const ReachOptions& options = {});
   ~ReachEnv() override;
   ReachEnv(ReachEnv&&) noexcept;
   ReachEnv& operator=(ReachEnv&&) noexcept;

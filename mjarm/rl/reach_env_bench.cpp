@@ -37,7 +37,7 @@ void reach_steps(benchmark::State& state, ReachGripper gripper) {
   const ReachOptions options{.environments = kCopies, .threads = threads, .gripper = gripper};
   const auto model = reach_model(options);
   if (!model) return state.SkipWithError(model.error().what.c_str());
-  auto env = ReachEnv::make(*model, options);
+  auto env = ReachEnv::create(*model, options);
   if (!env) return state.SkipWithError(env.error().what.c_str());
   const BareBatch bare = bare_batch(*model, threads);
   const int nstate = mjb_nstate(bare.get());

@@ -49,11 +49,11 @@ struct ReachEpisodes::Probe {
   }
 };
 
-Result<ReachEpisodes> ReachEpisodes::make(const Model& model, const Arm& arm,
-                                          const ReachOptions& options, const ReachDrive& drive) {
+Result<ReachEpisodes> ReachEpisodes::create(const Model& model, const Arm& arm,
+                                            const ReachOptions& options, const ReachDrive& drive) {
   ReachEpisodes episodes;
   episodes.options_ = options;
-  auto world = BatchSim::make(model, arm, 1, 1);
+  auto world = BatchSim::create(model, arm, 1, 1);
   if (!world) return fail(std::move(world.error()));
   if (options.obstacle && (world->mocaps() != 1 || !frame_pose(model, "obstacle", model.qpos0()))) {
     return fail(Errc::bad_input, text(msg::reach_no_ball, model.file().string()));

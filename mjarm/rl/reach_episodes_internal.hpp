@@ -30,9 +30,9 @@ class ReachEpisodes {
  public:
   /// @return an error for a start that does not fit the arm or touches something, a scene without
   ///         the ball that `obstacle` needs, a region without a goal that can be reached.
-  [[nodiscard]] static Result<ReachEpisodes> make(const Model& model, const Arm& arm,
-                                                  const ReachOptions& options,
-                                                  const ReachDrive& drive);
+  [[nodiscard]] static Result<ReachEpisodes> create(const Model& model, const Arm& arm,
+                                                    const ReachOptions& options,
+                                                    const ReachDrive& drive);
 
   /// Episode number `episode` of a copy, the same whatever was drawn before.
   [[nodiscard]] ReachEpisode draw(std::uint64_t seed, int copy, std::uint32_t episode);

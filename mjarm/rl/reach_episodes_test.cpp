@@ -21,8 +21,8 @@ struct Drawn {
 Drawn episodes_of(const ReachOptions& options) {
   Model model = task_model(options);
   Arm arm = find_arm(model).value();
-  ReachDrive drive = ReachDrive::make(arm, options, 0.04).value();
-  ReachEpisodes episodes = ReachEpisodes::make(model, arm, options, drive).value();
+  ReachDrive drive = ReachDrive::create(arm, options, 0.04).value();
+  ReachEpisodes episodes = ReachEpisodes::create(model, arm, options, drive).value();
   return {std::move(model), std::move(arm), std::move(episodes)};
 }
 
@@ -62,7 +62,7 @@ TEST(ReachEpisodes, WideGoalsAreAllReachableAndNothingTouchesThere) {
   // Another solver, and a Sim with the names of what touches, as judges.
   Sim sim(drawn.model);
   std::vector<double> qpos(drawn.model.nq()), ctrl(drawn.model.nu());
-  IkOptions how{.pos_tol = 1e-4, .rng_seed = 77, .task = IkTask::position};
+  IkOptions how{.pos_tol = 1e-4, .seed = 77, .task = IkTask::position};
   how.valid = [&](std::span<const double> q) {
     std::vector<double> whole = qpos;
     std::copy(q.begin(), q.end(), whole.begin());

@@ -78,7 +78,7 @@ TEST(ReachTasks, RefusesOptionsThatMakeNoSense) {
       {{.obstacle = true}, "reach_obstacle.xml"},
       {{.frame_skip = 2, .guide = true}, "guide"}};
   for (const auto& [options, words] : wrong) {
-    const auto env = ReachEnv::make(model, options);
+    const auto env = ReachEnv::create(model, options);
     ASSERT_FALSE(env) << words;
     EXPECT_THAT(env.error().what, HasSubstr(words));
   }
@@ -105,7 +105,7 @@ TEST(ReachTasks, AWorldThatBreaksDownEndsItsEpisodeAsTerminated) {
   const support::TempFolder folder;
   const auto model = Model::load(folder.write("arm.xml", kUnstableArm));
   ASSERT_TRUE(model) << model.error().what;
-  auto env = ReachEnv::make(
+  auto env = ReachEnv::create(
       *model,
       {.environments = 2, .threads = 2, .region = ReachRegion::wide, .start = {0, 0.5, 0.5}});
   ASSERT_TRUE(env) << env.error().what;
@@ -133,9 +133,10 @@ TEST(ReachTasks, OtherArmsLearnAsWell) {
   ASSERT_TRUE(file);
   const auto model = Model::load(*file);
   ASSERT_TRUE(model);
-  EXPECT_FALSE(ReachEnv::make(*model)) << "the start is of seven joints";
-  EXPECT_FALSE(ReachEnv::make(*model, guide_options()));
-  auto env = ReachEnv::make(*model, {.environments = 2, .region = ReachRegion::wide, .start = {}});
+  EXPECT_FALSE(ReachEnv::create(*model)) << "the start is of seven joints";
+  EXPECT_FALSE(ReachEnv::create(*model, guide_options()));
+  auto env =
+      ReachEnv::create(*model, {.environments = 2, .region = ReachRegion::wide, .start = {}});
   ASSERT_TRUE(env) << env.error().what;
   EXPECT_EQ(env->observation_size(), 30);
   for (int step = 0; step < 5; ++step) random_step(*env, step);

@@ -23,7 +23,7 @@ inline Model task_model(const ReachOptions& options = {}) {
 }
 
 inline ReachEnv reach_env(const ReachOptions& options = {}) {
-  auto env = ReachEnv::make(task_model(options), options);
+  auto env = ReachEnv::create(task_model(options), options);
   if (!env) throw std::runtime_error(env.error().what);
   return std::move(*env);
 }

@@ -184,7 +184,7 @@ Training& Training::operator=(Training&&) noexcept = default;
 
 Result<Training> Training::create(const Model& model, const TrainingOptions& options,
                                   const std::filesystem::path& folder, Ranks* ranks) {
-  Result<ReachEnv> env = ReachEnv::make(model, options.task);
+  Result<ReachEnv> env = ReachEnv::create(model, options.task);
   if (!env) return fail(std::move(env.error()));
   auto state = std::make_unique<State>(model, options, std::move(*env));
   state->folder = folder;

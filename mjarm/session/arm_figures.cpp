@@ -37,10 +37,10 @@ void ArmFigures::add(const Sim& sim, double time, const Arm& arm, const JointVec
   if (time < next_row_ && time > next_row_ - 2 * kRowPeriod) return;
   next_row_ = time + kRowPeriod;
   view::LiveRow row{.time = time,
-              .q = sim.arm_state(arm).q,
-              .q_ref = q_ref,
-              .X_WT = sim.tool(arm),
-              .torque = sim.arm_torque(arm)};
+                    .q = sim.arm_state(arm).q,
+                    .q_ref = q_ref,
+                    .X_WT = sim.tool(arm),
+                    .torque = sim.arm_torque(arm)};
   row.X_ref = q_ref.size() > 0 ? fk(arm, as_span(q_ref)) : row.X_WT;
   row.manipulability = manipulability(fk_jacobian(arm, as_span(row.q)).J_W);
   plots_.add(row);

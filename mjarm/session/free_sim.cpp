@@ -25,11 +25,11 @@ FreeSim::FreeSim(const Model& model, std::optional<Arm> arm, std::optional<Contr
   reset();
 }
 
-Result<FreeSim> FreeSim::make(const Model& model, const std::optional<Arm>& arm, bool passive) {
+Result<FreeSim> FreeSim::create(const Model& model, const std::optional<Arm>& arm, bool passive) {
   if (passive || !arm) return FreeSim(model, arm, std::nullopt);
   // Servos of the model as they are where there are some; else what motors can do.
-  Result<Controller> controller = Controller::make(model, *arm, ControlMode::servo_gravity);
-  if (!controller) controller = Controller::make(model, *arm, ControlMode::computed_torque);
+  Result<Controller> controller = Controller::create(model, *arm, ControlMode::servo_gravity);
+  if (!controller) controller = Controller::create(model, *arm, ControlMode::computed_torque);
   if (!controller) return fail(Errc::not_available, controller.error().what);
   return FreeSim(model, arm, std::move(*controller));
 }

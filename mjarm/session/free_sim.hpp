@@ -20,8 +20,8 @@ class FreeSim {
   /// @param arm      is held against gravity; none = all actuators stay at 0.
   /// @param passive  the arm is not held.
   /// @return not_available where the arm's actuators cannot hold it; `passive` never fails.
-  [[nodiscard]] static Result<FreeSim> make(const Model& model, const std::optional<Arm>& arm,
-                                            bool passive);
+  [[nodiscard]] static Result<FreeSim> create(const Model& model, const std::optional<Arm>& arm,
+                                              bool passive);
 
   /// Does what the user asked for.
   void handle(const view::ViewEvent& event);

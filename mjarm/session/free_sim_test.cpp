@@ -28,7 +28,7 @@ void run(FreeSim& world, int steps) {
 TEST(FreeSim, HoldsTheArmAtHome) {
   for (const char* name : {"ur5e", "panda"}) {
     const TestArm robot = shipped_arm(name);
-    FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
+    FreeSim world = FreeSim::create(robot.model, robot.arm, false).value();
     run(world, 1000);
     const JointVec off = world.sim().arm_state(robot.arm).q - robot.arm.home;
     EXPECT_LT(off.cwiseAbs().maxCoeff(), 1e-3) << name;
@@ -37,7 +37,7 @@ TEST(FreeSim, HoldsTheArmAtHome) {
 
 TEST(FreeSim, PassiveFalls) {
   const TestArm robot = shipped_arm("ur5e");
-  FreeSim world = FreeSim::make(robot.model, robot.arm, true).value();
+  FreeSim world = FreeSim::create(robot.model, robot.arm, true).value();
   EXPECT_TRUE(world.jog_dofs().empty());
   run(world, 500);
   const JointVec off = world.sim().arm_state(robot.arm).q - robot.arm.home;
@@ -46,7 +46,7 @@ TEST(FreeSim, PassiveFalls) {
 
 TEST(FreeSim, JogsWithinTheSpeedLimit) {
   const TestArm robot = shipped_arm("ur5e");
-  FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
+  FreeSim world = FreeSim::create(robot.model, robot.arm, false).value();
   const int dof = robot.arm.joints[2].dof;
   ASSERT_EQ(world.jog_dofs().size(), 6U);
   const double goal = robot.arm.home[2] - 0.5;
@@ -68,7 +68,7 @@ TEST(FreeSim, JogsWithinTheSpeedLimit) {
 
 TEST(FreeSim, StepsBackAndForthAreTheSameToTheLastBit) {
   const TestArm robot = shipped_arm("ur5e");
-  FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
+  FreeSim world = FreeSim::create(robot.model, robot.arm, false).value();
   world.handle(view::JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
   run(world, 40);
   std::vector<Snapshot> seen;
@@ -95,7 +95,7 @@ TEST(FreeSim, StepsBackAndForthAreTheSameToTheLastBit) {
 
 TEST(FreeSim, PushesMoveTheArmUntilLetGo) {
   const TestArm robot = shipped_arm("ur5e");
-  FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
+  FreeSim world = FreeSim::create(robot.model, robot.arm, false).value();
   const std::vector<double> before = positions(world);
   const int body = robot.model.raw()->dof_bodyid[robot.arm.joints.back().dof];
   for (int i = 0; i < 300; ++i) {
@@ -113,7 +113,7 @@ TEST(FreeSim, PushesMoveTheArmUntilLetGo) {
 
 TEST(FreeSim, ResetBeginsAnew) {
   const TestArm robot = shipped_arm("panda");
-  FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
+  FreeSim world = FreeSim::create(robot.model, robot.arm, false).value();
   const Snapshot first = world.sim().snapshot();
   run(world, 30);
   const Snapshot later = world.sim().snapshot();
@@ -127,14 +127,14 @@ TEST(FreeSim, ResetBeginsAnew) {
 
 TEST(FreeSim, AnyModelCanBeLookedAt) {
   const Model model = Model::load(find_model_file("car").value()).value();
-  FreeSim world = FreeSim::make(model, std::nullopt, false).value();
+  FreeSim world = FreeSim::create(model, std::nullopt, false).value();
   run(world, 10);
   EXPECT_NEAR(world.sim().time(), 10 * model.timestep(), 1e-9);
 }
 
 TEST(FreeSim, OneThatBecameUnstableBeginsAnewAndSaysSo) {
   const TestArm robot = shipped_arm("ur5e");
-  FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
+  FreeSim world = FreeSim::create(robot.model, robot.arm, false).value();
   const Snapshot first = world.sim().snapshot();
   world.handle(view::JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
   run(world, 10);
@@ -155,7 +155,7 @@ TEST(FreeSim, OneThatBecameUnstableBeginsAnewAndSaysSo) {
 
 TEST(FreeSim, GoalsAreClampedAndOnlyForAnArmThatIsHeld) {
   const TestArm robot = shipped_arm("panda");
-  FreeSim world = FreeSim::make(robot.model, robot.arm, false).value();
+  FreeSim world = FreeSim::create(robot.model, robot.arm, false).value();
   JointVec far = robot.arm.home;
   far[3] = -50;
   world.set_goal(far);
@@ -171,7 +171,7 @@ TEST(FreeSim, GoalsAreClampedAndOnlyForAnArmThatIsHeld) {
     ASSERT_TRUE((v.cwiseAbs().array() <= 0.5 * robot.arm.limits.velocity.array() + 1e-9).all());
   }
 
-  FreeSim passive = FreeSim::make(robot.model, robot.arm, true).value();
+  FreeSim passive = FreeSim::create(robot.model, robot.arm, true).value();
   passive.set_goal(far);
   passive.handle(view::JointEvent{robot.arm.joints[0].dof, "pan", 0.3});
   EXPECT_EQ(passive.goal(), robot.arm.home);
@@ -190,10 +190,10 @@ TEST(FreeSim, AnArmWithoutActuatorsIsOnlyLookedAt) {
 </mujoco>)"))
                           .value();
   const Arm arm = find_arm(model).value();
-  const Result<FreeSim> held = FreeSim::make(model, arm, false);
+  const Result<FreeSim> held = FreeSim::create(model, arm, false);
   ASSERT_FALSE(held);
   EXPECT_EQ(held.error().code, Errc::not_available);
-  FreeSim passive = FreeSim::make(model, arm, true).value();
+  FreeSim passive = FreeSim::create(model, arm, true).value();
   run(passive, 10);
   EXPECT_EQ(passive.status(), "");
 }

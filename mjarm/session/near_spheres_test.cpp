@@ -27,7 +27,7 @@ TEST(NearSpheres, TheClosestPairIsTheOraclesWithPointsOnBoth) {
   int apart = 0, overlapping = 0, links = 0;
   for (int round = 0; round < 150; ++round) {
     const Arm arm = testing::random_arm(1 + round % 7, rng);
-    const FastRobot robot = FastRobot::make(arm, testing::random_spheres(arm, rng)).value();
+    const FastRobot robot = FastRobot::create(arm, testing::random_spheres(arm, rng)).value();
     Obstacles world = testing::random_world(rng, 4, round % 2 == 0);
     world.clouds = {testing::random_cloud(rng, 20, 0.01)};
     const JointVec q = testing::random_q(arm, rng);
@@ -66,10 +66,10 @@ TEST(NearSpheres, OnlyThePairOfTheFastChecker) {
   int looked = 0;
   for (int round = 0; round < 60; ++round) {
     const Arm arm = testing::random_arm(4, rng);
-    const FastRobot robot = FastRobot::make(arm, testing::random_spheres(arm, rng)).value();
+    const FastRobot robot = FastRobot::create(arm, testing::random_spheres(arm, rng)).value();
     const Obstacles world = testing::random_world(rng, 4);
     const JointVec q = testing::random_q(arm, rng);
-    const SphereClearance nearest = FastChecker::make(robot, world).value().clearance(as_span(q));
+    const SphereClearance nearest = FastChecker::create(robot, world).value().clearance(as_span(q));
     if (nearest.link < 0 || nearest.distance < 0) continue;
     ++looked;
     const Found found = find_pair(robot, world, q, &nearest);
@@ -84,7 +84,7 @@ TEST(NearSpheres, OnlyThePairOfTheFastChecker) {
 TEST(NearSpheres, IgnoredPairsAndWhatIsAtRestHaveNoNeighbour) {
   const Arm arm = testing::make_arm("turner", {{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, -3, 3}}, {});
   const SphereSet set{{{"foot", -1, {{{0, 0, -0.2}, 0.1}}}, {"hand", 0, {{{0.5, 0, 0}, 0.1}}}}, {}};
-  const FastRobot robot = FastRobot::make(arm, set).value();
+  const FastRobot robot = FastRobot::create(arm, set).value();
   Obstacles world{{{"wall", {{0.7, 0, 0}, Eigen::Matrix3d::Identity()}, BoxShape{{0.05, 1, 1}}}}};
   const JointVec q = JointVec::Zero(1);
   const Found found = find_pair(robot, world, q);
@@ -98,7 +98,7 @@ TEST(NearSpheres, IgnoredPairsAndWhatIsAtRestHaveNoNeighbour) {
 
 TEST(NearSpheres, InsideOfASolidThereIsNoWayBetween) {
   const Arm arm = testing::make_arm("turner", {{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}, -3, 3}}, {});
-  const FastRobot robot = FastRobot::make(arm, {{{"hand", 0, {{{0.5, 0, 0}, 0.1}}}}, {}}).value();
+  const FastRobot robot = FastRobot::create(arm, {{{"hand", 0, {{{0.5, 0, 0}, 0.1}}}}, {}}).value();
   const Obstacles world{
       {{"block", {{0.5, 0, 0}, Eigen::Matrix3d::Identity()}, BoxShape{{1, 1, 1}}}}};
   const Found found = find_pair(robot, world, JointVec::Zero(1));

@@ -23,9 +23,9 @@ render::Camera default_camera(const Model& model) {
   return camera;
 }
 
-Result<std::string> write_picture(render::OffscreenRenderer& renderer, const PictureOptions& options,
-                                  const Snapshot& snapshot, const render::Camera& camera,
-                                  const render::Overlay& overlay) {
+Result<std::string> write_picture(render::OffscreenRenderer& renderer,
+                                  const PictureOptions& options, const Snapshot& snapshot,
+                                  const render::Camera& camera, const render::Overlay& overlay) {
   const Result<render::Image> image = renderer.draw(snapshot, camera, overlay);
   if (!image) return fail(image.error());
   if (Result<void> written = render::write_png(*image, options.out); !written) {

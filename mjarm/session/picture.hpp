@@ -14,10 +14,10 @@ namespace mjarm::session {
 struct PictureOptions {
   std::filesystem::path out;
   bool video = false;
-  int width = 1280;                           ///< [px]
-  int height = 720;                           ///< [px]
+  int width = 1280;                                   ///< [px]
+  int height = 720;                                   ///< [px]
   std::optional<render::RenderQuality> quality = {};  ///< default: as `offscreen_options` chooses
-  double fps = 30;                            ///< [1/s]
+  double fps = 30;                                    ///< [1/s]
 };
 
 /// How to draw: without a quality asked for, high; low for a video without a GPU.
@@ -29,7 +29,8 @@ struct PictureOptions {
 /// Draws one picture and writes it. @return the line to tell.
 [[nodiscard]] Result<std::string> write_picture(render::OffscreenRenderer& renderer,
                                                 const PictureOptions& options,
-                                                const Snapshot& snapshot, const render::Camera& camera,
+                                                const Snapshot& snapshot,
+                                                const render::Camera& camera,
                                                 const render::Overlay& overlay);
 
 }  // namespace mjarm::session

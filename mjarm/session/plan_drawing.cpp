@@ -72,9 +72,9 @@ FastChecker against_obstacles(const PlanSubject& subject) {
   const FastRobot& robot = subject.checker.robot();
   SphereSet set = robot.spheres();
   if (has_obstacles(subject.obstacles)) set.pairs.clear();
-  Result<FastRobot> alone = FastRobot::make(robot.arm(), set);
+  Result<FastRobot> alone = FastRobot::create(robot.arm(), set);
   if (!alone) return subject.checker;  // cannot be: it was made from them
-  Result<FastChecker> checker = FastChecker::make(std::move(*alone), subject.obstacles);
+  Result<FastChecker> checker = FastChecker::create(std::move(*alone), subject.obstacles);
   return checker ? std::move(*checker) : subject.checker;
 }
 
@@ -230,7 +230,8 @@ void PlanDrawing::draw_trees() {
 
 /// Rods rather than the arm once more: it would hide what it passes.
 void PlanDrawing::draw_postures() {
-  const auto add = [this](render::Overlay& overlay, const JointVec& q, const render::Rgba& color, double radius) {
+  const auto add = [this](render::Overlay& overlay, const JointVec& q, const render::Rgba& color,
+                          double radius) {
     const std::vector<Eigen::Vector3d> chain = chain_of(subject_->arm, q);
     for (std::size_t i = 1; i < chain.size(); ++i) {
       overlay.capsules.push_back(
@@ -290,7 +291,8 @@ void PlanDrawing::add_spheres(render::Overlay& overlay, const Look& look) const 
   }
 }
 
-void PlanDrawing::add_pair(render::Overlay& overlay, const Look& look, const ClosestPair& pair) const {
+void PlanDrawing::add_pair(render::Overlay& overlay, const Look& look,
+                           const ClosestPair& pair) const {
   const render::Rgba color = with_alpha(clearance_color(pair.to.distance), kPairSphere);
   for (const int sphere : {pair.sphere, pair.to.sphere}) {
     if (sphere < 0) continue;

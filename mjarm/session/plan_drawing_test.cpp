@@ -34,7 +34,7 @@ class WallPlan : public ::testing::Test {
       auto [model, arm] = load_robot("universal_robots_ur5e/wall.xml").value();
       ModelCover cover = cover_model(model, arm).value();
       FastChecker checker =
-          FastChecker::make(FastRobot::make(arm, cover.spheres).value(), cover.scene).value();
+          FastChecker::create(FastRobot::create(arm, cover.spheres).value(), cover.scene).value();
       const std::array start{1.9084251652,  -1.2456136770, 1.9904811714,
                              -2.3156638212, -1.5707963268, 3.4792213440},
           goal{0.7324199581,  -1.2456136770, 1.9904811714,
@@ -107,7 +107,8 @@ TEST_F(WallPlan, EveryLayerAddsWhatItSays) {
   ASSERT_EQ(tree.segments.size(), 2U);
   std::size_t edges = 0, pieces = 0;
   for (const SearchTree& one : world().path.trees) edges += one.q.size() - 1;
-  for (const render::OverlaySegments& segments : tree.segments) pieces += segments.ends_W.size() / 2;
+  for (const render::OverlaySegments& segments : tree.segments)
+    pieces += segments.ends_W.size() / 2;
   EXPECT_GT(pieces, edges);
   layers = none;
   layers.ends = true;
@@ -139,8 +140,8 @@ TEST(PlanColors, GoFromRedToBlue) {
 }
 
 /// Where a point is in a picture [px].
-Eigen::Vector2d pixel_of(const Model& model, const render::CameraView& from, const Eigen::Vector3d& p_W,
-                         int width, int height) {
+Eigen::Vector2d pixel_of(const Model& model, const render::CameraView& from,
+                         const Eigen::Vector3d& p_W, int width, int height) {
   const Eigen::Vector3d forward = (from.lookat_W - render::camera_place(from)).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
   const Eigen::Vector3d up = right.cross(forward), p = p_W - render::camera_place(from);

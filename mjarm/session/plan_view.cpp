@@ -40,7 +40,8 @@ bool hides(const Obstacle& solid, const Vector3d& from_W, const Vector3d& to_W) 
 
 }  // namespace
 
-render::CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing, double aspect) {
+render::CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing,
+                             double aspect) {
   std::vector<render::FramedBall> balls;
   for (const JointVec& q : subject.path.q) {
     for (const PlacedSphere& sphere : place_spheres(subject.checker.robot(), as_span(q))) {

@@ -11,7 +11,7 @@ namespace mjarm::session {
 /// across the line from start to goal, from the side of the base on which the path lies.
 /// @param aspect  width of the picture by its height, > 0.
 [[nodiscard]] render::CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing,
-                                   double aspect);
+                                           double aspect);
 
 /// The solids, by index, that hide places of the tool on its way from there.
 [[nodiscard]] std::vector<int> hiding_solids(const PlanSubject& subject, const PlanDrawing& drawing,

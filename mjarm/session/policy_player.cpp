@@ -6,13 +6,13 @@
 
 namespace mjarm::session {
 
-Result<PolicyPlayer> PolicyPlayer::make(const Model& model, rl::ReachOptions options,
-                                        rl::Policy policy, std::uint64_t seed) {
+Result<PolicyPlayer> PolicyPlayer::create(const Model& model, rl::ReachOptions options,
+                                          rl::Policy policy, std::uint64_t seed) {
   const int actions = options.episode_steps;
   options.environments = options.threads = 1;
   options.held_out = true;
   options.episode_steps = actions + 1;  // the last state of an episode is to be seen
-  Result<rl::ReachEnv> env = rl::ReachEnv::make(model, options);
+  Result<rl::ReachEnv> env = rl::ReachEnv::create(model, options);
   if (!env) return fail(std::move(env.error()));
   if (auto fits = rl::check_sizes(policy, *env); !fits) return fail(std::move(fits.error()));
   return PolicyPlayer(model, std::move(*env), std::move(policy), actions, seed);

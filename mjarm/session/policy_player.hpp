@@ -19,8 +19,8 @@ class PolicyPlayer {
  public:
   /// @param seed  of the first goal; goals that training never sees.
   /// @return an error where the environment cannot be made, or the policy is none for its sizes.
-  [[nodiscard]] static Result<PolicyPlayer> make(const Model& model, rl::ReachOptions options,
-                                                 rl::Policy policy, std::uint64_t seed);
+  [[nodiscard]] static Result<PolicyPlayer> create(const Model& model, rl::ReachOptions options,
+                                                   rl::Policy policy, std::uint64_t seed);
 
   /// Begins an episode with the next goal.
   [[nodiscard]] Result<void> begin_episode();

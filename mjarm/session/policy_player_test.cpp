@@ -23,8 +23,8 @@ rl::Policy random_policy(int observations, int actions) {
 
 rl::ReachEnv lone_env(const Model& model) {
   // What the player shows: goals never trained on, and the last state of an episode.
-  return rl::ReachEnv::make(model,
-                            {.environments = 1, .episode_steps = kActions + 1, .held_out = true})
+  return rl::ReachEnv::create(model,
+                              {.environments = 1, .episode_steps = kActions + 1, .held_out = true})
       .value();
 }
 
@@ -34,7 +34,7 @@ TEST(PolicyPlayer, GoesTheWayOfTheEnvironmentToTheLastBit) {
   rl::ReachEnv env = lone_env(model);
   Sim there(model);
   const rl::Policy policy = random_policy(env.observation_size(), env.action_size());
-  Result<PolicyPlayer> player = PolicyPlayer::make(model, {.episode_steps = kActions}, policy, 9);
+  Result<PolicyPlayer> player = PolicyPlayer::create(model, {.episode_steps = kActions}, policy, 9);
   ASSERT_TRUE(player) << player.error().what;
   EXPECT_FALSE(player->step().value()) << "no episode was begun";
   for (const std::uint64_t seed : {9, 10}) {
@@ -59,12 +59,13 @@ TEST(PolicyPlayer, GoesTheWayOfTheEnvironmentToTheLastBit) {
 TEST(PolicyPlayer, RefusesWhatDoesNotFit) {
   const Model model = rl::reach_model().value();
   const rl::ReachEnv env = lone_env(model);
-  const auto other = PolicyPlayer::make(model, {}, random_policy(env.observation_size() + 1, 7), 1);
+  const auto other =
+      PolicyPlayer::create(model, {}, random_policy(env.observation_size() + 1, 7), 1);
   ASSERT_FALSE(other);
   EXPECT_THAT(other.error().what, HasSubstr(std::to_string(env.observation_size() + 1)));
   rl::ReachOptions wrong;
   wrong.frame_skip = 0;
-  EXPECT_FALSE(PolicyPlayer::make(model, wrong, random_policy(env.observation_size(), 7), 1));
+  EXPECT_FALSE(PolicyPlayer::create(model, wrong, random_policy(env.observation_size(), 7), 1));
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ std::string part_of(double part, double whole) {
   return text;
 }
 
-view::PanelSection program_section(const ProgramFacts& facts, const std::vector<std::string>& lines) {
+view::PanelSection program_section(const ProgramFacts& facts,
+                                   const std::vector<std::string>& lines) {
   const bool done = facts.state == MotionClock::State::done;
   const std::size_t last = lines.empty() ? 0 : lines.size() - 1;
   return {"Program",
@@ -37,7 +38,8 @@ view::PanelSection program_section(const ProgramFacts& facts, const std::vector<
            program_button(kProgramRestart, "Restart"),
            program_line("State", kProgramStateWords[static_cast<int>(facts.state)]),
            program_line("Motion", part_of(facts.time, facts.duration)),
-           {kProgramLines, "", view::PanelList{lines, static_cast<int>(std::min(facts.motion, last))}}}};
+           {kProgramLines, "",
+            view::PanelList{lines, static_cast<int>(std::min(facts.motion, last))}}}};
 }
 
 view::PanelSection time_section(const ProgramFacts& facts) {
@@ -64,13 +66,14 @@ std::vector<std::string> program_lines(const program::ProgramPlan& plan) {
 }
 
 std::vector<view::PanelSection> program_panels(const ProgramFacts& facts,
-                                         const std::vector<std::string>& lines,
-                                         const ProgramScene::Choice& choice, view::PanelSection plots) {
+                                               const std::vector<std::string>& lines,
+                                               const ProgramScene::Choice& choice,
+                                               view::PanelSection plots) {
   return {time_section(facts), program_section(facts, lines),
           view::PanelSection{"Show",
-                       {program_checkbox(kProgramPaths, "Planned paths", choice.paths),
-                        program_checkbox(kProgramTrail, "Trail", choice.trail),
-                        program_checkbox(kProgramGoal, "Goal", choice.goal)}},
+                             {program_checkbox(kProgramPaths, "Planned paths", choice.paths),
+                              program_checkbox(kProgramTrail, "Trail", choice.trail),
+                              program_checkbox(kProgramGoal, "Goal", choice.goal)}},
           std::move(plots)};
 }
 

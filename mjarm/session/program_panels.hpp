@@ -52,8 +52,8 @@ struct ProgramFacts {
 /// @param lines  as program_lines() gives them.
 /// @param plots  the section Plots.
 [[nodiscard]] std::vector<view::PanelSection> program_panels(const ProgramFacts& facts,
-                                                       const std::vector<std::string>& lines,
-                                                       const ProgramScene::Choice& choice,
-                                                       view::PanelSection plots);
+                                                             const std::vector<std::string>& lines,
+                                                             const ProgramScene::Choice& choice,
+                                                             view::PanelSection plots);
 
 }  // namespace mjarm::session

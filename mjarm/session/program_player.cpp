@@ -25,9 +25,9 @@ ProgramPlayer::ProgramPlayer(const program::LoadedProgram& loaded, Execution exe
   restart();
 }
 
-Result<ProgramPlayer> ProgramPlayer::make(const program::LoadedProgram& loaded) {
+Result<ProgramPlayer> ProgramPlayer::create(const program::LoadedProgram& loaded) {
   Result<Execution> execution =
-      Execution::make(loaded.robot.model, loaded.plan, {.control = loaded.control()});
+      Execution::create(loaded.robot.model, loaded.plan, {.control = loaded.control()});
   if (!execution) return fail(std::move(execution.error()));
   return ProgramPlayer(loaded, std::move(*execution));
 }

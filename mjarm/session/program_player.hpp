@@ -22,7 +22,7 @@ class ProgramPlayer {
   /// The arm stands where the program starts.
   /// @param loaded  has no faults; outlives this.
   /// @return an error where the arm's actuators cannot follow the program's control.
-  [[nodiscard]] static Result<ProgramPlayer> make(const program::LoadedProgram& loaded);
+  [[nodiscard]] static Result<ProgramPlayer> create(const program::LoadedProgram& loaded);
 
   /// Does what the user asked for.
   void handle(const view::ViewEvent& event);

@@ -80,8 +80,8 @@ TEST(ProgramPlayer, RestartBeginsAnew) {
   press_item(world, kProgramRun);
   make_steps(world, 300);
   const std::vector<double> later = state_shown(world);
-  for (const view::ViewEvent& event :
-       {view::ViewEvent{view::ResetEvent{}}, view::ViewEvent{view::PanelEvent{kProgramRestart, 1}}}) {
+  for (const view::ViewEvent& event : {view::ViewEvent{view::ResetEvent{}},
+                                       view::ViewEvent{view::PanelEvent{kProgramRestart, 1}}}) {
     world.handle(view::PushEvent{.body = 4, .force_W = {5, 0, 0}});
     make_steps(world, 40);
     press_item(world, kProgramTime, 0.1);
@@ -133,18 +133,19 @@ TEST(ProgramPlayer, WhatIsShownIsChosen) {
 
 TEST(ProgramPlayer, GripsWhereTheProgramSaysSo) {
   const support::TempFolder folder;
-  const program::LoadedProgram loaded = program::load_program(folder
-                                                .write("grip.yaml", R"(robot: panda
+  const program::LoadedProgram loaded =
+      program::load_program(folder
+                                .write("grip.yaml", R"(robot: panda
 program:
   - grip: open
   - movej: {joints: [0, 0.1, 0, -1.57, 0, 1.57, -0.78]}
   - grip: close
   - wait: 200ms
 )")
-                                                .string())
-                                   .value();
+                                .string())
+          .value();
   ASSERT_TRUE(loaded.plan.ok()) << loaded.plan.faults.front().what;
-  ProgramPlayer world = ProgramPlayer::make(loaded).value();
+  ProgramPlayer world = ProgramPlayer::create(loaded).value();
   const Gripper& gripper = *loaded.robot.arm.gripper;
   const auto ctrl = [&] { return world.sim().ctrl()[static_cast<std::size_t>(gripper.id)]; };
   press_item(world, kProgramRun);
@@ -174,14 +175,17 @@ view::ViewEvent any_event(Rng& rng) {
     case 1:
       return view::StepEvent{rng.below(2) == 0 ? 1 : -1};
     case 2:
-      return view::PushEvent{.body = static_cast<int>(rng.below(7)), .force_W = {rng.uniform(), 0, 0}};
+      return view::PushEvent{.body = static_cast<int>(rng.below(7)),
+                             .force_W = {rng.uniform(), 0, 0}};
     case 3:
       return view::ReleaseEvent{};
     case 4:
-      return rng.below(20) == 0 ? view::ViewEvent{view::ResetEvent{}} : view::ViewEvent{view::SelectEvent{}};
+      return rng.below(20) == 0 ? view::ViewEvent{view::ResetEvent{}}
+                                : view::ViewEvent{view::SelectEvent{}};
     default:
       if (rng.below(10) != 0 && rng.below(3) == 0) return view::PanelEvent{kProgramRun, 1};
-      return view::PanelEvent{static_cast<int>(rng.below(kProgramFigure + 8)) - 1, kOdd[rng.below(8)]};
+      return view::PanelEvent{static_cast<int>(rng.below(kProgramFigure + 8)) - 1,
+                              kOdd[rng.below(8)]};
   }
 }
 

@@ -27,7 +27,7 @@ inline const program::LoadedProgram& there_and_back() {
   return loaded;
 }
 
-inline ProgramPlayer new_player() { return ProgramPlayer::make(there_and_back()).value(); }
+inline ProgramPlayer new_player() { return ProgramPlayer::create(there_and_back()).value(); }
 
 inline void press_item(ProgramPlayer& player, ProgramItem item, double value = 1) {
   player.handle(view::PanelEvent{item, value});

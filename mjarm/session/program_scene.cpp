@@ -43,7 +43,8 @@ void ProgramScene::clear() {
   has_curves_ = false;
 }
 
-render::Overlay ProgramScene::overlay(const Choice& choice, std::optional<std::size_t> motion) const {
+render::Overlay ProgramScene::overlay(const Choice& choice,
+                                      std::optional<std::size_t> motion) const {
   render::Overlay out;
   if (choice.paths) out = paths_;
   if (choice.trail) trail_.draw(out);

@@ -36,7 +36,8 @@ class ProgramScene {
   void clear();
 
   /// @param motion  whose goal is shown; none = no goal is.
-  [[nodiscard]] render::Overlay overlay(const Choice& choice, std::optional<std::size_t> motion) const;
+  [[nodiscard]] render::Overlay overlay(const Choice& choice,
+                                        std::optional<std::size_t> motion) const;
   /// Those that the user chose; none before the first step.
   [[nodiscard]] std::vector<view::LivePlot> plots() const;
   [[nodiscard]] ArmFigures& figures() { return figures_; }

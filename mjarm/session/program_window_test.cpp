@@ -78,7 +78,7 @@ class ProgramWindow : public mjarm::testing::RealWindow {
   }
 
   program::LoadedProgram loaded_ = waves();
-  ProgramPlayer player_ = ProgramPlayer::make(loaded_).value();
+  ProgramPlayer player_ = ProgramPlayer::create(loaded_).value();
   view::ViewFrame frame_;
 };
 

@@ -18,7 +18,8 @@ namespace {
 /// Executes a plan, with the trail of the tool in an overlay.
 class ProgramRun {
  public:
-  explicit ProgramRun(const program::LoadedProgram& loaded) : loaded_(loaded), sim_(loaded.robot.model) {
+  explicit ProgramRun(const program::LoadedProgram& loaded)
+      : loaded_(loaded), sim_(loaded.robot.model) {
     sim_.place(loaded.robot.arm, as_span(loaded.plan.q_start));
     add_planned_paths(planned_, loaded.plan);
   }
@@ -29,7 +30,7 @@ class ProgramRun {
     if (!after_step()) return {};
     const program::ProgramPlan& plan = loaded_.plan;
     Result<Execution> execution =
-        Execution::make(loaded_.robot.model, plan, {.control = loaded_.control()});
+        Execution::create(loaded_.robot.model, plan, {.control = loaded_.control()});
     if (!execution) return fail(std::move(execution.error()));
     const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
       const PlannedMove& move = plan.moves[execution->motions().back().move];
@@ -92,8 +93,9 @@ Result<std::string> picture_of(ProgramRun& run, const Job& job, Progress& progre
 
 }  // namespace
 
-Result<std::string> render_program(const program::LoadedProgram& loaded, const PictureOptions& options,
-                                   const render::Camera& camera, std::optional<double> seconds) {
+Result<std::string> render_program(const program::LoadedProgram& loaded,
+                                   const PictureOptions& options, const render::Camera& camera,
+                                   std::optional<double> seconds) {
   const Model& model = loaded.robot.model;
   double duration = loaded.plan.duration() + kRestAtEnd;
   if (seconds) duration = std::min(duration, *seconds);

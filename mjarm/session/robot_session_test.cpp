@@ -174,7 +174,7 @@ TEST_F(RobotInView, FiguresAreShownAsAskedFor) {
 TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
   const Model model = Model::load(find_model_file("ur5e").value()).value();
   const Arm arm = find_arm(model).value();
-  FreeSim passive = FreeSim::make(model, arm, true).value();
+  FreeSim passive = FreeSim::create(model, arm, true).value();
   RobotSession view(model, arm, passive);
   EXPECT_EQ(view.target(), nullptr);
   for (int i = 0; i < 20; ++i) view.step();
@@ -184,7 +184,7 @@ TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
   EXPECT_TRUE(frame.status.empty());
 
   const Model car = Model::load(find_model_file("car").value()).value();
-  FreeSim driving = FreeSim::make(car, std::nullopt, false).value();
+  FreeSim driving = FreeSim::create(car, std::nullopt, false).value();
   RobotSession bare(car, std::nullopt, driving);
   bare.step();
   bare.handle(view::PanelEvent{1000, 1});

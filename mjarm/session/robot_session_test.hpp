@@ -60,7 +60,7 @@ class RobotInView : public ::testing::Test {
 
   Model model_ = Model::load(find_model_file("ur5e").value()).value();
   Arm arm_ = find_arm(model_).value();
-  FreeSim sim_ = FreeSim::make(model_, arm_, false).value();
+  FreeSim sim_ = FreeSim::create(model_, arm_, false).value();
   RobotSession view_{model_, arm_, sim_};
   view::ViewFrame frame_;
   long drags_ = 0;

@@ -58,12 +58,13 @@ void RobotShow::add(const FreeSim& sim) {
 }
 
 void RobotShow::add_sections(std::vector<view::PanelSection>& sections) const {
-  sections.push_back({"Show",
-                      {{kGhostItem, "Ghost of goal", view::PanelCheckbox{ghost_}},
-                       {kEllipsoidItem, "Ellipsoid", view::PanelCheckbox{ellipsoid_}},
-                       {kContactItem, "Contacts", view::PanelCheckbox{contacts_}},
-                       {kNearestItem, "Closest pair", view::PanelCheckbox{nearest_}},
-                       {kTrailItem, "Trail", view::PanelChoice{{"off", "line", "balls"}, trail_look_}}}});
+  sections.push_back(
+      {"Show",
+       {{kGhostItem, "Ghost of goal", view::PanelCheckbox{ghost_}},
+        {kEllipsoidItem, "Ellipsoid", view::PanelCheckbox{ellipsoid_}},
+        {kContactItem, "Contacts", view::PanelCheckbox{contacts_}},
+        {kNearestItem, "Closest pair", view::PanelCheckbox{nearest_}},
+        {kTrailItem, "Trail", view::PanelChoice{{"off", "line", "balls"}, trail_look_}}}});
   sections.push_back(figures_.section());
 }
 
@@ -88,7 +89,8 @@ void RobotShow::add_overlay(render::Overlay& overlay, const FreeSim& sim) {
   if (contacts_ || nearest_) add_contact(overlay, q);
   if (ellipsoid_) {
     const VelocityEllipsoid ellipsoid = manipulability_ellipsoid(arm_, as_span(q));
-    render::add_velocity_ellipsoid(overlay, sim.sim().tool(arm_).p, ellipsoid.R_WE, ellipsoid.semi_axes);
+    render::add_velocity_ellipsoid(overlay, sim.sim().tool(arm_).p, ellipsoid.R_WE,
+                                   ellipsoid.semi_axes);
   }
 }
 

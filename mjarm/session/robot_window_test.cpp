@@ -33,11 +33,11 @@ class RobotInWindow : public RobotInView {
     if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "DISPLAY is not set";
     if (!std::filesystem::exists(testing::kXdotool)) GTEST_SKIP() << "xdotool is not installed";
     Result<view::Window> opened = view::Window::open(model_, kTitle,
-                                         {.width = kWidth,
-                                          .height = kHeight,
-                                          .quality = render::RenderQuality::low,
-                                          .can_target = true,
-                                          .jog_dofs = sim_.jog_dofs()});
+                                                     {.width = kWidth,
+                                                      .height = kHeight,
+                                                      .quality = render::RenderQuality::low,
+                                                      .can_target = true,
+                                                      .jog_dofs = sim_.jog_dofs()});
     ASSERT_TRUE(opened) << opened.error().what;
     window_ = std::make_unique<view::Window>(std::move(*opened));
     handle_.attach(*window_);

@@ -67,8 +67,9 @@ render::PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
   return panel;
 }
 
-render::PlotPanel a_line_a_joint(const Arm& arm, const Rows& rows, render::PlotPanel panel,
-                         const std::function<double(const RecordRow& row, int joint)>& value) {
+render::PlotPanel a_line_a_joint(
+    const Arm& arm, const Rows& rows, render::PlotPanel panel,
+    const std::function<double(const RecordRow& row, int joint)>& value) {
   for (int j = 0; j < arm.dof(); ++j) {
     panel.lines.push_back({.x = times(rows),
                            .y = column(rows, [&](const RecordRow& row) { return value(row, j); }),
@@ -135,11 +136,12 @@ render::PlotPanel error_panel(std::span<const MeasuredRun> runs, double toleranc
 render::PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs) {
   const Rows rows = rows_to_draw(runs);
   render::PlotPanel panel = a_line_a_joint(arm, rows, over_time(msg::run_chart_joints, "rad"),
-                                   [](const RecordRow& row, int j) { return row.q[j]; });
+                                           [](const RecordRow& row, int j) { return row.q[j]; });
   if (rows.empty()) return panel;
-  std::ranges::move(render::limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper),
-                                rows.front()->time, rows.back()->time, text(msg::run_chart_limits)),
-                    std::back_inserter(panel.lines));
+  std::ranges::move(
+      render::limit_lines(as_span(arm.limits.lower), as_span(arm.limits.upper), rows.front()->time,
+                          rows.back()->time, text(msg::run_chart_limits)),
+      std::back_inserter(panel.lines));
   return panel;
 }
 
@@ -151,8 +153,8 @@ render::PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun>
                         [](const RecordRow& row, int j) { return row.v[j]; });
 }
 
-render::Plot motion_plot(const std::string& title, const Arm& arm, std::span<const MeasuredRun> runs,
-                 double tolerance) {
+render::Plot motion_plot(const std::string& title, const Arm& arm,
+                         std::span<const MeasuredRun> runs, double tolerance) {
   const Rows rows = rows_to_draw(runs);
   const JointLimits& limits = arm.limits;
   render::Plot plot;

@@ -16,11 +16,12 @@ namespace mjarm::session {
 [[nodiscard]] render::PlotPanel tool_speed_panel(std::span<const MeasuredRun> runs);
 [[nodiscard]] render::PlotPanel error_panel(std::span<const MeasuredRun> runs, double tolerance);
 [[nodiscard]] render::PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs);
-[[nodiscard]] render::PlotPanel joint_speed_panel(const Arm& arm, std::span<const MeasuredRun> runs);
+[[nodiscard]] render::PlotPanel joint_speed_panel(const Arm& arm,
+                                                  std::span<const MeasuredRun> runs);
 
 /// One page about a run: tool path from three sides (planned dashed, executed solid), tool speed,
 /// error with its tolerance [m], joint values, worst use of velocity and torque limits.
 [[nodiscard]] render::Plot motion_plot(const std::string& title, const Arm& arm,
-                               std::span<const MeasuredRun> runs, double tolerance);
+                                       std::span<const MeasuredRun> runs, double tolerance);
 
 }  // namespace mjarm::session

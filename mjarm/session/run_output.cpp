@@ -1,8 +1,8 @@
 #include "mjarm/session/run_output.hpp"
 
-#include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/show.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/png.hpp"
 

@@ -16,8 +16,8 @@ namespace mjarm::session {
 struct RunOutput {
   Report report;
   render::Plot plot;
-  render::Overlay overlay;     ///< drawn into the picture
-  render::Camera camera;       ///< of the picture
+  render::Overlay overlay;  ///< drawn into the picture
+  render::Camera camera;    ///< of the picture
 };
 
 inline constexpr const char* kVideoFile = "video.mp4";

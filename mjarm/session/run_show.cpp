@@ -119,7 +119,8 @@ void RunShow::handle_events() {
 
 void RunShow::handle(const view::ViewEvent& event) {
   changed_ = true;
-  if (const auto* push = std::get_if<view::PushEvent>(&event); push != nullptr && pushed_ != nullptr) {
+  if (const auto* push = std::get_if<view::PushEvent>(&event);
+      push != nullptr && pushed_ != nullptr) {
     pushed_->set_external_force(push->body, push->force_W, push->torque_W);
   } else if (std::holds_alternative<view::ReleaseEvent>(event) && pushed_ != nullptr) {
     pushed_->clear_external_forces();
@@ -139,8 +140,8 @@ void RunShow::offer() {
   frame_.snapshot = history_.at();
   frame_.overlay = overlay();
   frame_.plots = plots();
-  frame_.status =
-      history_.is_past() ? "looking back; space goes on from now" : render::overlay_notice(frame_.overlay);
+  frame_.status = history_.is_past() ? "looking back; space goes on from now"
+                                     : render::overlay_notice(frame_.overlay);
   frames.post(frame_);
 }
 

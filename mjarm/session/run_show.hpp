@@ -86,8 +86,8 @@ class RunShow {
   view::History<Snapshot> history_{2000};
   Sim* pushed_ = nullptr;
   int due_ = 0;
-  bool changed_ = true;  ///< since the last frame
-  view::ViewFrame frame_;      ///< memory that is used again
+  bool changed_ = true;    ///< since the last frame
+  view::ViewFrame frame_;  ///< memory that is used again
   bool trail_on_ = false;
   bool filming_ = true;
   std::optional<VideoOfRun> video_;
@@ -95,7 +95,7 @@ class RunShow {
   render::Overlay planned_;
   std::optional<render::OverlaySphere> goal_;
   view::ThinnedRecord<Eigen::Vector3d> tool_{kMaxToolPoints};  ///< [m] what is plotted of it
-  double last_time_ = 0;                                 ///< [s] of the last step
+  double last_time_ = 0;                                       ///< [s] of the last step
   bool plots_tool_ = false;
 };
 

@@ -9,7 +9,8 @@ namespace mjarm::session {
 
 Result<VideoOfRun> VideoOfRun::open(const Model& model, const PictureOptions& options,
                                     const render::Camera& camera) {
-  Result<render::OffscreenRenderer> renderer = render::OffscreenRenderer::create(model, offscreen_options(options));
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(model, offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
   Result<render::VideoWriter> writer = render::VideoWriter::create(
       options.out, {.width = options.width, .height = options.height, .fps = options.fps});
@@ -17,7 +18,8 @@ Result<VideoOfRun> VideoOfRun::open(const Model& model, const PictureOptions& op
   return VideoOfRun(options, camera, std::move(*renderer), std::move(*writer));
 }
 
-bool VideoOfRun::add(const Snapshot& snapshot, const render::Camera& camera, const render::Overlay& overlay) {
+bool VideoOfRun::add(const Snapshot& snapshot, const render::Camera& camera,
+                     const render::Overlay& overlay) {
   if (error_ || interrupted()) return false;
   const Result<render::Image> image = renderer_.draw(snapshot, camera, overlay);
   const Result<void> added = image ? writer_.add(*image) : fail(image.error());

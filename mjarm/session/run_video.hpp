@@ -38,7 +38,8 @@ class VideoOfRun {
   [[nodiscard]] bool step(const Sim& sim, const render::Overlay& overlay);
 
   /// Adds a frame of any state and camera, whatever the time. @return false as `step`.
-  [[nodiscard]] bool add(const Snapshot& snapshot, const render::Camera& camera, const render::Overlay& overlay);
+  [[nodiscard]] bool add(const Snapshot& snapshot, const render::Camera& camera,
+                         const render::Overlay& overlay);
 
   /// Ends the file, which now stands under its name; without this call there is none.
   /// @return why there is no file: Ctrl-C, ffmpeg, OpenGL.
@@ -50,7 +51,8 @@ class VideoOfRun {
   [[nodiscard]] std::string summary() const;
 
  private:
-  VideoOfRun(PictureOptions options, render::Camera camera, render::OffscreenRenderer renderer, render::VideoWriter writer)
+  VideoOfRun(PictureOptions options, render::Camera camera, render::OffscreenRenderer renderer,
+             render::VideoWriter writer)
       : options_(std::move(options)),
         camera_(std::move(camera)),
         renderer_(std::move(renderer)),

@@ -30,7 +30,7 @@ double aspect_of(const PlanShow& show) {
 
 /// The camera asked for; without one, that of the path.
 Result<render::Camera> camera_of(const PlanShow& show, const PlanSubject& subject,
-                         const PlanDrawing& drawing) {
+                                 const PlanDrawing& drawing) {
   if (show.camera) return show.camera(subject.model);
   return render::Camera{.view = plan_view(subject, drawing, aspect_of(show))};
 }
@@ -90,16 +90,16 @@ Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
   if (!camera) return fail(camera.error());
   PlanPlayer player(subject, drawing);
   const view::WindowOptions window{.width = show.width,
-                             .height = show.height,
-                             .camera = std::move(*camera),
-                             .quality = show.quality,
-                             .can_push = false,
-                             .right_panel = true,
-                             .joints_open = false};
+                                   .height = show.height,
+                                   .camera = std::move(*camera),
+                                   .quality = show.quality,
+                                   .can_push = false,
+                                   .right_panel = true,
+                                   .joints_open = false};
   catch_interrupts();
   const Result<view::ViewStats> shown =
       view::show_in_window(subject.model, "mjarm plan " + subject.title, window, {show.seconds},
-                     [&player](view::ViewLink& link) { simulate_world(player, link); });
+                           [&player](view::ViewLink& link) { simulate_world(player, link); });
   if (!shown) return fail(shown.error());
   return {};
 }
@@ -123,7 +123,7 @@ Result<void> show_plan(const PlanShow& show, const PlanSubject& subject) {
 Result<void> show_plan_of_spheres(const PlanShow& show, const FastRobot& robot,
                                   const PlanProblem& problem, const PlannedPath& path) {
   const Arm arm = with_tool(robot.arm(), robot.spheres());
-  const Result<FastChecker> checker = FastChecker::make(robot, problem.obstacles);
+  const Result<FastChecker> checker = FastChecker::create(robot, problem.obstacles);
   if (!checker) return fail(checker.error());
   SphereModelLook look;
   Result<SphereModel> made = sphere_model(arm, robot.spheres(), problem.obstacles, &look);

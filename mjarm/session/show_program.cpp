@@ -33,7 +33,9 @@ class ProgramUntil {
   double seconds_;
 };
 
-std::string window_title(const program::LoadedProgram& loaded) { return "mjarm " + loaded.program.name; }
+std::string window_title(const program::LoadedProgram& loaded) {
+  return "mjarm " + loaded.program.name;
+}
 
 view::WindowOptions with_panel(view::WindowOptions window) {
   window.right_panel = true;
@@ -43,21 +45,22 @@ view::WindowOptions with_panel(view::WindowOptions window) {
 
 }  // namespace
 
-Result<view::ViewStats> view_program(const program::LoadedProgram& loaded, view::WindowOptions window,
-                               const view::ShowOptions& options) {
-  Result<ProgramPlayer> player = ProgramPlayer::make(loaded);
+Result<view::ViewStats> view_program(const program::LoadedProgram& loaded,
+                                     view::WindowOptions window, const view::ShowOptions& options) {
+  Result<ProgramPlayer> player = ProgramPlayer::create(loaded);
   if (!player) return fail(std::move(player.error()));
   if (window.paused) player->handle(view::PauseEvent{true});
-  return view::show_in_window(loaded.robot.model, window_title(loaded), with_panel(std::move(window)),
-                        options, [&player](view::ViewLink& link) { simulate_world(*player, link); });
+  return view::show_in_window(loaded.robot.model, window_title(loaded),
+                              with_panel(std::move(window)), options,
+                              [&player](view::ViewLink& link) { simulate_world(*player, link); });
 }
 
 Result<void> show_program(const program::LoadedProgram& loaded, double seconds) {
   if (interrupted()) return {};
-  Result<ProgramPlayer> player = ProgramPlayer::make(loaded);
+  Result<ProgramPlayer> player = ProgramPlayer::create(loaded);
   if (!player) return fail(std::move(player.error()));
-  const Result<std::optional<view::RemoteWindow>> window =
-      view::RemoteWindow::open_where_possible(loaded.robot.model, window_title(loaded), with_panel({}));
+  const Result<std::optional<view::RemoteWindow>> window = view::RemoteWindow::open_where_possible(
+      loaded.robot.model, window_title(loaded), with_panel({}));
   if (!window) return fail(window.error());
   if (!*window) return {};
   log_info(text(msg::show_close_window));

@@ -7,8 +7,9 @@ namespace mjarm::session {
 
 /// Opens a window in which the user runs a plan without faults. Called from the main thread.
 /// @return how it was drawn; impossible with a hint where there is no display.
-[[nodiscard]] Result<view::ViewStats> view_program(const program::LoadedProgram& loaded, view::WindowOptions window,
-                                             const view::ShowOptions& options);
+[[nodiscard]] Result<view::ViewStats> view_program(const program::LoadedProgram& loaded,
+                                                   view::WindowOptions window,
+                                                   const view::ShowOptions& options);
 
 /// The same window, in which it runs at once; for work beside windows
 /// (`run_beside_windows`). Returns when the window is gone, at once where there is none to be had.

@@ -206,7 +206,8 @@ void TargetControl::add_ghost(render::Overlay& overlay, bool always) const {
   const JointVec& q = target_.jump() ? *target_.jump() : target_.goal();
   const bool waits = shown_ && (q - sim_.goal()).cwiseAbs().maxCoeff() > 1e-9;
   if (!always && !held_ && !waits) return;
-  render::OverlayGhost& ghost = overlay.ghosts.emplace_back(render::ghost_of(target_.arm(), as_span(q)));
+  render::OverlayGhost& ghost =
+      overlay.ghosts.emplace_back(render::ghost_of(target_.arm(), as_span(q)));
   ghost.color = color_of(target_.grade());
   ghost.color.a = kGhostAlpha;
 }

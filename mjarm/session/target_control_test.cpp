@@ -39,10 +39,12 @@ class Control : public ::testing::Test {
   void use(const std::string& name, double value = 1) {
     EXPECT_TRUE(control_.handle({item(name).id, value})) << name;
   }
-  std::string shown(const std::string& name) { return std::get<view::PanelText>(item(name).what).value; }
+  std::string shown(const std::string& name) {
+    return std::get<view::PanelText>(item(name).what).value;
+  }
 
   TestArm robot_ = shipped_arm("ur5e");
-  FreeSim sim_ = FreeSim::make(robot_.model, robot_.arm, false).value();
+  FreeSim sim_ = FreeSim::create(robot_.model, robot_.arm, false).value();
   TargetControl control_{robot_.model, robot_.arm, sim_};
   long drags_ = 0;
 };

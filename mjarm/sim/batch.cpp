@@ -260,7 +260,7 @@ BatchSim::~BatchSim() = default;
 BatchSim::BatchSim(BatchSim&&) noexcept = default;
 BatchSim& BatchSim::operator=(BatchSim&&) noexcept = default;
 
-Result<BatchSim> BatchSim::make(const Model& model, const Arm& arm, int count, int threads) {
+Result<BatchSim> BatchSim::create(const Model& model, const Arm& arm, int count, int threads) {
   auto impl = std::make_unique<Impl>(model);
   if (auto made = impl->make(arm, count, threads); !made) return fail(std::move(made.error()));
   return BatchSim(std::move(impl));

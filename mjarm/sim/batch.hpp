@@ -27,8 +27,8 @@ class BatchSim {
   /// @param count    worlds, 1 to 100000
   /// @param threads  that step them, with the calling one, 1 to 1024
   /// @return an error where numbers are out of range or MuJoCo refuses.
-  [[nodiscard]] static Result<BatchSim> make(const Model& model, const Arm& arm, int count,
-                                             int threads);
+  [[nodiscard]] static Result<BatchSim> create(const Model& model, const Arm& arm, int count,
+                                               int threads);
   ~BatchSim();
   BatchSim(BatchSim&&) noexcept;
   BatchSim& operator=(BatchSim&&) noexcept;

@@ -25,7 +25,7 @@ using testing::Loaded;
 using testing::small_world;
 
 BatchSim batch_of(const Loaded& robot, int count, int threads = 1) {
-  auto batch = BatchSim::make(robot.model, robot.arm, count, threads);
+  auto batch = BatchSim::create(robot.model, robot.arm, count, threads);
   if (!batch) throw std::runtime_error(batch.error().what);
   return std::move(*batch);
 }
@@ -232,7 +232,7 @@ TEST(BatchSim, MocapBodiesStandWhereTheyAreToldTo) {
 TEST(BatchSim, RefusesNumbersOutOfRange) {
   const Loaded robot = load_text(small_world());
   for (const auto& [count, threads] : {std::pair{0, 1}, {-3, 1}, {1000000, 1}, {1, 0}, {1, 5000}}) {
-    const auto batch = BatchSim::make(robot.model, robot.arm, count, threads);
+    const auto batch = BatchSim::create(robot.model, robot.arm, count, threads);
     ASSERT_FALSE(batch);
     EXPECT_EQ(batch.error().code, Errc::usage);
   }

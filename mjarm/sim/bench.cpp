@@ -91,7 +91,7 @@ Result<std::vector<Contestant>> contestants_of(const Model& model, const Arm& ar
   Error why;
   for (const ControlMode mode :
        {ControlMode::servo, ControlMode::servo_gravity, ControlMode::computed_torque}) {
-    auto controller = Controller::make(model, arm, mode);
+    auto controller = Controller::create(model, arm, mode);
     if (controller) {
       contestants.emplace_back(std::string(name(mode)), model, arm, std::move(*controller));
     } else {

@@ -96,7 +96,8 @@ Result<GlWindow> open_gl_window(int width, int height, const std::string& title,
   if (!window && smooth) window = create(width, height, title, smooth = false);
   if (!window) return fail(std::move(window.error()));
   const bool slow = is_software(gl_string(kGlRenderer));
-  const render::RenderQuality chosen = quality.value_or(slow ? render::RenderQuality::low : render::RenderQuality::high);
+  const render::RenderQuality chosen =
+      quality.value_or(slow ? render::RenderQuality::low : render::RenderQuality::high);
   if (!quality && chosen == render::RenderQuality::high) {
     glfwDestroyWindow(*window);
     window = create(width, height, title, true);

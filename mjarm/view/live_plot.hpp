@@ -12,8 +12,8 @@ namespace mjarm::view {
 struct LiveSeries {
   std::string name = {};  ///< in the legend; ASCII; empty = not in the legend
   render::Rgba color = {0.90F, 0.35F, 0.30F, 1};
-  std::vector<double> x = {};          ///< shape (n,)
-  std::vector<double> y = {};          ///< shape (n,); NaN leaves a gap
+  std::vector<double> x = {};                          ///< shape (n,)
+  std::vector<double> y = {};                          ///< shape (n,); NaN leaves a gap
   render::LineStyle style = render::LineStyle::solid;  ///< points are drawn as dots along the curve
   bool operator==(const LiveSeries&) const = default;
 };

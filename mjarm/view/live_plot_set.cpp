@@ -52,8 +52,9 @@ void add_curve(Chart& chart, const std::vector<TimedValue>& values, std::string 
 void add_limits(Chart& chart, const JointVec& lower, const JointVec& upper) {
   if (chart.lines.empty() || chart.lines.front().x.empty()) return;
   const std::vector<double>& times = chart.lines.front().x;
-  std::ranges::move(render::limit_lines(as_span(lower), as_span(upper), times.front(), times.back()),
-                    std::back_inserter(chart.lines));
+  std::ranges::move(
+      render::limit_lines(as_span(lower), as_span(upper), times.front(), times.back()),
+      std::back_inserter(chart.lines));
 }
 
 /// The unit of all joints, where they have one in common.

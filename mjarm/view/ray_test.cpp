@@ -64,7 +64,8 @@ TEST_P(Rays, AgreeWithMujocosSelection) {
   Rng rng(7);
   int found = 0;
   for (int i = 0; i < 300; ++i) {
-    const render::Camera camera = i % 10 == 0 ? render::Camera{.name = "side"} : render::Camera{.view = random_view(rng)};
+    const render::Camera camera =
+        i % 10 == 0 ? render::Camera{.name = "side"} : render::Camera{.view = random_view(rng)};
     ASSERT_TRUE(scene_->set_camera(camera));
     scene_->update({});
     const Eye eye = eye_of(*scene_);

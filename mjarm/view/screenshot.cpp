@@ -17,7 +17,8 @@ Result<std::filesystem::path> save_screenshot(const render::Image& image,
     std::snprintf(name, sizeof(name), "mjarm-%03d.png", i);
     const std::filesystem::path file = folder / name;
     if (std::filesystem::exists(file, ignored)) continue;
-    if (auto written = render::write_png(image, file); !written) return fail(std::move(written.error()));
+    if (auto written = render::write_png(image, file); !written)
+      return fail(std::move(written.error()));
     return file;
   }
   return fail(Errc::system, text(msg::view_many_screenshots, folder.string(), kMax));

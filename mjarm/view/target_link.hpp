@@ -21,7 +21,7 @@ struct TargetLook {
   bool shown = false;
   Pose X_WT = {};
   std::optional<Eigen::Matrix3d> R_WG = {};  ///< directions of the handles; none = the target's
-  render::Rgba color = {};                           ///< of the ball
+  render::Rgba color = {};                   ///< of the ball
   long number = 0;                           ///< of the last drag that this is the answer to
 };
 

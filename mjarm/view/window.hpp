@@ -26,19 +26,19 @@ namespace mjarm::view {
 
 /// How a window opens. Every default is usable as is.
 struct WindowOptions {
-  int width = 1280;                           ///< [screen units] > 0
-  int height = 800;                           ///< [screen units] > 0
-  render::Camera camera = {};                         ///< a named camera is where the free camera starts
+  int width = 1280;            ///< [screen units] > 0
+  int height = 800;            ///< [screen units] > 0
+  render::Camera camera = {};  ///< a named camera is where the free camera starts
   std::optional<render::RenderQuality> quality = {};  ///< default: high with a GPU, low without
-  bool paused = false;                        ///< starts paused
-  bool can_step = true;                       ///< the application follows StepEvent
-  bool can_reset = true;                      ///< ... and ResetEvent
-  bool can_push = true;                       ///< ... and PushEvent
-  bool can_target = false;                    ///< ... and TargetEvent
-  std::vector<int> jog_dofs = {};             ///< ... and JointEvent of these dofs
-  std::filesystem::path screenshots = {};     ///< folder of pictures the user takes; empty = none
-  bool right_panel = false;                   ///< is shown at first
-  bool joints_open = true;                    ///< its section of joints is unfolded at first
+  bool paused = false;                                ///< starts paused
+  bool can_step = true;                               ///< the application follows StepEvent
+  bool can_reset = true;                              ///< ... and ResetEvent
+  bool can_push = true;                               ///< ... and PushEvent
+  bool can_target = false;                            ///< ... and TargetEvent
+  std::vector<int> jog_dofs = {};                     ///< ... and JointEvent of these dofs
+  std::filesystem::path screenshots = {};  ///< folder of pictures the user takes; empty = none
+  bool right_panel = false;                ///< is shown at first
+  bool joints_open = true;                 ///< its section of joints is unfolded at first
 };
 
 /// A window that shows a simulated world. The caller owns the loop and the physics; what the user

@@ -38,8 +38,8 @@ Result<int> run(const Options& options) {
   catch_interrupts();
   const Result<program::LoadedProgram> loaded = program::load_sound_program(options.file);
   if (!loaded) return fail(loaded.error());
-  const Result<std::string> script =
-      program::to_urscript(loaded->program, loaded->robot, loaded->plan, {.version = MJARM_VERSION});
+  const Result<std::string> script = program::to_urscript(loaded->program, loaded->robot,
+                                                          loaded->plan, {.version = MJARM_VERSION});
   if (!script) return fail(script.error().code, options.file + ": " + script.error().what);
   if (options.out.empty()) {
     std::fwrite(script->data(), 1, script->size(), stdout);

@@ -182,7 +182,7 @@ Result<int> run(Options options) {
   if (!prefer) return fail(prefer.error());
   Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(std::move(robot.error()));
-  const Job job{IkSolver(robot->arm, {.rng_seed = *seed, .task = *task}), *prefer,
+  const Job job{IkSolver(robot->arm, {.seed = *seed, .task = *task}), *prefer,
                 options.all || options.windings, options.windings, !options.no_timing};
   return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
 }

@@ -1,18 +1,19 @@
+#include "apps/mjarm/messages/models.hpp"
+
 #include <cstdio>
 #include <memory>
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
-#include "mjarm/install/install.hpp"
-#include "mjarm/install/installed.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/models.hpp"
-#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/text_width.hpp"
+#include "mjarm/install/install.hpp"
+#include "mjarm/install/installed.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -86,7 +87,8 @@ Result<int> run_remove(const std::vector<const install::MeshSet*>& sets) {
     lock.emplace(std::move(*locked));
   }
   for (const install::MeshSet* set : sets) {
-    const Result<bool> removed = any_there ? install::remove_meshes(*data, *set) : Result<bool>(false);
+    const Result<bool> removed =
+        any_there ? install::remove_meshes(*data, *set) : Result<bool>(false);
     if (!removed) return fail(removed.error());
     const Msg said = *removed ? msg::models_removed : msg::models_nothing_to_remove;
     std::printf("%s\n", text(said, set->robot).c_str());
@@ -107,7 +109,8 @@ Result<std::string> address_of(const std::string& from) {
   return install::file_url(from);
 }
 
-Result<void> install_one(const install::MeshSet& set, const install::IndexSettings& index, const std::string& from) {
+Result<void> install_one(const install::MeshSet& set, const install::IndexSettings& index,
+                         const std::string& from) {
   const Result<install::Installed> before = install::look_up(set);
   if (!before) return fail(before.error());
   if (before->state.kind == install::MeshState::Kind::whole) {
@@ -117,7 +120,8 @@ Result<void> install_one(const install::MeshSet& set, const install::IndexSettin
   if (!before->state.problem.empty()) {
     log_info(text(msg::models_mending, before->state.problem));
   }
-  if (auto done = install::install_meshes(before->data, set, before->scene, index, from); !done) return done;
+  if (auto done = install::install_meshes(before->data, set, before->scene, index, from); !done)
+    return done;
   std::printf("%s\n", text(msg::models_done, set.robot, set.files.size(), set.licence,
                            before->folder.string())
                           .c_str());

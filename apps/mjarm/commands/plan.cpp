@@ -161,7 +161,7 @@ Result<int> run(const Options& options) {
     return fail(Errc::usage,
                 text(msg::plan_show_one, options.batch.in, file->problems.size(), first));
   }
-  const Result<FastRobot> robot = FastRobot::make(file->arm, file->spheres);
+  const Result<FastRobot> robot = FastRobot::create(file->arm, file->spheres);
   if (!robot) return fail(robot.error().code, options.batch.in + ": " + robot.error().what);
   return answer_all(*file, *robot, *plan, *threads, options, *show);
 }

@@ -209,7 +209,7 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   if (Result<void> read = read_upright(request, robot->arm, *way, how); !read) {
     return fail(std::move(read.error()));
   }
-  Result<PlanningWorld> world = PlanningWorld::make(*robot, way->world);
+  Result<PlanningWorld> world = PlanningWorld::create(*robot, way->world);
   if (!world) return fail(std::move(world.error()));
   PlanTimes times;
   const Result<WorldPath, WorldFailure> found = find_way(*world, *way, how, times);

@@ -25,7 +25,7 @@ using session::PolicyPlayer;
 struct Played {
   std::string csv;
   std::vector<render::PlotLine> distances;  ///< [mm] over time [s], one an episode
-  double max_joint_step = 0;        ///< [rad]
+  double max_joint_step = 0;                ///< [rad]
   bool ended_by_user = false;
 };
 
@@ -97,8 +97,8 @@ Result<Played> play(PolicyPlayer& player, const PolicyTrial& trial, session::Run
 
 render::Plot plot_of(const std::string& title, const rl::Evaluation& evaluation, Played& played) {
   render::PlotPanel over_time{.title = text(msg::train_plot_over_time),
-                      .x_label = text(msg::train_plot_time),
-                      .y_label = text(msg::train_plot_mm)};
+                              .x_label = text(msg::train_plot_time),
+                              .y_label = text(msg::train_plot_mm)};
   over_time.lines = std::move(played.distances);
   over_time.y_from_zero = true;
   return {.title = title,
@@ -141,7 +141,8 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
   const double seconds = 1e-6 * watch.us();
   log_info(in_words(*evaluation));
 
-  Result<PolicyPlayer> player = PolicyPlayer::make(*model, loaded.task, loaded.policy, trial.seed);
+  Result<PolicyPlayer> player =
+      PolicyPlayer::create(*model, loaded.task, loaded.policy, trial.seed);
   if (!player) return fail(std::move(player.error()));
   Result<session::RunShow> show =
       session::RunShow::open(*model, "mjarm " + trial.name, options.headless);

@@ -10,8 +10,8 @@
 
 namespace mjarm::app {
 
-Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loaded, double tolerance,
-                        Report begun) {
+Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loaded,
+                        double tolerance, Report begun) {
   const program::ProgramPlan& plan = loaded.plan;
   const double steps = (plan.duration() + kRestAtEnd) / loaded.robot.model.timestep();
   Progress progress(text(msg::motion_program_running), static_cast<std::uint64_t>(steps));
@@ -35,8 +35,9 @@ session::StageOptions out_of_sight(session::StageOptions options) {
   return options;
 }
 
-Result<Report> run_and_show(const program::LoadedProgram& loaded, const session::StageOptions& options,
-                            double tolerance, const std::string& camera) {
+Result<Report> run_and_show(const program::LoadedProgram& loaded,
+                            const session::StageOptions& options, double tolerance,
+                            const std::string& camera) {
   const Result<std::unique_ptr<session::Stage>> stage =
       session::Stage::open(loaded.program.name, out_of_sight(options), loaded.robot);
   if (!stage) return fail(stage.error());

@@ -52,8 +52,8 @@ Result<int> run(const Options& options) {
   if (!loaded) return fail(loaded.error());
   if (chosen->control) loaded->program.control = chosen->control;
   if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
-  const Result<Report> report =
-      view::beside_windows(chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
+  const Result<Report> report = view::beside_windows(
+      chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
   if (!report) return fail(report.error());
   return conclude(*report, chosen->out);
 }

@@ -97,8 +97,8 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
   if (!csv) return fail(csv.error());
   const Columns table = read_columns(*csv);
   render::PlotPanel success{.title = text(msg::train_plot_success),
-                    .x_label = text(msg::train_plot_steps),
-                    .y_label = text(msg::train_plot_share)};
+                            .x_label = text(msg::train_plot_steps),
+                            .y_label = text(msg::train_plot_share)};
   for (const auto& [name, label] :
        {std::pair{"within_5cm", "5 cm"}, std::pair{"within_2cm", "2 cm"},
         std::pair{"within_1cm", "1 cm"}, std::pair{"within_5mm", "5 mm"}}) {
@@ -106,18 +106,18 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
   }
   success.y_range = render::PlotRange{0, 100};
   render::PlotPanel reward{.title = text(msg::train_plot_return),
-                   .x_label = text(msg::train_plot_steps),
-                   .y_label = text(msg::train_plot_return)};
+                           .x_label = text(msg::train_plot_steps),
+                           .y_label = text(msg::train_plot_return)};
   reward.lines.push_back(line_of(table, "mean_return", 1, {}));
   render::PlotPanel distance{.title = text(msg::train_plot_distance_over),
-                     .x_label = text(msg::train_plot_steps),
-                     .y_label = "mm"};
+                             .x_label = text(msg::train_plot_steps),
+                             .y_label = "mm"};
   distance.lines.push_back(line_of(table, "median", 1e3, text(msg::train_plot_median)));
   distance.lines.push_back(line_of(table, "p95", 1e3, "95 %"));
   distance.y_from_zero = true;
   render::PlotPanel spread{.title = text(msg::train_plot_std),
-                   .x_label = text(msg::train_plot_steps),
-                   .y_label = text(msg::train_plot_std)};
+                           .x_label = text(msg::train_plot_steps),
+                           .y_label = text(msg::train_plot_std)};
   spread.lines.push_back(line_of(table, "mean_std", 1, {}));
   spread.y_from_zero = true;
   return render::save_plot(

@@ -65,8 +65,8 @@ std::vector<Fact> facts_of(const rl::Evaluation& evaluation) {
 
 render::PlotPanel distance_panel(const rl::Evaluation& evaluation) {
   render::PlotPanel panel{.title = text(msg::train_plot_distances),
-                  .x_label = text(msg::train_plot_distance),
-                  .y_label = text(msg::train_plot_share)};
+                          .x_label = text(msg::train_plot_distance),
+                          .y_label = text(msg::train_plot_share)};
   std::vector<double> sorted = evaluation.distances;
   std::ranges::sort(sorted);
   constexpr double kMax = 50;  // [mm]

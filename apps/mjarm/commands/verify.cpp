@@ -140,7 +140,7 @@ Result<Job> robot_job(const Options& options, const Robot& robot, const VerifyRu
   const Result<ContactRules> rules = rules_of(words, robot, start);
   if (!rules) return fail(rules.error());
   const double bound = path.spheres.value_or(WorldOptions{}.bounds.back());
-  Result<PlanningWorld> world = PlanningWorld::make(robot, {.rules = *rules, .bounds = {bound}});
+  Result<PlanningWorld> world = PlanningWorld::create(robot, {.rules = *rules, .bounds = {bound}});
   if (!world) return fail(std::move(world.error()));
   const Result<const WorldLevel*> level = world->level(0);
   if (!level) return fail(level.error());

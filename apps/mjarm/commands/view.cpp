@@ -52,10 +52,10 @@ Result<Loaded> load(const Options& options) {
 }
 
 Result<FreeSim> make_sim(const Loaded& loaded, bool passive) {
-  Result<FreeSim> sim = FreeSim::make(loaded.model, loaded.arm, passive);
+  Result<FreeSim> sim = FreeSim::create(loaded.model, loaded.arm, passive);
   if (sim || sim.error().code != Errc::not_available) return sim;
   log_info(text(msg::view_not_held, sim.error().what));
-  return FreeSim::make(loaded.model, loaded.arm, true);
+  return FreeSim::create(loaded.model, loaded.arm, true);
 }
 
 /// @param out  with what the user has no say in.
@@ -116,9 +116,10 @@ Result<int> run(const Options& options) {
     handle.emplace(target->link(), target->target().turns());
     show.on_open = [&handle](view::Window& window) { handle->attach(window); };
   }
-  return told(options, view::show_in_window(
-                           loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen,
-                           show, [&view](view::ViewLink& link) { session::simulate_world(view, link); }));
+  return told(options,
+              view::show_in_window(
+                  loaded->model, "mjarm " + std::string(loaded->model.name()), *chosen, show,
+                  [&view](view::ViewLink& link) { session::simulate_world(view, link); }));
 }
 
 /// A program brings its robot and tool along, and holds it.

@@ -76,17 +76,17 @@ std::string csv_of(const WorkspaceReport& report) {
 }
 
 render::PlotPanel panel_of(const WorkspaceReport& report, const std::string& title,
-                   std::vector<double> values) {
+                           std::vector<double> values) {
   const WorkspaceMap& map = report.map;
   const double half = map.step / 2;
   render::PlotPanel panel{.title = title,
-                  .x_label = text(msg::workspace_axis, axis_name(map.u)),
-                  .y_label = text(msg::workspace_axis, axis_name(map.v)),
-                  .equal_aspect = true};
+                          .x_label = text(msg::workspace_axis, axis_name(map.u)),
+                          .y_label = text(msg::workspace_axis, axis_name(map.v)),
+                          .equal_aspect = true};
   panel.field = render::PlotField{.x = {map.u_first - half, map.u_at(map.columns - 1) + half},
-                          .y = {map.v_first - half, map.v_at(map.rows - 1) + half},
-                          .columns = map.columns,
-                          .values = std::move(values)};
+                                  .y = {map.v_first - half, map.v_at(map.rows - 1) + half},
+                                  .columns = map.columns,
+                                  .values = std::move(values)};
   const Eigen::Vector3d& p_W = report.arm.joints.front().X_PJ.p;
   const double u = p_W[map.u];
   const double v = p_W[map.v];

@@ -51,7 +51,8 @@ render::PlotPanel panel_of(Chart chart, const Arm& arm, const MeasuredRun& run) 
 }
 
 /// The range of one coordinate over all lines of the panels, with a little room.
-render::PlotRange common_range(std::span<const render::PlotPanel> panels, std::vector<double> render::PlotLine::* values) {
+render::PlotRange common_range(std::span<const render::PlotPanel> panels,
+                               std::vector<double> render::PlotLine::* values) {
   double lower = std::numeric_limits<double>::infinity(), upper = -lower;
   for (const render::PlotPanel& panel : panels) {
     for (const render::PlotLine& line : panel.lines) {
@@ -87,8 +88,8 @@ double largest_distance(const MeasuredRun& run) {
   return largest;
 }
 
-render::Plot comparison_plot(const ComparisonText& about, const Arm& arm, std::span<const ComparedRun> runs,
-                     std::span<const Chart> rows) {
+render::Plot comparison_plot(const ComparisonText& about, const Arm& arm,
+                             std::span<const ComparedRun> runs, std::span<const Chart> rows) {
   render::Plot page;
   page.title = about.title;
   page.note = about.note;
@@ -101,7 +102,8 @@ render::Plot comparison_plot(const ComparisonText& about, const Arm& arm, std::s
       panel.title = text(msg::demo_side_title, side.title, panel.title);
       row.push_back(std::move(panel));
     }
-    const render::PlotRange x = common_range(row, &render::PlotLine::x), y = common_range(row, &render::PlotLine::y);
+    const render::PlotRange x = common_range(row, &render::PlotLine::x),
+                            y = common_range(row, &render::PlotLine::y);
     for (render::PlotPanel& panel : row) {
       panel.x_range = x;
       panel.y_range = y;

@@ -35,6 +35,7 @@ struct ComparedRun {
 
 /// Runs side by side, in axes of the same scale, time counted from the beginning of each.
 [[nodiscard]] render::Plot comparison_plot(const ComparisonText& about, const Arm& arm,
-                                   std::span<const ComparedRun> runs, std::span<const Chart> rows);
+                                           std::span<const ComparedRun> runs,
+                                           std::span<const Chart> rows);
 
 }  // namespace mjarm::app

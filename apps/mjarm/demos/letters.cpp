@@ -40,7 +40,8 @@ Result<program::Program> written(const std::string& text) {
 }  // namespace
 
 Result<Report> run_letters(const DemoOptions& options) {
-  Result<program::Program> program = options.text.empty() ? demo_program("letters") : written(options.text);
+  Result<program::Program> program =
+      options.text.empty() ? demo_program("letters") : written(options.text);
   if (!program) return fail(std::move(program.error()));
   const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());

@@ -12,11 +12,13 @@ namespace mjarm::app {
 
 /// Plans `program` on the robot that the user chose.
 /// @return usage where the program's postures are for another number of joints.
-[[nodiscard]] Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOptions& options);
+[[nodiscard]] Result<program::LoadedProgram> plan_demo(program::Program program,
+                                                       const DemoOptions& options);
 
 /// Runs and shows it; a plan with faults ends the demo with the first of them.
 /// @param camera  of the picture at the end, where the model has it.
-[[nodiscard]] Result<Report> run_demo_plan(const program::LoadedProgram& loaded, const DemoOptions& options,
+[[nodiscard]] Result<Report> run_demo_plan(const program::LoadedProgram& loaded,
+                                           const DemoOptions& options,
                                            const std::string& camera = "overview");
 
 /// All of that: the demo is its program.

@@ -50,7 +50,8 @@ struct Choice {
 
 /// The first square that can be drawn: postures in their order, planes in theirs. Each posture that
 /// fails in every plane is told.
-Result<Choice, MotionFailure> choose(const IkSolver& ik, std::span<const program::StartPosture> starts) {
+Result<Choice, MotionFailure> choose(const IkSolver& ik,
+                                     std::span<const program::StartPosture> starts) {
   MotionFailure nearest;
   for (const program::StartPosture& start : starts) {
     const Pose X_WT = fk(ik.arm(), as_span(start.q));
@@ -86,7 +87,8 @@ Result<Report> run_square(const DemoOptions& options) {
   session::Stage& stage = **opened;
   const IkSolver ik = free_solver(stage.robot());
   Rng rng(1);
-  const std::vector<program::StartPosture> starts = program::start_postures(stage.arm(), ik.options().valid, rng);
+  const std::vector<program::StartPosture> starts =
+      program::start_postures(stage.arm(), ik.options().valid, rng);
   if (starts.empty()) return stage.refuse("collision", text(msg::demo_no_start));
   const Result<Choice, MotionFailure> choice = choose(ik, starts);
   if (!choice) return stage.refuse(choice.error());
