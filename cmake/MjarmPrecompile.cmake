@@ -1,6 +1,5 @@
-# The headers that most files of the rooms begin with, compiled once: a first build takes much less
-# time. Off where developers build, as ccache cannot see into them. The macros here must be those that
-# every room has.
+# The headers that most files of the rooms begin with, compiled once: a build takes much less time. The
+# macros here must be those that every room has.
 set(MJARM_PRECOMPILED <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <filesystem> <functional>
                       <map> <memory> <optional> <set> <string> <tl/expected.hpp> <vector>)
 foreach(header core/joint_state core/messages core/result core/rotation model/arm)

@@ -6,6 +6,8 @@
 #include "mjarm/model/robot.hpp"
 #include "mjarm/program/program_plan.hpp"
 
+namespace motions = mjarm::program;
+
 int main() {
   const auto robot = mjarm::load_robot("ur5e");
   if (!robot) return std::fprintf(stderr, "%s\n", robot.error().what.c_str()), 1;
@@ -13,14 +15,13 @@ int main() {
 
   const Eigen::Matrix3d down = mjarm::from_euler({3.14, 0, 0});
   const auto pose = [&](double x, double y, double z) { return mjarm::Pose{{x, y, z}, down}; };
-  mjarm::program::Program program;
+  motions::Program program;
   program.instructions = {
-      mjarm::program::move_j(pose(0.2, -0.45, 0.4)),
-      mjarm::repeat(2,
-                    {mjarm::program::move_l(pose(-0.2, -0.45, 0.4), 0.3, 0.02),  // 20 mm of blend
-                     mjarm::program::move_l(pose(-0.2, -0.45, 0.25), 0.1), mjarm::wait(0.2),
-                     mjarm::program::move_c(pose(0, -0.35, 0.35), pose(0.2, -0.45, 0.4))})};
-  const mjarm::program::ProgramPlan plan = mjarm::program::plan_program(model, arm, program);
+      motions::move_j(pose(0.2, -0.45, 0.4)),
+      motions::repeat(2, {motions::move_l(pose(-0.2, -0.45, 0.4), 0.3, 0.02),  // 20 mm of blend
+                          motions::move_l(pose(-0.2, -0.45, 0.25), 0.1), motions::wait(0.2),
+                          motions::move_c(pose(0, -0.35, 0.35), pose(0.2, -0.45, 0.4))})};
+  const motions::ProgramPlan plan = motions::plan_program(model, arm, program);
   for (const auto& fault : plan.faults) std::fprintf(stderr, "%s\n", fault.what.c_str());
   if (!plan.ok()) return 1;
 

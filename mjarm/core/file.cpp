@@ -22,6 +22,19 @@ fs::path temporary_name(const fs::path& target) {
   return target.string() + ".tmp" + std::to_string(process_id()) + "-" + std::to_string(counter++);
 }
 
+/// The file that `path` means, through links, also where it does not exist yet.
+fs::path target_of(fs::path path) {
+  constexpr int kMaxLinks = 40;  // as the system follows
+  std::error_code code;
+  for (int i = 0; i < kMaxLinks && fs::is_symlink(path, code); ++i) {
+    const fs::path to = fs::read_symlink(path, code);
+    if (code) break;
+    path = path.parent_path() / to;
+  }
+  const fs::path target = fs::weakly_canonical(path, code);
+  return code ? path : target;
+}
+
 }  // namespace
 
 Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
@@ -72,8 +85,7 @@ Result<AtomicFile> AtomicFile::create(const fs::path& path) {
   }
   if (type == fs::file_type::regular || type == fs::file_type::not_found) {
     // A link keeps pointing where it does: its target is what gets replaced.
-    file.target_ = fs::weakly_canonical(path, ignored);
-    if (ignored) file.target_ = path;
+    file.target_ = target_of(path);
     file.temporary_ = temporary_name(file.target_);
     file.file_ = std::fopen(file.temporary_.c_str(), "wbx");
   } else {

@@ -199,6 +199,10 @@ Result<JsonObject, JsonFailure> JsonObject::parse(std::string_view text, const J
   if (text.size() > std::min(limits.bytes, kMax)) {
     return tl::unexpected(JsonFailure{JsonErrc::too_long, 0, {}});
   }
+  // The parser would take it for the end of the text.
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+    return tl::unexpected(JsonFailure{JsonErrc::syntax, nul + 1, {}});
+  }
   JsonBuilder builder(text, limits);
   (void)nlohmann::json::sax_parse(text, &builder);  // the builder keeps what went wrong
   return builder.finish();

@@ -42,7 +42,10 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    add({YamlNode::Kind::nothing, place_of(mark), {}, false, {}, {}}, anchor);
+    // The parser has gone on to whatever comes next; what is left out is missed at its key.
+    const bool has_key = !open_.empty() && open_.back().has_key;
+    const FilePlace place = has_key ? open_.back().key.place : place_of(mark);
+    add({YamlNode::Kind::nothing, place, {}, false, {}, {}}, anchor);
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);

@@ -120,8 +120,9 @@ void check_ctrl_range(const CheckContext& context, int i, const ArmActuator& act
   const double joint = arm.limits.upper[i] - arm.limits.lower[i];
   const double stiffness = -actuator.bias[1] * actuator.gear;
   if (!std::isfinite(joint) || !(joint > 0) || stiffness == 0) return;
-  // Where the servo rests: gain * ctrl + bias[0] = -bias[1] * gear * q.
-  const double servo = (actuator.ctrl_upper - actuator.ctrl_lower) * actuator.gain / stiffness;
+  // Where the servo rests: gain * ctrl + bias[0] = -bias[1] * gear * q. A gear may turn it round.
+  const double servo =
+      std::abs((actuator.ctrl_upper - actuator.ctrl_lower) * actuator.gain / stiffness);
   if (!std::isfinite(servo)) return;
   if (servo >= kLeastShare * joint && servo <= kMaxShare * joint) return;
   context.add(CheckCode::ctrl_range_differs, Grade::warning, ctrl_place(context, actuator),

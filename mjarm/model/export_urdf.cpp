@@ -44,6 +44,7 @@ class UrdfWriter {
     const Result<Arm> arm = find_arm(model);
     if (arm) arm_ = *arm;
     for (int b = 0; b < m_->nbody; ++b) links_.push_back(unique(object_name(m_, mjOBJ_BODY, b)));
+    for (int j = 0; j < m_->njnt; ++j) joint_names_.insert(joint_name(j));
   }
 
   Result<Exported> write() {
@@ -98,7 +99,9 @@ class UrdfWriter {
   }
 
   void write_fixed(const std::string& parent, const std::string& child, const Pose& X) {
-    open_joint(child + "_fixed", "fixed", parent, child, X);
+    std::string name = child + "_fixed";
+    while (!joint_names_.insert(name).second) name += "_";
+    open_joint(name, "fixed", parent, child, X);
     out_.CloseElement();
   }
 
@@ -326,6 +329,7 @@ class UrdfWriter {
   Arm arm_;
   tinyxml2::XMLPrinter out_;
   std::set<std::string> link_names_;
+  std::set<std::string> joint_names_;
   std::vector<std::string> links_;  ///< by body
   std::set<int> lost_shapes_;
   std::vector<std::string> lost_, standard_, between_, renamed_;

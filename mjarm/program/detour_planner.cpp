@@ -204,7 +204,7 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
   Result<WorldPath, WorldFailure> path = world_->plan(as_span(q), goals, kSearch);
   if (!path) {
     const WorldFailure& why = path.error();
-    const char* reason = why.code == WorldErrc::no_path ? name_of(why.search.reason) : "bad_input";
+    const char* reason = why.code == WorldErrc::no_path ? name_of(why.search.code) : "bad_input";
     return no_detour(reason,
                      why.what + (why.bound > 0 ? text(msg::program_spheres, 1e3 * why.bound) : ""));
   }

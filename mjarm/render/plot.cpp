@@ -45,12 +45,17 @@ Result<void> check_panel(const PlotPanel& panel, std::size_t number) {
     if (!range || is_range(*range)) continue;
     return fail(Errc::bad_input, text(msg::render_plot_range, number, range->lower, range->upper));
   }
+  for (const PlotBand& band : panel.bands) {
+    if (std::isfinite(band.lower) && std::isfinite(band.upper)) continue;
+    return fail(Errc::bad_input, text(msg::render_plot_range, number, band.lower, band.upper));
+  }
   if (panel.field) return check_field(*panel.field, number);
   return {};
 }
 
 Result<void> check(const Plot& plot) {
-  const bool large = plot.panel_width >= kSmallestPanel && plot.panel_height >= kSmallestPanel;
+  const auto fits = [](double size) { return size >= kSmallestPanel && std::isfinite(size); };
+  const bool large = fits(plot.panel_width) && fits(plot.panel_height);
   if (plot.panels.empty() || plot.columns < 1 || !large) {
     return fail(Errc::bad_input, text(msg::render_plot_empty, kSmallestPanel));
   }

@@ -173,7 +173,7 @@ std::optional<GizmoHandle> TargetGizmo::hover(const Ray& mouse) {
 
 /// An axis is followed in the plane through it that faces the eye most. Where it points at the eye,
 /// its way across the picture is taken instead, made longer as at the smallest good angle.
-void TargetGizmo::hold_axis(program::Grip& grip, const Vector3d& sight) const {
+void TargetGizmo::hold_axis(Grip& grip, const Vector3d& sight) const {
   const Vector3d facing = without(sight, grip.axis_W);
   if (facing.norm() > kGrazing) {
     grip.plane_W = facing.normalized();
@@ -187,7 +187,7 @@ void TargetGizmo::hold_axis(program::Grip& grip, const Vector3d& sight) const {
 }
 
 /// A ring is followed in its plane; where it is seen from its edge, it rolls with its near side.
-void TargetGizmo::hold_ring(program::Grip& grip, const Vector3d& sight) const {
+void TargetGizmo::hold_ring(Grip& grip, const Vector3d& sight) const {
   grip.linear = std::abs(grip.axis_W.dot(sight)) < kGrazing;
   grip.plane_W = grip.linear ? sight : grip.axis_W;
   if (!grip.linear) return;
@@ -196,7 +196,7 @@ void TargetGizmo::hold_ring(program::Grip& grip, const Vector3d& sight) const {
 }
 
 std::optional<TargetGizmo::Grip> TargetGizmo::grip_of(const Hit& hit, const Ray& mouse) const {
-  program::Grip grip{};
+  Grip grip{};
   grip.handle = hit.handle;
   grip.X_start = X_WT_;
   grip.axis_W = axes().col(axis_of(hit.handle));
@@ -227,7 +227,7 @@ bool TargetGizmo::grab(const Ray& mouse) {
 
 /// The angle swept about the axis, counted on beyond half turns; held where the mouse is so near to
 /// the axis that its angle says nothing.
-void TargetGizmo::turn(program::Grip& grip, const Vector3d& met) {
+void TargetGizmo::turn(Grip& grip, const Vector3d& met) {
   const Vector3d from = without(grip.point_W - grip.X_start.p, grip.axis_W);
   const Vector3d to = without(met - grip.X_start.p, grip.axis_W);
   if (std::min(from.norm(), to.norm()) < 0.05 * scale()) return;
@@ -238,7 +238,7 @@ void TargetGizmo::turn(program::Grip& grip, const Vector3d& met) {
 
 const Pose& TargetGizmo::drag(const Ray& mouse) {
   if (!grip_ || !is_usable(mouse)) return X_WT_;
-  program::Grip& grip = *grip_;
+  Grip& grip = *grip_;
   const std::optional<Vector3d> met = meet(mouse, grip.X_start.p, grip.plane_W, grip.flattest);
   if (!met) return X_WT_;
   const Vector3d way = *met - grip.point_W;

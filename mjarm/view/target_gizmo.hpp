@@ -93,17 +93,17 @@ class TargetGizmo {
   [[nodiscard]] Eigen::Matrix3d axes() const { return R_WG_.value_or(X_WT_.R); }
   [[nodiscard]] double scale() const;
   [[nodiscard]] std::optional<Hit> find(const Ray& mouse) const;
-  [[nodiscard]] std::optional<program::Grip> grip_of(const Hit& hit, const Ray& mouse) const;
-  void hold_axis(program::Grip& grip, const Eigen::Vector3d& sight) const;
-  void hold_ring(program::Grip& grip, const Eigen::Vector3d& sight) const;
-  void turn(program::Grip& grip, const Eigen::Vector3d& met);
+  [[nodiscard]] std::optional<Grip> grip_of(const Hit& hit, const Ray& mouse) const;
+  void hold_axis(Grip& grip, const Eigen::Vector3d& sight) const;
+  void hold_ring(Grip& grip, const Eigen::Vector3d& sight) const;
+  void turn(Grip& grip, const Eigen::Vector3d& met);
 
   Pose X_WT_;
   GizmoOptions options_;
   std::optional<Eigen::Matrix3d> R_WG_;
   Eye eye_;
   std::optional<GizmoHandle> hovered_;
-  std::optional<program::Grip> grip_;
+  std::optional<Grip> grip_;
 };
 
 }  // namespace mjarm::view

@@ -157,7 +157,7 @@ Result<int> run(const Options& options) {
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App\& command =
+  CLI::App& command =
       add_subcommand(app, "install", msg::models_install_summary, msg::models_install_examples);
   add_option(command, "names", options->names, msg::models_option_names, "[NAME...]");
   add_flag(command, "--list", options->list, msg::models_option_list);

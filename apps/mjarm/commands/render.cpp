@@ -77,7 +77,7 @@ Result<std::string> program_picture(const std::string& file, const PictureReques
 }
 
 Result<std::string> render(const Options& options, const PictureRequest& wanted) {
-  if (is_program(options.robot.robot)) return program_picture(options.robot.robot, wanted);
+  if (program::is_program(options.robot.robot)) return program_picture(options.robot.robot, wanted);
   const Result<Model> model = load_model(options.robot);
   if (!model) return fail(model.error());
   tell_warnings(*model);

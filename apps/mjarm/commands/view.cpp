@@ -165,7 +165,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--seconds", options->seconds, msg::view_option_seconds, "S");
   add_flag(app, "--stats", options->stats, msg::view_option_stats);
   return [options] {
-    return is_program(options->robot.robot) ? run_program(*options) : run(*options);
+    return program::is_program(options->robot.robot) ? run_program(*options) : run(*options);
   };
 }
 
