@@ -18,6 +18,68 @@ TEST(Rng, MatchesTheReferenceGenerator) {
   EXPECT_EQ(rng.next(), ((product << 7) | (product >> 57)) * 9);
 }
 
+TEST(Rng, GoesThroughThePublishedSequence) {
+  // The first outputs of the reference implementation of xoshiro256** from the state 1, 2, 3, 4.
+  Rng rng(std::array<std::uint64_t, 4>{1, 2, 3, 4});
+  for (const std::uint64_t expected :
+       {11520ULL, 0ULL, 1509978240ULL, 1215971899390074240ULL, 1216172134540287360ULL,
+        607988272756665600ULL, 16172922978634559625ULL, 8476171486693032832ULL,
+        10595114339597558777ULL, 2904607092377533576ULL}) {
+    ASSERT_EQ(rng.next(), expected);
+  }
+}
+
+TEST(Rng, BelowIsTheUpperHalfOfAFullProduct) {
+  __extension__ using Wide = unsigned __int128;
+  Rng rng(12), twin(12), bounds(13);
+  for (int i = 0; i < 20000; ++i) {
+    const std::uint64_t n = (bounds.next() >> bounds.below(64)) | 1;
+    const std::uint64_t drawn = rng.below(n);
+    // What would favour some numbers is thrown away: the first -n mod n of each run of products.
+    Wide product = static_cast<Wide>(twin.next()) * n;
+    while (static_cast<std::uint64_t>(product) < (0 - n) % n) {
+      product = static_cast<Wide>(twin.next()) * n;
+    }
+    ASSERT_EQ(drawn, static_cast<std::uint64_t>(product >> 64)) << n;
+    ASSERT_LT(drawn, n);
+  }
+}
+
+TEST(Rng, EveryBitIsSetHalfOfTheTimeAndKnowsNothingOfTheOneBefore) {
+  Rng rng(14);
+  constexpr int kCount = 40000;
+  std::array<int, 64> set{}, kept{};
+  std::uint64_t before = rng.next();
+  for (int i = 0; i < kCount; ++i) {
+    const std::uint64_t now = rng.next();
+    for (std::size_t b = 0; b < 64; ++b) {
+      set.at(b) += (now >> b) & 1;
+      kept.at(b) += ((now ^ before) >> b) & 1;
+    }
+    before = now;
+  }
+  for (std::size_t b = 0; b < 64; ++b) {  // five standard deviations
+    EXPECT_NEAR(set.at(b), kCount / 2, 500) << b;
+    EXPECT_NEAR(kept.at(b), kCount / 2, 500) << b;
+  }
+}
+
+TEST(Rng, NormalFollowsItsDistribution) {
+  Rng rng(15);
+  constexpr int kCount = 50000;
+  std::array<int, 13> below{};
+  for (int i = 0; i < kCount; ++i) {
+    const double x = rng.normal();
+    for (std::size_t k = 0; k < below.size(); ++k) {
+      below.at(k) += x < -3 + 0.5 * static_cast<double>(k);
+    }
+  }
+  for (std::size_t k = 0; k < below.size(); ++k) {
+    const double share = 0.5 * std::erfc((3 - 0.5 * static_cast<double>(k)) / std::sqrt(2.0));
+    EXPECT_NEAR(below.at(k) / static_cast<double>(kCount), share, 0.011) << k;
+  }
+}
+
 TEST(Rng, SameSeedSameNumbers) {
   Rng a(42), b(42), other_seed(43), other_stream(42, 1);
   int same_seed = 0, same_stream = 0;

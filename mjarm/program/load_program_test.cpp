@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mjarm/core/language_scope.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::program {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -88,6 +90,73 @@ TEST(LoadProgram, AFaultOfNoFileHasNoPlace) {
   ASSERT_TRUE(loaded);
   ASSERT_FALSE(loaded->plan.ok());
   EXPECT_THAT(first_fault(*loaded).what, StartsWith("made.yaml: movej: "));
+}
+
+TEST(LoadProgram, WhatItNamesIsLookedForAndFaultsStandAtItsName) {
+  const support::TempFolder folder;
+  const auto error = [&](const std::string& head) {
+    const std::string file =
+        folder.write("cell.yaml", head + "program: [movej: {joints: home}]\n").string();
+    const Result<LoadedProgram> loaded = load_program(file);
+    if (loaded) return std::string("none");
+    EXPECT_THAT(loaded.error().what, StartsWith(file + ":"));
+    return loaded.error().what.substr(file.size());
+  };
+  EXPECT_THAT(error("robot: ur5f\n"), AllOf(StartsWith(":1:8: "), HasSubstr("\"ur5e\"")));
+  EXPECT_THAT(error("robot: ur5e\nscene: no_such.xml\n"),
+              AllOf(StartsWith(":2:8: "), HasSubstr("no_such.xml")));
+  EXPECT_THAT(error("robot: ur5e\n\ntool: atachment_site\n"),
+              AllOf(StartsWith(":3:7: "), HasSubstr("atachment_site")));
+  EXPECT_THAT(error("robot: ur5e\nspeed: 0\n"), StartsWith(":2:8: "));
+  // A file that is there and no model is the fault of the name, with what is wrong inside it.
+  folder.write("broken.xml", "<mujoco><worldbody>");
+  EXPECT_THAT(error("tool: x\nrobot: broken.xml\n"),
+              AllOf(StartsWith(":2:8: "), HasSubstr("broken.xml")));
+  // Nothing of it holds an arm.
+  folder.write("still.xml", "<mujoco><worldbody><geom size='0.1'/></worldbody></mujoco>");
+  EXPECT_THAT(error("robot: still.xml\n"), StartsWith(":1:8: "));
+}
+
+/// A program and what it names are moved together: paths begin at its folder, not where it is run.
+TEST(LoadProgram, PathsStartFromTheFolderOfTheProgram) {
+  const support::TempFolder folder;
+  folder.write("arms/two.xml", R"(<mujoco><worldbody><body name="a" pos="0 0 1">
+    <joint name="j1" axis="0 1 0" range="-2 2" limited="true"/><geom size="0.02 0.2" type="capsule" mass="1"/>
+    <body name="b" pos="0.5 0 0"><joint name="j2" axis="0 1 0" range="-2 2" limited="true"/>
+      <geom size="0.02 0.1" type="capsule" mass="1"/><site name="tip" pos="0.4 0 0"/></body>
+    </body></worldbody><actuator><position joint="j1" kp="100"/><position joint="j2" kp="100"/></actuator></mujoco>)");
+  const std::string text = "robot: ../arms/two.xml\ntool: tip\nprogram: [wait: 500ms]\n";
+  const Result<LoadedProgram> loaded = load_program(folder.write("jobs/one.yml", text).string());
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_EQ(loaded->program.name, "one");
+  EXPECT_EQ(loaded->robot.arm.dof(), 2);
+  EXPECT_EQ(loaded->robot.arm.tip, "tip");
+  EXPECT_EQ(loaded->plan.duration(), 0.5);
+  // The same text elsewhere finds nothing.
+  EXPECT_FALSE(load_program(folder.write("one.yml", text).string()));
+}
+
+TEST(LoadProgram, EveryShippedProgramIsFoundByItsNameAndSound) {
+  for (const char* name : {"movej", "point", "movel"}) {
+    const Result<LoadedProgram> loaded = load_sound_program(name);
+    ASSERT_TRUE(loaded) << loaded.error().what;
+    EXPECT_EQ(loaded->program.name, name);
+    EXPECT_GT(loaded->plan.duration(), 0) << name;
+    EXPECT_EQ(loaded->control(), loaded->program.control.value_or(ControlMode::computed_torque));
+  }
+  EXPECT_FALSE(find_shipped_program(""));
+  EXPECT_FALSE(find_shipped_program("ellipse.yml"));
+  EXPECT_FALSE(find_shipped_program("../programs/ellipse"));
+}
+
+TEST(LoadProgram, FaultsAreCountedInChineseToo) {
+  const LanguageScope chinese(Language::chinese);
+  const support::TempFolder folder;
+  const Result<LoadedProgram> sound =
+      load_sound_program(folder.write("far.yaml", kTooFar).string());
+  ASSERT_FALSE(sound);
+  EXPECT_THAT(sound.error().what, EndsWith("（另有 1 处）"));
+  EXPECT_THAT(sound.error().what, HasSubstr("far.yaml:3:5：movej："));
 }
 
 }  // namespace

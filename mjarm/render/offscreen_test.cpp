@@ -234,6 +234,43 @@ TEST(OffscreenOptions, RefusesSizesThatCannotBeDrawn) {
   }
 }
 
+TEST(OffscreenOptions, SaysTheSizeAndWhatIsAllowed) {
+  const Result<Model> model = Model::from_mjcf(kBalls);
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_EQ(OffscreenRenderer::create(*model, {.width = 8193, .height = 1}).error().what,
+            "a picture of 8193 x 1 pixels cannot be drawn (1 to 8192 each way)");
+}
+
+/// Rows of any length stand below each other: where they were padded, the picture would lean.
+TEST(OffscreenSizes, OddOnesShowTheSameWorld) {
+  unsetenv("MUJOCO_GL");
+  const Result<Model> model = Model::from_mjcf(kBalls);
+  ASSERT_TRUE(model) << model.error().what;
+  for (const auto& [width, height] : {std::pair(301, 201), std::pair(303, 199), std::pair(1, 1),
+                                      std::pair(5, 1), std::pair(1, 7)}) {
+    Result<OffscreenRenderer> made = OffscreenRenderer::create(
+        *model, {.width = width, .height = height, .quality = RenderQuality::low});
+    if (!made) GTEST_SKIP() << made.error().what;
+    const Result<Image> image = made->draw({}, kFront);
+    ASSERT_TRUE(image) << image.error().what;
+    ASSERT_EQ(image->width, width);
+    ASSERT_EQ(image->height, height);
+    ASSERT_EQ(image->rgb.size(), std::size_t{3} * width * height);
+    EXPECT_EQ(color_at(*image, width / 2, height / 2), Color::black) << "between the balls";
+    if (width < 100) continue;
+    const double metre = height / 3.0;
+    for (const double z : {-0.2, 0.0, 0.2}) {
+      for (const auto& [x, color] : {std::pair(-1.0, Color::red), std::pair(1.0, Color::blue),
+                                     std::pair(-1.2, Color::red), std::pair(0.8, Color::blue)}) {
+        EXPECT_EQ(color_at(*image, width / 2 + static_cast<int>(x * metre),
+                           height / 2 - static_cast<int>(z * metre)),
+                  color)
+            << width << " x " << height << " at " << x << ", " << z;
+      }
+    }
+  }
+}
+
 TEST(GlBackends, AreTriedAndExplainThemselves) {
   const std::vector<GlBackend> found = probe_gl_backends();
   ASSERT_EQ(found.size(), 2U);

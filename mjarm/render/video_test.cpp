@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_child_input.hpp"
@@ -243,6 +246,105 @@ TEST(VideoWithBadFfmpeg, SaysWhatItSaysAndLeavesNothing) {
     EXPECT_FALSE(video->add(bar_frame(0)));
     EXPECT_FALSE(video->finish());
   }
+  EXPECT_EQ(files_in(folder), 0U);
+}
+
+/// Stands in the place of ffmpeg: keeps its words and all that it is fed.
+class RecordedFfmpeg {
+ public:
+  explicit RecordedFfmpeg(const std::string& end = "") {
+    const std::string folder = tools_.path().string();
+    put_ffmpeg(tools_, "printf '%s\\n' \"$@\" > '" + folder + "/words'\ncat > '" + folder +
+                           "/fed'\n" + end);
+  }
+  /// Each word in a line.
+  std::vector<std::string> words() const { return support::lines_of(tools_.read("words")); }
+  std::string word_after(const std::string& option) const {
+    const std::vector<std::string> all = words();
+    const auto found = std::ranges::find(all, option);
+    return found == all.end() || found + 1 == all.end() ? "" : *(found + 1);
+  }
+  std::string fed() const { return tools_.read("fed"); }
+
+ private:
+  support::TempFolder tools_;
+  Path path_{tools_.path().string() + ":/usr/bin:/bin"};
+};
+
+TEST(VideoFrames, ArriveByteForByteInTheirOrder) {
+  const RecordedFfmpeg ffmpeg;
+  const support::TempFolder folder;
+  folder.write("a.gif", "what was here");
+  // Of odd size, so that rows which are padded would show.
+  Result<VideoWriter> video =
+      VideoWriter::create(folder.path() / "a.gif", {.width = 37, .height = 11, .fps = 12.5});
+  ASSERT_TRUE(video) << video.error().what;
+  std::string expected;
+  for (int i = 0; i < 7; ++i) {
+    const Image frame = bar_frame(i, 37, 11);
+    ASSERT_TRUE(video->add(frame));
+    expected.append(frame.rgb.begin(), frame.rgb.end());
+    EXPECT_FALSE(video->add(bar_frame(i, 11, 37))) << "turned round it has as many bytes";
+    EXPECT_EQ(video->frames(), i + 1) << "what is refused does not count";
+  }
+  EXPECT_EQ(folder.read("a.gif"), "what was here") << "until it is finished";
+  ASSERT_TRUE(video->finish());
+  EXPECT_EQ(ffmpeg.fed(), expected);
+  EXPECT_EQ(ffmpeg.word_after("-video_size"), "37x11");
+  EXPECT_EQ(ffmpeg.word_after("-framerate"), "12.5");
+  EXPECT_EQ(ffmpeg.word_after("-pix_fmt"), "rgb24");
+  const std::filesystem::path grown = ffmpeg.words().back();
+  EXPECT_EQ(grown.parent_path(), "file:" + folder.path().string()) << "beside its place";
+  EXPECT_EQ(files_in(folder), 1U);
+  EXPECT_NE(folder.read("a.gif"), "what was here");
+}
+
+TEST(VideoFrames, RatesAreToldAsTheyAreAsked) {
+  for (const auto& [name, fps] : {std::pair("a.mp4", 1000.0), std::pair("a.mp4", 30000.0 / 1001),
+                                  std::pair("a.gif", 100.0), std::pair("a.gif", 1e-3)}) {
+    const RecordedFfmpeg ffmpeg;
+    const support::TempFolder folder;
+    Result<VideoWriter> video =
+        VideoWriter::create(folder.path() / name, {.width = 4, .height = 4, .fps = fps});
+    ASSERT_TRUE(video) << video.error().what;
+    ASSERT_TRUE(video->add(bar_frame(0, 4, 4)));
+    ASSERT_TRUE(video->finish());
+    const std::string told = ffmpeg.word_after("-framerate");
+    EXPECT_EQ(std::stod(told), fps) << "to the last bit";
+    EXPECT_EQ(told.find_first_not_of("0123456789."), std::string::npos) << told;
+  }
+}
+
+TEST(VideoFrames, AnEndWithoutAWordIsToldByItsCode) {
+  const RecordedFfmpeg ffmpeg("exit 3\n");
+  const support::TempFolder folder;
+  Result<VideoWriter> video = VideoWriter::create(folder.path() / "a.mp4", kSmall);
+  ASSERT_TRUE(video) << video.error().what;
+  ASSERT_TRUE(video->add(bar_frame(0)));
+  const Result<void> finished = video->finish();
+  ASSERT_FALSE(finished);
+  EXPECT_EQ(finished.error().what,
+            (folder.path() / "a.mp4").string() + ": ffmpeg failed: exit code 3");
+  EXPECT_FALSE(folder.exists("a.mp4"));
+}
+
+TEST(VideoOptions, RefusalsSayWhatWouldDo) {
+  const support::TempFolder folder;
+  const auto why = [&](const char* name, const VideoOptions& options) {
+    const Result<VideoWriter> video = VideoWriter::create(folder.path() / name, options);
+    EXPECT_FALSE(video);
+    return video ? std::string() : video.error().what;
+  };
+  const double nan = std::nan("");
+  EXPECT_EQ(why("a.gif", {.width = 4, .height = 4, .fps = nan}),
+            "nan frames a second cannot be shown (above 0, at most 100)");
+  EXPECT_EQ(why("a.mp4", {.width = 4, .height = 4, .fps = 1e9}),
+            "1000000000 frames a second cannot be shown (above 0, at most 1000)");
+  EXPECT_EQ(why("a.mp4", {.width = 63, .height = 47}),
+            "an MP4 needs an even width and height: 63 x 47 cannot be, 64 x 48 can");
+  EXPECT_EQ(why("a.mp4", {.width = -2, .height = 48}), "a video of -2 x 48 pixels cannot be made");
+  EXPECT_EQ(why("film", {}),
+            "\"" + (folder.path() / "film").string() + "\" must end in .mp4 or .gif");
   EXPECT_EQ(files_in(folder), 0U);
 }
 
