@@ -177,5 +177,14 @@ TEST(FilePlaces, OfManyWritersOneWinsWhole) {
   EXPECT_EQ(names_in(folder.path()), Names{"result"});
 }
 
+TEST(AtomicFile, WritesThroughALinkToAFileThatIsNotThereYet) {
+  const support::TempFolder folder;
+  const std::filesystem::path link = folder.path() / "link";
+  std::filesystem::create_symlink("later", link);
+  ASSERT_TRUE(write_file(link, "x"));
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(read_file(folder.path() / "later").value(), "x");
+}
+
 }  // namespace
 }  // namespace mjarm

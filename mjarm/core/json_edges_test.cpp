@@ -206,5 +206,14 @@ TEST(JsonEdges, DocumentsAreGrownFromNothingAndCopiesGoTheirOwnWay) {
   EXPECT_EQ(JsonDoc(std::numeric_limits<long>::min()).line(), "-9223372036854775808");
 }
 
+TEST(JsonNul, IsNoEndOfTheText) {
+  for (const std::string& text :
+       {std::string("{}\0", 3), std::string("{\"a\":1}\0,\"b\":2}", 15)}) {
+    const auto read = JsonObject::parse(text);
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().code, JsonErrc::syntax);
+  }
+}
+
 }  // namespace
 }  // namespace mjarm

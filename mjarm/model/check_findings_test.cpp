@@ -131,5 +131,31 @@ TEST(CheckFindings, TheLanguageChangesTheWordsAndNothingElse) {
   }
 }
 
+TEST(CtrlRange, OfAServoBehindATurnedGearIsSound) {
+  const support::TempFolder folder;
+  const auto report = check_model(folder.write("a.xml", R"(<mujoco>
+      <compiler angle="radian"/>
+      <worldbody><body name="a"><joint name="j" axis="0 1 0" range="-1 1"/><geom size=".1"/>
+        <site name="tool0"/></body></worldbody>
+      <actuator><position name="s" joint="j" gear="-1" kp="100" kv="10" ctrlrange="-1 1"
+        forcerange="-50 50"/></actuator></mujoco>)"));
+  ASSERT_TRUE(report);
+  for (const Finding& finding : report->findings) {
+    EXPECT_NE(finding.code, CheckCode::ctrl_range_differs) << finding.what;
+  }
+}
+
+TEST(NotLoadable, NamesTheLineAlsoInAFolderThatLooksLikeOne) {
+  const support::TempFolder folder;
+  const auto file = folder.write(
+      "x:3:y/m.xml",
+      "<mujoco><worldbody>\n<body name=\"a\"/>\n\n<geom sise=\"1\"/></worldbody></mujoco>");
+  const auto report = check_model(file);
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->findings.size(), 1U);
+  EXPECT_EQ(report->findings[0].file, file.string());
+  EXPECT_EQ(report->findings[0].line, 4);
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -185,5 +185,16 @@ TEST(ExportFormats, AnUnknownWordIsNamedWithTheNearest) {
   EXPECT_EQ(export_format("").error().code, Errc::usage);
 }
 
+TEST(ExportedNames, OfFixedJointsAreNoneThatTheModelHas) {
+  const support::TempFolder folder;
+  const Model model = Model::from_mjcf(R"(<mujoco><worldbody><body name="b"><joint name="s_fixed"/>
+      <geom size=".1"/><site name="s"/></body></worldbody></mujoco>)")
+                          .value();
+  const auto out = export_model(model, ExportFormat::urdf, folder.path());
+  ASSERT_TRUE(out);
+  const auto again = Model::load(folder.write("out.urdf", out->content));
+  EXPECT_TRUE(again) << again.error().what;
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -13,7 +13,7 @@
 #include "mjarm/program/program_plan.hpp"
 #include "mjarm/trajectory/tool_down_test.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using Eigen::Vector3d;
@@ -356,4 +356,4 @@ TEST(PlanInvariants, AStoppedPlanIsTheBeginningOfTheWholeOne) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

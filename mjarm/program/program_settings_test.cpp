@@ -12,7 +12,7 @@
 #include "mjarm/program/program_plan.hpp"
 #include "mjarm/program/program_reader.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using Eigen::Vector3d;
@@ -249,4 +249,4 @@ TEST(ProgramSettings, EveryInstructionHasTheWordItIsReadBy) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

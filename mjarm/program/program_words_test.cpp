@@ -12,7 +12,7 @@
 #include "mjarm/program/program_reader.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using ::testing::HasSubstr;
@@ -344,5 +344,13 @@ TEST(ProgramWords, AFileThatIsTooLargeOrAFolderIsNoProgram) {
   EXPECT_FALSE(read_program(folder.path()).has_value());
 }
 
+/// A value that is left out is missed at its key, not where the next thing stands.
+TEST(EmptyValues, AreNamedAtTheirKey) {
+  EXPECT_THAT(refusal("robot: ur5e\ntool:\n\n\nprogram: [wait: 1]\n"), StartsWith("p.yaml:2:"));
+  EXPECT_THAT(refusal("robot: ur5e\nprogram:\n  - wait:\n  - wait: 1\n"), StartsWith("p.yaml:3:"));
+  EXPECT_THAT(refusal("robot: ur5e\nprogram:\n  - wait:\n"), StartsWith("p.yaml:3:"));
+  EXPECT_THAT(refusal("robot: ur5e\nprogram:\n"), StartsWith("p.yaml:2:"));
+}
+
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

@@ -14,7 +14,7 @@
 #include "mjarm/program/urscript_check_test.hpp"
 #include "mjarm/trajectory/tool_down_test.hpp"
 
-namespace mjarm {
+namespace mjarm::program {
 namespace {
 
 using ::testing::HasSubstr;
@@ -219,4 +219,4 @@ TEST(UrscriptText, AnArmOfOtherLengthsIsRefused) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::program

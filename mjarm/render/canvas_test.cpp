@@ -16,13 +16,13 @@ namespace {
 using Rgb = std::array<std::uint8_t, 3>;
 using mjarm::testing::SvgReader;
 
-constexpr Rgba kBlack = {0, 0, 0, 1};
-constexpr Rgba kRed = {1, 0, 0, 1};
+constexpr render::Rgba kBlack = {0, 0, 0, 1};
+constexpr render::Rgba kRed = {1, 0, 0, 1};
 
-Image painted(const Page& page, double scale = 1) { return to_image(page, scale).value(); }
+render::Image painted(const Page& page, double scale = 1) { return to_image(page, scale).value(); }
 
 /// Number of pixels that are not white.
-int inked(const Image& image) {
+int inked(const render::Image& image) {
   int count = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) count += image.pixel(x, y) != Rgb{255, 255, 255} ? 1 : 0;
@@ -31,7 +31,7 @@ int inked(const Image& image) {
 }
 
 /// Columns of the leftmost and the rightmost pixel that is not white; {width, -1} for none.
-std::pair<int, int> inked_columns(const Image& image) {
+std::pair<int, int> inked_columns(const render::Image& image) {
   std::pair<int, int> out{image.width, -1};
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -46,7 +46,7 @@ TEST(Canvas, FillsCoverExactlyTheirBoxInTheOrderGiven) {
   Page page{20, 10, {}};
   page.items = {Fill{{2, 3, 5, 4}, kRed}, Fill{{4, 4, 10, 2}, {0, 0, 1, 1}}};
   for (const int scale : {1, 2, 3}) {
-    const Image image = painted(page, scale);
+    const render::Image image = painted(page, scale);
     ASSERT_EQ(image.width, 20 * scale);
     ASSERT_EQ(image.height, 10 * scale);
     for (int y = 0; y < image.height; ++y) {
@@ -83,7 +83,7 @@ TEST(Canvas, ClipsEndWhereTheyAreUndone) {
   Page page{12, 4, {}};
   page.items = {Clip{{2, 0, 3, 4}}, Fill{{0, 0, 12, 4}, kBlack}, Unclip{},
                 Fill{{8, 0, 2, 4}, kRed}};
-  const Image image = painted(page);
+  const render::Image image = painted(page);
   std::string row;
   for (int x = 0; x < 12; ++x) {
     const Rgb pixel = image.pixel(x, 2);
@@ -120,7 +120,7 @@ TEST(Canvas, DashesAreTheirShareOfTheLine) {
 TEST(Canvas, DotsHaveTheirAreaAndPlace) {
   Page page{60, 30, {}};
   page.items = {Dots{{{15, 15}, {45, 15}}, 10, kBlack}};
-  const Image image = painted(page, 4);
+  const render::Image image = painted(page, 4);
   double area = 0, mean_x = 0;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -159,7 +159,7 @@ TEST(Canvas, UprightTextsRunUpwards) {
   TextStyle style{.size = 10, .upright = true, .color = kBlack};
   Page page{60, 200, {}};
   page.items = {Text{{30, 150}, "WWWWWW", style}};
-  const Image image = painted(page);
+  const render::Image image = painted(page);
   style.upright = false;
   const double width = text_width("WWWWWW", style);
   int top = image.height, bottom = -1;
@@ -240,15 +240,15 @@ TEST(Canvas, RunsOfAnyBytesAreWholeAndAlternate) {
 
 /// More pixels than a picture can have are refused with one line, and nothing is drawn in none.
 TEST(Canvas, PicturesThatCannotBeAreRefused) {
-  const Plot plot{.panels = {{}}, .columns = 1};
+  const render::Plot plot{.panels = {{}}, .columns = 1};
   for (const double scale : {200.0, 1e6, -1.0}) {
-    const Result<Image> image = plot_image(plot, scale);
+    const Result<render::Image> image = render::plot_image(plot, scale);
     ASSERT_FALSE(image) << scale;
     EXPECT_THAT(image.error().what, ::testing::StartsWith("the plot could not be drawn: "));
     EXPECT_EQ(image.error().what.find('\n'), std::string::npos);
   }
   for (const double scale : {0.37, 1.0, 3.3}) {
-    const Image image = plot_image(plot, scale).value();
+    const render::Image image = render::plot_image(plot, scale).value();
     EXPECT_EQ(image.width, std::lround(286 * scale));
     EXPECT_EQ(image.height, std::lround(216 * scale));
     EXPECT_EQ(image.rgb.size(), std::size_t{3} * image.width * image.height);

@@ -17,7 +17,7 @@
 #include "mjarm/render/scene.hpp"
 #include "mjarm/render/trail.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using Eigen::Vector3d;
@@ -290,4 +290,4 @@ TEST(CameraViews, RefusalsNameTheNumberAndWhatIsExpected) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -14,7 +14,7 @@
 #include "mjarm/render/svg_reader_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace mjarm {
+namespace mjarm::render {
 namespace {
 
 using ::testing::HasSubstr;
@@ -368,5 +368,12 @@ TEST(PlotPages, ASecondRunReplacesBothFilesOrNone) {
   EXPECT_NE(folder.read("plot.png"), png);
 }
 
+TEST(PlotNumbers, ThatAreNoneAreRefused) {
+  const PlotPanel panel{.lines = {{.x = {0, 1}, .y = {0, 1}}},
+                        .bands = {{.lower = std::nan(""), .upper = 1}}};
+  EXPECT_FALSE(plot_svg({.panels = {panel}}));
+  EXPECT_FALSE(plot_svg({.panels = {{}}, .panel_width = INFINITY}));
+}
+
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::render

@@ -12,7 +12,7 @@
 #include "mjarm/view/interaction_internal.hpp"
 #include "mjarm/view/ray.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using Eigen::Vector2d;
@@ -85,7 +85,7 @@ class UserTest : public ::testing::Test {
   }
 
   Model model_ = ball_and_wall();
-  Scene scene_{model_, RenderQuality::low};
+  render::Scene scene_{model_, render::RenderQuality::low};
   Panels panels_{scene_.model(), {}, true, true};
   std::unique_ptr<Interaction> user_;
   mjrContext context_{};
@@ -97,9 +97,9 @@ class UserTest : public ::testing::Test {
 TEST_F(UserTest, ADragTurnsByItsWayInAnyNumberOfMoves) {
   for (const int moves : {1, 7, 60}) {
     user_->camera.to_first_view();
-    const CameraView before = scene_.view();
+    const render::CameraView before = scene_.view();
     drag(0, middle_, {60, -30}, moves);
-    const CameraView after = scene_.view();
+    const render::CameraView after = scene_.view();
     EXPECT_NEAR(after.azimuth - before.azimuth, -std::numbers::pi * 60 / kViewHeight, 1e-9);
     EXPECT_NEAR(after.elevation - before.elevation, -std::numbers::pi * 30 / kViewHeight, 1e-9);
     EXPECT_EQ(after.lookat_W, before.lookat_W);
@@ -111,7 +111,7 @@ TEST_F(UserTest, ADragTurnsByItsWayInAnyNumberOfMoves) {
   EXPECT_NEAR(scene_.view().elevation, -89.9 * std::numbers::pi / 180, 1e-9);
   // Once round and back is where it was.
   user_->camera.to_first_view();
-  const CameraView first = scene_.view();
+  const render::CameraView first = scene_.view();
   for (int i = 0; i < 10; ++i) drag(0, middle_, {2 * kViewHeight / 10.0, 0}, 3);
   EXPECT_NEAR(std::remainder(scene_.view().azimuth - first.azimuth, 2 * std::numbers::pi), 0, 1e-9);
   EXPECT_THAT(user_->take_events(), IsEmpty());
@@ -217,7 +217,7 @@ TEST_F(UserTest, AControlDragPushesUntilItIsReleased) {
   user_->update();
   EXPECT_THAT(user_->take_events(), IsEmpty());
   // A wall is not pushed, and that is said; the camera stays where it is.
-  const CameraView before = scene_.view();
+  const render::CameraView before = scene_.view();
   const auto wall = pixel_of_point(eye_of(scene_), kViewWidth, kViewHeight, {-1.0, -0.2, 0});
   send(Kind::press, wall->x(), kViewHeight - wall->y(), 1, true);
   EXPECT_EQ(user_->take_said(), "there is nothing that moves");
@@ -343,7 +343,7 @@ TEST_F(UserTest, AHookThatUsesAPressGetsTheWholeDrag) {
     seen.push_back(input);
     return uses;
   });
-  const CameraView before = scene_.view();
+  const render::CameraView before = scene_.view();
   send(Kind::move, 100, 75);
   send(Kind::press, 100, 75, 0);
   send(Kind::move, 300, 225);
@@ -368,4 +368,4 @@ TEST_F(UserTest, AHookThatUsesAPressGetsTheWholeDrag) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -12,7 +12,7 @@
 #include "mjarm/view/interaction_internal.hpp"
 #include "mjarm/view/panels_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 using Kind = RawInput::Kind;
@@ -29,7 +29,7 @@ class PanelTest : public ::testing::Test {
  protected:
   void SetUp() override {
     unsetenv("MUJOCO_GL");
-    Result<GlContext> made = GlContext::create();
+    Result<render::GlContext> made = render::GlContext::create();
     if (!made) GTEST_SKIP() << made.error().what;
     gl_.emplace(std::move(*made));
     mjr_defaultContext(&context_);
@@ -65,8 +65,8 @@ class PanelTest : public ::testing::Test {
   }
 
   Model model_ = Model::from_mjcf(kThreeJoints).value();
-  Scene scene_{model_, RenderQuality::low};
-  std::optional<GlContext> gl_;
+  render::Scene scene_{model_, render::RenderQuality::low};
+  std::optional<render::GlContext> gl_;
   mjrContext context_{};
   Panels panels_{scene_.model(), {0}, true, false};
   Interaction user_{scene_, panels_, {.reset = false}, false};
@@ -249,4 +249,4 @@ TEST_F(PanelTest, TakesAnything) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view

@@ -7,7 +7,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/view/plot_history_internal.hpp"
 
-namespace mjarm {
+namespace mjarm::view {
 namespace {
 
 const double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -148,4 +148,4 @@ TEST(PlotHistory, HasRoomForTwoAtLeast) {
 }
 
 }  // namespace
-}  // namespace mjarm
+}  // namespace mjarm::view
