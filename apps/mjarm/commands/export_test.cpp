@@ -1,7 +1,7 @@
 // mjarm export, as a user calls it; what it writes is read back and walked through.
 #include <gmock/gmock.h>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/program_reader.hpp"
 #include "mjarm/program/urscript_check_test.hpp"

@@ -1,7 +1,7 @@
 // `--video` of demos and programs.
 #include <gmock/gmock.h>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/os_child_input.hpp"
 
 namespace mjarm::app {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "apps/mjarm/commands/oracle_test.hpp"
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "apps/mjarm/commands/crane_test.hpp"
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "apps/mjarm/commands/crane_test.hpp"
 #include "apps/mjarm/commands/oracle_test.hpp"
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/rng.hpp"
 
 namespace mjarm::app {

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "apps/mjarm/commands/oracle_test.hpp"
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/ellipse.hpp"
 

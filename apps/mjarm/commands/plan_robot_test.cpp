@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
 namespace {

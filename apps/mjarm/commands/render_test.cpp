@@ -7,7 +7,7 @@
 #include <set>
 #include <thread>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/os_child_input.hpp"
 
 namespace mjarm::app {

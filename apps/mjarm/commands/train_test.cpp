@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/os_child_input.hpp"
 
 namespace mjarm::app {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/planning/two_problems_test.hpp"
 
 namespace mjarm::app {

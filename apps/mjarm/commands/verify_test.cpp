@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/planning/crane_problems_test.hpp"
 
 namespace mjarm::app {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "apps/mjarm/commands/crane_test.hpp"
 #include "apps/mjarm/commands/oracle_test.hpp"
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/view/turn_test.hpp"
 
 namespace mjarm::app {
