@@ -1,6 +1,6 @@
 """Writes the table of meshes that `mjarm models install` fetches.
 
-Usage: mesh_table.py genesis_world-1.4.5-py3-none-any.whl > apps/mjarm/install/mesh_files.inc
+Usage: mesh_table.py genesis_world-1.4.5-py3-none-any.whl > mjarm/install/mesh_files.inc
 
 One line a file: where its packed bytes lie in the wheel (a zip archive), how large it is, and its SHA-256. With that a
 few megabytes of the wheel are enough, and nothing in it has to be believed.
