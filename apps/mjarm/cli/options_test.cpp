@@ -162,10 +162,10 @@ Run setup(CLI::App& app) {
 
 /// Exit code and standard error of a program whose only command ends as it is told.
 std::pair<int, std::string> run_ending(const std::string& how) {
-  static constexpr std::array kCommands{Command{"end", kWord, kWord, setup}};
+  static constexpr std::array kEnding{Command{"end", kWord, kWord, setup}};
   end_word.clear();
   ::testing::internal::CaptureStderr();
-  const int code = run(kCommands, {"end", "--end", how});
+  const int code = run(kEnding, {"end", "--end", how});
   return {code, ::testing::internal::GetCapturedStderr()};
 }
 

@@ -17,14 +17,14 @@
 namespace mjarm::app {
 namespace {
 
-support::ProgramResult mjarm(std::vector<std::string> arguments,
-                             std::vector<std::pair<std::string, std::string>> environment = {}) {
+support::ProgramResult mjarm_in(std::vector<std::string> arguments,
+                                std::vector<std::pair<std::string, std::string>> environment = {}) {
   return support::run_program(MJARM_PROGRAM, arguments, {.environment = std::move(environment)});
 }
 
 TEST(ViewCommand, RefusesWhatMakesNoSense) {
   const auto refused = [](const std::vector<std::string>& arguments, const char* part) {
-    const support::ProgramResult result = mjarm(arguments);
+    const support::ProgramResult result = mjarm_in(arguments);
     EXPECT_EQ(result.exit_code, 2) << part;
     EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
     EXPECT_EQ(support::lines_of(result.err).size(), 1U) << result.err;
@@ -40,18 +40,18 @@ TEST(ViewCommand, RefusesWhatMakesNoSense) {
 
 TEST(ViewCommand, WithoutADisplayPointsAtRender) {
   const support::ProgramResult result =
-      mjarm({"view", "ur5e"}, {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
+      mjarm_in({"view", "ur5e"}, {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("mjarm render"), std::string::npos) << result.err;
   EXPECT_EQ(support::lines_of(result.err).size(), 1U) << result.err;
 }
 
 TEST(ViewCommand, TheHelpListsEveryControlInBothLanguages) {
-  const std::string english = mjarm({"view", "--help"}).out;
+  const std::string english = mjarm_in({"view", "--help"}).out;
   for (const char* part : {"double click", "Ctrl-P", "Ctrl-T", "contact points", "Backspace"}) {
     EXPECT_NE(english.find(part), std::string::npos) << part;
   }
-  EXPECT_NE(mjarm({"view", "--help", "--lang", "zh"}).out.find("接触点"), std::string::npos);
+  EXPECT_NE(mjarm_in({"view", "--help", "--lang", "zh"}).out.find("接触点"), std::string::npos);
 }
 
 /// A display of the test's own.
@@ -83,7 +83,7 @@ class OnADisplay : public ::testing::Test {
 };
 
 TEST_F(OnADisplay, AWindowOpensDrawsAndCloses) {
-  const support::ProgramResult result = mjarm(
+  const support::ProgramResult result = mjarm_in(
       {"view", "ur5e", "--seconds", "1", "--stats", "--size", "640x400"}, {{"DISPLAY", display_}});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   int frames = 0;
@@ -113,7 +113,7 @@ TEST_P(DemoOnADisplay, AWindowNeverChangesTheLog) {
     return words;
   };
   support::ProgramResult seen;
-  std::thread program([&] { seen = mjarm(arguments("seen"), {{"DISPLAY", display_}}); });
+  std::thread program([&] { seen = mjarm_in(arguments("seen"), {{"DISPLAY", display_}}); });
   const auto xdotool = [this](const std::vector<std::string>& words) {
     return support::run_program(kXdotool, words, {.environment = {{"DISPLAY", display_}}});
   };
@@ -135,7 +135,7 @@ TEST_P(DemoOnADisplay, AWindowNeverChangesTheLog) {
   program.join();
   std::vector<std::string> headless = arguments("unseen");
   headless.emplace_back("--headless");
-  const support::ProgramResult unseen = mjarm(headless);
+  const support::ProgramResult unseen = mjarm_in(headless);
   EXPECT_EQ(seen.exit_code, unseen.exit_code) << seen.err;
   const Result<std::string> bytes = read_file(log);
   ASSERT_TRUE(bytes) << seen.err;
