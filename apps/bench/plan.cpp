@@ -14,6 +14,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/output_folder.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -148,7 +149,8 @@ std::vector<BenchResult> results_of(const Measured& all, bool timing) {
 Result<int> write_all(const Options& options, const Job& job, const Measured& all) {
   const std::filesystem::path out = options.out;
   const std::vector<BenchResult> results = results_of(all, job.timing);
-  if (auto made = make_folder(out); !made) return fail(std::move(made.error()));
+  const Result<OutputFolder> held = OutputFolder::open(out);
+  if (!held) return fail(held.error());
   const std::string json = bench_json(results, job.timing);
   if (auto written = write_file(out / "bench.json", json); !written) return fail(written.error());
   for (const PlanTable& table : all.solved) {

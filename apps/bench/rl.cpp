@@ -15,6 +15,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/rl/reach_env.hpp"
 
@@ -70,7 +71,8 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
       const std::uint64_t seed = set.options.ppo.seed + static_cast<std::uint64_t>(i);
       const std::filesystem::path folder =
           std::filesystem::path(options.out) / (set.name + "-" + std::to_string(seed));
-      if (auto made = make_folder(folder); !made) return fail(std::move(made.error()));
+      const Result<OutputFolder> held = OutputFolder::open(folder);
+      if (!held) return fail(held.error());
       log_info(text(msg::bench_rl_run, set.name, seed, "mjarm"));
       auto run = run_learner(*model, set, seed, folder, advance);
       if (!run) return fail(std::move(run.error()));

@@ -28,13 +28,13 @@ std::vector<CoverSolid> solids_of(const mjModel& m, const GeomGroup& group) {
 
 /// The links as spheres, with the smallest bound that takes no more than there may be.
 bool add_spheres(const mjModel& m, const std::vector<GeomGroup>& links, double bound,
-                 ModelCover& out) {
-  for (int round = 0; round < kMaxWider; ++round, bound *= kWider) {
+                 const StopCheck& stop, ModelCover& out) {
+  for (int round = 0; round < kMaxWider && !is_stopped(stop); ++round, bound *= kWider) {
     out.spheres.links.clear();
     out.bound = 0;
     std::size_t left = kMaxSpheres;
     for (const GeomGroup& link : links) {
-      const auto fit = detail::fit_cover(solids_of(m, link), bound, left);
+      const auto fit = detail::fit_cover(solids_of(m, link), bound, left, stop);
       if (!fit) break;
       left -= fit->spheres.size();
       out.bound = std::max(out.bound, fit->bound);
@@ -45,8 +45,9 @@ bool add_spheres(const mjModel& m, const std::vector<GeomGroup>& links, double b
   return false;
 }
 
-void add_pairs(detail::MeetingProof& proof, const GeomGroups& groups, ModelCover& out) {
-  for (std::size_t a = 0; a < groups.links.size(); ++a) {
+void add_pairs(detail::MeetingProof& proof, const GeomGroups& groups, const StopCheck& stop,
+               ModelCover& out) {
+  for (std::size_t a = 0; a < groups.links.size() && !is_stopped(stop); ++a) {
     for (std::size_t b = 0; b < groups.links.size(); ++b) {
       const GeomGroup& near = groups.links[a];
       const GeomGroup& far = groups.links[b];
@@ -62,8 +63,9 @@ void add_pairs(detail::MeetingProof& proof, const GeomGroups& groups, ModelCover
 
 /// Obstacles that some link can meet, and the links that cannot.
 void add_scene(const mjModel& m, detail::MeetingProof& proof, const GeomGroups& groups,
-               ModelCover& out) {
+               const StopCheck& stop, ModelCover& out) {
   for (const GeomGroup& obstacle : groups.obstacles) {
+    if (is_stopped(stop)) return;
     std::vector<int> ignored;
     for (std::size_t b = 0; b < groups.links.size(); ++b) {
       const bool allowed = proof.is_allowed(obstacle, groups.links[b]);
@@ -88,13 +90,15 @@ Result<ModelCover> cover_model(const Model& model, const Arm& arm, const CoverOp
   const Result<GeomGroups> groups = detail::group_geoms(model, arm, options);
   if (!groups) return fail(groups.error());
   ModelCover out;
-  if (!add_spheres(*model.raw(), groups->links, options.bound, out)) {
+  if (!add_spheres(*model.raw(), groups->links, options.bound, options.stop, out)) {
+    if (is_stopped(options.stop)) return fail(stopped());
     return fail(Errc::bad_input,
                 text(msg::collision_cover_spheres, arm.name, kMaxSpheres, kMaxSphereLinks));
   }
   detail::MeetingProof proof(model, arm, *groups, options.rules);
-  add_pairs(proof, *groups, out);
-  add_scene(*model.raw(), proof, *groups, out);
+  add_pairs(proof, *groups, options.stop, out);
+  add_scene(*model.raw(), proof, *groups, options.stop, out);
+  if (is_stopped(options.stop)) return fail(stopped());
   if (const Result<void> fine = check_sphere_set(out.spheres, arm); !fine)
     return fail(fine.error());
   return out;

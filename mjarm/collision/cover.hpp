@@ -7,6 +7,7 @@
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
 
@@ -21,6 +22,7 @@ struct CoverOptions {
   /// Cover what the joints of a gripper can do within their limits, instead of one posture.
   bool whole_stroke = false;
   ContactRules rules = {};  ///< what hangs on the tool, what may touch
+  StopCheck stop = {};
 };
 
 /// A robot and what stands round it, as the fast checker takes them: made from the geoms of a model
@@ -43,7 +45,7 @@ struct ModelCover {
 /// Covers the geoms of `model` that can collide with something. A bound that needs more spheres
 /// than kMaxSpheres is widened; ModelCover::bound says to what.
 /// @return bad_input: one line, where the arm is not of the model, nothing on it can collide, or an
-/// option is out of range.
+/// option is out of range; stopped() where CoverOptions::stop ended the work.
 [[nodiscard]] Result<ModelCover> cover_model(const Model& model, const Arm& arm,
                                              const CoverOptions& options = {});
 

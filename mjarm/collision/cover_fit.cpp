@@ -67,13 +67,15 @@ Vector3d to_middle(const CoverSolid& solid, const Vector3d& p) {
 
 class CoverFit {
  public:
-  CoverFit(std::span<const CoverSolid> solids, double bound) : solids_(solids), bound_(bound) {
+  CoverFit(std::span<const CoverSolid> solids, double bound, const StopCheck& stop)
+      : solids_(solids), bound_(bound), stop_(stop) {
     add_candidates();
     add_points();
   }
 
   std::optional<FittedCover> run(std::size_t max) {
     for (int seal = 0; seal < kMaxSeals; ++seal) {
+      if (is_stopped(stop_)) return std::nullopt;
       FittedCover out;
       const int rounds = seal == 0 ? kRounds : seal < kSearches ? kMoreRounds : 0;
       for (const int c : cover_.solve(rounds)) {
@@ -87,7 +89,10 @@ class CoverFit {
         }
         return out;
       }
-      for (const Vector3d& gap : gaps) add_point(gap);
+      for (const Vector3d& gap : gaps) {
+        if (is_stopped(stop_)) return std::nullopt;
+        add_point(gap);
+      }
     }
     return std::nullopt;
   }
@@ -121,7 +126,7 @@ class CoverFit {
     Thinner thinner(0.25 * bound_);
     for (const CoverSolid& solid : solids_) {
       over_grid({&solid, 1}, 0.5 * bound_, [&](const Vector3d& p) {
-        if (solid.signed_distance(p) >= 0) return;
+        if (is_stopped(stop_) || solid.signed_distance(p) >= 0) return;
         const Vector3d middle = to_middle(solid, p);
         if (thinner.is_new(middle)) add_candidate(middle);
       });
@@ -132,6 +137,7 @@ class CoverFit {
   void add_points() {
     Thinner thinner(0.25 * bound_);
     const auto add = [&](const Vector3d& p) {
+      if (is_stopped(stop_)) return;
       if (depth_in(solids_, p) < 0.1 * bound_ && thinner.is_new(p)) add_point(p);
     };
     for (const CoverSolid& solid : solids_) {
@@ -151,6 +157,7 @@ class CoverFit {
 
   std::span<const CoverSolid> solids_;
   double bound_;
+  const StopCheck& stop_;
   std::vector<Sphere> candidates_;
   std::vector<Vector3d> points_;
   SetCover cover_;  // of the points by the candidates
@@ -159,8 +166,8 @@ class CoverFit {
 }  // namespace
 
 std::optional<FittedCover> fit_cover(std::span<const CoverSolid> solids, double bound,
-                                     std::size_t max) {
-  return CoverFit(solids, bound).run(max);
+                                     std::size_t max, const StopCheck& stop) {
+  return CoverFit(solids, bound, stop).run(max);
 }
 
 }  // namespace mjarm::detail

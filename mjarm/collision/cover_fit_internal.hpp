@@ -6,6 +6,7 @@
 
 #include "mjarm/collision/cover_solid_internal.hpp"
 #include "mjarm/collision/sphere_set.hpp"
+#include "mjarm/core/stop.hpp"
 
 /// Few spheres that contain the solids of a link.
 namespace mjarm::detail {
@@ -21,9 +22,9 @@ struct FittedCover {
 /// to a convex solid grows by no more than the way: what is left is a set cover of points of the
 /// solids by such spheres. That the whole solids are covered is then proved by seal_cover(); points
 /// it could not cover are added, until there are none. The same input gives the same spheres.
-/// @return nothing where more than `max` spheres are needed.
+/// @return nothing where more than `max` spheres are needed, or `stop` ended the work.
 [[nodiscard]] std::optional<FittedCover> fit_cover(std::span<const CoverSolid> solids, double bound,
-                                                   std::size_t max);
+                                                   std::size_t max, const StopCheck& stop = {});
 
 /// Proves that the spheres contain the solids, cutting a box round them into cells until each is in
 /// one sphere or in no solid. Cells of the least size grow the sphere that needs it least, up to

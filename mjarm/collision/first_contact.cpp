@@ -10,7 +10,8 @@
 namespace mjarm {
 
 Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker, std::span<const double> q0,
-                                                 std::span<const double> q1, double step) {
+                                                 std::span<const double> q1, double step,
+                                                 const StopCheck& stop) {
   constexpr double kMaxSteps = 1e8;
   // The ends are looked at first of all: a wrong size or number shows here.
   for (const std::span<const double> end : {q0, q1}) {
@@ -24,6 +25,7 @@ Result<std::optional<EdgeContact>> first_contact(ExactChecker& checker, std::spa
   }
   std::vector<double> q(q0.size());
   for (double k = 0; k <= pieces; ++k) {
+    if (is_stopped(stop)) return fail(stopped());
     const double t = k / pieces;
     for (std::size_t i = 0; i < q.size(); ++i) q[i] = q0[i] + t * (q1[i] - q0[i]);
     if (checker.is_free(q)) continue;  // the short way, which most samples go

@@ -64,6 +64,8 @@ double safe_step(double d, double slope, double bend) {
   return bend > 0 ? (slope + root) / bend : kInfinity;
 }
 
+constexpr long kLooksUnasked = 64;  // between two questions whether to stop
+
 class EdgeMarch {
  public:
   EdgeMarch(const Arm& arm, const SphereSet& set, const Obstacles& obstacles,
@@ -83,13 +85,14 @@ class EdgeMarch {
     least_ = options.least_step / std::max(std::sqrt(squares), options.least_step);
   }
 
-  VerifyResult run() {
+  Result<VerifyResult> run() {
     VerifyResult nearest;
     nearest.distance = kInfinity;
     watch_all();
     for (long looks = 0; !watches_.empty(); ++looks) {
       Watch watch = watches_.top();
       watches_.pop();
+      if (looks % kLooksUnasked == 0 && is_stopped(options_.stop)) return fail(stopped());
       const Look now = look(watch, watch.until);
       if (now.clearance < nearest.distance) {
         nearest = result_of(EdgeVerdict::free, watch, watch.until, now);

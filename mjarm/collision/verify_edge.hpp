@@ -6,6 +6,7 @@
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/model/arm.hpp"
 
 namespace mjarm {
@@ -16,6 +17,7 @@ struct VerifyOptions {
   double limit_slack = 1e-4;    ///< [rad or m] by which a joint may be past its limit, >= 0
   double least_step = 1e-6;     ///< [rad or m, L2] shortest step along the edge, > 0
   long max_looks = 10'000'000;  ///< a link looked at against one obstacle or link, > 0
+  StopCheck stop = {};
 };
 
 /// What verify_edge() found. `undecided`: at `t` something touches (to 1e-12 m) or the looks are
@@ -42,8 +44,8 @@ struct VerifyResult {
 /// and height fields are not convex: there the slope is taken to be the speed, so that a way close
 /// along them may stay undecided.
 /// @param q0, q1  shape (dof,) [rad or m].
-/// @return check_sphere_set()'s or check_obstacles()'s error, or one about the options or the shape
-/// of q0 and q1.
+/// @return check_sphere_set()'s or check_obstacles()'s error, one about the options or the shape of
+/// q0 and q1, or stopped().
 [[nodiscard]] Result<VerifyResult> verify_edge(const Arm& arm, const SphereSet& set,
                                                const Obstacles& obstacles,
                                                std::span<const double> q0,

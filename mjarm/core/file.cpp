@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <system_error>
 #include <utility>
 
@@ -16,10 +17,13 @@ Error write_error(const fs::path& path, int code) {
   return {Errc::system, text(msg::core_cannot_write, path.string(), system_message(code))};
 }
 
+constexpr std::string_view kTemporary = ".tmp";  // before number of process, "-" and count
+
 /// A name beside `target` that no other process and no other thread of this one uses.
 fs::path temporary_name(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
-  return target.string() + ".tmp" + std::to_string(process_id()) + "-" + std::to_string(counter++);
+  return target.string() + std::string(kTemporary) + std::to_string(process_id()) + "-" +
+         std::to_string(counter++);
 }
 
 /// The file that `path` means, through links, also where it does not exist yet.
@@ -73,6 +77,22 @@ Result<void> write_file(const fs::path& path, std::string_view content) {
   if (!file) return fail(std::move(file.error()));
   if (Result<void> written = file->write(content); !written) return written;
   return file->commit();
+}
+
+std::optional<long> writer_of_temporary(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const std::size_t mark = name.rfind(kTemporary), dash = name.rfind('-');
+  if (mark == std::string::npos || mark == 0 || dash == std::string::npos) return std::nullopt;
+  const char* const first = name.data() + mark + kTemporary.size();
+  const char *const middle = name.data() + dash, *const end = name.data() + name.size();
+  if (first >= middle) return std::nullopt;
+  long process = 0;
+  unsigned count = 0;
+  const auto number = std::from_chars(first, middle, process);
+  const auto rest = std::from_chars(middle + 1, end, count);
+  const bool whole = number.ec == std::errc() && number.ptr == middle && rest.ec == std::errc() &&
+                     rest.ptr == end && process > 0;
+  return whole ? std::optional(process) : std::nullopt;
 }
 
 Result<AtomicFile> AtomicFile::create(const fs::path& path) {

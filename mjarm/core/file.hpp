@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,10 @@ namespace mjarm {
 
 /// Makes `folder` and those above it. @return an error where it cannot be made or is a file.
 [[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
+
+/// Number of the process that writes a temporary file of AtomicFile, by its name; none where `path`
+/// is no such file.
+[[nodiscard]] std::optional<long> writer_of_temporary(const std::filesystem::path& path);
 
 /// A file that appears under its name only when `commit` succeeds; until then it grows under a
 /// temporary name beside it, which vanishes with this object. A path that is no regular file

@@ -213,6 +213,21 @@ Result<JsonObject> parse_json_object(std::string_view text) {
       [](const JsonFailure& failure) { return Error{Errc::bad_input, describe(failure)}; });
 }
 
+Result<void> check_keys(const JsonValue& object, std::span<const std::string_view> known) {
+  for (const JsonValue& member : object) {
+    const std::string_view key = member.key();
+    if (std::ranges::find(known, key) != known.end()) continue;
+    // Short names are often next to each other without meaning each other: `v` and `a`.
+    const int most = key.size() < 3 ? 0 : key.size() < 6 ? 1 : 2;
+    for (const std::string_view word : known) {
+      // Longer words cannot be that near, and need not be measured.
+      if (key.size() > word.size() + 2 || edit_distance(key, word) > most) continue;
+      return fail(Errc::bad_input, text(msg::json_misspelt_key, key, word));
+    }
+  }
+  return {};
+}
+
 Result<std::vector<double>> number_list(const JsonValue& object, std::string_view key,
                                         std::size_t size) {
   const JsonValue* const member = object.find(key);

@@ -81,9 +81,9 @@ class JsonValue {
 /// What a text may ask of who reads it.
 struct JsonLimits {
   int depth = 32;                             ///< brackets open at once, >= 1
-  std::size_t values = std::size_t{1} << 25;  ///< numbers, strings, lists, ... in all
+  std::size_t values = std::size_t{1} << 23;  ///< numbers, strings, lists, ... in all
   std::size_t bytes = std::size_t{1} << 28;   ///< at most 2^31
-  bool unique_keys = false;  ///< refuse an object that names a key twice; else the last one counts
+  bool unique_keys = true;  ///< refuse an object that names a key twice; else the last one counts
 };
 
 enum class JsonErrc {
@@ -125,6 +125,13 @@ class JsonObject {
 [[nodiscard]] Result<JsonObject> parse_json_object(std::string_view text);
 
 // What requests are made of. Errors name the member, not the text.
+
+/// Whether no key of `object` is but a misspelt one of `known`, such as `maxstep` for `max_step` or
+/// `V0` for `v0`; else what it says would be dropped without a word. Other keys may stand beside
+/// those that are read: files of cases hold more than one program needs.
+/// @return an error with the key and the one that was meant.
+[[nodiscard]] Result<void> check_keys(const JsonValue& object,
+                                      std::span<const std::string_view> known);
 
 /// Member `key` of `object` as a list of `size` finite numbers.
 [[nodiscard]] Result<std::vector<double>> number_list(const JsonValue& object, std::string_view key,

@@ -152,17 +152,33 @@ TEST(Json, KeepsItsLimits) {
 
 TEST(Json, OfEqualKeysTheLastOneCountsOrNone) {
   const std::string text = R"({"b":1,"a":2,"b":[3],"c":4,"a":5})";
-  const auto read = JsonObject::parse(text);
+  const auto read = JsonObject::parse(text, {.unique_keys = false});
   ASSERT_TRUE(read);
   ASSERT_EQ((*read)->size(), 3u);
   EXPECT_EQ((**read)[0].key(), "a");
   EXPECT_EQ((*read)->find("a")->number(), 5);
   EXPECT_EQ((*read)->find("b")->size(), 1u);
-  const auto strict = JsonObject::parse(text, {.unique_keys = true});
+  const auto strict = JsonObject::parse(text);
   ASSERT_FALSE(strict);
   EXPECT_EQ(strict.error().code, JsonErrc::key_twice);
   EXPECT_EQ(strict.error().key, "a");
   EXPECT_NE(describe(strict.error()).find("\"a\""), std::string::npos);
+}
+
+TEST(Json, MisspeltKeysAreRefusedWithTheOneThatIsMeant) {
+  constexpr std::string_view kKnown[] = {"v0", "a0", "id", "max_step", "speed", "q"};
+  const auto fault = [&](const std::string& text) {
+    const auto read = JsonObject::parse(text);
+    EXPECT_TRUE(read) << text;
+    const auto checked = check_keys(**read, kKnown);
+    return checked ? std::string() : checked.error().what;
+  };
+  EXPECT_EQ(fault(R"({"V0":1})"), "the key \"V0\" is not known here (did you mean \"v0\"?)");
+  EXPECT_NE(fault(R"({"maxstep":1})").find("\"max_step\""), std::string::npos);
+  EXPECT_NE(fault(R"({"sped":1,"max_step":2})").find("\"speed\""), std::string::npos);
+  // What others write beside it is none of our business.
+  EXPECT_EQ(fault(R"({"v0":1,"a":2,"kind":"rest","us":3,"name":"x","index":4})"), "");
+  EXPECT_EQ(fault("{\"" + std::string(100000, 'x') + "\":1}"), "");
 }
 
 TEST(Json, ValuesStayWhereTheirObjectIsMoved) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/utf8.hpp"
 
 namespace mjarm {
 namespace {
@@ -68,11 +69,7 @@ spdlog::level::level_enum to_spdlog(LogLevel level) {
 
 std::string one_line(std::string_view line) {
   while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
-  std::string result(line);
-  for (char& c : result) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  return result;
+  return printable(line);
 }
 
 void write(LogLevel level, std::string_view line) noexcept {

@@ -35,7 +35,7 @@ void set_language(Language language) noexcept;
 [[nodiscard]] Language language_of_locale();
 
 /// A value put into a message.
-using MsgArg = std::variant<std::string, double, long long>;
+using MsgArg = std::variant<std::string, double, long long, unsigned long long>;
 
 /// The text in the language in use, its `{}` filled in order. A text that does not fit its values
 /// comes back with its braces; never throws for that.
@@ -48,7 +48,11 @@ inline MsgArg message_arg(double value) { return value; }
 template <class Int>
   requires std::is_integral_v<Int>
 MsgArg message_arg(Int value) {
-  return static_cast<long long>(value);
+  if constexpr (std::is_unsigned_v<Int>) {
+    return static_cast<unsigned long long>(value);
+  } else {
+    return static_cast<long long>(value);
+  }
 }
 }  // namespace detail
 

@@ -12,7 +12,8 @@ namespace mjarm {
 [[nodiscard]] int edit_distance(std::string_view a, std::string_view b);
 
 /// The word of `known` that was probably meant by `word`: the nearest by edit distance, the first
-/// of equals, and no farther than a third of the word's length (at least 2).
+/// of equals, and no farther than a third of the word's length (at least 2). Some words of other
+/// programs are known by what they mean (`--rpy` for `--euler`). Never the word itself.
 [[nodiscard]] std::optional<std::string> nearest_word(std::string_view word,
                                                       std::span<const std::string> known);
 

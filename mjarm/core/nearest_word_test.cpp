@@ -49,6 +49,24 @@ TEST(NearestWord, FindsTheSlipOfTheFinger) {
   EXPECT_EQ(nearest_word("a", {}), std::nullopt);
 }
 
+TEST(NearestWord, KnowsWhatOthersCallIt) {
+  const std::vector<std::string> options = {"--quat", "--euler", "--pos", "--out", "--quiet"};
+  EXPECT_EQ(nearest_word("--rpy", options), "--euler");
+  EXPECT_EQ(nearest_word("--quaternion", options), "--quat");
+  EXPECT_EQ(nearest_word("--output", options), "--out");
+  const std::vector<std::string> languages = {"en", "zh-CN"};
+  EXPECT_EQ(nearest_word("cn", languages), "zh-CN");
+  EXPECT_EQ(nearest_word("Chinese", languages), "zh-CN");
+  EXPECT_EQ(nearest_word("english", languages), "en");
+  // Only where it is known here.
+  EXPECT_EQ(nearest_word("rpy", std::vector<std::string>{"movel", "movej"}), std::nullopt);
+}
+
+TEST(NearestWord, IsNeverTheWordItself) {
+  EXPECT_EQ(nearest_word("--q", std::vector<std::string>{"--q"}), std::nullopt);
+  EXPECT_EQ(nearest_word("FK", std::vector<std::string>{"fk"}), "fk");
+}
+
 TEST(NearestWord, SpeaksOnlyWhenItKnows) {
   const std::vector<std::string> known = {"hand_tcp"};
   EXPECT_EQ(did_you_mean("hand_tpc", known), " (did you mean \"hand_tcp\"?)");

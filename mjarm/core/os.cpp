@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <system_error>
@@ -83,6 +84,10 @@ std::filesystem::path temp_directory() {
 }
 
 long process_id() noexcept { return ::getpid(); }
+
+bool is_running(long process) noexcept {
+  return ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
+}
 
 int core_count() noexcept {
   const unsigned count = std::thread::hardware_concurrency();

@@ -38,6 +38,9 @@ namespace mjarm {
 /// Number of this process.
 [[nodiscard]] long process_id() noexcept;
 
+/// Whether a process of that number runs.
+[[nodiscard]] bool is_running(long process) noexcept;
+
 /// Cores this process may use, at least 1.
 [[nodiscard]] int core_count() noexcept;
 

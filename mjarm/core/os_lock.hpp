@@ -28,4 +28,7 @@ class FolderLock {
   int handle_;
 };
 
+/// Number of the process that holds the lock of a folder; none where the system does not tell.
+[[nodiscard]] std::optional<long> lock_holder(const std::filesystem::path& folder);
+
 }  // namespace mjarm

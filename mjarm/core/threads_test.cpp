@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <thread>
 #include <vector>
+
+#include "mjarm/core/os.hpp"
 
 namespace mjarm {
 namespace {
@@ -19,6 +22,20 @@ TEST(Threads, EveryPieceIsDoneOnce) {
     });
     EXPECT_EQ(std::count(done.begin(), done.end(), 1), 1000) << threads;
   }
+}
+
+TEST(Threads, AreNeverManyMoreThanTheCores) {
+  std::atomic<int> now = 0, most = 0;
+  run_in_threads(1024, [&](int) {
+    const int running = ++now;
+    int seen = most;
+    while (running > seen && !most.compare_exchange_weak(seen, running)) {
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    --now;
+  });
+  EXPECT_GE(most, 1);
+  EXPECT_LE(most, std::max(16, 2 * core_count()));
 }
 
 TEST(Threads, TheCallingOneIsNumberZeroAndTheOthersFollow) {

@@ -46,13 +46,22 @@ std::string_view trimmed(std::string_view words) {
 }
 
 /// "rad, mrad, deg", for the message.
-std::string list(std::span<const Unit> units) {
+std::string list(std::span<const Quantity> quantities) {
   std::string result;
-  for (const Unit& unit : units) {
-    if (!result.empty()) result += ", ";
-    result += unit.suffix;
+  for (const Quantity quantity : quantities) {
+    for (const Unit& unit : units_of(quantity)) {
+      if (!result.empty()) result += ", ";
+      result += unit.suffix;
+    }
   }
   return result;
+}
+
+/// A value of that unit in SI units. Division by a power of ten is exact where its inverse is not:
+/// 25mm is 0.025, to the last bit.
+double in_si(double value, const Unit& unit, Quantity quantity) {
+  return unit.factor < 1 && quantity != Quantity::angle ? value / std::round(1 / unit.factor)
+                                                        : value * unit.factor;
 }
 
 /// What of `words` a message shows: all of it, or its beginning.
@@ -63,7 +72,7 @@ std::string shown(std::string_view words) {
 
 }  // namespace
 
-Result<double> parse_quantity(std::string_view words, Quantity quantity) {
+Result<WrittenNumber> parse_written(std::string_view words, std::span<const Quantity> quantities) {
   const std::string_view whole = trimmed(words);
   std::string_view digits = whole;
   if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
@@ -78,19 +87,33 @@ Result<double> parse_quantity(std::string_view words, Quantity quantity) {
   }
   const std::string_view suffix =
       trimmed(digits.substr(static_cast<std::size_t>(end - digits.data())));
-  if (suffix.empty()) return value;
-  const std::span<const Unit> units = units_of(quantity);
-  for (const Unit& unit : units) {
-    // Division by a power of ten is exact where its inverse is not: 25mm is 0.025, to the last bit.
-    if (suffix != unit.suffix) continue;
-    return unit.factor < 1 && quantity != Quantity::angle ? value / std::round(1 / unit.factor)
-                                                          : value * unit.factor;
+  if (suffix.empty()) return WrittenNumber{value, Quantity::number};
+  for (const Quantity quantity : quantities) {
+    for (const Unit& unit : units_of(quantity)) {
+      if (suffix == unit.suffix) return WrittenNumber{in_si(value, unit, quantity), quantity};
+    }
   }
-  if (units.empty()) {
+  const std::string known = list(quantities);
+  if (known.empty()) {
     return fail(Errc::bad_input, text(msg::core_unit_not_allowed, shown(suffix), shown(whole)));
   }
-  return fail(Errc::bad_input,
-              text(msg::core_unknown_unit, shown(suffix), shown(whole), list(units)));
+  return fail(Errc::bad_input, text(msg::core_unknown_unit, shown(suffix), shown(whole), known));
+}
+
+std::string unit_wanted(std::string_view words, Quantity quantity) {
+  const bool angle = quantity == Quantity::angle;
+  return text(angle ? msg::core_bare_angle : msg::core_bare_length, shown(trimmed(words)));
+}
+
+Result<double> parse_quantity(std::string_view words, Quantity quantity) {
+  const Result<WrittenNumber> read = parse_written(words, {&quantity, 1});
+  if (!read) return fail(read.error());
+  if (read->unit != Quantity::number) return read->value;
+  const double size = std::abs(read->value);
+  const bool meant_otherwise = (quantity == Quantity::angle && size > kMaxBareAngle) ||
+                               (quantity == Quantity::length && size > kMaxBareLength);
+  if (meant_otherwise) return fail(Errc::bad_input, unit_wanted(words, quantity));
+  return read->value;
 }
 
 std::vector<std::string_view> split_list(std::string_view words) {

@@ -48,6 +48,29 @@ TEST(Units, RefusesUnitsOfOtherQuantities) {
   EXPECT_FALSE(parse_quantity("1,5m", Quantity::length));
 }
 
+TEST(Units, ValuesThatLackTheirUnitAreRefusedWithIt) {
+  EXPECT_EQ(parse_quantity("180", Quantity::angle).error().what,
+            "180 without a unit would be 180 rad, more than a whole turn: write 180deg, or 180rad "
+            "where radians are meant");
+  EXPECT_EQ(parse_quantity("-600", Quantity::length).error().what,
+            "-600 without a unit would be -600 m: write -600mm, or -600m where metres are meant");
+  // A rounded turn is none too many, and who writes the unit means it.
+  for (const char* words : {"6.28319", "-6.29", "180deg", "180rad"}) {
+    EXPECT_TRUE(parse_quantity(words, Quantity::angle)) << words;
+  }
+  for (const char* words : {"10", "-10", "10.1m", "600m"}) {
+    EXPECT_TRUE(parse_quantity(words, Quantity::length)) << words;
+  }
+  for (const char* words : {"6.3", "90"}) {
+    EXPECT_FALSE(parse_quantity(words, Quantity::angle)) << words;
+    EXPECT_FALSE(parse_quantity(words + std::string(", 0"), Quantity::length) &&
+                 parse_quantities(words + std::string(", 0"), Quantity::angle));
+  }
+  EXPECT_FALSE(parse_quantity("10.1", Quantity::length));
+  EXPECT_TRUE(parse_quantity("600", Quantity::time));
+  EXPECT_TRUE(parse_quantity("600", Quantity::number));
+}
+
 TEST(Units, LongInputIsShownShort) {
   const auto value = parse_quantity(std::string(100000, 'x'), Quantity::angle);
   ASSERT_FALSE(value);

@@ -27,4 +27,27 @@ bool is_utf8(std::string_view text) noexcept {
   return true;
 }
 
+std::string printable(std::string_view text) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const auto lead = static_cast<unsigned char>(text[0]);
+    const bool c1 = length == 2 && lead == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0;
+    if (lead == '\n' || lead == '\r' || lead == '\t') {
+      out += ' ';
+    } else if (length == 0 || lead < 0x20 || lead == 0x7F || c1) {
+      const auto code = c1 ? static_cast<unsigned char>(text[1]) : lead;
+      out += "\\x";
+      out += kDigits[code >> 4];
+      out += kDigits[code & 0xF];
+    } else {
+      out += text.substr(0, length);
+    }
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return out;
+}
+
 }  // namespace mjarm

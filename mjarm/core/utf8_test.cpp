@@ -21,5 +21,12 @@ TEST(Utf8, WhatIsMalformed) {
   }
 }
 
+TEST(Utf8, WhatATerminalWouldObeyIsShownInstead) {
+  EXPECT_EQ(printable("a\x1b[31m-\a\x7f"), "a\\x1b[31m-\\x07\\x7f");
+  EXPECT_EQ(printable("\xff caf\xc3\xa9 \xe4\xb8\xad\xc3"), "\\xff caf\xc3\xa9 \xe4\xb8\xad\\xc3");
+  EXPECT_EQ(printable("one\ntwo\tthree"), "one two three");
+  EXPECT_EQ(printable("\xc2\x9b"), "\\x9b");  // what some terminals take for ESC [
+}
+
 }  // namespace
 }  // namespace mjarm

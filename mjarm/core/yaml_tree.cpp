@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "mjarm/core/messages/core.hpp"
@@ -18,12 +19,6 @@ namespace {
 
 constexpr std::size_t kMaxLevels = 32;
 constexpr std::size_t kMaxNodes = 200'000;
-
-/// What ends the reading; never leaves this file.
-struct Stop {
-  FilePlace place;
-  std::string what;
-};
 
 FilePlace place_of(const YAML::Mark& mark) {
   return mark.is_null() ? FilePlace{} : FilePlace{mark.line + 1, mark.column + 1};
@@ -49,7 +44,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) throw Stop{place_of(mark), text(msg::core_yaml_bad_alias)};
+    if (found == anchors_.end()) throw YamlFault{place_of(mark), text(msg::core_yaml_bad_alias)};
     count(place_of(mark), count_nodes(found->second));
     add(found->second, 0);
   }
@@ -77,11 +72,12 @@ class TreeBuilder : public YAML::EventHandler {
     YAML::anchor_t anchor = 0;
     bool has_key = false;
     YamlNode key = {};
+    std::unordered_set<std::string> keys = {};  ///< of a map, so far
   };
 
   void open(YamlNode::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (open_.size() >= kMaxLevels) {
-      throw Stop{place_of(mark), text(msg::core_yaml_too_deep, kMaxLevels)};
+      throw YamlFault{place_of(mark), text(msg::core_yaml_too_deep, kMaxLevels)};
     }
     Open begun;
     begun.node.kind = kind;
@@ -110,7 +106,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (parent.node.kind == YamlNode::Kind::list) {
       parent.node.items.push_back(std::move(node));
     } else if (!parent.has_key) {
-      check_key(parent.node, node);
+      check_key(parent.keys, node);
       parent.key = std::move(node);
       parent.has_key = true;
     } else {
@@ -121,14 +117,14 @@ class TreeBuilder : public YAML::EventHandler {
 
   void count(FilePlace place, std::size_t nodes) {
     count_ += nodes;
-    if (count_ > kMaxNodes) throw Stop{place, text(msg::core_yaml_too_many_nodes, kMaxNodes)};
+    if (count_ > kMaxNodes) throw YamlFault{place, text(msg::core_yaml_too_many_nodes, kMaxNodes)};
   }
 
-  static void check_key(const YamlNode& map, const YamlNode& key) {
-    if (key.kind != YamlNode::Kind::scalar) throw Stop{key.place, text(msg::core_yaml_key_no_word)};
-    const auto same = [&](const auto& member) { return member.first.text == key.text; };
-    if (std::ranges::any_of(map.members, same)) {
-      throw Stop{key.place, text(msg::core_yaml_key_twice, key.text)};
+  static void check_key(std::unordered_set<std::string>& known, const YamlNode& key) {
+    if (key.kind != YamlNode::Kind::scalar)
+      throw YamlFault{key.place, text(msg::core_yaml_key_no_word)};
+    if (!known.insert(key.text).second) {
+      throw YamlFault{key.place, text(msg::core_yaml_key_twice, key.text)};
     }
   }
 
@@ -138,6 +134,51 @@ class TreeBuilder : public YAML::EventHandler {
   std::size_t count_ = 0;
 };
 
+/// What the library found wrong, in words of ours. Its own are a parser's, and English.
+std::string fault_of(std::string_view words) {
+  struct Known {
+    std::string_view theirs;  ///< how their message begins
+    Msg ours;
+  };
+  namespace yaml = YAML::ErrorMsg;
+  static const Known kKnown[] = {{yaml::MAP_VALUE, msg::core_yaml_no_map_value},
+                                 {yaml::MAP_KEY, msg::core_yaml_no_map_value},
+                                 {yaml::END_OF_MAP_FLOW, msg::core_yaml_open_brace},
+                                 {yaml::END_OF_SEQ_FLOW, msg::core_yaml_open_bracket},
+                                 {yaml::END_OF_MAP, msg::core_yaml_no_map_end},
+                                 {yaml::END_OF_SEQ, msg::core_yaml_no_seq_end},
+                                 {yaml::FLOW_END, msg::core_yaml_closes_nothing},
+                                 {yaml::BLOCK_ENTRY, msg::core_yaml_dash},
+                                 {yaml::TAB_IN_INDENTATION, msg::core_yaml_tab},
+                                 {yaml::EOF_IN_SCALAR, msg::core_yaml_quote},
+                                 {yaml::DOC_IN_SCALAR, msg::core_yaml_quote},
+                                 {yaml::INVALID_ESCAPE, msg::core_yaml_escape},
+                                 {yaml::INVALID_HEX, msg::core_yaml_escape},
+                                 {yaml::INVALID_UNICODE, msg::core_yaml_escape},
+                                 {yaml::UNKNOWN_TOKEN, msg::core_yaml_char},
+                                 {yaml::CHAR_IN_SCALAR, msg::core_yaml_char},
+                                 {yaml::ALIAS_NOT_FOUND, msg::core_yaml_anchor},
+                                 {yaml::ANCHOR_NOT_FOUND, msg::core_yaml_anchor},
+                                 {yaml::CHAR_IN_ALIAS, msg::core_yaml_anchor},
+                                 {yaml::CHAR_IN_ANCHOR, msg::core_yaml_anchor},
+                                 {yaml::UNKNOWN_ANCHOR, msg::core_yaml_bad_alias},
+                                 {yaml::CHAR_IN_BLOCK, msg::core_yaml_block},
+                                 {yaml::ZERO_INDENT_IN_BLOCK, msg::core_yaml_block},
+                                 {yaml::TAG_WITH_NO_SUFFIX, msg::core_yaml_tag},
+                                 {yaml::END_OF_VERBATIM_TAG, msg::core_yaml_tag},
+                                 {yaml::CHAR_IN_TAG_HANDLE, msg::core_yaml_tag},
+                                 {yaml::YAML_DIRECTIVE_ARGS, msg::core_yaml_directive},
+                                 {yaml::YAML_VERSION, msg::core_yaml_directive},
+                                 {yaml::YAML_MAJOR_VERSION, msg::core_yaml_directive},
+                                 {yaml::REPEATED_YAML_DIRECTIVE, msg::core_yaml_directive},
+                                 {yaml::TAG_DIRECTIVE_ARGS, msg::core_yaml_directive},
+                                 {yaml::REPEATED_TAG_DIRECTIVE, msg::core_yaml_directive}};
+  for (const Known& known : kKnown) {
+    if (words.starts_with(known.theirs)) return text(known.ours);
+  }
+  return text(msg::core_yaml_broken);
+}
+
 }  // namespace
 
 std::string at_place(std::string_view name, FilePlace place, std::string_view what) {
@@ -146,7 +187,7 @@ std::string at_place(std::string_view name, FilePlace place, std::string_view wh
   return out.append(out.empty() ? "" : ": ").append(what);
 }
 
-Result<YamlNode> read_yaml(const std::string& content, std::string_view name) {
+Result<YamlNode, YamlFault> read_yaml(const std::string& content) {
   TreeBuilder builder;
   try {
     std::istringstream stream(content);
@@ -155,16 +196,21 @@ Result<YamlNode> read_yaml(const std::string& content, std::string_view name) {
     YamlNode root = builder.take();
     TreeBuilder second;
     if (parser.HandleNextDocument(second)) {
-      return fail(Errc::bad_input,
-                  at_place(name, second.take().place, text(msg::core_yaml_two_documents)));
+      return tl::unexpected(YamlFault{second.take().place, text(msg::core_yaml_two_documents)});
     }
     return root;
-  } catch (const Stop& stop) {
-    return fail(Errc::bad_input, at_place(name, stop.place, stop.what));
+  } catch (const YamlFault& fault) {
+    return tl::unexpected(fault);
   } catch (const YAML::Exception& exception) {
-    return fail(Errc::bad_input, at_place(name, place_of(exception.mark),
-                                          text(msg::core_yaml_syntax, exception.msg)));
+    return tl::unexpected(
+        YamlFault{place_of(exception.mark), text(msg::core_yaml_syntax, fault_of(exception.msg))});
   }
+}
+
+Result<YamlNode> read_yaml(const std::string& content, std::string_view name) {
+  return read_yaml(content).map_error([&](const YamlFault& fault) {
+    return Error{Errc::bad_input, at_place(name, fault.place, fault.what)};
+  });
 }
 
 }  // namespace mjarm

@@ -23,9 +23,17 @@ struct YamlNode {
       members;  ///< of a map; keys are scalars, all different
 };
 
+/// Why a text is no YAML document, or none that is taken.
+struct YamlFault {
+  FilePlace place;
+  std::string what;  ///< one line for people, without the place
+};
+
 /// Reads one document. Bounded, whatever the text holds: at most 32 levels and 200,000 nodes,
 /// copies by aliases counted. An empty text gives `Kind::nothing` at no place.
-/// @return an error that begins with `name:line:column:`.
+[[nodiscard]] Result<YamlNode, YamlFault> read_yaml(const std::string& text);
+
+/// The same, an error begins with `name:line:column:`.
 [[nodiscard]] Result<YamlNode> read_yaml(const std::string& text, std::string_view name);
 
 /// `name:line:column: what`; the place is left out where there is none.

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
+#include <string>
+
 #include "mjarm/core/language_scope.hpp"
 
 namespace mjarm {
@@ -58,17 +61,51 @@ TEST(YamlTree, FaultsHaveAPlaceInBothLanguages) {
   EXPECT_THAT(error_of("a: 1\na: 2"), HasSubstr("f.yaml:2:1: \"a\" stands here a second time"));
   EXPECT_THAT(error_of("[1, 2]: 3"), HasSubstr("f.yaml:1:1: expected a word"));
   EXPECT_THAT(error_of("a: 1\n---\nb: 2"), HasSubstr("f.yaml:3:1: expected one document"));
-  EXPECT_THAT(error_of("a: [1"), HasSubstr("no YAML: "));
+  EXPECT_THAT(error_of("a: [1"), HasSubstr("no YAML: a [ that was opened before is not closed"));
   EXPECT_THAT(error_of(std::string(33, '[') + std::string(33, ']')), HasSubstr("32 levels"));
   EXPECT_EQ(error_of(std::string(32, '[') + std::string(32, ']')), "none");
   const LanguageScope chinese(Language::chinese);
   EXPECT_THAT(error_of("a: 1\na: 2"), HasSubstr("f.yaml:2:1: “a”重复出现"));
 }
 
+/// Whatever the library finds wrong is said in our words, and where.
+TEST(YamlTree, NothingOfTheLibrarysOwnWordsIsLeft) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"a: b: c", "f.yaml:1:5: no YAML: a colon is not expected here"},
+      {"a: 1\n  b: 2\n", "f.yaml:2:4: no YAML: a colon is not expected here"},
+      {"a: {x: 1\nb: 2\n", "no YAML: a { that was opened before is not closed"},
+      {"a: [1, 2\n", "no YAML: a [ that was opened before is not closed"},
+      {"a: ]\n", "no YAML: a bracket closes here that was not opened"},
+      {"a: \"\\q\"\n", "no YAML: unknown escape"},
+      {"a: @x\n", "no YAML: a sign stands here that can begin no value"},
+      {"- a\n b: 2\n- c\n", "no YAML: "},
+      {"a: *\n", "no YAML: expected a name after & or *"},
+      {"a:\n\t- 1\n", "no YAML: "},
+      {"a:\n  b: 1\n c: 2\n", "no YAML: this line is indented otherwise"},
+      {"%YAML 3.0\n---\na: 1\n", "no YAML: lines that begin with % are directives"}};
+  for (const auto& [text, says] : wrong) {
+    EXPECT_THAT(error_of(text), HasSubstr(says)) << text;
+    for (const char* theirs : {"illegal", "token", "flow", "scalar", "end of map"}) {
+      EXPECT_EQ(error_of(text).find(theirs), std::string::npos) << error_of(text);
+    }
+    const LanguageScope chinese(Language::chinese);
+    EXPECT_THAT(error_of(text), HasSubstr("不是 YAML：")) << text;
+    EXPECT_EQ(error_of(text).find_first_of("ghjlopquvxz", 8), std::string::npos) << error_of(text);
+  }
+}
+
 TEST(YamlTree, APlaceIsLeftOutWhereThereIsNone) {
   EXPECT_EQ(at_place("f.yaml", {3, 7}, "wrong"), "f.yaml:3:7: wrong");
   EXPECT_EQ(at_place("f.yaml", {}, "wrong"), "f.yaml: wrong");
   EXPECT_EQ(at_place("", {}, "wrong"), "wrong");
+}
+
+TEST(YamlTree, ManyKeysTakeTimeInProportion) {
+  std::string text;
+  for (int i = 0; i < 99'000; ++i) text += "key" + std::to_string(i) + ": 1\n";
+  const std::clock_t begun = std::clock();
+  EXPECT_TRUE(read_yaml(text, "many.yaml"));
+  EXPECT_LT(static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC, 5) << "[s] computing";
 }
 
 }  // namespace

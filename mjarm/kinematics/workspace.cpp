@@ -63,7 +63,7 @@ void fill_row(const IkSolver& ik, const WorkspaceOptions& options, int row, Work
   Pose X_WT{{0, 0, 0}, options.R_WT.value_or(Eigen::Matrix3d::Identity())};
   X_WT.p[options.normal] = options.at;
   X_WT.p[map.v] = map.v_at(row);
-  for (int column = 0; column < map.columns; ++column) {
+  for (int column = 0; column < map.columns && !is_stopped(options.stop); ++column) {
     X_WT.p[map.u] = map.u_at(column);
     std::vector<IkSolution> answers;
     if (map.counted) {
@@ -86,17 +86,14 @@ void fill_row(const IkSolver& ik, const WorkspaceOptions& options, int row, Work
 bool fill(const Arm& arm, const WorkspaceOptions& options, WorkspaceMap& map) {
   const IkSolver ik(arm, {.task = options.R_WT ? IkTask::pose : IkTask::position});
   std::atomic<int> next_row = 0;
-  std::atomic<bool> stopped = false;
   run_in_threads(std::min(options.threads, map.rows), [&](int) {
     const IkSolver mine = ik;
-    for (int row = next_row++; row < map.rows && !stopped; row = next_row++) {
+    for (int row = next_row++; row < map.rows && !is_stopped(options.stop); row = next_row++) {
       fill_row(mine, options, row, map);
-      if (options.progress && !options.progress(static_cast<std::size_t>(map.columns))) {
-        stopped = true;
-      }
+      if (options.progress) options.progress(static_cast<std::size_t>(map.columns));
     }
   });
-  return !stopped;
+  return !is_stopped(options.stop);
 }
 
 /// Cuts the border that is not reached off, but for one cell; false where nothing is reached.
@@ -149,7 +146,7 @@ Result<WorkspaceMap> map_workspace(const Arm& arm, const WorkspaceOptions& optio
   }
   WorkspaceMap map = grid(arm, options, radius);
   if (!fill(arm, options, map)) {
-    return fail(Errc::system, text(msg::kinematics_workspace_stopped));
+    return fail(stopped());
   }
   if (crop(map)) return map;
   return fail(Errc::impossible, text(msg::kinematics_workspace_nothing,

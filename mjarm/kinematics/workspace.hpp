@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/arm.hpp"
 
@@ -19,8 +20,9 @@ struct WorkspaceOptions {
   double step = 0.02;  ///< [m] edge of a cell, > 0
   std::optional<Eigen::Matrix3d> R_WT = {};  ///< how the tool stands; none: any way will do
   int threads = 1;                           ///< >= 1; the map is the same for any number
-  /// Told how many cells have been done since the last time, from any thread. False stops the work.
-  std::function<bool(std::size_t cells)> progress = {};
+  /// Told how many cells have been done since the last time, from any thread. May be empty.
+  std::function<void(std::size_t cells)> progress = {};
+  StopCheck stop = {};
 };
 
 /// Where the tool can go on a slice of space. A cell is a square about its middle; the middles
@@ -45,8 +47,8 @@ struct WorkspaceMap {
 
 /// Asks the inverse kinematics of every cell that the arm could stretch to.
 /// @return bad_input for a step that is not positive, usage for more than 10^7 cells or an arm with
-///         endless slides, impossible where the tool reaches no cell, system where `progress`
-///         stopped it.
+///         endless slides, impossible where the tool reaches no cell, system where `stop` ended
+///         the work.
 [[nodiscard]] Result<WorkspaceMap> map_workspace(const Arm& arm, const WorkspaceOptions& options);
 
 }  // namespace mjarm

@@ -73,7 +73,7 @@ TEST(Workspace, RefusesWhatCannotBeMapped) {
   EXPECT_EQ(map_workspace(arm, {.at = std::nan("")}).error().code, Errc::bad_input);
   EXPECT_EQ(map_workspace(arm, {.step = 1e-6}).error().code, Errc::usage);
   EXPECT_EQ(map_workspace(arm, {.at = 0.1}).error().code, Errc::impossible);
-  const auto stopped = map_workspace(arm, {.at = 0, .progress = [](std::size_t) { return false; }});
+  const auto stopped = map_workspace(arm, {.at = 0, .stop = [] { return true; }});
   EXPECT_EQ(stopped.error().code, Errc::system);
 }
 

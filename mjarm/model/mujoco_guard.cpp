@@ -3,6 +3,7 @@
 #include <mujoco/mujoco.h>
 
 #include <csetjmp>
+#include <cstdio>
 #include <cstdlib>
 #include <mutex>
 
@@ -33,7 +34,9 @@ void take_error(const char* message) {
   if (current_guard == nullptr) {
     // MuJoCo may not be returned to after an error, so without a guard only the end is left.
     log_error(text(msg::model_mujoco_fatal, message));
-    std::exit(EXIT_FAILURE);
+    // Not exit(): it would destroy what other threads are still working with.
+    std::fflush(nullptr);
+    std::_Exit(EXIT_FAILURE);
   }
   current_guard->outcome.failed = true;
   current_guard->outcome.error = message;

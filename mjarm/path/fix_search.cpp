@@ -57,6 +57,7 @@ FixSearch::FixSearch(const IkSolver& ik, std::span<const Pose> poses, std::size_
 /// place where it stopped, the whole.
 bool FixSearch::mends(const PathChange& change) {
   constexpr std::size_t kProofs = 400, kProbes = 8, kAround = 8;
+  if (is_stopped(options_.stop)) return false;
   const std::size_t proofs = std::max<std::size_t>(1, poses_.size() / kProofs);
   for (std::size_t i = 0; i < poses_.size(); i += proofs) {
     if (ik_.reach().check(change(poses_[i]))) return false;

@@ -72,6 +72,7 @@ double farthest_beyond(const PathLayers& layers, std::span<const Pose> rest, Joi
   const JointLimits& limits = layers.ik().arm().limits;
   double worst = 0;
   for (const Pose& X_WT : rest.first(std::min(rest.size(), kMax))) {
+    if (is_stopped(layers.options().stop)) break;
     const auto next = layers.onward(X_WT, q);
     if (!next || (*next - q).cwiseAbs().maxCoeff() > layers.options().max_step) break;
     q = *next;
@@ -88,7 +89,7 @@ void tell_speed(const PathLayers& layers, std::span<const Pose> poses, const Onw
   out.amount = onward.amount;
   JointVec q = onward.q;
   const std::size_t end = std::min(poses.size(), out.at + kMax);
-  for (std::size_t i = out.at + 1; i < end; ++i) {
+  for (std::size_t i = out.at + 1; i < end && !is_stopped(layers.options().stop); ++i) {
     const auto next = layers.onward(poses[i], q);
     if (!next || (*next - q).cwiseAbs().maxCoeff() > layers.options().max_step) break;
     const double step = std::abs((*next - q)[out.joint]);
@@ -160,6 +161,25 @@ void tell(const IkFailure& ik, PathFailure& out) {
   out.joint = ik.joint;
 }
 
+/// How much worse it gets beyond the pose at which it begins, as far as the reason is the same: at
+/// the border itself there is nothing to tell.
+void tell_deepest(const PathLayers& layers, std::span<const Pose> rest, const JointVec& q,
+                  PathFailure& out) {
+  constexpr std::size_t kMax = 256;  // poses looked at
+  const bool exact = layers.ik().six_axis() || layers.ik().seven_axis();
+  const std::size_t stride = std::max<std::size_t>(1, rest.size() / kMax);
+  // The amount by which a wrist cannot turn is no length.
+  const auto is_length = [](const IkFailure& ik) { return ik.shape != ReachShape::wrist_cone; };
+  for (std::size_t i = stride; i < rest.size() && is_length(out.ik); i += stride) {
+    if (is_stopped(layers.options().stop)) return;
+    // Where only a search would answer, geometry alone is asked.
+    if (!exact && !layers.ik().reach().check(rest[i])) return;
+    const auto answer = layers.boundless().solve(rest[i], as_span(q));
+    if (answer || answer.error().code != out.ik.code || !is_length(answer.error())) return;
+    if (answer.error().amount > out.ik.amount) tell(answer.error(), out);
+  }
+}
+
 void tell_collision(const PathLayers& layers, const JointVec& q, PathFailure& out) {
   out.code = PathErrc::collision;
   out.amount = 0;
@@ -167,6 +187,25 @@ void tell_collision(const PathLayers& layers, const JointVec& q, PathFailure& ou
   const Clearance clearance = layers.options().clearance(as_span(q));
   out.amount = std::max(0.0, -clearance.distance);
   out.pair = clearance.pair;
+}
+
+/// How deep the arm would be in what it touches at `q` if it went on from there.
+void tell_deepest_contact(const PathLayers& layers, std::span<const Pose> rest, JointVec q,
+                          PathFailure& out) {
+  constexpr std::size_t kMax = 256;  // postures looked at
+  if (!layers.options().clearance) return;
+  const std::size_t stride = std::max<std::size_t>(1, rest.size() / kMax);
+  for (std::size_t i = stride; i < rest.size(); i += stride) {
+    if (is_stopped(layers.options().stop)) return;
+    const auto next = layers.onward(rest[i], q);
+    if (!next || (*next - q).cwiseAbs().maxCoeff() > layers.options().max_step) return;
+    q = *next;
+    const Clearance clearance = layers.options().clearance(as_span(q));
+    if (clearance.distance >= 0) return;
+    if (-clearance.distance <= out.amount) continue;
+    out.amount = -clearance.distance;
+    out.pair = clearance.pair;
+  }
 }
 
 /// The first pose has no answer at all that will do.
@@ -215,6 +254,8 @@ PathFailure find_cause(const PathLayers& layers, std::span<const Pose> poses, co
     // Limits may turn "too far" into a proof of more.
     const auto bound = layers.ik().solve(X_WT, as_span(track.q.back()));
     tell(bound ? free.error() : bound.error(), out);
+    const bool reach = out.ik.code == IkErrc::out_of_reach || out.ik.code == IkErrc::inner_void;
+    if (reach) tell_deepest(layers, poses.subspan(out.at), track.q.back(), out);
     return out;
   }
   std::optional<Onward> best;
@@ -232,6 +273,7 @@ PathFailure find_cause(const PathLayers& layers, std::span<const Pose> poses, co
       break;
     case PathErrc::collision:
       tell_collision(layers, best->q, out);
+      tell_deepest_contact(layers, poses.subspan(out.at), best->q, out);
       break;
     case PathErrc::joint_speed:
       tell_speed(layers, poses, *best, out);

@@ -1,6 +1,7 @@
 #include "mjarm/path/path_failure.hpp"
 
 #include "mjarm/core/messages/path.hpp"
+#include "mjarm/core/stop.hpp"
 
 namespace mjarm {
 namespace {
@@ -39,6 +40,8 @@ std::string describe_cause(const PathFailure& failure, const Arm& arm) {
     case PathErrc::joint_speed:
       return text(msg::path_joint_speed, joint.name, speed_of(failure, arm), joint.unit,
                   failure.amount);
+    case PathErrc::stopped:
+      return stopped().what;
     case PathErrc::out_of_reach:
     case PathErrc::inner_void:
     case PathErrc::no_convergence:
@@ -66,6 +69,8 @@ std::string_view name(PathErrc code) noexcept {
       return "branch_flip";
     case PathErrc::joint_speed:
       return "joint_speed";
+    case PathErrc::stopped:
+      return "stopped";
     case PathErrc::bad_input:
       return "bad_input";
     case PathErrc::no_convergence:

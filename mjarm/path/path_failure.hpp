@@ -13,15 +13,16 @@ namespace mjarm {
 
 /// Why a path stops.
 enum class PathErrc {
-  out_of_reach,    ///< the pose is farther than the arm can stretch (`amount` m too far)
-  inner_void,      ///< it lies where the arm cannot fold into (`amount` m too near)
-  joint_limit,     ///< the arm goes on only with `joint` beyond its limit by `amount` rad or m
-  singularity,     ///< it goes on, but `joint` would have to race (`amount` rad or m in one step)
-  collision,       ///< it goes on, but `pair` would overlap by `amount` m
-  branch_flip,     ///< only other answers go on, `amount` rad or m away in `joint`
-  joint_speed,     ///< it goes on, but at the speed asked for `joint` would have to be faster than
-                   ///< its limit by `amount` rad/s or m/s
+  out_of_reach,  ///< the pose is farther than the arm can stretch (up to `amount` m from there on)
+  inner_void,    ///< it lies where the arm cannot fold into (up to `amount` m from there on)
+  joint_limit,   ///< the arm goes on only with `joint` beyond its limit by `amount` rad or m
+  singularity,   ///< it goes on, but `joint` would have to race (`amount` rad or m in one step)
+  collision,     ///< it goes on, but `pair` would overlap by up to `amount` m
+  branch_flip,   ///< only other answers go on, `amount` rad or m away in `joint`
+  joint_speed,   ///< it goes on, but at the speed asked for `joint` would have to be faster than
+                 ///< its limit by `amount` rad/s or m/s
   no_convergence,  ///< no answer was found; not a proof
+  stopped,         ///< PathOptions::stop ended the work; nothing is known of the rest
   bad_input,       ///< NaN, a matrix that is no rotation, sizes that do not fit
 };
 

@@ -39,7 +39,8 @@ struct PathFix {
 /// Changes that mend a path, at most one of each kind and `max` in all, what suits the cause
 /// first, the least change of each kind. Each was verified by solving the changed path. Shifts are
 /// multiples of 0.05 m along the world's axes up to 0.6 m, tilts multiples of 5 degrees about one
-/// axis of the tool up to 60 (about z up to 180). Bounded tries; empty where none was found.
+/// axis of the tool up to 60 (about z up to 180). Bounded tries; empty where none was found, or
+/// where PathOptions::stop ended the work.
 [[nodiscard]] std::vector<PathFix> find_fixes(const IkSolver& ik, std::span<const Pose> poses,
                                               std::span<const double> q_start,
                                               const PathOptions& options,

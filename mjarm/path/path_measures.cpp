@@ -8,11 +8,11 @@
 namespace mjarm {
 
 PathMeasures measure_path(const Arm& arm, std::span<const JointVec> q,
-                          const ClearanceCheck& clearance) {
+                          const ClearanceCheck& clearance, const StopCheck& stop) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const LinkChain chain{Chain(arm)};
   PathMeasures out{{kInfinity, 0}, {kInfinity, 0}, {kInfinity, 0}, {kInfinity, 0}};
-  for (std::size_t i = 0; i < q.size(); ++i) {
+  for (std::size_t i = 0; i < q.size() && !is_stopped(stop); ++i) {
     const auto note = [i](LeastAlong& least, double value) {
       if (value < least.value) least = {value, i};
     };

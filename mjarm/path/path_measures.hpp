@@ -4,6 +4,7 @@
 #include <span>
 
 #include "mjarm/core/joint_vec.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/path/clearance.hpp"
 
@@ -24,7 +25,9 @@ struct PathMeasures {
 };
 
 /// Measured at the waypoints `q`, of which there is at least one.
+/// @param stop  ends the work: the rest of the waypoints is not looked at then.
 [[nodiscard]] PathMeasures measure_path(const Arm& arm, std::span<const JointVec> q,
-                                        const ClearanceCheck& clearance = {});
+                                        const ClearanceCheck& clearance = {},
+                                        const StopCheck& stop = {});
 
 }  // namespace mjarm

@@ -9,12 +9,13 @@
 
 #include "mjarm/core/messages/path.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/model/joint_values.hpp"
 #include "mjarm/path/ellipse.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr std::size_t kMaxPoses = 1'000'000;
+constexpr std::size_t kMaxPoses = 200'000;  // as many as a curve has waypoints at first
 
 /// `place: ` before what is wrong there.
 Error at(const std::string& place, Error error) {
@@ -47,6 +48,9 @@ Result<std::vector<Pose>> pose_list(const JsonValue& object, const char* key) {
   const JsonValue* const member = object.find(key);
   if (member == nullptr || !member->is_list() || member->empty()) {
     return fail(Errc::bad_input, text(msg::path_request_no_poses, key));
+  }
+  if (member->size() > kMaxPoses) {
+    return fail(Errc::bad_input, text(msg::path_request_too_many, key, kMaxPoses, member->size()));
   }
   std::vector<Pose> poses;
   poses.reserve(member->size());
@@ -165,6 +169,10 @@ Result<void> check_tilt(double tilt) {
 }
 
 Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm) {
+  constexpr std::string_view kKnown[] = {
+      "type", "poses", "from",   "to",   "via",   "points",   "blend", "center",
+      "a",    "b",     "normal", "quat", "start", "max_step", "speed", "orientation_tol"};
+  if (Result<void> fine = check_keys(object, kKnown); !fine) return fail(std::move(fine.error()));
   const Result<const Type*> type = type_of(object);
   if (!type) return fail(type.error());
   PathRequest out;
@@ -172,6 +180,8 @@ Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm) {
   if (object.contains("start")) {
     auto q = number_list(object, "start", static_cast<std::size_t>(arm.dof()));
     if (!q) return fail(std::move(q.error()));
+    if (Result<void> fine = check_joint_units(*q, arm); !fine)
+      return fail(at("start", fine.error()));
     out.q = std::move(*q);
   }
   if (object.contains("max_step")) {

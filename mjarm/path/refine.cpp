@@ -25,7 +25,7 @@ class Refiner {
 
   Refined run(const JointPath& path) {
     append(path.s[0], path.q[0]);
-    for (std::size_t i = 1; i < path.q.size(); ++i) {
+    for (std::size_t i = 1; i < path.q.size() && !is_stopped(options_.path.stop); ++i) {
       stretch(path.s[i - 1], path.q[i - 1], path.s[i], path.q[i], 0);
       append(path.s[i], path.q[i]);
     }
@@ -109,6 +109,7 @@ class Refiner {
       check_speed(s0, q0, s1, q1);
       return;
     }
+    if (is_stopped(options_.path.stop)) return;
     const double s = 0.5 * (s0 + s1);
     const auto q = depth < kDeepest ? between(s, q0, q1) : std::nullopt;
     if (!q) {

@@ -30,7 +30,8 @@ std::vector<double> first_stations(const Curve& curve, const CurveOptions& optio
 bool is_vague(const PathFailure& failure, double stretch) {
   constexpr double kPlace = 1e-5, kRace = 1e-8;
   const bool race = failure.code == PathErrc::singularity || failure.code == PathErrc::branch_flip;
-  return failure.at > 0 && failure.code != PathErrc::bad_input && stretch > (race ? kRace : kPlace);
+  const bool known = failure.code == PathErrc::bad_input || failure.code == PathErrc::stopped;
+  return failure.at > 0 && !known && stretch > (race ? kRace : kPlace);
 }
 
 PathFailure located(PathFailure failure, std::span<const double> stations, double end) {
@@ -74,6 +75,11 @@ Result<JointPath, PathFailure> solve_curve(const IkSolver& ik, const Curve& curv
     auto path = solve_path(ik, poses, stations, q_start, options.path);
     if (path) {
       detail::Refined refined = detail::refine(ik, curve, *path, options);
+      if (is_stopped(options.path.stop)) {
+        failure = {};
+        failure.code = PathErrc::stopped;
+        break;
+      }
       if (refined.lost.empty()) return std::move(refined.path);
       for (const detail::Lost& lost : refined.lost) {
         const auto after = std::upper_bound(path->s.begin(), path->s.end(), lost.s);

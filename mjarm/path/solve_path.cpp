@@ -44,7 +44,14 @@ Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Po
   JointPath path{{known.begin(), known.end()}, std::move(track.q)};
   if (path.q.size() == poses.size()) return path;
   track.q = path.q;
-  PathFailure failure = detail::find_cause(layers, poses, track, q_from);
+  PathFailure failure;
+  if (!track.is_stopped) failure = detail::find_cause(layers, poses, track, q_from);
+  if (is_stopped(options.stop)) {
+    failure = {};
+    failure.code = PathErrc::stopped;
+    failure.at = path.q.size();
+    failure.fraction = static_cast<double>(failure.at) / static_cast<double>(poses.size());
+  }
   if (!path.s.empty()) failure.s = path.s.back();
   failure.partial = std::move(path);
   return fail(std::move(failure));
@@ -59,10 +66,11 @@ Result<JointPath, PathFailure> solve_path(const IkSolver& ik, std::span<const Po
 }
 
 std::vector<UnreachableRange> unreachable_ranges(const IkSolver& ik, std::span<const Pose> poses,
-                                                 std::span<const double> q_seed) {
+                                                 std::span<const double> q_seed,
+                                                 const StopCheck& stop) {
   std::vector<UnreachableRange> ranges;
   JointVec seed = joint_vec(q_seed.first(std::min<std::size_t>(q_seed.size(), kMaxDof)));
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  for (std::size_t i = 0; i < poses.size() && !is_stopped(stop); ++i) {
     const auto answer = ik.solve(poses[i], as_span(seed));
     if (answer) {
       seed = answer->q;

@@ -6,6 +6,7 @@
 
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/clearance.hpp"
 #include "mjarm/path/joint_path.hpp"
@@ -29,6 +30,7 @@ struct PathOptions {
   /// be.
   double tool_speed = 0;
   ClearanceCheck clearance = {};  ///< refuses overlap, prefers distance; empty: looks at neither
+  StopCheck stop = {};            ///< ends the work with PathErrc::stopped
 };
 
 /// Joint values along `poses`, chosen for the whole path at once: all answers to pose 0 (every
@@ -65,8 +67,10 @@ struct UnreachableRange {
   IkFailure worst;       ///< of the largest `amount`
 };
 /// Which poses have no answer at all, as index ranges; empty when all are reachable.
+/// @param stop  ends the work: the ranges are then those of the poses looked at so far.
 [[nodiscard]] std::vector<UnreachableRange> unreachable_ranges(const IkSolver& ik,
                                                                std::span<const Pose> poses,
-                                                               std::span<const double> q_seed);
+                                                               std::span<const double> q_seed,
+                                                               const StopCheck& stop = {});
 
 }  // namespace mjarm

@@ -30,10 +30,12 @@ int walk_back(std::span<const Layer> layers, std::size_t at, int index, std::vec
 /// again from its first layer.
 Track find_track(const PathLayers& layers, std::span<const Pose> poses, const JointVec& q_start) {
   Track track;
+  const StopCheck& stop = layers.options().stop;
   std::vector<Checkpoint> checkpoints;
   std::vector<Layer> segment;
   std::size_t at = 0;
   for (; at < poses.size(); ++at) {
+    if (is_stopped(stop)) return {.is_stopped = true};
     Layer layer = at == 0 ? layers.first(poses[0], q_start)
                           : layers.next(poses[at - 1], poses[at], segment.back());
     if (layer.empty()) break;
@@ -51,6 +53,7 @@ Track find_track(const PathLayers& layers, std::span<const Pose> poses, const Jo
     segment.assign(1, std::move(checkpoints.back().layer));
     const std::size_t from = checkpoints.back().at;
     while (segment.size() < kSegment) {
+      if (is_stopped(stop)) return {.is_stopped = true};
       const std::size_t next = from + segment.size();
       segment.push_back(layers.next(poses[next - 1], poses[next], segment.back()));
     }

@@ -10,8 +10,10 @@ namespace mjarm::detail {
 
 /// The best track along some poses.
 struct Track {
-  std::vector<JointVec> q;  ///< answers to the first poses; all of them where the track completes
-  Layer last;               ///< all that tracks lead to at the last of these, best first
+  std::vector<JointVec> q =
+      {};                   ///< answers to the first poses; all of them where the track completes
+  Layer last = {};          ///< all that tracks lead to at the last of these, best first
+  bool is_stopped = false;  ///< by PathOptions::stop; `q` is empty then
   [[nodiscard]] std::size_t size() const { return q.size(); }
 };
 

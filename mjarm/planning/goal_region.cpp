@@ -94,6 +94,7 @@ Result<std::vector<JointVec>, IkFailure> goals_in(const FastChecker& checker, co
     any = any || answers.has_value();
     if (k == 0 && !answers) why = answers.error();
     if (why && why->code == IkErrc::bad_input) break;
+    if (is_stopped(options.stop)) break;
   }
   if (!any) return tl::unexpected(std::move(*why));
   return goals.take(options.max);

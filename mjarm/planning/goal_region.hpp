@@ -10,6 +10,7 @@
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
@@ -35,6 +36,7 @@ struct GoalOptions {
   std::uint64_t seed = 1;  ///< same input and seed, same goals
   /// Goals that lean farther are left out, where there are others.
   std::optional<TiltLimit> tilt = {};
+  StopCheck stop = {};  ///< ends the drawing of poses: what was found so far counts
 };
 
 /// Goals for plan_path(): all branches of inverse kinematics, in every winding, of the region's

@@ -59,14 +59,17 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
   if (!problem) return best;
   const bool timed = options.time_budget > 0;
   if (timed && left_us <= 0) return best;
-  if (timed) problem->deadline = detail::Deadline(kProofShare * left_us);
+  if (timed) problem->deadline = detail::Deadline(options.stop, kProofShare * left_us);
   PlanOptions round = options;
   round.samples = kSamplesOfRound;
   Settler settler(*problem, round);
   settler.settle(round.seed, path_length(best.q), best);
   double cost = path_length(best.q);
   const double least = detail::distance(start, problem->goals.front()) * (1 + 1e-12);
-  for (int k = 0; cost > least && (timed ? !problem->deadline.passed() : k < options.rounds); ++k) {
+  const auto goes_on = [&](int k) {
+    return cost > least && (timed || k < options.rounds) && !problem->deadline.passed();
+  };
+  for (int k = 0; goes_on(k); ++k) {
     ++round.seed;
     problem->max_cost = kShare * cost;
     Result<RawPath, PlanFailure> found = detail::rrt_connect(*problem, round);

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "mjarm/core/os.hpp"
 #include "mjarm/planning/ompl_space_internal.hpp"
 
 namespace mjarm::detail {
@@ -176,7 +175,7 @@ class EllipsoidSampler : public ob::InformedSampler {
 }  // namespace
 
 OmplBudget::OmplBudget(const PlanOptions& options, bool improves)
-    : deadline_(1e6 * kTimeShare * options.time_budget),
+    : deadline_(options.stop, 1e6 * kTimeShare * options.time_budget),
       timed_(options.time_budget > 0),
       max_(options.samples > 0 ? options.samples
            : improves          ? kMaxWhereImproved
@@ -191,7 +190,7 @@ void OmplBudget::found() {
 
 bool OmplBudget::spent() {
   ++steps_;
-  if (deadline_.passed() || interrupted()) return true;
+  if (deadline_.passed()) return true;
   if (found_ && timed_) return false;
   const int draws = found_ ? more_ : max_;
   return counts_.samples >= draws || steps_ >= kStepsOfDraw * draws;

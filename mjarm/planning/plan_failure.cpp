@@ -1,5 +1,6 @@
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/planning/plan_path.hpp"
 
@@ -61,6 +62,8 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return text(msg::planning_goals_tilted, failure.value, failure.limit);
     case PlanErrc::budget_spent:
       return text(msg::planning_budget, failure.samples, failure.nearest);
+    case PlanErrc::stopped:
+      return stopped().what;
     case PlanErrc::unproved:
       return text(msg::planning_unproved);
     case PlanErrc::not_available:

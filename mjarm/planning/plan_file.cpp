@@ -113,6 +113,10 @@ Result<void> read_words(const JsonValue& entry, const char* key, std::vector<std
 Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out) {
   if (entry.is_list()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
+  constexpr std::string_view kKnown[] = {"ok",    "path",   "us",         "simplify_us",
+                                         "cost",  "reason", "spheres",    "hold",
+                                         "allow", "tilt",   "certificate"};
+  if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
   const JsonValue* const ok = entry.find("ok");
   if (ok != nullptr && !ok->is_boolean()) {
     return fail(Errc::bad_input, text(msg::planning_verify_no_bool, "ok"));

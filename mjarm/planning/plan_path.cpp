@@ -45,9 +45,12 @@ Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<con
                                        const PlanOptions& options) {
   const auto problem = detail::validate_problem(checker, start, goals, options);
   if (!problem) return tl::unexpected(problem.error());
-  if (options.planner == Planner::rrt_star) return detail::rrt_star(*problem, options);
-  if (options.planner == Planner::ompl) return detail::ompl_search(*problem, options);
-  return detail::rrt_connect(*problem, options);
+  const auto search = options.planner == Planner::rrt_star ? detail::rrt_star
+                      : options.planner == Planner::ompl   ? detail::ompl_search
+                                                           : detail::rrt_connect;
+  Result<RawPath, PlanFailure> found = search(*problem, options);
+  if (is_stopped(options.stop)) return tl::unexpected(PlanFailure{.code = PlanErrc::stopped});
+  return found;
 }
 
 Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath path,
@@ -60,6 +63,9 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
   // Parts of proved edges are free, but the proof of a part is another one and may need more.
   for (std::vector<JointVec>* q : {&path.q, &found}) {
     for (const double share : {1.0, 0x1p-3, 0x1p-6}) {
+      if (is_stopped(options.stop)) {
+        return tl::unexpected(PlanFailure{.code = PlanErrc::stopped});
+      }
       if (!prove(checker, *q, share * options.resolution, out.proof)) continue;
       if (tilt && !prove(*tilt, *q, out.tilt)) break;  // no resolution helps
       out.q = std::move(*q);

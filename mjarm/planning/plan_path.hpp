@@ -11,6 +11,7 @@
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm {
@@ -45,6 +46,7 @@ struct PlanOptions {
   /// there may be no path in time. There are no rounds.
   std::string_view ompl_planner = "RRTConnect";
   bool keep_trees = false;  ///< hand over what was searched, to be drawn, say
+  StopCheck stop = {};      ///< ends the work with PlanErrc::stopped
 };
 
 enum class PlanErrc {
@@ -58,6 +60,7 @@ enum class PlanErrc {
   start_tilted,    ///< the tool leans too far at the start
   goals_tilted,    ///< the tool leans too far at every goal that is free of collisions
   budget_spent,    ///< PlanOptions::samples did not do
+  stopped,         ///< PlanOptions::stop ended the work
   unproved,        ///< a path was found, but an edge of it could not be proved (never seen)
   not_available,   ///< OMPL is not built in, or it is and has no PlanOptions::ompl_planner
   tilt_with_ompl,  ///< PlanOptions::tilt is for our own planners
@@ -67,8 +70,8 @@ enum class PlanErrc {
 /// Why there is no path.
 struct PlanFailure {
   PlanErrc code = PlanErrc::bad_input;
-  SphereClearance
-      pair;            ///< what overlaps: start_hit, goals_hit (least deep of all goals), base_hit
+  SphereClearance pair =
+      {};              ///< what overlaps: start_hit, goals_hit (least deep of all goals), base_hit
   int joint = -1;      ///< the first outside of its limits: start_outside, goals_outside
   double value = 0;    ///< [rad or m] where that joint is; start_tilted, goals_tilted: the tilt
   double limit = 0;    ///< [rad] start_tilted, goals_tilted: the largest that is allowed

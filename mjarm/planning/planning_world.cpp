@@ -51,9 +51,11 @@ Result<PlanningWorld> PlanningWorld::create(const Robot& robot, WorldOptions opt
   return PlanningWorld(robot, std::move(options));
 }
 
-Result<WorldLevel> PlanningWorld::covered(double bound) const {
-  const CoverOptions options{
-      .bound = bound, .whole_stroke = robot_.arm.gripper.has_value(), .rules = options_.rules};
+Result<WorldLevel> PlanningWorld::covered(double bound, const StopCheck& stop) const {
+  const CoverOptions options{.bound = bound,
+                             .whole_stroke = robot_.arm.gripper.has_value(),
+                             .rules = options_.rules,
+                             .stop = stop};
   Result<ModelCover> cover = cover_model(robot_.model, robot_.arm, options);
   if (!cover) return fail(std::move(cover.error()));
   for (LinkSpheres& link : cover->spheres.links) {
@@ -66,12 +68,12 @@ Result<WorldLevel> PlanningWorld::covered(double bound) const {
   return WorldLevel{bound, std::move(*cover), std::move(*checker)};
 }
 
-Result<const WorldLevel*> PlanningWorld::level(std::size_t index) {
+Result<const WorldLevel*> PlanningWorld::level(std::size_t index, const StopCheck& stop) {
   if (index >= options_.bounds.size()) {
     return fail(Errc::bad_input, text(msg::planning_no_level, index, options_.bounds.size()));
   }
   while (levels_.size() <= index) {
-    Result<WorldLevel> made = covered(options_.bounds[levels_.size()]);
+    Result<WorldLevel> made = covered(options_.bounds[levels_.size()], stop);
     if (!made) return fail(std::move(made.error()));
     levels_.push_back(std::move(*made));
   }
@@ -82,10 +84,15 @@ Result<const WorldLevel*> PlanningWorld::level(std::size_t index) {
 /// @param attempt  gets a checker; gives a path or a failure whose words and level are filled in
 /// here, where it is one of a search.
 template <class Attempt>
-Result<WorldPath, WorldFailure> PlanningWorld::climb(const Attempt& attempt) {
+Result<WorldPath, WorldFailure> PlanningWorld::climb(const StopCheck& stop,
+                                                     const Attempt& attempt) {
   WorldFailure why;
   for (std::size_t i = 0; i < options_.bounds.size(); ++i) {
-    const Result<const WorldLevel*> here = level(i);
+    const Result<const WorldLevel*> here = level(i, stop);
+    if (!here && is_stopped(stop)) {
+      return tl::unexpected(WorldFailure{
+          .what = here.error().what, .search = {.code = PlanErrc::stopped}, .level = i});
+    }
     if (!here) return tl::unexpected(WorldFailure{WorldErrc::bad_model, here.error().what});
     Result<PlannedPath, WorldFailure> found = attempt((*here)->checker);
     if (found) return WorldPath{std::move(*found), i};
@@ -99,18 +106,19 @@ Result<WorldPath, WorldFailure> PlanningWorld::climb(const Attempt& attempt) {
 Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
                                                     std::span<const JointVec> goals,
                                                     const PlanOptions& options, PlanTimes* times) {
-  return climb(
-      [&](const FastChecker& checker) { return search(checker, q_start, goals, options, times); });
+  return climb(options.stop, [&](const FastChecker& checker) {
+    return search(checker, q_start, goals, options, times);
+  });
 }
 
 Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
                                                     const GoalRegion& region,
                                                     const PlanOptions& options, IkTask task,
                                                     PlanTimes* times) {
-  return climb([&](const FastChecker& checker) -> Result<PlannedPath, WorldFailure> {
+  return climb(options.stop, [&](const FastChecker& checker) -> Result<PlannedPath, WorldFailure> {
     const IkSolver ik(robot_.arm, {.seed = options.seed, .task = task});
-    const auto goals =
-        goals_in(checker, ik, region, q_start, {.seed = options.seed, .tilt = options.tilt});
+    const auto goals = goals_in(checker, ik, region, q_start,
+                                {.seed = options.seed, .tilt = options.tilt, .stop = options.stop});
     if (!goals) {
       return tl::unexpected(
           WorldFailure{WorldErrc::no_answer, describe(goals.error(), robot_.arm)});

@@ -104,16 +104,18 @@ class PlanningWorld {
 
   /// What paths are searched in; stays in place as long as the world does.
   /// @param index  of WorldOptions::bounds. Levels are made in order, when they are asked for.
+  /// @param stop   ends the work.
   /// @return cover_model()'s error; bad_input where there is no such level.
-  [[nodiscard]] Result<const WorldLevel*> level(std::size_t index);
+  [[nodiscard]] Result<const WorldLevel*> level(std::size_t index, const StopCheck& stop = {});
 
  private:
   PlanningWorld(const Robot& robot, WorldOptions options)
       : robot_(robot), options_(std::move(options)) {}
 
-  [[nodiscard]] Result<WorldLevel> covered(double bound) const;
+  [[nodiscard]] Result<WorldLevel> covered(double bound, const StopCheck& stop) const;
   template <class Attempt>
-  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const Attempt& attempt);
+  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const StopCheck& stop,
+                                                      const Attempt& attempt);
 
   Robot robot_;
   WorldOptions options_;

@@ -12,11 +12,13 @@
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/number.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr std::size_t kLargest = std::size_t{1} << 28;  // [bytes], unpacked
+constexpr std::size_t kLargest = std::size_t{1} << 27;  // [bytes], unpacked
+constexpr std::size_t kMostValues = std::size_t{1} << 22;
 
 template <class... Values>
 tl::unexpected<Error> bad(const Msg& message, const Values&... values) {
@@ -128,10 +130,37 @@ class RobotReader {
           return each(robot, "self_collision_link_pairs",
                       [&](const JsonValue& pair) { return add_pair(pair); });
         })
-        .and_then([&] { return check_sphere_set(out_.spheres, out_.arm); });
+        .and_then([&] { return check_sphere_set(out_.spheres, out_.arm); })
+        .and_then([&] { return check_summary(robot); });
   }
 
  private:
+  /// What files say a second time must be what the joints say.
+  Result<void> check_summary(const JsonValue& robot) const {
+    if (robot.contains("joint_names")) {
+      std::vector<std::string> names;
+      for (const ArmJoint& joint : out_.arm.joints) names.push_back(joint.name);
+      const JsonValue& given = *robot.find("joint_names");
+      const bool same =
+          given.is_list() &&
+          std::equal(given.begin(), given.end(), names.begin(), names.end(),
+                     [](const auto& a, const auto& b) { return a.is_string() && a.string() == b; });
+      if (!same) return bad(msg::planning_file_contradicts, "joint_names", listed(names));
+    }
+    const std::pair<const char*, const std::vector<double>*> limits[] = {{"lower", &lower_},
+                                                                         {"upper", &upper_}};
+    for (const auto& [key, values] : limits) {
+      if (!robot.contains(key)) continue;
+      const Result<std::vector<double>> given = number_list(robot, key, values->size());
+      if (!given) return fail(given.error());
+      if (*given == *values) continue;
+      std::vector<std::string> words;
+      for (const double value : *values) words.push_back(number(value));
+      return bad(msg::planning_file_contradicts, key, listed(words));
+    }
+    return {};
+  }
+
   /// Where a link is: in the moved frame of a joint of the arm.
   struct Place {
     int joint = -1;
@@ -249,6 +278,9 @@ Result<ObstacleShape> cylinder_of(const JsonValue& from, Cylinders cylinders) {
 Result<Obstacle> obstacle_of(const JsonValue& from, Cylinders cylinders) {
   const Result<std::string> type = string(from, "type");
   if (!type) return fail(type.error());
+  constexpr std::string_view kKnown[] = {"type", "name",   "pos",    "quat",
+                                         "half", "radius", "length", "vamp_as"};
+  if (Result<void> fine = check_keys(from, kKnown); !fine) return fail(std::move(fine.error()));
   Obstacle out;
   if (from.contains("name")) {
     const Result<std::string> name = string(from, "name");
@@ -284,6 +316,8 @@ Result<Obstacle> obstacle_of(const JsonValue& from, Cylinders cylinders) {
 }
 
 Result<PlanProblem> problem_of(const JsonValue& from, std::size_t dof, Cylinders cylinders) {
+  constexpr std::string_view kKnown[] = {"id", "scene", "start", "goals", "obstacles", "valid"};
+  if (Result<void> fine = check_keys(from, kKnown); !fine) return fail(std::move(fine.error()));
   PlanProblem out;
   Result<std::string> id = string(from, "id");
   if (!id) return fail(id.error());
@@ -336,10 +370,12 @@ Result<ProblemFile> problems_of(const JsonValue& file, Cylinders cylinders) {
 }  // namespace
 
 Result<ProblemFile> read_problem_file(const std::string& path, Cylinders cylinders) {
-  const Result<std::string> content = unpacked(path);
+  Result<std::string> content = unpacked(path);
   if (!content) return fail(content.error());
-  const Result<JsonObject> object = parse_json_object(*content);
-  if (!object) return fail(at(path, object.error()));
+  const auto object = JsonObject::parse(*content, {.values = kMostValues});
+  if (!object) return fail(at(path, {Errc::bad_input, describe(object.error())}));
+  content->clear();
+  content->shrink_to_fit();  // it would stay beside what was read of it
   Result<ProblemFile> out = problems_of(**object, cylinders);
   if (!out) return fail(at(path, std::move(out.error())));
   return out;

@@ -273,6 +273,29 @@ TEST_F(ProblemFileTest, EndsThatCannotBeAreTold) {
   EXPECT_NE(reason(with("goals", many)).find("every goal is in collision"), std::string::npos);
 }
 
+TEST_F(ProblemFileTest, WhatASummaryContradictsIsSaid) {
+  json file = one_problem();
+  file["robot"]["joint_names"] = {"upper_joint", "lower_joint"};
+  file["robot"]["lower"] = {-2.9, -2.9};
+  file["robot"]["upper"] = {2.9, 2.9};
+  EXPECT_TRUE(read(file.dump()));
+  json other = file;
+  other["robot"]["joint_names"] = {"lower_joint", "upper_joint"};
+  EXPECT_NE(refusal(other.dump())
+                .find("robot: \"joint_names\" contradicts the joints, which say "
+                      "upper_joint, lower_joint"),
+            std::string::npos);
+  other = file;
+  other["robot"]["upper"] = {2.9, 3.1};
+  EXPECT_NE(refusal(other.dump()).find("\"upper\" contradicts"), std::string::npos);
+  other = file;
+  other["problems"][0]["obstacle"] = json::array();
+  EXPECT_NE(refusal(other.dump())
+                .find("problems[0]: the key \"obstacle\" is not known here (did "
+                      "you mean \"obstacles\"?)"),
+            std::string::npos);
+}
+
 TEST_F(ProblemFileTest, RobotsThatAreTooMuch) {
   json many = one_problem();
   const json spheres = many["robot"]["spheres"];

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mjarm/core/stopwatch.hpp"
@@ -12,14 +13,16 @@
 
 namespace mjarm::detail {
 
-/// Says when a search has to end; asks the clock each time, if there is an end at all.
+/// Says when a search has to end; asks the user each time, and the clock if there is an end at all.
 class Deadline {
  public:
   Deadline() = default;
-  explicit Deadline(double us) : left_us_(us) {}
-  bool passed() const { return left_us_ > 0 && watch_.us() > left_us_; }
+  /// @param us  [us] from now; 0: none.
+  explicit Deadline(StopCheck stop, double us = 0) : stop_(std::move(stop)), left_us_(us) {}
+  bool passed() const { return (left_us_ > 0 && watch_.us() > left_us_) || is_stopped(stop_); }
 
  private:
+  StopCheck stop_;
   Stopwatch watch_;
   double left_us_ = 0;  // 0: never
 };

@@ -107,6 +107,7 @@ Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
   }
   std::ranges::stable_sort(out.goal_index, {}, [&](int g) { return distance(start, goal_of(g)); });
   for (const int g : out.goal_index) out.goals.push_back(goal_of(g));
+  out.deadline = Deadline(options.stop);
   return out;
 }
 

@@ -50,10 +50,15 @@ class PathJudge {
         exact_(exact) {}
 
   Result<PathVerdict> run() {
+    if (!(rules_.step >= kLeastVerifyStep)) {
+      return fail(Errc::bad_input, text(msg::planning_verify_step, rules_.step, kLeastVerifyStep));
+    }
     check_ends();
+    find_walkable();
     if (Result<void> done = prove_edges(); !done) return fail(std::move(done.error()));
     if (Result<void> done = walk_edges(); !done) return fail(std::move(done.error()));
     check_tilt();
+    if (is_stopped(rules_.stop)) return fail(stopped());
     check_cost();
     if (Result<void> done = check_certificates(); !done) return fail(std::move(done.error()));
     return std::move(out_);
@@ -113,10 +118,46 @@ class PathJudge {
     }
   }
 
+  double pieces_of(int edge) const {
+    return std::ceil(length_of(row(edge), row(edge + 1)) / rules_.step);
+  }
+
+  /// Whether an edge is looked at between its ends.
+  bool is_walkable(int edge) const { return walkable_[static_cast<std::size_t>(edge)] != 0; }
+
+  bool is_inside(Row q) const {
+    for (int i = 0; i < arm_.dof(); ++i) {
+      const double value = q[static_cast<std::size_t>(i)];
+      if (!(value >= arm_.limits.lower[i] - kEndSlack && value <= arm_.limits.upper[i] + kEndSlack))
+        return false;
+    }
+    return true;
+  }
+
+  /// Leaves out what is outside of the limits, where nothing between tells more, and what is too
+  /// long to be sampled, which is a fault.
+  void find_walkable() {
+    double samples = 0;
+    for (int edge = 0; edge < edges(); ++edge) {
+      const bool inside = is_inside(row(edge)) && is_inside(row(edge + 1));
+      if (inside) samples += pieces_of(edge);
+      const bool too_long = inside && !(samples <= kMaxVerifySamples);
+      walkable_.push_back(inside && !too_long ? 1 : 0);
+      if (!too_long) continue;
+      if (!told_length_) {
+        add("length", edge,
+            text(msg::planning_verify_length, edge, kMaxVerifySamples, rules_.step));
+      }
+      told_length_ = true;
+    }
+  }
+
   /// How deep the overlaps of an edge are, at samples: verify_edge() ends at the first.
   Result<void> measure(int edge) {
-    const double pieces = std::ceil(length_of(row(edge), row(edge + 1)) / rules_.step);
+    if (!is_walkable(edge)) return {};
+    const double pieces = pieces_of(edge);
     for (double k = 0; k <= pieces; ++k) {
+      if (is_stopped(rules_.stop)) return fail(stopped());
       const std::vector<double> q = on_edge(edge, k / std::max(pieces, 1.0));
       const Result<VerifyResult> found =
           verify_edge(arm_, set_, problem_.obstacles, q, q,
@@ -128,9 +169,13 @@ class PathJudge {
   }
 
   Result<void> prove_edges() {
-    const VerifyOptions options{.allow_depth = rules_.allow_depth, .limit_slack = kEndSlack};
+    const VerifyOptions options{
+        .allow_depth = rules_.allow_depth, .limit_slack = kEndSlack, .stop = rules_.stop};
     bool is_faulty = false;
     for (int edge = 0; edge < edges(); ++edge) {
+      if (told_length_ && !is_walkable(edge) && is_inside(row(edge)) && is_inside(row(edge + 1))) {
+        continue;
+      }
       const Result<VerifyResult> found =
           verify_edge(arm_, set_, problem_.obstacles, row(edge), row(edge + 1), options);
       if (!found) return fail(found.error());
@@ -159,7 +204,8 @@ class PathJudge {
   template <typename NameOf>
   Result<void> walk_edges(ExactChecker checker, const NameOf& name_of) {
     for (int edge = 0; edge < edges(); ++edge) {
-      const auto found = first_contact(checker, row(edge), row(edge + 1), rules_.step);
+      if (!is_walkable(edge)) continue;
+      const auto found = first_contact(checker, row(edge), row(edge + 1), rules_.step, rules_.stop);
       if (!found) return fail(found.error());
       if (!found->has_value()) continue;
       const ContactPoint& contact = (*found)->contact;
@@ -178,8 +224,9 @@ class PathJudge {
                            Eigen::Map<const Eigen::Vector3d>(path_.tilt->tool.data()),
                            Eigen::Map<const Eigen::Vector3d>(path_.tilt->world.data())};
     for (int edge = 0; edge < edges(); ++edge) {
-      const double pieces = std::ceil(length_of(row(edge), row(edge + 1)) / rules_.step);
-      for (double k = 0; k <= pieces; ++k) {
+      if (!is_walkable(edge)) continue;
+      const double pieces = pieces_of(edge);
+      for (double k = 0; k <= pieces && !is_stopped(rules_.stop); ++k) {
         const double t = k / std::max(pieces, 1.0), leans = tilt(stated, arm_, on_edge(edge, t));
         if (leans <= stated.max + kTiltSlack) continue;
         add("tilt", edge, text(msg::planning_verify_tilt, edge, t, leans, stated.max));
@@ -286,6 +333,8 @@ class PathJudge {
   const GivenPath& path_;
   const VerifyRules& rules_;
   const std::optional<ExactChecker>& exact_;
+  std::vector<char> walkable_;  // edges
+  bool told_length_ = false;
   PathVerdict out_;
 };
 

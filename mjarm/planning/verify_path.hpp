@@ -7,20 +7,27 @@
 
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/planning/plan_file.hpp"
 #include "mjarm/planning/problem_file.hpp"
 
 namespace mjarm {
 
+inline constexpr double kLeastVerifyStep = 1e-5;  ///< [rad or m, L2]
+/// Samples along one path; longer ones are a fault of theirs.
+inline constexpr double kMaxVerifySamples = 1e6;
+
 /// How paths are judged.
 struct VerifyRules {
-  double step = 0.005;     ///< [rad or m, L2] spacing of MuJoCo's own check, > 0
+  double step = 0.005;     ///< [rad or m, L2] spacing of MuJoCo's own check, >= kLeastVerifyStep
   double allow_depth = 0;  ///< [m] overlap that still counts as free, >= 0
+  StopCheck stop = {};
 };
 
 /// What is wrong with a path.
 struct PathFault {
-  const char* kind;  ///< start, goal, limits, hit, undecided, contact, tilt, cost or certificate
+  const char* kind;  ///< start, goal, limits, hit, undecided, length, contact, tilt, cost or
+                     ///< certificate
   int edge = -1;     ///< from 0; -1: none in particular
   std::string what;  ///< one line
 };
@@ -35,9 +42,10 @@ struct PathVerdict {
 
 /// Judges a path with at least one row: its ends, its limits and edges by verify_edge(), MuJoCo's
 /// own collision detection, and what the file says of it. Of the edges the first that is faulty
-/// counts.
+/// counts. Edges that leave the limits, or are too long to be sampled, are looked at no further.
 /// @param exact  whose geometry MuJoCo looks at; none: that of the spheres.
-/// @return an error where MuJoCo cannot make a model of the problem.
+/// @return an error where MuJoCo cannot make a model of the problem; stopped() where
+/// VerifyRules::stop ended the work.
 [[nodiscard]] Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
                                               const GivenPath& path, const VerifyRules& rules,
                                               const std::optional<ExactChecker>& exact = {});

@@ -173,5 +173,25 @@ TEST_F(VerifyPathTest, PlannedPathsAreValidAndBentOnesAreNot) {
   EXPECT_EQ(kinds, (Kinds{"hit", "contact", "cost"}));
 }
 
+TEST_F(VerifyPathTest, WorkIsBounded) {
+  const std::string id = "crane/open/0";
+  // 40 million samples, or 1e300: neither is begun.
+  EXPECT_EQ(faults(id, {{-1, 0}, {2e5, 0}, {1, 0}}), Kinds{"limits"});
+  const std::string in = folder_.write("problems.json", problems_.dump()).string();
+  const ProblemFile file = read_problem_file(in).value();
+  GivenPath path;
+  path.id = id;
+  path.rows = {{-1, 0}, {1, 0}};
+  for (const double step : {1e-300, 0.0, -1.0, std::nan("")}) {
+    EXPECT_FALSE(verify_path(file, file.problems.front(), path, {.step = step})) << step;
+  }
+  GivenPath long_way;
+  long_way.id = id;
+  for (int i = 0; i < 20'000; ++i) long_way.rows.push_back({i % 2 == 0 ? -1.0 : 1.0, 0});
+  const auto found = verify_path(file, file.problems.front(), long_way, {.step = 1e-4});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->faults.front().kind, std::string("length"));
+}
+
 }  // namespace
 }  // namespace mjarm

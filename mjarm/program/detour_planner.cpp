@@ -26,6 +26,8 @@ const char* name_of(PlanErrc reason) {
     case PlanErrc::start_outside:
     case PlanErrc::goals_outside:
       return "joint_limit";
+    case PlanErrc::stopped:
+      return "stopped";
     case PlanErrc::budget_spent:
     case PlanErrc::unproved:
     case PlanErrc::not_available:
@@ -65,10 +67,11 @@ Result<Trajectory> time_corners(std::span<const JointVec> corners, double blend,
 /// The shortest path that is found to the goals that are nearest, each by itself: to all at once
 /// the first straight path that is free is taken, be it to the farthest.
 void replace_by_shorter(const FastChecker& checker, const JointVec& q,
-                        std::span<const JointVec> goals, PlannedPath& path) {
+                        std::span<const JointVec> goals, const StopCheck& stop, PlannedPath& path) {
   constexpr std::size_t kMaxAlone = 8;
   PlanOptions search = kSearch;
   search.samples /= 10;
+  search.stop = stop;
   std::vector<std::size_t> order(goals.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto far = [&](std::size_t g) { return (goals[g] - q).norm(); };
@@ -201,7 +204,9 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
     if (!made) return no_detour("bad_input", made.error().what);
     world_ = std::move(*made);
   }
-  Result<WorldPath, WorldFailure> path = world_->plan(as_span(q), goals, kSearch);
+  PlanOptions search = kSearch;
+  search.stop = stop_;
+  Result<WorldPath, WorldFailure> path = world_->plan(as_span(q), goals, search);
   if (!path) {
     const WorldFailure& why = path.error();
     const char* reason = why.code == WorldErrc::no_path ? name_of(why.search.code) : "bad_input";
@@ -209,7 +214,7 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
                      why.what + (why.bound > 0 ? text(msg::program_spheres, 1e3 * why.bound) : ""));
   }
   const FastChecker& checker = (*world_->level(path->level))->checker;
-  if (goals.size() > 1) replace_by_shorter(checker, q, goals, *path);
+  if (goals.size() > 1) replace_by_shorter(checker, q, goals, stop_, *path);
   Result<DetourMotion, DetourFault> motion = timed(checker, path->q, limits);
   if (motion) motion->goal = static_cast<std::size_t>(path->goal);
   return motion;

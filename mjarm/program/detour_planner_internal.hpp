@@ -9,6 +9,7 @@
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/planning/planning_world.hpp"
@@ -36,8 +37,12 @@ class DetourPlanner {
  public:
   /// @param ik     whose answers to poses become goals.
   /// @param judge  by which start, goals and motions are checked.
-  DetourPlanner(Robot robot, IkSolver ik, MoveJudge judge)
-      : robot_(std::move(robot)), ik_(std::move(ik)), judge_(std::move(judge)) {}
+  /// @param stop   ends the work with the fault `stopped`.
+  DetourPlanner(Robot robot, IkSolver ik, MoveJudge judge, StopCheck stop = {})
+      : robot_(std::move(robot)),
+        ik_(std::move(ik)),
+        judge_(std::move(judge)),
+        stop_(std::move(stop)) {}
 
   /// All answers to a pose from `q`, or the fault of the start or of the pose.
   [[nodiscard]] Result<std::vector<JointVec>, DetourFault> goals(const JointVec& q,
@@ -63,6 +68,7 @@ class DetourPlanner {
   Robot robot_;
   IkSolver ik_;
   MoveJudge judge_;
+  StopCheck stop_;
   std::optional<PlanningWorld> world_;  // made when a detour is asked for first
 };
 

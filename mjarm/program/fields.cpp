@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "mjarm/core/messages/program.hpp"
@@ -10,8 +9,6 @@
 
 namespace mjarm::program::detail {
 namespace {
-
-constexpr double kMaxTurn = 4 * std::numbers::pi;  // [rad] more than that was meant in degrees
 
 template <class Map>
 std::vector<std::string> names_of(const Map& map) {
@@ -63,16 +60,27 @@ Eigen::Matrix3d quat_of(const YamlNode& node, const std::string& what) {
 }
 
 Eigen::Matrix3d euler_of(const YamlNode& node, const std::string& what) {
-  const Eigen::Vector3d angles = vector_of(node, what, Quantity::angle);
-  for (const double angle : angles) {
-    if (std::abs(angle) > kMaxTurn) {
-      throw ReadFault{node.place, text(msg::program_angle_in_degrees, what, angle, angle)};
-    }
-  }
-  return from_euler(angles);
+  return from_euler(vector_of(node, what, Quantity::angle));
+}
+
+/// A list of `size` entries; 0 takes any number but none.
+const std::vector<YamlNode>& list_of(const YamlNode& node, std::string_view what,
+                                     std::size_t size) {
+  const bool list = node.kind == YamlNode::Kind::list;
+  if (list && (size != 0 ? node.items.size() == size : !node.items.empty())) return node.items;
+  throw ReadFault{node.place, size == 0 ? text(msg::program_expected_list, what)
+                                        : text(msg::program_expected_numbers, what, size,
+                                               list ? node.items.size() : std::size_t{0})};
 }
 
 }  // namespace
+
+void note(ReadFaults& faults, const ReadFault& fault) {
+  constexpr std::size_t kMax = 100;
+  if (fault.what.empty()) return;
+  faults.push_back(fault);
+  if (faults.size() >= kMax) throw TooManyFaults{};
+}
 
 std::string text_of(const YamlNode& node, std::string_view what) {
   if (node.kind != YamlNode::Kind::scalar || node.text.empty()) {
@@ -110,14 +118,10 @@ double positive_of(const YamlNode& node, std::string_view what, Quantity quantit
 
 std::vector<double> numbers_of(const YamlNode& node, std::string_view what, Quantity quantity,
                                std::size_t size) {
-  const bool list = node.kind == YamlNode::Kind::list;
-  if (!list || (size != 0 ? node.items.size() != size : node.items.empty())) {
-    throw ReadFault{node.place, size == 0 ? text(msg::program_expected_list, what)
-                                          : text(msg::program_expected_numbers, what, size,
-                                                 list ? node.items.size() : std::size_t{0})};
-  }
   std::vector<double> numbers;
-  for (const YamlNode& item : node.items) numbers.push_back(number_of(item, what, quantity));
+  for (const YamlNode& item : list_of(node, what, size)) {
+    numbers.push_back(number_of(item, what, quantity));
+  }
   return numbers;
 }
 
@@ -126,18 +130,21 @@ Eigen::Vector3d vector_of(const YamlNode& node, std::string_view what, Quantity 
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-Fields::Fields(const YamlNode& map, std::string_view what, std::initializer_list<const char*> keys)
-    : map_(map), what_(what) {
+Fields::Fields(const YamlNode& map, std::string_view what, std::initializer_list<const char*> keys,
+               ReadFaults& faults)
+    : map_(map), what_(what), faults_(faults) {
   if (map.kind != YamlNode::Kind::map) {
     throw ReadFault{map.place, text(msg::program_expected_fields, what)};
   }
   const std::vector<std::string> known(keys.begin(), keys.end());
   for (const auto& [key, value] : map.members) {
     if (std::ranges::find(known, key.text) != known.end()) continue;
-    const std::string near = did_you_mean(key.text, known);
-    throw ReadFault{key.place,
-                    text(msg::program_unknown_key, what, key.text) +
-                        (near.empty() ? text(msg::program_known_keys, listed(known)) : near)};
+    if (unknown_.line == 0) unknown_ = key.place;
+    const std::optional<std::string> near = nearest_word(key.text, known);
+    if (near) meant_.push_back(*near);
+    note(faults, {key.place, text(msg::program_unknown_key, what, key.text) +
+                                 (near ? did_you_mean(key.text, known)
+                                       : text(msg::program_known_keys, listed(known)))});
   }
 }
 
@@ -150,8 +157,16 @@ const YamlNode* Fields::find(std::string_view key) const {
 
 const YamlNode& Fields::need(std::string_view key) const {
   const YamlNode* node = find(key);
-  if (node == nullptr) throw ReadFault{map_.place, text(msg::program_missing, what_, key)};
+  if (node == nullptr) miss({key}, text(msg::program_missing, what_, key));
   return *node;
+}
+
+void Fields::miss(std::initializer_list<std::string_view> keys, const std::string& what) const {
+  const bool misspelt = std::ranges::any_of(
+      meant_, [&](const std::string& word) { return std::ranges::find(keys, word) != keys.end(); });
+  // What nothing knows is told before what is missing beside it.
+  const FilePlace place = unknown_.line > 0 ? unknown_ : map_.place;
+  throw ReadFault{place, misspelt ? std::string() : what};
 }
 
 std::string Fields::named(std::string_view key) const { return what_ + ": " + std::string(key); }
@@ -159,22 +174,36 @@ std::string Fields::named(std::string_view key) const { return what_ + ": " + st
 std::optional<double> Fields::positive(std::string_view key, Quantity quantity, double max) const {
   const YamlNode* node = find(key);
   if (node == nullptr) return std::nullopt;
-  return positive_of(*node, named(key), quantity, max);
+  return or_noted(faults_, std::optional<double>(), [&]() -> std::optional<double> {
+    return positive_of(*node, named(key), quantity, max);
+  });
 }
 
 std::optional<double> Fields::not_negative(std::string_view key, Quantity quantity) const {
   const YamlNode* node = find(key);
   if (node == nullptr) return std::nullopt;
-  const double value = number_of(*node, named(key), quantity);
-  if (!(value >= 0)) throw ReadFault{node->place, text(msg::program_negative, named(key), value)};
-  return value;
+  return or_noted(faults_, std::optional<double>(), [&]() -> std::optional<double> {
+    const double value = number_of(*node, named(key), quantity);
+    if (value >= 0) return value;
+    throw ReadFault{node->place, text(msg::program_negative, named(key), value)};
+  });
 }
 
 Eigen::Vector3d Fields::vector(std::string_view key, Quantity quantity) const {
-  return vector_of(need(key), named(key), quantity);
+  const auto read = [&](const YamlNode& node, const std::string& what) -> Eigen::Vector3d {
+    return vector_of(node, what, quantity);
+  };
+  return take(key, Eigen::Vector3d(Eigen::Vector3d::UnitZ()), read);
 }
 
 Eigen::Matrix3d Fields::rotation() const {
+  const bool given = find("euler") || find("quat") || find("matrix");
+  if (!given) miss({"euler", "quat", "matrix"}, text(msg::program_missing_rotation, what_));
+  return or_noted(faults_, Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
+                  [this] { return read_rotation(); });
+}
+
+Eigen::Matrix3d Fields::read_rotation() const {
   const YamlNode* given = nullptr;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   const std::pair<const char*, Eigen::Matrix3d (*)(const YamlNode&, const std::string&)> ways[] = {
@@ -186,20 +215,21 @@ Eigen::Matrix3d Fields::rotation() const {
     given = node;
     R = read(*node, named(key));
   }
-  if (given == nullptr) throw ReadFault{map_.place, text(msg::program_missing_rotation, what_)};
   return R;
 }
 
 FrameName Fields::frame() const {
   const YamlNode* node = find("frame");
   if (node == nullptr) return {};
-  return {text_of(*node, named("frame")), node->place};
+  return or_noted(faults_, FrameName{},
+                  [&] { return FrameName{text_of(*node, named("frame")), node->place}; });
 }
 
 ProgramPose pose_of(const Fields& fields, const NamedThings& named) {
   const YamlNode* name = fields.find("pose");
   if (name == nullptr) {
-    return {{fields.vector("pos", Quantity::length), fields.rotation()}, fields.frame()};
+    const Eigen::Vector3d p = fields.vector("pos", Quantity::length);
+    return {{p, fields.rotation()}, fields.frame()};
   }
   for (const char* other : {"pos", "euler", "quat", "matrix", "frame"}) {
     if (const YamlNode* node = fields.find(other)) {
@@ -213,15 +243,26 @@ ProgramPose pose_of(const YamlNode& node, std::string_view what, const NamedThin
   if (node.kind == YamlNode::Kind::scalar) {
     return look_up(named.poses, node, what, msg::program_unknown_pose);
   }
-  return pose_of(Fields(node, what, {MJARM_POSE_KEYS}), named);
+  return pose_of(Fields(node, what, {MJARM_POSE_KEYS}, named.faults), named);
 }
 
-std::vector<double> joints_of(const YamlNode& node, std::string_view what,
-                              const NamedThings& named) {
+JointValues joints_of(const YamlNode& node, std::string_view what, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) {
     return look_up(named.postures, node, what, msg::program_unknown_posture);
   }
-  return numbers_of(node, what, Quantity::angle);
+  // What each joint measures is known only with the robot.
+  static constexpr Quantity kUnits[] = {Quantity::angle, Quantity::length};
+  JointValues out;
+  for (const YamlNode& item : list_of(node, what, 0)) {
+    if (item.kind != YamlNode::Kind::scalar || item.quoted) {
+      throw ReadFault{item.place, text(msg::program_expected_number, what)};
+    }
+    const Result<WrittenNumber> value = parse_written(item.text, kUnits);
+    if (!value) throw ReadFault{item.place, text(msg::program_in, what, value.error().what)};
+    out.values.push_back(value->value);
+    out.units.push_back(value->unit);
+  }
+  return out;
 }
 
 }  // namespace mjarm::program::detail

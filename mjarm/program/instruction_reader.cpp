@@ -20,15 +20,21 @@ std::optional<double> speed_of(const Fields& fields) {
 std::optional<double> share_of(const Fields& fields, std::string_view key) {
   const YamlNode* node = fields.find(key);
   if (node == nullptr) return std::nullopt;
-  const double share = number_of(*node, fields.named(key), Quantity::number);
-  if (!(share > 0 && share <= 1)) {
+  return or_noted(fields.faults(), std::optional<double>(), [&]() -> std::optional<double> {
+    const double share = number_of(*node, fields.named(key), Quantity::number);
+    if (share > 0 && share <= 1) return share;
     throw ReadFault{node->place, text(msg::program_bad_share, fields.named(key), share)};
-  }
-  return share;
+  });
 }
 
-std::variant<std::vector<double>, ProgramPose> goal_of(const Fields& fields,
-                                                       const NamedThings& named) {
+/// A pose that is a member of its own.
+ProgramPose pose_at(const Fields& fields, std::string_view key, const NamedThings& named) {
+  return fields.take(key, ProgramPose{}, [&](const YamlNode& node, const std::string& what) {
+    return pose_of(node, what, named);
+  });
+}
+
+std::variant<JointValues, ProgramPose> goal_of(const Fields& fields, const NamedThings& named) {
   const YamlNode* joints = fields.find("joints");
   if (joints == nullptr) return pose_of(fields, named);
   for (const char* other : {"pos", "euler", "quat", "matrix", "pose", "frame"}) {
@@ -36,83 +42,93 @@ std::variant<std::vector<double>, ProgramPose> goal_of(const Fields& fields,
       throw ReadFault{node->place, text(msg::program_pose_and, fields.named("joints"), other)};
     }
   }
-  return joints_of(*joints, fields.named("joints"), named);
+  return fields.take("joints", JointValues{}, [&](const YamlNode& node, const std::string& what) {
+    return joints_of(node, what, named);
+  });
 }
 
 Instruction::What read_movej(const YamlNode& node, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) return MoveJ{pose_of(node, "movej", named)};
-  const Fields fields(node, "movej", {"joints", MJARM_POSE_KEYS, "speed"});
-  return MoveJ{goal_of(fields, named), share_of(fields, "speed")};
+  const Fields fields(node, "movej", {"joints", MJARM_POSE_KEYS, "speed"}, named.faults);
+  const std::optional<double> share = share_of(fields, "speed");
+  return MoveJ{goal_of(fields, named), share};
 }
 
 Instruction::What read_movel(const YamlNode& node, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) return MoveL{pose_of(node, "movel", named)};
-  const Fields fields(node, "movel", {MJARM_POSE_KEYS, "speed", "blend"});
-  return MoveL{pose_of(fields, named), speed_of(fields),
-               fields.not_negative("blend", Quantity::length)};
+  const Fields fields(node, "movel", {MJARM_POSE_KEYS, "speed", "blend"}, named.faults);
+  const std::optional<double> speed = speed_of(fields);
+  const std::optional<double> blend = fields.not_negative("blend", Quantity::length);
+  return MoveL{pose_of(fields, named), speed, blend};
 }
 
 Instruction::What read_movec(const YamlNode& node, const NamedThings& named) {
-  const Fields fields(node, "movec", {"via", "to", "speed", "blend"});
-  return MoveC{pose_of(fields.need("via"), fields.named("via"), named),
-               pose_of(fields.need("to"), fields.named("to"), named), speed_of(fields),
-               fields.not_negative("blend", Quantity::length)};
+  const Fields fields(node, "movec", {"via", "to", "speed", "blend"}, named.faults);
+  const std::optional<double> speed = speed_of(fields);
+  const std::optional<double> blend = fields.not_negative("blend", Quantity::length);
+  const ProgramPose via = pose_at(fields, "via", named);
+  return MoveC{via, pose_at(fields, "to", named), speed, blend};
 }
 
 /// @param a, b  keys of the semi-axes.
 DrawEllipse ellipse_of(const Fields& fields, const char* word, const char* a, const char* b) {
   DrawEllipse out;
+  const auto semi_axis = [](const YamlNode& node, const std::string& what) {
+    return positive_of(node, what, Quantity::length);
+  };
   out.word = word;
-  out.center = fields.vector("center", Quantity::length);
-  out.normal = fields.vector("normal", Quantity::number);
-  out.a = positive_of(fields.need(a), fields.named(a), Quantity::length);
-  out.b = positive_of(fields.need(b), fields.named(b), Quantity::length);
-  out.R_FT = fields.rotation();
   out.frame = fields.frame();
   out.speed = speed_of(fields);
+  out.center = fields.vector("center", Quantity::length);
+  out.normal = fields.vector("normal", Quantity::number);
+  out.a = fields.take(a, out.a, semi_axis);
+  out.b = std::string_view(a) == b ? out.a : fields.take(b, out.b, semi_axis);
+  out.R_FT = fields.rotation();
   return out;
 }
 
-Instruction::What read_ellipse(const YamlNode& node, const NamedThings&) {
+Instruction::What read_ellipse(const YamlNode& node, const NamedThings& named) {
   const Fields fields(node, "ellipse",
-                      {"center", "a", "b", "normal", "euler", "quat", "matrix", "frame", "speed"});
+                      {"center", "a", "b", "normal", "euler", "quat", "matrix", "frame", "speed"},
+                      named.faults);
   return ellipse_of(fields, "ellipse", "a", "b");
 }
 
 Instruction::What read_circle(const YamlNode& node, const NamedThings& named) {
   const Fields fields(
       node, "circle",
-      {"center", "radius", "normal", "via", "to", "euler", "quat", "matrix", "frame", "speed"});
+      {"center", "radius", "normal", "via", "to", "euler", "quat", "matrix", "frame", "speed"},
+      named.faults);
   if (fields.find("via") != nullptr || fields.find("to") != nullptr) {
-    const Fields round(node, "circle", {"via", "to", "speed"});
-    return MoveC{.via = pose_of(round.need("via"), round.named("via"), named),
-                 .to = pose_of(round.need("to"), round.named("to"), named),
-                 .speed = speed_of(round),
-                 .whole = true};
+    const Fields round(node, "circle", {"via", "to", "speed"}, named.faults);
+    const std::optional<double> speed = speed_of(round);
+    const ProgramPose via = pose_at(round, "via", named);
+    return MoveC{.via = via, .to = pose_at(round, "to", named), .speed = speed, .whole = true};
   }
   return ellipse_of(fields, "circle", "radius", "radius");
 }
 
 Instruction::What read_polyline(const YamlNode& node, const NamedThings& named) {
   const Fields fields(node, "polyline",
-                      {"points", "euler", "quat", "matrix", "frame", "speed", "blend"});
-  const YamlNode& points = fields.need("points");
-  if (points.kind != YamlNode::Kind::list || points.items.size() < 2) {
-    throw ReadFault{points.place, text(msg::program_expected_points, fields.named("points"))};
-  }
+                      {"points", "euler", "quat", "matrix", "frame", "speed", "blend"},
+                      named.faults);
   DrawPolyline out;
-  std::optional<Eigen::Matrix3d> R;
-  for (const YamlNode& point : points.items) {
-    if (point.kind == YamlNode::Kind::list) {
-      if (!R) R = fields.rotation();
-      out.points.push_back(
-          {{vector_of(point, fields.named("points"), Quantity::length), *R}, fields.frame()});
-    } else {
-      out.points.push_back(pose_of(point, fields.named("points"), named));
-    }
-  }
   out.speed = speed_of(fields);
   out.blend = fields.not_negative("blend", Quantity::length);
+  const YamlNode& points = fields.need("points");
+  const std::string what = fields.named("points");
+  if (points.kind != YamlNode::Kind::list || points.items.size() < 2) {
+    throw ReadFault{points.place, text(msg::program_expected_points, what)};
+  }
+  std::optional<Eigen::Matrix3d> R;
+  for (const YamlNode& point : points.items) {
+    const bool bare = point.kind == YamlNode::Kind::list;
+    if (bare && !R) R = fields.rotation();
+    out.points.push_back(or_noted(fields.faults(), ProgramPose{}, [&]() -> ProgramPose {
+      if (!bare) return pose_of(point, what, named);
+      return {{vector_of(point, what, Quantity::length), *R}, fields.frame()};
+    }));
+  }
   return out;
 }
 
@@ -133,36 +149,39 @@ Eigen::Matrix3d plane_of(const Fields& fields) {
   return R;
 }
 
-Instruction::What read_text(const YamlNode& node, const NamedThings&) {
-  const Fields fields(node, "text",
-                      {"text", "pos", "right", "up", "height", "lift", "euler", "quat", "matrix",
-                       "frame", "speed"});
+Instruction::What read_text(const YamlNode& node, const NamedThings& named) {
+  const Fields fields(
+      node, "text",
+      {"text", "pos", "right", "up", "height", "lift", "euler", "quat", "matrix", "frame", "speed"},
+      named.faults);
   DrawText out;
-  out.text = text_of(fields.need("text"), fields.named("text"));
-  out.plane.X_FT = {fields.vector("pos", Quantity::length), plane_of(fields)};
   out.plane.frame = fields.frame();
-  out.R_FT = fields.rotation();
   out.height = fields.positive("height", Quantity::length).value_or(out.height);
   out.lift = fields.positive("lift", Quantity::length).value_or(out.lift);
   out.speed = speed_of(fields);
+  out.plane.X_FT.R = or_noted(fields.faults(), out.plane.X_FT.R, [&] { return plane_of(fields); });
+  out.text = fields.take("text", out.text, text_of);
+  out.plane.X_FT.p = fields.vector("pos", Quantity::length);
+  out.R_FT = fields.rotation();
   return out;
 }
 
 Instruction::What read_wait(const YamlNode& node, const NamedThings&) {
   const double seconds = number_of(node, "wait", Quantity::time);
   if (!(seconds >= 0 && seconds <= kMaxSeconds)) {
-    throw ReadFault{node.place, text(msg::program_out_of_range, "wait", kMaxSeconds, seconds)};
+    throw ReadFault{node.place, text(msg::program_not_between, "wait", kMaxSeconds, seconds)};
   }
   return Wait{seconds};
 }
 
-Instruction::What read_set(const YamlNode& node, const NamedThings&) {
-  return set_of(Fields(node, "set", {"tool", "frame", "speed", "joint_speed", "zone"}));
+Instruction::What read_set(const YamlNode& node, const NamedThings& named) {
+  return set_of(
+      Fields(node, "set", {"tool", "frame", "speed", "joint_speed", "zone"}, named.faults));
 }
 
 Instruction::What read_plan(const YamlNode& node, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) return PlanMove{pose_of(node, "plan", named)};
-  return PlanMove{goal_of(Fields(node, "plan", {"joints", MJARM_POSE_KEYS}), named)};
+  return PlanMove{goal_of(Fields(node, "plan", {"joints", MJARM_POSE_KEYS}, named.faults), named)};
 }
 
 Instruction::What read_grip(const YamlNode& node, const NamedThings&) {
@@ -170,14 +189,20 @@ Instruction::What read_grip(const YamlNode& node, const NamedThings&) {
 }
 
 Instruction::What read_repeat(const YamlNode& node, const NamedThings& named) {
-  const Fields fields(node, "repeat", {"times", "program"});
-  const YamlNode& times = fields.need("times");
-  const double count = number_of(times, fields.named("times"), Quantity::number);
-  if (!(count >= 0 && count <= kMaxRepeats) || std::floor(count) != count) {
-    throw ReadFault{times.place, text(msg::program_bad_count, fields.named("times"), kMaxRepeats)};
+  const Fields fields(node, "repeat", {"times", "program"}, named.faults);
+  Repeat out;
+  if (const YamlNode* body = fields.find("program")) {
+    out.body = instructions_of(*body, fields.named("program"), named);
   }
-  return Repeat{static_cast<int>(count),
-                instructions_of(fields.need("program"), fields.named("program"), named)};
+  out.times = fields.take("times", 1, [](const YamlNode& times, const std::string& what) {
+    const double count = number_of(times, what, Quantity::number);
+    if (count >= 0 && count <= kMaxRepeats && std::floor(count) == count) {
+      return static_cast<int>(count);
+    }
+    throw ReadFault{times.place, text(msg::program_bad_count, what, kMaxRepeats)};
+  });
+  static_cast<void>(fields.need("program"));
+  return out;
 }
 
 struct Word {
@@ -201,7 +226,7 @@ constexpr std::array<Word, 12> kWords{{{"movej", read_movej},
 
 Set set_of(const Fields& fields) {
   Set out;
-  if (const YamlNode* tool = fields.find("tool")) out.tool = text_of(*tool, fields.named("tool"));
+  if (fields.find("tool") != nullptr) out.tool = fields.take("tool", std::string(), text_of);
   if (fields.find("frame") != nullptr) out.frame = fields.frame();
   out.speed = speed_of(fields);
   out.share = share_of(fields, "joint_speed");
@@ -229,7 +254,11 @@ std::vector<Instruction> instructions_of(const YamlNode& node, std::string_view 
     throw ReadFault{node.place, text(msg::program_expected_instructions, what)};
   }
   std::vector<Instruction> out;
-  for (const YamlNode& item : node.items) out.push_back(instruction_of(item, named));
+  for (const YamlNode& item : node.items) {
+    auto read = or_noted(named.faults, std::optional<Instruction>(),
+                         [&] { return std::optional<Instruction>(instruction_of(item, named)); });
+    if (read) out.push_back(std::move(*read));
+  }
   return out;
 }
 

@@ -5,9 +5,9 @@
 
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/nearest_word.hpp"
-#include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/share.hpp"
+#include "mjarm/core/yaml_tree.hpp"
 #include "mjarm/program/program_reader.hpp"
 
 namespace mjarm::program {
@@ -18,6 +18,38 @@ namespace {
 std::filesystem::path shipped_folder() {
   const Result<std::filesystem::path> share = share_folder();
   return share ? *share / "programs" : std::filesystem::path();
+}
+
+bool is_before(const ProgramFault& a, const ProgramFault& b) {
+  return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+}
+
+/// All that is wrong with a text that has faults.
+std::vector<ProgramFault> text_faults(const std::filesystem::path& file, const ProgramText& text) {
+  std::vector<ProgramFault> out;
+  if (text.faults.empty()) return out;
+  for (const TextFault& fault : text.faults) {
+    out.push_back({fault.place, {}, "bad_input", fault.what, Errc::bad_input});
+  }
+  // What names a robot, tools and frames is right or wrong whatever else is wrong.
+  if (text.program.robot.empty() && text.program.scene.empty()) return out;
+  const auto robot = load_robot_of(text.program, file);
+  std::vector<ProgramFault> more{};
+  if (robot) {
+    more = find_misfits(robot->model, robot->arm, text.program);
+  } else {
+    more.push_back(robot.error());
+  }
+  std::ranges::move(more, std::back_inserter(out));
+  std::ranges::stable_sort(out, is_before);
+  return out;
+}
+
+/// The first of `faults`, and how many more there are.
+Error first_of(const std::string& file, const std::vector<ProgramFault>& faults) {
+  std::string line = line_of(file, faults.front());
+  if (faults.size() > 1) line += text(msg::program_more, faults.size() - 1);
+  return {faults.front().code, std::move(line)};
 }
 
 }  // namespace
@@ -46,49 +78,59 @@ bool is_program(const std::string& name_or_path) {
   return !find_model_file(name_or_path) && find_program_file(name_or_path).has_value();
 }
 
-Result<LoadedProgram> load_program(const std::string& name_or_path) {
-  const Result<std::filesystem::path> found = find_program_file(name_or_path);
-  if (!found) return fail(found.error());
-  Result<Program> program = read_program(*found);
-  if (!program) return fail(std::move(program.error()));
-  Result<Robot> robot = load_program_robot(*program, *found);
-  if (!robot) return fail(std::move(robot.error()));
-  return plan_loaded(found->string(), std::move(*program), std::move(*robot));
+Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& file) {
+  const Result<ProgramText> read = look_through_file(file);
+  if (!read) return fail(read.error());
+  return text_faults(file, *read);
 }
 
-Result<LoadedProgram> load_sound_program(const std::string& name_or_path) {
-  Result<LoadedProgram> loaded = load_program(name_or_path);
+Result<LoadedProgram> load_program(const std::string& name_or_path, const StopCheck& stop) {
+  const Result<std::filesystem::path> found = find_program_file(name_or_path);
+  if (!found) return fail(found.error());
+  Result<ProgramText> read = look_through_file(*found);
+  if (!read) return fail(std::move(read.error()));
+  if (!read->faults.empty()) {
+    return fail(first_of(found->string(), text_faults(*found, *read)));
+  }
+  Result<Robot> robot = load_program_robot(read->program, *found);
+  if (!robot) return fail(std::move(robot.error()));
+  return plan_loaded(found->string(), std::move(read->program), std::move(*robot), stop);
+}
+
+Result<LoadedProgram> load_sound_program(const std::string& name_or_path, const StopCheck& stop) {
+  Result<LoadedProgram> loaded = load_program(name_or_path, stop);
   if (loaded && !loaded->plan.ok()) return fail(first_fault(*loaded));
   return loaded;
 }
 
-Result<LoadedProgram> plan_loaded(const std::string& file, Program program, Robot robot) {
+Result<LoadedProgram> plan_loaded(const std::string& file, Program program, Robot robot,
+                                  const StopCheck& stop) {
   std::optional<Progress> progress;
   std::size_t told = 0;
   const auto after_step = [&](std::size_t done, std::size_t total) {
     if (!progress) progress.emplace(text(msg::program_planning), total);
     progress->advance(done - told);
     told = done;
-    return !interrupted();
   };
-  ProgramPlan plan = plan_program(robot.model, robot.arm, program, {.after_step = after_step});
-  if (interrupted()) return fail(Errc::impossible, text(msg::program_stopped));
+  ProgramPlan plan =
+      plan_program(robot.model, robot.arm, program, {.after_step = after_step, .stop = stop});
+  if (is_stopped(stop)) return fail(stopped());
   return LoadedProgram{file, std::move(program), std::move(robot), std::move(plan)};
 }
 
 std::string line_of(const LoadedProgram& loaded, const ProgramFault& fault) {
-  std::string place = loaded.file;
+  return line_of(loaded.file, fault);
+}
+
+std::string line_of(const std::string& file, const ProgramFault& fault) {
+  if (fault.word.empty()) return at_place(file, fault.place, fault.what);
+  std::string place = file;
   if (fault.place.line > 0) {
     place += ":" + std::to_string(fault.place.line) + ":" + std::to_string(fault.place.column);
   }
   return text(msg::program_fault, place, fault.word, fault.what);
 }
 
-Error first_fault(const LoadedProgram& loaded) {
-  const std::vector<ProgramFault>& faults = loaded.plan.faults;
-  std::string line = line_of(loaded, faults.front());
-  if (faults.size() > 1) line += text(msg::program_more, faults.size() - 1);
-  return {faults.front().code, std::move(line)};
-}
+Error first_fault(const LoadedProgram& loaded) { return first_of(loaded.file, loaded.plan.faults); }
 
 }  // namespace mjarm::program

@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/program/program_plan.hpp"
 
 namespace mjarm::program {
@@ -32,19 +34,30 @@ struct LoadedProgram {
 /// True for a `.yaml` or `.yml` file, and for the name of a shipped program that is no model's.
 [[nodiscard]] bool is_program(const std::string& name_or_path);
 
-/// Reads a program, loads its robot and plans it, with a progress bar.
-[[nodiscard]] Result<LoadedProgram> load_program(const std::string& name_or_path);
+/// All that is wrong with the text of a program, none where it can be planned: what cannot be read,
+/// and the names and values that do not fit the robot, in the order of the text.
+/// @return an error where the file cannot be read.
+[[nodiscard]] Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& file);
+
+/// Reads a program, loads its robot and plans it, with a progress bar. Of faults in the text the
+/// error names the first.
+/// @param stop  ends the planning with stopped(), as in the others.
+[[nodiscard]] Result<LoadedProgram> load_program(const std::string& name_or_path,
+                                                 const StopCheck& stop = {});
 
 /// The same; a plan with faults is an error, the first of them.
-[[nodiscard]] Result<LoadedProgram> load_sound_program(const std::string& name_or_path);
+[[nodiscard]] Result<LoadedProgram> load_sound_program(const std::string& name_or_path,
+                                                       const StopCheck& stop = {});
 
 /// Plans a program for a robot that is loaded already, with a progress bar.
 /// @param file  for messages.
 [[nodiscard]] Result<LoadedProgram> plan_loaded(const std::string& file, Program program,
-                                                Robot robot);
+                                                Robot robot, const StopCheck& stop = {});
 
 /// `file:line:column: movel: out of reach by ...`.
 [[nodiscard]] std::string line_of(const LoadedProgram& loaded, const ProgramFault& fault);
+/// The same for the name of a file.
+[[nodiscard]] std::string line_of(const std::string& file, const ProgramFault& fault);
 
 /// The first fault as an error, and how many more there are; of a plan with faults.
 [[nodiscard]] Error first_fault(const LoadedProgram& loaded);

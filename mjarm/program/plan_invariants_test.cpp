@@ -341,12 +341,13 @@ TEST(PlanInvariants, AStoppedPlanIsTheBeginningOfTheWholeOne) {
   const ProgramPlan whole = plan_with(all);
   for (std::size_t stop = 0; stop <= all.size(); ++stop) {
     std::vector<std::size_t> told;
-    const ProgramPlan part =
-        plan_with(all, {.after_step = [&](std::size_t done, std::size_t total) {
-                    told.push_back(done);
-                    EXPECT_EQ(total, all.size());
-                    return done < stop;
-                  }});
+    const ProgramPlan part = plan_with(all, {.after_step =
+                                                 [&](std::size_t done, std::size_t total) {
+                                                   told.push_back(done);
+                                                   EXPECT_EQ(total, all.size());
+                                                 },
+                                             .stop = [&] { return told.size() > stop; }});
+    EXPECT_EQ(part.ok(), stop >= all.size()) << "a part is no plan";
     ASSERT_EQ(part.moves.size(), std::min(stop, all.size()));
     EXPECT_TRUE(std::ranges::is_sorted(told));
     for (std::size_t i = 0; i < part.moves.size(); ++i) {

@@ -14,7 +14,7 @@ std::string_view word(const Instruction& instruction) noexcept {
 }
 
 Instruction move_j(std::vector<double> q, std::optional<double> share) {
-  return {MoveJ{std::move(q), share}};
+  return {MoveJ{JointValues{std::move(q)}, share}};
 }
 
 Instruction move_j(const Pose& X_FT, std::optional<double> share) {

@@ -9,6 +9,7 @@
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/file_place.hpp"
 #include "mjarm/core/pose.hpp"
+#include "mjarm/core/units.hpp"
 
 namespace mjarm::program {
 
@@ -24,10 +25,18 @@ struct ProgramPose {
   FrameName frame = {};  ///< F
 };
 
-/// Straight in joint space, to joint values (dof,) [rad or m] (none: home) or to a tool pose; the
-/// answer to the pose is chosen so that what follows can be done from there.
+/// Joint values as a program gives them, (dof,); none: home.
+struct JointValues {
+  std::vector<double> values = {};  ///< [rad or m]
+  /// What the unit of each measures, `number` where it has none; no entries: they are all in rad or
+  /// m, whatever their size.
+  std::vector<Quantity> units = {};
+};
+
+/// Straight in joint space, to joint values or to a tool pose; the answer to the pose is chosen so
+/// that what follows can be done from there.
 struct MoveJ {
-  std::variant<std::vector<double>, ProgramPose> goal;
+  std::variant<JointValues, ProgramPose> goal;
   std::optional<double> share = {};  ///< of the joints' limits, (0, 1]
 };
 
@@ -91,7 +100,7 @@ struct Set {
 
 /// Round obstacles, by the planner.
 struct PlanMove {
-  std::variant<std::vector<double>, ProgramPose> goal;
+  std::variant<JointValues, ProgramPose> goal;
 };
 
 struct Grip {
@@ -123,7 +132,7 @@ struct Program {
   std::string scene;  ///< path of a file that holds the robot; empty = the robot's own
   std::string tool;   ///< frame of the robot that is moved; empty = the robot's own
   FilePlace robot_place, scene_place, tool_place;
-  std::vector<double> start;  ///< [rad or m] (dof,) where the arm stands at first; empty = home
+  JointValues start;  ///< where the arm stands at first
   FilePlace start_place;
   std::map<std::string, ProgramPose> frames;  ///< by name, each in another one or in the world
   Set settings = {};                          ///< what holds before the first instruction

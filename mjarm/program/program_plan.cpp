@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <span>
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
@@ -9,9 +11,11 @@
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/joint_path.hpp"
+#include "mjarm/program/closed_way_internal.hpp"
 #include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
+#include "mjarm/program/step_motion_internal.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm::program {
@@ -25,6 +29,7 @@ struct PlanFault {
   std::string reason;
   std::string what;
   Errc code = Errc::impossible;
+  std::optional<detail::ClosedWay> way = {};
 };
 
 /// Moves that follow each other, and what ended them early.
@@ -61,7 +66,7 @@ class ProgramPlanner {
       const IkSolver solver(arm, ik);
       const MoveJudge judge(arm, checker);
       tools_.push_back({arm, IkSolver(arm, {.task = ik.task}), solver, judge,
-                        detail::DetourPlanner({model, arm}, solver, judge)});
+                        detail::DetourPlanner({model, arm}, solver, judge, options.stop)});
     }
   }
 
@@ -70,12 +75,14 @@ class ProgramPlanner {
     JointVec q = plan_.q_start;
     bool known = true;  // whether the arm's posture is known after a fault
     for (std::size_t i = 0; i < steps_.size();) {
-      if (options_.after_step && !options_.after_step(i, steps_.size())) break;
+      tell(i);
+      if (is_stopped(options_.stop)) break;
       if (!known && !(known = stands_somewhere(steps_[i], q))) {
         ++i;
         continue;
       }
       Attempt attempt = from(i, q);
+      if (is_stopped(options_.stop)) break;
       std::ranges::move(attempt.moves, std::back_inserter(plan_.moves));
       i = attempt.next;
       q = std::move(attempt.q);
@@ -85,6 +92,7 @@ class ProgramPlanner {
       known = detour || recover(steps_[attempt.fault->step], q);
       i = attempt.fault->step + 1;
     }
+    if (is_stopped(options_.stop)) end_early();
     std::ranges::stable_sort(plan_.faults, [](const ProgramFault& a, const ProgramFault& b) {
       return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
     });
@@ -105,17 +113,43 @@ class ProgramPlanner {
     }
   }
 
+  /// That the first `done` steps are planned, in one way or another.
+  void tell(std::size_t done) {
+    if (done < told_) return;
+    told_ = done + 1;
+    if (options_.after_step) options_.after_step(done, steps_.size());
+  }
+
+  /// What was not planned is a fault: nobody is to run a part for the whole.
+  void end_early() {
+    detail::add_fault(plan_.faults, {.place = start_place_,
+                                     .word = "program",
+                                     .reason = "stopped",
+                                     .what = stopped().what,
+                                     .code = stopped().code});
+  }
+
   void note(const PlanFault& fault, const std::optional<Detour>& detour) {
     const Step& step = steps_[fault.step];
-    detail::add_fault(plan_.faults, {step.place, std::string(step.word), fault.reason, fault.what,
-                                     fault.code, detour});
+    const std::optional<PathFix> fix = detour ? std::nullopt : find_fix(fault);
+    const std::string what =
+        fix ? text(msg::program_mended, fault.what, describe(*fix)) : fault.what;
+    detail::add_fault(plan_.faults, {step.place, std::string(step.word), fault.reason, what,
+                                     fault.code, detour, fix});
+  }
+
+  /// The least change that mends a way of the tool; each is looked for once.
+  std::optional<PathFix> find_fix(const PlanFault& fault) {
+    const auto& [line, column] = steps_[fault.step].place;
+    if (!fault.way || !mended_.emplace(line, column).second) return std::nullopt;
+    return detail::find_fix(tool(steps_[fault.step]).ik, *fault.way);
   }
 
   /// What `plan` would do in the place of a move that something blocks; `q` is then where it ends.
   std::optional<Detour> find_detour(const PlanFault& fault, JointVec& q) {
     const Step& step = steps_[fault.step];
     const bool one = step.kind == Step::Kind::joints || step.kind == Step::Kind::pose ||
-                     (step.kind == Step::Kind::line && !blended(fault.step));
+                     (step.kind == Step::Kind::line && !detail::is_blended(steps_, fault.step));
     if (!one || fault.reason != "collision") return std::nullopt;
     detail::DetourPlanner& planner = tools_[step.tool].detours;
     const auto goals = goals_of(planner, step, q);
@@ -300,7 +334,7 @@ class ProgramPlanner {
     const Pose X_first = step.curve->at(0);
     Attempt best = along(i, q, *step.curve, false);
     if (!best.fault) tool_moves(best);
-    if (!best.fault || same_pose(fk(tool(step).arm, as_span(q)), X_first)) return best;
+    if (!best.fault || detail::same_pose(fk(tool(step).arm, as_span(q)), X_first)) return best;
     const auto answers = solve_all(tool(step).ik, X_first, as_span(q));
     for (std::size_t k = 0; answers && k < std::min(answers->size(), kMaxAnswers); ++k) {
       Attempt attempt{{}, i, q, {}};
@@ -317,7 +351,8 @@ class ProgramPlanner {
 
   /// Goes on with all that needs no other answer: straight moves, arcs and rests.
   void tool_moves(Attempt& attempt) {
-    while (attempt.next < steps_.size() && !attempt.fault) {
+    while (attempt.next < steps_.size() && !attempt.fault && !is_stopped(options_.stop)) {
+      tell(attempt.next);
       const Step::Kind kind = steps_[attempt.next].kind;
       if (kind != Step::Kind::line && kind != Step::Kind::arc && kind != Step::Kind::wait &&
           kind != Step::Kind::grip) {
@@ -339,27 +374,11 @@ class ProgramPlanner {
     return PlanFault{i, std::string(name(answer.error().code)), describe(answer.error(), with.arm)};
   }
 
-  /// The way of the tool in one step from `X`: straight, on an arc or all round a circle.
-  static Result<Curve> leg_of(const Step& step, const Pose& X) {
-    if (step.kind == Step::Kind::line) return Curve::line(X, step.X_WT);
-    return step.whole ? Curve::circle(X, step.X_via, step.X_WT)
-                      : Curve::arc(X, step.X_via, step.X_WT);
-  }
-
-  /// Whether the corner between step `k` and the next one is blended.
-  bool blended(std::size_t k) const {
-    if (k + 1 == steps_.size() || !(steps_[k].blend > 0)) return false;
-    const Step& next = steps_[k + 1];
-    const bool goes_on = next.kind == Step::Kind::line
-                             ? !same_pose(steps_[k].X_WT, next.X_WT)
-                             : next.kind == Step::Kind::arc && !next.whole;
-    return goes_on && next.tool == steps_[k].tool;
-  }
-
   /// Straight moves and arcs as far as they are blended into one.
   Attempt tool_move(std::size_t i, const JointVec& q) {
     Pose X = fk(tool(steps_[i]).arm, as_span(q));
-    if (steps_[i].kind == Step::Kind::line && same_pose(X, steps_[i].X_WT)) return rest(i, q, 0);
+    if (steps_[i].kind == Step::Kind::line && detail::same_pose(X, steps_[i].X_WT))
+      return rest(i, q, 0);
     std::vector<Curve> legs;
     std::vector<double> blends;
     std::vector<PlannedPoint> told{{X, steps_[i].place}};
@@ -368,13 +387,14 @@ class ProgramPlanner {
       std::optional<PlanFault> fault;
       if (step.kind == Step::Kind::arc) fault = out_of_place(k, step.X_via, q);
       if (!fault) fault = out_of_place(k, step.X_WT, q);
+      Result<Curve> leg = detail::leg_of(step, X);
+      if (fault && leg) fault->way = detail::ClosedWay{*leg, q};
       if (fault) return failed(i, q, std::move(*fault));
-      Result<Curve> leg = leg_of(step, X);
       if (!leg) return failed(i, q, {k, "bad_input", leg.error().what});
       legs.push_back(std::move(*leg));
       if (step.kind == Step::Kind::arc) told.push_back({step.X_via, step.place});
       told.push_back({step.X_WT, step.place});
-      if (!blended(k)) break;
+      if (!detail::is_blended(steps_, k)) break;
       blends.push_back(step.blend);
       X = step.X_WT;
     }
@@ -384,11 +404,6 @@ class ProgramPlanner {
     const bool alike = legs.size() == 1 || told.size() == legs.size() + 1;
     if (!out.fault && alike) out.moves.back().points = std::move(told);
     return out;
-  }
-
-  static bool same_pose(const Pose& a, const Pose& b) {
-    constexpr double kSame = 1e-9;
-    return (a.p - b.p).norm() < kSame && (a.R - b.R).norm() < kSame;
   }
 
   /// The tool along `curve`, which does `count` steps; approached by a joint move unless `here`.
@@ -404,16 +419,22 @@ class ProgramPlanner {
                       {at, "blend_overlap", text(msg::program_blend_overlap, asked, blend.radius)});
       }
     }
-    MotionOptions options = motion_options(i, count, curve);
+    MotionOptions options =
+        detail::motion_options(std::span(steps_).subspan(i, count), curve, options_.tool_speed);
     options.path.keep_start = here;
+    options.path.stop = options_.stop;
     options.path.clearance = with.judge.clearance();
     if (!here) {
       const Pose X_now = fk(with.arm, as_span(q));
-      options.path.keep_start = same_pose(X_now, curve.at(0));
+      options.path.keep_start = detail::same_pose(X_now, curve.at(0));
     }
     Result<ToolMotion, MotionFailure> motion =
         plan_tool_motion(with.ik, curve, as_span(q), options);
-    if (!motion) return failed(i, q, motion_fault(i, with.arm, motion.error()));
+    if (!motion) {
+      PlanFault fault = motion_fault(i, with.arm, motion.error());
+      if (motion.error().path) fault.way = detail::ClosedWay{curve, q, {.path = options.path}};
+      return failed(i, q, std::move(fault));
+    }
     Attempt out{{}, i, q, {}};
     const JointVec& first = motion->path.q.front();
     constexpr double kThere = 1e-9;
@@ -439,25 +460,6 @@ class ProgramPlanner {
     return out;
   }
 
-  /// Speeds of the steps that one curve does.
-  [[nodiscard]] MotionOptions motion_options(std::size_t i, std::size_t count,
-                                             const Curve& curve) const {
-    MotionOptions options;
-    const auto speed_of = [&](std::size_t k) {
-      return steps_[k].speed > 0 ? steps_[k].speed : options_.tool_speed;
-    };
-    options.timing.tool_speed = speed_of(i);
-    bool keep = steps_[i].keep_speed, alike = true;
-    for (std::size_t k = 1; k < count; ++k) {
-      alike = alike && speed_of(i + k) == speed_of(i);
-      keep = keep && steps_[i + k].keep_speed;
-      options.timing.tool_speeds.push_back({curve.breaks()[k - 1], speed_of(i + k)});
-    }
-    if (alike) options.timing.tool_speeds.clear();
-    if (alike && keep) options.path.tool_speed = options.timing.tool_speed;
-    return options;
-  }
-
   static PlanFault motion_fault(std::size_t i, const Arm& arm, const MotionFailure& failure) {
     return {i, failure.path ? std::string(name(failure.path->code)) : "timing",
             describe(failure, arm)};
@@ -467,6 +469,8 @@ class ProgramPlanner {
   FilePlace start_place_;
   const ProgramPlanOptions& options_;
   std::vector<Tool> tools_;
+  std::size_t told_ = 0;                  // steps that were told of
+  std::set<std::pair<int, int>> mended_;  // places of faults for which a change was looked for
   ProgramPlan plan_;
 };
 

@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/core/stop.hpp"
 #include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/robot.hpp"
+#include "mjarm/path/path_fix.hpp"
 #include "mjarm/program/program.hpp"
 
 namespace mjarm::program {
@@ -35,6 +37,7 @@ struct ProgramFault {
   std::string what;  ///< one line for people, without the place
   Errc code = Errc::impossible;
   std::optional<Detour> detour = {};  ///< of a blocked movej or movel, where there is one
+  std::optional<PathFix> fix = {};    ///< of a tool move: a change with which all of it was solved
 };
 
 /// A program that was thought through, before anything moves: its motions, with gaps where there
@@ -45,13 +48,22 @@ struct ProgramPlan : MotionPlan {
   [[nodiscard]] bool ok() const noexcept { return faults.empty(); }
 };
 
+/// The same; a fault names its place in the file by itself.
+[[nodiscard]] Result<Robot, ProgramFault> load_robot_of(const Program& program,
+                                                        const std::filesystem::path& file);
+
+/// The names, units and numbers of values of `program` that do not fit the robot, in the order of
+/// the program; nothing is planned.
+[[nodiscard]] std::vector<ProgramFault> find_misfits(const Model& model, const Arm& arm,
+                                                     const Program& program);
+
 /// How to think a program through. Every default is usable as is.
 struct ProgramPlanOptions {
   bool collision = true;     ///< look at contact, and measure clearance
   double tool_speed = 0.25;  ///< [m/s] where the program says none, > 0
-  /// Called after every step with how many of how many are done; returns false to stop. May be
-  /// empty.
-  std::function<bool(std::size_t done, std::size_t total)> after_step = {};
+  /// Called after every step with how many of how many are done. May be empty.
+  std::function<void(std::size_t done, std::size_t total)> after_step = {};
+  StopCheck stop = {};  ///< ends the work; the plan then has a fault `stopped`
 };
 
 /// Plans every motion of `program`: the arm begins at `start`; goals of `movej` get the answer from

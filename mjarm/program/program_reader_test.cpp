@@ -68,7 +68,7 @@ TEST(ProgramReader, TakesEveryInstruction) {
   EXPECT_EQ(p.instructions[0].place.line, 18);
   EXPECT_EQ(p.instructions[0].place.column, 5);
 
-  const auto& q = std::get<std::vector<double>>(nth<MoveJ>(p, 0).goal);
+  const auto& q = std::get<JointValues>(nth<MoveJ>(p, 0).goal).values;
   ASSERT_EQ(q.size(), 6U);
   EXPECT_DOUBLE_EQ(q[1], -std::numbers::pi / 2);
   EXPECT_EQ(nth<MoveJ>(p, 0).share, 0.2);
@@ -89,9 +89,8 @@ TEST(ProgramReader, TakesEveryInstruction) {
   EXPECT_EQ(nth<Wait>(p, 9).seconds, 0.5);
   EXPECT_EQ(nth<Set>(p, 10).zone, 0);
   EXPECT_EQ(nth<Repeat>(p, 11).body.size(), 2U);
-  EXPECT_TRUE(
-      std::get<std::vector<double>>(std::get<PlanMove>(nth<Repeat>(p, 11).body[0].what).goal)
-          .empty());
+  EXPECT_TRUE(std::get<JointValues>(std::get<PlanMove>(nth<Repeat>(p, 11).body[0].what).goal)
+                  .values.empty());
   EXPECT_FALSE(nth<Grip>(p, 12).close);
 }
 
@@ -126,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"movel: {pos: [1, 2, 3s], euler: [0, 0, 0]}", "3:25", "unit"},
         Wrong{"movel: {pos: [1, 2, nan], euler: [0, 0, 0]}", "3:25", "nan"},
         Wrong{"movel: {pos: [1, 2, \"3\"], euler: [0, 0, 0]}", "3:25", "number"},
-        Wrong{"movel: {pos: [1, 2, 3], euler: [180, 0, 0]}", "3:36", "180deg"},
+        Wrong{"movel: {pos: [1, 2, 3], euler: [180, 0, 0]}", "3:37", "180deg"},
         Wrong{"movel: {pos: [1, 2, 3]}", "3:12", "orientation is missing"},
         Wrong{"movel: {euler: [1, 2, 3]}", "3:12", "\"pos\" is missing"},
         Wrong{"movel: {pos: [1, 2, 3], quat: [1, 1, 0, 0]}", "3:35", "unit quaternion"},
@@ -145,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"movej: {joints: [1], speed: 50}", "3:33", "share"},
         Wrong{"movej: {joints: hoem}", "3:21", "\"home\""},
         Wrong{"movej: {joints: []}", "3:21", "list of numbers"},
-        Wrong{"wait: -1", "3:11", "above 0"}, Wrong{"wait: 3kg", "3:11", "kg"},
+        Wrong{"wait: -1", "3:11", "from 0 to 86400"}, Wrong{"wait: 3kg", "3:11", "kg"},
         Wrong{"grip: closed", "3:11", "\"close\""},
         Wrong{"repeat: {times: 1.5, program: [wait: 1]}", "3:21", "whole number"},
         Wrong{"repeat: {times: 2, program: []}", "3:33", "list of instructions"},

@@ -16,11 +16,13 @@ Result<std::filesystem::path> find(const std::string& name, const std::filesyste
 
 }  // namespace
 
-Result<Robot> load_program_robot(const Program& program, const std::filesystem::path& file) {
+Result<Robot, ProgramFault> load_robot_of(const Program& program,
+                                          const std::filesystem::path& file) {
   const bool scene = !program.scene.empty();
   const FilePlace place = scene ? program.scene_place : program.robot_place;
   const auto fault = [&](const Error& error, FilePlace at) {
-    return fail(error.code, at_place(file.string(), at, error.what));
+    return tl::unexpected(
+        ProgramFault{at, scene ? "scene" : "robot", "bad_input", error.what, error.code});
   };
   const Result<std::filesystem::path> found = find(scene ? program.scene : program.robot, file);
   if (!found) return fault(found.error(), place);
@@ -29,6 +31,12 @@ Result<Robot> load_program_robot(const Program& program, const std::filesystem::
   Result<Arm> arm = find_arm(*model, {.tip = program.tool});
   if (!arm) return fault(arm.error(), program.tool.empty() ? place : program.tool_place);
   return Robot{std::move(*model), std::move(*arm)};
+}
+
+Result<Robot> load_program_robot(const Program& program, const std::filesystem::path& file) {
+  return load_robot_of(program, file).map_error([&](const ProgramFault& fault) {
+    return Error{fault.code, at_place(file.string(), fault.place, fault.what)};
+  });
 }
 
 }  // namespace mjarm::program

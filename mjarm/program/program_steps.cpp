@@ -7,6 +7,7 @@
 
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/model/joint_values.hpp"
 #include "mjarm/path/ellipse.hpp"
 #include "mjarm/path/letters.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
@@ -75,7 +76,7 @@ class StepWriter {
     ++noted_;
     const FilePlace place = fault.place.line > 0 ? fault.place : instruction.place;
     add_fault(out_.faults, {place, std::string(word(instruction)), fault.reason, fault.what,
-                            fault.reason == "unknown_name" ? Errc::bad_input : Errc::impossible});
+                            fault.reason == "too_long" ? Errc::impossible : Errc::bad_input});
   }
 
   [[nodiscard]] Step begun(Step::Kind kind, const Instruction& instruction,
@@ -174,17 +175,24 @@ class StepWriter {
     return tools_[name] = out_.arms.size() - 1;
   }
 
-  JointVec joints(const std::vector<double>& q, FilePlace place) const {
+  JointVec joints(const JointValues& given, FilePlace place) const {
     const Arm& arm = out_.arms.front();
-    if (q.empty()) return arm.home;
-    if (static_cast<int>(q.size()) != arm.dof()) {
-      throw StepFault{place, "bad_input", text(msg::program_wrong_joints, arm.dof(), q.size())};
+    const std::size_t count = given.values.size();
+    if (count == 0) return arm.home;
+    if (static_cast<int>(count) != arm.dof()) {
+      throw StepFault{place, "bad_input", text(msg::program_wrong_joints, arm.dof(), count)};
     }
-    return joint_vec(q);
+    for (std::size_t i = 0; i < given.units.size() && i < count; ++i) {
+      const WrittenNumber written{given.values[i], given.units[i]};
+      const bool bare = written.unit == Quantity::number;
+      static_cast<void>(value_or_fault(joint_value(written, arm, static_cast<int>(i)), place,
+                                       bare ? "joint_limit" : "bad_input"));
+    }
+    return joint_vec(given.values);
   }
 
-  void set_goal(Step& step, const std::variant<std::vector<double>, ProgramPose>& goal) {
-    if (const auto* q = std::get_if<std::vector<double>>(&goal)) {
+  void set_goal(Step& step, const std::variant<JointValues, ProgramPose>& goal) {
+    if (const auto* q = std::get_if<JointValues>(&goal)) {
       step.kind = Step::Kind::joints;
       step.q = joints(*q, step.place);
     } else {
@@ -313,3 +321,11 @@ Steps steps_of(const Program& program, const Model& model, const Arm& arm) {
 }
 
 }  // namespace mjarm::program::detail
+
+namespace mjarm::program {
+
+std::vector<ProgramFault> find_misfits(const Model& model, const Arm& arm, const Program& program) {
+  return detail::steps_of(program, model, arm).faults;
+}
+
+}  // namespace mjarm::program

@@ -87,7 +87,8 @@ TEST(ProgramWords, EveryFaultOfTheHeadHasItsOwnLine) {
       {"poses: {up: {pos: 3, quat: [1, 0, 0, 0]}}",
        "2:19: poses: up: pos: expected a list of 3 numbers, got 0"},
       {"postures: {up: [0, 1x]}",
-       "2:20: postures: up: unknown unit \"x\" in \"1x\" (known here: rad, mrad, deg)"},
+       "2:20: postures: up: unknown unit \"x\" in \"1x\" (known here: rad, mrad, deg, m, cm, mm, "
+       "um)"},
       {"postures: {up: []}", "2:16: postures: up: expected a list of numbers"},
   };
   for (const Refused& head : heads) {
@@ -115,7 +116,9 @@ TEST(ProgramWords, EveryFaultOfAnInstructionHasItsOwnLine) {
       {"movel: {pos: [0, 0, 0], quat: [0, 0, 0, 0]}",
        "3:35: movel: quat: expected a unit quaternion [w, x, y, z], its length is 0"},
       {"movel: {pos: [0, 0, 0], euler: [0, -90, 0]}",
-       "3:36: movel: euler: -90 rad are several turns; degrees are written -90deg"},
+       "3:40: movel: euler: -90 without a unit would be -90 rad, more than a whole turn: write "
+       "-90deg, "
+       "or -90rad where radians are meant"},
       {"movel: {pos: [0, 1e999, 0], euler: [0, 0, 0]}",
        "3:22: movel: pos: \"1e999\" is not a finite number"},
       {"movel: {pos: [0, -inf, 0], euler: [0, 0, 0]}",
@@ -133,7 +136,7 @@ TEST(ProgramWords, EveryFaultOfAnInstructionHasItsOwnLine) {
       {"circle: {to: up}", "3:13: circle: \"via\" is missing"},
       {"ellipse: {center: [0, 0, 0], a: 1, b: 1, euler: [0, 0, 0]}",
        "3:14: ellipse: \"normal\" is missing"},
-      {"ellipse: {center: [0, 0, 0], a: 1e7, b: 1, normal: [0, 0, 1], euler: [0, 0, 0]}",
+      {"ellipse: {center: [0, 0, 0], a: 1e7m, b: 1, normal: [0, 0, 1], euler: [0, 0, 0]}",
        "3:37: ellipse: a: expected above 0 and at most 1e+06, got 1e+07"},
       {"ellipse: {center: [0, 0, 0], a: 1, b: 1, normal: [0, 0, 1mm], euler: [0, 0, 0]}",
        "3:61: ellipse: normal: no unit is expected here, but \"mm\" stands in \"1mm\""},
@@ -215,7 +218,7 @@ TEST(ProgramWords, NamesAreAnyTextAndOnlyThoseBeforeThemAreKnown) {
   const Result<Program> home =
       parse_program(with_head("postures: {home: [1, 2]}\nstart: home"), "p.yaml");
   ASSERT_TRUE(home.has_value());
-  EXPECT_EQ(home->start, (std::vector<double>{1, 2}));
+  EXPECT_EQ(home->start.values, (std::vector<double>{1, 2}));
 }
 
 TEST(ProgramWords, EveryUnitIsTheSameLengthAngleTimeOrSpeed) {
@@ -227,7 +230,7 @@ TEST(ProgramWords, EveryUnitIsTheSameLengthAngleTimeOrSpeed) {
   }
   for (const char* angle : {"1.5707963267948966", "90deg", "90 deg", "1570.7963267948966mrad"}) {
     const auto move = only<MoveJ>("movej: {joints: [" + std::string(angle) + "]}");
-    EXPECT_NEAR(std::get<std::vector<double>>(move.goal).at(0), std::numbers::pi / 2, 1e-15)
+    EXPECT_NEAR(std::get<JointValues>(move.goal).values.at(0), std::numbers::pi / 2, 1e-15)
         << angle;
   }
   for (const char* time : {"90", "90s", "1.5min", "90000ms", "90000000us"}) {
@@ -248,10 +251,14 @@ TEST(ProgramWords, RangesIncludeTheirBorders) {
   EXPECT_EQ(only<Set>("set: {joint_speed: 1}").share, 1);
   EXPECT_EQ(only<Set>("set: {speed: 100}").speed, 100);
   EXPECT_EQ(only<Set>("set: {zone: 0}").zone, 0);
-  // Two whole turns are angles, more are degrees that lack their unit.
+  // A whole turn is an angle, more are degrees that lack their unit.
   EXPECT_EQ(refusal(with_instruction("movel: {pos: [0, 0, 0], euler: [720deg, 0, 0]}")), "");
-  EXPECT_THAT(refusal(with_instruction("movel: {pos: [0, 0, 0], euler: [12.6, 0, 0]}")),
-              HasSubstr("12.6deg"));
+  EXPECT_EQ(refusal(with_instruction("movel: {pos: [0, 0, 0], euler: [6.2832, 0, 0]}")), "");
+  EXPECT_EQ(refusal(with_instruction("movel: {pos: [0, 0, 10], euler: [12rad, 0, 0]}")), "");
+  EXPECT_THAT(refusal(with_instruction("movel: {pos: [0, 0, 0], euler: [6.3, 0, 0]}")),
+              HasSubstr("write 6.3deg"));
+  EXPECT_THAT(refusal(with_instruction("movel: {pos: [0, 600, 0], euler: [0, 0, 0]}")),
+              HasSubstr("write 600mm"));
 }
 
 /// Rounded ones are taken and made exact; the three ways to write a rotation say the same.

@@ -186,12 +186,12 @@ TEST(UrscriptText, AGripperIsADigitalOutput) {
 /// An empty plan goes to where it begins, and nowhere else.
 TEST(UrscriptText, AnEmptyPlanGoesToItsStart) {
   Program program = program_of({});
-  program.start = {0.1, -1.2, 1.3, -1.4, -1.5, 0.6};
+  program.start.values = {0.1, -1.2, 1.3, -1.4, -1.5, 0.6};
   const ProgramPlan plan = plan_for_script(program);
   const UrScript script = UrReader::read(to_urscript(program, ur5e(), plan).value());
   ASSERT_EQ(script.statements.size(), 2U);
   for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_NEAR(script.statements[1].lists.at(0)[i], program.start[i], 1e-12);
+    EXPECT_NEAR(script.statements[1].lists.at(0)[i], program.start.values[i], 1e-12);
   }
 }
 

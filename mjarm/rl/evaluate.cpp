@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "mjarm/core/messages/reach.hpp"
@@ -85,21 +86,50 @@ Evaluation summary(const std::vector<Trial>& trials) {
   return e;
 }
 
-Result<ReachEnv> judged_env(const Model& model, ReachOptions options, const EvaluateOptions& how) {
-  options.environments = how.episodes;
-  options.held_out = true;
-  auto env = ReachEnv::create(model, options);
-  if (!env) return env;
-  if (auto begun = env->reset(how.seed); !begun) return fail(std::move(begun.error()));
-  return env;
+constexpr int kTogether = 1024;  // episodes that are run at the same time
+
+/// Runs episodes `first` to `end`, and adds what came of them to `trials`.
+Result<void> run_block(ReachEnv& env, int first, const ActFunction& act, const EvaluateOptions& how,
+                       std::vector<Trial>& trials) {
+  if (auto begun = env.reset(how.seed, first); !begun) return begun;
+  const std::int64_t length = env.options().episode_steps;
+  std::vector<Trial> block(env.count());
+  std::vector<float> actions(static_cast<std::size_t>(env.count()) * env.action_size());
+  std::int64_t step = 0;
+  for (int left = env.count(); left > 0; left -= follow(env, block), ++step) {
+    if (is_stopped(how.stop)) return fail(stopped());
+    if (how.progress) {
+      how.progress(first * length + step * env.count(), how.episodes * length);
+    }
+    act(env.observations(), actions);
+    if (auto stepped = env.step(actions, how.stop); !stepped) return stepped;
+  }
+  trials.insert(trials.end(), block.begin(), block.end());
+  return {};
 }
 
-Result<Evaluation> run(ReachEnv& env, const ActFunction& act) {
-  std::vector<Trial> trials(env.count());
-  std::vector<float> actions(static_cast<std::size_t>(env.count()) * env.action_size());
-  for (int left = env.count(); left > 0; left -= follow(env, trials)) {
-    act(env.observations(), actions);
-    if (auto stepped = env.step(actions); !stepped) return fail(std::move(stepped.error()));
+/// Every episode, some at a time: each draws from a stream of its own, and comes out the same.
+/// @param fits  asked about the environment first.
+Result<Evaluation> run(const Model& model, ReachOptions options, const ActFunction& act,
+                       const EvaluateOptions& how,
+                       const std::function<Result<void>(const VecEnv&)>& fits) {
+  constexpr int kMaxEpisodes = 100'000;
+  options.held_out = true;
+  std::vector<Trial> trials;
+  std::optional<ReachEnv> env;
+  for (int first = 0; first == 0 || first < how.episodes; first += kTogether) {
+    const bool sound = how.episodes >= 1 && how.episodes <= kMaxEpisodes;
+    // A number out of range is told of by the environment.
+    const int count = sound ? std::min(kTogether, how.episodes - first) : how.episodes;
+    if (!env || env->count() != count) {
+      options.environments = count;
+      Result<ReachEnv> made = ReachEnv::create(model, options);
+      if (!made) return fail(std::move(made.error()));
+      env.emplace(std::move(*made));
+    }
+    if (auto fine = fits(*env); !fine) return fail(std::move(fine.error()));
+    if (auto done = run_block(*env, first, act, how, trials); !done)
+      return fail(std::move(done.error()));
   }
   return summary(trials);
 }
@@ -116,23 +146,19 @@ Result<void> check_sizes(const Policy& policy, const VecEnv& env) {
 
 Result<Evaluation> evaluate(const Model& model, const ReachOptions& options, const ActFunction& act,
                             const EvaluateOptions& how) {
-  auto env = judged_env(model, options, how);
-  if (!env) return fail(std::move(env.error()));
-  return run(*env, act);
+  return run(model, options, act, how, [](const VecEnv&) { return Result<void>(); });
 }
 
 Result<Evaluation> evaluate(const Model& model, const ReachOptions& options, const Policy& policy,
                             const EvaluateOptions& how) {
-  auto env = judged_env(model, options, how);
-  if (!env) return fail(std::move(env.error()));
-  if (auto fits = check_sizes(policy, *env); !fits) return fail(std::move(fits.error()));
-  const int in = env->observation_size(), out = env->action_size();
-  return run(*env, [&](std::span<const float> observations, std::span<float> actions) {
-    for (int i = 0; i < env->count(); ++i) {
-      const Eigen::VectorXf action = policy.act(observations.subspan(std::size_t(i) * in, in));
-      std::copy_n(action.data(), out, actions.begin() + std::ptrdiff_t{i} * out);
+  const std::size_t in = policy.shape().observations, out = policy.shape().actions;
+  const auto act = [&](std::span<const float> observations, std::span<float> actions) {
+    for (std::size_t i = 0; i * out < actions.size() && !is_stopped(how.stop); ++i) {
+      const Eigen::VectorXf action = policy.act(observations.subspan(i * in, in));
+      std::copy_n(action.data(), out, actions.begin() + static_cast<std::ptrdiff_t>(i * out));
     }
-  });
+  };
+  return run(model, options, act, how, [&](const VecEnv& env) { return check_sizes(policy, env); });
 }
 
 }  // namespace mjarm::rl

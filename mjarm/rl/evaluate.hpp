@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/rl/policy.hpp"
 #include "mjarm/rl/reach_options.hpp"
@@ -17,6 +18,10 @@ namespace mjarm::rl {
 struct EvaluateOptions {
   int episodes = 200;      ///< each with a goal of its own, 1 to 100000
   std::uint64_t seed = 1;  ///< decides the goals; training never draws from the same streams
+  /// Told again and again how many actions of how many at most are done, of all episodes together.
+  /// May be empty.
+  std::function<void(std::int64_t done, std::int64_t max)> progress = {};
+  StopCheck stop = {};
 };
 
 /// What came of it. Distances are those at the end of an episode, when its time is over.
@@ -47,9 +52,10 @@ struct Evaluation {
 using ActFunction =
     std::function<void(std::span<const float> observations, std::span<float> actions)>;
 
-/// Runs every episode once, all of them at the same time, on goals that training has not seen. The
+/// Runs every episode once, many of them at the same time, on goals that training has not seen. The
 /// same for any number of threads. `options.environments` and `options.held_out` play no part.
-/// @return an error where the environment cannot be made or an action is not a number.
+/// @return an error where the environment cannot be made or an action is not a number; stopped()
+/// where EvaluateOptions::stop ended the work.
 [[nodiscard]] Result<Evaluation> evaluate(const Model& model, const ReachOptions& options,
                                           const ActFunction& act, const EvaluateOptions& how = {});
 

@@ -110,5 +110,20 @@ TEST(Evaluate, APolicyIsItsMeanActions) {
   EXPECT_FALSE(evaluate(model, options, policy, {.episodes = 0}));
 }
 
+TEST(Evaluate, AnEpisodeComesOutTheSameHoweverManyThereAre) {
+  ReachOptions task;
+  task.episode_steps = 2;
+  const Model model = reach_model(task).value();
+  const auto still = [](std::span<const float>, std::span<float> actions) {
+    std::fill(actions.begin(), actions.end(), 0.0F);
+  };
+  const auto few = evaluate(model, task, still, {.episodes = 5});
+  const auto many = evaluate(model, task, still, {.episodes = 1030});
+  ASSERT_TRUE(few && many);
+  ASSERT_EQ(many->distances.size(), 1030U);
+  EXPECT_TRUE(std::equal(few->distances.begin(), few->distances.end(), many->distances.begin()));
+  EXPECT_NE(many->distances[0], many->distances[1024]) << "the next block has goals of its own";
+}
+
 }  // namespace
 }  // namespace mjarm::rl

@@ -45,6 +45,36 @@ void PpoTrainer::State::sum_over_ranks(std::span<double> values) const {
   if (ranks != nullptr) ranks->sum(values);
 }
 
+namespace {
+
+/// Weights of layers one after another.
+double count_weights(int inputs, const std::vector<int>& hidden, int outputs) {
+  double count = 0, from = inputs;
+  for (const int size : hidden) {
+    count += (from + 1) * size;
+    from = size;
+  }
+  return count + (from + 1) * outputs;
+}
+
+/// A rollout, and weights with gradient and moments, stay well below 2 GB.
+Result<void> check_memory(const VecEnv& env, const PpoOptions& options) {
+  constexpr std::int64_t kMaxSamples = std::int64_t{1} << 22;
+  constexpr double kMaxWeights = 1 << 24;
+  const std::int64_t samples = std::int64_t{env.count()} * options.rollout_steps;
+  if (samples > kMaxSamples) {
+    return fail(Errc::bad_input, text(msg::rl_many_samples, samples, kMaxSamples));
+  }
+  const double weights = count_weights(env.observation_size(), options.actor, env.action_size()) +
+                         count_weights(env.observation_size(), options.critic, 1);
+  if (weights > kMaxWeights) {
+    return fail(Errc::bad_input, text(msg::rl_many_weights, weights, kMaxWeights));
+  }
+  return {};
+}
+
+}  // namespace
+
 PpoTrainer::PpoTrainer(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
 PpoTrainer::~PpoTrainer() = default;
 PpoTrainer::PpoTrainer(PpoTrainer&& other) noexcept = default;
@@ -59,6 +89,7 @@ Result<PpoTrainer> PpoTrainer::create(VecEnv& env, const PpoOptions& options, Ra
   if (options.rollout_steps == 1 && env.count() == 1) {
     return fail(Errc::bad_input, text(msg::rl_few_samples, 1));
   }
+  if (auto fits = check_memory(env, options); !fits) return fail(std::move(fits.error()));
   const std::uint64_t env_seed = rng_of_rank(options, ranks, 1).next();
   if (auto started = env.reset(env_seed); !started) return fail(std::move(started.error()));
   Policy policy({env.observation_size(), env.action_size(), options.actor, options.critic,

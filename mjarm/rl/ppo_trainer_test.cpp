@@ -299,6 +299,17 @@ TEST(PpoOptions, AreCheckedOneByOne) {
   EXPECT_FALSE(PpoTrainer::create(one, options));
 }
 
+TEST(PpoOptions, WhatWouldNotFitTheMemoryIsRefusedBeforeItIsMade) {
+  PointMass crowd(16);
+  const auto refused = [&](const PpoOptions& options) {
+    const auto made = PpoTrainer::create(crowd, options);
+    return made ? std::string() : made.error().what;
+  };
+  EXPECT_THAT(refused({.rollout_steps = 1000000}), HasSubstr("16000000 samples"));
+  EXPECT_THAT(refused({.actor = {65536, 65536}}), HasSubstr("4.3e+09 weights"));
+  EXPECT_EQ(refused({.threads = 1, .rollout_steps = 64, .actor = {512, 512}}), "");
+}
+
 /// Threads that stand for processes.
 class ThreadRanks : public Ranks {
  public:

@@ -145,7 +145,7 @@ void ReachEnv::Impl::begin_ended() {
   for (std::size_t row = 0; row < ended.size(); ++row) {
     const int i = ended[row];
     Copy& copy = copies[i];
-    copy.episode = episodes.draw(seed, i, copy.number++);
+    copy.episode = episodes.draw(seed, first + i, copy.number++);
     copy.steps = 0;
     std::copy(copy.episode.q.begin(), copy.episode.q.end(), reference(i).begin());
     episodes.write(copy.episode, std::span(qpos).subspan(row * nq, nq),
@@ -218,9 +218,12 @@ Result<ReachEnv> ReachEnv::create(const Model& model, const ReachOptions& option
   return env;
 }
 
-Result<void> ReachEnv::reset(std::uint64_t seed) {
+Result<void> ReachEnv::reset(std::uint64_t seed) { return reset(seed, 0); }
+
+Result<void> ReachEnv::reset(std::uint64_t seed, int first) {
   Impl& env = *impl_;
   env.seed = seed;
+  env.first = first;
   env.ended.clear();
   for (int i = 0; i < count(); ++i) {
     env.copies[i].number = 0;
@@ -237,13 +240,21 @@ Result<void> ReachEnv::reset(std::uint64_t seed) {
   return {};
 }
 
-Result<void> ReachEnv::step(std::span<const float> actions) {
+Result<void> ReachEnv::step(std::span<const float> actions) { return step(actions, {}); }
+
+Result<void> ReachEnv::step(std::span<const float> actions, const StopCheck& stop) {
+  constexpr int kWorldSteps = 10000;  // between two questions whether to stop
   Impl& env = *impl_;
   if (auto fine = env.check_actions(actions); !fine) return fine;
   const int chunks = env.drive.every_step() ? env.options.frame_skip : 1;
   for (int k = 0; k < chunks; ++k) {
     env.command(actions);
-    env.batch.step(env.options.frame_skip / chunks);
+    const int steps = env.options.frame_skip / chunks;
+    const int piece = stop ? std::clamp(kWorldSteps / count(), 1, steps) : steps;
+    for (int done = 0; done < steps; done += piece) {
+      if (is_stopped(stop)) return fail(stopped());
+      env.batch.step(std::min(piece, steps - done));
+    }
   }
   env.ended.clear();
   for (int i = 0; i < count(); ++i) {

@@ -6,6 +6,7 @@
 
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/rl/reach_options.hpp"
@@ -53,7 +54,13 @@ class ReachEnv : public VecEnv {
   [[nodiscard]] int observation_size() const noexcept override;
   [[nodiscard]] int action_size() const noexcept override;
   [[nodiscard]] Result<void> reset(std::uint64_t seed) override;
+  /// The same as copies `first` and up of a larger environment: their goals and starts.
+  [[nodiscard]] Result<void> reset(std::uint64_t seed, int first);
   [[nodiscard]] Result<void> step(std::span<const float> actions) override;
+  /// The same.
+  /// @param stop  asked within the step too; stopped() where it ended it. Nothing but reset() is
+  ///              of use then.
+  [[nodiscard]] Result<void> step(std::span<const float> actions, const StopCheck& stop);
   [[nodiscard]] std::span<const float> observations() const noexcept override;
   [[nodiscard]] std::span<const float> rewards() const noexcept override;
   [[nodiscard]] std::span<const std::uint8_t> terminated() const noexcept override;

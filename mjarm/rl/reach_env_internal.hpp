@@ -29,6 +29,7 @@ struct ReachEnv::Impl {
   BatchSim batch;
   int dof = 0, size = 0;  ///< actions, observations of a row
   std::uint64_t seed = 0;
+  int first = 0;  ///< number of copy 0 among those that draw from `seed`
 
   std::vector<Copy> copies = {};
   std::vector<double> references = {};  ///< (count, dof) where the joints should be by now

@@ -5,6 +5,7 @@
 
 #include "mjarm/core/messages/reach.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/rl/option_table_internal.hpp"
 #include "mjarm/rl/reach_options_internal.hpp"
 
 namespace mjarm::rl {
@@ -24,25 +25,6 @@ Result<Choice> choice(std::string_view word, std::span<const std::string_view> n
   return fail(Errc::usage,
               text(msg::reach_unknown, word, listed(words)) + did_you_mean(word, words));
 }
-
-/// One option and the range it must be in.
-struct Range {
-  std::string_view name;
-  double value;
-  double lower;
-  double upper;
-  bool open = false;  ///< `lower` itself is too little
-};
-
-Result<void> in_range(const Range& range) {
-  const bool high_enough = range.open ? range.value > range.lower : range.value >= range.lower;
-  if (high_enough && range.value <= range.upper) return {};
-  const Msg words = range.open ? msg::reach_number_above : msg::reach_number_from_to;
-  return fail(Errc::usage, text(msg::reach_number, range.name,
-                                text(words, range.lower, range.upper), range.value));
-}
-
-constexpr double kMax = 1e6;  // of weights and scales
 
 }  // namespace
 
@@ -74,31 +56,10 @@ ReachOptions guide_options() {
 }
 
 Result<void> check(const ReachOptions& o) {
-  const ReachReward& r = o.reward;
-  const Range ranges[] = {
-      {"environments", 1.0 * o.environments, 1, 100000},
-      {"threads", 1.0 * o.threads, 1, 1024},
-      {"frame_skip", 1.0 * o.frame_skip, 1, 10000},
-      {"episode_steps", 1.0 * o.episode_steps, 1, kMax},
-      {"start_spread", o.start_spread, 0, 1},
-      {"speed", o.speed, 0, 1, true},
-      {"torque", o.torque, 0, 1, true},
-      {"reward.distance", r.distance, 0, kMax},
-      {"reward.coarse", r.coarse, 0, kMax},
-      {"reward.coarse_scale", r.coarse_scale, 0, kMax, true},
-      {"reward.fine", r.fine, 0, kMax},
-      {"reward.fine_scale", r.fine_scale, 0, kMax, true},
-      {"reward.action", r.action, 0, kMax},
-      {"reward.collision", r.collision, 0, kMax},
-      {"reward.limit", r.limit, 0, kMax},
-      {"reward.limit_margin", r.limit_margin, 0, kMax, true},
-      {"reward.turn", r.turn, 0, kMax},
-      {"reward.turn_fine", r.turn_fine, 0, kMax},
-      {"reward.turn_scale", r.turn_scale, 0, kMax, true},
-  };
-  for (const Range& range : ranges) {
-    if (auto fine = in_range(range); !fine) return fine;
-  }
+  detail::RangeCheck ranges("reward");
+  ranges("task", "threads", o.threads, detail::kThreads);
+  detail::visit_reach(o, ranges);
+  if (auto fine = ranges.result(); !fine) return fine;
   const ReachOptions guide = guide_options();
   if (o.guide &&
       (o.action != guide.action || o.frame_skip != guide.frame_skip || o.region != guide.region ||

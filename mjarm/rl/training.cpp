@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/rl/option_table_internal.hpp"
 #include "mjarm/rl/progress_log_internal.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/rl/safetensors.hpp"
@@ -18,6 +20,7 @@
 namespace mjarm::rl {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr const char* kBestEvaluation = "training.best";
 constexpr const char* kLastEvaluation = "training.last";
 
@@ -36,11 +39,24 @@ void store(const std::optional<Evaluation>& evaluation, const char* name, Tensor
   set.tensors[name] = {{static_cast<std::int64_t>(values.size())}, std::move(values)};
 }
 
-std::optional<Evaluation> stored(const TensorSet& set, const char* name) {
+/// @return an error where the file holds something else under that name.
+Result<std::optional<Evaluation>> stored(const TensorSet& set, const char* name) {
   const auto found = set.tensors.find(name);
   if (found == set.tensors.end()) return std::nullopt;
   const auto* values = std::get_if<std::vector<double>>(&found->second.values);
-  if (values == nullptr || values->size() != kNumbers.size() + 2) return std::nullopt;
+  if (values == nullptr || values->size() != kNumbers.size() + 2) {
+    return fail(Errc::bad_input, text(msg::rl_tensor_type, name, "float64"));
+  }
+  constexpr double kMaxEpisodes = 1e5;
+  for (std::size_t i = 0; i < values->size(); ++i) {
+    // First the number of episodes and the median of the turns; then shares up to the distances,
+    // which are infinite where a simulation failed; the last one is a share again.
+    const bool share = (i >= 2 && i < 6) || i + 1 == values->size();
+    const double value = (*values)[i], most = share ? 1 : i == 0 ? kMaxEpisodes : kNoLimit;
+    if (value >= (i == 0 ? 1 : 0) && value <= most) continue;
+    const Msg expected = share ? msg::rl_share : msg::rl_not_negative;
+    return fail(Errc::bad_input, text(msg::rl_tensor_value, name, value, text(expected)));
+  }
   Evaluation evaluation;
   evaluation.episodes = static_cast<int>((*values)[0]);
   evaluation.turn_median = (*values)[1];
@@ -184,6 +200,9 @@ Training& Training::operator=(Training&&) noexcept = default;
 
 Result<Training> Training::create(const Model& model, const TrainingOptions& options,
                                   const std::filesystem::path& folder, Ranks* ranks) {
+  detail::RangeCheck ranges;
+  detail::visit_training(options, ranges);
+  if (auto fine = ranges.result(); !fine) return fail(std::move(fine.error()));
   Result<ReachEnv> env = ReachEnv::create(model, options.task);
   if (!env) return fail(std::move(env.error()));
   auto state = std::make_unique<State>(model, options, std::move(*env));
@@ -201,9 +220,15 @@ Result<void> Training::resume(const std::filesystem::path& checkpoint) {
   const Result<TensorSet> set =
       load_safetensors(rank == 0 ? checkpoint : checkpoint.parent_path() / last_name(rank));
   if (!set) return fail(set.error());
+  Result<std::optional<Evaluation>> best = stored(*set, kBestEvaluation);
+  Result<std::optional<Evaluation>> last = stored(*set, kLastEvaluation);
+  for (const auto* evaluation : {&best, &last}) {
+    if (*evaluation) continue;
+    return fail(evaluation->error().code, checkpoint.string() + ": " + evaluation->error().what);
+  }
   if (auto restored = state_->trainer->restore(*set); !restored) return restored;
-  state_->best = stored(*set, kBestEvaluation);
-  state_->last = stored(*set, kLastEvaluation);
+  state_->best = std::move(*best);
+  state_->last = std::move(*last);
   state_->stopped = state_->reached();
   state_->resumed_at = state_->trainer->steps();
   return {};

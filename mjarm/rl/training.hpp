@@ -72,7 +72,8 @@ class Training {
   static constexpr const char* kEvents = "events.out.tfevents.mjarm";
 
   /// Makes the environment and the trainer.
-  /// @param folder    exists; files of an earlier training in it are replaced.
+  /// @param folder    exists before the first `advance`; files of an earlier training in it are
+  /// replaced.
   /// @param ranks     null: this process alone; must outlive the training.
   [[nodiscard]] static Result<Training> create(const Model& model, const TrainingOptions& options,
                                                const std::filesystem::path& folder,

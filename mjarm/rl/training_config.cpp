@@ -15,6 +15,7 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/yaml_tree.hpp"
+#include "mjarm/rl/option_table_internal.hpp"
 #include "mjarm/rl/safetensors.hpp"
 
 namespace mjarm::rl {
@@ -61,114 +62,83 @@ std::string written(const T& value) {
   }
 }
 
-/// What is wrong with a value; empty where it was taken.
+/// Reads a number; the fault in words, or nothing where it was taken.
 template <class T>
-std::string take(const YamlNode& node, T& value) {
-  if constexpr (kIsList<T>) {
-    if (node.kind != YamlNode::Kind::list) return text(msg::rl_config_no_list);
-    T list(node.items.size());
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      if (std::string fault = take(node.items[i], list[i]); !fault.empty()) return fault;
-    }
-    value = std::move(list);
-  } else if constexpr (std::is_enum_v<T> || std::is_same_v<T, bool>) {
-    const std::vector<std::string> known = words<T>();
-    const auto found = std::find(known.begin(), known.end(), node.text);
-    if (node.kind != YamlNode::Kind::scalar || found == known.end()) {
-      return text(msg::rl_config_no_word, listed(known)) + did_you_mean(node.text, known);
-    }
-    value = static_cast<T>(found - known.begin());
-  } else {
-    T read{};
-    const char* end = node.text.data() + node.text.size();
-    const auto [stop, code] = std::from_chars(node.text.data(), end, read);
-    bool good = node.kind == YamlNode::Kind::scalar && code == std::errc() && stop == end;
-    if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(read);
-    if (!good) {
-      return text(std::is_integral_v<T> ? msg::rl_config_no_integer : msg::rl_config_no_number);
-    }
-    value = read;
+std::string take_number(const std::string& key, const YamlNode& node,
+                        const detail::OptionRange& range, T& value) {
+  T read{};
+  const char* end = node.text.data() + node.text.size();
+  const auto [stop, code] = std::from_chars(node.text.data(), end, read);
+  bool good = node.kind == YamlNode::Kind::scalar && code == std::errc() && stop == end;
+  if constexpr (std::is_floating_point_v<T>) good = good && std::isfinite(read);
+  if (!good) {
+    const Msg expected =
+        std::is_integral_v<T> ? msg::rl_config_no_integer : msg::rl_config_no_number;
+    return key + ": " + text(expected, in_words(range));
   }
+  if (std::string fault = range_fault(key, range, static_cast<double>(read)); !fault.empty()) {
+    return fault;
+  }
+  value = read;
+  return {};
+}
+
+template <class T>
+std::string take_number(const std::string& key, const YamlNode& node,
+                        const detail::OptionRange& range, std::vector<T>& value) {
+  if (node.kind != YamlNode::Kind::list) return key + ": " + text(msg::rl_config_no_list);
+  std::vector<T> list(node.items.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (std::string fault = take_number(key, node.items[i], range, list[i]); !fault.empty()) {
+      return fault;
+    }
+  }
+  value = std::move(list);
+  return {};
+}
+
+template <class T>
+std::string take_word(const std::string& key, const YamlNode& node, T& value) {
+  const std::vector<std::string> known = words<T>();
+  const auto found = std::find(known.begin(), known.end(), node.text);
+  if (node.kind != YamlNode::Kind::scalar || found == known.end()) {
+    return key + ": " + text(msg::rl_config_no_word, listed(known)) +
+           did_you_mean(node.text, known);
+  }
+  value = static_cast<T>(found - known.begin());
   return {};
 }
 
 /// One line of a configuration.
 struct Field {
   std::string section, key;
-  std::function<std::string(const YamlNode&)> take;
+  std::function<std::string(const YamlNode&)> take;  ///< gives the fault in words, or nothing
   std::function<std::string()> write;
 };
 
 /// The fields of `options`, which they refer to.
-std::vector<Field> fields_of(TrainingOptions& options) {
-  std::vector<Field> fields;
-  std::string section;
-  const auto add = [&](const char* key, auto& value) {
-    fields.push_back({section, key, [&value](const YamlNode& node) { return take(node, value); },
-                      [&value] { return written(value); }});
-  };
-  section = "task";
-  ReachOptions& task = options.task;
-  add("environments", task.environments);
-  add("region", task.region);
-  add("action", task.action);
-  add("gripper", task.gripper);
-  add("frame_skip", task.frame_skip);
-  add("episode_steps", task.episode_steps);
-  add("start", task.start);
-  add("start_spread", task.start_spread);
-  add("speed", task.speed);
-  add("torque", task.torque);
-  add("orientation", task.orientation);
-  add("obstacle", task.obstacle);
-  add("guide", task.guide);
-  section = "reward";
-  ReachReward& reward = task.reward;
-  add("distance", reward.distance);
-  add("coarse", reward.coarse);
-  add("coarse_scale", reward.coarse_scale);
-  add("fine", reward.fine);
-  add("fine_scale", reward.fine_scale);
-  add("action", reward.action);
-  add("collision", reward.collision);
-  add("limit", reward.limit);
-  add("limit_margin", reward.limit_margin);
-  add("turn", reward.turn);
-  add("turn_fine", reward.turn_fine);
-  add("turn_scale", reward.turn_scale);
-  section = "ppo";
-  PpoOptions& ppo = options.ppo;
-  add("seed", ppo.seed);
-  add("total_steps", ppo.total_steps);
-  add("rollout_steps", ppo.rollout_steps);
-  add("minibatch", ppo.minibatch);
-  add("epochs", ppo.epochs);
-  add("learning_rate", ppo.learning_rate);
-  add("schedule", ppo.schedule);
-  add("adam_epsilon", ppo.adam_epsilon);
-  add("max_gradient_norm", ppo.max_gradient_norm);
-  add("discount", ppo.discount);
-  add("gae_lambda", ppo.gae_lambda);
-  add("clip", ppo.clip);
-  add("value_clip", ppo.value_clip);
-  add("value_weight", ppo.value_weight);
-  add("entropy_weight", ppo.entropy_weight);
-  add("target_kl", ppo.target_kl);
-  add("normalise_advantages", ppo.normalise_advantages);
-  add("normalise_observations", ppo.normalise_observations);
-  add("scale_rewards", ppo.scale_rewards);
-  add("actor", ppo.actor);
-  add("critic", ppo.critic);
-  add("activation", ppo.activation);
-  add("initial_log_std", ppo.initial_log_std);
-  section = "training";
-  add("evaluate_every", options.evaluate_every);
-  add("evaluate_episodes", options.evaluation.episodes);
-  add("evaluate_seed", options.evaluation.seed);
-  add("stop_within", options.stop_within);
-  add("stop_share", options.stop_share);
-  return fields;
-}
+class Fields {
+ public:
+  explicit Fields(TrainingOptions& options) { detail::visit_options(options, *this); }
+
+  template <class T>
+  void operator()(const char* section, const char* key, T& word) {
+    all.push_back({section, key,
+                   [key, &word](const YamlNode& node) { return take_word(key, node, word); },
+                   [&word] { return written(word); }});
+  }
+  template <class T>
+  void operator()(const char* section, const char* key, T& value,
+                  const detail::OptionRange& range) {
+    all.push_back({section, key,
+                   [key, range, &value](const YamlNode& node) {
+                     return take_number(key, node, range, value);
+                   },
+                   [&value] { return written(value); }});
+  }
+
+  std::vector<Field> all;
+};
 
 /// Keys of one section, or the sections where `section` is empty.
 std::vector<std::string> names_in(const std::vector<Field>& fields, std::string_view section) {
@@ -200,7 +170,7 @@ Result<TrainingOptions> read_config(const std::string& yaml, const std::string& 
                                     TrainingOptions options) {
   const Result<YamlNode> root = read_yaml(yaml, name);
   if (!root) return fail(root.error());
-  const std::vector<Field> fields = fields_of(options);
+  const std::vector<Field> fields = Fields(options).all;
   const std::vector<std::string> sections = names_in(fields, "");
   if (root->kind != YamlNode::Kind::map) {
     return fail(fault_at(name, *root, text(msg::rl_config_shape, listed(sections))));
@@ -217,7 +187,7 @@ Result<TrainingOptions> read_config(const std::string& yaml, const std::string& 
       });
       if (field == fields.end()) return fail(unknown_key(name, key, keys));
       const std::string fault = field->take(value);
-      if (!fault.empty()) return fail(fault_at(name, value, key.text + ": " + fault));
+      if (!fault.empty()) return fail(fault_at(name, value, fault));
     }
   }
   return options;
@@ -249,7 +219,7 @@ Result<std::optional<TrainingOptions>> config_in(const TensorSet& checkpoint,
 std::string config_text(const TrainingOptions& options) {
   TrainingOptions copy = options;
   std::string out, section;
-  for (const Field& field : fields_of(copy)) {
+  for (const Field& field : Fields(copy).all) {
     if (field.section != section) out += field.section + ":\n";
     section = field.section;
     out += "  " + field.key + ": " + field.write() + "\n";

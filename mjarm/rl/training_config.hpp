@@ -12,7 +12,7 @@ namespace mjarm::rl {
 
 /// A training as YAML: sections `task`, `reward`, `ppo` and `training`, each with the names of the
 /// fields of the options it sets. What is left out keeps what `options` holds. Numbers are read in
-/// full; whether they are in range is checked where a training is made.
+/// full and must be in their ranges, those on the fields of the options.
 /// @param name  of the file, for messages.
 /// @return bad_input with file, line and column, and the nearest right word.
 [[nodiscard]] Result<TrainingOptions> read_config(const std::string& yaml, const std::string& name,

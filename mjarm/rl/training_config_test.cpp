@@ -3,10 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "mjarm/core/language_scope.hpp"
+#include "mjarm/core/number.hpp"
+#include "mjarm/rl/option_table_internal.hpp"
 #include "mjarm/rl/safetensors.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -87,7 +93,74 @@ TEST(TrainingConfig, AnEmptyTextHasNoKeys) {
 
 TEST(TrainingConfig, FaultsAreToldInTheLanguageInUse) {
   const LanguageScope chinese(Language::chinese);
-  EXPECT_THAT(error_of("ppo: {epochs: x}"), HasSubstr("epochs: 应为范围内的整数"));
+  EXPECT_THAT(error_of("ppo: {epochs: x}"), HasSubstr("epochs: 应为整数，且为1 到 1e+06 之间的数"));
+}
+
+/// One number of a configuration, as the table of options has it.
+struct RangedKey {
+  std::string section, key;
+  detail::OptionRange range;
+  bool list, whole;
+
+  [[nodiscard]] std::string yaml(const std::string& value) const {
+    return section + ": {" + key + ": " + (list ? "[" + value + "]" : value) + "}";
+  }
+};
+
+struct RangedKeys {
+  std::vector<RangedKey> all;
+
+  template <class T>
+  void operator()(const char*, const char*, const T&) {}
+  template <class T>
+  void operator()(const char* section, const char* key, const T&,
+                  const detail::OptionRange& range) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      all.push_back({section, key, range, false, std::is_integral_v<T>});
+    } else {
+      all.push_back({section, key, range, true, std::is_integral_v<typename T::value_type>});
+    }
+  }
+};
+
+TEST(TrainingConfig, EveryNumberHasARangeThatIsKept) {
+  RangedKeys keys;
+  TrainingOptions defaults;
+  detail::visit_options(defaults, keys);
+  EXPECT_GT(keys.all.size(), 40U);
+  for (const RangedKey& key : keys.all) {
+    SCOPED_TRACE(key.section + "." + key.key);
+    const auto refused = [&](const std::string& value) {
+      EXPECT_THAT(error_of(key.yaml(value)), HasSubstr("f.yaml:1:")) << value;
+      EXPECT_THAT(error_of(key.yaml(value)), HasSubstr(key.key)) << value;
+    };
+    const auto taken = [&](double value) {
+      const std::string written =
+          key.whole ? std::to_string(static_cast<std::int64_t>(value)) : number(value);
+      EXPECT_EQ(error_of(key.yaml(written)), "none") << written;
+    };
+    const double less = key.range.least - (key.whole ? 1 : 1e-6 + std::abs(key.range.least) * 1e-6);
+    refused(key.whole ? std::to_string(static_cast<std::int64_t>(less)) : number(less));
+    if (key.range.above)
+      refused(number(key.range.least));
+    else
+      taken(key.range.least);
+    const bool bounded = key.range.most < 1e18;
+    if (bounded) taken(key.range.most);
+    const double more = bounded ? 1.001 * key.range.most + 1 : 0;
+    if (bounded)
+      refused(key.whole ? std::to_string(static_cast<std::int64_t>(more)) : number(more));
+    for (const char* absurd : {"-1e308", "99999999999999999999", "nan", "inf", "1e999"}) {
+      if (key.whole || std::string(absurd) != "99999999999999999999" || bounded) refused(absurd);
+    }
+  }
+}
+
+TEST(TrainingConfig, AnEvaluationEveryZeroStepsIsRefusedByFileAndLine) {
+  EXPECT_EQ(error_of("training: {evaluate_every: 0}"),
+            "f.yaml:1:28: evaluate_every must be in [1, 1e+15], not 0");
+  EXPECT_EQ(error_of("training:\n  evaluate_every: -5"),
+            "f.yaml:2:19: evaluate_every must be in [1, 1e+15], not -5");
 }
 
 TEST(TrainingConfig, FilesThatAreMissingOrHugeAreErrors) {

@@ -71,6 +71,34 @@ TEST(TrainingFiles, AreThereAfterEveryIteration) {
   EXPECT_THAT(rows[2], ::testing::StartsWith("256,"));
 }
 
+TEST(TrainingFiles, CorruptEvaluationsInACheckpointAreRefused) {
+  const support::TempFolder folder;
+  auto training = begin(small_training(), folder);
+  ASSERT_TRUE(training) << training.error().what;
+  train(*training, 2);
+  const auto file = folder.path() / Training::kLast;
+  const auto good = load_safetensors(file);
+  ASSERT_TRUE(good) << good.error().what;
+  const auto refused = [&](const char* name, std::size_t place, double value) {
+    TensorSet set = *good;
+    std::get<std::vector<double>>(set.tensors.at(name).values).at(place) = value;
+    EXPECT_TRUE(save_safetensors(file, set));
+    auto other = begin(small_training(), folder);
+    const auto resumed = other->resume(file);
+    EXPECT_FALSE(resumed) << name << place;
+    return resumed ? std::string() : resumed.error().what;
+  };
+  for (const char* name : {"training.best", "training.last"}) {
+    for (const double value : {double{INFINITY}, double{NAN}, -0.1, 1.5}) {
+      EXPECT_THAT(refused(name, 3, value), HasSubstr("last.safetensors: the tensor \"training."));
+    }
+    EXPECT_THAT(refused(name, 0, 0), HasSubstr(name));
+    EXPECT_THAT(refused(name, 6, NAN), HasSubstr(name));
+  }
+  EXPECT_TRUE(save_safetensors(file, *good));
+  EXPECT_TRUE(begin(small_training(), folder)->resume(file));
+}
+
 TEST(TrainingFiles, OfAResumedTrainingAreThoseOfOneThatNeverStopped) {
   const support::TempFolder whole, parts;
   auto straight = begin(small_training(), whole);

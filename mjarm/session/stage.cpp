@@ -33,10 +33,13 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& name, const StageO
   if (task_for(robot.arm) == IkTask::position) {
     log_info(text(msg::show_position_only, robot.arm.dof()));
   }
-  if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
+  Result<OutputFolder> folder = OutputFolder::open(options.out);
+  if (!folder) return fail(std::move(folder.error()));
   Result<RunShow> show = RunShow::open(robot.model, "mjarm " + name, options.headless);
   if (!show) return fail(std::move(show.error()));
-  return std::unique_ptr<Stage>(new Stage(name, options, robot, std::move(*show)));
+  std::unique_ptr<Stage> stage(new Stage(name, options, robot, std::move(*show)));
+  stage->folder_ = std::move(*folder);
+  return stage;
 }
 
 ControlMode Stage::control(ControlMode fallback) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/execution/motion_run.hpp"
 #include "mjarm/execution/report.hpp"
@@ -98,6 +99,7 @@ class Stage {
   Robot robot_;
   MotionRun run_;
   RunShow show_;
+  std::optional<OutputFolder> folder_;  // held as long as it is written to
   std::string control_;
   std::string camera_name_ = "overview";
   std::function<void()> tick_;

@@ -50,8 +50,11 @@ LimitUse check_limits(const Trajectory& trajectory, const JointLimits& limits, d
   JointVec a_before;
   double t_before = 0;
   const auto samples = static_cast<long>(std::ceil(trajectory.duration() / dt));
+  // All of one length: over what is left at the end, however short, a difference of accelerations
+  // would be but rounding.
+  const double step = samples > 0 ? trajectory.duration() / static_cast<double>(samples) : 0;
   for (long i = 0; i <= samples; ++i) {
-    const double t = std::min(static_cast<double>(i) * dt, trajectory.duration());
+    const double t = i < samples ? static_cast<double>(i) * step : trajectory.duration();
     const JointState x = trajectory.at(t);
     use.velocity = use.velocity.cwiseMax(x.v.cwiseAbs().cwiseQuotient(limits.velocity));
     use.acceleration = use.acceleration.cwiseMax(x.a.cwiseAbs().cwiseQuotient(limits.acceleration));

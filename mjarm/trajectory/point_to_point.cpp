@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/extremal_internal.hpp"
+#include "mjarm/trajectory/kept_limits_internal.hpp"
 #include "mjarm/trajectory/recovery_internal.hpp"
 
 namespace mjarm {
@@ -185,11 +187,49 @@ class Movers {
   std::array<std::optional<Mover>, kMaxDof> movers_;
 };
 
+/// @param h  [s] by so much; a phase far shorter than the motion loses digits where it is told by
+///           its ends.
+PointToPoint::Piece moved_by(const PointToPoint::Piece& piece, double h) noexcept {
+  return {piece.t + h, piece.q + h * (piece.v + h * (0.5 * piece.a + h / 6 * piece.jerk)),
+          piece.v + h * (piece.a + 0.5 * h * piece.jerk), piece.a + h * piece.jerk, piece.jerk};
+}
+
 /// @param piece  one that begins at or before `t`.
 PointToPoint::Piece moved_on(const PointToPoint::Piece& piece, double t) noexcept {
-  const double h = t - piece.t;
-  return {t, piece.q + h * (piece.v + h * (0.5 * piece.a + h / 6 * piece.jerk)),
-          piece.v + h * (piece.a + 0.5 * h * piece.jerk), piece.a + h * piece.jerk, piece.jerk};
+  return moved_by(piece, t - piece.t);
+}
+
+// Times of a motion of duration T are exact to eps T. What a limit changes in that time must be a
+// small share of the limit below it, or no double can say when a phase of it ends.
+constexpr double kTimeShare = 1e-7;
+// Beyond this, squares and cubes of limits overflow.
+constexpr double kLargest = 1e60;
+
+/// The largest `limit` that still counts beside the one below it: a motion with it is but a few
+/// 1e-9 of its time longer than one with more. 0 and infinite limits stay.
+double within_time(double limit, double below, double duration) noexcept {
+  if (!std::isfinite(limit)) return limit;
+  const double most = duration > 0 ? kTimeShare / kEps * below / duration : kLargest;
+  return std::min({limit, most, kLargest});
+}
+
+bool beyond_time(const JointLimits& limits, double duration) noexcept {
+  for (int i = 0; i < limits.jerk.size(); ++i) {
+    const double a = limits.acceleration[i], j = limits.jerk[i];
+    if (within_time(a, limits.velocity[i], duration) != a || within_time(j, a, duration) != j) {
+      return true;
+    }
+  }
+  return false;
+}
+
+JointLimits within_time(JointLimits limits, double duration) noexcept {
+  for (int i = 0; i < limits.jerk.size(); ++i) {
+    double& a = limits.acceleration[i];
+    a = within_time(a, limits.velocity[i], duration);
+    limits.jerk[i] = within_time(limits.jerk[i], a, duration);
+  }
+  return limits;
 }
 
 }  // namespace
@@ -199,13 +239,19 @@ Result<PointToPoint, PointToPointFailure> PointToPoint::solve(const JointState& 
                                                               const JointLimits& limits) noexcept {
   Result<PointToPoint, PointToPointFailure> result;
   Movers movers;
-  if (const auto failure = movers.set(start, end, limits)) {
+  auto failure = movers.set(start, end, limits);
+  double duration = failure ? 0 : movers.common_duration();
+  if (!failure && std::isfinite(duration) && beyond_time(limits, duration)) {
+    failure = movers.set(start, end, within_time(limits, duration));
+    if (!failure) duration = movers.common_duration();
+  }
+  if (failure) {
     result = tl::unexpected(*failure);
     return result;
   }
   result->start_ = start;
   result->end_ = end;
-  result->duration_ = movers.common_duration();
+  result->duration_ = duration;
   if (!std::isfinite(result->duration_)) {
     result = tl::unexpected(PointToPointFailure{PointToPointErrc::bad_states, 0});
     return result;
@@ -214,11 +260,11 @@ Result<PointToPoint, PointToPointFailure> PointToPoint::solve(const JointState& 
     Joint& joint = result->joints_[static_cast<std::size_t>(i)];
     joint.count = 0;
     Piece piece{0, start.q[i], start.v[i], start.a[i], 0};
-    movers[i].for_each(result->duration_, [&](double duration, double a, double jerk) {
+    movers[i].for_each(result->duration_, [&](double time, double a, double jerk) {
       piece.a = a;
       piece.jerk = jerk;
       joint.pieces[static_cast<std::size_t>(joint.count++)] = piece;
-      piece = moved_on(piece, piece.t + duration);
+      piece = moved_by(piece, time);
     });
   }
   return result;
@@ -282,7 +328,8 @@ Range range_of(std::span<const PointToPoint::Piece> pieces, double duration, dou
   return range;
 }
 
-/// All joints in common phases of constant jerk.
+/// All joints in common phases of constant jerk, each phase from the state in which it begins:
+/// rounding of its duration does not add up on the way.
 Result<Trajectory> in_common_phases(const PointToPoint& motion, const JointState& start,
                                     const JointState& end) {
   std::vector<double> times{0, motion.duration()};
@@ -291,20 +338,31 @@ Result<Trajectory> in_common_phases(const PointToPoint& motion, const JointState
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
-  std::vector<double> durations;
-  std::vector<JointVec> jerks;
+  std::vector<Trajectory> phases;
   std::array<std::size_t, kMaxDof> now{};
+  JointState state = start;
   for (std::size_t k = 0; k + 1 < times.size() && times[k] < motion.duration(); ++k) {
-    durations.push_back(times[k + 1] - times[k]);
-    JointVec& jerk = jerks.emplace_back(JointVec::Zero(motion.dof()));
+    JointVec jerk = JointVec::Zero(motion.dof());
     for (int i = 0; i < motion.dof(); ++i) {
       const auto pieces = motion.pieces(i);
       std::size_t& n = now[static_cast<std::size_t>(i)];
       while (n + 1 < pieces.size() && pieces[n + 1].t <= times[k]) ++n;
-      if (!pieces.empty()) jerk[i] = pieces[n].jerk;
+      if (pieces.empty()) continue;
+      const PointToPoint::Piece piece = moved_on(pieces[n], times[k]);
+      state.q[i] = piece.q;
+      state.v[i] = piece.v;
+      state.a[i] = piece.a;
+      jerk[i] = piece.jerk;
     }
+    JointState next = k + 2 < times.size() ? motion.at(times[k + 1]) : end;
+    Result<Trajectory> phase =
+        Trajectory::from_jerks(state, std::array{times[k + 1] - times[k]}, std::array{jerk}, next);
+    if (!phase) return phase;
+    phases.push_back(*std::move(phase));
+    state = std::move(next);
   }
-  return Trajectory::from_jerks(start, durations, jerks, end);
+  if (phases.empty()) return Trajectory::from_jerks(start, {}, {}, end);
+  return Trajectory::chain(phases);
 }
 
 }  // namespace
@@ -327,7 +385,9 @@ Result<Trajectory> point_to_point(const JointState& start, const JointState& end
                 text(msg::trajectory_leaves_range, i + 1,
                      range.low < lower ? range.low : range.high, limits.lower[i], limits.upper[i]));
   }
-  return in_common_phases(*motion, start, end);
+  return in_common_phases(*motion, start, end).and_then([&](Trajectory whole) {
+    return detail::check_kept(whole, limits, true).map([&] { return std::move(whole); });
+  });
 }
 
 }  // namespace mjarm

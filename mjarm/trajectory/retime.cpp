@@ -1,27 +1,119 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <utility>
+#include <vector>
 
 #include "mjarm/trajectory/retime_internal.hpp"
+#include "mjarm/trajectory/retime_lanes_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// A problem laid out for the kernels, in memory of its own.
+class Layout {
+ public:
+  explicit Layout(const RetimeProblem& problem) : p_(problem) {
+    const std::size_t n = p_.knots.size();
+    constexpr std::size_t kWidest = RetimeLanes::kWidest;
+    lanes_.stride = (n + kWidest - 1) / kWidest * kWidest;
+    lanes_.rows = p_.rows;
+    lanes_.a_rows = p_.a_rows;
+    const auto is_zero = [](double x) { return x == 0; };
+    lanes_.rests =
+        !std::ranges::all_of(p_.root_a, is_zero) || !std::ranges::all_of(p_.still, is_zero);
+    add_columns();
+    add_knots();
+    add_rows();
+  }
+  Layout(const Layout&) = delete;
+  Layout& operator=(const Layout&) = delete;
 
-/// Second-order model of a sum of terms in (u, u', u'') at one place; lower triangle of the
-/// Hessian.
-struct Local {
-  double g[3] = {0, 0, 0};
-  double h[3][3] = {};
+  RetimeLanes& lanes() { return lanes_; }
+  const RetimeLanes& lanes() const { return lanes_; }
 
-  void add(double weight, double curvature, const std::array<double, 3>& gradient) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      g[i] += weight * gradient[i];
-      for (std::size_t j = 0; j <= i; ++j) h[i][j] += curvature * gradient[i] * gradient[j];
+ private:
+  void add_columns() {
+    RetimeLanes& l = lanes_;
+    std::vector<std::pair<double**, std::size_t>> columns;
+    for (double** one : {&l.first, &l.second, &l.slope, &l.weight, &l.by_u_max, &l.before, &l.after,
+                         &l.eighth, &l.middle_time, &l.u, &l.du}) {
+      columns.emplace_back(one, 1);
+    }
+    for (double*& one : l.g) columns.emplace_back(&one, 1);
+    for (double*& one : l.diagonal) columns.emplace_back(&one, 1);
+    for (double*& one : l.next) columns.emplace_back(&one, 1);
+    for (double*& one : l.skip) columns.emplace_back(&one, 1);
+    for (double** many : {&l.a_a, &l.v_a, &l.root_a, &l.still})
+      columns.emplace_back(many, l.a_rows);
+    for (double** many :
+         {&l.j_after, &l.a_after, &l.v_after, &l.j_before, &l.a_before, &l.v_before}) {
+      columns.emplace_back(many, l.rows);
+    }
+    std::size_t size = 0;
+    for (const auto& [column, rows] : columns) size += rows * l.stride + 2 * RetimeLanes::kRoom;
+    memory_.assign(size, 0.0);
+    double* next = memory_.data();
+    for (const auto& [column, rows] : columns) {
+      *column = next + RetimeLanes::kRoom;
+      next += rows * l.stride + 2 * RetimeLanes::kRoom;
     }
   }
+
+  [[nodiscard]] double h(std::size_t cell) const {
+    return p_.tau[p_.knots[cell + 1]] - p_.tau[p_.knots[cell]];
+  }
+
+  void add_knots() {
+    const std::size_t cells = p_.knots.size() - 1;
+    // Knots that fill up stand at u = 1 and weigh nothing.
+    std::fill_n(lanes_.first, lanes_.stride, 0.5);
+    std::fill_n(lanes_.second, lanes_.stride, 0.5);
+    for (std::size_t i = 0; i <= cells; ++i) {
+      const double before = i > 0 ? h(i - 1) : 0, after = i < cells ? h(i) : 0;
+      lanes_.first[i] = after / (before + after);
+      lanes_.second[i] = before / (before + after);
+      lanes_.slope[i] = 2 / (before + after);
+      lanes_.weight[i] = 0.5 * (before + after);
+      lanes_.by_u_max[i] = 1 / p_.u_max[i];
+      if (i > 0) lanes_.before[i] = 1 / before;
+      if (i == cells) continue;
+      lanes_.after[i] = 1 / after;
+      lanes_.eighth[i] = after / 8;
+      lanes_.middle_time[i] = 4 * after / 6;
+    }
+  }
+
+  void add_rows() {
+    const std::size_t knots = p_.knots.size();
+    for (std::size_t i = 0; i < knots; ++i) {
+      for (std::size_t r = 0; r < p_.a_rows; ++r) {
+        const std::size_t from = i * p_.a_rows + r, to = r * lanes_.stride + i;
+        lanes_.a_a[to] = p_.a_a[from];
+        lanes_.v_a[to] = 0.5 * p_.v_a[from];
+        lanes_.root_a[to] = p_.root_a[from];
+        lanes_.still[to] = p_.still[from];
+      }
+      for (std::size_t r = 0; r < p_.rows; ++r) {
+        const std::size_t to = r * lanes_.stride + i;
+        if (i + 1 < knots) {
+          const std::size_t from = 2 * i * p_.rows + r;
+          lanes_.j_after[to] = p_.j_j[from];
+          lanes_.a_after[to] = 1.5 * p_.a_j[from];
+          lanes_.v_after[to] = 0.5 * p_.v_j[from];
+        }
+        if (i == 0) continue;
+        const std::size_t from = (2 * i - 1) * p_.rows + r;
+        lanes_.j_before[to] = p_.j_j[from];
+        lanes_.a_before[to] = 1.5 * p_.a_j[from];
+        lanes_.v_before[to] = 0.5 * p_.v_j[from];
+      }
+    }
+  }
+
+  const RetimeProblem& p_;
+  RetimeLanes lanes_{};
+  std::vector<double> memory_;
 };
 
 /// Interior-point method over the coefficients of a quadratic B-spline, of which each cell knows
@@ -29,20 +121,22 @@ struct Local {
 class Solver {
  public:
   explicit Solver(const RetimeProblem& problem)
-      : p_(problem), cells_(problem.knots.size() - 1), c_(cells_ + 2) {
-    knots_.resize(cells_ + 1);
-    for (std::size_t i = 0; i <= cells_; ++i) {
-      const double before = i > 0 ? h(i - 1) : 0, after = i < cells_ ? h(i) : 0;
-      knots_[i] = {after / (before + after), before / (before + after), 2 / (before + after),
-                   0.5 * (before + after)};
-    }
-  }
+      : p_(problem),
+        layout_(problem),
+        kernels_(retime_kernels()),
+        cells_(problem.knots.size() - 1),
+        c_(layout_.lanes().stride + RetimeLanes::kRoom, 1.0),
+        trial_(c_),
+        g_(cells_ + 2),
+        step_(cells_ + 2),
+        hessian_(cells_ + 2) {}
 
   TimeLaw solve() {
     constexpr double kFirst = 1, kLast = 3e-7, kShrink = 0.1;
     constexpr int kSteps = 12;  // for each weight of the barrier at most
-    std::fill(c_.begin(), c_.end(), even_start());
+    std::fill_n(c_.begin(), cells_ + 2, even_start());
     for (double mu = kFirst; mu > kLast; mu *= kShrink) {
+      value_ = kernels_.value(layout_.lanes(), c_.data(), mu);
       for (int step = 0; step < kSteps && newton(mu); ++step) {
       }
     }
@@ -50,22 +144,6 @@ class Solver {
   }
 
  private:
-  /// What a knot is made of: u = first c[i] + second c[i+1], u' = slope (c[i+1] - c[i]).
-  struct Knot {
-    double first, second, slope;
-    double weight;  // [s] of time it stands for
-  };
-
-  [[nodiscard]] double h(std::size_t cell) const {
-    return p_.tau[p_.knots[cell + 1]] - p_.tau[p_.knots[cell]];
-  }
-  static double u(const std::vector<double>& c, const Knot& k, std::size_t i) {
-    return k.first * c[i] + k.second * c[i + 1];
-  }
-  static double du(const std::vector<double>& c, const Knot& k, std::size_t i) {
-    return k.slope * (c[i + 1] - c[i]);
-  }
-
   /// An even u that is well within all bounds.
   [[nodiscard]] double even_start() const {
     double least = *std::min_element(p_.u_max.begin(), p_.u_max.end());
@@ -77,149 +155,53 @@ class Solver {
     return 0.5 * least;
   }
 
-  /// Value of the objective with the barrier; infinite where a bound is broken.
-  [[nodiscard]] double value(const std::vector<double>& c, double mu) const {
-    double sum = 0;
-    for (std::size_t i = 0; i <= cells_; ++i) {
-      const double at = u(c, knots_[i], i), slope = du(c, knots_[i], i);
-      double slack = 1 - at / p_.u_max[i];
-      if (!(at > 0) || !(slack > 0)) return kInfinite;
-      const double root = std::sqrt(at);
-      const std::size_t row = i * p_.a_rows;
-      for (std::size_t r = row; r < row + p_.a_rows; ++r) {
-        const double a =
-            p_.a_a[r] * at + 0.5 * p_.v_a[r] * slope + p_.root_a[r] * root + p_.still[r];
-        const double left = 1 - a * a;
-        if (!(left > 0)) return kInfinite;
-        slack *= left;
-      }
-      for (const bool after : {false, true}) {
-        if (after ? i == cells_ : i == 0) continue;
-        const double bend = curvature(c, after ? i : i - 1);
-        const std::size_t side = (after ? 2 * i : 2 * i - 1) * p_.rows;
-        for (std::size_t r = side; r < side + p_.rows; ++r) {
-          const double j =
-              root * (p_.j_j[r] * at + 1.5 * p_.a_j[r] * slope + 0.5 * p_.v_j[r] * bend);
-          const double left = 1 - j * j;
-          if (!(left > 0)) return kInfinite;
-          slack *= left;
-        }
-      }
-      sum -= mu * knots_[i].weight * std::log(slack);
-      sum += time_weight(i) / root;
-      if (i < cells_) {
-        const double middle = u_middle(c, i);
-        if (!(middle > 0)) return kInfinite;
-        sum += 4 * h(i) / 6 / std::sqrt(middle);
-      }
-    }
-    return sum;
-  }
-
-  /// Simpson's rule, shared by the knots.
-  [[nodiscard]] double time_weight(std::size_t i) const { return knots_[i].weight / 3; }
-  [[nodiscard]] double u_middle(const std::vector<double>& c, std::size_t cell) const {
-    return 0.5 * (u(c, knots_[cell], cell) + u(c, knots_[cell + 1], cell + 1)) +
-           h(cell) / 8 * (du(c, knots_[cell], cell) - du(c, knots_[cell + 1], cell + 1));
-  }
-  [[nodiscard]] double curvature(const std::vector<double>& c, std::size_t cell) const {
-    return (du(c, knots_[cell + 1], cell + 1) - du(c, knots_[cell], cell)) / h(cell);
-  }
-
-  /// Adds a local model to the system, given u, u' and u'' there by three neighbouring
-  /// coefficients.
-  void add(const Local& local, const std::array<std::array<double, 3>, 3>& by, std::size_t first) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      double sum = 0;
-      std::array<double, 3> column{};
-      for (std::size_t i = 0; i < 3; ++i) {
-        sum += local.g[i] * by[i][a];
-        for (std::size_t j = 0; j < 3; ++j) {
-          column[i] += (i >= j ? local.h[i][j] : local.h[j][i]) * by[j][a];
-        }
-      }
-      g_[first + a] += sum;
-      for (std::size_t b = 0; b <= a; ++b) {
-        double entry = 0;
-        for (std::size_t i = 0; i < 3; ++i) entry += by[i][b] * column[i];
-        hessian_[first + a][a - b] += entry;
-      }
-    }
-  }
-
-  /// Terms at a knot seen from one of its cells: jerks there, and the rest if `all`.
-  [[nodiscard]] Local local_at(std::size_t i, bool after, bool all, double mu) const {
-    const double at = u(c_, knots_[i], i), slope = du(c_, knots_[i], i);
-    const double bend = curvature(c_, after ? i : i - 1);
-    const double root = std::sqrt(at), weight = mu * knots_[i].weight;
-    Local local;
-    const std::size_t side = (after ? 2 * i : 2 * i - 1) * p_.rows;
-    for (std::size_t r = side; r < side + p_.rows; ++r) {
-      const double by_slope = 1.5 * p_.a_j[r], by_bend = 0.5 * p_.v_j[r];
-      const double inner = p_.j_j[r] * at + by_slope * slope + by_bend * bend;
-      const double x = root * inner, left = 1 / (1 - x * x);
-      local.add(weight * 2 * x * left, weight * 2 * (1 + x * x) * left * left,
-                {0.5 * inner / root + root * p_.j_j[r], root * by_slope, root * by_bend});
-    }
-    if (!all) return local;
-    for (std::size_t r = i * p_.a_rows; r < (i + 1) * p_.a_rows; ++r) {
-      const double x = p_.a_a[r] * at + 0.5 * p_.v_a[r] * slope + p_.root_a[r] * root + p_.still[r];
-      const double left = 1 / (1 - x * x);
-      local.add(weight * 2 * x * left, weight * 2 * (1 + x * x) * left * left,
-                {p_.a_a[r] + 0.5 * p_.root_a[r] / root, 0.5 * p_.v_a[r], 0});
-    }
-    const double free = 1 / (p_.u_max[i] - at), time = time_weight(i) / root;
-    local.add(weight * free - 0.5 * time / at, weight * free * free + 0.75 * time / (at * at),
-              {1, 0, 0});
-    return local;
-  }
-
+  /// Puts what the knots about each coefficient say of it together.
   void build(double mu) {
-    g_.assign(cells_ + 2, 0.0);
-    hessian_.assign(cells_ + 2, {});
-    for (std::size_t k = 0; k < cells_; ++k) {
-      const Knot &first = knots_[k], &last = knots_[k + 1];
-      const double a = first.slope / h(k), b = last.slope / h(k);
-      const std::array<double, 3> bend{a, -a - b, b};
-      add(local_at(k, true, true, mu),
-          {{{first.first, first.second, 0}, {-first.slope, first.slope, 0}, bend}}, k);
-      add(local_at(k + 1, false, k + 1 == cells_, mu),
-          {{{0, last.first, last.second}, {0, -last.slope, last.slope}, bend}}, k);
-      const double middle = u_middle(c_, k), time = 4 * h(k) / 6 / std::sqrt(middle);
-      Local local;
-      local.add(-0.5 * time / middle, 0.75 * time / (middle * middle), {1, 0, 0});
-      const double part = h(k) / 8;
-      add(local,
-          {{{0.5 * first.first - part * first.slope,
-             0.5 * (first.second + last.first) + part * (first.slope + last.slope),
-             0.5 * last.second - part * last.slope},
-            {},
-            {}}},
-          k);
+    kernels_.model(layout_.lanes(), c_.data(), mu);
+    const RetimeLanes& l = layout_.lanes();
+    // Knot i knows coefficients i - 1 to i + 2; there is none before the first.
+    for (std::size_t m = 0; m < g_.size(); ++m) {
+      g_[m] = l.g[0][m + 1] + l.g[1][m];
+      auto& row = hessian_[m];
+      row = {l.diagonal[0][m + 1] + l.diagonal[1][m], 0, 0};
+      if (m >= 1) {
+        g_[m] += l.g[2][m - 1];
+        row[0] += l.diagonal[2][m - 1];
+        row[1] = l.next[0][m] + l.next[1][m - 1];
+        row[2] = l.skip[0][m - 1];
+      }
+      if (m < 2) continue;
+      g_[m] += l.g[3][m - 2];
+      row[0] += l.diagonal[3][m - 2];
+      row[1] += l.next[2][m - 2];
+      row[2] += l.skip[1][m - 2];
     }
   }
 
-  /// Solves hessian * step = -g by Cholesky's method.
+  /// Solves hessian * step = -g by Cholesky's method, L D L^T: one division a row.
   void solve_banded() {
     const std::size_t n = g_.size();
-    step_.assign(n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
-      auto& row = hessian_[i];  // of the factor from here on
-      if (i >= 2) row[2] /= hessian_[i - 2][0];
-      if (i >= 1) {
-        const double twice = i >= 2 ? row[2] * hessian_[i - 1][1] : 0;
-        row[1] = (row[1] - twice) / hessian_[i - 1][0];
-      }
-      row[0] = std::sqrt(std::max(row[0] - row[1] * row[1] - row[2] * row[2], 1e-300));
+      auto& row = hessian_[i];  // from here on 1 / D, and L to its left
+      const double second = row[2], first = i >= 2 ? row[1] - hessian_[i - 1][1] * second : row[1];
       double right = -g_[i];
-      if (i >= 1) right -= row[1] * step_[i - 1];
-      if (i >= 2) right -= row[2] * step_[i - 2];
-      step_[i] = right / row[0];
+      if (i >= 2) {
+        row[2] = second * hessian_[i - 2][0];
+        row[0] -= row[2] * second;
+        right -= row[2] * step_[i - 2];
+      }
+      if (i >= 1) {
+        row[1] = first * hessian_[i - 1][0];
+        row[0] -= row[1] * first;
+        right -= row[1] * step_[i - 1];
+      }
+      row[0] = 1 / std::max(row[0], 1e-300);
+      step_[i] = right;
     }
     for (std::size_t i = n; i-- > 0;) {
+      step_[i] *= hessian_[i][0];
       if (i + 1 < n) step_[i] -= hessian_[i + 1][1] * step_[i + 1];
       if (i + 2 < n) step_[i] -= hessian_[i + 2][2] * step_[i + 2];
-      step_[i] /= hessian_[i][0];
     }
   }
 
@@ -229,19 +211,29 @@ class Solver {
     build(mu);
     solve_banded();
     double gain = 0;  // of the linear model for the whole step
-    for (std::size_t i = 0; i < c_.size(); ++i) gain -= g_[i] * step_[i];
-    const double now = value(c_, mu);
+    for (std::size_t i = 0; i < g_.size(); ++i) gain -= g_[i] * step_[i];
     if (!(gain > 0) || gain < 1e-3 * mu * (p_.tau.back() - p_.tau.front())) return false;
-    std::vector<double> trial(c_.size());
     double share = 1;
     for (int k = 0; k < kHalvings; ++k, share *= 0.5) {
-      for (std::size_t i = 0; i < c_.size(); ++i) trial[i] = c_[i] + share * step_[i];
-      if (value(trial, mu) <= now - 1e-4 * share * gain) {
-        c_.swap(trial);
-        return true;
-      }
+      for (std::size_t i = 0; i < step_.size(); ++i) trial_[i] = c_[i] + share * step_[i];
+      const double value = kernels_.value(layout_.lanes(), trial_.data(), mu);
+      if (!(value <= value_ - 1e-4 * share * gain)) continue;
+      c_.swap(trial_);
+      value_ = value;
+      return true;
     }
     return false;
+  }
+
+  /// u, u' at knot `i`, and u'' of cell `i`.
+  [[nodiscard]] double u(std::size_t i) const {
+    return layout_.lanes().first[i] * c_[i] + layout_.lanes().second[i] * c_[i + 1];
+  }
+  [[nodiscard]] double du(std::size_t i) const {
+    return layout_.lanes().slope[i] * (c_[i + 1] - c_[i]);
+  }
+  [[nodiscard]] double curvature(std::size_t i) const {
+    return (du(i + 1) - du(i)) * layout_.lanes().after[i];
   }
 
   [[nodiscard]] TimeLaw law() const {
@@ -250,10 +242,10 @@ class Solver {
                                   -0.9061798459386640};
     constexpr double kWeights[5] = {0.5688888888888889, 0.4786286704993665, 0.4786286704993665,
                                     0.2369268850561891, 0.2369268850561891};
-    TimeLaw law{{0}, {u(c_, knots_[0], 0)}, {du(c_, knots_[0], 0)}};
+    TimeLaw law{{0}, {u(0)}, {du(0)}};
     for (std::size_t k = 0; k < cells_; ++k) {
       const std::size_t first = p_.knots[k], last = p_.knots[k + 1];
-      const double at = law.u[first], slope = law.du[first], bend = curvature(c_, k);
+      const double at = law.u[first], slope = law.du[first], bend = curvature(k);
       double from = 0;
       for (std::size_t i = first + 1; i <= last; ++i) {
         const double to = p_.tau[i] - p_.tau[first], half = 0.5 * (to - from);
@@ -267,17 +259,20 @@ class Solver {
         law.du.push_back(slope + bend * to);
         from = to;
       }
-      law.u.back() = u(c_, knots_[k + 1], k + 1);
-      law.du.back() = du(c_, knots_[k + 1], k + 1);
+      law.u.back() = u(k + 1);
+      law.du.back() = du(k + 1);
     }
     return law;
   }
 
   const RetimeProblem& p_;
+  Layout layout_;
+  RetimeKernels kernels_;
   std::size_t cells_;
-  std::vector<Knot> knots_;
-  std::vector<double> c_, g_, step_;
+  std::vector<double> c_, trial_;  // as long as kernels read
+  std::vector<double> g_, step_;
   std::vector<std::array<double, 3>> hessian_;  // row i: diagonal, then one and two to its left
+  double value_ = 0;                            // at c_
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/messages/trajectory.hpp"
+#include "mjarm/trajectory/kept_limits_internal.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 #include "mjarm/trajectory/via_points.hpp"
 
@@ -94,6 +95,8 @@ Result<void> read_waypoints(const JsonValue& object, Eigen::Index dof, TimeCase&
 
 Result<TimeCase> read_case(const JsonValue& object, Eigen::Index dof, TimeProblem problem) {
   if (!object.is_object()) return fail(Errc::bad_input, text(msg::json_no_object));
+  constexpr std::string_view kKnown[] = {"id", "q0", "q1", "v0", "v1", "a0", "a1", "waypoints"};
+  if (Result<void> fine = check_keys(object, kKnown); !fine) return fail(std::move(fine.error()));
   TimeCase entry;
   Result<std::string> id = id_of(object);
   if (!id) return fail(std::move(id.error()));
@@ -164,7 +167,11 @@ Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits, T
     return std::move(motion->trajectory);
   }
   torque.jerk_limits = problem == TimeProblem::path_vaj;
-  return time_waypoint_path(entry.waypoints, limits, torque);
+  return time_waypoint_path(entry.waypoints, limits, torque).and_then([&](Trajectory motion) {
+    return detail::check_kept(motion, limits, torque.jerk_limits).map([&] {
+      return std::move(motion);
+    });
+  });
 }
 
 }  // namespace mjarm

@@ -45,10 +45,18 @@ Result<ToolMotion, MotionFailure> plan_tool_motion(const IkSolver& ik, const Cur
   if (options.keep_speed) follow.path.tool_speed = options.timing.tool_speed;
   Result<JointPath, PathFailure> path = solve_curve(ik, curve, q_start, follow);
   if (!path) return fail(MotionFailure{std::move(path.error()), {}});
+  const StopCheck& stop = options.path.stop;
+  const auto ended = [] {
+    PathFailure failure;
+    failure.code = PathErrc::stopped;
+    return fail(MotionFailure{std::move(failure), {}});
+  };
+  if (is_stopped(stop)) return ended();
   Result<Trajectory> trajectory =
       time_tool_path(*path, curve.corners(), ik.arm().limits, options.timing);
   if (!trajectory) return fail(MotionFailure{{}, std::move(trajectory.error())});
   ToolMotion motion{curve, std::move(*path), std::move(*trajectory), {}};
+  if (is_stopped(stop)) return ended();
   motion.dips = find_speed_dips(ik, curve, motion.trajectory, options.timing);
   if (options.keep_speed && !motion.dips.empty())
     return fail(too_fast(ik.arm(), motion, options.timing.joint_share));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/trajectory.hpp"
+#include "mjarm/trajectory/kept_limits_internal.hpp"
 #include "mjarm/trajectory/limits_internal.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 #include "mjarm/trajectory/via_points_solver_internal.hpp"
@@ -34,11 +35,16 @@ Distinct without_repetitions(std::span<const JointVec> waypoints) {
   return distinct;
 }
 
-Result<ViaMotion> stopping_at_each(std::span<const JointVec> points, const detail::Bounds& bounds) {
+JointLimits limits_of(const detail::Bounds& bounds) {
   JointLimits limits;
   limits.velocity = bounds.v;
   limits.acceleration = bounds.a;
   limits.jerk = bounds.j;
+  return limits;
+}
+
+Result<ViaMotion> stopping_at_each(std::span<const JointVec> points, const detail::Bounds& bounds) {
+  const JointLimits limits = limits_of(bounds);
   std::vector<Trajectory> moves;
   ViaMotion motion{{}, {0}};
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -78,7 +84,7 @@ Result<Trajectory> trajectory_of(const detail::ViaSpline& spline,
   return Trajectory::chain(segments);
 }
 
-/// None where the optimiser fails, or rounding makes the motion miss a waypoint.
+/// None where the optimiser fails, or rounding makes the motion miss a waypoint or break a limit.
 std::optional<ViaMotion> optimised(std::span<const JointVec> points, const detail::Bounds& bounds,
                                    int iterations) {
   std::vector<JointVec> steps;
@@ -86,7 +92,7 @@ std::optional<ViaMotion> optimised(std::span<const JointVec> points, const detai
   const std::optional<detail::ViaSpline> spline = detail::fastest_via(steps, bounds, iterations);
   if (!spline) return std::nullopt;
   Result<Trajectory> trajectory = trajectory_of(*spline, points);
-  if (!trajectory) return std::nullopt;
+  if (!trajectory || !detail::check_kept(*trajectory, limits_of(bounds), true)) return std::nullopt;
   ViaMotion motion{*std::move(trajectory), {0}};
   for (const double h : spline->h) motion.times.push_back(motion.times.back() + detail::kCells * h);
   motion.times.back() = motion.trajectory.duration();

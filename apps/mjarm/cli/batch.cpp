@@ -10,7 +10,6 @@
 
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
@@ -20,45 +19,24 @@
 namespace mjarm::app {
 namespace {
 
-/// Standard output, or a file that appears at the end.
-class Output {
- public:
-  static Result<Output> open(const std::string& path) {
-    Output output;
-    if (path.empty() || path == "-") return output;
-    Result<AtomicFile> file = AtomicFile::create(path);
-    if (!file) return fail(std::move(file.error()));
-    output.file_ = std::move(*file);
-    return output;
-  }
-
-  /// @param now  somebody waits for this very line.
-  Result<void> write(std::string_view line, bool now) {
-    if (file_) return file_->write(line);
-    const bool written = std::fwrite(line.data(), 1, line.size(), stdout) == line.size();
-    if (written && (!now || std::fflush(stdout) == 0)) return {};
-    return fail(Errc::system, text(msg::core_cannot_write, "stdout", system_message(errno)));
-  }
-
-  Result<void> finish() { return file_ ? file_->commit() : Result<void>{}; }
-
- private:
-  std::optional<AtomicFile> file_;
-};
-
 /// One request on its way.
 struct Line {
   std::string request, place, answer;
   Result<std::optional<std::string>> done;
 };
 
-/// Up to `count` requests; after an error those before it.
+constexpr std::size_t kBlock = 4096;                       // most requests of a block
+constexpr std::size_t kBlockBytes = std::size_t{1} << 24;  // and of all of them together
+
+/// Up to `count` requests, fewer where they are long; after an error those before it.
 Result<void> read_block(LineReader& reader, std::size_t count, std::vector<Line>& lines) {
   lines.clear();
-  while (lines.size() < count) {
+  std::size_t bytes = 0;
+  while (lines.size() < count && bytes < kBlockBytes) {
     const Result<std::optional<std::string_view>> request = reader.next();
     if (!request) return fail(request.error());
     if (!*request) break;
+    bytes += (*request)->size();
     lines.push_back({std::string(**request), reader.place(), {}, {}});
   }
   return {};
@@ -76,6 +54,24 @@ void answer_block(const AnswerLine& answer, int threads, std::vector<Line>& line
 
 }  // namespace
 
+Result<AnswerOutput> AnswerOutput::open(const std::string& path) {
+  AnswerOutput output;
+  if (path.empty() || path == "-") return output;
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return fail(std::move(file.error()));
+  output.file_ = std::move(*file);
+  return output;
+}
+
+Result<void> AnswerOutput::write(std::string_view piece, bool now) {
+  if (file_) return file_->write(piece);
+  const bool written = std::fwrite(piece.data(), 1, piece.size(), stdout) == piece.size();
+  if (written && (!now || std::fflush(stdout) == 0)) return {};
+  return fail(Errc::system, text(msg::core_cannot_write, "stdout", system_message(errno)));
+}
+
+Result<void> AnswerOutput::finish() { return file_ ? file_->commit() : Result<void>{}; }
+
 void add_batch_options(CLI::App& app, BatchOptions& options) {
   add_option(app, "--in", options.in, msg::app_option_in, "FILE");
   add_option(app, "--out", options.out, msg::app_option_out, "FILE");
@@ -90,12 +86,13 @@ Result<BatchResult> run_batch(const BatchOptions& options, const std::string& la
                               const AnswerLine& answer) {
   Result<LineReader> reader = LineReader::open(options.in, options.longest_line);
   if (!reader) return fail(std::move(reader.error()));
-  Result<Output> output = Output::open(options.out);
+  Result<AnswerOutput> output = AnswerOutput::open(options.out);
   if (!output) return fail(std::move(output.error()));
   Progress progress(label, reader->count_lines());
   // Somebody may wait for each line of a stream; a file is taken in blocks that feed the threads.
   const bool stream = reader->is_stream() || options.threads <= 1;
-  const std::size_t block = stream ? 1 : 64 * static_cast<std::size_t>(options.threads);
+  const std::size_t block =
+      stream ? 1 : std::min(kBlock, 64 * static_cast<std::size_t>(options.threads));
   BatchResult result;
   std::vector<Line> lines;
   do {
@@ -121,7 +118,7 @@ Result<BatchResult> run_batch(const BatchOptions& options, const std::string& la
 }
 
 Result<void> write_answer(const std::string& out, const std::string& answer) {
-  Result<Output> output = Output::open(out);
+  Result<AnswerOutput> output = AnswerOutput::open(out);
   if (!output) return fail(std::move(output.error()));
   if (Result<void> written = output->write(answer + "\n", true); !written) return written;
   return output->finish();

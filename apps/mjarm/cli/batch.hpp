@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "apps/mjarm/cli/options.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/line_reader.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
@@ -49,6 +50,21 @@ struct BatchResult {
 /// @return an error that begins with `file:line:` at the first malformed request.
 [[nodiscard]] Result<BatchResult> run_batch(const BatchOptions& options, const std::string& label,
                                             const AnswerLine& answer);
+
+/// Where answers go piece by piece: standard output, or a file that appears at the end.
+class AnswerOutput {
+ public:
+  /// @param path  a file, `-` or empty.
+  [[nodiscard]] static Result<AnswerOutput> open(const std::string& path);
+  /// @param now  somebody waits for this very piece.
+  [[nodiscard]] Result<void> write(std::string_view piece, bool now);
+  /// Call once, last: a file takes its place.
+  [[nodiscard]] Result<void> finish();
+
+ private:
+  AnswerOutput() = default;
+  std::optional<AtomicFile> file_;
+};
 
 /// Writes the answer to a single request, one line, to `out` (a file, `-` or empty).
 [[nodiscard]] Result<void> write_answer(const std::string& out, const std::string& answer);

@@ -74,9 +74,21 @@ std::vector<std::string> option_names(const CLI::App* app) {
   return names;
 }
 
+/// The option that the parser's words are about; empty where they name none.
+std::string option_in(const std::string& words) {
+  const std::size_t begin = words.find("--");
+  if (begin == std::string::npos) return {};
+  return words.substr(begin, words.find_first_of(" :=,", begin) - begin);
+}
+
 /// What the parser complains about, as one line of ours.
 Error usage_error(const CLI::ParseError& error) {
   const std::string what = error.what();
+  // Values of options are text to the parser; what it can convert or not is a flag's.
+  const bool of_flag = error.get_name() == "ConversionError" || error.get_name() == "InvalidError";
+  if (const std::string flag = option_in(what); of_flag && !flag.empty()) {
+    return {Errc::usage, text(msg::app_flag_value, flag)};
+  }
   if (error.get_name() == "ArgumentMismatch") {
     const std::string option = what.substr(0, what.find(':'));
     const bool repeated = what.find("received") != std::string::npos;
@@ -86,25 +98,51 @@ Error usage_error(const CLI::ParseError& error) {
   return {Errc::usage, text(msg::app_bad_usage, what)};
 }
 
+bool is_option(const std::string& word) { return word.size() >= 2 && word[0] == '-'; }
+
+/// An option that took the one after it for its value, because its own was left out.
+std::optional<Error> missing_value(const CLI::App& app) {
+  const std::vector<std::string> known = option_names(&innermost(app));
+  const auto is_known = [&](const std::string& word) {
+    return std::ranges::find(known, word.substr(0, word.find('='))) != known.end();
+  };
+  for (const CLI::App* at = &innermost(app); at != nullptr; at = at->get_parent()) {
+    for (const CLI::Option* option : at->get_options()) {
+      if (option->get_positional() || option->get_type_size() == 0) continue;
+      if (std::ranges::none_of(option->results(), is_known)) continue;
+      return Error{Errc::usage, text(msg::app_option_needs_value, option->get_name())};
+    }
+  }
+  return std::nullopt;
+}
+
 /// The first word of the parsed command line that nothing knows, with the nearest right one.
-std::optional<Error> unknown_words(const CLI::App& app) {
+/// @param literal  what stands after "--": nothing there is an option, whatever it looks like.
+std::optional<Error> unknown_words(const CLI::App& app, const std::vector<std::string>& literal) {
   const std::vector<std::string> unknown = app.remaining(true);
   if (unknown.empty()) return std::nullopt;
   const CLI::App& called = innermost(app);
-  // An option explains more than the values that were meant for it.
-  for (const std::string& word : unknown) {
-    if (word.size() < 2 || word[0] != '-') continue;
-    const std::string name = word.substr(0, word.find('='));
-    return Error{Errc::usage,
-                 text(msg::app_unknown_option, name) + did_you_mean(name, option_names(&called))};
-  }
-  const std::string& word = unknown.front();
-  const std::vector<std::string> known = subcommand_names(called);
-  if (!known.empty()) {
+  const std::vector<std::string> commands = subcommand_names(called);
+  const auto unknown_command = [&](const std::string& word) {
     return Error{Errc::usage, text(msg::app_unknown_command, word, full_name(called)) +
-                                  did_you_mean(word, known)};
+                                  did_you_mean(word, commands)};
+  };
+  // Of a command that is not known the options are not known either.
+  if (!commands.empty() && !is_option(unknown.front())) return unknown_command(unknown.front());
+  // An option explains more than the values that were meant for it.
+  const std::vector<std::string> options = option_names(&called);
+  for (const std::string& word : unknown) {
+    if (!is_option(word) || word == "--") continue;
+    const std::string name = word.substr(0, word.find('='));
+    if (std::ranges::find(literal, word) != literal.end()) {
+      return Error{Errc::usage, text(msg::app_unexpected_word, word, full_name(called))};
+    }
+    return Error{Errc::usage, text(msg::app_unknown_option, name) + did_you_mean(name, options)};
   }
-  return Error{Errc::usage, text(msg::app_unexpected_word, word, full_name(called))};
+  const auto word = std::ranges::find_if(unknown, [](const auto& it) { return it != "--"; });
+  if (word == unknown.end()) return std::nullopt;
+  if (!commands.empty()) return unknown_command(*word);
+  return Error{Errc::usage, text(msg::app_unexpected_word, *word, full_name(called))};
 }
 
 }  // namespace
@@ -153,6 +191,7 @@ AppPtr make_program(const std::string& name, Msg summary, Msg examples) {
 }
 
 Result<bool> parse(CLI::App& program, std::vector<std::string> arguments) {
+  const std::vector<std::string> literal(std::ranges::find(arguments, "--"), arguments.end());
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
   try {
     program.parse(std::move(arguments));
@@ -161,7 +200,8 @@ Result<bool> parse(CLI::App& program, std::vector<std::string> arguments) {
   } catch (const CLI::ParseError& error) {
     return fail(usage_error(error));
   }
-  if (const std::optional<Error> error = unknown_words(program)) return fail(*error);
+  if (const std::optional<Error> error = missing_value(program)) return fail(*error);
+  if (const std::optional<Error> error = unknown_words(program, literal)) return fail(*error);
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/model/joint_values.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -72,18 +73,8 @@ Result<std::vector<double>> parse_list(const std::string& option, const std::str
 
 Result<std::vector<double>> parse_joints(const std::string& option, const std::string& value,
                                          const Arm& arm) {
-  const std::vector<std::string_view> words = split_list(value);
-  const auto dof = static_cast<std::size_t>(arm.dof());
-  if (words.size() != dof) {
-    return fail(Errc::usage, text(msg::app_wrong_count, option, dof, words.size()));
-  }
-  std::vector<double> q;
-  for (std::size_t i = 0; i < dof; ++i) {
-    const bool hinge = arm.joints[i].type == JointType::hinge;
-    Result<double> joint = parse_quantity(words[i], hinge ? Quantity::angle : Quantity::length);
-    if (!joint) return fail(in_option(option, std::move(joint.error())));
-    q.push_back(*joint);
-  }
+  Result<std::vector<double>> q = parse_joint_values(value, arm);
+  if (!q) return fail(in_option(option, std::move(q.error())));
   return q;
 }
 
@@ -95,7 +86,13 @@ Result<PixelSize> parse_size(const std::string& option, std::string_view value) 
   if (crossed) left.remove_prefix(1);
   size.height = take_whole(left);
   const auto fits = [](int side) { return side >= 1 && side <= kMaxPixels; };
-  if (crossed && left.empty() && fits(size.width) && fits(size.height)) return size;
+  if (crossed && left.empty() && fits(size.width) && fits(size.height)) {
+    // A renderer keeps several samples a pixel: more would take gigabytes.
+    constexpr long long kMaxArea = 1LL << 24;
+    const long long area = 1LL * size.width * size.height;
+    if (area <= kMaxArea) return size;
+    return fail(Errc::usage, text(msg::app_many_pixels, option, value, area, kMaxArea));
+  }
   return fail(Errc::usage, text(msg::app_bad_size, option, value, kMaxPixels));
 }
 

@@ -113,7 +113,7 @@ TEST(Usage, AJointIsReadInWhatItMoves) {
 }
 
 TEST(Usage, SizesAreTwoWholeSides) {
-  for (const char* good : {"1x1", "8192x8192", "640X480", "0640x0480"}) {
+  for (const char* good : {"1x1", "4096x4096", "8192x2048", "640X480", "0640x0480"}) {
     EXPECT_TRUE(parse_size("--size", good)) << good;
   }
   const PixelSize size = parse_size("--size", "640x480").value();
@@ -126,6 +126,11 @@ TEST(Usage, SizesAreTwoWholeSides) {
               "--size: \"" + std::string(bad) +
                   "\" is no size; width and height from 1 to 8192 are expected, as 1280x720");
   }
+}
+
+TEST(Usage, PicturesThatWouldTakeGigabytesAreRefused) {
+  EXPECT_EQ(refusal(parse_size("--size", "8192x8192")),
+            "--size: \"8192x8192\" has 67108864 pixels, at most 16777216 are drawn, as 4096x4096");
 }
 
 TEST(Usage, AnErrorKeepsItsKindInsideAnOption) {

@@ -15,11 +15,25 @@ struct Options {
   bool json = false;
 };
 
+/// Lists what is wrong with a text that cannot even be planned; nothing where that is not it.
+void tell_text_faults(const Options& options) {
+  const auto file = program::find_program_file(options.file);
+  if (!file) return;
+  const auto faults = program::find_text_faults(*file);
+  if (!faults || faults->empty()) return;
+  const std::string out =
+      options.json ? faults_json(*faults).document() : faults_text(file->string(), *faults);
+  std::fputs(out.c_str(), stdout);
+}
+
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which));
   catch_interrupts();
-  const Result<program::LoadedProgram> loaded = program::load_program(options.file);
-  if (!loaded) return fail(loaded.error());
+  const Result<program::LoadedProgram> loaded = program::load_program(options.file, interrupted);
+  if (!loaded) {
+    tell_text_faults(options);
+    return fail(loaded.error());
+  }
   const std::string out = options.json ? plan_json(*loaded).document() : plan_text(*loaded);
   std::fputs(out.c_str(), stdout);
   if (!loaded->plan.ok()) return fail(program::first_fault(*loaded));

@@ -10,13 +10,14 @@
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file, out, episodes = "200";
+  std::string file, out, episodes = "200", least_success = "0.9";
   TaskArguments task{.task = "reach"};
   bool view = false, video = false, no_timing = false;
 };
@@ -40,10 +41,15 @@ Result<int> run(const Options& options) {
   if (*episodes == 0 || *episodes > kMaxEpisodes) {
     return fail(Errc::usage, text(msg::train_bad_episodes, kMaxEpisodes));
   }
+  const Result<double> least = parse_quantity(options.least_success, Quantity::number);
+  if (!least || !(*least >= 0 && *least <= 1)) {
+    return fail(Errc::usage, text(msg::train_bad_least, options.least_success));
+  }
   const Result<rl::TrainedPolicy> loaded = load(options);
   if (!loaded) return fail(loaded.error());
   PolicyTrial trial{.name = std::filesystem::path(options.file).stem().string(),
-                    .episodes = static_cast<int>(*episodes)};
+                    .episodes = static_cast<int>(*episodes),
+                    .least_success = *least};
   if (!options.task.seed.empty()) {
     const Result<std::uint64_t> seed = parse_whole("--seed", options.task.seed);
     if (!seed) return fail(seed.error());
@@ -69,6 +75,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--task", options->task.task, msg::train_option_task, "reach");
   add_task_options(app, options->task);
   add_option(app, "--episodes", options->episodes, msg::train_option_episodes, "N");
+  add_option(app, "--least-success", options->least_success, msg::train_option_least, "SHARE");
   add_flag(app, "--view", options->view, msg::train_option_view);
   add_flag(app, "--video", options->video, msg::demo_option_video);
   add_option(app, "--out", options->out, msg::demo_option_out, "DIR");

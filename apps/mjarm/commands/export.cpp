@@ -36,7 +36,8 @@ Result<int> run(const Options& options) {
     return fail(Errc::usage, text(msg::motion_program_export_over, options.out));
   }
   catch_interrupts();
-  const Result<program::LoadedProgram> loaded = program::load_sound_program(options.file);
+  const Result<program::LoadedProgram> loaded =
+      program::load_sound_program(options.file, interrupted);
   if (!loaded) return fail(loaded.error());
   const Result<std::string> script = program::to_urscript(loaded->program, loaded->robot,
                                                           loaded->plan, {.version = MJARM_VERSION});

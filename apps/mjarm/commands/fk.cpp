@@ -12,6 +12,7 @@
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/model/joint_values.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -56,9 +57,14 @@ Result<int> run(const FkOptions& options) {
                              std::string& out) -> Result<std::optional<std::string>> {
     const Result<JsonObject> object = parse_json_object(request);
     if (!object) return fail(object.error());
+    constexpr std::string_view kKnown[] = {"q"};
+    if (Result<void> fine = check_keys(**object, kKnown); !fine)
+      return fail(std::move(fine.error()));
     const Result<std::vector<double>> q =
         number_list(**object, "q", static_cast<std::size_t>(arm.dof()));
     if (!q) return fail(q.error());
+    if (Result<void> fine = check_joint_units(*q, arm); !fine)
+      return fail(in_option("q", fine.error()));
     append_pose(out, fk(arm, *q));
     return std::nullopt;
   };

@@ -17,6 +17,7 @@
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/kinematics/self_motion.hpp"
+#include "mjarm/model/joint_values.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -52,6 +53,8 @@ Result<Request> read_request(std::string_view line, const IkSolver& ik) {
   const Arm& arm = ik.arm();
   const Result<JsonObject> object = parse_json_object(line);
   if (!object) return fail(object.error());
+  constexpr std::string_view kKnown[] = {"pos", "quat", "seed"};
+  if (Result<void> fine = check_keys(**object, kKnown); !fine) return fail(std::move(fine.error()));
   const Result<Pose> X_WT = goal_of(**object, ik.options().task);
   if (!X_WT) return fail(X_WT.error());
   if (!(*object)->contains("seed")) {
@@ -60,6 +63,9 @@ Result<Request> read_request(std::string_view line, const IkSolver& ik) {
   Result<std::vector<double>> q_seed =
       number_list(**object, "seed", static_cast<std::size_t>(arm.dof()));
   if (!q_seed) return fail(std::move(q_seed.error()));
+  if (Result<void> fine = check_joint_units(*q_seed, arm); !fine) {
+    return fail(in_option("seed", fine.error()));
+  }
   return Request{*X_WT, std::move(*q_seed)};
 }
 

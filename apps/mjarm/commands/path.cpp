@@ -16,6 +16,7 @@
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/path_measures.hpp"
@@ -78,7 +79,7 @@ std::optional<std::string> answer(const Job& job, const PathRequest& request, st
   const double us = watch.us();
   const JointPath& had = solved.path ? *solved.path : solved.path.error().partial;
   std::optional<PathMeasures> measures;
-  if (!had.q.empty()) measures = measure_path(arm, had.q, job.path.clearance);
+  if (!had.q.empty()) measures = measure_path(arm, had.q, job.path.clearance, job.path.stop);
   std::optional<std::string> why;
   if (solved.path) {
     append_path(out, *solved.path, *measures);
@@ -86,7 +87,8 @@ std::optional<std::string> answer(const Job& job, const PathRequest& request, st
     why = describe(solved.path.error(), arm);
     append_path_failure(out, solved.path.error(), solved.fixes, arm, measures, job.partial);
     if (!request.curve) {
-      append_unreachable(out, unreachable_ranges(job.ik, request.poses, as_span(arm.home)));
+      append_unreachable(
+          out, unreachable_ranges(job.ik, request.poses, as_span(arm.home), job.path.stop));
     }
     if (!solved.fixes.empty()) {
       why = text(msg::path_command_mended, *why, describe(solved.fixes.front()));
@@ -148,6 +150,7 @@ Result<int> answer_one(const Job& job, const Options& options) {
   if (!request) return fail(request.error());
   std::string line;
   const std::optional<std::string> why = answer(job, *request, line);
+  if (interrupted()) return fail(stopped());
   return finish_one(options.batch.out, line, why, msg::path_command_impossible);
 }
 
@@ -156,7 +159,9 @@ Result<int> answer_all(const Job& job, const Options& options) {
                                std::string& out) -> Result<std::optional<std::string>> {
     const Result<PathRequest> request = read_request(line, job.ik.arm());
     if (!request) return fail(request.error());
-    return answer(job, *request, out);
+    std::optional<std::string> why = answer(job, *request, out);
+    if (interrupted()) return fail(stopped());
+    return why;
   };
   const auto done = run_batch(options.batch, text(msg::path_command_progress), answer_line);
   if (!done) return fail(done.error());
@@ -166,17 +171,18 @@ Result<int> answer_all(const Job& job, const Options& options) {
 Result<PathOptions> path_options(const Options& options, const Robot& robot) {
   PathOptions path;
   path.keep_start = options.keep_start;
+  path.stop = interrupted;
   if (options.collisions) path.clearance = clearance_check({robot.model, robot.arm});
   if (!options.tilt.empty()) {
     const Result<double> tilt = parse_quantity(options.tilt, Quantity::angle);
     if (!tilt) return fail(in_option("--orientation-tol", tilt.error()));
-    if (Result<void> fine = check_tilt(*tilt); !fine) return fail(std::move(fine.error()));
+    if (!check_tilt(*tilt)) return fail(Errc::bad_input, text(msg::path_command_bad_tilt));
     path.orientation_tol = *tilt;
   }
   if (options.max_step.empty()) return path;
   const Result<double> step = parse_quantity(options.max_step, Quantity::angle);
   if (!step) return fail(in_option("--max-step", step.error()));
-  if (!(*step > 0)) return fail(Errc::bad_input, text(msg::path_request_max_step));
+  if (!(*step > 0)) return fail(Errc::bad_input, text(msg::path_command_bad_step));
   path.max_step = *step;
   return path;
 }

@@ -145,6 +145,7 @@ Result<int> run(const Options& options) {
   const Result<std::optional<session::PlanShow>> show = read_plan_show(options.show);
   if (!show) return fail(show.error());
   plan->keep_trees = show->has_value();
+  plan->stop = interrupted;
   if (is_given(options.request)) {
     if (!options.problem.empty()) {
       return fail(Errc::usage, text(msg::app_exclusive_options, "--robot", "--problem"));

@@ -14,6 +14,7 @@
 #include "apps/mjarm/messages/plan.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/planning/goal_region.hpp"
 #include "mjarm/planning/plan_answer.hpp"
@@ -213,6 +214,7 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   if (!world) return fail(std::move(world.error()));
   PlanTimes times;
   const Result<WorldPath, WorldFailure> found = find_way(*world, *way, how, times);
+  if (interrupted()) return fail(stopped());
   const WorldErrc code = found ? WorldErrc::no_path : found.error().code;
   if (code == WorldErrc::bad_model) return fail(Errc::bad_input, found.error().what);
   const Result<const WorldLevel*> level = world->level(found ? found->level : found.error().level);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/output_folder.hpp"
+#include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/session/policy_player.hpp"
@@ -120,9 +124,23 @@ Report report_of(const PolicyTrial& trial, const Model& model, const rl::ReachOp
   report.ok = evaluation.within_2cm >= trial.least_success;
   if (!report.ok) {
     report.reason = "goals_missed";
-    report.detail = in_words(evaluation);
+    report.detail = text(msg::train_missed, missed_of(evaluation), evaluation.episodes,
+                         100 * trial.least_success, in_words(evaluation));
   }
   return report;
+}
+
+/// The evaluation, with a progress bar; ended by interrupts.
+Result<rl::Evaluation> judged(const Model& model, const rl::TrainedPolicy& loaded,
+                              const PolicyTrial& trial) {
+  rl::EvaluateOptions how{.episodes = trial.episodes, .seed = trial.seed, .stop = interrupted};
+  std::optional<Progress> progress;
+  std::int64_t told = 0;
+  how.progress = [&](std::int64_t done, std::int64_t max) {
+    if (!progress) progress.emplace(text(msg::train_judging), static_cast<std::uint64_t>(max));
+    progress->advance(static_cast<std::uint64_t>(done - std::exchange(told, done)));
+  };
+  return rl::evaluate(model, loaded.task, loaded.policy, how);
 }
 
 }  // namespace
@@ -131,19 +149,23 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
                                  const session::StageOptions& options) {
   const Result<Model> model = rl::reach_model(loaded.task);
   if (!model) return fail(model.error());
-  if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
+  // What does not fit the task is refused before a folder is made for it.
+  Result<PolicyPlayer> player =
+      PolicyPlayer::create(*model, loaded.task, loaded.policy, trial.seed);
+  if (!player) {
+    return fail(player.error().code, loaded.file.string() + ": " + player.error().what);
+  }
+  const Result<OutputFolder> folder = OutputFolder::open(options.out);
+  if (!folder) return fail(folder.error());
   const Stopwatch watch;
-  auto evaluation = rl::evaluate(*model, loaded.task, loaded.policy,
-                                 {.episodes = trial.episodes, .seed = trial.seed});
+  auto evaluation = judged(*model, loaded, trial);
   if (!evaluation) {
+    if (interrupted()) return fail(evaluation.error());
     return fail(evaluation.error().code, loaded.file.string() + ": " + evaluation.error().what);
   }
   const double seconds = 1e-6 * watch.us();
   log_info(in_words(*evaluation));
 
-  Result<PolicyPlayer> player =
-      PolicyPlayer::create(*model, loaded.task, loaded.policy, trial.seed);
-  if (!player) return fail(std::move(player.error()));
   Result<session::RunShow> show =
       session::RunShow::open(*model, "mjarm " + trial.name, options.headless);
   if (!show) return fail(std::move(show.error()));

@@ -63,7 +63,53 @@ JsonDoc move_json(const program::ProgramPlan& plan, const PlannedMove& move) {
   return out;
 }
 
+JsonDoc fault_json(const program::ProgramFault& fault) {
+  return {{"line", fault.place.line},
+          {"column", fault.place.column},
+          {"instruction", fault.word},
+          {"reason", fault.reason},
+          {"detail", fault.what}};
+}
+
+/// As `path` gives it, and its kind.
+JsonDoc fix_json(const PathFix& fix) {
+  JsonDoc out = {{"kind", std::string(name(fix.kind))}};
+  const auto list = [](const auto& values) {
+    return std::vector<double>(values.begin(), values.end());
+  };
+  switch (fix.kind) {
+    case FixKind::start:
+      out.set("start", list(fix.start));
+      break;
+    case FixKind::shift:
+      out.set("shift", list(fix.change.shift));
+      break;
+    case FixKind::tilt:
+      out.set("tilt", list(fix.change.tilt));
+      break;
+    case FixKind::max_step:
+      out.set("max_step", fix.max_step);
+      break;
+    case FixKind::slower:
+      out.set("slower", fix.tool_speed);
+      break;
+  }
+  return out;
+}
+
 }  // namespace
+
+std::string faults_text(const std::string& file, const std::vector<program::ProgramFault>& faults) {
+  std::string out;
+  for (const program::ProgramFault& fault : faults) out += line_of(file, fault) + "\n";
+  return out;
+}
+
+JsonDoc faults_json(const std::vector<program::ProgramFault>& faults) {
+  std::vector<JsonDoc> told;
+  for (const program::ProgramFault& fault : faults) told.push_back(fault_json(fault));
+  return {{"ok", false}, {"moves", std::vector<JsonDoc>()}, {"faults", std::move(told)}};
+}
 
 std::string plan_text(const program::LoadedProgram& loaded) {
   const program::ProgramPlan& plan = loaded.plan;
@@ -96,11 +142,8 @@ JsonDoc plan_json(const program::LoadedProgram& loaded) {
   std::vector<JsonDoc> moves, faults;
   for (const PlannedMove& move : plan.moves) moves.push_back(move_json(plan, move));
   for (const program::ProgramFault& fault : plan.faults) {
-    JsonDoc& told = faults.emplace_back(JsonDoc{{"line", fault.place.line},
-                                                {"column", fault.place.column},
-                                                {"instruction", fault.word},
-                                                {"reason", fault.reason},
-                                                {"detail", fault.what}});
+    JsonDoc& told = faults.emplace_back(fault_json(fault));
+    if (fault.fix) told.set("fix", fix_json(*fault.fix));
     if (!fault.detour) continue;
     JsonDoc fix = {{"kind", "detour"},
                    {"instruction", "plan"},

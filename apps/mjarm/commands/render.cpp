@@ -69,7 +69,7 @@ Result<std::string> picture(const Model& model, const PictureRequest& options) {
 }
 
 Result<std::string> program_picture(const std::string& file, const PictureRequest& wanted) {
-  const Result<program::LoadedProgram> loaded = program::load_sound_program(file);
+  const Result<program::LoadedProgram> loaded = program::load_sound_program(file, interrupted);
   if (!loaded) return fail(loaded.error());
   const Result<render::Camera> camera = choose_camera(loaded->robot.model, wanted.camera);
   if (!camera) return fail(camera.error());

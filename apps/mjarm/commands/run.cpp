@@ -1,3 +1,4 @@
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -15,7 +16,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file, out, control, tolerance;
+  std::string file, out, control, tolerance, max_duration = "3600";
   bool headless = false, video = false, no_timing = false;
 };
 
@@ -41,15 +42,31 @@ Result<double> tolerance_of(const Options& options) {
   return value;
 }
 
+Result<double> max_duration_of(const Options& options) {
+  const Result<double> seconds = parse_quantity(options.max_duration, Quantity::time);
+  if (!seconds) return fail(in_option("--max-duration", seconds.error()));
+  if (!(*seconds > 0)) {
+    return fail(Errc::usage, text(msg::motion_program_max_duration, options.max_duration));
+  }
+  return seconds;
+}
+
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
   const Result<double> tolerance = tolerance_of(options);
   if (!tolerance) return fail(tolerance.error());
+  const Result<double> longest = max_duration_of(options);
+  if (!longest) return fail(longest.error());
   Result<session::StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
-  Result<program::LoadedProgram> loaded = program::load_sound_program(options.file);
+  Result<program::LoadedProgram> loaded = program::load_sound_program(options.file, interrupted);
   if (!loaded) return fail(loaded.error());
+  const double duration = loaded->plan.duration();
+  if (duration > *longest) {  // a slip of the pen, as a wait in milliseconds
+    return fail(Errc::usage, text(msg::motion_program_too_long, options.file, duration, *longest,
+                                  std::ceil(duration)));
+  }
   if (chosen->control) loaded->program.control = chosen->control;
   if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
   const Result<Report> report = view::beside_windows(
@@ -67,6 +84,8 @@ Run setup(CLI::App& app) {
   add_option(app, "--control", options->control, msg::demo_option_control, "MODE");
   add_option(app, "--tolerance", options->tolerance, msg::motion_program_option_tolerance,
              "LENGTH");
+  add_option(app, "--max-duration", options->max_duration, msg::motion_program_option_max_duration,
+             "S");
   add_flag(app, "--no-timing", options->no_timing, msg::demo_option_no_timing);
   return [options] { return run(*options); };
 }

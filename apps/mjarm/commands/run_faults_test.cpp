@@ -89,5 +89,28 @@ TEST(RunFaults, AFullDiskIsOneLineAndLeavesNoHalfFile) {
   }
 }
 
+TEST(RunFaults, AProgramOfDaysIsNotRunUnasked) {
+  const support::TempFolder folder;
+  const auto file =
+      folder.write("days.yaml", "robot: ur5e\nprogram:\n  - wait: 80000\n  - wait: 80000\n")
+          .string();
+  const auto result = mjarm({"run", file, "--headless", "--out", (folder.path() / "out").string()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(only_line(result), HasSubstr("--max-duration 160000"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST(RunFaults, TwoRunsInOneFolderAreRefusedByTheProcessThatHoldsIt) {
+  const support::TempFolder folder;
+  const auto result = disturbed(
+      folder, "echo $pid >&2; '" MJARM_PROGRAM "' run '" + (folder.path() / "cell.yaml").string() +
+                  "' --headless --out \"$out\"; echo second $? >&2; kill -INT $pid");
+  const auto lines = support::lines_of(result.err);
+  ASSERT_GE(lines.size(), 3U) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("process " + lines.front() + " works in this folder"));
+  EXPECT_THAT(result.err, HasSubstr("second 1"));
+  expect_whole_files(folder.path() / "out");
+}
+
 }  // namespace
 }  // namespace mjarm::app

@@ -24,7 +24,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr double kMaxSamples = 1e7;        // of one motion
+constexpr double kMaxNumbers = 2e7;        // in the samples of one motion, about 20 bytes each
 constexpr double kRounding = 1e-6;         // a limit may be passed by this share of it
 constexpr double kTorqueRounding = 1e-3;   // the same for torques
 constexpr std::size_t kLargest = 1 << 28;  // [bytes] of a file
@@ -50,12 +50,16 @@ void append_sample(JsonWriter& json, const Trajectory& motion, double t) {
   json.list().value(t).value(x.q).value(x.v).value(x.a).end_list();
 }
 
+/// Why the samples of a motion are not written; nothing where they are.
+std::optional<std::string> too_many_samples(const Trajectory& motion, double dt) {
+  const double most = std::floor(kMaxNumbers / (1 + 3 * motion.dof())), t = motion.duration();
+  if (t / dt <= most) return std::nullopt;
+  return text(msg::app_time_too_many, t, dt, most, t / most);
+}
+
 /// Appends samples every `dt` and at the end.
-Result<void> append_samples(std::string& out, const Trajectory& motion, double dt) {
+void append_samples(std::string& out, const Trajectory& motion, double dt) {
   const double duration = motion.duration();
-  if (duration / dt > kMaxSamples) {
-    return fail(Errc::impossible, text(msg::app_time_too_many, duration, dt));
-  }
   JsonWriter json(out);
   json.key("samples").list();
   for (long i = 0; static_cast<double>(i) * dt < duration; ++i) {
@@ -63,7 +67,6 @@ Result<void> append_samples(std::string& out, const Trajectory& motion, double d
   }
   append_sample(json, motion, duration);
   json.end_list();
-  return {};
 }
 
 /// Appends the worst use of each limit; returns what is beyond one.
@@ -98,12 +101,15 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
   const double us = watch.us();
   std::optional<std::string> why;
   std::string body;
+  bool sampled = false;
   if (motion) {
     JsonWriter(body).member("duration", motion->duration());
     if (job.check) why = append_check(body, *motion, job);
     if (job.dt > 0) {
-      if (Result<void> done = append_samples(body, *motion, job.dt); !done) {
-        why = done.error().what;
+      if (auto many = too_many_samples(*motion, job.dt)) {
+        why = std::move(many);
+      } else {
+        sampled = true;
       }
     }
   } else {
@@ -113,6 +119,10 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
   json.object().member("ok", !why);
   if (why) json.member("reason", *why);
   if (motion) out += ',' + body;
+  if (sampled) {  // they may be long: not copied
+    out += ',';
+    append_samples(out, *motion, job.dt);
+  }
   if (job.timing) json.member_us("us", us);
   json.end_object();
   return why;
@@ -136,6 +146,8 @@ Result<int> answer_all(Job job, const Options& options) {
   cases->limits.torque = job.limits.torque;
   job.limits = std::move(cases->limits);
   Progress progress(text(msg::app_time_progress), cases->cases.size());
+  Result<AnswerOutput> output = AnswerOutput::open(options.batch.out);
+  if (!output) return fail(std::move(output.error()));
   std::string out = "{";
   BatchResult result;
   for (const TimeCase& entry : cases->cases) {
@@ -147,12 +159,15 @@ Result<int> answer_all(Job job, const Options& options) {
       result.first_failure = options.batch.in;
       result.first_why = text(msg::app_time_case_failed, entry.id, *why);
     }
+    if (Result<void> written = output->write(out, false); !written) {
+      return fail(std::move(written.error()));
+    }
+    out.clear();
     progress.advance();
   }
-  out += '}';
-  if (Result<void> written = write_answer(options.batch.out, out); !written) {
-    return fail(std::move(written.error()));
-  }
+  const Result<void> written =
+      output->write(out + "}\n", true).and_then([&] { return output->finish(); });
+  if (!written) return fail(written.error());
   return finish_all(result, msg::app_time_some_failed);
 }
 

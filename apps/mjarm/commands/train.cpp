@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <system_error>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/usage.hpp"
@@ -18,6 +19,7 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/rl/reach_env.hpp"
@@ -30,7 +32,7 @@ namespace {
 struct Options {
   TaskArguments task;
   std::string config, resume, out, steps, seeds = "1";
-  bool print_config = false, no_timing = false, video = false;
+  bool overwrite = false, print_config = false, no_timing = false, video = false;
 };
 
 void add_fact(JsonDoc& doc, const Fact& fact) {
@@ -54,7 +56,6 @@ void tell(const rl::TrainingStep& step, double seconds) {
 Result<rl::Training> begin(const Model& model, const rl::TrainingOptions& options,
                            const std::filesystem::path& folder,
                            const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
-  if (auto made = make_folder(folder); !made) return fail(std::move(made.error()));
   Result<rl::Training> training = rl::Training::create(model, options, folder, ranks);
   if (!training || checkpoint.empty()) return training;
   if (auto resumed = training->resume(checkpoint); !resumed) return fail(resumed.error());
@@ -124,18 +125,43 @@ std::filesystem::path folder_of(const Options& options) {
   return folder.empty() ? "." : folder;
 }
 
+std::filesystem::path folder_of(const Options& options, std::uint64_t seeds, std::uint64_t seed) {
+  const std::filesystem::path out = folder_of(options);
+  return seeds > 1 ? out / ("seed-" + std::to_string(seed)) : out;
+}
+
+/// What a training took long to learn is not replaced unless that is asked for.
+Result<void> check_overwriting(const Options& options, const std::filesystem::path& folder) {
+  std::error_code code;
+  const std::filesystem::path from = std::filesystem::path(options.resume).parent_path();
+  const bool goes_on = !options.resume.empty() &&
+                       std::filesystem::equivalent(from.empty() ? "." : from, folder, code);
+  if (options.overwrite || goes_on) return {};
+  for (const char* const name : {rl::Training::kBest, rl::Training::kLast}) {
+    if (!std::filesystem::exists(folder / name, code)) continue;
+    return fail(Errc::usage, text(msg::train_would_overwrite, (folder / name).string(),
+                                  (folder / rl::Training::kLast).string()));
+  }
+  return {};
+}
+
 Result<int> train_seeds(const Options& options, const Model& model,
                         const rl::TrainingOptions& wanted, std::uint64_t seeds) {
   Result<std::unique_ptr<rl::Ranks>> ranks = join_processes();
   if (!ranks) return fail(std::move(ranks.error()));
   const bool first = *ranks == nullptr || (*ranks)->rank() == 0;
   std::vector<TrainedSeed> runs;
+  for (std::uint64_t i = 0; first && i < seeds; ++i) {
+    const auto folder = folder_of(options, seeds, wanted.ppo.seed + i);
+    if (auto fine = check_overwriting(options, folder); !fine) return fail(std::move(fine.error()));
+  }
   for (std::uint64_t i = 0; i < seeds && (runs.empty() || !runs.back().interrupted); ++i) {
     rl::TrainingOptions chosen = wanted;
     chosen.ppo.seed += i;
-    const std::filesystem::path out = folder_of(options);
-    const std::filesystem::path folder =
-        seeds > 1 ? out / ("seed-" + std::to_string(chosen.ppo.seed)) : out;
+    const std::filesystem::path folder = folder_of(options, seeds, chosen.ppo.seed);
+    std::optional<Result<OutputFolder>> held;  // by the first of several processes, for all
+    if (first) held = OutputFolder::open(folder);
+    if (held && !*held) return fail(std::move(held->error()));
     Result<TrainedSeed> trained = train(model, chosen, folder, options.resume, ranks->get());
     if (!trained) return fail(std::move(trained.error()));
     if (first) {
@@ -211,6 +237,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--out", options->out, msg::train_option_out, "DIR");
   add_option(app, "--steps", options->steps, msg::train_option_steps, "N");
   add_option(app, "--seeds", options->seeds, msg::train_option_seeds, "N");
+  add_flag(app, "--overwrite", options->overwrite, msg::train_option_overwrite);
   add_flag(app, "--video", options->video, msg::train_option_video);
   add_flag(app, "--print-config", options->print_config, msg::train_option_print_config);
   add_flag(app, "--no-timing", options->no_timing, msg::train_option_no_timing);

@@ -1,6 +1,7 @@
 #include "apps/mjarm/commands/train_outcome.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -17,6 +18,10 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 std::string in_words(const rl::Evaluation& evaluation) {
   return text(msg::train_outcome, 100 * evaluation.within_5cm, 100 * evaluation.within_2cm,
               100 * evaluation.within_1cm, 100 * evaluation.within_5mm, 1e3 * evaluation.median);
+}
+
+int missed_of(const rl::Evaluation& evaluation) {
+  return static_cast<int>(std::lround((1 - evaluation.within_2cm) * evaluation.episodes));
 }
 
 std::string evaluation_table(const rl::Evaluation& evaluation) {

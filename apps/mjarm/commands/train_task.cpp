@@ -1,6 +1,5 @@
 #include "apps/mjarm/commands/train_task.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "apps/mjarm/cli/usage.hpp"
@@ -49,9 +48,9 @@ Result<rl::TrainingOptions> with_task(const TaskArguments& arguments, rl::Traini
   }
   options.ppo.threads = rl::training_threads();
   if (!arguments.threads.empty()) {
-    const Result<std::uint64_t> threads = parse_whole("--threads", arguments.threads);
+    const Result<int> threads = parse_threads(arguments.threads);
     if (!threads) return fail(threads.error());
-    options.ppo.threads = static_cast<int>(std::min<std::uint64_t>(*threads, 1 << 20));
+    options.ppo.threads = *threads;
   }
   options.task.threads = options.ppo.threads;
   return options;

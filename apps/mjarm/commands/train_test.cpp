@@ -103,8 +103,9 @@ TEST(Train, LeavesAPolicyThatEvalTries) {
   EXPECT_EQ(report.at("steps"), 768);
   EXPECT_EQ(report.at("within").size(), 4U);
 
-  const auto tried = mjarm({"eval", path_in(folder, "out/best.safetensors"), "--episodes", "4",
-                            "--out", path_in(folder, "tried"), "--no-timing"});
+  const auto tried =
+      mjarm({"eval", path_in(folder, "out/best.safetensors"), "--episodes", "4", "--least-success",
+             "0", "--out", path_in(folder, "tried"), "--no-timing"});
   EXPECT_EQ(tried.exit_code, 0) << tried.err;
   EXPECT_THAT(tried.out, HasSubstr("within 2 cm"));
   const auto outcome = support::load_json(folder.path() / "tried" / "report.json");
@@ -280,7 +281,8 @@ TEST(Eval, TakesPoliciesOfStableBaselines) {
   const std::string zips = MJARM_MODELS "/../mjarm/rl/testdata/";
   const auto tried = mjarm({"eval", zips + "sb3_guide.zip", "--task", "reach", "--guide",
                             "--episodes", "3", "--out", path_in(folder, "tried")});
-  EXPECT_EQ(tried.exit_code, 0) << tried.err;
+  EXPECT_EQ(tried.exit_code, 1) << tried.out;
+  EXPECT_THAT(tried.err, HasSubstr("3 of 3 goals were missed by 2 cm or more, 90 % must be met"));
   const auto report = support::load_json(folder.path() / "tried" / "report.json");
   EXPECT_EQ(report.at("success"), 0);  // untrained
   EXPECT_EQ(report.at("actions"), 2000);
@@ -292,6 +294,24 @@ TEST(Eval, TakesPoliciesOfStableBaselines) {
               HasSubstr("broken.zip"));
   EXPECT_THAT(refused({"eval", folder.write("broken.safetensors", "12345678").string()}),
               HasSubstr("broken.safetensors"));
+}
+
+TEST(Train, AnEarlierTrainingIsNotReplacedUnasked) {
+  const support::TempFolder folder;
+  const auto config = folder.write("small.yaml", kSmall).string();
+  const std::vector<std::string> again{"train", "reach", "--config",
+                                       config,  "--out", path_in(folder, "first")};
+  ASSERT_EQ(mjarm(again).exit_code, 0);
+  const auto best = folder.read("first/best.safetensors");
+  const std::string told = refused(again);
+  EXPECT_THAT(told, HasSubstr("best.safetensors"));
+  EXPECT_THAT(told, HasSubstr("--resume"));
+  EXPECT_THAT(told, HasSubstr("--overwrite"));
+  EXPECT_EQ(folder.read("first/best.safetensors"), best);
+  auto meant = again;
+  meant.insert(meant.end(), {"--overwrite", "--seed", "5"});
+  ASSERT_EQ(mjarm(meant).exit_code, 0);
+  EXPECT_NE(folder.read("first/best.safetensors"), best);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/threads.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/core/utf8.hpp"
 #include "mjarm/planning/planning_world.hpp"
 #include "mjarm/planning/verify_path.hpp"
 
@@ -70,11 +71,13 @@ struct SceneRow {
 Result<VerifyRules> read_rules(const Options& options) {
   const Result<double> step = parse_quantity(options.step, Quantity::angle);
   if (!step) return fail(in_option("--step", step.error()));
-  if (!(*step > 0)) return fail(Errc::usage, text(msg::verify_bad_step, options.step));
+  if (!(*step >= kLeastVerifyStep)) {
+    return fail(Errc::usage, text(msg::verify_bad_step, options.step, kLeastVerifyStep));
+  }
   const Result<double> tol = parse_quantity(options.tol, Quantity::length);
   if (!tol) return fail(in_option("--tol", tol.error()));
   if (!(*tol >= 0)) return fail(Errc::usage, text(msg::verify_bad_tol, options.tol));
-  return VerifyRules{*step, *tol};
+  return VerifyRules{*step, *tol, interrupted};
 }
 
 Result<Cylinders> read_cylinders(const Options& options) {
@@ -142,7 +145,7 @@ Result<Job> robot_job(const Options& options, const Robot& robot, const VerifyRu
   const double bound = path.spheres.value_or(WorldOptions{}.bounds.back());
   Result<PlanningWorld> world = PlanningWorld::create(robot, {.rules = *rules, .bounds = {bound}});
   if (!world) return fail(std::move(world.error()));
-  const Result<const WorldLevel*> level = world->level(0);
+  const Result<const WorldLevel*> level = world->level(0, interrupted);
   if (!level) return fail(level.error());
   auto file = std::make_shared<const ProblemFile>(as_problem(robot, (*level)->cover, path));
   const ExactOptions exact{.margin = 0, .allow_depth = how.allow_depth, .rules = *rules};
@@ -179,9 +182,12 @@ Result<void> judge_all(std::vector<Job>& jobs, const VerifyRules& rules, int thr
     }
   });
   if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
-  for (const Job& job : jobs) {
+  for (Job& job : jobs) {
     if (job.verdict) continue;
-    return fail(job.verdict.error().code, job.problem->id + ": " + job.verdict.error().what);
+    // What cannot even be looked at is a fault of this path; the others are judged all the same.
+    PathVerdict absurd;
+    absurd.faults.push_back({"absurd", -1, job.verdict.error().what});
+    job.verdict = std::move(absurd);
   }
   return {};
 }
@@ -206,7 +212,7 @@ std::string report_text(const std::vector<Job>& jobs) {
   std::string out;
   for (const Job& job : jobs) {
     for (const PathFault& fault : job.verdict->faults) {
-      out += job.problem->id + ": " + fault.what + '\n';
+      out += printable(job.problem->id + ": " + fault.what) + '\n';
     }
   }
   std::vector<std::vector<std::string>> table{

@@ -8,6 +8,7 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/render_options.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
@@ -61,7 +62,6 @@ Result<FreeSim> make_sim(const Loaded& loaded, bool passive) {
 /// @param out  with what the user has no say in.
 Result<view::WindowOptions> window_options(const Options& options, view::WindowOptions out) {
   out.paused = options.paused;
-  out.camera.name = options.camera;
   out.screenshots = options.out;
   if (!options.size.empty()) {
     const Result<PixelSize> size = parse_size("--size", options.size);
@@ -76,6 +76,15 @@ Result<view::WindowOptions> window_options(const Options& options, view::WindowO
     out.quality = *chosen == 0 ? render::RenderQuality::low : render::RenderQuality::high;
   }
   return out;
+}
+
+/// Where nobody says otherwise the window has a view of its own.
+Result<void> set_camera(const Options& options, const Model& model, view::WindowOptions& out) {
+  if (options.camera.empty()) return {};
+  Result<render::Camera> camera = choose_camera(model, options.camera);
+  if (!camera) return fail(std::move(camera.error()));
+  out.camera = std::move(*camera);
+  return {};
 }
 
 Result<double> seconds_of(const Options& options) {
@@ -104,9 +113,10 @@ Result<int> run(const Options& options) {
   if (!loaded) return fail(loaded.error());
   Result<FreeSim> sim = make_sim(*loaded, options.passive);
   if (!sim) return fail(std::move(sim.error()));
-  const Result<view::WindowOptions> chosen =
+  Result<view::WindowOptions> chosen =
       window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
+  if (auto set = set_camera(options, loaded->model, *chosen); !set) return fail(set.error());
   catch_interrupts();
   if (options.paused) sim->handle(view::PauseEvent{true});
   session::RobotSession view(loaded->model, loaded->arm, *sim);
@@ -131,11 +141,13 @@ Result<int> run_program(const Options& options) {
       !robot.package_paths.empty()) {
     return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
   }
-  const Result<view::WindowOptions> window = window_options(options, {});
+  Result<view::WindowOptions> window = window_options(options, {});
   if (!window) return fail(window.error());
   catch_interrupts();
-  const Result<program::LoadedProgram> loaded = program::load_sound_program(robot.robot);
+  const Result<program::LoadedProgram> loaded =
+      program::load_sound_program(robot.robot, interrupted);
   if (!loaded) return fail(loaded.error());
+  if (auto set = set_camera(options, loaded->robot.model, *window); !set) return fail(set.error());
   return told(options, session::view_program(*loaded, *window, {*seconds}));
 }
 

@@ -84,10 +84,8 @@ Result<int> run(const Options& options) {
   if (!work) return fail(work.error());
   Result<WorkspaceMap> map = [&] {
     Progress progress(text(msg::workspace_progress), 0);
-    work->progress = [&progress](std::size_t cells) {
-      progress.advance(cells);
-      return !interrupted();
-    };
+    work->progress = [&progress](std::size_t cells) { progress.advance(cells); };
+    work->stop = interrupted;
     return map_workspace(robot->arm, *work);
   }();
   if (!map) return fail(map.error());

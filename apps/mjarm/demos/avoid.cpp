@@ -9,6 +9,7 @@
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
@@ -135,7 +136,7 @@ Result<program::LoadedProgram> plan_in_its_scene(const DemoOptions& options) {
   if (options.control) program->control = options.control;
   Result<Robot> robot = program::load_program_robot(*program, "avoid.yaml");
   if (!robot) return fail(std::move(robot.error()));
-  return program::plan_loaded("avoid.yaml", std::move(*program), std::move(*robot));
+  return program::plan_loaded("avoid.yaml", std::move(*program), std::move(*robot), interrupted);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/run_charts.hpp"
 #include "mjarm/core/number.hpp"
+#include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/install/installed.hpp"
 #include "mjarm/session/run_output.hpp"
@@ -141,7 +142,8 @@ Result<Report> run_car(const DemoOptions& options) {
       (options.meshes ? install::find_mesh_scene("car") : find_model_file("car"))
           .and_then([](const std::filesystem::path& file) { return Model::load(file); });
   if (!model) return fail(model.error());
-  if (auto made = make_folder(options.out); !made) return fail(std::move(made.error()));
+  const Result<OutputFolder> folder = OutputFolder::open(options.out);
+  if (!folder) return fail(folder.error());
   Sim sim(*model);
   Result<session::RunShow> show = session::RunShow::open(*model, "mjarm car", options.headless);
   if (!show) return fail(std::move(show.error()));

@@ -19,12 +19,26 @@ struct DemoOptions : session::StageOptions {
   std::string text;     ///< for `letters`
 };
 
+/// What a demo takes besides --out, --headless, --video and --no-timing; whatever else is given is
+/// refused.
+enum DemoUse : unsigned {
+  kUseRobot = 1,     ///< --robot, --tip
+  kUseFiles = 2,     ///< --package-path, --allow-outside
+  kUseMeshes = 4,    ///< --meshes
+  kUseSeconds = 8,   ///< --seconds
+  kUseControl = 16,  ///< --control
+  kUseGuide = 32,    ///< --guide
+  kUseText = 64,     ///< --text
+};
+
 /// One demo. `run` makes the motion and writes its files; a report with `ok` false is a demo that
 /// ended with a reason (exit code 1), an Error one that could not start.
 struct Demo {
   const char* name;
   Msg summary;
   Result<Report> (*run)(const DemoOptions& options);
+  unsigned uses;         ///< of DemoUse
+  const char* examples;  ///< for its help
 };
 
 /// All demos, in the order in which a newcomer would try them.

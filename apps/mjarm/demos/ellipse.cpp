@@ -6,6 +6,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/path/path_fix.hpp"
 
 namespace mjarm::app {
@@ -53,8 +54,8 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   if (!stage) return fail(std::move(stage.error()));
   const std::vector<Pose> points = ellipse_points(ellipse, kPoints);
   (*stage)->show().add_points(points, 2);
-  const std::vector<UnreachableRange> ranges =
-      unreachable_ranges(reach_solver(loaded->robot), points, as_span(loaded->robot.arm.home));
+  const std::vector<UnreachableRange> ranges = unreachable_ranges(
+      reach_solver(loaded->robot), points, as_span(loaded->robot.arm.home), interrupted);
   if (!ranges.empty()) return refuse(**stage, points, ranges);
   return (*stage)->refuse(loaded->plan.faults.front().reason, program::first_fault(*loaded).what);
 }

@@ -2,6 +2,7 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/demos/tutorial.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/solve_path.hpp"
 
@@ -27,8 +28,8 @@ Result<Report> run_follower(const DemoOptions& options) {
     points.push_back(poses.back().p);
   }
   stage.show().add_points(poses, 2);
-  const Result<JointPath, PathFailure> path =
-      solve_path(free_solver(stage.robot()), poses, s, seed, {.keep_start = true});
+  const Result<JointPath, PathFailure> path = solve_path(free_solver(stage.robot()), poses, s, seed,
+                                                         {.keep_start = true, .stop = interrupted});
   if (!path) return stage.refuse({.path = path.error(), .timing = {}});
 
   stage.run().start_at(seed);

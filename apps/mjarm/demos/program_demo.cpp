@@ -4,6 +4,7 @@
 
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/demos/demo_stage.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/program/program_reader.hpp"
 
 namespace mjarm::app {
@@ -16,11 +17,11 @@ Result<program::Program> demo_program(const std::string& demo) {
 
 Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOptions& options) {
   Result<Robot> robot =
-      load_demo_robot(program.name, options, static_cast<int>(program.start.size()));
+      load_demo_robot(program.name, options, static_cast<int>(program.start.values.size()));
   if (!robot) return fail(std::move(robot.error()));
   const std::string file = program.name + ".yaml";
   if (options.control) program.control = options.control;
-  return program::plan_loaded(file, std::move(program), std::move(*robot));
+  return program::plan_loaded(file, std::move(program), std::move(*robot), interrupted);
 }
 
 Result<Report> run_demo_plan(const program::LoadedProgram& loaded, const DemoOptions& options,

@@ -8,6 +8,7 @@
 #include "apps/mjarm/demos/naive.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/solve_curve.hpp"
@@ -39,7 +40,7 @@ Result<ToolMotion, MotionFailure> plan(const IkSolver& ik, const Curve& line,
 /// @return the turn of the tool that does, if one was found.
 std::optional<PathFix> ask_for_speed(const IkSolver& ik, const Curve& line,
                                      std::span<const double> q_start, Report& report) {
-  const CurveOptions asked{.path = {.tool_speed = kSpeed}};
+  const CurveOptions asked{.path = {.tool_speed = kSpeed, .stop = interrupted}};
   const auto path = solve_curve(ik, line, q_start, asked);
   if (path) return std::nullopt;
   const PathFailure& failure = path.error();

@@ -78,5 +78,30 @@ TEST(SimdFunctions, NotANumberIsNeverLess) {
   EXPECT_EQ(less(splat(-1.0F), splat(1.0F)), kAllLanes);
 }
 
+TEST(SimdFunctions, LogarithmsAreThoseOfTheStandardLibrary) {
+  Rng rng(5);
+  const auto worst_of = [](double (&x)[kDoubles]) {
+    double out[kDoubles], worst = 0;
+    store(out, natural_logarithm(load(x)));
+    for (int k = 0; k < kDoubles; ++k) {
+      const double right = std::log(x[k]);
+      worst = std::max(worst, std::abs(out[k] - right) / std::max(1.0, std::abs(right)));
+    }
+    return worst;
+  };
+  double worst = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    double x[kDoubles];
+    for (double& value : x) {
+      value = i % 2 == 0 ? std::exp(rng.uniform(-700, 700)) : rng.uniform(0.5, 2);
+    }
+    worst = std::max(worst, worst_of(x));
+  }
+  EXPECT_LT(worst, 4e-16);
+  double ones[kDoubles];
+  std::ranges::fill(ones, 1.0);
+  EXPECT_EQ(worst_of(ones), 0);
+}
+
 }  // namespace
 }  // namespace mjarm::simd
