@@ -139,7 +139,7 @@ Result<LapResult> drive_lap(const Model& model, Arm arm, const LapOptions& optio
   const std::vector<Pose> poses = ellipse_points(ellipse, kPoints);
   const auto path = solve_path(IkSolver(arm), poses, as_span(arm.home));
   if (!path) return fail(Errc::impossible, describe(path.error(), arm));
-  Result<Controller> controller = Controller::make(model, arm, options.mode, options.control);
+  Result<Controller> controller = Controller::create(model, arm, options.mode, options.control);
   if (!controller) return fail(std::move(controller.error()));
   Result<Model> world = model;
   if (options.payload > 0) world = model.with_point_mass(arm.tip, options.payload);
@@ -169,7 +169,7 @@ Result<RestResult> rest_errors(const Model& model, const Arm& arm, ControlMode m
                          std::min(arm.limits.upper[i], std::numbers::pi));
     }
     if (!checker.is_free(as_span(q))) continue;
-    Result<Controller> controller = Controller::make(model, arm, mode);
+    Result<Controller> controller = Controller::create(model, arm, mode);
     if (!controller) return fail(std::move(controller.error()));
     JointVec q_start = q;
     for (double& value : q_start) value += rng.uniform(-kNudge, kNudge);

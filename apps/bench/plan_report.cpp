@@ -146,8 +146,9 @@ std::string file_name(std::string text) {
 }
 
 /// Steps up by one problem at each time that a valid path took.
-PlotLine share_over_time(const PlotLine& style, std::vector<double> us, std::size_t problems) {
-  PlotLine line = style;
+render::PlotLine share_over_time(const render::PlotLine& style, std::vector<double> us,
+                                 std::size_t problems) {
+  render::PlotLine line = style;
   std::sort(us.begin(), us.end());
   for (std::size_t i = 0; i < us.size(); ++i) {
     line.x.push_back(std::log10(us[i]));
@@ -156,11 +157,11 @@ PlotLine share_over_time(const PlotLine& style, std::vector<double> us, std::siz
   return line;
 }
 
-PlotPanel panel_of(const PlanTable& table) {
-  PlotPanel panel{.title = table.set->name,
-                  .x_label = text(msg::bench_plan_time_axis),
-                  .y_label = text(msg::bench_plan_share_axis)};
-  panel.y_range = PlotRange{0, 100};
+render::PlotPanel panel_of(const PlanTable& table) {
+  render::PlotPanel panel{.title = table.set->name,
+                          .x_label = text(msg::bench_plan_time_axis),
+                          .y_label = text(msg::bench_plan_share_axis)};
+  panel.y_range = render::PlotRange{0, 100};
   int color = 0;
   for (const PlanRun& run : sums_of(table.runs)) {
     std::vector<double> us;
@@ -175,18 +176,18 @@ PlotPanel panel_of(const PlanTable& table) {
 
 /// log10 of `value` of each crowd over log10 of its size: one line for boxes, one for points.
 template <class Value>
-PlotPanel panel_over_crowds(const std::vector<CrowdedSet>& crowds, Msg title, Msg axis,
-                            const Value& value) {
-  PlotPanel panel{
+render::PlotPanel panel_over_crowds(const std::vector<CrowdedSet>& crowds, Msg title, Msg axis,
+                                    const Value& value) {
+  render::PlotPanel panel{
       .title = text(title), .x_label = text(msg::bench_plan_count_axis), .y_label = text(axis)};
-  PlotLine boxes{.label = text(msg::bench_plan_boxes)};
-  PlotLine points{.label = text(msg::bench_plan_points)};
+  render::PlotLine boxes{.label = text(msg::bench_plan_boxes)};
+  render::PlotLine points{.label = text(msg::bench_plan_points)};
   for (std::size_t i = 0; i < crowds.size(); ++i) {
-    PlotLine& line = crowds[i].points ? points : boxes;
+    render::PlotLine& line = crowds[i].points ? points : boxes;
     line.x.push_back(std::log10(static_cast<double>(crowds[i].obstacles)));
     line.y.push_back(std::log10(value(i)));
   }
-  for (PlotLine* line : {&boxes, &points}) {
+  for (render::PlotLine* line : {&boxes, &points}) {
     if (!line->x.empty()) panel.lines.push_back(std::move(*line));
   }
   return panel;
@@ -255,7 +256,7 @@ Result<void> write_paths(const PlanTable& table, bool timing, const std::filesys
 Result<void> draw_plan_times(const std::vector<PlanTable>& sets,
                              const std::vector<CrowdedSet>& crowds, const PlanTable& crowded,
                              const std::filesystem::path& folder) {
-  Plot plot{.title = text(msg::bench_plan_title)};
+  render::Plot plot{.title = text(msg::bench_plan_title)};
   for (const PlanTable& table : sets) plot.panels.push_back(panel_of(table));
   const auto add = [&](Msg title, Msg axis, const auto& value) {
     if (!crowds.empty()) plot.panels.push_back(panel_over_crowds(crowds, title, axis, value));
@@ -271,7 +272,7 @@ Result<void> draw_plan_times(const std::vector<PlanTable>& sets,
   add(msg::bench_plan_crowd_check, msg::bench_plan_ns_axis,
       [&](std::size_t i) { return crowded.checks[i].along_ns; });
   if (plot.panels.empty()) return {};
-  return save_plot(plot, folder / "bench_plan");
+  return render::save_plot(plot, folder / "bench_plan");
 }
 
 }  // namespace mjarm::app

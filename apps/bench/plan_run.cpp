@@ -16,7 +16,7 @@ namespace {
 /// [us] to take in the obstacles of a problem.
 double world_us(const PlanSet& set, const PlanProblem& problem) {
   const Stopwatch watch;
-  const Result<FastChecker> checker = FastChecker::make(set.robot, problem.obstacles);
+  const Result<FastChecker> checker = FastChecker::create(set.robot, problem.obstacles);
   return watch.us();
 }
 
@@ -107,7 +107,7 @@ Result<void> add_checks(const PlanSet& set, std::uint64_t seed, PlanTable& table
   Rng rng(seed);
   std::vector<CheckJob> jobs;
   for (std::size_t i = 0; i < set.cases.size(); i += every) {
-    Result<FastChecker> checker = FastChecker::make(set.robot, set.cases[i].obstacles);
+    Result<FastChecker> checker = FastChecker::create(set.robot, set.cases[i].obstacles);
     if (!checker) return fail(std::move(checker.error()));
     jobs.push_back({std::move(*checker), random_states(set.arm, kStates, rng),
                     states_along(set.arm, kStates, rng)});

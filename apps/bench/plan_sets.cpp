@@ -41,7 +41,7 @@ Eigen::Vector3d random_place(const Arm& arm, Rng& rng) {
 
 /// Configurations that the arm alone allows, one after another.
 Result<std::vector<double>> free_configurations(const PlanSet& like, int count, Rng& rng) {
-  const Result<FastChecker> checker = FastChecker::make(like.robot, {});
+  const Result<FastChecker> checker = FastChecker::create(like.robot, {});
   if (!checker) return fail(checker.error());
   std::vector<double> rows;
   for (int i = 0; i < count; ++i) {
@@ -59,7 +59,7 @@ Result<std::vector<double>> free_configurations(const PlanSet& like, int count, 
 /// True where the box leaves room to the arm in all these configurations.
 Result<bool> leaves_room(const PlanSet& like, Obstacle box, const std::vector<double>& rows) {
   std::get<BoxShape>(box.shape).half.array() += kRoom;
-  const Result<FastChecker> checker = FastChecker::make(like.robot, {.solids = {std::move(box)}});
+  const Result<FastChecker> checker = FastChecker::create(like.robot, {.solids = {std::move(box)}});
   if (!checker) return fail(checker.error());
   std::vector<std::uint8_t> free(rows.size() / like.arm.joints.size());
   checker->check(rows, free);
@@ -125,7 +125,7 @@ Result<PlanSet> load_plan_set(const std::filesystem::path& folder, const std::st
   }
   Result<ProblemFile> content = read_problem_file(file.string());
   if (!content) return fail(std::move(content.error()));
-  Result<FastRobot> robot = FastRobot::make(content->arm, content->spheres);
+  Result<FastRobot> robot = FastRobot::create(content->arm, content->spheres);
   if (!robot) return fail(std::move(robot.error()));
   PlanSet set{name, file, content->arm, content->spheres, std::move(*robot), {}};
   for (PlanProblem& problem : content->problems) {

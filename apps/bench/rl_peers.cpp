@@ -18,7 +18,7 @@ std::vector<double> values_of(const Eigen::VectorXd& v) { return {v.begin(), v.e
 
 Result<rl::ReachEnv> env_of(const Model& model, rl::ReachOptions options, int copies) {
   options.environments = copies;
-  return rl::ReachEnv::make(model, options);
+  return rl::ReachEnv::create(model, options);
 }
 
 /// Goals of at least `count` episodes as they are drawn for training.

@@ -126,17 +126,17 @@ BenchEntry entry_of(const Seeds& seeds, bool timing) {
 }
 
 /// One panel: the share within the distance of a mark, on one set.
-PlotPanel panel_of(const std::vector<LearningRun>& runs, const std::string& set, const Mark& mark,
-                   bool timing) {
-  PlotPanel panel{.title = text(msg::bench_rl_panel, set, 1e3 * mark.distance),
-                  .x_label = text(timing ? msg::bench_rl_seconds : msg::bench_rl_steps),
-                  .y_label = text(msg::bench_rl_goals)};
-  panel.y_range = PlotRange{0, 100};
+render::PlotPanel panel_of(const std::vector<LearningRun>& runs, const std::string& set,
+                           const Mark& mark, bool timing) {
+  render::PlotPanel panel{.title = text(msg::bench_rl_panel, set, 1e3 * mark.distance),
+                          .x_label = text(timing ? msg::bench_rl_seconds : msg::bench_rl_steps),
+                          .y_label = text(msg::bench_rl_goals)};
+  panel.y_range = render::PlotRange{0, 100};
   std::map<std::string, int> colors;
   for (const LearningRun& run : runs) {
     if (run.set != set || !run.error.empty()) continue;
     const auto [known, is_new] = colors.emplace(run.who, static_cast<int>(colors.size()));
-    PlotLine line{.label = is_new ? run.who : std::string(), .color = known->second};
+    render::PlotLine line{.label = is_new ? run.who : std::string(), .color = known->second};
     for (const LearningPoint& point : run.curve) {
       line.x.push_back(timing ? point.seconds : 1e-3 * static_cast<double>(point.steps));
       line.y.push_back(100 * share_within(point, mark.distance));
@@ -174,7 +174,7 @@ std::vector<BenchEntry> learning_entries(const std::vector<LearningRun>& runs, b
 
 Result<void> draw_learning_curves(const std::vector<LearningRun>& runs, bool timing,
                                   const std::filesystem::path& folder) {
-  Plot plot{.title = text(msg::bench_rl_title)};
+  render::Plot plot{.title = text(msg::bench_rl_title)};
   std::vector<std::string> sets;
   for (const LearningRun& run : runs) {
     // One point is no curve.
@@ -187,7 +187,7 @@ Result<void> draw_learning_curves(const std::vector<LearningRun>& runs, bool tim
     }
   }
   if (plot.panels.empty()) return {};
-  return save_plot(plot, folder / "curves");
+  return render::save_plot(plot, folder / "curves");
 }
 
 }  // namespace mjarm::app
