@@ -1,54 +1,80 @@
-#include <memory>
-#include <utility>
+#include "apps/bench/ik.hpp"
 
-#include "apps/bench/ik_peers.hpp"
-#include "apps/bench/ik_report.hpp"
+#include <fmt/format.h>
+
 #include "apps/bench/messages/bench.hpp"
-#include "apps/bench/suite.hpp"
-#include "apps/bench/suites.hpp"
+#include "apps/bench/peers.hpp"
+#include "apps/bench/robots.hpp"
 
 namespace mjarm::app {
 namespace {
 
-Result<std::vector<IkRun>> run_ours(const IkProblem& problem, int rounds) {
-  const Advance advance = show_rounds(text(msg::bench_ik_progress, problem.name),
-                                      static_cast<std::uint64_t>(ik_run_steps(problem, rounds)));
-  auto runs = run_ik(problem, rounds, advance);
-  if (!runs) return fail(stopped());
-  return std::move(*runs);
+/// Runs the peers of a Python environment on the same cases (`bench/peers/ik.py`).
+Result<std::vector<IkRun>> run_ik_peers(const IkProblem& problem,
+                                        const std::filesystem::path& environment, int rounds) {
+  Result<JsonDoc> job = robot_job(problem.robot, rounds);
+  if (!job) return fail(std::move(job.error()));
+  std::vector<JsonDoc> sets;
+  for (const IkCaseSet& set : problem.sets) {
+    std::vector<JsonDoc> cases;
+    for (const IkCase& entry : set.cases) {
+      cases.push_back(pose_json(entry.X_WT));
+      cases.back().set("seed", entry.seed);
+    }
+    sets.push_back({{"name", set.name}, {"cases", std::move(cases)}});
+  }
+  job->set("fk", problem.q);
+  job->set("sets", std::move(sets));
+  return peer_runs<IkRun>(environment, "ik", std::move(*job),
+                          [](const JsonValue& line, IkRun& run) { run.q = rows_in(line, "q"); });
 }
 
-Result<BenchResult> measure(const ToolBenchOptions& options, const std::string& robot, int rounds) {
+/// Right answers of those asked for; what is right to the last case shows no decimals. Who was slow
+/// did only the first cases.
+std::string share_of(const IkRun& run) {
+  const std::size_t asked = run.q.size();
+  if (asked == 0) return "-";
+  const double share = 100.0 * run.right / static_cast<double>(asked);
+  const std::string words = fmt::format("{:.{}f} %", share, run.wrong.empty() ? 0 : 1);
+  return asked == run.cases ? words : words + " " + text(msg::bench_first, asked);
+}
+
+/// The cell of a judged run and, for the JSON document, every miss.
+void describe(IkRun& run) {
+  run.cells = {share_of(run)};
+  if (!run.q.empty()) {
+    std::vector<JsonDoc> misses;
+    for (const std::size_t at : run.wrong) {
+      misses.push_back({{"case", at}, {"reason", at < run.reasons.size() ? run.reasons[at] : ""}});
+    }
+    run.details = {{"cases", run.q.size()},
+                   {"right", run.right},
+                   {"false_ok", run.false_ok},
+                   {"misses", std::move(misses)}};
+  }
+  if (run.set == "path" || run.set == "track") run.details.set("max_step", run.max_step);
+}
+
+Result<BenchResult> measure_ik(const BenchOptions& options, const std::string& robot, int rounds) {
   const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
   if (!problem) return fail(problem.error());
-  Result<std::vector<IkRun>> runs = run_ours(*problem, rounds);
-  if (!runs) return fail(std::move(runs.error()));
-  const auto run_peers = [&] { return run_ik_peers(*problem, options.peers, rounds); };
-  if (auto added = add_peers(options, problem->name, *runs, run_peers); !added) {
-    return fail(std::move(added.error()));
-  }
-  BenchResult result{problem->name, problem->robot.model.file().filename().string(), {}};
-  int wrong = 0;
-  for (IkRun& run : *runs) {
+  const auto judge_run = [&](IkRun& run) -> Result<int> {
     if (Result<void> judged = judge(*problem, run); !judged) return fail(judged.error());
-    wrong += run.version.empty() ? run.false_ok : 0;
-    result.entries.push_back(ik_entry(run));
-  }
-  if (wrong > 0) result.wrong = text(msg::bench_ik_wrong, result.robot, wrong);
-  return result;
+    describe(run);
+    return run.false_ok;
+  };
+  return compare(
+      options.peers, {problem->name, problem->robot.model.file().filename().string()},
+      run_ik(*problem, rounds), [&] { return run_ik_peers(*problem, options.peers, rounds); },
+      judge_run, msg::bench_ik_wrong);
 }
 
 }  // namespace
 
-BenchSuite add_bench_ik(CLI::App& bench) {
-  auto options = std::make_shared<ToolBenchOptions>();
-  CLI::App& app = add_subcommand(bench, "ik", msg::bench_ik_summary, msg::bench_ik_examples);
-  add_tool_bench_options(app, *options, msg::bench_ik_option_data);
-  return {&app, [options] {
-            return run_suite(*options, {"ur5e", "panda"}, ik_columns(),
-                             [&](const std::string& robot, int rounds) {
-                               return measure(*options, robot, rounds);
-                             });
+Command ik_suite() {
+  return {"ik", msg::bench_ik_summary, msg::bench_ik_examples, [](CLI::App& app) {
+            return setup_robots(app, msg::bench_ik_option_data, true, {msg::bench_ik_right},
+                                measure_ik);
           }};
 }
 

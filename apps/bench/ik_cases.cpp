@@ -1,13 +1,9 @@
-#include "apps/bench/ik_cases.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/ik.hpp"
 #include "apps/bench/robots.hpp"
-#include "mjarm/core/json.hpp"
-#include "mjarm/core/line_reader.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -69,7 +65,7 @@ std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
   return paths;
 }
 
-Result<IkCaseSet> read_set(const fs::path& file, IkCaseSet set, const Arm& arm) {
+Result<void> read_set(const fs::path& file, const Arm& arm, IkCaseSet& set) {
   Rng rng(kSeed, 3);
   const auto take = [&](const JsonValue& object) -> Result<void> {
     const Result<Pose> X_WT = pose_of(object);
@@ -83,11 +79,7 @@ Result<IkCaseSet> read_set(const fs::path& file, IkCaseSet set, const Arm& arm) 
     set.cases.push_back(std::move(entry));
     return {};
   };
-  if (auto done = read_json_lines(file, LineReader::kLongestLine, take); !done) {
-    return fail(std::move(done.error()));
-  }
-  if (set.cases.empty()) return fail(Errc::bad_input, text(msg::bench_no_cases, file.string()));
-  return set;
+  return read_cases(file, LineReader::kLongestLine, set.cases, take);
 }
 
 Result<std::vector<IkCaseSet>> read_sets(const fs::path& folder, const std::string& name,
@@ -95,12 +87,9 @@ Result<std::vector<IkCaseSet>> read_sets(const fs::path& folder, const std::stri
   std::vector<IkCaseSet> sets;
   for (const char* kind : {"reachable", "unreachable", "hard_negatives"}) {
     const fs::path file = folder / (name + "_" + kind + ".jsonl");
-    std::error_code ignored;
-    if (sets.empty() || fs::exists(file, ignored)) {  // the first one must be there
-      auto set = read_set(file, {kind, std::string_view(kind) == "reachable", {}}, arm);
-      if (!set) return fail(std::move(set.error()));
-      sets.push_back(std::move(*set));
-    }
+    if (!sets.empty() && !is_there(file)) continue;  // the first one must be there
+    IkCaseSet& set = sets.emplace_back(IkCaseSet{kind, sets.empty(), {}});
+    if (auto read = read_set(file, arm, set); !read) return fail(std::move(read.error()));
   }
   return sets;
 }

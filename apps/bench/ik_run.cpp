@@ -1,9 +1,8 @@
-#include "apps/bench/ik_run.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "apps/bench/ik.hpp"
+#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robots.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -13,8 +12,6 @@
 
 namespace mjarm::app {
 namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Makes `run` the best of what it was and this call.
 void keep(IkRun& run, std::size_t i, double us, const Result<IkSolution, IkFailure>& answer) {
@@ -29,24 +26,21 @@ void keep(IkRun& run, std::size_t i, double us, const Result<IkSolution, IkFailu
 }
 
 IkRun empty_run(std::string who, std::string set, std::size_t count) {
-  IkRun run{{.who = std::move(who), .set = std::move(set), .timed = "c++"}};
-  run.us.assign(count, kNever);
+  IkRun run{our_entry(std::move(who), std::move(set), count)};
   run.q.resize(count);
   run.reasons.resize(count);
   return run;
 }
 
-bool solve_set(const IkSolver& ik, const IkCaseSet& set, int rounds,
-               const std::function<bool()>& advance, IkRun& run) {
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < set.cases.size(); ++i) {
-      const Stopwatch watch;
-      const auto answer = ik.solve(set.cases[i].X_WT, set.cases[i].seed);
-      keep(run, i, watch.us(), answer);
-    }
-    if (!advance()) return false;
-  }
-  return true;
+IkRun solve_set(const IkSolver& ik, std::string who, const IkCaseSet& set, int rounds,
+                Progress& progress) {
+  IkRun run = empty_run(std::move(who), set.name, set.cases.size());
+  in_rounds(rounds, set.cases.size(), progress, [&](std::size_t i) {
+    const Stopwatch watch;
+    const auto answer = ik.solve(set.cases[i].X_WT, set.cases[i].seed);
+    keep(run, i, watch.us(), answer);
+  });
+  return run;
 }
 
 /// What one pose of a path came to.
@@ -58,10 +52,12 @@ struct Followed {
 
 /// Every pose from the answer to the one before, by `follow(X_WT, q)`.
 template <class Follow>
-bool follow_paths(const IkProblem& problem, int rounds, const std::function<bool()>& advance,
-                  IkRun& run, const Follow& follow) {
-  for (int round = 0; round < rounds; ++round) {
-    std::size_t i = 0;
+IkRun follow_paths(const IkProblem& problem, const char* set, int rounds, Progress& progress,
+                   const Follow& follow) {
+  std::size_t poses = 0;
+  for (const std::vector<IkCase>& path : problem.paths) poses += path.size();
+  IkRun run = empty_run("mjarm", set, poses);
+  in_rounds(rounds, 1, progress, [&](std::size_t i) {
     for (const std::vector<IkCase>& path : problem.paths) {
       std::vector<double> q = path.front().seed;
       for (const IkCase& entry : path) {
@@ -74,110 +70,89 @@ bool follow_paths(const IkProblem& problem, int rounds, const std::function<bool
         ++i;
       }
     }
-    if (!advance()) return false;
-  }
-  return true;
+  });
+  return run;
 }
 
 /// By solving each pose.
-bool solve_paths(const IkSolver& ik, const IkProblem& problem, int rounds,
-                 const std::function<bool()>& advance, IkRun& run) {
-  return follow_paths(problem, rounds, advance, run, [&](const Pose& X_WT, std::span<double> q) {
-    const Stopwatch watch;
-    const auto answer = ik.solve(X_WT, q);
-    const double us = watch.us();
-    if (answer) return Followed{us, answer->q};
-    return Followed{us, joint_vec(q), std::string(name(answer.error().code))};
-  });
+Followed solve_pose(const IkSolver& ik, const Pose& X_WT, std::span<const double> q) {
+  const Stopwatch watch;
+  const auto answer = ik.solve(X_WT, q);
+  const double us = watch.us();
+  if (answer) return {us, answer->q};
+  return {us, joint_vec(q), std::string(name(answer.error().code))};
 }
 
 /// By two servoing steps a pose, as a servo cycle is shorter than the way between poses; the time
 /// is that of one step. Near a singularity steps are damped and fall behind, and tell so: no
 /// answer.
-bool track_paths(const Arm& arm, const IkProblem& problem, int rounds,
-                 const std::function<bool()>& advance, IkRun& run) {
-  const Tracker tracker(arm, {.dt = 1});  // no bound on the speed: the poses have no time
-  return follow_paths(problem, rounds, advance, run, [&](const Pose& X_WT, std::span<double> q) {
-    const Stopwatch watch;
-    const TrackStep first = tracker.step(X_WT, q);
-    const TrackStep step = tracker.step(X_WT, as_span(first.q));
-    const double us = 0.5 * watch.us();
-    return Followed{us, step.q, step.damping > 0 ? "damped" : ""};
-  });
+Followed track_pose(const Tracker& tracker, const Pose& X_WT, std::span<const double> q) {
+  const Stopwatch watch;
+  const TrackStep first = tracker.step(X_WT, q);
+  const TrackStep step = tracker.step(X_WT, as_span(first.q));
+  const double us = 0.5 * watch.us();
+  return {us, step.q, step.damping > 0 ? "damped" : ""};
 }
 
 /// One call after the other, as the loop of a controller makes them. All by one reading of the
 /// clock, which takes as long as a call; the call goes through a table of functions, so that no
 /// part of it is left out where its outputs are not all read.
-bool run_jacobians(const IkProblem& problem, int rounds, const std::function<bool()>& advance,
-                   IkRun& run) {
+IkRun run_jacobians(const IkProblem& problem, int rounds, Progress& progress) {
   const LinkChain chain{Chain(problem.robot.arm)};
+  IkRun run{our_entry("mjarm", "fk_jacobian", 1)};
   double sum = 0;
-  for (int round = 0; round < rounds; ++round) {
+  in_rounds(rounds, 1, progress, [&](std::size_t) {
     const Stopwatch watch;
     for (const std::vector<double>& q : problem.q) {
       const FkJacobian out = fk_jacobian(chain, q);
       sum += out.X_WT.p[0] + out.J_W(0, 0);
     }
-    const double us = watch.us() / static_cast<double>(problem.q.size());
-    run.us.assign(1, std::min(run.us.front(), us));
-    if (!advance()) return false;
-  }
-  return std::isfinite(sum);
+    run.us[0] = std::min(run.us[0], watch.us() / static_cast<double>(problem.q.size()));
+  });
+  if (!std::isfinite(sum)) run.us.clear();
+  return run;
 }
 
 /// The poses of a set in the order of its answers.
-std::vector<const IkCase*> cases_of(const IkProblem& problem, const std::string& set,
-                                    bool& reachable) {
+std::vector<const IkCase*> cases_of(const IkProblem& problem, const std::string& set) {
   std::vector<const IkCase*> cases;
-  reachable = true;
-  for (const IkCaseSet& known : problem.sets) {
-    if (known.name != set) continue;
-    reachable = known.reachable;
-    for (const IkCase& entry : known.cases) cases.push_back(&entry);
-  }
-  if (set == "path" || set == "track") {
-    for (const std::vector<IkCase>& path : problem.paths) {
-      for (const IkCase& entry : path) cases.push_back(&entry);
-    }
-  }
+  const auto add = [&](const std::vector<IkCase>& more) {
+    for (const IkCase& entry : more) cases.push_back(&entry);
+  };
+  if (const IkCaseSet* known = set_named(problem.sets, set)) add(known->cases);
+  if (set == "path" || set == "track") std::ranges::for_each(problem.paths, add);
   return cases;
 }
 
 }  // namespace
 
-int ik_run_steps(const IkProblem& problem, int rounds) {
-  return rounds * (2 * static_cast<int>(problem.sets.size()) + 3);
-}
-
-std::optional<std::vector<IkRun>> run_ik(const IkProblem& problem, int rounds,
-                                         const std::function<bool()>& advance) {
+std::vector<IkRun> run_ik(const IkProblem& problem, int rounds) {
   const Arm& arm = problem.robot.arm;
-  std::vector<IkRun> runs;
   const IkSolver ik(arm);
   const IkSolver numeric(arm, {.closed_form = false});
+  const Tracker tracker(arm, {.dt = 1});  // no bound on the speed: the poses have no time
+  Progress progress(text(msg::bench_ik_progress, problem.name),
+                    static_cast<std::size_t>(rounds) * (2 * problem.sets.size() + 3));
+  std::vector<IkRun> runs;
   for (const IkCaseSet& set : problem.sets) {
-    for (const IkSolver* solver : {&ik, &numeric}) {
-      runs.push_back(
-          empty_run(solver == &ik ? "mjarm" : "mjarm numeric", set.name, set.cases.size()));
-      if (!solve_set(*solver, set, rounds, advance, runs.back())) return std::nullopt;
-    }
+    runs.push_back(solve_set(ik, "mjarm", set, rounds, progress));
+    runs.push_back(solve_set(numeric, "mjarm numeric", set, rounds, progress));
   }
-  std::size_t poses = 0;
-  for (const std::vector<IkCase>& path : problem.paths) poses += path.size();
-  runs.push_back(empty_run("mjarm", "path", poses));
-  if (!solve_paths(ik, problem, rounds, advance, runs.back())) return std::nullopt;
-  runs.push_back(empty_run("mjarm", "track", poses));
-  if (!track_paths(arm, problem, rounds, advance, runs.back())) return std::nullopt;
-  runs.push_back({{.who = "mjarm", .set = "fk_jacobian", .timed = "c++", .us = {kNever}}});
-  if (!run_jacobians(problem, rounds, advance, runs.back())) return std::nullopt;
+  runs.push_back(follow_paths(
+      problem, "path", rounds, progress,
+      [&](const Pose& X_WT, std::span<const double> q) { return solve_pose(ik, X_WT, q); }));
+  runs.push_back(follow_paths(
+      problem, "track", rounds, progress,
+      [&](const Pose& X_WT, std::span<const double> q) { return track_pose(tracker, X_WT, q); }));
+  runs.push_back(run_jacobians(problem, rounds, progress));
   return runs;
 }
 
 Result<void> judge(const IkProblem& problem, IkRun& run) {
   if (run.set == "fk_jacobian") return {};
-  bool reachable = true;
-  const std::vector<const IkCase*> cases = cases_of(problem, run.set, reachable);
+  const IkCaseSet* const set = set_named(problem.sets, run.set);
+  const bool reachable = set == nullptr || set->reachable;
+  const std::vector<const IkCase*> cases = cases_of(problem, run.set);
   run.cases = cases.size();
   for (std::size_t i = 0; i < std::min(cases.size(), run.q.size()); ++i) {
     bool right = run.q[i].empty() && !reachable;

@@ -5,7 +5,6 @@
 
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robots.hpp"
-#include "mjarm/core/line_reader.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/curve.hpp"
@@ -73,7 +72,7 @@ PathSet make_beyond(const Arm& arm, const PathSet& lines) {
   return set;
 }
 
-Result<PathSet> read_set(const fs::path& file, PathSet set, const Arm& arm) {
+Result<void> read_set(const fs::path& file, const Arm& arm, PathSet& set) {
   const auto take = [&](const JsonValue& object) -> Result<void> {
     Result<PathRequest> request = path_request_of(object, arm);
     if (!request) return fail(std::move(request.error()));
@@ -81,11 +80,7 @@ Result<PathSet> read_set(const fs::path& file, PathSet set, const Arm& arm) {
     set.paths.push_back(std::move(request->poses));
     return {};
   };
-  if (auto done = read_json_lines(file, kLongestLine, take); !done) {
-    return fail(std::move(done.error()));
-  }
-  if (set.paths.empty()) return fail(Errc::bad_input, text(msg::bench_no_cases, file.string()));
-  return set;
+  return read_cases(file, kLongestLine, set.paths, take);
 }
 
 Result<std::vector<PathSet>> read_sets(const fs::path& folder, const std::string& name,
@@ -93,11 +88,9 @@ Result<std::vector<PathSet>> read_sets(const fs::path& folder, const std::string
   std::vector<PathSet> sets;
   for (const char* kind : {"lines", "ellipse_far", "ellipse"}) {
     const fs::path file = folder / (name + "_" + kind + ".jsonl");
-    std::error_code ignored;
-    if (!fs::exists(file, ignored)) continue;
-    auto set = read_set(file, {kind, std::string_view(kind) != "ellipse", {}}, arm);
-    if (!set) return fail(std::move(set.error()));
-    sets.push_back(std::move(*set));
+    if (!is_there(file)) continue;
+    PathSet& set = sets.emplace_back(PathSet{kind, std::string_view(kind) != "ellipse", {}});
+    if (auto read = read_set(file, arm, set); !read) return fail(std::move(read.error()));
   }
   return sets;
 }

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/robots.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/json.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -35,11 +35,6 @@ class ScratchFolder {
   fs::path path_;
 };
 
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 Result<fs::path> find_script(const std::string& suite) {
   const Result<fs::path> share = share_folder();
   if (!share) return fail(share.error());
@@ -51,7 +46,7 @@ Result<fs::path> find_script(const std::string& suite) {
 /// Member `key`, which satisfies `is`.
 const JsonValue& member(const JsonValue& line, const char* key, bool (JsonValue::*is)() const) {
   const JsonValue* const found = line.find(key);
-  if (found == nullptr || !(found->*is)()) throw BrokenAnswer{key};
+  if (found == nullptr || !(found->*is)()) broken(key);
   return *found;
 }
 
@@ -64,13 +59,13 @@ std::string text_or_nothing(const JsonValue& line, const char* key) {
 template <class Read>
 auto list_of(const JsonValue& list, const char* key, const Read& read) {
   std::vector<decltype(read(list, key))> values;
-  if (!list.is_list() && !list.is_null()) throw BrokenAnswer{key};
+  if (!list.is_list() && !list.is_null()) broken(key);
   for (const JsonValue& entry : list) values.push_back(read(entry, key));
   return values;
 }
 
 double number_of(const JsonValue& value, const char* key) {
-  if (!value.is_number()) throw BrokenAnswer{key};
+  if (!value.is_number()) broken(key);
   return value.number();
 }
 double number_or_nan(const JsonValue& value, const char* key) {
@@ -94,9 +89,10 @@ Result<void> take_line(std::string_view line, const TakeAnswer& take) {
                      .timed = text_or_nothing(answer, "timed"),
                      .error = text_or_nothing(answer, "error")};
     if (const JsonValue* const us = answer.find("us")) entry.us = row_of(*us, "us");
-    return take(std::move(entry), answer);
-  } catch (const BrokenAnswer& broken) {
-    return fail(Errc::system, text(msg::bench_bad_answer, broken.member));
+    take(std::move(entry), answer);
+    return {};
+  } catch (const BrokenAnswer& answer_is) {
+    return fail(answer_is.error);
   }
 }
 
@@ -107,9 +103,14 @@ JsonDoc pose_json(const Pose& X) {
   return {{"pos", {X.p[0], X.p[1], X.p[2]}}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
+void broken(const std::string& member) {
+  throw BrokenAnswer{{Errc::system, text(msg::bench_bad_answer, member)}};
+}
+
 std::vector<std::vector<double>> rows_in(const JsonValue& line, const char* key) {
   const JsonValue* const found = line.find(key);
-  return found != nullptr ? rows_of(*found, key) : std::vector<std::vector<double>>();
+  if (found == nullptr) return {};
+  return rows_of(*found, key);
 }
 
 std::vector<std::vector<std::vector<double>>> tables_in(const JsonValue& line, const char* key) {
@@ -155,9 +156,7 @@ Result<void> run_peers(const fs::path& environment, const std::string& suite, Js
   for (std::size_t to = content->find('\n'); to != std::string::npos;
        from = to + 1, to = content->find('\n', from)) {
     const std::string_view line(content->data() + from, to - from);
-    if (auto taken = take_line(line, take); !taken) {
-      return fail(taken.error());
-    }
+    if (auto taken = take_line(line, take); !taken) return taken;
   }
   return {};
 }

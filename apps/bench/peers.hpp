@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/bench/report.hpp"
+#include "apps/bench/suite.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
@@ -15,10 +15,12 @@ namespace mjarm::app {
 /// A pose as the files of cases and the peers write it.
 [[nodiscard]] JsonDoc pose_json(const Pose& X);
 
-/// Thrown where a member of a peer's answer is missing or of another type; `run_peers` reports it.
+/// Thrown where an answer of a peer cannot be taken; `run_peers` reports it.
 struct BrokenAnswer {
-  std::string member;
+  Error error;
 };
+/// The same where a member is missing, of another type or does not fit the others.
+[[noreturn]] void broken(const std::string& member);
 
 /// Rows of numbers, one a case; empty ones for null, no rows where the member is missing.
 [[nodiscard]] std::vector<std::vector<double>> rows_in(const JsonValue& line, const char* key);
@@ -35,8 +37,8 @@ struct BrokenAnswer {
 [[nodiscard]] const JsonValue& list_in(const JsonValue& line, const char* key);
 
 /// Takes one answer of a peer: the entry with everything but cells and details, and the line it
-/// came in, whose members may be of any type.
-using TakeAnswer = std::function<Result<void>(BenchEntry entry, const JsonValue& line)>;
+/// came in, whose members may be of any type. Throws `BrokenAnswer`.
+using TakeAnswer = std::function<void(BenchEntry entry, const JsonValue& line)>;
 
 /// Runs the peers of a Python environment on one job, each in a process and a loop of its own
 /// (`bench/peers/SUITE.py`). A peer that fails has an answer that says why.
@@ -47,5 +49,21 @@ using TakeAnswer = std::function<Result<void>(BenchEntry entry, const JsonValue&
 ///         it.
 [[nodiscard]] Result<void> run_peers(const std::filesystem::path& environment,
                                      const std::string& suite, JsonDoc job, const TakeAnswer& take);
+
+/// The same where each answer is a run: `read(line, run)` adds to its entry what the suite looks
+/// at, and is not called for a peer that failed. The runs are not judged yet.
+template <class Run, class Read>
+Result<std::vector<Run>> peer_runs(const std::filesystem::path& environment,
+                                   const std::string& suite, JsonDoc job, const Read& read) {
+  std::vector<Run> runs;
+  const auto take = [&](BenchEntry entry, const JsonValue& line) {
+    Run& run = runs.emplace_back(Run{std::move(entry)});
+    if (run.error.empty()) read(line, run);
+  };
+  if (auto done = run_peers(environment, suite, std::move(job), take); !done) {
+    return fail(std::move(done.error()));
+  }
+  return runs;
+}
 
 }  // namespace mjarm::app

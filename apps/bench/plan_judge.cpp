@@ -1,8 +1,8 @@
-#include "apps/bench/plan_judge.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "apps/bench/plan.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -146,23 +146,8 @@ PathFault fault_of_corners(const PlanSet& set, const PlanProblem& problem,
 }  // namespace
 
 const char* name_of(PathFault fault) {
-  switch (fault) {
-    case PathFault::none:
-      return "";
-    case PathFault::shape:
-      return "shape";
-    case PathFault::start:
-      return "start";
-    case PathFault::goal:
-      return "goal";
-    case PathFault::limits:
-      return "limits";
-    case PathFault::obstacle:
-      return "obstacle";
-    case PathFault::self:
-      return "self";
-  }
-  return "";
+  constexpr const char* kNames[] = {"", "shape", "start", "goal", "limits", "obstacle", "self"};
+  return kNames[static_cast<std::size_t>(fault)];
 }
 
 PathVerdict judge_path(const PlanSet& set, const PlanProblem& problem,
@@ -188,6 +173,13 @@ PathVerdict judge_path(const PlanSet& set, const PlanProblem& problem,
     verdict.fault = least.obstacle <= least.self ? PathFault::obstacle : PathFault::self;
   }
   return verdict;
+}
+
+void judge_answers(const PlanSet& set, std::span<SolvedProblem> answers) {
+  for (SolvedProblem& answer : answers) {
+    if (answer.path.empty()) continue;
+    answer.verdict = judge_path(set, set.cases[answer.problem], answer.path);
+  }
 }
 
 }  // namespace mjarm::app

@@ -1,14 +1,15 @@
-#include "apps/bench/plan_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <utility>
 
-#include "apps/bench/messages/bench_plan.hpp"
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/plan.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -17,12 +18,6 @@ std::vector<double> times_in(const PlanRun& run, double SolvedProblem::* time) {
   std::vector<double> us;
   for (const SolvedProblem& answer : run.answers) us.push_back(answer.*time);
   return us;
-}
-
-double p95_of(std::vector<double> us) {
-  if (us.empty()) return 0;
-  std::sort(us.begin(), us.end());
-  return us[us.size() * 95 / 100];
 }
 
 /// The median of a contestant over that of ours on the same problems; 0 where ours did none.
@@ -37,8 +32,8 @@ double ratio_to(const PlanRun& run, const PlanRun* ours) {
     theirs.push_back(answer.us);
     mine.push_back(same->second);
   }
-  const double us = times_of(mine).median;
-  return us > 0 ? times_of(theirs).median / us : 0;
+  const double us = percentile(mine, 50);
+  return us > 0 ? percentile(theirs, 50) / us : 0;
 }
 
 /// What the judge said of all paths.
@@ -52,7 +47,7 @@ Verdicts verdicts_of(const PlanRun& run) {
   for (const SolvedProblem& answer : run.answers) {
     if (answer.path.empty()) continue;
     ++all.solved;
-    if (answer.verdict.fault == PathFault::none) {
+    if (answer.valid()) {
       ++all.valid;
       all.cost += answer.verdict.cost;
     } else {
@@ -66,8 +61,8 @@ Verdicts verdicts_of(const PlanRun& run) {
 std::string or_dash(double value) { return value > 0 ? rounded(value) : "-"; }
 
 void add_times(BenchEntry& entry, const PlanRun& run, const CheckTimes* checks) {
-  const double p95 = p95_of(entry.us);
-  const double world = times_of(times_in(run, &SolvedProblem::world_us)).median;
+  const double p95 = percentile(entry.us, 95);
+  const double world = percentile(times_in(run, &SolvedProblem::world_us), 50);
   entry.cells.push_back(or_dash(p95));
   entry.cells.push_back(or_dash(world));
   entry.cells.push_back(checks ? fmt::format("{:.1f} / {:.1f} / {:.1f}", checks->random_ns,
@@ -115,7 +110,7 @@ BenchEntry entry_of(const PlanTable& table, const PlanRun& run, const PlanRun* o
 
 /// Ours on the same case.
 const PlanRun* ours_beside(const std::vector<PlanRun>& runs, const std::string& set) {
-  const auto found = std::find_if(runs.begin(), runs.end(), [&](const PlanRun& run) {
+  const auto found = std::ranges::find_if(runs, [&](const PlanRun& run) {
     return run.version.empty() && run.error.empty() && run.set == set;
   });
   return found == runs.end() ? nullptr : &*found;
@@ -126,11 +121,10 @@ std::vector<PlanRun> sums_of(const std::vector<PlanRun>& runs) {
   std::vector<PlanRun> sums;
   for (const PlanRun& run : runs) {
     if (!run.error.empty()) continue;
-    auto sum = std::find_if(sums.begin(), sums.end(),
-                            [&](const PlanRun& known) { return known.who == run.who; });
+    const auto sum = std::ranges::find(sums, run.who, &PlanRun::who);
     if (sum == sums.end()) {
-      sum = sums.insert(sums.end(), run);
-      sum->set = text(msg::bench_plan_all);
+      sums.push_back(run);
+      sums.back().set = text(msg::bench_plan_all);
     } else {
       sum->answers.insert(sum->answers.end(), run.answers.begin(), run.answers.end());
     }
@@ -151,17 +145,55 @@ std::string file_name(std::string text) {
   return text;
 }
 
-}  // namespace
-
-std::vector<Msg> plan_columns(bool timing) {
-  std::vector<Msg> columns{msg::bench_plan_solved, msg::bench_plan_valid, msg::bench_plan_cost};
-  if (!timing) return columns;
-  columns.insert(columns.end(),
-                 {msg::bench_plan_p95, msg::bench_plan_world, msg::bench_plan_check});
-  return columns;
+/// Steps up by one problem at each time that a valid path took.
+render::PlotLine share_over_time(const render::PlotLine& style, std::vector<double> us,
+                                 std::size_t problems) {
+  render::PlotLine line = style;
+  std::sort(us.begin(), us.end());
+  for (std::size_t i = 0; i < us.size(); ++i) {
+    line.x.push_back(std::log10(us[i]));
+    line.y.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(problems));
+  }
+  return line;
 }
 
-std::vector<BenchEntry> plan_entries(const PlanTable& table, bool timing) {
+render::PlotPanel panel_of(const PlanTable& table) {
+  render::PlotPanel panel{.title = table.set->name,
+                          .x_label = text(msg::bench_plan_time_axis),
+                          .y_label = text(msg::bench_plan_share_axis)};
+  panel.y_range = render::PlotRange{0, 100};
+  int color = 0;
+  for (const PlanRun& run : sums_of(table.runs)) {
+    std::vector<double> us;
+    for (const SolvedProblem& answer : run.answers) {
+      if (answer.valid()) us.push_back(answer.us);
+    }
+    panel.lines.push_back(
+        share_over_time({.label = run.who, .color = color++}, us, run.answers.size()));
+  }
+  return panel;
+}
+
+/// log10 of `value` of each crowd over log10 of its size: one line for boxes, one for points.
+template <class Value>
+render::PlotPanel panel_over_crowds(const std::vector<CrowdedSet>& crowds, Msg title, Msg axis,
+                                    const Value& value) {
+  render::PlotPanel panel{
+      .title = text(title), .x_label = text(msg::bench_plan_count_axis), .y_label = text(axis)};
+  render::PlotLine boxes{.label = text(msg::bench_plan_boxes)};
+  render::PlotLine points{.label = text(msg::bench_plan_points)};
+  for (std::size_t i = 0; i < crowds.size(); ++i) {
+    render::PlotLine& line = crowds[i].points ? points : boxes;
+    line.x.push_back(std::log10(static_cast<double>(crowds[i].obstacles)));
+    line.y.push_back(std::log10(value(i)));
+  }
+  for (render::PlotLine* line : {&boxes, &points}) {
+    if (!line->x.empty()) panel.lines.push_back(std::move(*line));
+  }
+  return panel;
+}
+
+std::vector<BenchEntry> entries_of(const PlanTable& table, bool timing) {
   std::vector<BenchEntry> entries;
   std::size_t at = 0;  // of the checks
   for (const PlanRun& run : table.runs) {
@@ -183,9 +215,25 @@ std::vector<BenchEntry> plan_entries(const PlanTable& table, bool timing) {
   return entries;
 }
 
-int wrong_paths(const PlanRun& run) {
-  const Verdicts all = verdicts_of(run);
-  return all.solved - all.valid;
+}  // namespace
+
+std::vector<Msg> plan_columns(bool timing) {
+  std::vector<Msg> columns{msg::bench_plan_solved, msg::bench_plan_valid, msg::bench_plan_cost};
+  if (!timing) return columns;
+  columns.insert(columns.end(),
+                 {msg::bench_plan_p95, msg::bench_plan_world, msg::bench_plan_check});
+  return columns;
+}
+
+BenchResult plan_result(const std::string& name, const PlanTable& table, bool timing) {
+  const std::string file = table.set == nullptr ? "" : table.set->file.filename().string();
+  BenchResult result{name, file, entries_of(table, timing)};
+  std::size_t wrong = 0;
+  for (const PlanRun& run : table.runs) {
+    if (run.version.empty()) wrong += verdicts_of(run).wrong.size();
+  }
+  if (wrong > 0) result.wrong = text(msg::bench_plan_wrong, name, wrong);
+  return result;
 }
 
 Result<void> write_paths(const PlanTable& table, bool timing, const std::filesystem::path& folder) {
@@ -203,6 +251,28 @@ Result<void> write_paths(const PlanTable& table, bool timing, const std::filesys
     }
   }
   return {};
+}
+
+Result<void> draw_plan_times(const std::vector<PlanTable>& sets,
+                             const std::vector<CrowdedSet>& crowds, const PlanTable& crowded,
+                             const std::filesystem::path& folder) {
+  render::Plot plot{.title = text(msg::bench_plan_title)};
+  for (const PlanTable& table : sets) plot.panels.push_back(panel_of(table));
+  const auto add = [&](Msg title, Msg axis, const auto& value) {
+    if (!crowds.empty()) plot.panels.push_back(panel_over_crowds(crowds, title, axis, value));
+  };
+  add(msg::bench_plan_crowd_plan, msg::bench_plan_time_axis, [&](std::size_t i) {
+    std::vector<double> us;
+    for (const auto& answer : crowded.runs[i].answers) us.push_back(answer.us - answer.world_us);
+    return percentile(us, 50);
+  });
+  add(msg::bench_plan_crowd_world, msg::bench_plan_time_axis, [&](std::size_t i) {
+    return percentile(times_in(crowded.runs[i], &SolvedProblem::world_us), 50);
+  });
+  add(msg::bench_plan_crowd_check, msg::bench_plan_ns_axis,
+      [&](std::size_t i) { return crowded.checks[i].along_ns; });
+  if (plot.panels.empty()) return {};
+  return render::save_plot(plot, folder / "bench_plan");
 }
 
 }  // namespace mjarm::app

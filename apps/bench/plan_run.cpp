@@ -1,9 +1,10 @@
-#include "apps/bench/plan_run.hpp"
-
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/plan.hpp"
 #include "apps/bench/robots.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/stopwatch.hpp"
@@ -83,11 +84,12 @@ std::size_t count_free_blocks(const CheckJob& job) {
   return count;
 }
 
-}  // namespace
-
-PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
+/// Solves each of these problems once, in this thread, by answer_problem(), as `mjarm plan` does;
+/// the time is that of the obstacles taken in, the search, the shortening and the proof. The paths
+/// are judged afterwards.
+PlanRun run_plan(const PlanSet& set, std::string name, std::span<const std::size_t> problems,
                  const PlanOptions& options) {
-  PlanRun run{{.who = "mjarm", .timed = "c++"}};
+  PlanRun run{our_entry("mjarm", std::move(name), 0)};
   for (const std::size_t index : problems) run.answers.push_back(solve(set, index, options));
   for (SolvedProblem& answer : run.answers) {
     answer.world_us = world_us(set, set.cases[answer.problem]);
@@ -97,14 +99,9 @@ PlanRun run_plan(const PlanSet& set, std::span<const std::size_t> problems,
   return run;
 }
 
-void judge_answers(const PlanSet& set, std::span<SolvedProblem> answers) {
-  for (SolvedProblem& answer : answers) {
-    if (answer.path.empty()) continue;
-    answer.verdict = judge_path(set, set.cases[answer.problem], answer.path);
-  }
-}
-
-Result<CheckTimes> run_checks(const PlanSet& set, std::uint64_t seed) {
+/// Measures FastChecker::check() and all_free() in the worlds of up to 50 problems, all over the
+/// set; the fastest of some rounds counts.
+Result<void> add_checks(const PlanSet& set, std::uint64_t seed, PlanTable& table) {
   constexpr std::size_t kWorlds = 50, kStates = 1024;
   const std::size_t every = (set.cases.size() + kWorlds - 1) / kWorlds;
   Rng rng(seed);
@@ -116,12 +113,91 @@ Result<CheckTimes> run_checks(const PlanSet& set, std::uint64_t seed) {
                     states_along(set.arm, kStates, rng)});
   }
   std::vector<std::uint8_t> free(kStates);
-  CheckTimes out;
+  CheckTimes& out = table.checks.emplace_back();
   out.random_ns =
       mean_ns(jobs, kStates, [&](const CheckJob& j) { j.checker.check(j.random, free); });
   out.together_ns = mean_ns(jobs, kStates, count_free_blocks);
   out.along_ns = mean_ns(jobs, kStates, [&](const CheckJob& j) { j.checker.check(j.along, free); });
-  return out;
+  return {};
+}
+
+std::vector<std::size_t> all_of(const PlanSet& set) {
+  std::vector<std::size_t> indices(set.cases.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
+/// The first problem once more, so that what is there for the first time costs nobody anything.
+void warm_up(const PlanSet& set, const PlanOptions& options) {
+  const std::size_t first[] = {0};
+  (void)run_plan(set, {}, first, options);
+}
+
+Result<void> add_plan_peers(const PlanSet& set, const PlanScene& scene, const PlanPeers& peers,
+                            PlanTable& table) {
+  if (peers.environment.empty()) return {};
+  auto runs = run_plan_peers(set, scene, peers);
+  if (!runs) return fail(std::move(runs.error()));
+  for (PlanRun& run : *runs) {
+    if (run.error.empty()) run.set = scene.name;
+    table.runs.push_back(std::move(run));
+  }
+  return {};
+}
+
+/// One step of the work is done.
+Result<void> advance(Progress& progress) {
+  progress.advance();
+  return interrupted() ? Result<void>(fail(stopped())) : Result<void>();
+}
+
+}  // namespace
+
+Result<PlanTable> run_plan_set(const PlanSet& set, std::uint64_t seed, const PlanPeers& peers,
+                               Progress& progress) {
+  PlanTable table{.set = &set, .sum = true};
+  const PlanOptions options{.seed = seed};
+  warm_up(set, options);
+  Result<void> done;
+  for (const PlanScene& scene : scenes_of(set)) {
+    table.runs.push_back(run_plan(set, scene.name, scene.problems, options));
+    done = add_plan_peers(set, scene, peers, table);
+    if (done) done = advance(progress);
+    if (!done) return fail(std::move(done.error()));
+  }
+  done = add_checks(set, seed, table);
+  if (!done) return fail(std::move(done.error()));
+  return table;
+}
+
+Result<PlanTable> run_anytime(const PlanSet& set, std::uint64_t seed, Progress& progress) {
+  PlanTable table{.set = &set};
+  PlanOptions options{.seed = seed};
+  warm_up(set, options);
+  for (const int milliseconds : {0, 2, 10}) {
+    options.time_budget = 1e-3 * milliseconds;
+    const std::string name = milliseconds == 0 ? text(msg::bench_plan_no_budget)
+                                               : text(msg::bench_plan_budget, milliseconds);
+    table.runs.push_back(run_plan(set, name, all_of(set), options));
+    if (auto done = advance(progress); !done) return fail(std::move(done.error()));
+  }
+  return table;
+}
+
+Result<PlanTable> run_crowds(const std::vector<CrowdedSet>& crowds, std::uint64_t seed,
+                             Progress& progress) {
+  PlanTable table;
+  const PlanOptions options{.seed = seed};
+  for (const CrowdedSet& crowd : crowds) {
+    warm_up(crowd.set, options);
+    const Msg kind = crowd.points ? msg::bench_plan_crowd_points : msg::bench_plan_crowd_boxes;
+    const std::string name = text(kind, crowd.obstacles);
+    table.runs.push_back(run_plan(crowd.set, name, all_of(crowd.set), options));
+    Result<void> done = add_checks(crowd.set, seed, table);
+    if (done) done = advance(progress);
+    if (!done) return fail(std::move(done.error()));
+  }
+  return table;
 }
 
 }  // namespace mjarm::app

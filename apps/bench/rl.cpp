@@ -1,31 +1,63 @@
+#include "apps/bench/rl.hpp"
+
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
-#include "apps/bench/messages/bench_rl.hpp"
-#include "apps/bench/rl_peers.hpp"
-#include "apps/bench/rl_report.hpp"
-#include "apps/bench/rl_run.hpp"
-#include "apps/bench/suite.hpp"
-#include "apps/bench/suites.hpp"
-#include "apps/mjarm/cli/options.hpp"
+#include "apps/bench/messages/bench.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/os.hpp"
 #include "mjarm/core/output_folder.hpp"
-#include "mjarm/core/progress.hpp"
 #include "mjarm/rl/reach_env.hpp"
 
 namespace mjarm::app {
 namespace {
 
-struct Options {
+struct Options : ReportOptions {
   std::string set, seeds = "5", steps, peers, out = "mjarm-out/bench-rl";
-  bool json = false, no_timing = false;
 };
+
+/// The tutorial's region with the gripper held open; a short one with the gripper as the model has
+/// it, for the rate; and the wide region.
+std::vector<LearningSet> learning_sets() {
+  constexpr std::int64_t kIteration = 1024;  // steps of the default settings
+  rl::TrainingOptions tutorial;
+  tutorial.evaluate_every = 10 * kIteration;
+  rl::TrainingOptions as_model = tutorial;
+  as_model.task.gripper = rl::ReachGripper::as_model;
+  as_model.ppo.total_steps = 20 * kIteration;
+  as_model.evaluate_every = as_model.ppo.total_steps;
+  rl::TrainingOptions wide = rl::reach_training(rl::ReachRegion::wide);
+  wide.evaluate_every = 50 * kIteration;
+  return {{"tutorial", tutorial, 5}, {"as_model", as_model, 5}, {"wide", wide, 1}};
+}
+
+/// Trains by mjarm.
+/// @param folder  exists; gets the files of the training.
+/// @return also an error where it was stopped.
+Result<LearningRun> run_learner(const Model& model, const LearningSet& set, std::uint64_t seed,
+                                const std::filesystem::path& folder, Progress& progress) {
+  rl::TrainingOptions options = set.options;
+  options.ppo.seed = seed;
+  auto training = rl::Training::create(model, options, folder);
+  if (!training) return fail(std::move(training.error()));
+  LearningRun run{our_entry("mjarm", set.name, 0), seed, {}};
+  double us = 0;
+  while (!training->done()) {
+    const std::int64_t before = training->trainer().steps();
+    const Result<rl::TrainingStep> step = training->advance();
+    if (!step) return fail(step.error());
+    us += step->iteration.collect_us + step->iteration.update_us;
+    if (step->evaluation) {
+      run.curve.push_back({step->iteration.steps, 1e-6 * us, step->evaluation->distances});
+    }
+    progress.advance(static_cast<std::uint64_t>(step->iteration.steps - before));
+    if (interrupted()) return fail(stopped());
+  }
+  run.us = {us / static_cast<double>(training->trainer().steps())};
+  return run;
+}
 
 /// The sets that are asked for, with so many steps and seeds.
 Result<std::vector<LearningSet>> sets_of(const Options& options, int seeds) {
@@ -59,10 +91,6 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
     total += static_cast<std::uint64_t>(set.options.ppo.total_steps * (seeds + set.peer_seeds));
   }
   Progress progress(text(msg::bench_rl_progress), total);
-  const AdvanceSteps advance = [&](std::uint64_t steps) {
-    progress.advance(steps);
-    return !interrupted();
-  };
   std::vector<LearningRun> runs;
   for (const LearningSet& set : sets) {
     const Result<Model> model = rl::reach_model(set.options.task);
@@ -74,15 +102,16 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
       const Result<OutputFolder> held = OutputFolder::open(folder);
       if (!held) return fail(held.error());
       log_info(text(msg::bench_rl_run, set.name, seed, "mjarm"));
-      auto run = run_learner(*model, set, seed, folder, advance);
+      auto run = run_learner(*model, set, seed, folder, progress);
       if (!run) return fail(std::move(run.error()));
       runs.push_back(std::move(*run));
       if (i >= set.peer_seeds) continue;
       log_info(text(msg::bench_rl_run, set.name, seed, text(msg::bench_rl_peers)));
       auto peers = run_learning_peers(*model, set, seed, options.peers);
       if (!peers) return fail(std::move(peers.error()));
-      std::move(peers->begin(), peers->end(), std::back_inserter(runs));
-      if (!advance(static_cast<std::uint64_t>(set.options.ppo.total_steps))) return fail(stopped());
+      std::ranges::move(*peers, std::back_inserter(runs));
+      progress.advance(static_cast<std::uint64_t>(set.options.ppo.total_steps));
+      if (interrupted()) return fail(stopped());
     }
   }
   return runs;
@@ -94,35 +123,29 @@ Result<int> run_rl(const Options& options) {
   if (!seeds) return fail(seeds.error());
   const auto sets = sets_of(options, *seeds);
   if (!sets) return fail(sets.error());
-  catch_interrupts();
   const auto runs = run_all(options, *sets, *seeds);
   if (!runs) return fail(runs.error());
   const bool timing = !options.no_timing;
   const std::vector<BenchResult> results{
       {text(msg::bench_rl_robot), {}, learning_entries(*runs, timing)}};
-  const std::filesystem::path out = options.out;
-  const std::string json = bench_json(results, timing);
-  if (auto written = write_file(out / "bench.json", json); !written) return fail(written.error());
-  if (auto drawn = draw_learning_curves(*runs, timing, out); !drawn) return fail(drawn.error());
-  const std::string answer = options.json ? json : bench_table(results, learning_columns(), timing);
-  std::fputs(answer.c_str(), stdout);
-  log_info(text(msg::bench_rl_folder, options.out));
-  return 0;
+  return report_in_folder(
+      options, results, learning_columns(), options.out,
+      [&] { return draw_learning_curves(*runs, timing, options.out); }, msg::bench_rl_folder);
 }
 
 }  // namespace
 
-BenchSuite add_bench_rl(CLI::App& bench) {
-  auto options = std::make_shared<Options>();
-  CLI::App& app = add_subcommand(bench, "rl", msg::bench_rl_summary, msg::bench_rl_examples);
-  add_option(app, "--set", options->set, msg::bench_rl_option_set, "SET");
-  add_option(app, "--seeds", options->seeds, msg::bench_rl_option_seeds, "N");
-  add_option(app, "--steps", options->steps, msg::bench_rl_option_steps, "N");
-  add_option(app, "--peers", options->peers, msg::bench_rl_option_peers, "VENV");
-  add_option(app, "--out", options->out, msg::bench_rl_option_out, "DIR");
-  add_flag(app, "--json", options->json, msg::app_option_json);
-  add_flag(app, "--no-timing", options->no_timing, msg::app_option_no_timing);
-  return {&app, [options] { return run_rl(*options); }};
+Command rl_suite() {
+  return {"rl", msg::bench_rl_summary, msg::bench_rl_examples, [](CLI::App& app) -> Run {
+            auto options = std::make_shared<Options>();
+            add_option(app, "--set", options->set, msg::bench_rl_option_set, "SET");
+            add_option(app, "--seeds", options->seeds, msg::bench_rl_option_seeds, "N");
+            add_option(app, "--steps", options->steps, msg::bench_rl_option_steps, "N");
+            add_option(app, "--peers", options->peers, msg::bench_rl_option_peers, "VENV");
+            add_option(app, "--out", options->out, msg::bench_rl_option_out, "DIR");
+            add_report_options(app, *options);
+            return [options] { return run_rl(*options); };
+          }};
 }
 
 }  // namespace mjarm::app

@@ -1,10 +1,8 @@
-#include "apps/bench/rl_peers.hpp"
-
 #include <algorithm>
 #include <utility>
 
-#include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
+#include "apps/bench/rl.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/sim/sim.hpp"
@@ -158,16 +156,14 @@ Result<JsonDoc> job_of(const Model& model, const LearningSet& set, std::uint64_t
 }
 
 /// The curve of one answer; throws `BrokenAnswer`.
-Result<std::vector<LearningPoint>> curve_in(const JsonValue& line, std::size_t goals) {
+std::vector<LearningPoint> curve_in(const JsonValue& line, std::size_t goals) {
   std::vector<LearningPoint> curve;
   for (const JsonValue& point : list_in(line, "curve")) {
     LearningPoint& taken = curve.emplace_back();
     taken.steps = static_cast<std::int64_t>(number_in(point, "steps"));
     taken.seconds = number_in(point, "seconds");
     taken.distances = numbers_in(point, "distances");
-    if (taken.distances.size() != goals) {
-      return fail(Errc::system, text(msg::bench_bad_answer, "distances"));
-    }
+    if (taken.distances.size() != goals) broken("distances");
   }
   return curve;
 }
@@ -179,18 +175,14 @@ Result<std::vector<LearningRun>> run_learning_peers(const Model& model, const Le
                                                     const std::filesystem::path& environment) {
   Result<JsonDoc> job = job_of(model, set, seed);
   if (!job) return fail(std::move(job.error()));
-  std::vector<LearningRun> runs;
-  const auto take = [&](BenchEntry entry, const JsonValue& line) -> Result<void> {
-    LearningRun& run = runs.emplace_back(LearningRun{std::move(entry), seed, {}});
+  auto runs = peer_runs<LearningRun>(
+      environment, "reaching", std::move(*job), [&](const JsonValue& line, LearningRun& run) {
+        run.curve = curve_in(line, static_cast<std::size_t>(set.options.evaluation.episodes));
+      });
+  if (!runs) return runs;
+  for (LearningRun& run : *runs) {
+    run.seed = seed;
     run.set = set.name;
-    if (!run.error.empty()) return {};
-    auto curve = curve_in(line, static_cast<std::size_t>(set.options.evaluation.episodes));
-    if (!curve) return fail(std::move(curve.error()));
-    run.curve = std::move(*curve);
-    return {};
-  };
-  if (auto done = run_peers(environment, "reaching", std::move(*job), take); !done) {
-    return fail(std::move(done.error()));
   }
   return runs;
 }

@@ -1,12 +1,11 @@
-#include "apps/bench/rl_report.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "apps/bench/messages/bench_rl.hpp"
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/rl.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {
@@ -22,6 +21,13 @@ struct Mark {
 constexpr Mark kMarks[] = {{0.02, 0.95, "2cm", msg::bench_rl_mark_2cm},
                            {0.01, 0.95, "1cm", msg::bench_rl_mark_1cm},
                            {0.005, 0.90, "5mm", msg::bench_rl_mark_5mm}};
+
+/// Share of the goals, 0 to 1, that ended within `distance` [m].
+double share_within(const LearningPoint& point, double distance) {
+  const auto count = std::count_if(point.distances.begin(), point.distances.end(),
+                                   [&](double d) { return d <= distance; });
+  return static_cast<double>(count) / static_cast<double>(point.distances.size());
+}
 
 /// The first time that the mark was passed.
 const LearningPoint* passed(const LearningRun& run, const Mark& mark) {
@@ -151,19 +157,18 @@ std::vector<Msg> learning_columns() {
 
 std::vector<BenchEntry> learning_entries(const std::vector<LearningRun>& runs, bool timing) {
   std::vector<BenchEntry> entries;
-  std::vector<std::pair<std::string, Seeds>> groups;  // in the order of their first run
+  std::vector<Seeds> groups;  // in the order of their first run
   for (const LearningRun& run : runs) {
     if (!run.error.empty()) {
       entries.push_back(run);
       continue;
     }
-    const std::string key = run.set + '\n' + run.who;
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const auto& known) { return known.first == key; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {key, {}});
-    group->second.push_back(&run);
+    const auto group = std::ranges::find_if(groups, [&](const Seeds& seeds) {
+      return seeds.front()->set == run.set && seeds.front()->who == run.who;
+    });
+    (group != groups.end() ? *group : groups.emplace_back()).push_back(&run);
   }
-  for (const auto& [key, seeds] : groups) entries.push_back(entry_of(seeds, timing));
+  for (const Seeds& seeds : groups) entries.push_back(entry_of(seeds, timing));
   return entries;
 }
 

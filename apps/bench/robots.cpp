@@ -37,6 +37,15 @@ Result<Robot> load_bench_robot(const RobotChoice& options, const fs::path& folde
   return load_robot({.robot = file, .tip = bare ? "panda_link8" : options.tip});
 }
 
+Error no_cases(const fs::path& file) {
+  return {Errc::bad_input, text(msg::bench_no_cases, file.string())};
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
 JointVec random_q(const Arm& arm, Rng& rng) {
   JointVec q(arm.dof());
   for (int i = 0; i < arm.dof(); ++i) {
@@ -75,7 +84,7 @@ Result<bool> reaches(const Robot& robot, const Pose& X_WT, const std::vector<dou
   return (X->p - X_WT.p).norm() <= kPosTol && angle_between(X->R, X_WT.R) <= kRotTol;
 }
 
-Result<JsonDoc> robot_job(const Robot& robot) {
+Result<JsonDoc> robot_job(const Robot& robot, int rounds) {
   if (robot.model.format() != ModelFormat::urdf) {
     return fail(Errc::usage, text(msg::bench_peers_urdf, robot.model.file().string()));
   }
@@ -87,7 +96,8 @@ Result<JsonDoc> robot_job(const Robot& robot) {
                  {"lower", arm.limits.lower},
                  {"upper", arm.limits.upper},
                  {"zero", pose_json(fk(arm, as_span(JointVec(JointVec::Zero(arm.dof())))))},
-                 {"joints", joints}};
+                 {"joints", joints},
+                 {"rounds", rounds}};
 }
 
 }  // namespace mjarm::app

@@ -6,6 +6,7 @@
 
 #include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/line_reader.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/rng.hpp"
@@ -18,6 +19,11 @@ namespace mjarm::app {
 [[nodiscard]] Result<Robot> load_bench_robot(const RobotChoice& options,
                                              const std::filesystem::path& folder);
 
+/// The file has none.
+[[nodiscard]] Error no_cases(const std::filesystem::path& file);
+/// True where something of that name is there.
+[[nodiscard]] bool is_there(const std::filesystem::path& path);
+
 /// Uniform within the limits; a joint without stops turns once, or slides a metre.
 [[nodiscard]] JointVec random_q(const Arm& arm, Rng& rng);
 
@@ -29,7 +35,18 @@ namespace mjarm::app {
 [[nodiscard]] Result<bool> reaches(const Robot& robot, const Pose& X_WT,
                                    const std::vector<double>& q);
 
-/// What a peer has to know of the robot; an error unless it comes from a URDF.
-[[nodiscard]] Result<JsonDoc> robot_job(const Robot& robot);
+/// What a peer has to know of the robot, and in how many rounds; an error unless it comes from a
+/// URDF.
+[[nodiscard]] Result<JsonDoc> robot_job(const Robot& robot, int rounds);
+
+/// Reads the cases of a set, JSON objects line by line, each by `take(object)`.
+/// @param cases  what `take` adds to; an error where nothing is in it then.
+template <class Case, class Take>
+Result<void> read_cases(const std::filesystem::path& file, std::size_t longest,
+                        const std::vector<Case>& cases, const Take& take) {
+  Result<void> done = read_json_lines(file, longest, take);
+  if (done && cases.empty()) done = fail(no_cases(file));
+  return done;
+}
 
 }  // namespace mjarm::app

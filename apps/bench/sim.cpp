@@ -3,12 +3,8 @@
 #include <memory>
 
 #include "apps/bench/suite.hpp"
-#include "apps/bench/suites.hpp"
-#include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "mjarm/core/json_writer.hpp"
 #include "mjarm/sim/bench.hpp"
 
 namespace mjarm::app {
@@ -17,10 +13,9 @@ namespace {
 /// More than this takes hours.
 constexpr int kMax = 1'000'000;
 
-struct Options {
+struct Options : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
   std::string rounds = "40", steps = "250";
-  bool json = false, no_timing = false;
 };
 
 std::string to_json(const Robot& robot, const SimBenchOptions& work,
@@ -75,15 +70,15 @@ Result<int> run_sim(const Options& options) {
 
 }  // namespace
 
-BenchSuite add_bench_sim(CLI::App& bench) {
-  auto options = std::make_shared<Options>();
-  CLI::App& sim = add_subcommand(bench, "sim", msg::sim_bench_summary, msg::sim_bench_examples);
-  add_robot_options(sim, options->robot);
-  add_option(sim, "--steps", options->steps, msg::sim_bench_steps, "N");
-  add_option(sim, "--rounds", options->rounds, msg::sim_bench_rounds, "N");
-  add_flag(sim, "--json", options->json, msg::app_option_json);
-  add_flag(sim, "--no-timing", options->no_timing, msg::app_option_no_timing);
-  return {&sim, [options] { return run_sim(*options); }};
+Command sim_suite() {
+  return {"sim", msg::sim_bench_summary, msg::sim_bench_examples, [](CLI::App& app) -> Run {
+            auto options = std::make_shared<Options>();
+            add_robot_options(app, options->robot);
+            add_option(app, "--steps", options->steps, msg::sim_bench_steps, "N");
+            add_option(app, "--rounds", options->rounds, msg::sim_bench_rounds, "N");
+            add_report_options(app, *options);
+            return [options] { return run_sim(*options); };
+          }};
 }
 
 }  // namespace mjarm::app

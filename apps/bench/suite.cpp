@@ -1,76 +1,240 @@
 #include "apps/bench/suite.hpp"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <map>
 #include <memory>
-#include <utility>
+#include <numeric>
+#include <tuple>
 
 #include "apps/bench/messages/bench.hpp"
 #include "apps/mjarm/cli/batch.hpp"
-#include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/cpu.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/os.hpp"
-#include "mjarm/core/progress.hpp"
 
 namespace mjarm::app {
+namespace {
 
-void add_bench_options(CLI::App& app, BenchOptions& options, Msg data_help) {
-  const auto add = [&app](const char* name, std::string& value, Msg help, const char* type) {
-    add_option(app, name, value, help, type);
-  };
-  add("--robot", options.robot, msg::bench_option_robot, "ROBOT");
-  add("--data", options.data, data_help, "DIR");
-  add("--peers", options.peers, msg::bench_option_peers, "VENV");
-  add("--rounds", options.rounds, msg::bench_option_rounds, "N");
-  add("--out", options.out, msg::bench_option_out, "FILE");
-  add_flag(app, "--json", options.json, msg::app_option_json);
-  add_flag(app, "--no-timing", options.no_timing, msg::app_option_no_timing);
+using Row = std::vector<std::string>;
+
+/// What the processor calls itself, and a comma; empty where unknown.
+std::string processor() {
+  const std::string info = read_file("/proc/cpuinfo").value_or("");
+  const std::size_t at = info.find("model name");
+  if (at == std::string::npos) return {};
+  const std::size_t from = info.find(": ", at) + 2;
+  return info.substr(from, info.find('\n', from) - from) + ", ";
 }
 
-void add_tool_bench_options(CLI::App& app, ToolBenchOptions& options, Msg data_help) {
-  add_bench_options(app, options, data_help);
-  add_option(app, "--tip", options.tip, msg::app_option_tip, "FRAME");
-}
-
-Advance show_rounds(const std::string& label, std::uint64_t rounds) {
-  return [progress = std::make_shared<Progress>(label, rounds)] {
-    progress->advance();
-    return !interrupted();
-  };
-}
-
-Error stopped() { return {Errc::system, text(msg::app_interrupted)}; }
-
-bool wants_peers(const BenchOptions& options, const std::string& robot) {
-  if (options.peers.empty()) return false;
-  log_info(text(msg::bench_running_peers, robot));
-  return true;
-}
-
-Result<int> run_suite(const BenchOptions& options, const std::vector<std::string>& robots,
-                      const std::vector<Msg>& columns, const BenchRobot& measure) {
-  constexpr int kMaxRounds = 10'000;
-  const Result<int> rounds = parse_count("--rounds", options.rounds, kMaxRounds);
-  if (!rounds) return fail(rounds.error());
-  std::vector<std::string> asked{options.robot};
-  if (options.robot.empty()) asked = robots;
-  std::vector<BenchResult> results;
-  for (const std::string& robot : asked) {
-    Result<BenchResult> result = measure(robot, *rounds);
-    if (!result) return fail(std::move(result.error()));
-    results.push_back(std::move(*result));
+/// Ours on the same set, against which the others are measured: its numeric solver is a contestant.
+const BenchEntry* ours(const BenchResult& result, const std::string& set) {
+  for (const BenchEntry& entry : result.entries) {
+    if (entry.set == set && entry.who == "mjarm") return &entry;
   }
+  return nullptr;
+}
+
+/// How many times as long as ours; 0 where that cannot be told.
+double ratio_of(const BenchResult& result, const BenchEntry& entry) {
+  if (entry.ratio > 0) return entry.ratio;
+  const BenchEntry* mine = ours(result, entry.set);
+  if (mine == nullptr || entry.us.empty()) return 0;
+  const double us = percentile(mine->us, 50);
+  return us > 0 ? percentile(entry.us, 50) / us : 0;
+}
+
+Row row_of(const BenchResult& result, const BenchEntry& entry, bool timing) {
+  const std::string who = entry.version.empty() ? entry.who : entry.who + " " + entry.version;
+  if (!entry.error.empty()) return {entry.set.empty() ? "-" : entry.set, who, entry.error};
+  Row row{entry.set, who};
+  row.insert(row.end(), entry.cells.begin(), entry.cells.end());
+  if (!timing) return row;
+  row.push_back(entry.us.empty() ? "-" : rounded(percentile(entry.us, 50)));
+  row.push_back(entry.us.size() > 1 ? rounded(percentile(entry.us, 99)) : "-");
+  const double ratio = ratio_of(result, entry);
+  row.push_back(ours(result, entry.set) == &entry ? "1" : ratio > 0 ? rounded(ratio) : "-");
+  row.push_back(entry.timed);
+  return row;
+}
+
+/// The entries of a set together, ours first, then from fast to slow.
+std::vector<const BenchEntry*> in_order(const BenchResult& result) {
+  std::map<std::string, std::size_t> first;  // the sets in the order of their first entry
+  std::vector<const BenchEntry*> order;
+  for (const BenchEntry& entry : result.entries) {
+    first.emplace(entry.set, order.size());
+    order.push_back(&entry);
+  }
+  std::ranges::stable_sort(order, {}, [&](const BenchEntry* entry) {
+    const bool peer = !entry->version.empty();
+    return std::make_tuple(!entry->error.empty(), first.at(entry->set), peer,
+                           peer ? percentile(entry->us, 50) : 0.0);
+  });
+  return order;
+}
+
+JsonDoc json_of(const BenchResult& result, const BenchEntry& entry, bool timing) {
+  JsonDoc out{{"who", entry.who}};
+  if (!entry.version.empty()) out.set("version", entry.version);
+  if (!entry.set.empty()) out.set("set", entry.set);
+  if (!entry.error.empty()) {
+    out.set("error", entry.error);
+    return out;
+  }
+  out.set_all(entry.details);
+  if (timing) {
+    out.set("timed", entry.timed);
+    out.set("us", {{"median", percentile(entry.us, 50)}, {"p99", percentile(entry.us, 99)}});
+    out.set("ratio", ratio_of(result, entry));
+  }
+  return out;
+}
+
+/// One table a robot in Markdown, aligned, so that it also reads well on a terminal.
+std::string table_of(const std::vector<BenchResult>& results, const std::vector<Msg>& columns,
+                     bool timing) {
+  std::vector<Msg> headings{msg::bench_case, msg::bench_who};
+  headings.insert(headings.end(), columns.begin(), columns.end());
+  if (timing) {
+    headings.insert(headings.end(),
+                    {msg::bench_median, msg::bench_p99, msg::bench_ratio, msg::bench_clock});
+  }
+  Row head;
+  for (const Msg heading : headings) head.push_back(text(heading));
+  std::string out;
+  if (timing) out += bench_occasion() + "\n\n";
+  for (const BenchResult& result : results) {
+    out += result.file.empty() ? result.robot : text(msg::bench_robot, result.robot, result.file);
+    out += "\n\n";
+    std::vector<Row> rows{head};
+    for (const BenchEntry* entry : in_order(result)) rows.push_back(row_of(result, *entry, timing));
+    out += markdown_table(rows) + '\n';
+  }
+  out.pop_back();  // whoever writes it adds a line break
+  return out;
+}
+
+/// The same with all details, as one JSON document.
+std::string json_of(const std::vector<BenchResult>& results, bool timing) {
+  std::vector<JsonDoc> robots;
+  for (const BenchResult& result : results) {
+    std::vector<JsonDoc> runs;
+    for (const BenchEntry* entry : in_order(result)) {
+      runs.push_back(json_of(result, *entry, timing));
+    }
+    robots.push_back({{"robot", result.robot}, {"runs", std::move(runs)}});
+  }
+  JsonDoc out;
+  if (timing) out.set("machine", bench_occasion());
+  out.set("robots", std::move(robots));
+  return out.line();
+}
+
+/// Writes the answer to `file`, or to standard output where that is empty.
+Result<int> report(const ReportOptions& options, const std::vector<BenchResult>& results,
+                   const std::vector<Msg>& columns, const std::string& file) {
   const bool timing = !options.no_timing;
-  std::string out =
-      options.json ? bench_json(results, timing) : bench_table(results, columns, timing);
-  out.pop_back();  // the line break that is added now
-  if (Result<void> written = write_answer(options.out, out); !written) {
-    return fail(std::move(written.error()));
-  }
+  const std::string out =
+      options.json ? json_of(results, timing) : table_of(results, columns, timing);
+  if (auto written = write_answer(file, out); !written) return fail(std::move(written.error()));
   for (const BenchResult& result : results) {
     if (!result.wrong.empty()) return fail(Errc::impossible, result.wrong);
   }
   return 0;
+}
+
+Result<int> run_robots(const BenchOptions& options, const std::vector<Msg>& columns,
+                       BenchRobot measure) {
+  constexpr int kMaxRounds = 10'000;
+  const Result<int> rounds = parse_count("--rounds", options.rounds, kMaxRounds);
+  if (!rounds) return fail(rounds.error());
+  std::vector<std::string> robots{"ur5e", "panda"};
+  if (!options.robot.empty()) robots = {options.robot};
+  std::vector<BenchResult> results;
+  for (const std::string& robot : robots) {
+    Result<BenchResult> result = measure(options, robot, *rounds);
+    if (!result) return fail(std::move(result.error()));
+    results.push_back(std::move(*result));
+  }
+  return report(options, results, columns, options.out);
+}
+
+}  // namespace
+
+double percentile(std::vector<double> values, std::size_t percent) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  return values[values.size() * percent / 100];
+}
+
+std::string rounded(double value) {
+  const int decimals = value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3;
+  return fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string count_of(int count, std::size_t asked, std::size_t cases) {
+  const std::string all = fmt::format("{}/{}", count, asked);
+  return asked < cases ? all + " " + text(msg::bench_first, asked) : all;
+}
+
+std::string bench_occasion() {
+  return fmt::format("{}{}; {:%Y-%m-%d}", processor(), name(simd_level()),
+                     fmt::gmtime(std::time(nullptr)));
+}
+
+void add_report_options(CLI::App& app, ReportOptions& options) {
+  add_flag(app, "--json", options.json, msg::app_option_json);
+  add_flag(app, "--no-timing", options.no_timing, msg::app_option_no_timing);
+}
+
+Result<int> report_in_folder(const ReportOptions& options, const std::vector<BenchResult>& results,
+                             const std::vector<Msg>& columns, const std::string& folder,
+                             const std::function<Result<void>()>& write_more, Msg told) {
+  const Result<OutputFolder> held = OutputFolder::open(folder);
+  if (!held) return fail(held.error());
+  Result<void> done = write_file(std::filesystem::path(folder) / "bench.json",
+                                 json_of(results, !options.no_timing) + '\n');
+  if (done) done = write_more();
+  if (!done) return fail(std::move(done.error()));
+  Result<int> code = report(options, results, columns, {});
+  log_info(text(told, folder));
+  return code;
+}
+
+Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> columns,
+                 BenchRobot measure) {
+  auto options = std::make_shared<BenchOptions>();
+  add_option(app, "--robot", options->robot, msg::bench_option_robot, "ROBOT");
+  add_option(app, "--data", options->data, data_help, "DIR");
+  add_option(app, "--peers", options->peers, msg::bench_option_peers, "VENV");
+  add_option(app, "--rounds", options->rounds, msg::bench_option_rounds, "N");
+  add_option(app, "--out", options->out, msg::bench_option_out, "FILE");
+  add_report_options(app, *options);
+  if (tool) add_option(app, "--tip", options->tip, msg::app_option_tip, "FRAME");
+  return [=, columns = std::move(columns)] { return run_robots(*options, columns, measure); };
+}
+
+bool wants_peers(const std::string& peers, const std::string& robot) {
+  if (peers.empty()) return false;
+  log_info(text(msg::bench_running_peers, robot));
+  return true;
+}
+
+Error stopped() { return {Errc::system, text(msg::app_interrupted)}; }
+
+BenchEntry our_entry(std::string who, std::string set, std::size_t count) {
+  return {.who = std::move(who),
+          .set = std::move(set),
+          .timed = "c++",
+          .us = std::vector<double>(count, std::numeric_limits<double>::infinity())};
 }
 
 }  // namespace mjarm::app

@@ -1,21 +1,21 @@
-#include "apps/bench/time_run.hpp"
-
 #include <algorithm>
-#include <limits>
 
+#include "apps/bench/time.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/trajectory/point_to_point.hpp"
 
 namespace mjarm::app {
 namespace {
 
-constexpr double kEndTol = 1e-6;   // [rad, rad/s] at both ends
-constexpr double kPassTol = 1e-3;  // [rad or m] at waypoints
+constexpr double kStateTol = 1e-6;  // [rad, rad/s] at both ends
+constexpr double kPassTol = 1e-3;   // [rad or m] at waypoints
 
 /// Share of a limit that may be passed: path timers without jerk limits hold theirs on a grid.
 double allowed(TimeProblem problem) { return problem == TimeProblem::path_va ? 1e-3 : 1e-6; }
 
-bool same(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs().maxCoeff() <= kEndTol; }
+bool same(const JointVec& a, const JointVec& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= kStateTol;
+}
 
 /// True where the motion comes near `point`: looked at more closely around its nearest sample.
 bool passes(const Trajectory& motion, std::span<const JointState> states, const JointVec& point) {
@@ -95,17 +95,12 @@ TimedMotion judge_motion(const TimeSet& set, const TimeCase& entry, double durat
   return out;
 }
 
-std::optional<TimeRun> run_time(const TimeSet& set, int rounds,
-                                const std::function<bool()>& advance) {
-  TimeRun run{{.who = "mjarm", .set = set.name, .timed = "c++"}};
-  run.us.assign(set.cases.size(), std::numeric_limits<double>::infinity());
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < set.cases.size(); ++i) {
-      (void)solve(set, set.cases[i], false, run.us[i]);
-    }
-    if (!advance()) return std::nullopt;
-  }
+TimeRun run_time(const TimeSet& set, int rounds, Progress& progress) {
+  TimeRun run{our_entry("mjarm", set.name, set.cases.size())};
+  in_rounds(rounds, set.cases.size(), progress,
+            [&](std::size_t i) { (void)solve(set, set.cases[i], false, run.us[i]); });
   for (const TimeCase& entry : set.cases) {
+    if (interrupted()) break;
     double us = 0;  // of a call amid others: no measure
     run.motions.push_back(solve(set, entry, true, us));
   }

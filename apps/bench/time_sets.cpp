@@ -1,16 +1,13 @@
-#include "apps/bench/time_sets.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "apps/bench/messages/bench.hpp"
-#include "apps/mjarm/cli/robot.hpp"
+#include "apps/bench/robots.hpp"
+#include "apps/bench/time.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/messages/json.hpp"
-#include "mjarm/core/rng.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -93,14 +90,12 @@ std::vector<TimeSet> make_sets(const JointLimits& arm) {
           {"ellipse", TimeProblem::path_va, limits, make_lap(dof)}};
 }
 
-Result<TimeCases> read_cases(const fs::path& file, TimeProblem problem) {
+Result<TimeCases> read_motions(const fs::path& file, TimeProblem problem) {
   const Result<std::string> content = read_file(file, kLargest);
   if (!content) return fail(content.error());
   Result<TimeCases> cases = read_time_cases(*content, problem);
   if (!cases) return fail(cases.error().code, file.string() + ": " + cases.error().what);
-  if (cases->cases.empty()) {
-    return fail(Errc::bad_input, text(msg::bench_no_cases, file.string()));
-  }
+  if (cases->cases.empty()) return fail(no_cases(file));
   return cases;
 }
 
@@ -120,8 +115,7 @@ std::vector<double> best_of(const JsonValue& known, const std::string& file, con
 
 Result<JsonObject> read_best_known(const fs::path& folder) {
   const fs::path file = folder / "best_known.json";
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return JsonObject();
+  if (!is_there(file)) return JsonObject();
   const Result<std::string> content = read_file(file, kLargest);
   if (!content) return fail(content.error());
   Result<JsonObject> known = parse_json_object(*content);
@@ -141,7 +135,7 @@ bool rests(const TimeCase& entry) {
 
 /// Point to point apart by whether it goes from rest to rest.
 Result<void> read_moves(const fs::path& file, const JsonValue& known, std::vector<TimeSet>& sets) {
-  const Result<TimeCases> all = read_cases(file, TimeProblem::p2p);
+  const Result<TimeCases> all = read_motions(file, TimeProblem::p2p);
   if (!all) return fail(all.error());
   for (const bool rest : {true, false}) {
     TimeSet set{rest ? "rest" : "state", TimeProblem::p2p, all->limits, {}};
@@ -164,9 +158,8 @@ Result<void> read_paths(const fs::path& file, const JsonValue& known, std::vecto
   if (file.stem().string().ends_with("_ellipse")) {
     kinds = {{"ellipse", "spline_va", TimeProblem::path_va}};
   }
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return {};
-  const Result<TimeCases> all = read_cases(file, TimeProblem::path_va);
+  if (!is_there(file)) return {};
+  const Result<TimeCases> all = read_motions(file, TimeProblem::path_va);
   if (!all) return fail(all.error());
   for (const Kind& kind : kinds) {
     sets.push_back({kind.name, kind.problem, all->limits, all->cases,

@@ -53,8 +53,8 @@ TEST(Rng, EveryBitIsSetHalfOfTheTimeAndKnowsNothingOfTheOneBefore) {
   for (int i = 0; i < kCount; ++i) {
     const std::uint64_t now = rng.next();
     for (std::size_t b = 0; b < 64; ++b) {
-      set.at(b) += (now >> b) & 1;
-      kept.at(b) += ((now ^ before) >> b) & 1;
+      set.at(b) += static_cast<int>((now >> b) & 1);
+      kept.at(b) += static_cast<int>(((now ^ before) >> b) & 1);
     }
     before = now;
   }

@@ -69,8 +69,8 @@ Finding finding_of(const Error& error, const fs::path& file) {
   finding.file = file.string();
   finding.what = error.what;
   const std::string& what = error.what;
-  // The first `:LINE:` parts the place from the words; the file may be an included one. A folder may
-  // be called so as well.
+  // The first `:LINE:` parts the place from the words; the file may be an included one. A folder
+  // may be called so as well.
   const std::size_t named = what.starts_with(finding.file) ? finding.file.size() : 0;
   for (std::size_t colon = what.find(':', named); colon != std::string::npos;
        colon = what.find(':', colon + 1)) {

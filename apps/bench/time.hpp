@@ -1,16 +1,34 @@
 #pragma once
 
-#include <functional>
-#include <optional>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "apps/bench/report.hpp"
-#include "apps/bench/time_sets.hpp"
+#include "apps/bench/suite.hpp"
 #include "mjarm/core/joint_state.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/trajectory/time_cases.hpp"
 
 namespace mjarm::app {
+
+/// Motions of one kind to be timed.
+struct TimeSet {
+  std::string name;  ///< "rest", "state", "path_va", "path_vaj", "via_vaj", "ellipse"
+  TimeProblem problem;
+  JointLimits limits;
+  std::vector<TimeCase> cases;
+  /// [s] what durations are compared with, one a case: the shortest known ones (for path_vaj those
+  /// without jerk limits). Empty where none are known.
+  std::vector<double> best = {};
+};
+
+/// The sets of one robot. With a folder: `NAME_p2p.json`, and `NAME_paths.json`,
+/// `NAME_ellipse.json` and `best_known.json` as far as they are there. Without: the robot's own
+/// limits, and cases made at random, the same every time.
+/// @param folder  empty = none.
+[[nodiscard]] Result<std::vector<TimeSet>> load_time_sets(const std::string& robot,
+                                                          const std::filesystem::path& folder);
 
 /// What became of one case.
 struct TimedMotion {
@@ -36,10 +54,8 @@ struct TimeRun : BenchEntry {
                                        std::span<const JointState> states);
 
 /// Runs mjarm on every case of a set, all of them `rounds` times over, one call at a time in this
-/// thread, each call with a clock reading before and after; then judges the motions.
-/// @param advance  told after every round; false stops the work.
-/// @return nothing where it was stopped.
-[[nodiscard]] std::optional<TimeRun> run_time(const TimeSet& set, int rounds,
-                                              const std::function<bool()>& advance);
+/// thread, each call with a clock reading before and after; then judges the motions. Stops at
+/// Ctrl-C.
+[[nodiscard]] TimeRun run_time(const TimeSet& set, int rounds, Progress& progress);
 
 }  // namespace mjarm::app
