@@ -1,4 +1,4 @@
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
 namespace {

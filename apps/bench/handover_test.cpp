@@ -1,7 +1,7 @@
 // `mjarm bench ...` is `mjarm-bench ...`, wherever the global options stand.
 #include <filesystem>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
 namespace {

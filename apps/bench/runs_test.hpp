@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/mjarm/view/program_test.hpp"
+#include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
 

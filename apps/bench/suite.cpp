@@ -19,6 +19,7 @@
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/output_folder.hpp"
 
 namespace mjarm::app {
 namespace {
