@@ -184,7 +184,7 @@ TEST(ProgramSettings, CurvesThatCannotBeAreNamedWithWhatIsWrong) {
               ::testing::AllOf(HasSubstr("10 text bad_input"), HasSubstr("!")));
   EXPECT_THAT(why("text: {text: \"\\u4f60\", pos: [0, -0.4, 0.4], euler: [3, 0, 0]}"),
               HasSubstr("10 text bad_input"));
-  EXPECT_THAT(why("movel: {pos: [1e7, -0.4, 0.4], euler: [3, 0, 0]}"), HasSubstr("10 movel"));
+  EXPECT_THAT(why("movel: {pos: [1e7m, -0.4, 0.4], euler: [3, 0, 0]}"), HasSubstr("10 movel"));
   EXPECT_THAT(why("grip: close"), HasSubstr("10 grip not_available"));
 }
 

@@ -68,7 +68,7 @@ TEST(Export, WhatCannotBeExportedIsOneLine) {
   EXPECT_THAT(only_line(panda), HasSubstr("Universal Robots"));
 
   const std::string faulty =
-      cell("robot: ur5e\nprogram:\n  - movej: {joints: [0, 0, 9, 0, 0, 0]}\n");
+      cell("robot: ur5e\nprogram:\n  - movej: {joints: [0, 0, 9rad, 0, 0, 0]}\n");
   const auto fault = mjarm({"export", faulty, "--to", "urscript", "--out", itself + ".script"});
   EXPECT_EQ(fault.exit_code, 1);
   EXPECT_EQ(only_line(fault), only_line(mjarm({"run", faulty, "--headless"})));

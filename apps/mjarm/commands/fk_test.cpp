@@ -120,7 +120,7 @@ TEST(Fk, MalformedLinesNameFileAndLineAndWriteNothing) {
       {"{\"q\":[1,2,null,4,5,6]}", "entry 2 of \"q\" is not a number"},
       {"{\"q\":[true,2,3,4,5,6]}", "entry 0 of \"q\" is not a number"},
       {"{\"q\":1}", "must be a list of 6 numbers"},
-      {"{\"Q\":[1,2,3,4,5,6]}", "\"q\" is missing (there is \"Q\" instead)"},
+      {"{\"Q\":[1,2,3,4,5,6]}", "the key \"Q\" is not known here (did you mean \"q\"?)"},
       {"{}", "\"q\" is missing"},
       {"[1,2,3,4,5,6]", "a JSON object"},
       {"42", "a JSON object"},

@@ -127,7 +127,7 @@ TEST_F(Outputs, NoAnswerIsAnAnswerToo) {
          "0,1,0,0"},
         ""},
        "\"ok\":false"},
-      {{{"plan", "--robot", robot_, "--goal", "0,0,9"}, ""}, "\"ok\":false"}};
+      {{{"plan", "--robot", robot_, "--goal", "0,0,9m"}, ""}, "\"ok\":false"}};
   for (const auto& [writer, says] : cases) {
     const auto result = write(writer, "answer.json");
     EXPECT_EQ(result.exit_code, 1);

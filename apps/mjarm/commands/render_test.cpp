@@ -105,7 +105,7 @@ TEST_F(Render, AModelAtHome) {
       picture({"ur5e", "--size", "320x180", "--camera", "90deg,-20deg,2.5,0,0,0.4"});
   EXPECT_NE(free.rgb, overview.rgb);
   // From far away the robot, whose lids are light blue, is small.
-  const Picture far = picture({"ur5e", "--size", "320x180", "--camera", "90deg,-20deg,25"});
+  const Picture far = picture({"ur5e", "--size", "320x180", "--camera", "90deg,-20deg,25m"});
   EXPECT_GT(free.count(110, 170, 220), far.count(110, 170, 220));
   std::vector<Picture> qualities;
   for (const char* quality : {"low", "medium", "high"}) {

@@ -146,7 +146,8 @@ TEST(Run, UnknownNamesGetTheNearestProgram) {
 
 TEST(Run, RefusesAProgramWithFaultsBeforeItMakesAFolder) {
   const support::TempFolder folder;
-  const auto file = folder.write("cell.yaml", "robot: ur5e\nprogram:\n  - movej: {joints: [9]}\n");
+  const auto file = folder.write(
+      "cell.yaml", "robot: ur5e\nprogram:\n  - movej: {joints: [9rad, 0, 0, 0, 0, 0]}\n");
   const auto result =
       mjarm({"run", file.string(), "--out", (folder.path() / "out").string(), "--headless"});
   EXPECT_EQ(result.exit_code, 1);

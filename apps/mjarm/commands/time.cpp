@@ -119,10 +119,7 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
   json.object().member("ok", !why);
   if (why) json.member("reason", *why);
   if (motion) out += ',' + body;
-  if (sampled) {  // they may be long: not copied
-    out += ',';
-    append_samples(out, *motion, job.dt);
-  }
+  if (sampled) append_samples(out, *motion, job.dt);  // they may be long: not copied
   if (job.timing) json.member_us("us", us);
   json.end_object();
   return why;
