@@ -20,10 +20,6 @@ std::filesystem::path shipped_folder() {
   return share ? *share / "programs" : std::filesystem::path();
 }
 
-bool is_before(const ProgramFault& a, const ProgramFault& b) {
-  return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-}
-
 /// All that is wrong with a text that has faults.
 std::vector<ProgramFault> text_faults(const std::filesystem::path& file, const ProgramText& text) {
   std::vector<ProgramFault> out;
@@ -41,7 +37,7 @@ std::vector<ProgramFault> text_faults(const std::filesystem::path& file, const P
     more.push_back(robot.error());
   }
   std::ranges::move(more, std::back_inserter(out));
-  std::ranges::stable_sort(out, is_before);
+  std::ranges::stable_sort(out, {}, &ProgramFault::place);
   return out;
 }
 

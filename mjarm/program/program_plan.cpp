@@ -93,9 +93,7 @@ class ProgramPlanner {
       i = attempt.fault->step + 1;
     }
     if (is_stopped(options_.stop)) end_early();
-    std::ranges::stable_sort(plan_.faults, [](const ProgramFault& a, const ProgramFault& b) {
-      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-    });
+    std::ranges::stable_sort(plan_.faults, {}, &ProgramFault::place);
     return std::move(plan_);
   }
 
@@ -140,8 +138,7 @@ class ProgramPlanner {
 
   /// The least change that mends a way of the tool; each is looked for once.
   std::optional<PathFix> find_fix(const PlanFault& fault) {
-    const auto& [line, column] = steps_[fault.step].place;
-    if (!fault.way || !mended_.emplace(line, column).second) return std::nullopt;
+    if (!fault.way || !mended_.insert(steps_[fault.step].place).second) return std::nullopt;
     return detail::find_fix(tool(steps_[fault.step]).ik, *fault.way);
   }
 
@@ -469,8 +466,8 @@ class ProgramPlanner {
   FilePlace start_place_;
   const ProgramPlanOptions& options_;
   std::vector<Tool> tools_;
-  std::size_t told_ = 0;                  // steps that were told of
-  std::set<std::pair<int, int>> mended_;  // places of faults for which a change was looked for
+  std::size_t told_ = 0;        // steps that were told of
+  std::set<FilePlace> mended_;  // places of faults for which a change was looked for
   ProgramPlan plan_;
 };
 

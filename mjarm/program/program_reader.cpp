@@ -124,9 +124,7 @@ ProgramText look_through(const std::string& content) {
     if (!fault.what.empty()) out.faults.push_back(fault);
   } catch (const detail::TooManyFaults&) {
   }
-  std::ranges::stable_sort(out.faults, [](const TextFault& a, const TextFault& b) {
-    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-  });
+  std::ranges::stable_sort(out.faults, {}, &TextFault::place);
   return out;
 }
 

@@ -17,9 +17,9 @@ render::OffscreenOptions offscreen_options(const PictureOptions& options) {
   return out;
 }
 
-render::Camera default_camera(const Model& model) {
+render::Camera default_camera(const Model& model, const std::string& name) {
   render::Camera camera;
-  if (std::ranges::count(render::camera_names(model), "overview") > 0) camera.name = "overview";
+  if (std::ranges::count(render::camera_names(model), name) > 0) camera.name = name;
   return camera;
 }
 

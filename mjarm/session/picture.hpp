@@ -23,8 +23,9 @@ struct PictureOptions {
 /// How to draw: without a quality asked for, high; low for a video without a GPU.
 [[nodiscard]] render::OffscreenOptions offscreen_options(const PictureOptions& options);
 
-/// `overview` where the model has a camera of that name, else the model's own view.
-[[nodiscard]] render::Camera default_camera(const Model& model);
+/// The camera `name` where the model has one, else the model's own view.
+[[nodiscard]] render::Camera default_camera(const Model& model,
+                                            const std::string& name = "overview");
 
 /// Draws one picture and writes it. @return the line to tell.
 [[nodiscard]] Result<std::string> write_picture(render::OffscreenRenderer& renderer,

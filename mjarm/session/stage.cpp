@@ -1,13 +1,12 @@
 #include "mjarm/session/stage.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/kinematics/ik.hpp"
-#include "mjarm/render/camera.hpp"
+#include "mjarm/session/picture.hpp"
 #include "mjarm/session/run_charts.hpp"
 #include "mjarm/session/run_output.hpp"
 
@@ -54,16 +53,10 @@ bool Stage::show_step(const Sim& sim) {
   return show_.step(sim, sim.tool(robot_.arm).p);
 }
 
-render::Camera Stage::camera() const {
-  const std::vector<std::string> cameras = render::camera_names(robot_.model);
-  render::Camera camera;
-  if (std::ranges::find(cameras, camera_name_) != cameras.end()) camera.name = camera_name_;
-  return camera;
-}
-
 Result<void> Stage::begin_film() {
   if (!options_.video || show_.is_filming()) return {};
-  return show_.film(robot_.model, options_.out / kVideoFile, camera());
+  return show_.film(robot_.model, options_.out / kVideoFile,
+                    default_camera(robot_.model, camera_name_));
 }
 
 Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mode,
@@ -115,7 +108,8 @@ Result<Report> Stage::write(Report report, render::Plot plot) {
   if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {
     report.rtf = run_.outcome().duration / wall_seconds_;
   }
-  const RunOutput output{report, std::move(plot), show_.overlay(), camera()};
+  const RunOutput output{report, std::move(plot), show_.overlay(),
+                         default_camera(robot_.model, camera_name_)};
   auto written = run_.recorder().write_csv(options_.out / "log.csv").and_then([&] {
     return write_output(options_.out, robot_.model, run_.sim().snapshot(), output);
   });

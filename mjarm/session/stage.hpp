@@ -90,8 +90,6 @@ class Stage {
   /// Shows a step of any world; false when the user or a limit ended it.
   [[nodiscard]] bool show_step(const Sim& sim);
   [[nodiscard]] Result<void> begin_film();
-  /// The camera that was chosen, where the model has it; else the model's own view.
-  [[nodiscard]] render::Camera camera() const;
   [[nodiscard]] Result<Report> write(Report report, render::Plot plot);
 
   std::string name_;
