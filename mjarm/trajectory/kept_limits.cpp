@@ -26,21 +26,16 @@ class JointPiece {
 
   /// @param x  [s] since the piece began.
   [[nodiscard]] Moment at(double x) const {
-    Moment out{};
-    std::array<double, 6> c = c_;
-    for (std::size_t order = 0; order < out.size(); ++order) {
-      const std::size_t size = c.size() - order;
-      for (std::size_t k = size; k-- > 0;) out[order] = out[order] * x + c[k];
-      for (std::size_t k = 0; k + 1 < size; ++k) c[k] = static_cast<double>(k + 1) * c[k + 1];
-    }
-    return out;
+    const auto& c = c_;
+    return {c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5])))),
+            c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5]))),
+            2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5])),
+            6 * c[3] + x * (24 * c[4] + x * 60 * c[5])};
   }
 
-  /// Calls `look` with the moments in which something may be largest.
+  /// Calls `look` with the moments between its ends in which something may be largest.
   template <class Look>
   void for_extremes(Look look) const {
-    look(at(0));
-    look(at(h_));
     if (c_[4] == 0 && c_[5] == 0) {
       const double turn = -c_[2] / (3 * c_[3]);  // where the acceleration is 0
       if (turn > 0 && turn < h_) look(at(turn));
@@ -89,12 +84,17 @@ class KeptJoint {
       const Moment begin = polynomial.at(0);
       if (i > 0) add_jump(begin);
       before_ = polynomial.at(piece.duration);
+      add(begin);
+      add(before_);
       polynomial.for_extremes([&](const Moment& x) { add(x); });
     }
     if (motion_.pieces() > 0) {
       const JointState end = motion_.at(motion_.duration());
       add_jump({end.q[joint_], end.v[joint_], end.a[joint_], 0});
     }
+    v_ /= allowed_.v;
+    a_ /= allowed_.a;
+    j_ /= allowed_.j;
     // Not a number is no share below any other.
     if (!(v_ <= 1 + kKeptRounding)) return broken(joint_, msg::trajectory_velocity, v_);
     if (!(a_ <= 1 + kKeptRounding)) return broken(joint_, msg::trajectory_acceleration, a_);
@@ -109,9 +109,9 @@ class KeptJoint {
     if (!(value <= worst)) worst = value;
   }
   void add(const Moment& x) {
-    raise(v_, std::abs(x[1]) / allowed_.v);
-    raise(a_, std::abs(x[2]) / allowed_.a);
-    raise(j_, std::abs(x[3]) / allowed_.j);
+    raise(v_, std::abs(x[1]));
+    raise(a_, std::abs(x[2]));
+    raise(j_, std::abs(x[3]));
   }
   void add_jump(const Moment& after) {
     const double t = motion_.duration();
@@ -127,7 +127,7 @@ class KeptJoint {
   Eigen::Index joint_;
   bool with_jerk_;
   Moment before_{};
-  double v_ = 0, a_ = 0, j_ = 0;  // worst shares
+  double v_ = 0, a_ = 0, j_ = 0;  // largest, in the end as shares of what is allowed
   double jump_ = 0;               // as a share of what rounding explains
 };
 

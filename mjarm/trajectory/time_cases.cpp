@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <span>
@@ -107,6 +108,17 @@ Result<TimeCase> read_case(const JsonValue& object, Eigen::Index dof, TimeProble
   return entry;
 }
 
+/// Whether every piece of a motion along a path is so long that its times tell how long it is. Such
+/// a motion was stretched by the exact peaks of these very pieces (peaks_internal.hpp): there is
+/// nothing left to look at.
+bool keeps_its_times(const Trajectory& motion) {
+  constexpr double kLeast = 1e-6;  // of the duration, whose times are exact to 1e-16 of it
+  for (std::size_t i = 0; i < motion.pieces(); ++i) {
+    if (!(motion.piece(i).duration > kLeast * motion.duration())) return false;
+  }
+  return std::isfinite(motion.duration());
+}
+
 }  // namespace
 
 const char* name(TimeProblem problem) noexcept {
@@ -167,10 +179,10 @@ Result<Trajectory> time_case(const TimeCase& entry, const JointLimits& limits, T
     return std::move(motion->trajectory);
   }
   torque.jerk_limits = problem == TimeProblem::path_vaj;
-  return time_waypoint_path(entry.waypoints, limits, torque).and_then([&](Trajectory motion) {
-    return detail::check_kept(motion, limits, torque.jerk_limits).map([&] {
-      return std::move(motion);
-    });
+  Result<Trajectory> motion = time_waypoint_path(entry.waypoints, limits, torque);
+  if (!motion || keeps_its_times(*motion)) return motion;
+  return detail::check_kept(*motion, limits, torque.jerk_limits).map([&] {
+    return *std::move(motion);
   });
 }
 
