@@ -60,7 +60,9 @@ void judge_answer(const std::vector<TimeSet>& sets, const JsonValue& line, TimeR
   const Result<std::string> content = read_file(file, kMaxStateBytes);
   if (!content) throw BrokenAnswer{content.error()};
   std::vector<double> values(content->size() / sizeof(double));
-  std::memcpy(values.data(), content->data(), values.size() * sizeof(double));
+  if (!values.empty()) {
+    std::memcpy(values.data(), content->data(), values.size() * sizeof(double));
+  }
   const Eigen::Index dof = set->limits.velocity.size();
   const int count = samples_of(set->problem) + 1;
   const std::size_t size = static_cast<std::size_t>(count * 3 * dof);

@@ -31,7 +31,7 @@ JsonWriter& JsonWriter::literal(std::string_view word) {
 }
 
 JsonWriter& JsonWriter::line_break() {
-  if (out_.back() != '{' && out_.back() != '[') out_ += ",\n ";
+  if (!out_.empty() && out_.back() != '{' && out_.back() != '[') out_ += ",\n ";
   return *this;
 }
 

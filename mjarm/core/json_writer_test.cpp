@@ -49,6 +49,12 @@ TEST(JsonWriter, ALineBreakStandsBetweenEntriesOnly) {
   EXPECT_EQ(out, "{\"a\":[],\n \"b\":[]}");
 }
 
+TEST(JsonWriter, ALineBreakMayBeginAPieceOfItsOwn) {
+  std::string piece;
+  JsonWriter(piece).line_break().key("a").list().end_list();
+  EXPECT_EQ(piece, R"("a":[])");
+}
+
 TEST(JsonWriter, NumbersComeBackToTheLastBit) {
   Rng rng(1);
   for (int i = 0; i < 1000; ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "tests/support/sanitized.hpp"
+
 namespace mjarm::testing {
 
 /// How many cases a test runs: `usual`, or `many` where MJARM_LONG_TESTS is set (`./dev long`). The
@@ -10,10 +12,8 @@ namespace mjarm::testing {
 /// they get a tenth, ten at least.
 inline int rounds(int usual, int many) {
   if (std::getenv("MJARM_LONG_TESTS") != nullptr) return many;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  if (usual < many) return std::max(std::min(usual, 10), usual / 10);
-#endif
-  return usual;
+  const bool tenth = support::kSanitized && usual < many;
+  return tenth ? std::max(std::min(usual, 10), usual / 10) : usual;
 }
 
 }  // namespace mjarm::testing

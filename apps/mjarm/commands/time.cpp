@@ -149,7 +149,7 @@ Result<int> answer_all(Job job, const Options& options) {
   BatchResult result;
   for (const TimeCase& entry : cases->cases) {
     if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
-    JsonWriter(out).line_break().key(entry.id);
+    JsonWriter(out).key(entry.id);
     const std::optional<std::string> why = answer(job, entry, out);
     ++result.requests;
     if (why && result.failed++ == 0) {
@@ -159,11 +159,13 @@ Result<int> answer_all(Job job, const Options& options) {
     if (Result<void> written = output->write(out, false); !written) {
       return fail(std::move(written.error()));
     }
-    out.clear();
+    out = ",\n ";
     progress.advance();
   }
   const Result<void> written =
-      output->write(out + "}\n", true).and_then([&] { return output->finish(); });
+      output->write(result.requests > 0 ? "}\n" : "{}\n", true).and_then([&] {
+        return output->finish();
+      });
   if (!written) return fail(written.error());
   return finish_all(result, msg::app_time_some_failed);
 }

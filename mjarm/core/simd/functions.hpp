@@ -82,13 +82,13 @@ inline void sine_cosine(Floats x, Floats& s, Floats& c) {
 
 /// Natural logarithm of positive normal numbers, to 3e-16 or two units in the last place. The
 /// number is split into 2^n m, m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh((m - 1) / (m + 1)), whose
-/// series ends at 1e-18.
+/// series ends at 1e-18. Of other numbers it is some value that means nothing.
 inline Doubles natural_logarithm(const Doubles& x) {
-  constexpr std::int64_t kRoot = 0x3fe6a09e667f3bcd;  // bits of sqrt(1/2)
-  constexpr double kMagic = 6755399441055744.0;       // 1.5 * 2^52
-  const Longs bits = bits_as<Longs>(x);
-  const Longs n = (bits - kRoot) >> 52;
-  const Doubles m = bits_as<Doubles>(bits - (n << 52));
+  constexpr std::uint64_t kRoot = 0x3fe6a09e667f3bcd;  // bits of sqrt(1/2)
+  constexpr double kMagic = 6755399441055744.0;        // 1.5 * 2^52
+  const UnsignedLongs bits = bits_as<UnsignedLongs>(x);
+  const Longs n = bits_as<Longs>(bits - kRoot) >> 52;
+  const Doubles m = bits_as<Doubles>(bits - (bits_as<UnsignedLongs>(n) << 52));
   const Doubles count = bits_as<Doubles>(n + bits_as<Longs>(splat(kMagic))) - kMagic;
   const Doubles s = (m - 1.0) / (m + 1.0), z = s * s;
   Doubles p = splat(1.0 / 21);

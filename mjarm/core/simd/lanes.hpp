@@ -35,6 +35,7 @@ inline constexpr int kFloats = kBytes / 4;
 typedef double Doubles __attribute__((vector_size(kBytes)));
 typedef float Floats __attribute__((vector_size(kBytes)));
 typedef std::int64_t Longs __attribute__((vector_size(kBytes)));
+typedef std::uint64_t UnsignedLongs __attribute__((vector_size(kBytes)));
 typedef std::int32_t Ints __attribute__((vector_size(kBytes)));
 using DoubleMask = decltype(Doubles{} < Doubles{});  ///< -1: true, 0: false
 using FloatMask = decltype(Floats{} < Floats{});     ///< -1: true, 0: false
