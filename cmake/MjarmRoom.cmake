@@ -35,7 +35,6 @@ function(mjarm_room room)
   target_sources(
     ${lib} PUBLIC FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${headers}
            FILE_SET lists TYPE HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}" FILES ${lists})
-  set_target_properties(${lib} PROPERTIES INTERFACE_HEADER_SETS_TO_VERIFY HEADERS)
   target_link_libraries(${lib} PUBLIC ${arg_DEPENDS} ${arg_PUBLIC}
                                PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:mjarm_options>)
   if(MJARM_PRECOMPILE)

@@ -1,0 +1,92 @@
+"""Checks that every public header of mjarm compiles alone, with the flags of somebody who uses the library.
+
+Usage: check_headers.py BUILD [ROOT]. BUILD holds compile_commands.json, and what is known of headers that have not
+changed since. Prints what the compiler says of each that does not; exit code 1 when there is one.
+"""
+
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+import check_layers
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"(mjarm/[^"]+)"', re.MULTILINE)
+
+# Headers that many others include, the largest first: compiled once for all of these. A header is helped by one only
+# where it includes it, so nothing is there that would not be there without.
+SHARED = [f"mjarm/{header}.hpp" for header in
+          ("sim/sim", "kinematics/chain", "model/model", "model/arm", "core/joint_vec", "core/pose", "core/result")]
+
+
+def closure(root, header, seen=None):
+    """All headers of mjarm that one includes, itself first."""
+    seen = {} if seen is None else seen
+    if header not in seen and (root / header).is_file():
+        seen[header] = (root / header).read_text(encoding="utf-8")
+        for other in INCLUDE.findall(seen[header]):
+            closure(root, other, seen)
+    return seen
+
+
+def user_flags(build):
+    """Compiler and include folders, without what holds for our own targets alone."""
+    entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+    commands = [shlex.split(entry["command"]) for entry in entries]
+    compiler = next(word for word in commands[0] if re.search(r"(\+\+)[^/=]*$", word) and "=" not in word)
+    folders = sorted({words[i + 1] for words in commands for i, word in enumerate(words) if word == "-isystem"})
+    return [compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", *(f"-isystem{folder}" for folder in folders)]
+
+
+def precompile(flags, work, header):
+    stub = work / header.replace("/", "_")
+    stub.write_text(f'#include "{header}"\n', encoding="utf-8")
+    done = subprocess.run([*flags, "-x", "c++-header", stub, "-o", f"{stub}.gch"], capture_output=True)
+    return stub if done.returncode == 0 else None
+
+
+def compile_alone(flags, header, stub):
+    helped = ["-Winvalid-pch", "-include", str(stub)] if stub else []
+    done = subprocess.run([*flags, *helped, "-fsyntax-only", "-x", "c++", "-"], input=f'#include "{header}"\n',
+                          capture_output=True, text=True)
+    return "" if done.returncode == 0 else f"{header} does not compile alone:\n{done.stderr}"
+
+
+def check(root, build):
+    """What the compiler says, one text for each header that does not compile alone."""
+    flags = [*user_flags(build), f"-I{root}"]
+    work = build / "headers_alone"
+    work.mkdir(exist_ok=True)
+    known_file = work / "known.json"
+    known = json.loads(known_file.read_text()) if known_file.is_file() else {}
+    paths = sorted(path.relative_to(root).as_posix() for path in (root / "mjarm").rglob("*.hpp"))
+    closures = {path: closure(root, path) for path in paths if check_layers.is_public_header(path)}
+    marks = {path: hashlib.sha256(repr((flags, sorted(texts.items()))).encode()).hexdigest()
+             for path, texts in closures.items()}
+    todo = [path for path in closures if known.get(path) != marks[path]]
+
+    helpers = {path: next((s for s in SHARED if s in closures[path] and s != path), None) for path in todo}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        wanted = sorted(set(helpers.values()) - {None})
+        stubs = dict(zip(wanted, pool.map(lambda header: precompile(flags, work, header), wanted)))
+        said = pool.map(lambda path: compile_alone(flags, path, stubs.get(helpers[path])), todo)
+        faults = dict(zip(todo, said))
+    known_file.write_text(json.dumps({path: mark for path, mark in marks.items() if not faults.get(path)}))
+    return [fault for fault in faults.values() if fault]
+
+
+def main():
+    build = pathlib.Path(sys.argv[1]).resolve()
+    root = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else __file__).resolve()
+    faults = check(root if len(sys.argv) > 2 else root.parent.parent, build)
+    print("\n".join(faults), end="\n" if faults else "")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
