@@ -1,6 +1,6 @@
 """Checks that every public header of mjarm compiles alone, with the flags of somebody who uses the library.
 
-Usage: check_headers.py BUILD [ROOT]. BUILD holds compile_commands.json, and what is known of headers that have not
+Usage: check_headers.py BUILD. BUILD holds compile_commands.json, and what is known of headers that have not
 changed since. Prints what the compiler says of each that does not; exit code 1 when there is one.
 """
 
@@ -38,21 +38,23 @@ def user_flags(build):
     """Compiler and include folders, without what holds for our own targets alone."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     commands = [shlex.split(entry["command"]) for entry in entries]
-    compiler = next(word for word in commands[0] if re.search(r"(\+\+)[^/=]*$", word) and "=" not in word)
+    compiler = next(word for word in commands[0] if re.search(r"^[^=]*\+\+[^/=]*$", word))
     folders = sorted({words[i + 1] for words in commands for i, word in enumerate(words) if word == "-isystem"})
     return [compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror", *(f"-isystem{folder}" for folder in folders)]
 
 
 def precompile(flags, work, header):
-    stub = work / header.replace("/", "_")
-    stub.write_text(f'#include "{header}"\n', encoding="utf-8")
-    done = subprocess.run([*flags, "-x", "c++-header", stub, "-o", f"{stub}.gch"], capture_output=True)
-    return stub if done.returncode == 0 else None
+    """A file to be included first, which stands for the header precompiled; None where it does not compile."""
+    prefix = work / header.replace("/", "_")
+    prefix.write_text(f'#include "{header}"\n', encoding="utf-8")
+    done = subprocess.run([*flags, "-x", "c++-header", prefix, "-o", f"{prefix}.gch"], capture_output=True)
+    return prefix if done.returncode == 0 else None
 
 
-def compile_alone(flags, header, stub):
-    helped = ["-Winvalid-pch", "-include", str(stub)] if stub else []
-    done = subprocess.run([*flags, *helped, "-fsyntax-only", "-x", "c++", "-"], input=f'#include "{header}"\n',
+def compile_alone(flags, header, prefix):
+    """What the compiler says of the header, nothing where all is well."""
+    first = ["-Winvalid-pch", "-include", prefix] if prefix else []
+    done = subprocess.run([*flags, *first, "-fsyntax-only", "-x", "c++", "-"], input=f'#include "{header}"\n',
                           capture_output=True, text=True)
     return "" if done.returncode == 0 else f"{header} does not compile alone:\n{done.stderr}"
 
@@ -68,22 +70,20 @@ def check(root, build):
     closures = {path: closure(root, path) for path in paths if check_layers.is_public_header(path)}
     marks = {path: hashlib.sha256(repr((flags, sorted(texts.items()))).encode()).hexdigest()
              for path, texts in closures.items()}
-    todo = [path for path in closures if known.get(path) != marks[path]]
+    changed = [path for path in closures if known.get(path) != marks[path]]
 
-    helpers = {path: next((s for s in SHARED if s in closures[path] and s != path), None) for path in todo}
+    shared = {path: next((s for s in SHARED if s in closures[path] and s != path), None) for path in changed}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        wanted = sorted(set(helpers.values()) - {None})
-        stubs = dict(zip(wanted, pool.map(lambda header: precompile(flags, work, header), wanted)))
-        said = pool.map(lambda path: compile_alone(flags, path, stubs.get(helpers[path])), todo)
-        faults = dict(zip(todo, said))
+        wanted = sorted(set(shared.values()) - {None})
+        prefixes = dict(zip(wanted, pool.map(lambda header: precompile(flags, work, header), wanted)))
+        said = pool.map(lambda path: compile_alone(flags, path, prefixes.get(shared[path])), changed)
+        faults = dict(zip(changed, said))
     known_file.write_text(json.dumps({path: mark for path, mark in marks.items() if not faults.get(path)}))
     return [fault for fault in faults.values() if fault]
 
 
 def main():
-    build = pathlib.Path(sys.argv[1]).resolve()
-    root = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else __file__).resolve()
-    faults = check(root if len(sys.argv) > 2 else root.parent.parent, build)
+    faults = check(pathlib.Path(__file__).resolve().parent.parent, pathlib.Path(sys.argv[1]).resolve())
     print("\n".join(faults), end="\n" if faults else "")
     return 1 if faults else 0
 

@@ -48,7 +48,7 @@ void compare_edge(const FastChecker& checker, const Obstacles& world, std::span<
 TEST(CheckEdge, NoFalseCertificateAmongPlatesAndWires) {
   Rng rng(21);
   EdgeTally tally;
-  const int worlds = testing::rounds(250, 2500);
+  const int worlds = testing::rounds(250, 2500, 25);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(2 + round % 6, rng);
     SphereSet set = testing::random_spheres(arm, rng);

@@ -21,7 +21,7 @@ using testing::Tally;
 TEST(FastChecker, NeverFreeWhereRandomRobotsCollide) {
   Rng rng(11);
   Tally tally;
-  const int worlds = testing::rounds(150, 15'000);
+  const int worlds = testing::rounds(150, 15'000, 15);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
     const SphereSet set = testing::random_spheres(arm, rng);

@@ -1,19 +1,20 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "tests/support/sanitized.hpp"
 
 namespace mjarm::testing {
 
-/// How many cases a test runs: `usual`, or `many` where MJARM_LONG_TESTS is set (`./dev long`). The
-/// sanitizers look at how the code runs, not at how often it is right, and take ten times as long:
-/// they get a tenth, ten at least.
+/// How many cases a test runs: `usual`, or `many` where MJARM_LONG_TESTS is set (`./dev long`).
 inline int rounds(int usual, int many) {
-  if (std::getenv("MJARM_LONG_TESTS") != nullptr) return many;
-  const bool tenth = support::kSanitized && usual < many;
-  return tenth ? std::max(std::min(usual, 10), usual / 10) : usual;
+  return std::getenv("MJARM_LONG_TESTS") != nullptr ? many : usual;
+}
+
+/// The same, with fewer for the sanitizers where `usual` would take them minutes: they look at how
+/// the code runs, not at how often it is right.
+inline int rounds(int usual, int many, int sanitized) {
+  return rounds(support::kSanitized ? sanitized : usual, many);
 }
 
 }  // namespace mjarm::testing

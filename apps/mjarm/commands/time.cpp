@@ -149,23 +149,23 @@ Result<int> answer_all(Job job, const Options& options) {
   BatchResult result;
   for (const TimeCase& entry : cases->cases) {
     if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
-    JsonWriter(out).key(entry.id);
+    JsonWriter(out).line_break().key(entry.id);
     const std::optional<std::string> why = answer(job, entry, out);
     ++result.requests;
     if (why && result.failed++ == 0) {
       result.first_failure = options.batch.in;
       result.first_why = text(msg::app_time_case_failed, entry.id, *why);
     }
-    if (Result<void> written = output->write(out, false); !written) {
+    // The last character stays: by it the next entry knows what it follows.
+    const std::string_view piece(out.data(), out.size() - 1);
+    if (Result<void> written = output->write(piece, false); !written) {
       return fail(std::move(written.error()));
     }
-    out = ",\n ";
+    out.erase(0, piece.size());
     progress.advance();
   }
   const Result<void> written =
-      output->write(result.requests > 0 ? "}\n" : "{}\n", true).and_then([&] {
-        return output->finish();
-      });
+      output->write(out + "}\n", true).and_then([&] { return output->finish(); });
   if (!written) return fail(written.error());
   return finish_all(result, msg::app_time_some_failed);
 }
