@@ -86,7 +86,6 @@ class Description {
             const Surroundings& surroundings);
 
   XmlSources sources_;
-  std::filesystem::path folder_;
   std::map<std::string, const SourceElement*> roots_;  ///< by file, those not yet walked
   bool is_urdf_ = false;
   std::vector<SourceNode> nodes_;

@@ -20,8 +20,7 @@ struct Description::Surroundings {
   std::string cls = "main";
 };
 
-Description::Description(const fs::path& file, bool allow_outside)
-    : sources_(file, allow_outside), folder_(file.parent_path()) {
+Description::Description(const fs::path& file, bool allow_outside) : sources_(file, allow_outside) {
   for (const SourceElement& source : sources_.elements()) roots_.try_emplace(*source.file, &source);
   if (sources_.elements().empty()) return;
   const SourceElement& root = sources_.elements().front();
@@ -46,9 +45,8 @@ void Description::walk(const XMLElement& parent, const std::string& file,
   for (const XMLElement* e = parent.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string_view kind = e->Name();
     if (kind == "include" && !is_urdf_) {
-      const char* included = e->Attribute("file");
-      const auto found =
-          included != nullptr ? roots_.find((folder_ / included).string()) : roots_.end();
+      const XmlSources::Document* included = sources_.included_by(*e);
+      const auto found = included != nullptr ? roots_.find(included->name) : roots_.end();
       if (found == roots_.end()) continue;
       const SourceElement* root = found->second;
       roots_.erase(found);  // each file once, so that this ends

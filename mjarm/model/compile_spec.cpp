@@ -120,6 +120,30 @@ Result<void> check_step(const std::string& file, const mjModel* model, std::stri
               text(msg::model_refused, file, text(msg::guard_first_step, outcome.error)));
 }
 
+/// Shipped files in the places where MuJoCo looks for those that a scene includes.
+class StandIns {
+ public:
+  StandIns() { mj_defaultVFS(&files_); }
+  ~StandIns() { mj_deleteVFS(&files_); }
+  StandIns(const StandIns&) = delete;
+  StandIns& operator=(const StandIns&) = delete;
+
+  void add(const XmlSources& sources) {
+    for (const auto& document : sources.documents()) {
+      if (document->stands_for.empty()) continue;
+      const std::string& text = document->text;
+      any_ = true;
+      mj_addBufferVFS(&files_, document->stands_for.c_str(), text.data(),
+                      static_cast<int>(text.size()));
+    }
+  }
+  [[nodiscard]] const mjVFS* get() const { return any_ ? &files_ : nullptr; }
+
+ private:
+  mjVFS files_;
+  bool any_ = false;
+};
+
 /// One description on its way to a model.
 class Compiler {
  public:
@@ -159,10 +183,12 @@ class Compiler {
     constexpr int kErrorSize = 2048;
     char error[kErrorSize] = "";
     mjSpec* parsed = nullptr;
+    StandIns stand_ins;
     MujocoOutcome outcome = call_mujoco([&] {
+      stand_ins.add(source_.files);
       parsed = source_.text != nullptr
                    ? mj_parseXMLString(source_.text->c_str(), nullptr, error, kErrorSize)
-                   : mj_parseXML(source_.name().c_str(), nullptr, error, kErrorSize);
+                   : mj_parseXML(source_.name().c_str(), stand_ins.get(), error, kErrorSize);
     });
     spec_.reset(parsed);
     if (outcome.failed) return fail(refusal(outcome.error));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -79,5 +80,10 @@ void finish_urdf(mjSpec* spec, const BodyPairs& apart);
 
 /// True for files in the folders of shipped models, which need no guard.
 [[nodiscard]] bool is_shipped(const std::filesystem::path& file);
+
+/// A shipped file that an include of somebody's scene means: `universal_robots_ur5e/ur5e.xml`, with
+/// or without `..` at its front, as the shipped scenes write it. None where there is no such file.
+[[nodiscard]] std::optional<std::filesystem::path> find_shipped_include(
+    const std::filesystem::path& name);
 
 }  // namespace mjarm

@@ -64,6 +64,19 @@ bool is_shipped(const fs::path& file) {
   });
 }
 
+std::optional<fs::path> find_shipped_include(const fs::path& name) {
+  if (name.is_absolute()) return std::nullopt;
+  fs::path inside;
+  for (const fs::path& part : name.lexically_normal()) {
+    if (inside.empty() && part == "..") continue;
+    inside /= part;
+  }
+  std::optional<fs::path> file = inside.empty() ? std::nullopt : find_shipped(inside.string());
+  std::error_code ignored;
+  if (file && !fs::is_regular_file(*file, ignored)) file.reset();
+  return file;
+}
+
 std::vector<ShippedModel> shipped_models() {
   std::vector<ShippedModel> models;
   for (const Entry& entry : kShipped) {

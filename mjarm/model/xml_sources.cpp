@@ -4,6 +4,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
+#include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/preflight_internal.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 #include "mjarm/model/xml_sources_internal.hpp"
@@ -78,7 +79,7 @@ std::optional<Error> check_prolog(const std::string& name, const tinyxml2::XMLDo
 
 XmlSources::XmlSources(const fs::path& file, bool allow_outside)
     : folder_(file.parent_path()), allow_outside_(allow_outside) {
-  add(file, nullptr);
+  add({file}, nullptr);
 }
 
 void XmlSources::fail_with(std::optional<Error> error) {
@@ -114,14 +115,38 @@ std::optional<Error> XmlSources::read(Document& document) {
   return check_prolog(document.name, document.xml);
 }
 
-std::optional<Error> XmlSources::check_include(const Document& document,
-                                               const XMLElement& include) const {
-  const char* name = include.Attribute("file");
-  if (allow_outside_ || is_inside(folder_ / name, {folder_})) return std::nullopt;
-  return urdf_error(document.name, include, text(msg::guard_outside, name));
+/// As MuJoCo looks for it; where it would find nothing, among the shipped models.
+XmlSources::Place XmlSources::find(const Document& document, const std::string& name) const {
+  std::error_code ignored;
+  const fs::path first = folder_ / name;
+  const fs::path beside = fs::path(document.name).parent_path() / name;
+  if (fs::exists(first, ignored)) return {first};
+  // What is included by a stand-in is looked for where that would be.
+  if (fs::exists(beside, ignored)) {
+    return {beside, document.stands_for.empty() ? std::string() : first.string()};
+  }
+  if (const auto shipped = find_shipped_include(name)) return {*shipped, first.string()};
+  return {first};
 }
 
-void XmlSources::add(const fs::path& path, const XMLElement* included_at) {
+void XmlSources::add_include(const Document& document, const XMLElement& include) {
+  const char* const name = include.Attribute("file");
+  const Place place = find(document, name);
+  if (!allow_outside_ && !is_inside(place.path, {folder_}) && !is_shipped(place.path)) {
+    return fail_with(urdf_error(document.name, include, text(msg::guard_outside, name)));
+  }
+  add(place, &include);
+}
+
+const XmlSources::Document* XmlSources::included_by(const XMLElement& include) const {
+  for (const auto& document : documents_) {
+    if (document->included_at == &include) return document.get();
+  }
+  return nullptr;
+}
+
+void XmlSources::add(const Place& place, const XMLElement* included_at) {
+  const fs::path& path = place.path;
   for (const auto& document : documents_) {
     if (document->name == path.string()) return;  // MuJoCo refuses this; here it only must end
   }
@@ -132,6 +157,7 @@ void XmlSources::add(const fs::path& path, const XMLElement* included_at) {
   auto document = std::make_unique<Document>();
   document->name = path.string();
   document->included_at = included_at;
+  document->stands_for = place.stands_for;
   if (std::optional<Error> error = read(*document)) {
     std::error_code ignored;
     // MuJoCo tells of an include that is missing, with its place.
@@ -153,13 +179,7 @@ void XmlSources::add(const fs::path& path, const XMLElement* included_at) {
       includes.push_back(element);
     }
   }
-  for (const XMLElement* include : includes) {
-    if (std::optional<Error> error = check_include(here, *include)) {
-      fail_with(std::move(error));
-    } else {
-      add(folder_ / include->Attribute("file"), include);
-    }
-  }
+  for (const XMLElement* include : includes) add_include(here, *include);
 }
 
 }  // namespace mjarm

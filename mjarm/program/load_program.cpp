@@ -21,7 +21,8 @@ std::filesystem::path shipped_folder() {
 }
 
 /// All that is wrong with a text that has faults.
-std::vector<ProgramFault> text_faults(const std::filesystem::path& file, const ProgramText& text) {
+std::vector<ProgramFault> text_faults(const std::filesystem::path& file, const ProgramText& text,
+                                      const LoadOptions& load) {
   std::vector<ProgramFault> out;
   if (text.faults.empty()) return out;
   for (const TextFault& fault : text.faults) {
@@ -29,7 +30,7 @@ std::vector<ProgramFault> text_faults(const std::filesystem::path& file, const P
   }
   // What names a robot, tools and frames is right or wrong whatever else is wrong.
   if (text.program.robot.empty() && text.program.scene.empty()) return out;
-  const auto robot = load_robot_of(text.program, file);
+  const auto robot = load_robot_of(text.program, file, load);
   std::vector<ProgramFault> more{};
   if (robot) {
     more = find_misfits(robot->model, robot->arm, text.program);
@@ -74,27 +75,30 @@ bool is_program(const std::string& name_or_path) {
   return !find_model_file(name_or_path) && find_program_file(name_or_path).has_value();
 }
 
-Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& file) {
+Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& file,
+                                                   const LoadOptions& load) {
   const Result<ProgramText> read = look_through_file(file);
   if (!read) return fail(read.error());
-  return text_faults(file, *read);
+  return text_faults(file, *read, load);
 }
 
-Result<LoadedProgram> load_program(const std::string& name_or_path, const StopCheck& stop) {
+Result<LoadedProgram> load_program(const std::string& name_or_path, const StopCheck& stop,
+                                   const LoadOptions& load) {
   const Result<std::filesystem::path> found = find_program_file(name_or_path);
   if (!found) return fail(found.error());
   Result<ProgramText> read = look_through_file(*found);
   if (!read) return fail(std::move(read.error()));
   if (!read->faults.empty()) {
-    return fail(first_of(found->string(), text_faults(*found, *read)));
+    return fail(first_of(found->string(), text_faults(*found, *read, load)));
   }
-  Result<Robot> robot = load_program_robot(read->program, *found);
+  Result<Robot> robot = load_program_robot(read->program, *found, load);
   if (!robot) return fail(std::move(robot.error()));
   return plan_loaded(found->string(), std::move(read->program), std::move(*robot), stop);
 }
 
-Result<LoadedProgram> load_sound_program(const std::string& name_or_path, const StopCheck& stop) {
-  Result<LoadedProgram> loaded = load_program(name_or_path, stop);
+Result<LoadedProgram> load_sound_program(const std::string& name_or_path, const StopCheck& stop,
+                                         const LoadOptions& load) {
+  Result<LoadedProgram> loaded = load_program(name_or_path, stop, load);
   if (loaded && !loaded->plan.ok()) return fail(first_fault(*loaded));
   return loaded;
 }

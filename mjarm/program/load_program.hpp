@@ -37,17 +37,21 @@ struct LoadedProgram {
 /// All that is wrong with the text of a program, none where it can be planned: what cannot be read,
 /// and the names and values that do not fit the robot, in the order of the text.
 /// @return an error where the file cannot be read.
-[[nodiscard]] Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& file);
+[[nodiscard]] Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& file,
+                                                                 const LoadOptions& load = {});
 
 /// Reads a program, loads its robot and plans it, with a progress bar. Of faults in the text the
 /// error names the first.
 /// @param stop  ends the planning with stopped(), as in the others.
+/// @param load  how the robot's files are read.
 [[nodiscard]] Result<LoadedProgram> load_program(const std::string& name_or_path,
-                                                 const StopCheck& stop = {});
+                                                 const StopCheck& stop = {},
+                                                 const LoadOptions& load = {});
 
 /// The same; a plan with faults is an error, the first of them.
 [[nodiscard]] Result<LoadedProgram> load_sound_program(const std::string& name_or_path,
-                                                       const StopCheck& stop = {});
+                                                       const StopCheck& stop = {},
+                                                       const LoadOptions& load = {});
 
 /// Plans a program for a robot that is loaded already, with a progress bar.
 /// @param file  for messages.

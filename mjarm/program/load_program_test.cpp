@@ -136,6 +136,42 @@ TEST(LoadProgram, PathsStartFromTheFolderOfTheProgram) {
   EXPECT_FALSE(load_program(folder.write("one.yml", text).string()));
 }
 
+/// A scene of one's own stands beside the program; what it includes may be shipped.
+TEST(LoadProgram, MayNameASceneOfItsOwn) {
+  const support::TempFolder folder;
+  folder.write("cell.xml", R"(<mujoco model="cell">
+  <include file="../universal_robots_ur5e/ur5e.xml"/>
+  <include file="../scenes/studio.xml"/>
+  <worldbody><geom name="post" type="box" size="0.05 0.05 0.2" pos="0.6 0 0.2"/></worldbody>
+</mujoco>)");
+  const std::string rest = "\nprogram: [movej: {joints: [-1.3, -1.57, 1.57, -1.57, -1.57, 0]}]\n";
+  for (const char* head : {"scene: cell.xml", "robot: ur5e\nscene: ../cell.xml",
+                           "scene: universal_robots_ur5e/wall.xml"}) {
+    const bool below = std::string(head).find("..") != std::string::npos;
+    const auto file = folder.write(below ? "jobs/one.yaml" : "one.yaml", head + rest);
+    const Result<LoadedProgram> loaded = load_sound_program(file.string());
+    ASSERT_TRUE(loaded) << head << ": " << loaded.error().what;
+    EXPECT_EQ(loaded->robot.arm.dof(), 6);
+  }
+}
+
+TEST(LoadProgram, FilesOutsideOfTheScenesFolderAreReadWhereThatIsAllowed) {
+  const support::TempFolder folder;
+  folder.write("part.xml", "<mujocoinclude><option timestep='0.003'/></mujocoinclude>");
+  folder.write("in/cell.xml",
+               "<mujoco><include file='universal_robots_ur5e/ur5e.xml'/>\n"
+               "<include file='../part.xml'/></mujoco>");
+  const std::string file =
+      folder.write("in/one.yaml", "scene: cell.xml\nprogram: [wait: 1]\n").string();
+  const Result<LoadedProgram> refused = load_sound_program(file);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, StartsWith(file + ":1:8: "));
+  EXPECT_THAT(refused.error().what, HasSubstr("--allow-outside"));
+  const Result<LoadedProgram> loaded = load_sound_program(file, {}, {.allow_outside = true});
+  ASSERT_TRUE(loaded) << loaded.error().what;
+  EXPECT_DOUBLE_EQ(loaded->robot.model.timestep(), 0.003);
+}
+
 TEST(LoadProgram, EveryShippedProgramIsFoundByItsNameAndSound) {
   for (const char* name : {"movej", "point", "movel"}) {
     const Result<LoadedProgram> loaded = load_sound_program(name);

@@ -17,9 +17,12 @@
 namespace mjarm::program {
 
 /// Loads scene and robot of a program.
-/// @param file  of the program: relative paths in it start from its folder. Messages name it.
+/// @param file  of the program: relative paths in it start from its folder; what is not there may
+///              be a shipped model. Messages name it.
+/// @param load  how the robot's files are read.
 [[nodiscard]] Result<Robot> load_program_robot(const Program& program,
-                                               const std::filesystem::path& file);
+                                               const std::filesystem::path& file,
+                                               const LoadOptions& load = {});
 
 /// What `plan` would do in the place of a move that something blocks: tried, and free of contact.
 struct Detour {
@@ -50,7 +53,8 @@ struct ProgramPlan : MotionPlan {
 
 /// The same; a fault names its place in the file by itself.
 [[nodiscard]] Result<Robot, ProgramFault> load_robot_of(const Program& program,
-                                                        const std::filesystem::path& file);
+                                                        const std::filesystem::path& file,
+                                                        const LoadOptions& load = {});
 
 /// The names, units and numbers of values of `program` that do not fit the robot, in the order of
 /// the program; nothing is planned.

@@ -16,8 +16,8 @@ Result<std::filesystem::path> find(const std::string& name, const std::filesyste
 
 }  // namespace
 
-Result<Robot, ProgramFault> load_robot_of(const Program& program,
-                                          const std::filesystem::path& file) {
+Result<Robot, ProgramFault> load_robot_of(const Program& program, const std::filesystem::path& file,
+                                          const LoadOptions& load) {
   const bool scene = !program.scene.empty();
   const FilePlace place = scene ? program.scene_place : program.robot_place;
   const auto fault = [&](const Error& error, FilePlace at) {
@@ -26,15 +26,16 @@ Result<Robot, ProgramFault> load_robot_of(const Program& program,
   };
   const Result<std::filesystem::path> found = find(scene ? program.scene : program.robot, file);
   if (!found) return fault(found.error(), place);
-  Result<Model> model = Model::load(*found);
+  Result<Model> model = Model::load(*found, load);
   if (!model) return fault(model.error(), place);
   Result<Arm> arm = find_arm(*model, {.tip = program.tool});
   if (!arm) return fault(arm.error(), program.tool.empty() ? place : program.tool_place);
   return Robot{std::move(*model), std::move(*arm)};
 }
 
-Result<Robot> load_program_robot(const Program& program, const std::filesystem::path& file) {
-  return load_robot_of(program, file).map_error([&](const ProgramFault& fault) {
+Result<Robot> load_program_robot(const Program& program, const std::filesystem::path& file,
+                                 const LoadOptions& load) {
+  return load_robot_of(program, file, load).map_error([&](const ProgramFault& fault) {
     return Error{fault.code, at_place(file.string(), fault.place, fault.what)};
   });
 }

@@ -8,14 +8,10 @@
 
 namespace mjarm::app {
 
-namespace {
-
 LoadOptions load_options(const RobotChoice& choice) {
   return {.package_paths = {choice.package_paths.begin(), choice.package_paths.end()},
           .allow_outside = choice.allow_outside};
 }
-
-}  // namespace
 
 void add_outside_option(CLI::App& app, bool& allowed) {
   add_flag(app, "--allow-outside", allowed, msg::app_option_outside);
@@ -24,6 +20,10 @@ void add_outside_option(CLI::App& app, bool& allowed) {
 void add_robot_options(CLI::App& app, RobotChoice& options) {
   add_option(app, "--robot", options.robot, msg::app_option_robot, "ROBOT");
   add_option(app, "--tip", options.tip, msg::app_option_tip, "FRAME");
+  add_load_options(app, options);
+}
+
+void add_load_options(CLI::App& app, RobotChoice& options) {
   add_package_path_option(app, options.package_paths);
   add_outside_option(app, options.allow_outside);
 }

@@ -23,6 +23,11 @@ void add_package_path_option(CLI::App& app, std::vector<std::string>& folders);
 /// Adds `--allow-outside`, bound to `allowed`.
 void add_outside_option(CLI::App& app, bool& allowed);
 
+/// Adds both, which say how the files of a robot are read.
+void add_load_options(CLI::App& app, RobotChoice& options);
+/// What they say.
+[[nodiscard]] LoadOptions load_options(const RobotChoice& choice);
+
 /// Adds `--robot ROBOT`, `--tip FRAME`, `--package-path DIR` and `--allow-outside`, bound to
 /// `options`.
 void add_robot_options(CLI::App& app, RobotChoice& options);

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/program_text.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 struct Options {
   std::string file;
+  RobotChoice robot;  // that the program names: how its files are read
   bool json = false;
 };
 
@@ -19,7 +21,7 @@ struct Options {
 void tell_text_faults(const Options& options) {
   const auto file = program::find_program_file(options.file);
   if (!file) return;
-  const auto faults = program::find_text_faults(*file);
+  const auto faults = program::find_text_faults(*file, load_options(options.robot));
   if (!faults || faults->empty()) return;
   const std::string out =
       options.json ? faults_json(*faults).document() : faults_text(file->string(), *faults);
@@ -29,7 +31,8 @@ void tell_text_faults(const Options& options) {
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which));
   catch_interrupts();
-  const Result<program::LoadedProgram> loaded = program::load_program(options.file, interrupted);
+  const Result<program::LoadedProgram> loaded =
+      program::load_program(options.file, interrupted, load_options(options.robot));
   if (!loaded) {
     tell_text_faults(options);
     return fail(loaded.error());
@@ -43,6 +46,7 @@ Result<int> run(const Options& options) {
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "program", options->file, msg::motion_program_file, "PROGRAM.yaml");
+  add_load_options(app, options->robot);
   add_flag(app, "--json", options->json, msg::app_option_json);
   return [options] { return run(*options); };
 }

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 struct Options {
   std::string file, to, out;
+  RobotChoice robot;  // that the program names: how its files are read
 };
 
 /// The format, the only one there is.
@@ -37,7 +39,7 @@ Result<int> run(const Options& options) {
   }
   catch_interrupts();
   const Result<program::LoadedProgram> loaded =
-      program::load_sound_program(options.file, interrupted);
+      program::load_sound_program(options.file, interrupted, load_options(options.robot));
   if (!loaded) return fail(loaded.error());
   const Result<std::string> script = program::to_urscript(loaded->program, loaded->robot,
                                                           loaded->plan, {.version = MJARM_VERSION});
@@ -56,6 +58,7 @@ Run setup(CLI::App& app) {
   add_option(app, "program", options->file, msg::motion_program_file, "PROGRAM.yaml");
   add_option(app, "--to", options->to, msg::motion_program_option_to, "FORMAT");
   add_option(app, "--out", options->out, msg::motion_program_option_export_out, "FILE");
+  add_load_options(app, options->robot);
   return [options] { return run(*options); };
 }
 

@@ -68,8 +68,9 @@ Result<std::string> picture(const Model& model, const PictureRequest& options) {
   return session::write_picture(*renderer, options, home_of(model), *camera, {});
 }
 
-Result<std::string> program_picture(const std::string& file, const PictureRequest& wanted) {
-  const Result<program::LoadedProgram> loaded = program::load_sound_program(file, interrupted);
+Result<std::string> program_picture(const RobotChoice& chosen, const PictureRequest& wanted) {
+  const Result<program::LoadedProgram> loaded =
+      program::load_sound_program(chosen.robot, interrupted, load_options(chosen));
   if (!loaded) return fail(loaded.error());
   const Result<render::Camera> camera = choose_camera(loaded->robot.model, wanted.camera);
   if (!camera) return fail(camera.error());
@@ -77,7 +78,7 @@ Result<std::string> program_picture(const std::string& file, const PictureReques
 }
 
 Result<std::string> render(const Options& options, const PictureRequest& wanted) {
-  if (program::is_program(options.robot.robot)) return program_picture(options.robot.robot, wanted);
+  if (program::is_program(options.robot.robot)) return program_picture(options.robot, wanted);
   const Result<Model> model = load_model(options.robot);
   if (!model) return fail(model.error());
   tell_warnings(*model);
@@ -98,8 +99,7 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "file", options->robot.robot, msg::render_command_file, "FILE|PROGRAM");
   add_picture_options(app, options->picture);
-  add_package_path_option(app, options->robot.package_paths);
-  add_outside_option(app, options->robot.allow_outside);
+  add_load_options(app, options->robot);
   return [options] { return run(*options); };
 }
 

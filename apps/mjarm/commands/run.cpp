@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 struct Options {
   std::string file, out, control, tolerance, max_duration = "3600";
+  RobotChoice robot;  // that the program names: how its files are read
   bool headless = false, video = false, no_timing = false;
 };
 
@@ -60,7 +62,8 @@ Result<int> run(const Options& options) {
   Result<session::StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
   catch_interrupts();
-  Result<program::LoadedProgram> loaded = program::load_sound_program(options.file, interrupted);
+  Result<program::LoadedProgram> loaded =
+      program::load_sound_program(options.file, interrupted, load_options(options.robot));
   if (!loaded) return fail(loaded.error());
   const double duration = loaded->plan.duration();
   if (duration > *longest) {  // a slip of the pen, as a wait in milliseconds
@@ -87,6 +90,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--max-duration", options->max_duration, msg::motion_program_option_max_duration,
              "S");
   add_flag(app, "--no-timing", options->no_timing, msg::demo_option_no_timing);
+  add_load_options(app, options->robot);
   return [options] { return run(*options); };
 }
 

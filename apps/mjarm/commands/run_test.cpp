@@ -34,6 +34,39 @@ TEST(Check, ListsTheMotions) {
   EXPECT_GT(plan.at("moves")[1].at("min_singular_value"), 0.1);
 }
 
+/// Whoever is told that --allow-outside is needed can write it.
+TEST(Check, EveryCommandOnProgramsTakesWhatItsMessageAsksFor) {
+  const support::TempFolder folder;
+  folder.write("table.xml",
+               "<mujocoinclude><worldbody><geom name='table' type='box' size='0.2 0.2 0.01' "
+               "pos='0.6 0 0.2'/></worldbody></mujocoinclude>");
+  folder.write("in/cell.xml",
+               "<mujoco><include file='../universal_robots_ur5e/ur5e.xml'/>"
+               "<include file='../table.xml'/></mujoco>");
+  const auto file =
+      folder.write("in/one.yaml", "scene: cell.xml\nprogram: [wait: 10ms]\n").string();
+  const std::string out = (folder.path() / "out").string();
+  const std::string picture = (folder.path() / "a.png").string();
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"check", file},
+        {"run", file, "--headless", "--out", out},
+        {"export", file, "--to", "urscript"},
+        {"render", file, "--out", picture, "--size", "64x64"}}) {
+    const auto refused = mjarm(words);
+    EXPECT_EQ(refused.exit_code, 2) << words[0];
+    EXPECT_THAT(only_line(refused), HasSubstr("--allow-outside")) << words[0];
+    std::vector<std::string> more = words;
+    more.push_back("--allow-outside");
+    const auto done = mjarm(more);
+    EXPECT_EQ(done.exit_code, 0) << words[0] << ": " << done.err;
+  }
+  // Where nobody can look, the window says so and nothing of the files.
+  const auto view = mjarm({"view", file, "--allow-outside"},
+                          {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+  EXPECT_EQ(view.exit_code, 1);
+  EXPECT_THAT(only_line(view), HasSubstr("mjarm render"));
+}
+
 TEST(Check, FaultsGoToOutputAndTheFirstIntoOneLine) {
   const support::TempFolder folder;
   const auto file = folder

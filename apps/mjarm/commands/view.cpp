@@ -137,15 +137,14 @@ Result<int> run_program(const Options& options) {
   const Result<double> seconds = seconds_of(options);
   if (!seconds) return fail(seconds.error());
   const RobotChoice& robot = options.robot;
-  if (options.passive || robot.allow_outside || !robot.tip.empty() ||
-      !robot.package_paths.empty()) {
+  if (options.passive || !robot.tip.empty()) {
     return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
   }
   Result<view::WindowOptions> window = window_options(options, {});
   if (!window) return fail(window.error());
   catch_interrupts();
   const Result<program::LoadedProgram> loaded =
-      program::load_sound_program(robot.robot, interrupted);
+      program::load_sound_program(robot.robot, interrupted, load_options(robot));
   if (!loaded) return fail(loaded.error());
   if (auto set = set_camera(options, loaded->robot.model, *window); !set) return fail(set.error());
   return told(options, session::view_program(*loaded, *window, {*seconds}));
@@ -166,8 +165,7 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "file", options->robot.robot, msg::view_file, "FILE");
   add_option(app, "--tip", options->robot.tip, msg::app_option_tip, "FRAME");
-  add_package_path_option(app, options->robot.package_paths);
-  add_outside_option(app, options->robot.allow_outside);
+  add_load_options(app, options->robot);
   add_flag(app, "--passive", options->passive, msg::view_option_passive);
   add_flag(app, "--paused", options->paused, msg::view_option_paused);
   add_option(app, "--size", options->size, msg::view_option_size, "WxH");

@@ -30,11 +30,9 @@ program:
 }
 
 TEST(ViewProgram, RefusesWhatIsForModels) {
-  for (const char* option : {"--passive", "--allow-outside"}) {
-    const auto result = app::mjarm({"view", "movej", option});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(only_line(result), HasSubstr(option));
-  }
+  const auto result = app::mjarm({"view", "movej", "--passive"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(only_line(result), HasSubstr("--passive"));
   EXPECT_EQ(app::mjarm({"view", "movej", "--tip", "tool0"}).exit_code, 2);
   EXPECT_EQ(app::mjarm({"view", "movej", "--size", "no"}).exit_code, 2);
 }
