@@ -59,6 +59,7 @@ class Search {
   /// limits, which leads to all branches quickly; each is then put within the limits and descends
   /// again, joints that come to a limit giving over to the others.
   std::optional<IkSolution> run_from_beyond() noexcept {
+    if (!has_stops()) return std::nullopt;
     const bool redundant = chain_.dof > 6 || options_.task != IkTask::pose;
     // Without joints to spare the way within the limits is short or there is none.
     const double max_beyond = redundant ? 1.0 : 0.1;  // [rad or m]
@@ -141,6 +142,15 @@ class Search {
       out.joint = joint;
       out.amount = amount;
     }
+  }
+
+  bool has_stops() const noexcept {
+    bool any = false;
+    for (int i = 0; i < chain_.dof; ++i) {
+      any = any || (!chain_.full_turn[i] &&
+                    (std::isfinite(chain_.lower[i]) || std::isfinite(chain_.upper[i])));
+    }
+    return any;
   }
 
   /// Hinges with stops in the winding that is nearest to the middle between them.

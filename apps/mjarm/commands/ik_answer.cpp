@@ -93,6 +93,7 @@ class IkDesk::Worker {
     if (out.contact) {
       const GeomPair& pair = out.contact->pair;
       out.why = text(msg::app_ik_all_touch, pair.geom1, pair.geom2, 1e3 * out.contact->depth);
+      if (job_.single) out.why = text(msg::app_ik_contact_aside, out.why);
     }
     return out;
   }
