@@ -149,14 +149,8 @@ class Walker {
       held[i] =
           is_limited(i) && ((q_[i] <= lower(i) && g[i] < 0) || (q_[i] >= upper(i) && g[i] > 0));
     }
-    const double lambda = kDamping * error_ + 1e-12;
-    double A[kSize][kSize];
-    for (int i = 0; i < n(); ++i) {
-      for (int j = 0; j < i; ++j) A[i][j] = held[i] || held[j] ? 0.0 : J_[i].dot(J_[j]);
-      A[i][i] = held[i] ? 1.0 : J_[i].squaredNorm() + lambda;
-      if (held[i]) g[i] = 0;
-    }
-    if (!solve_in_place(A, g)) return false;
+    if (!solve_for(held, g)) return false;
+    if (options_.share && options_.limits && !share(held, g)) return false;
     double moved = 0;
     for (int i = 0; i < n(); ++i) {
       double q = q_[i] + g[i];
@@ -165,6 +159,46 @@ class Walker {
       q_[i] = q;
     }
     return moved > 0;
+  }
+
+  /// Turns the gradient `g` into the step of the joints that are not held; that of the others is 0.
+  bool solve_for(const bool (&held)[kSize], double (&g)[kSize]) const noexcept {
+    const double lambda = kDamping * error_ + 1e-12;
+    double A[kSize][kSize];
+    for (int i = 0; i < n(); ++i) {
+      for (int j = 0; j < i; ++j) A[i][j] = held[i] || held[j] ? 0.0 : J_[i].dot(J_[j]);
+      A[i][i] = held[i] ? 1.0 : J_[i].squaredNorm() + lambda;
+      if (held[i]) g[i] = 0;
+    }
+    return solve_in_place(A, g);
+  }
+
+  /// Of a step `g` that carries joints past their limits: the worst of them goes to its limit and
+  /// no farther, the step of the others is solved for what that leaves of the error; and so on,
+  /// until none is carried past.
+  bool share(bool (&held)[kSize], double (&g)[kSize]) const noexcept {
+    double fixed[kSize] = {};
+    Vector6 left = e_;
+    for (int round = 0; round < n(); ++round) {
+      int worst = -1;
+      double beyond = 0;
+      for (int i = 0; i < n(); ++i) {
+        if (held[i] || !is_limited(i)) continue;
+        const double past = std::fmax(q_[i] + g[i] - upper(i), lower(i) - q_[i] - g[i]);
+        if (past > beyond) {
+          beyond = past;
+          worst = i;
+        }
+      }
+      if (worst < 0) break;
+      fixed[worst] = (g[worst] > 0 ? upper(worst) : lower(worst)) - q_[worst];
+      held[worst] = true;
+      left -= fixed[worst] * J_[worst];
+      for (int i = 0; i < n(); ++i) g[i] = J_[i].dot(left);
+      if (!solve_for(held, g)) return false;
+    }
+    for (int i = 0; i < n(); ++i) g[i] += fixed[i];
+    return true;
   }
 
   /// Cholesky factorisation of the lower half of A and both substitutions; the answer is left in

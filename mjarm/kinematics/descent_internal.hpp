@@ -14,6 +14,9 @@ struct DescentOptions {
   int max_iterations = 100;  ///< steps, > 0
   double length = 0.5;       ///< [m] position error that weighs as much as 1 rad, > 0
   bool limits = true;        ///< false: the limits are ignored
+  /// True: a joint that a step would carry past its limit goes there, and the others take over what
+  /// it leaves; false: each is cut by itself, which is quicker and loses its way among many limits.
+  bool share = false;
   IkTask task = IkTask::pose;
 };
 

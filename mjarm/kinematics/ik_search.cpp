@@ -53,6 +53,18 @@ JointVec random_start(const Chain& chain, const JointVec& seed, Rng& rng) noexce
   return q;
 }
 
+JointVec random_start_at_stops(const Chain& chain, const JointVec& seed, Rng& rng) noexcept {
+  constexpr double kShare = 1.0 / 6;  // at each of the two stops
+  JointVec q = random_start(chain, seed, rng);
+  for (int i = 0; i < chain.dof; ++i) {
+    const double side = rng.uniform();
+    if (chain.full_turn[i] || !std::isfinite(chain.upper[i] - chain.lower[i])) continue;
+    if (side < kShare) q[i] = chain.lower[i];
+    if (side > 1 - kShare) q[i] = chain.upper[i];
+  }
+  return q;
+}
+
 JointVec unwind(const Chain& chain, const JointVec& q, const JointVec& q_near) noexcept {
   JointVec out(chain.dof);
   for (int i = 0; i < chain.dof; ++i) out[i] = nearest_winding(chain, i, q[i], q_near[i]);

@@ -25,6 +25,10 @@ struct IkGoal {
 /// A random start within the limits; joints without stops within 1 m or half a turn of `seed`.
 [[nodiscard]] JointVec random_start(const Chain& chain, const JointVec& seed, Rng& rng) noexcept;
 
+/// Another kind of random start: about every third joint that has stops stands at one of them.
+[[nodiscard]] JointVec random_start_at_stops(const Chain& chain, const JointVec& seed,
+                                             Rng& rng) noexcept;
+
 /// The configuration of a descent with every joint in its winding nearest to `q_near`.
 [[nodiscard]] JointVec unwind(const Chain& chain, const JointVec& q,
                               const JointVec& q_near) noexcept;

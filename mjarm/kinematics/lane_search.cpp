@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "mjarm/kinematics/ik_search_internal.hpp"
 #include "mjarm/kinematics/lane_search_internal.hpp"
 
 namespace mjarm::detail {
@@ -15,13 +14,14 @@ constexpr int kSeedSteps = 4;         // ... for so many steps
 }  // namespace
 
 LaneSearch::LaneSearch(const Chain& chain, const Pose& X_WT, const DescentOptions& options,
-                       const JointVec& seed, int starts, Rng& rng) noexcept
+                       const JointVec& seed, int starts, Rng& rng, Draw draw) noexcept
     : chain_(chain),
       goal_(X_WT),
       options_(options),
       seed_(seed),
       starts_(starts),
       rng_(rng),
+      draw_(draw),
       kernel_(descent_kernel()) {
   for (int lane = 0; lane < kBlock; ++lane) fill(lane);
 }
@@ -34,7 +34,7 @@ void LaneSearch::fill(int lane) noexcept {
   to.near = false;
   to.steps = 0;
   to.start = started_;
-  const JointVec q = to.active && started_ > 0 ? random_start(chain_, seed_, rng_) : seed_;
+  const JointVec q = to.active && started_ > 0 ? draw_(chain_, seed_, rng_) : seed_;
   if (to.active) ++started_;
   for (int i = 0; i < chain_.dof; ++i) block_.q[i][lane] = q[i];
 }

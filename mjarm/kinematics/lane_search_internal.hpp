@@ -4,6 +4,7 @@
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/kinematics/descent_block_internal.hpp"
+#include "mjarm/kinematics/ik_search_internal.hpp"
 
 namespace mjarm::detail {
 
@@ -19,9 +20,12 @@ struct LaneDescentEnd {
 /// allocates.
 class LaneSearch {
  public:
+  /// Makes a random start.
+  using Draw = JointVec (*)(const Chain& chain, const JointVec& seed, Rng& rng) noexcept;
+
   /// `starts`: the seed and so many random ones less one.
   LaneSearch(const Chain& chain, const Pose& X_WT, const DescentOptions& options,
-             const JointVec& seed, int starts, Rng& rng) noexcept;
+             const JointVec& seed, int starts, Rng& rng, Draw draw = random_start) noexcept;
 
   /// The next descent that ends; none when all have. Where several end with one step, the seed
   /// comes first; a seed that is about to converge is waited for.
@@ -55,6 +59,7 @@ class LaneSearch {
   const JointVec& seed_;
   const int starts_;
   Rng& rng_;
+  const Draw draw_;
   const DescentKernel kernel_;
   DescentBlock block_;
   Lane lanes_[kBlock];

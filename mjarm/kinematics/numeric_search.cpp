@@ -20,14 +20,15 @@ class Search {
         goal_(goal),
         rng_(options.seed) {}
 
-  /// The seed and random starts, until an answer is found that `valid` accepts.
+  /// The seed and random starts, until an answer is found that `valid` accepts; where there was
+  /// none at all, in another way.
   std::optional<IkSolution> run() noexcept {
     LaneSearch lanes(chain_, goal_.X_WT, descent_, goal_.seed, options_.restarts + 1, rng_);
     while (const auto end = lanes.next()) {
       iterations_ = lanes.steps();
       if (take(end->descent, end->start)) return best_;
     }
-    return std::nullopt;
+    return refused_ ? std::nullopt : run_from_beyond();
   }
 
   /// One descent from the seed, for the best attempt of a pose that is known to be out of reach.
@@ -54,6 +55,36 @@ class Search {
   }
 
  private:
+  /// In corners of the limits the descents of run() lose their way. Here they are done without
+  /// limits, which leads to all branches quickly; each is then put within the limits and descends
+  /// again, joints that come to a limit giving over to the others.
+  std::optional<IkSolution> run_from_beyond() noexcept {
+    if (!has_stops()) return std::nullopt;
+    const bool redundant = chain_.dof > 6 || options_.task != IkTask::pose;
+    // Without joints to spare the way within the limits is short or there is none.
+    const double max_beyond = redundant ? 1.0 : 0.1;  // [rad or m]
+    const int starts = (redundant ? 6 : 3) * std::min(options_.restarts, 100);
+    DescentOptions free = descent_;
+    free.limits = false;
+    DescentOptions careful = descent_;
+    careful.share = true;
+    Rng rng(options_.seed, 2);  // another stream: what is told of a failure does not change
+    LaneSearch lanes(chain_, goal_.X_WT, free, goal_.seed, starts, rng, random_start_at_stops);
+    while (const auto end = lanes.next()) {
+      if (!end->descent.converged) continue;
+      JointVec q = put_between_stops(end->descent.q);
+      if (worst_violation(q).second > max_beyond) continue;
+      for (int i = 0; i < chain_.dof; ++i) {
+        if (!chain_.full_turn[i]) q[i] = std::clamp(q[i], chain_.lower[i], chain_.upper[i]);
+      }
+      const Descent descent = descend(chain_, goal_.X_WT, q, careful);
+      if (!descent.converged) continue;
+      iterations_ += descent.iterations;
+      if (take(descent, options_.restarts + end->start)) return best_;
+    }
+    return std::nullopt;
+  }
+
   /// Weighs the end of a descent; true where it is the answer.
   bool take(const Descent& descent, int start) noexcept {
     const IkSolution met{unwind(chain_, descent.q, goal_.seed), descent.pos_err, descent.rot_err,
@@ -113,16 +144,32 @@ class Search {
     }
   }
 
+  bool has_stops() const noexcept {
+    bool any = false;
+    for (int i = 0; i < chain_.dof; ++i) {
+      any = any || (!chain_.full_turn[i] &&
+                    (std::isfinite(chain_.lower[i]) || std::isfinite(chain_.upper[i])));
+    }
+    return any;
+  }
+
+  /// Hinges with stops in the winding that is nearest to the middle between them.
+  JointVec put_between_stops(JointVec q) const noexcept {
+    for (int i = 0; i < chain_.dof; ++i) {
+      if (chain_.full_turn[i] || chain_.slide[i]) continue;
+      const double middle = 0.5 * (chain_.lower[i] + chain_.upper[i]);
+      q[i] = middle + std::remainder(q[i] - middle, 2 * std::numbers::pi);
+    }
+    return q;
+  }
+
+  /// The joint that is farthest beyond its limit, and by how much [rad or m].
   std::pair<int, double> worst_violation(const JointVec& q) const noexcept {
+    const JointVec between = put_between_stops(q);
     std::pair<int, double> worst{-1, 0.0};
     for (int i = 0; i < chain_.dof; ++i) {
       if (chain_.full_turn[i]) continue;
-      double value = q[i];
-      if (!chain_.slide[i]) {
-        const double middle = 0.5 * (chain_.lower[i] + chain_.upper[i]);
-        value = middle + std::remainder(value - middle, 2 * std::numbers::pi);
-      }
-      const double beyond = std::max(chain_.lower[i] - value, value - chain_.upper[i]);
+      const double beyond = std::max(chain_.lower[i] - between[i], between[i] - chain_.upper[i]);
       if (beyond > worst.second) worst = {i, beyond};
     }
     return worst;

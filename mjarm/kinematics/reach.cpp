@@ -135,7 +135,10 @@ std::optional<ReachBreach> Reach::check_position(const Eigen::Vector3d& p_WT) co
 std::optional<ReachBreach> Reach::check_points(const Eigen::Vector3d& p_WB, double slack_B,
                                                const Eigen::Vector3d& p_WC,
                                                double slack_C) const noexcept {
-  const double distance = (p_WB - p_WA_).norm();
+  double distance = (p_WB - p_WA_).norm();
+  if (!std::isfinite(distance)) {  // a square of it is not
+    distance = std::min((p_WB - p_WA_).stableNorm(), std::numeric_limits<double>::max());
+  }
   const double outer = outer_ + slack_B;
   if (distance > outer) return ReachBreach{ReachShape::outer_sphere, distance - outer, outer};
   const double from_axis = (p_WC - p_WC_).cross(axis_W_).norm();

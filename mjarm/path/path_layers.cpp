@@ -99,7 +99,8 @@ void keep_best(Layer& layer, std::size_t max) {
 }  // namespace
 
 bool TrackRank::operator<(const TrackRank& other) const noexcept {
-  return std::tie(tightness, start, length) < std::tie(other.tightness, other.start, other.length);
+  return std::tie(tightness, posture, start, length) <
+         std::tie(other.tightness, other.posture, other.start, other.length);
 }
 
 PathLayers::PathLayers(const IkSolver& ik, const PathOptions& options)
@@ -108,7 +109,9 @@ PathLayers::PathLayers(const IkSolver& ik, const PathOptions& options)
       all_(ik.arm(), without_predicate(ik.options())),
       near_(ik.arm(), near_only(ik.options(), options.max_step)),
       boundless_(without_limits(ik.arm()), without_predicate(ik.options())),
-      chain_(ik.chain()) {}
+      chain_(ik.chain()) {
+  if (options.best_posture) posture_.emplace(ik);
+}
 
 double PathLayers::smallest_singular_value(const JointVec& q) const {
   return mjarm::smallest_singular_value(fk_jacobian(chain_, as_span(q)).J_W);
@@ -128,16 +131,24 @@ double PathLayers::limit_tightness(const JointVec& q) const {
   return worst;
 }
 
-/// That of the configuration, limits left aside; none where it is refused.
-std::optional<double> PathLayers::tightness(const JointVec& q) const {
+/// None where the configuration is refused.
+std::optional<PathLayers::Room> PathLayers::room(const JointVec& q) const {
   if (ik_.options().valid && !ik_.options().valid(as_span(q))) return std::nullopt;
-  double worst = std::max(0.0, 1 - smallest_singular_value(q) / (2 * kSingular));
+  Room out{.tightness = std::max(0.0, 1 - smallest_singular_value(q) / (2 * kSingular))};
   if (options_.clearance) {
-    const double distance = options_.clearance(as_span(q)).distance;
-    if (!(distance >= 0)) return std::nullopt;
-    worst = std::max(worst, 1 - distance / (2 * kClearance));
+    out.clearance = options_.clearance(as_span(q)).distance;
+    if (!(out.clearance >= 0)) return std::nullopt;
+    out.tightness = std::max(out.tightness, 1 - out.clearance / (2 * kClearance));
   }
-  return worst;
+  return out;
+}
+
+/// What is to be said against `q` on a track that begins at a distance of `start` from q_start: for
+/// each answer of the track, so that its length does not matter.
+double PathLayers::posture_cost(const JointVec& q, const Room& room, double start) const {
+  if (!posture_) return 0;
+  return posture_->at(as_span(q), room.clearance) +
+         posture_->weights().travel * start / std::numbers::pi;
 }
 
 double PathLayers::level(double tightness) const {
@@ -151,13 +162,15 @@ JointVec PathLayers::longest_step(const Pose& X_before, const Pose& X_WT) const 
   return any.cwiseMin(longest_at_speed(ik_.arm(), X_before, X_WT, options_.tool_speed));
 }
 
-TrackRank PathLayers::extended(const TrackNode& node, const JointVec& q, double tightness,
+TrackRank PathLayers::extended(const TrackNode& node, const JointVec& q, const Room& room,
                                const JointVec& longest) const {
   const JointVec step = q - node.q;
   const double tight =
-      std::max({tightness, limit_tightness(q), largest(step.cwiseQuotient(longest))});
-  return {std::max(node.rank.tightness, level(tight)), node.rank.start,
-          node.rank.length + step.norm()};
+      std::max({room.tightness, limit_tightness(q), largest(step.cwiseQuotient(longest))});
+  const TrackRank& before = node.rank;
+  return {std::max(before.tightness, level(tight)),
+          before.posture + posture_cost(q, room, before.start), before.start,
+          before.length + step.norm()};
 }
 
 /// The pose itself, and with a tolerance the tool turned by it in eight directions across its z
@@ -180,7 +193,7 @@ std::vector<Pose> PathLayers::allowed(const Pose& X_WT) const {
 Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
   struct Seen {
     JointVec q;
-    std::optional<double> tight;
+    std::optional<Room> room;
   };
   std::vector<Seen> seen;  // the windings of a branch are one place
   Layer layer;
@@ -194,11 +207,11 @@ Layer PathLayers::first(const Pose& X_WT, const JointVec& q_start) const {
       const auto known = std::find_if(seen.begin(), seen.end(), [&](const Seen& other) {
         return same_place(ik_.chain(), other.q, answer.q);
       });
-      const auto tight = known != seen.end() ? known->tight : tightness(answer.q);
-      if (known == seen.end()) seen.push_back({answer.q, tight});
-      if (!tight) continue;
-      layer.push_back(
-          {answer.q, -1, {level(std::max(*tight, limit_tightness(answer.q))), start, 0}});
+      const auto here = known != seen.end() ? known->room : room(answer.q);
+      if (known == seen.end()) seen.push_back({answer.q, here});
+      if (!here) continue;
+      const double tight = level(std::max(here->tightness, limit_tightness(answer.q)));
+      layer.push_back({answer.q, -1, {tight, posture_cost(answer.q, *here, start), start, 0}});
     }
   }
   if (options_.keep_start) {
@@ -219,7 +232,7 @@ Layer PathLayers::next(const Pose& X_before, const Pose& X_WT, const Layer& befo
 Layer PathLayers::join(const Pose& X_WT, const Layer& before, const JointVec& longest) const {
   struct Branch {
     JointVec q;
-    std::optional<double> tight;
+    std::optional<Room> room;
     bool looked_at = false;
     std::vector<std::size_t> nodes;  // its windings in the new layer
   };
@@ -234,10 +247,10 @@ Layer PathLayers::join(const Pose& X_WT, const Layer& before, const JointVec& lo
     for (Branch& branch : branches) {
       const auto q = placed(ik_.chain(), branch.q, before[i].q, longest);
       if (!q) continue;
-      if (!branch.looked_at) branch.tight = tightness(*q);
+      if (!branch.looked_at) branch.room = room(*q);
       branch.looked_at = true;
-      if (!branch.tight) continue;
-      const TrackRank rank = extended(before[i], *q, *branch.tight, longest);
+      if (!branch.room) continue;
+      const TrackRank rank = extended(before[i], *q, *branch.room, longest);
       const auto known = std::find_if(branch.nodes.begin(), branch.nodes.end(), [&](std::size_t k) {
         return largest(layer[k].q - *q) < kSame;
       });
@@ -279,9 +292,9 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& 
     const auto answer = near_.solve(X, as_span(seed));
     if (!answer) return kInfinity;
     if (largest((answer->q - before[i].q).cwiseQuotient(longest)) > 1) return kInfinity;
-    const auto tight = tightness(answer->q);
-    if (!tight) return kInfinity;
-    const TrackRank rank = extended(before[i], answer->q, *tight, longest);
+    const auto here = room(answer->q);
+    if (!here) return kInfinity;
+    const TrackRank rank = extended(before[i], answer->q, *here, longest);
     const auto known = std::find_if(layer.begin(), layer.end(), [&](const TrackNode& node) {
       return largest(node.q - answer->q) < same;
     });
@@ -290,7 +303,7 @@ Layer PathLayers::follow(const Pose& X_WT, const Layer& before, const JointVec& 
     } else if (rank < known->rank) {
       *known = {answer->q, static_cast<int>(i), rank};
     }
-    return std::max(*tight, limit_tightness(answer->q));
+    return std::max(here->tightness, limit_tightness(answer->q));
   };
   constexpr double kTight = 0.5;
   constexpr std::size_t kAside = 16;  // only the best of them look to the sides

@@ -6,6 +6,7 @@
 
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/kinematics/link_chain.hpp"
+#include "mjarm/kinematics/posture.hpp"
 #include "mjarm/path/solve_path.hpp"
 
 namespace mjarm::detail {
@@ -13,6 +14,7 @@ namespace mjarm::detail {
 /// How good the best track to an answer is; smaller is better.
 struct TrackRank {
   double tightness = 0;  ///< worst of the track, in [comfort, 1]
+  double posture = 0;    ///< sum of PostureCost; 0 where nobody asks for it
   double start = 0;      ///< [rad or m] largest joint distance of its first answer from q_start
   double length = 0;     ///< [rad or m] sum of the steps' norms
   [[nodiscard]] bool operator<(const TrackRank& other) const noexcept;
@@ -31,6 +33,12 @@ using Layer = std::vector<TrackNode>;
 /// Makes the answers to each pose out of those to the pose before.
 class PathLayers {
  public:
+  /// What is looked at in a configuration by itself.
+  struct Room {
+    double tightness = 0;                  ///< limits left aside
+    double clearance = PostureCost::kFar;  ///< [m], where it is looked at
+  };
+
   static constexpr std::size_t kMaxNodes = 512;    ///< a layer; the best are kept
   static constexpr std::size_t kMaxFollowed = 96;  ///< likewise without a closed form of six axes
 
@@ -58,9 +66,10 @@ class PathLayers {
   [[nodiscard]] Layer join(const Pose& X_WT, const Layer& before, const JointVec& longest) const;
   [[nodiscard]] Layer follow(const Pose& X_WT, const Layer& before, const JointVec& longest) const;
   [[nodiscard]] std::vector<JointVec> aside(const JointVec& q) const;
-  [[nodiscard]] std::optional<double> tightness(const JointVec& q) const;
+  [[nodiscard]] std::optional<Room> room(const JointVec& q) const;
   [[nodiscard]] double limit_tightness(const JointVec& q) const;
-  [[nodiscard]] TrackRank extended(const TrackNode& node, const JointVec& q, double tightness,
+  [[nodiscard]] double posture_cost(const JointVec& q, const Room& room, double start) const;
+  [[nodiscard]] TrackRank extended(const TrackNode& node, const JointVec& q, const Room& room,
                                    const JointVec& longest) const;
   [[nodiscard]] double level(double tightness) const;
 
@@ -70,6 +79,7 @@ class PathLayers {
   IkSolver near_;       // the same within max_step of the seed, no random starts
   IkSolver boundless_;  // the same without limits
   LinkChain chain_;
+  std::optional<PostureCost> posture_;  // none where postures do not count
 };
 
 }  // namespace mjarm::detail

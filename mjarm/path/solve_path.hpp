@@ -22,6 +22,9 @@ struct PathOptions {
   /// [1] Tracks no tighter than this count as equally good, and the one that starts nearest to
   /// q_start is taken; 0 to 1. 0: the one with most room, wherever it starts.
   double comfort = 0.5;
+  /// True: of tracks that count as equally good the one whose postures are best (posture.hpp) is
+  /// taken, and only of equals the one that starts nearest to q_start.
+  bool best_posture = false;
   /// [rad] The tool may stand so much aside of the given orientations, >= 0 and < pi/2: lets it
   /// pass a wrist singularity. Answers turned about the tool's x, y and z axes are tried besides.
   double orientation_tol = 0;
@@ -39,7 +42,7 @@ struct PathOptions {
 /// and of all tracks that reach the last pose the least tight is taken. Tightness is the worst of
 /// the largest joint step (as a share of max_step), the nearness to limits, the smallest singular
 /// value and the clearance, in levels of 0.02; of equally tight tracks that which starts nearest to
-/// q_start is taken, then the shortest. Answers that `ik.options().valid` refuses are left out. An
+/// q_start is taken (see best_posture), then the shortest. Answers that `ik.options().valid` refuses are left out. An
 /// arm of six axes in closed form misses no track; any other is followed from the answers found for
 /// pose 0, a redundant one moving aside within itself where it gets tight. Same input, same answer.
 ///

@@ -6,7 +6,9 @@
 
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/branch.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/posture.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/poses_test.hpp"
@@ -33,6 +35,39 @@ TEST(SolvePath, TheEllipseOfTheDemoIsSolved) {
   EXPECT_LT(path->max_step(), 5.2 * kDegree);
   EXPECT_GT(path->max_step(), 0);
   EXPECT_LT((path->q.front() - path->q.back()).norm(), 1e-5);
+}
+
+TEST(SolvePath, AFreeChoiceIsTheBestPosture) {
+  const IkSolver ik(testing::ur5e());
+  const std::vector<Pose> poses = ellipse_points(tool_down(-0.3), 200);
+  const auto near = solve_path(ik, poses, kSeed);
+  const auto best = solve_path(ik, poses, kSeed, {.best_posture = true});
+  ASSERT_TRUE(near.has_value() && best.has_value());
+  testing::expect_on_poses(ik.arm(), *best, poses);
+  const PostureCost cost(ik);
+  double of_near = 0, of_best = 0;
+  for (const JointVec& q : near->q) of_near += cost.at(as_span(q));
+  for (const JointVec& q : best->q) of_best += cost.at(as_span(q));
+  EXPECT_LT(of_best, of_near);
+  for (const JointVec& q : best->q) EXPECT_EQ(branch_of(ik, as_span(q)).way[1], 0);  // elbow up
+  // Where the arm stands at the first pose it stays in its branch.
+  const auto kept =
+      solve_path(ik, poses, as_span(near->q.front()), {.keep_start = true, .best_posture = true});
+  ASSERT_TRUE(kept.has_value());
+  EXPECT_LT((kept->q.front() - near->q.front()).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(SolvePath, ClearanceWeighsMoreThanTheElbow) {
+  const IkSolver ik(testing::ur5e());
+  const std::vector<Pose> poses = ellipse_points(tool_down(-0.3), 60);
+  PathOptions options{.best_posture = true};
+  // Something hangs where an elbow that is up would be near it.
+  options.clearance = [&](std::span<const double> q) {
+    return Clearance{branch_of(ik, q).way[1] == 0 ? 0.03 : 0.5, {}};
+  };
+  const auto path = solve_path(ik, poses, kSeed, options);
+  ASSERT_TRUE(path.has_value());
+  for (const JointVec& q : path->q) EXPECT_EQ(branch_of(ik, as_span(q)).way[1], 1);
 }
 
 TEST(SolvePath, TheEllipseOfTheGuideIsRefusedAndMended) {

@@ -27,6 +27,32 @@ std::optional<double> share_of(const Fields& fields, std::string_view key) {
   });
 }
 
+/// `branch: {shoulder: left, elbow: up, wrist: no_flip}`, or some of it; `joints` go without.
+std::optional<Branch> branch_of(const Fields& fields) {
+  const YamlNode* node = fields.find("branch");
+  if (node == nullptr) return std::nullopt;
+  return or_noted(fields.faults(), std::optional<Branch>(), [&]() -> std::optional<Branch> {
+    const std::string what = fields.named("branch");
+    const Fields parts(*node, what, {"shoulder", "elbow", "wrist"}, fields.faults());
+    if (fields.find("joints") != nullptr) {
+      throw ReadFault{node->place, text(msg::program_pose_and, fields.named("joints"), "branch")};
+    }
+    Branch out;
+    for (int part = 0; part < Branch::kParts; ++part) {
+      const auto ways = branch_ways(part);
+      const std::string_view name = branch_parts()[static_cast<std::size_t>(part)];
+      const YamlNode* way = parts.find(name);
+      if (way == nullptr) continue;
+      or_noted(fields.faults(), 0, [&] {
+        const std::string word = word_of(*way, parts.named(name), {ways.begin(), ways.end()});
+        out.way[static_cast<std::size_t>(part)] = word == ways[0] ? 0 : 1;
+        return 0;
+      });
+    }
+    return out;
+  });
+}
+
 /// A pose that is a member of its own.
 ProgramPose pose_at(const Fields& fields, std::string_view key, const NamedThings& named) {
   return fields.take(key, ProgramPose{}, [&](const YamlNode& node, const std::string& what) {
@@ -49,9 +75,10 @@ std::variant<JointValues, ProgramPose> goal_of(const Fields& fields, const Named
 
 Instruction::What read_movej(const YamlNode& node, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) return MoveJ{pose_of(node, "movej", named)};
-  const Fields fields(node, "movej", {"joints", MJARM_POSE_KEYS, "speed"}, named.faults);
+  const Fields fields(node, "movej", {"joints", MJARM_POSE_KEYS, "speed", "branch"}, named.faults);
   const std::optional<double> share = share_of(fields, "speed");
-  return MoveJ{goal_of(fields, named), share};
+  const std::optional<Branch> branch = branch_of(fields);
+  return MoveJ{goal_of(fields, named), share, branch};
 }
 
 Instruction::What read_movel(const YamlNode& node, const NamedThings& named) {
@@ -175,13 +202,15 @@ Instruction::What read_wait(const YamlNode& node, const NamedThings&) {
 }
 
 Instruction::What read_set(const YamlNode& node, const NamedThings& named) {
-  return set_of(
-      Fields(node, "set", {"tool", "frame", "speed", "joint_speed", "zone"}, named.faults));
+  return set_of(Fields(node, "set", {"tool", "frame", "speed", "joint_speed", "zone", "branch"},
+                       named.faults));
 }
 
 Instruction::What read_plan(const YamlNode& node, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) return PlanMove{pose_of(node, "plan", named)};
-  return PlanMove{goal_of(Fields(node, "plan", {"joints", MJARM_POSE_KEYS}, named.faults), named)};
+  const Fields fields(node, "plan", {"joints", MJARM_POSE_KEYS, "branch"}, named.faults);
+  const std::optional<Branch> branch = branch_of(fields);
+  return PlanMove{goal_of(fields, named), branch};
 }
 
 Instruction::What read_grip(const YamlNode& node, const NamedThings&) {
@@ -231,6 +260,7 @@ Set set_of(const Fields& fields) {
   out.speed = speed_of(fields);
   out.share = share_of(fields, "joint_speed");
   out.zone = fields.not_negative("zone", Quantity::length);
+  out.branch = branch_of(fields);
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "mjarm/core/file_place.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/kinematics/branch.hpp"
 
 namespace mjarm::program {
 
@@ -37,7 +38,8 @@ struct JointValues {
 /// that what follows can be done from there.
 struct MoveJ {
   std::variant<JointValues, ProgramPose> goal;
-  std::optional<double> share = {};  ///< of the joints' limits, (0, 1]
+  std::optional<double> share = {};   ///< of the joints' limits, (0, 1]
+  std::optional<Branch> branch = {};  ///< of the answer to a pose
 };
 
 /// The tool in a straight line to `goal`.
@@ -96,11 +98,13 @@ struct Set {
   std::optional<double> speed = {};  ///< [m/s] of tool moves, > 0
   std::optional<double> share = {};  ///< of the joint limits in joint moves, (0, 1]
   std::optional<double> zone = {};  ///< [m] >= 0, `blend` of straight moves and arcs that have none
+  std::optional<Branch> branch = {};  ///< wherever the answer to a pose is free
 };
 
 /// Round obstacles, by the planner.
 struct PlanMove {
   std::variant<JointValues, ProgramPose> goal;
+  std::optional<Branch> branch = {};  ///< of the answer to a pose
 };
 
 struct Grip {

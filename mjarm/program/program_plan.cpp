@@ -9,8 +9,8 @@
 #include "mjarm/core/messages/execution.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/fk.hpp"
-#include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/joint_path.hpp"
+#include "mjarm/program/answer_choice_internal.hpp"
 #include "mjarm/program/closed_way_internal.hpp"
 #include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
@@ -47,6 +47,7 @@ struct Tool {
   IkSolver ik;     ///< without contact
   MoveJudge judge;
   detail::DetourPlanner detours;
+  detail::AnswerChoice answers;
 };
 
 class ProgramPlanner {
@@ -66,7 +67,8 @@ class ProgramPlanner {
       const IkSolver solver(arm, ik);
       const MoveJudge judge(arm, checker);
       tools_.push_back({arm, IkSolver(arm, {.task = ik.task}), solver, judge,
-                        detail::DetourPlanner({model, arm}, solver, judge, options.stop)});
+                        detail::DetourPlanner({model, arm}, solver, judge, options.stop),
+                        detail::AnswerChoice(solver, judge.clearance())});
     }
   }
 
@@ -149,9 +151,12 @@ class ProgramPlanner {
                      (step.kind == Step::Kind::line && !detail::is_blended(steps_, fault.step));
     if (!one || fault.reason != "collision") return std::nullopt;
     detail::DetourPlanner& planner = tools_[step.tool].detours;
-    const auto goals = goals_of(planner, step, q);
+    const auto goals = goals_of(step, q);
     if (!goals) return std::nullopt;
-    const auto found = planner.plan(q, *goals, step.share);
+    auto found = planner.plan(q, goals->good_ones(), step.share);
+    if (!found && !goals->others().empty()) {
+      found = planner.plan(q, goals->others(), step.share);
+    }
     if (!found) return std::nullopt;
     q = found->corners.back();
     return Detour{found->corners.size() - 1, found->trajectory.duration(),
@@ -271,21 +276,18 @@ class ProgramPlanner {
     return out;
   }
 
-  /// To the answer from which the tool moves that follow go farthest; the nearest of equals.
+  /// To the answer from which the tool moves that follow go farthest; of equals to the first.
   Attempt to_pose(std::size_t i, const JointVec& q) {
     const Tool& with = tool(steps_[i]);
-    const auto answers = solve_all(with.ik, steps_[i].X_WT, as_span(q));
-    if (!answers) {
-      return failed(
-          i, q, {i, std::string(name(answers.error().code)), describe(answers.error(), with.arm)});
-    }
+    const auto answers = with.answers.to(steps_[i], steps_[i].X_WT, q);
+    if (!answers) return failed(i, q, {i, answers.error().reason, answers.error().what});
     std::optional<Attempt> best;
-    for (std::size_t k = 0; k < std::min(answers->size(), kMaxAnswers); ++k) {
+    for (std::size_t k = 0; k < std::min(answers->q.size(), kMaxAnswers); ++k) {
       Attempt attempt{{}, i, q, {}};
-      attempt.fault = joint_move(i, q, (*answers)[k].q, nullptr, attempt.moves);
+      attempt.fault = joint_move(i, q, answers->q[k], nullptr, attempt.moves);
       if (!attempt.fault) {
         attempt.next = i + 1;
-        attempt.q = (*answers)[k].q;
+        attempt.q = answers->q[k];
         tool_moves(attempt);
       }
       if (!attempt.fault) return attempt;
@@ -294,21 +296,34 @@ class ProgramPlanner {
     return std::move(*best);
   }
 
-  /// Where a `plan` may end: its joint values, or every answer to its pose.
-  static Result<std::vector<JointVec>, detail::DetourFault> goals_of(
-      const detail::DetourPlanner& planner, const Step& step, const JointVec& q) {
-    return step.q.size() > 0 ? planner.goals(q, step.q) : planner.goals(q, step.X_WT);
+  /// Where a `plan` may end: its joint values, or the answers to its pose.
+  Result<detail::Answers, detail::NoAnswer> goals_of(const Step& step, const JointVec& q) const {
+    const Tool& with = tool(step);
+    const bool joints = step.q.size() > 0;
+    auto found = joints ? with.detours.goals(q, step.q) : with.detours.goals(q, step.X_WT);
+    if (!found) return tl::unexpected(detail::NoAnswer{found.error().reason, found.error().what});
+    if (joints) return detail::Answers{std::move(*found), 1};
+    return with.answers.among(step, std::move(*found), q);
   }
 
-  /// Round what stands in the way, to a goal from which the tool moves that follow go farthest.
+  /// Round what stands in the way, to a goal in good posture if that can be had.
   Attempt detour(std::size_t i, const JointVec& q) {
-    const Step& step = steps_[i];
-    Tool& with = tools_[step.tool];
-    auto goals = goals_of(with.detours, step, q);
+    const auto goals = goals_of(steps_[i], q);
     if (!goals) return failed(i, q, {i, goals.error().reason, goals.error().what});
+    Attempt best = detour_to(i, q, goals->good_ones());
+    if (!best.fault || goals->others().empty()) return best;
+    Attempt other = detour_to(i, q, goals->others());
+    return !other.fault || other.next > best.next ? std::move(other) : std::move(best);
+  }
+
+  /// The same to one of `goals`: to that from which the tool moves that follow go farthest.
+  Attempt detour_to(std::size_t i, const JointVec& q, std::span<const JointVec> to) {
+    const Step& step = steps_[i];
+    std::vector<JointVec> goals(to.begin(), to.end());
+    Tool& with = tools_[step.tool];
     std::optional<Attempt> best;
-    for (std::size_t k = 0; k < kMaxAnswers && !goals->empty(); ++k) {
-      auto found = with.detours.plan(q, *goals, step.share);
+    for (std::size_t k = 0; k < kMaxAnswers && !goals.empty(); ++k) {
+      auto found = with.detours.plan(q, goals, step.share);
       if (!found && best) break;
       if (!found) return failed(i, q, {i, found.error().reason, found.error().what});
       Attempt attempt{{begun(step)}, i + 1, found->corners.back(), {}};
@@ -319,7 +334,7 @@ class ProgramPlanner {
       tool_moves(attempt);
       if (!attempt.fault) return attempt;
       if (!best || attempt.next > best->next) best = std::move(attempt);
-      goals->erase(goals->begin() + static_cast<std::ptrdiff_t>(found->goal));
+      goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(found->goal));
     }
     return std::move(*best);
   }
@@ -329,21 +344,29 @@ class ProgramPlanner {
   Attempt to_curve(std::size_t i, const JointVec& q) {
     const Step& step = steps_[i];
     const Pose X_first = step.curve->at(0);
-    Attempt best = along(i, q, *step.curve, false);
-    if (!best.fault) tool_moves(best);
-    if (!best.fault || detail::same_pose(fk(tool(step).arm, as_span(q)), X_first)) return best;
-    const auto answers = solve_all(tool(step).ik, X_first, as_span(q));
-    for (std::size_t k = 0; answers && k < std::min(answers->size(), kMaxAnswers); ++k) {
+    const bool there = detail::same_pose(fk(tool(step).arm, as_span(q)), X_first);
+    std::optional<Attempt> best;
+    if (there || step.branch.empty()) {
+      best = along(i, q, *step.curve, false);
+      if (!best->fault) tool_moves(*best);
+      if (!best->fault || there) return std::move(*best);
+    }
+    const auto answers = tool(step).answers.to(step, X_first, q);
+    if (!answers && !best) return failed(i, q, {i, answers.error().reason, answers.error().what});
+    for (std::size_t k = 0; answers && k < std::min(answers->q.size(), kMaxAnswers); ++k) {
       Attempt attempt{{}, i, q, {}};
-      attempt.fault = joint_move(i, q, (*answers)[k].q, "approach", attempt.moves);
-      if (attempt.fault) continue;
-      Attempt rest = along(i, (*answers)[k].q, *step.curve, true);
+      attempt.fault = joint_move(i, q, answers->q[k], "approach", attempt.moves);
+      if (attempt.fault) {
+        if (!best) best = std::move(attempt);
+        continue;
+      }
+      Attempt rest = along(i, answers->q[k], *step.curve, true);
       if (!rest.fault) tool_moves(rest);
       rest.moves.insert(rest.moves.begin(), std::move(attempt.moves.front()));
       if (!rest.fault) return rest;
-      if (rest.next > best.next) best = std::move(rest);
+      if (!best || rest.next > best->next) best = std::move(rest);
     }
-    return best;
+    return std::move(*best);
   }
 
   /// Goes on with all that needs no other answer: straight moves, arcs and rests.
@@ -419,6 +442,7 @@ class ProgramPlanner {
     MotionOptions options =
         detail::motion_options(std::span(steps_).subspan(i, count), curve, options_.tool_speed);
     options.path.keep_start = here;
+    options.path.best_posture = step.is_free && !here;
     options.path.stop = options_.stop;
     options.path.clearance = with.judge.clearance();
     if (!here) {

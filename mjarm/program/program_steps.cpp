@@ -46,6 +46,7 @@ class StepWriter {
   Steps write() {
     attempt("program", [&] { take(program_.settings, {}); });
     attempt("start", [&] { out_.q_start = joints(program_.start, program_.start_place); });
+    is_free_ = program_.start.values.empty();
     add_all(program_.instructions);
     return std::move(out_);
   }
@@ -89,6 +90,8 @@ class StepWriter {
     step.speed = speed.value_or(speed_.value_or(0));
     step.keep_speed = speed.has_value() || speed_.has_value();
     step.share = share_;
+    step.branch = branch_;
+    step.is_free = is_free_;
     return step;
   }
 
@@ -158,7 +161,17 @@ class StepWriter {
     if (set.speed) speed_ = set.speed;
     if (set.share) share_ = *set.share;
     if (set.zone) zone_ = *set.zone;
+    if (set.branch) branch_ = known(*set.branch, place);
     if (set.tool) tool_ = tool(*set.tool, place);
+  }
+
+  /// A fault where the arm has no such words.
+  Branch known(const Branch& branch, FilePlace place) const {
+    const Arm& arm = out_.arms[tool_];
+    const Result<void> fits = check_branch(IkSolver(arm, {.task = task_for(arm)}), branch);
+    if (!fits)
+      throw StepFault{place, "bad_input", text(msg::program_in, "branch", fits.error().what)};
+    return branch;
   }
 
   std::size_t tool(const std::string& name, FilePlace place) {
@@ -195,6 +208,7 @@ class StepWriter {
     if (const auto* q = std::get_if<JointValues>(&goal)) {
       step.kind = Step::Kind::joints;
       step.q = joints(*q, step.place);
+      is_free_ = q->values.empty();
     } else {
       step.X_WT = world(std::get<ProgramPose>(goal));
     }
@@ -203,6 +217,7 @@ class StepWriter {
   void add(const MoveJ& what, const Instruction& instruction) {
     Step step = begun(Step::Kind::pose, instruction);
     step.share = what.share.value_or(share_);
+    if (what.branch) step.branch = known(*what.branch, step.place);
     set_goal(step, what.goal);
     push(std::move(step));
   }
@@ -272,6 +287,7 @@ class StepWriter {
 
   void add(const PlanMove& what, const Instruction& instruction) {
     Step step = begun(Step::Kind::plan, instruction);
+    if (what.branch) step.branch = known(*what.branch, step.place);
     set_goal(step, what.goal);
     step.kind = Step::Kind::plan;
     push(std::move(step));
@@ -301,6 +317,8 @@ class StepWriter {
   std::optional<double> speed_;
   double share_ = 1;
   double zone_ = 0;
+  Branch branch_;
+  bool is_free_ = true;  // no joint values were given of late, `home` aside
   bool full_ = false;
   std::size_t visits_ = 0;
   std::size_t noted_ = 0;  // faults, repeated ones counted

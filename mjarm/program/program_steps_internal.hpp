@@ -30,7 +30,10 @@ struct Step {
   double blend = 0;                 ///< [m] line, arc: of the corner at its end; curve: of all
   std::optional<Curve> curve = {};  ///< curve
   std::vector<Pose> points = {};    ///< curve: its corners X_WT, where it is straight between
-  double seconds = 0;               ///< wait
+  Branch branch = {};               ///< pose, curve, plan: of the answer that is chosen
+  /// pose, curve, plan: nobody gave joint values from which the nearest answer would be meant.
+  bool is_free = false;
+  double seconds = 0;  ///< wait
   bool close = false;               ///< grip
 };
 

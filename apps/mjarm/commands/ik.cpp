@@ -10,13 +10,10 @@
 #include "apps/mjarm/cli/orientation.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/ik_answer.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json.hpp"
-#include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/rotation.hpp"
-#include "mjarm/core/stopwatch.hpp"
-#include "mjarm/kinematics/ik_all.hpp"
-#include "mjarm/kinematics/self_motion.hpp"
 #include "mjarm/model/joint_values.hpp"
 
 namespace mjarm::app {
@@ -25,20 +22,8 @@ namespace {
 struct Options {
   RobotChoice robot;
   BatchOptions batch;
-  std::string pos, euler, quat, seed_q, task = "pose", prefer, seed = "1", threads = "1";
-  bool all = false, windings = false, no_timing = false;
-};
-
-/// What stays the same for all requests.
-struct Job {
-  IkSolver solver;
-  std::optional<PostureGoal> prefer;
-  bool all, windings, timing;
-};
-
-struct Request {
-  Pose X_WT;
-  std::vector<double> q_seed;
+  std::string pos, euler, quat, seed_q, task = "pose", prefer, branch, seed = "1", threads = "1";
+  bool all = false, windings = false, collisions = false, no_collisions = false, no_timing = false;
 };
 
 /// As pose_of(), but a position may stand alone where that is all that must be met.
@@ -49,7 +34,7 @@ Result<Pose> goal_of(const JsonValue& object, IkTask task) {
   return Pose{{(*pos)[0], (*pos)[1], (*pos)[2]}, Eigen::Matrix3d::Identity()};
 }
 
-Result<Request> read_request(std::string_view line, const IkSolver& ik) {
+Result<IkRequest> read_request(std::string_view line, const IkSolver& ik) {
   const Arm& arm = ik.arm();
   const Result<JsonObject> object = parse_json_object(line);
   if (!object) return fail(object.error());
@@ -58,7 +43,7 @@ Result<Request> read_request(std::string_view line, const IkSolver& ik) {
   const Result<Pose> X_WT = goal_of(**object, ik.options().task);
   if (!X_WT) return fail(X_WT.error());
   if (!(*object)->contains("seed")) {
-    return Request{*X_WT, {arm.home.begin(), arm.home.end()}};
+    return IkRequest{*X_WT, {arm.home.begin(), arm.home.end()}};
   }
   Result<std::vector<double>> q_seed =
       number_list(**object, "seed", static_cast<std::size_t>(arm.dof()));
@@ -66,10 +51,10 @@ Result<Request> read_request(std::string_view line, const IkSolver& ik) {
   if (Result<void> fine = check_joint_units(*q_seed, arm); !fine) {
     return fail(in_option("seed", fine.error()));
   }
-  return Request{*X_WT, std::move(*q_seed)};
+  return IkRequest{*X_WT, std::move(*q_seed), true};
 }
 
-Result<Request> read_request(const Options& options, const IkSolver& ik) {
+Result<IkRequest> read_request(const Options& options, const IkSolver& ik) {
   const Arm& arm = ik.arm();
   const auto pos = parse_list("--pos", options.pos, Quantity::length, 3);
   if (!pos) return fail(pos.error());
@@ -77,81 +62,29 @@ Result<Request> read_request(const Options& options, const IkSolver& ik) {
   const Result<Eigen::Matrix3d> R = any ? Result<Eigen::Matrix3d>(Eigen::Matrix3d::Identity())
                                         : parse_rotation(options.euler, options.quat);
   if (!R) return fail(R.error());
-  Request request{{{(*pos)[0], (*pos)[1], (*pos)[2]}, *R}, {arm.home.begin(), arm.home.end()}};
+  IkRequest request{{{(*pos)[0], (*pos)[1], (*pos)[2]}, *R}, {arm.home.begin(), arm.home.end()}};
   if (options.seed_q.empty()) return request;
   Result<std::vector<double>> q_seed = parse_joints("--seed-q", options.seed_q, arm);
   if (!q_seed) return fail(std::move(q_seed.error()));
   request.q_seed = std::move(*q_seed);
+  request.has_seed = true;
   return request;
 }
 
-void append_branches(std::string& out, const std::vector<IkSolution>& branches) {
-  std::vector<JointVec> rows;
-  for (const IkSolution& branch : branches) rows.push_back(branch.q);
-  JsonWriter(out).member("branches", rows);
-}
-
-void append_solution(std::string& out, const IkSolution& solution) {
-  JsonWriter(out)
-      .object()
-      .member("ok", true)
-      .member("q", solution.q)
-      .member("pos_err", solution.pos_err)
-      .member("rot_err", solution.rot_err);
-}
-
-void append_failure(std::string& out, const IkFailure& failure, const std::string& why) {
-  JsonWriter(out)
-      .object()
-      .member("ok", false)
-      .member("reason", name(failure.code))
-      .member("detail", why)
-      .member("best", failure.best.q);
-}
-
-/// Solves one request and appends the answer. Where there is none, returns why.
-std::optional<std::string> answer(const Job& job, const Request& request, std::string& out) {
-  const Stopwatch watch;
-  Result<IkSolution, IkFailure> solution = job.solver.solve(request.X_WT, request.q_seed);
-  if (job.prefer && solution) {
-    const SelfMotionOptions self_motion{.goal = *job.prefer, .posture = joint_vec(request.q_seed)};
-    solution = null_space_step(job.solver, request.X_WT, as_span(solution->q), self_motion)
-                   .value_or(*solution);
-  }
-  std::vector<IkSolution> branches;
-  if (job.all && solution) {
-    const IkAllOptions all{.windings = job.windings};
-    branches = solve_all(job.solver, request.X_WT, request.q_seed, all).value_or(branches);
-  }
-  const double us = watch.us();
-  std::optional<std::string> why;
-  if (solution) {
-    append_solution(out, *solution);
-  } else {
-    why = describe(solution.error(), job.solver.arm());
-    append_failure(out, solution.error(), *why);
-  }
-  if (job.all) append_branches(out, branches);
-  JsonWriter json(out);
-  if (job.timing) json.member_us("us", us);
-  json.end_object();
-  return why;
-}
-
-Result<int> answer_one(const Job& job, const Options& options) {
-  const Result<Request> request = read_request(options, job.solver);
+Result<int> answer_one(IkDesk& desk, const Options& options) {
+  const Result<IkRequest> request = read_request(options, desk.geometry());
   if (!request) return fail(request.error());
   std::string line;
-  const std::optional<std::string> why = answer(job, *request, line);
+  const std::optional<std::string> why = desk.answer(*request, line);
   return finish_one(options.batch.out, line, why, msg::app_ik_no_answer);
 }
 
-Result<int> answer_all(const Job& job, const Options& options) {
+Result<int> answer_all(IkDesk& desk, const Options& options) {
   const auto answer_line = [&](std::string_view line,
                                std::string& out) -> Result<std::optional<std::string>> {
-    const Result<Request> request = read_request(line, job.solver);
+    const Result<IkRequest> request = read_request(line, desk.geometry());
     if (!request) return fail(request.error());
-    return answer(job, *request, out);
+    return desk.answer(*request, out);
   };
   const auto done = run_batch(options.batch, text(msg::app_ik_progress), answer_line);
   if (!done) return fail(done.error());
@@ -173,6 +106,13 @@ Result<std::optional<PostureGoal>> read_prefer(const Options& options) {
   return kGoals[*choice];
 }
 
+Result<Branch> read_branch(const std::string& words) {
+  if (words.empty()) return Branch{};
+  Result<Branch> branch = parse_branch(words);
+  if (!branch) return fail(in_option("--branch", std::move(branch.error())));
+  return branch;
+}
+
 Result<int> run(Options options) {
   if (Result<void> fine = one_source(options.batch.in, options.pos, "--pos"); !fine) {
     return fail(std::move(fine.error()));
@@ -186,11 +126,26 @@ Result<int> run(Options options) {
   if (!task) return fail(task.error());
   const auto prefer = read_prefer(options);
   if (!prefer) return fail(prefer.error());
+  if (options.collisions && options.no_collisions) {
+    return fail(Errc::usage, text(msg::app_exclusive_options, "--collisions", "--no-collisions"));
+  }
+  const Result<Branch> branch = read_branch(options.branch);
+  if (!branch) return fail(branch.error());
   Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(std::move(robot.error()));
-  const Job job{IkSolver(robot->arm, {.seed = *seed, .task = *task}), *prefer,
-                options.all || options.windings, options.windings, !options.no_timing};
-  return options.batch.in.empty() ? answer_one(job, options) : answer_all(job, options);
+  const bool single = options.batch.in.empty();
+  IkDesk desk(*robot, {.ik = {.seed = *seed, .task = *task},
+                       .contact = options.collisions || (single && !options.no_collisions),
+                       .prefer = *prefer,
+                       .branch = *branch,
+                       .all = options.all || options.windings,
+                       .windings = options.windings,
+                       .timing = !options.no_timing,
+                       .single = single});
+  if (Result<void> fine = check_branch(desk.geometry(), *branch); !fine) {
+    return fail(in_option("--branch", std::move(fine.error())));
+  }
+  return single ? answer_one(desk, options) : answer_all(desk, options);
 }
 
 Run setup(CLI::App& app) {
@@ -202,6 +157,9 @@ Run setup(CLI::App& app) {
   add_option(app, "--seed-q", options->seed_q, msg::app_option_seed_q, "Q1,Q2,...");
   add_option(app, "--task", options->task, msg::app_option_task, "TASK");
   add_option(app, "--prefer", options->prefer, msg::app_option_prefer, "GOAL");
+  add_option(app, "--branch", options->branch, msg::app_option_branch, "PART=WORD,...");
+  add_flag(app, "--collisions", options->collisions, msg::app_ik_collisions);
+  add_flag(app, "--no-collisions", options->no_collisions, msg::app_ik_no_collisions);
   add_batch_options(app, options->batch);
   add_option(app, "--seed", options->seed, msg::app_option_seed, "N");
   add_flag(app, "--all", options->all, msg::app_option_all);

@@ -54,8 +54,8 @@ Answer solve(const Job& job, const PathRequest& request) {
   options.path.max_step = request.max_step.value_or(job.path.max_step);
   options.path.orientation_tol = request.tilt.value_or(job.path.orientation_tol);
   options.path.tool_speed = request.speed.value_or(0);
-  // Without a start any will do: the track with most room is taken.
-  if (!request.q) options.path.comfort = 0;
+  // Without a start any will do: of the tracks with room enough that with the best postures.
+  options.path.best_posture = !request.q;
   const std::span<const double> q_start = request.q ? *request.q : as_span(job.ik.arm().home);
   const auto fixes = [&](const auto& path, const auto& how, const PathFailure& failure) {
     return find_fixes(job.ik, path, q_start, how, failure);
