@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/models.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
@@ -145,10 +145,10 @@ Result<int> run(bool json) {
   if (json) {
     findings.facts.set("problems", findings.problems);
     findings.facts.set("ok", fine);
-    std::fputs(findings.facts.document().c_str(), stdout);
+    print_lines(findings.facts.document());
   } else {
-    std::fputs(findings.lines.c_str(), stdout);
-    if (fine) std::fputs((text(msg::app_doctor_fine) + "\n").c_str(), stdout);
+    print_lines(findings.lines);
+    if (fine) print_lines(text(msg::app_doctor_fine) + "\n");
   }
   for (const std::string& problem : findings.problems) log_error(problem);
   return fine ? 0 : 1;
