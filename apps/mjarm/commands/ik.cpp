@@ -143,7 +143,7 @@ Result<int> answer_one(const Job& job, const Options& options) {
   if (!request) return fail(request.error());
   std::string line;
   const std::optional<std::string> why = answer(job, *request, line);
-  return finish_one(options.batch.out, line, why, msg::app_ik_no_answer);
+  return finish_one(options.batch, line, why, msg::app_ik_no_answer);
 }
 
 Result<int> answer_all(const Job& job, const Options& options) {
