@@ -101,10 +101,19 @@ run_tests() {
   finish
 }
 
-# Tests with random cases, a hundred times as many as usual.
+# Tests with random cases, a hundred times as many as usual; and changed files of every kind, so many
+# seconds each, other ones each time.
 run_long() {
-  check "build" build_counted dev kinematics_test path_test collision_test
-  ((failed)) || MJARM_LONG_TESTS=1 run_ctest dev --tests-regex '^(kinematics|path|collision)\.' --timeout 7200
+  local seconds=${1:-600} parser mutate=("$root/tests/mutation/mutation_test.py" --program "$root/build/dev/bin/mjarm")
+  [[ $seconds =~ ^[0-9]+$ ]] || die "long: \"$seconds\" is no whole number of seconds"
+  check "build" build_counted dev kinematics_test path_test collision_test mjarm
+  if ((failed == 0)); then
+    MJARM_LONG_TESTS=1 run_ctest dev --tests-regex '^(kinematics|path|collision)\.' --timeout 7200
+    for parser in $(python3 -B "${mutate[@]}" --list); do
+      check "changed files: $parser" python3 -B "${mutate[@]}" --parser "$parser" --seconds "$seconds" \
+        --seed "$(date +%s)" --keep "$root/build/dev/mutation-found"
+    done
+  fi
   finish
 }
 

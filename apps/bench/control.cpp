@@ -85,6 +85,7 @@ class Lap {
     std::vector<Eigen::Vector3d> p_W{sim_.tool(arm_).p};
     const Stopwatch watch;
     for (long i = 0; i < steps_; ++i) {
+      if (interrupted()) return fail(stopped());
       if (Result<void> done = step(i, out); !done) return fail(std::move(done.error()));
       const Eigen::Vector3d p = sim_.tool(arm_).p;
       out.lag = std::max(out.lag, (p - goal_.p).norm());
@@ -163,6 +164,7 @@ Result<RestResult> rest_errors(const Model& model, const Arm& arm, ControlMode m
   ExactChecker checker(model, arm);
   RestResult out{mode};
   for (int draw = 0; out.poses < poses && draw < kMaxDraws * poses; ++draw) {
+    if (interrupted()) return fail(stopped());
     JointVec q(arm.dof());
     for (int i = 0; i < arm.dof(); ++i) {
       q[i] = rng.uniform(std::max(arm.limits.lower[i], -std::numbers::pi),
@@ -291,14 +293,12 @@ Result<int> run_control(const Options& options) {
     if (!rest) return fail(rest.error());
     rests.push_back(*rest);
     progress.advance();
-    if (interrupted()) return fail(stopped());
   }
   for (LapRun& run : runs) {
     const auto lap = drive_lap(robot->model, robot->arm, run.options);
     if (!lap) return fail(lap.error());
     run.result = *lap;
     progress.advance();
-    if (interrupted()) return fail(stopped());
   }
   const bool timing = !options.no_timing;
   const std::string out = options.json ? to_json(*robot, rests, runs, timing).document()

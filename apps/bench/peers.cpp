@@ -35,6 +35,8 @@ class ScratchFolder {
   fs::path path_;
 };
 
+fs::path python_of(const fs::path& environment) { return environment / "bin" / "python"; }
+
 Result<fs::path> find_script(const std::string& suite) {
   const Result<fs::path> share = share_folder();
   if (!share) return fail(share.error());
@@ -135,10 +137,14 @@ std::string text_in(const JsonValue& line, const char* key) {
   return member(line, key, &JsonValue::is_string).string();
 }
 
+Result<void> check_peers(const fs::path& environment) {
+  const fs::path python = python_of(environment);
+  if (environment.empty() || is_there(python)) return {};
+  return fail(Errc::bad_input, text(msg::bench_no_python, python.string()));
+}
+
 Result<void> run_peers(const fs::path& environment, const std::string& suite, JsonDoc job,
                        const TakeAnswer& take) {
-  const fs::path python = environment / "bin" / "python";
-  if (!is_there(python)) return fail(Errc::bad_input, text(msg::bench_no_python, python.string()));
   const Result<fs::path> script = find_script(suite);
   if (!script) return fail(script.error());
   const ScratchFolder folder;
@@ -146,8 +152,8 @@ Result<void> run_peers(const fs::path& environment, const std::string& suite, Js
   const fs::path answer_file = folder.path() / "answer.jsonl";
   job.set("folder", folder.path().string());
   if (auto written = write_file(job_file, job.line()); !written) return fail(written.error());
-  const Result<int> code =
-      run_program(python, {script->string(), job_file.string(), answer_file.string()});
+  const Result<int> code = run_program(python_of(environment),
+                                       {script->string(), job_file.string(), answer_file.string()});
   if (!code) return fail(code.error());
   if (*code != 0) return fail(Errc::system, text(msg::bench_peers_failed, *code));
   const Result<std::string> content = read_file(answer_file);

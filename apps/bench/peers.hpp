@@ -40,6 +40,10 @@ struct BrokenAnswer {
 /// came in, whose members may be of any type. Throws `BrokenAnswer`.
 using TakeAnswer = std::function<void(BenchEntry entry, const JsonValue& line)>;
 
+/// Whether there is such an environment, where one is named: to be asked before anything is
+/// measured.
+[[nodiscard]] Result<void> check_peers(const std::filesystem::path& environment);
+
 /// Runs the peers of a Python environment on one job, each in a process and a loop of its own
 /// (`bench/peers/SUITE.py`). A peer that fails has an answer that says why.
 /// @param environment  folder of a virtual environment with some of the peers in it.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/peers.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 
 struct Options : ReportOptions {
   std::string set, data, peers, peer_every = "10", seed = "1", out = "mjarm-out/bench-plan";
+  Replace replace;
 };
 
 const std::vector<std::string> kArms = {"panda", "ur5"};
@@ -34,6 +36,7 @@ Result<Job> job_of(const Options& options) {
   if (!seed) return fail(seed.error());
   const Result<int> every = parse_count("--peer-every", options.peer_every, kMaxEvery);
   if (!every) return fail(every.error());
+  if (Result<void> there = check_peers(options.peers); !there) return fail(there.error());
   job.seed = *seed;
   job.peers = {.environment = options.peers, .every = *every};
   job.anytime = job.timing;  // what it finds depends on the clock
@@ -135,9 +138,11 @@ Result<int> run_plans(const Options& options) {
   if (!job) return fail(job.error());
   Result<Measured> all = prepare(options, *job);
   if (!all) return fail(std::move(all.error()));
+  const Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
+  if (!folder) return fail(folder.error());
   if (auto done = measure(*job, *all); !done) return fail(std::move(done.error()));
   return report_in_folder(
-      options, results_of(*all, job->timing), plan_columns(job->timing), options.out,
+      options, results_of(*all, job->timing), plan_columns(job->timing), *folder,
       [&] { return write_more(*job, *all, options.out); }, msg::bench_plan_folder);
 }
 
@@ -152,6 +157,7 @@ Command plan_suite() {
             add_option(app, "--peer-every", options->peer_every, msg::bench_plan_option_every, "N");
             add_option(app, "--seed", options->seed, msg::bench_plan_option_seed, "N");
             add_option(app, "--out", options->out, msg::bench_plan_option_out, "DIR");
+            add_overwrite_option(app, options->replace);
             add_report_options(app, *options);
             return [options] { return run_plans(*options); };
           }};

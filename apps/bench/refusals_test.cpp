@@ -205,6 +205,20 @@ TEST(BenchRefuses, PeersWithoutAPythonInEverySuiteOfRobots) {
   }
 }
 
+TEST(BenchRefuses, PeersThatAreNotThereBeforeAnythingIsMeasured) {
+  const support::TempFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  for (const char* suite : {"ik", "path", "time"}) {  // not even the cases are looked for
+    EXPECT_THAT(refusal({"bench", suite, "--data", "/no/data", "--peers", "/no/venv"}),
+                HasSubstr("/no/venv/bin/python is missing"));
+  }
+  for (const char* suite : {"plan", "rl"}) {
+    EXPECT_THAT(refusal({"bench", suite, "--peers", "/no/venv", "--out", out}),
+                HasSubstr("/no/venv/bin/python is missing"));
+    EXPECT_FALSE(std::filesystem::exists(out)) << suite;
+  }
+}
+
 TEST(BenchRefuses, PeersForARobotThatTheyCannotRead) {
   const support::TempFolder folder;
   const std::string peers = write_peers(folder, "\n{\"who\":\"never asked\"}\n");

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/peers.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/output_folder.hpp"
 #include "mjarm/rl/reach_env.hpp"
 
 namespace mjarm::app {
@@ -16,6 +16,7 @@ namespace {
 
 struct Options : ReportOptions {
   std::string set, seeds = "5", steps, peers, out = "mjarm-out/bench-rl";
+  Replace replace;
 };
 
 /// The tutorial's region with the gripper held open; a short one with the gripper as the model has
@@ -73,6 +74,7 @@ Result<std::vector<LearningSet>> sets_of(const Options& options, int seeds) {
     set.options.task.threads = set.options.ppo.threads = rl::training_threads();
     set.peer_seeds = options.peers.empty() ? 0 : std::min(set.peer_seeds, seeds);
   }
+  if (Result<void> there = check_peers(options.peers); !there) return fail(there.error());
   if (options.steps.empty()) return sets;
   const Result<std::uint64_t> steps = parse_whole("--steps", options.steps);
   if (!steps) return fail(steps.error());
@@ -99,11 +101,13 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
       const std::uint64_t seed = set.options.ppo.seed + static_cast<std::uint64_t>(i);
       const std::filesystem::path folder =
           std::filesystem::path(options.out) / (set.name + "-" + std::to_string(seed));
-      const Result<OutputFolder> held = OutputFolder::open(folder);
+      const Result<OutputFolder> held =
+          OutputFolder::open(folder, {.overwrite = options.replace.overwrite});
       if (!held) return fail(held.error());
       log_info(text(msg::bench_rl_run, set.name, seed, "mjarm"));
       auto run = run_learner(*model, set, seed, folder, progress);
       if (!run) return fail(std::move(run.error()));
+      held->made();
       runs.push_back(std::move(*run));
       if (i >= set.peer_seeds) continue;
       log_info(text(msg::bench_rl_run, set.name, seed, text(msg::bench_rl_peers)));
@@ -123,13 +127,15 @@ Result<int> run_rl(const Options& options) {
   if (!seeds) return fail(seeds.error());
   const auto sets = sets_of(options, *seeds);
   if (!sets) return fail(sets.error());
+  const Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
+  if (!folder) return fail(folder.error());
   const auto runs = run_all(options, *sets, *seeds);
   if (!runs) return fail(runs.error());
   const bool timing = !options.no_timing;
   const std::vector<BenchResult> results{
       {text(msg::bench_rl_robot), {}, learning_entries(*runs, timing)}};
   return report_in_folder(
-      options, results, learning_columns(), options.out,
+      options, results, learning_columns(), *folder,
       [&] { return draw_learning_curves(*runs, timing, options.out); }, msg::bench_rl_folder);
 }
 
@@ -143,6 +149,7 @@ Command rl_suite() {
             add_option(app, "--steps", options->steps, msg::bench_rl_option_steps, "N");
             add_option(app, "--peers", options->peers, msg::bench_rl_option_peers, "VENV");
             add_option(app, "--out", options->out, msg::bench_rl_option_out, "DIR");
+            add_overwrite_option(app, options->replace);
             add_report_options(app, *options);
             return [options] { return run_rl(*options); };
           }};

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/peers.hpp"
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
@@ -19,7 +20,6 @@
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
-#include "mjarm/core/output_folder.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -139,13 +139,12 @@ std::string json_of(const std::vector<BenchResult>& results, bool timing) {
   return out.line();
 }
 
-/// Writes the answer to `file`, or to standard output where that is empty.
 Result<int> report(const ReportOptions& options, const std::vector<BenchResult>& results,
-                   const std::vector<Msg>& columns, const std::string& file) {
+                   const std::vector<Msg>& columns, AnswerOutput& output) {
   const bool timing = !options.no_timing;
   const std::string out =
       options.json ? json_of(results, timing) : table_of(results, columns, timing);
-  if (auto written = write_answer(file, out); !written) return fail(std::move(written.error()));
+  if (auto written = write_answer(output, out); !written) return fail(std::move(written.error()));
   for (const BenchResult& result : results) {
     if (!result.wrong.empty()) return fail(Errc::impossible, result.wrong);
   }
@@ -157,6 +156,9 @@ Result<int> run_robots(const BenchOptions& options, const std::vector<Msg>& colu
   constexpr int kMaxRounds = 10'000;
   const Result<int> rounds = parse_count("--rounds", options.rounds, kMaxRounds);
   if (!rounds) return fail(rounds.error());
+  if (Result<void> there = check_peers(options.peers); !there) return fail(there.error());
+  Result<AnswerOutput> output = AnswerOutput::open(options.out, options.replace);
+  if (!output) return fail(std::move(output.error()));
   std::vector<std::string> robots{"ur5e", "panda"};
   if (!options.robot.empty()) robots = {options.robot};
   std::vector<BenchResult> results;
@@ -165,7 +167,7 @@ Result<int> run_robots(const BenchOptions& options, const std::vector<Msg>& colu
     if (!result) return fail(std::move(result.error()));
     results.push_back(std::move(*result));
   }
-  return report(options, results, columns, options.out);
+  return report(options, results, columns, *output);
 }
 
 }  // namespace
@@ -197,16 +199,17 @@ void add_report_options(CLI::App& app, ReportOptions& options) {
 }
 
 Result<int> report_in_folder(const ReportOptions& options, const std::vector<BenchResult>& results,
-                             const std::vector<Msg>& columns, const std::string& folder,
+                             const std::vector<Msg>& columns, const OutputFolder& folder,
                              const std::function<Result<void>()>& write_more, Msg told) {
-  const Result<OutputFolder> held = OutputFolder::open(folder);
-  if (!held) return fail(held.error());
-  Result<void> done = write_file(std::filesystem::path(folder) / "bench.json",
-                                 json_of(results, !options.no_timing) + '\n');
+  Result<void> done =
+      write_file(folder.path() / "bench.json", json_of(results, !options.no_timing) + '\n');
   if (done) done = write_more();
   if (!done) return fail(std::move(done.error()));
-  Result<int> code = report(options, results, columns, {});
-  log_info(text(told, folder));
+  folder.made();
+  Result<AnswerOutput> output = AnswerOutput::open({}, {});
+  if (!output) return fail(std::move(output.error()));
+  Result<int> code = report(options, results, columns, *output);
+  log_info(text(told, folder.path().string()));
   return code;
 }
 
@@ -218,6 +221,7 @@ Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> colum
   add_option(app, "--peers", options->peers, msg::bench_option_peers, "VENV");
   add_option(app, "--rounds", options->rounds, msg::bench_option_rounds, "N");
   add_option(app, "--out", options->out, msg::bench_option_out, "FILE");
+  add_overwrite_option(app, options->replace);
   add_report_options(app, *options);
   if (tool) add_option(app, "--tip", options->tip, msg::app_option_tip, "FRAME");
   return [=, columns = std::move(columns)] { return run_robots(*options, columns, measure); };

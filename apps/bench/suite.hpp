@@ -12,6 +12,7 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/progress.hpp"
 
 namespace mjarm::app {
@@ -66,21 +67,22 @@ struct ReportOptions {
 };
 void add_report_options(CLI::App& app, ReportOptions& options);
 
-/// Writes everything to `folder`: `bench.json`, and what `write_more()` does; and the answer, the
-/// table or the JSON document, to standard output.
+/// Writes everything into the folder: `bench.json`, and what `write_more()` does; and the answer,
+/// the table or the JSON document, to standard output.
 /// @param columns  headings of `BenchEntry::cells`.
 /// @param told     says where everything is.
 /// @return an error where an answer of mjarm is wrong.
 [[nodiscard]] Result<int> report_in_folder(const ReportOptions& options,
                                            const std::vector<BenchResult>& results,
                                            const std::vector<Msg>& columns,
-                                           const std::string& folder,
+                                           const OutputFolder& folder,
                                            const std::function<Result<void>()>& write_more,
                                            Msg told);
 
 /// What suites that measure robots beside peers can be told.
 struct BenchOptions : ReportOptions {
   std::string robot, tip, data, peers, rounds = "5", out;
+  Replace replace;
 };
 /// Measures one robot, given by name or file, in so many rounds.
 using BenchRobot = Result<BenchResult> (*)(const BenchOptions& options, const std::string& robot,

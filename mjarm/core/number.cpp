@@ -9,8 +9,15 @@
 namespace mjarm {
 namespace {
 
-void append_escaped(std::string& out, char c) {
+/// A control character, up to U+00FF.
+void append_code(std::string& out, char code) {
   constexpr char kHex[] = "0123456789abcdef";
+  out += "\\u00";
+  out += kHex[(code >> 4) & 0xF];
+  out += kHex[code & 0xF];
+}
+
+void append_escaped(std::string& out, char c) {
   switch (c) {
     case '"':
       out += "\\\"";
@@ -27,13 +34,11 @@ void append_escaped(std::string& out, char c) {
     default:
       break;
   }
-  if (static_cast<unsigned char>(c) >= 0x20) {
+  if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7F) {
     out += c;
-    return;
+  } else {
+    append_code(out, c);
   }
-  out += "\\u00";
-  out += kHex[(c >> 4) & 0xF];
-  out += kHex[c & 0xF];
 }
 
 }  // namespace
@@ -73,6 +78,8 @@ void append_json_string(std::string& out, std::string_view text) {
       out += "\xEF\xBF\xBD";
     } else if (length == 1) {
       append_escaped(out, text.front());
+    } else if (length == 2 && text[0] == '\xC2' && static_cast<unsigned char>(text[1]) < 0xA0) {
+      append_code(out, text[1]);  // JSON may hold it as it is, but terminals obey it
     } else {
       out += text.substr(0, length);
     }

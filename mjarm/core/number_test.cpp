@@ -64,5 +64,16 @@ TEST(JsonString, KeepsText) {
   }
 }
 
+TEST(JsonString, NothingThatATerminalWouldObey) {
+  std::string out;
+  append_json_string(out,
+                     "a\x1b[\x7f-\xc2\x9b"
+                     "1m\xc2\xa0\xe4\xb8\xad");
+  EXPECT_EQ(out, "\"a\\u001b[\\u007f-\\u009b1m\xc2\xa0\xe4\xb8\xad\"");
+  EXPECT_EQ(nlohmann::json::parse(out),
+            "a\x1b[\x7f-\xc2\x9b"
+            "1m\xc2\xa0\xe4\xb8\xad");
+}
+
 }  // namespace
 }  // namespace mjarm

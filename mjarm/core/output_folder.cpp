@@ -32,13 +32,15 @@ Error held_by_other(const fs::path& folder) {
 
 }  // namespace
 
-Result<OutputFolder> OutputFolder::open(const fs::path& folder) {
+Result<OutputFolder> OutputFolder::open(const fs::path& folder, const Replace& replace) {
+  Result<LongResult> result = LongResult::begin(folder, replace);
+  if (!result) return fail(std::move(result.error()));
   if (Result<void> made = make_folder(folder); !made) return fail(std::move(made.error()));
   Result<std::optional<FolderLock>> lock = FolderLock::try_lock(folder);
   if (!lock) return fail(std::move(lock.error()));
   if (!*lock) return fail(held_by_other(folder));
   clear_unfinished(folder);
-  return OutputFolder(std::move(**lock));
+  return OutputFolder(std::move(**lock), std::move(*result));
 }
 
 }  // namespace mjarm

@@ -208,14 +208,14 @@ TEST(TextEdges, ScalarsOfYamlKeepTheirTextAndPlace) {
       read_yaml("键: 值 # note\r\nlong: |\r\n  one\r\n  two\r\nno: !!str 7\nempty:\n", "f");
   ASSERT_TRUE(root) << root.error().what;
   ASSERT_EQ(root->members.size(), 4U);
-  EXPECT_EQ(root->members[0].first.text, "键");
-  EXPECT_EQ(root->members[0].second.text, "值");
-  EXPECT_FALSE(root->members[0].second.quoted);
-  EXPECT_EQ(root->members[1].second.text, "one\ntwo\n");
-  EXPECT_TRUE(root->members[1].second.quoted);
-  EXPECT_TRUE(root->members[2].second.quoted);
-  EXPECT_EQ(root->members[2].first.place.line, 5);
-  EXPECT_EQ(root->members[3].second.kind, YamlNode::Kind::nothing);
+  EXPECT_EQ(root->members[0].key.text, "键");
+  EXPECT_EQ(root->members[0].value.text, "值");
+  EXPECT_FALSE(root->members[0].value.quoted);
+  EXPECT_EQ(root->members[1].value.text, "one\ntwo\n");
+  EXPECT_TRUE(root->members[1].value.quoted);
+  EXPECT_TRUE(root->members[2].value.quoted);
+  EXPECT_EQ(root->members[2].key.place.line, 5);
+  EXPECT_EQ(root->members[3].value.kind, YamlNode::Kind::nothing);
 }
 
 TEST(TextEdges, MessagesTakeValuesThatLookLikePlaceholders) {

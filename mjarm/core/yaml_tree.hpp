@@ -2,13 +2,14 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "mjarm/core/file_place.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm {
+
+struct YamlMember;
 
 /// A YAML document as a tree that knows where everything stands, without yaml-cpp's headers.
 struct YamlNode {
@@ -19,8 +20,10 @@ struct YamlNode {
   std::string text;             ///< of a scalar
   bool quoted = false;          ///< a scalar in quotes, or with a tag: text, whatever it looks like
   std::vector<YamlNode> items;  ///< of a list
-  std::vector<std::pair<YamlNode, YamlNode>>
-      members;  ///< of a map; keys are scalars, all different
+  std::vector<YamlMember> members;  ///< of a map; keys are scalars, all different
+};
+struct YamlMember {
+  YamlNode key, value;
 };
 
 /// Why a text is no YAML document, or none that is taken.

@@ -25,7 +25,7 @@ TEST(YamlTree, KnowsWhatStandsWhere) {
   ASSERT_TRUE(root) << root.error().what;
   ASSERT_EQ(root->kind, YamlNode::Kind::map);
   ASSERT_EQ(root->members.size(), 2U);
-  const YamlNode& list = root->members[0].second;
+  const YamlNode& list = root->members[0].value;
   ASSERT_EQ(list.items.size(), 3U);
   EXPECT_EQ(list.items[0].text, "1");
   EXPECT_FALSE(list.items[0].quoted);
@@ -33,16 +33,16 @@ TEST(YamlTree, KnowsWhatStandsWhere) {
   EXPECT_EQ(list.items[2].kind, YamlNode::Kind::nothing);
   EXPECT_EQ(list.items[1].place.line, 1);
   EXPECT_EQ(list.items[1].place.column, 8);
-  const YamlNode& inner = root->members[1].second;
-  EXPECT_EQ(inner.members[0].first.place.line, 3);
-  EXPECT_EQ(inner.members[0].first.place.column, 3);
+  const YamlNode& inner = root->members[1].value;
+  EXPECT_EQ(inner.members[0].key.place.line, 3);
+  EXPECT_EQ(inner.members[0].key.place.column, 3);
 }
 
 TEST(YamlTree, AliasesAreCopies) {
   const Result<YamlNode> root = read_yaml("a: &way [1, 2]\nb: *way\n", "f.yaml");
   ASSERT_TRUE(root) << root.error().what;
-  EXPECT_EQ(root->members[1].second.items.size(), 2U);
-  EXPECT_EQ(root->members[1].second.items[1].text, "2");
+  EXPECT_EQ(root->members[1].value.items.size(), 2U);
+  EXPECT_EQ(root->members[1].value.items[1].text, "2");
   EXPECT_THAT(error_of("a: *way"), HasSubstr("f.yaml:1:"));
 }
 

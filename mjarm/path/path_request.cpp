@@ -34,14 +34,20 @@ Result<double> number_of(const JsonValue& object, const char* key,
   return member->number();
 }
 
-Result<Pose> pose_member(const JsonValue& object, const char* key) {
-  const JsonValue* const member = object.find(key);
-  if (member == nullptr || !member->is_object()) {
-    return fail(Errc::bad_input, text(msg::path_request_no_pose, key));
+/// A pose that stands at `place`.
+Result<Pose> pose_at(const JsonValue* entry, const std::string& place) {
+  if (entry == nullptr || !entry->is_object()) {
+    return fail(Errc::bad_input, text(msg::path_request_no_pose, place));
   }
-  Result<Pose> pose = pose_of(*member);
-  if (!pose) return fail(at(key, pose.error()));
+  constexpr std::string_view kKnown[] = {"pos", "quat"};
+  Result<Pose> pose = pose_of(*entry);
+  const Result<void> fine = pose ? check_keys(*entry, kKnown) : fail(pose.error());
+  if (!fine) return fail(at(place, fine.error()));
   return pose;
+}
+
+Result<Pose> pose_member(const JsonValue& object, const char* key) {
+  return pose_at(object.find(key), key);
 }
 
 Result<std::vector<Pose>> pose_list(const JsonValue& object, const char* key) {
@@ -55,12 +61,9 @@ Result<std::vector<Pose>> pose_list(const JsonValue& object, const char* key) {
   std::vector<Pose> poses;
   poses.reserve(member->size());
   for (const JsonValue& entry : *member) {
-    const std::string place = std::string(key) + "[" + std::to_string(poses.size()) + "]";
-    if (!entry.is_object()) {
-      return fail(Errc::bad_input, text(msg::path_request_no_pose, place));
-    }
-    const Result<Pose> pose = pose_of(entry);
-    if (!pose) return fail(at(place, pose.error()));
+    const Result<Pose> pose =
+        pose_at(&entry, std::string(key) + "[" + std::to_string(poses.size()) + "]");
+    if (!pose) return fail(pose.error());
     poses.push_back(*pose);
   }
   return poses;

@@ -48,6 +48,8 @@ Result<GivenCertificate> certificate_of(const JsonValue& entry) {
     if (!value) return fail(value.error());
     *target = *value;
   }
+  constexpr std::string_view kKnown[] = {"step", "clearance", "t", "pair"};
+  if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
   const JsonValue* const pair = entry.find("pair");
   if (pair == nullptr) return out;
   if (!pair->is_list() || pair->size() != 2 || !(*pair)[0].is_string() || !(*pair)[1].is_string()) {
@@ -87,6 +89,9 @@ Result<void> read_tilt(const JsonValue& entry, GivenPath& out) {
     if (!axis) return fail(axis.error().code, "tilt: " + axis.error().what);
     *target = std::move(*axis);
   }
+  constexpr std::string_view kKnown[] = {"limit", "largest", "tool", "world"};
+  const Result<void> fine = check_keys(entry, kKnown);
+  if (!fine) return fail(fine.error().code, "tilt: " + fine.error().what);
   const auto is_unit = [](const std::vector<double>& v) {
     return std::abs(std::hypot(v[0], v[1], v[2]) - 1) < kUnitSlack;
   };

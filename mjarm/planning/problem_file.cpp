@@ -107,6 +107,13 @@ Result<void> each(const JsonValue& object, const char* key, Take take) {
   return {};
 }
 
+constexpr std::string_view kRobotKeys[] = {
+    "name",  "base",  "joints",  "joint_names",
+    "lower", "upper", "spheres", "self_collision_link_pairs"};
+constexpr std::string_view kJointKeys[] = {"name", "type", "parent", "child",
+                                           "xyz",  "quat", "axis",   "limits"};
+constexpr std::string_view kSphereKeys[] = {"link", "center", "radius"};
+
 /// Builds the arm and its spheres joint by joint, parents first.
 class RobotReader {
  public:
@@ -131,6 +138,7 @@ class RobotReader {
                       [&](const JsonValue& pair) { return add_pair(pair); });
         })
         .and_then([&] { return check_sphere_set(out_.spheres, out_.arm); })
+        .and_then([&] { return check_keys(robot, kRobotKeys); })
         .and_then([&] { return check_summary(robot); });
   }
 
@@ -192,7 +200,7 @@ class RobotReader {
       *place = {out_.arm.dof() - 1, Pose()};
     }
     if (!places_.emplace(*child, *place).second) return bad(msg::planning_file_link_twice, *child);
-    return {};
+    return check_keys(from, kJointKeys);
   }
 
   Result<void> add_moving(const JsonValue& from, const std::string& type, const Place& place) {
@@ -235,7 +243,7 @@ class RobotReader {
     if (fresh) out_.spheres.links.push_back({*link, place->joint, {}});
     out_.spheres.links[static_cast<std::size_t>(entry->second)].spheres.push_back(
         {place->X * *center, *radius});
-    return {};
+    return check_keys(from, kSphereKeys);
   }
 
   Result<void> add_pair(const JsonValue& from) {
@@ -363,6 +371,8 @@ Result<ProblemFile> problems_of(const JsonValue& file, Cylinders cylinders) {
     out.problems.push_back(std::move(*problem));
     return {};
   });
+  constexpr std::string_view kKnown[] = {"robot", "problems"};
+  if (done) done = check_keys(file, kKnown);
   if (!done) return fail(done.error());
   return out;
 }

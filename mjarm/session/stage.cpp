@@ -34,7 +34,7 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& name, const StageO
   if (task_for(robot.arm) == IkTask::position) {
     log_info(text(msg::show_position_only, robot.arm.dof()));
   }
-  Result<OutputFolder> folder = OutputFolder::open(options.out);
+  Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
   if (!folder) return fail(std::move(folder.error()));
   Result<RunShow> show = RunShow::open(robot.model, "mjarm " + name, options.headless);
   if (!show) return fail(std::move(show.error()));
@@ -118,6 +118,8 @@ Result<Report> Stage::write(Report report, render::Plot plot) {
   });
   if (written) written = show_.end_film();
   if (!written) return fail(std::move(written.error()));
+  // Before a window it is the user who takes the time.
+  if (!show_.has_window()) folder_->made();
   show_.linger(run_.sim());
   return report;
 }

@@ -26,6 +26,7 @@ struct StageOptions {
   bool headless = false;               ///< no window even where there is a display
   bool video = false;                  ///< writes video.mp4 as well
   bool timing = true;                  ///< wall-clock fields in the report
+  Replace replace = {};                ///< what stands in the folder
   double seconds = 0;                  ///< [s] most simulated time, 0 = as long as the motion takes
   std::optional<ControlMode> control;  ///< none = what the program or the demo wants
 };

@@ -46,6 +46,9 @@ Result<JointLimits> limits_of(const JsonValue& file) {
     }
     values[k] = *list;
   }
+  constexpr std::string_view kKnown[] = {"v", "a", "j"};
+  const Result<void> fine = check_keys(*limits, kKnown);
+  if (!fine) return fail(fine.error().code, "limits: " + fine.error().what);
   return unbounded(values[0], values[1], values[2]);
 }
 
@@ -167,6 +170,8 @@ Result<TimeCases> read_time_cases(const std::string& content, TimeProblem proble
     }
     cases.cases.push_back(std::move(*entry));
   }
+  constexpr std::string_view kKnown[] = {"limits", "cases"};
+  if (Result<void> fine = check_keys(file, kKnown); !fine) return fail(std::move(fine.error()));
   return cases;
 }
 

@@ -13,12 +13,14 @@
 
 #include "mjarm/core/utf8.hpp"
 #include "mjarm/model/model.hpp"
+#include "tests/fuzz/finding.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using mjarm::Model;
+using mjarm::fuzz::finding;
 
 /// A model that uses the file `ITEM`.
 struct User {
@@ -51,11 +53,6 @@ fs::path lay_down(const mjarm::support::TempFolder& folder, std::string_view inp
     return folder.write("a.xml", model);
   }
   return folder.write("a.xml", input);
-}
-
-[[noreturn]] void finding(const char* what, const std::string& detail) {
-  std::fprintf(stderr, "FINDING: %s: %s\n", what, detail.c_str());
-  std::abort();
 }
 
 void keep(std::string_view input, const std::string& why) {

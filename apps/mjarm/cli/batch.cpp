@@ -54,9 +54,12 @@ void answer_block(const AnswerLine& answer, int threads, std::vector<Line>& line
 
 }  // namespace
 
-Result<AnswerOutput> AnswerOutput::open(const std::string& path) {
-  AnswerOutput output;
-  if (path.empty() || path == "-") return output;
+Result<AnswerOutput> AnswerOutput::open(const std::string& path, const Replace& replace) {
+  const bool to_file = !path.empty() && path != "-";
+  Result<LongResult> result = LongResult::begin(to_file ? path : "", replace);
+  if (!result) return fail(std::move(result.error()));
+  AnswerOutput output(std::move(*result));
+  if (!to_file) return output;
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return fail(std::move(file.error()));
   output.file_ = std::move(*file);
@@ -70,11 +73,17 @@ Result<void> AnswerOutput::write(std::string_view piece, bool now) {
   return fail(Errc::system, text(msg::core_cannot_write, "stdout", system_message(errno)));
 }
 
-Result<void> AnswerOutput::finish() { return file_ ? file_->commit() : Result<void>{}; }
+Result<void> AnswerOutput::finish() {
+  if (!file_) return {};
+  if (Result<void> written = file_->commit(); !written) return written;
+  result_.made();
+  return {};
+}
 
 void add_batch_options(CLI::App& app, BatchOptions& options) {
   add_option(app, "--in", options.in, msg::app_option_in, "FILE");
   add_option(app, "--out", options.out, msg::app_option_out, "FILE");
+  add_overwrite_option(app, options.replace);
 }
 
 Result<void> one_source(const std::string& in, const std::string& one, const std::string& option) {
@@ -86,7 +95,7 @@ Result<BatchResult> run_batch(const BatchOptions& options, const std::string& la
                               const AnswerLine& answer) {
   Result<LineReader> reader = LineReader::open(options.in, options.longest_line);
   if (!reader) return fail(std::move(reader.error()));
-  Result<AnswerOutput> output = AnswerOutput::open(options.out);
+  Result<AnswerOutput> output = AnswerOutput::open(options.out, options.replace);
   if (!output) return fail(std::move(output.error()));
   Progress progress(label, reader->count_lines());
   // Somebody may wait for each line of a stream; a file is taken in blocks that feed the threads.
@@ -117,21 +126,32 @@ Result<BatchResult> run_batch(const BatchOptions& options, const std::string& la
   return result;
 }
 
-Result<void> write_answer(const std::string& out, const std::string& answer) {
-  Result<AnswerOutput> output = AnswerOutput::open(out);
-  if (!output) return fail(std::move(output.error()));
-  if (Result<void> written = output->write(answer + "\n", true); !written) return written;
-  return output->finish();
+Result<void> write_answer(AnswerOutput& output, const std::string& answer) {
+  if (Result<void> written = output.write(answer + "\n", true); !written) return written;
+  return output.finish();
 }
 
-Result<int> finish_one(const std::string& out, const std::string& answer,
+Result<void> write_answer(const BatchOptions& options, const std::string& answer) {
+  Result<AnswerOutput> output = AnswerOutput::open(options.out, options.replace);
+  if (!output) return fail(std::move(output.error()));
+  return write_answer(*output, answer);
+}
+
+Result<int> finish_one(AnswerOutput& output, const std::string& answer,
                        const std::optional<std::string>& why, Msg impossible) {
-  if (Result<void> written = write_answer(out, answer); !written) {
+  if (Result<void> written = write_answer(output, answer); !written) {
     return fail(std::move(written.error()));
   }
   if (!why) return 0;
   log_error(text(impossible, *why));
   return 1;
+}
+
+Result<int> finish_one(const BatchOptions& options, const std::string& answer,
+                       const std::optional<std::string>& why, Msg impossible) {
+  Result<AnswerOutput> output = AnswerOutput::open(options.out, options.replace);
+  if (!output) return fail(std::move(output.error()));
+  return finish_one(*output, answer, why, impossible);
 }
 
 int finish_all(const BatchResult& result, Msg some_failed) {

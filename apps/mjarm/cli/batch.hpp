@@ -5,10 +5,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "apps/mjarm/cli/options.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/line_reader.hpp"
+#include "mjarm/core/long_result.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/result.hpp"
 
@@ -18,11 +20,12 @@ namespace mjarm::app {
 struct BatchOptions {
   std::string in;   ///< file of JSON lines, `-` = standard input
   std::string out;  ///< file, `-` or empty = standard output
-  int threads = 1;  ///< >= 1
+  Replace replace = {};
+  int threads = 1;                                      ///< >= 1
   std::size_t longest_line = LineReader::kLongestLine;  ///< [bytes]
 };
 
-/// Adds `--in FILE` and `--out FILE`, bound to `options`.
+/// Adds `--in FILE`, `--out FILE` and `--overwrite`, bound to `options`.
 void add_batch_options(CLI::App& app, BatchOptions& options);
 
 /// Checks that requests come either from `--in` or from `option` (value `one`), not from both.
@@ -55,24 +58,30 @@ struct BatchResult {
 class AnswerOutput {
  public:
   /// @param path  a file, `-` or empty.
-  [[nodiscard]] static Result<AnswerOutput> open(const std::string& path);
+  [[nodiscard]] static Result<AnswerOutput> open(const std::string& path, const Replace& replace);
   /// @param now  somebody waits for this very piece.
   [[nodiscard]] Result<void> write(std::string_view piece, bool now);
   /// Call once, last: a file takes its place.
   [[nodiscard]] Result<void> finish();
 
  private:
-  AnswerOutput() = default;
+  explicit AnswerOutput(LongResult result) : result_(std::move(result)) {}
+  LongResult result_;
   std::optional<AtomicFile> file_;
 };
 
-/// Writes the answer to a single request, one line, to `out` (a file, `-` or empty).
-[[nodiscard]] Result<void> write_answer(const std::string& out, const std::string& answer);
+/// Writes the only answer, one line.
+[[nodiscard]] Result<void> write_answer(AnswerOutput& output, const std::string& answer);
+/// The same to `BatchOptions::out`, for answers that are quick.
+[[nodiscard]] Result<void> write_answer(const BatchOptions& options, const std::string& answer);
 
 /// Writes the answer to a single request. Where it could not be done, for `why`, the text
 /// `impossible` (why) is logged.
 /// @return the exit code.
-[[nodiscard]] Result<int> finish_one(const std::string& out, const std::string& answer,
+[[nodiscard]] Result<int> finish_one(AnswerOutput& output, const std::string& answer,
+                                     const std::optional<std::string>& why, Msg impossible);
+/// The same to `BatchOptions::out`, for answers that are quick.
+[[nodiscard]] Result<int> finish_one(const BatchOptions& options, const std::string& answer,
                                      const std::optional<std::string>& why, Msg impossible);
 
 /// Logs the text `some_failed` (place, why, failed, requests) where requests could not be done.

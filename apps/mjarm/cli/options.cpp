@@ -7,6 +7,7 @@
 
 #include "apps/mjarm/cli/help.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/long_result.hpp"
 #include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {
@@ -163,6 +164,10 @@ void add_option(CLI::App& app, const char* name, std::vector<std::string>& value
 
 void add_flag(CLI::App& app, const char* name, bool& value, Msg help) {
   app.add_flag(name, value, text(help));
+}
+
+void add_overwrite_option(CLI::App& app, Replace& replace) {
+  add_flag(app, "--overwrite", replace.overwrite, msg::app_option_overwrite);
 }
 
 CLI::App& add_subcommand(CLI::App& parent, const std::string& name, Msg summary, Msg examples) {

@@ -11,6 +11,10 @@ namespace CLI {
 class App;
 }  // namespace CLI
 
+namespace mjarm {
+struct Replace;
+}  // namespace mjarm
+
 /// Commands and their options without the headers of CLI11, which take many seconds to compile:
 /// only options.cpp includes them.
 namespace mjarm::app {
@@ -26,6 +30,8 @@ void add_option(CLI::App& app, const char* name, std::string& value, Msg help, c
 void add_option(CLI::App& app, const char* name, std::vector<std::string>& values, Msg help,
                 const char* type);
 void add_flag(CLI::App& app, const char* name, bool& value, Msg help);
+/// Adds `--overwrite`, beside the `--out` of a command whose results may take long.
+void add_overwrite_option(CLI::App& app, Replace& replace);
 
 /// Adds a subcommand with its help to `parent` (a command may have some of its own).
 CLI::App& add_subcommand(CLI::App& parent, const std::string& name, Msg summary, Msg examples);

@@ -1,7 +1,7 @@
-#include <cstdio>
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
+#include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/program_text.hpp"
 #include "apps/mjarm/messages/app.hpp"
@@ -25,7 +25,7 @@ void tell_text_faults(const Options& options) {
   if (!faults || faults->empty()) return;
   const std::string out =
       options.json ? faults_json(*faults).document() : faults_text(file->string(), *faults);
-  std::fputs(out.c_str(), stdout);
+  print_lines(out);
 }
 
 Result<int> run(const Options& options) {
@@ -38,7 +38,7 @@ Result<int> run(const Options& options) {
     return fail(loaded.error());
   }
   const std::string out = options.json ? plan_json(*loaded).document() : plan_text(*loaded);
-  std::fputs(out.c_str(), stdout);
+  print_lines(out);
   if (!loaded->plan.ok()) return fail(program::first_fault(*loaded));
   return 0;
 }

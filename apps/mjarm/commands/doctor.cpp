@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/models.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
@@ -154,12 +154,13 @@ Result<int> run(bool json) {
   if (json) {
     findings.facts.set("problems", findings.problems);
     findings.facts.set("ok", fine);
-    std::fputs(findings.facts.document().c_str(), stdout);
+    print_lines(findings.facts.document());
   } else {
-    std::fputs(findings.lines.c_str(), stdout);
+    print_lines(findings.lines);
     // Not all is well for somebody whose language no picture shows: the note says what to install.
     const bool shown = render::picture_language() == language();
-    if (fine && shown) std::fputs((text(msg::app_doctor_fine) + "\n").c_str(), stdout);
+    if (fine && shown) print_lines(text(msg::app_doctor_fine) + "
+");
   }
   for (const std::string& problem : findings.problems) log_error(problem);
   return fine ? 0 : 1;

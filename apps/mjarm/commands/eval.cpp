@@ -20,6 +20,7 @@ struct Options {
   std::string file, out, episodes = "200", least_success = "0.9";
   TaskArguments task{.task = "reach"};
   bool view = false, video = false, no_timing = false;
+  Replace replace;
 };
 
 Result<rl::TrainedPolicy> load(const Options& options) {
@@ -61,6 +62,7 @@ Result<int> run(const Options& options) {
   chosen.headless = !options.view;
   chosen.video = options.video;
   chosen.timing = !options.no_timing;
+  chosen.replace = options.replace;
   catch_interrupts();
   const Result<PolicyOutcome> outcome =
       view::beside_windows(chosen.headless, [&] { return run_policy(*loaded, trial, chosen); });
@@ -79,6 +81,7 @@ Run setup(CLI::App& app) {
   add_flag(app, "--view", options->view, msg::train_option_view);
   add_flag(app, "--video", options->video, msg::demo_option_video);
   add_option(app, "--out", options->out, msg::demo_option_out, "DIR");
+  add_overwrite_option(app, options->replace);
   add_flag(app, "--no-timing", options->no_timing, msg::demo_option_no_timing);
   return [options] { return run(*options); };
 }

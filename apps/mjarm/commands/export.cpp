@@ -9,6 +9,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/long_result.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/program/urscript.hpp"
@@ -19,6 +20,7 @@ namespace {
 struct Options {
   std::string file, to, out;
   RobotChoice robot;  // that the program names: how its files are read
+  Replace replace;
 };
 
 /// The format, the only one there is.
@@ -37,6 +39,8 @@ Result<int> run(const Options& options) {
   if (!options.out.empty() && std::filesystem::equivalent(options.out, options.file, unknown)) {
     return fail(Errc::usage, text(msg::motion_program_export_over, options.out));
   }
+  const Result<LongResult> result = LongResult::begin(options.out, options.replace);
+  if (!result) return fail(result.error());
   catch_interrupts();
   const Result<program::LoadedProgram> loaded =
       program::load_sound_program(options.file, interrupted, load_options(options.robot));
@@ -49,6 +53,7 @@ Result<int> run(const Options& options) {
     return 0;
   }
   if (auto written = write_file(options.out, *script); !written) return fail(written.error());
+  result->made();
   std::printf("%s\n", options.out.c_str());
   return 0;
 }
@@ -59,6 +64,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--to", options->to, msg::motion_program_option_to, "FORMAT");
   add_option(app, "--out", options->out, msg::motion_program_option_export_out, "FILE");
   add_load_options(app, options->robot);
+  add_overwrite_option(app, options->replace);
   return [options] { return run(*options); };
 }
 

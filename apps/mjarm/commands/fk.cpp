@@ -39,7 +39,7 @@ Result<int> answer_one(const Arm& arm, const FkOptions& options) {
   if (!q) return fail(q.error());
   std::string line;
   append_pose(line, fk(arm, *q));
-  if (Result<void> written = write_answer(options.batch.out, line); !written) {
+  if (Result<void> written = write_answer(options.batch, line); !written) {
     return fail(std::move(written.error()));
   }
   return 0;

@@ -76,7 +76,7 @@ Result<int> answer_one(IkDesk& desk, const Options& options) {
   if (!request) return fail(request.error());
   std::string line;
   const std::optional<std::string> why = desk.answer(*request, line);
-  return finish_one(options.batch.out, line, why, msg::app_ik_no_answer);
+  return finish_one(options.batch, line, why, msg::app_ik_no_answer);
 }
 
 Result<int> answer_all(IkDesk& desk, const Options& options) {

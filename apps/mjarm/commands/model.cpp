@@ -4,6 +4,7 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/model_check.hpp"
 #include "apps/mjarm/commands/model_export.hpp"
@@ -48,8 +49,6 @@ Result<Model> load(const Options& options) {
   return model;
 }
 
-void print(const std::string& words) { std::fwrite(words.data(), 1, words.size(), stdout); }
-
 Result<int> run_info(const Options& options) {
   const Result<Model> model = load(options);
   if (!model) return fail(model.error());
@@ -58,7 +57,7 @@ Result<int> run_info(const Options& options) {
   // be.
   if (!arm && !options.tip.empty()) return fail(arm.error());
   const ModelReport report = model_report(*model, arm);
-  print(options.json ? to_json(report) : to_text(report));
+  print_lines(options.json ? to_json(report) : to_text(report));
   return 0;
 }
 
@@ -66,7 +65,7 @@ Result<int> run_tree(const Options& options) {
   const Result<Model> model = load(options);
   if (!model) return fail(model.error());
   const ModelInfo contents = describe(*model);
-  print(options.json ? tree_json(contents) : tree_text(contents));
+  print_lines(options.json ? tree_json(contents) : tree_text(contents));
   return 0;
 }
 

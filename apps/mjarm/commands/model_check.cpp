@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/text_width.hpp"
@@ -90,7 +91,7 @@ Result<int> check_file(const fs::path& file, const CheckOptions& options, bool j
   const Result<CheckReport> report = check_model(file, options);
   if (!report) return fail(report.error());
   const std::string words = json ? to_json(*report) : to_text(*report);
-  std::fwrite(words.data(), 1, words.size(), stdout);
+  print_lines(words);
   if (report->count(Grade::error) == 0) return 0;
   return fail(report->loads ? Errc::impossible : Errc::bad_input,
               worst_line(report->findings.front()));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/commands/model_check.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
@@ -202,7 +203,7 @@ Result<int> check_against(const fs::path& file, const fs::path& other, const Che
   const std::string words =
       json ? to_json(*comparison, figures, *first, *second, options.configurations)
            : to_text(*comparison, figures, *first, *second, options.configurations);
-  std::fwrite(words.data(), 1, words.size(), stdout);
+  print_lines(words);
   if (std::max(comparison->position, comparison->rotation) <= kSame) return 0;
   return fail(Errc::impossible, text(msg::app_against_differ, other.string(), file.string(),
                                      1000 * comparison->position, kDegrees * comparison->rotation,

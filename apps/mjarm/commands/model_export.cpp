@@ -29,6 +29,7 @@ Result<ExportFormat> format_of(const ExportOptions& options, const fs::path& out
 void add_export_options(CLI::App& app, ExportOptions& options) {
   add_option(app, "--to", options.to, msg::app_option_to, "FORMAT");
   add_option(app, "--out", options.out, msg::app_option_export_out, "FILE");
+  add_overwrite_option(app, options.replace);
 }
 
 Result<int> run_export(const Model& model, const ExportOptions& options) {
@@ -40,9 +41,12 @@ Result<int> run_export(const Model& model, const ExportOptions& options) {
   if (fs::equivalent(out, model.file(), unknown)) {
     return fail(Errc::usage, text(msg::app_export_over_input, out.string()));
   }
+  const Result<LongResult> result = LongResult::begin(out, options.replace);
+  if (!result) return fail(result.error());
   const Result<Exported> exported = export_model(model, *format, fs::absolute(out).parent_path());
   if (!exported) return fail(exported.error());
   if (auto written = write_file(out, exported->content); !written) return fail(written.error());
+  result->made();
   for (const std::string& note : exported->notes) log_warning(note);
   std::printf("%s\n", out.c_str());
   return 0;

@@ -6,6 +6,7 @@
 
 #include "apps/mjarm/commands/crane_test.hpp"
 #include "apps/mjarm/commands/program_test.hpp"
+#include "mjarm/core/long_result.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -54,6 +55,53 @@ class Outputs : public ::testing::Test {
   support::TempFolder folder_;
   std::string robot_ = folder_.write("crane.xml", kCrane).string();
 };
+
+TEST_F(Outputs, WhatTookOverAMinuteIsNotReplacedUnasked) {
+  const std::string old = folder_.write("probe", "kept").string();
+  note_work(old, 81);
+  if (LongResult::begin(old, {})) GTEST_SKIP() << "the file system keeps no notes";
+  std::vector<Writer> all = writers();
+  all.push_back({{"render", "hello"}, ".png"});
+  for (Writer writer : all) {
+    SCOPED_TRACE(writer.words.front());
+    const std::string out = folder_.write("out" + writer.ending, "kept").string();
+    note_work(out, 81);
+    const auto refused = write(writer, out);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_EQ(only_line(refused),
+              out + ": took 81 s to make: replace it with --overwrite, or take another --out");
+    EXPECT_EQ(folder_.read("out" + writer.ending), "kept");
+    if (writer.words.front() == "render") continue;
+    writer.words.emplace_back("--overwrite");
+    EXPECT_EQ(write(writer, out).exit_code, 0);
+    EXPECT_NE(folder_.read("out" + writer.ending), "kept");
+    writer.words.pop_back();
+    EXPECT_EQ(write(writer, out).exit_code, 0) << "the new one was quick";
+  }
+}
+
+TEST_F(Outputs, NorAreFolders) {
+  const fs::path out = folder_.path() / "run";
+  fs::create_directory(out);
+  note_work(out, 81);
+  folder_.write("run/report.json", "kept");
+  if (LongResult::begin(out, {})) GTEST_SKIP() << "the file system keeps no notes";
+  const std::string policy = model_file("policies/reach.safetensors");
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"run", "point", "--headless"},
+                                             {"demo", "point", "--headless"},
+                                             {"demo", "car", "--headless"},
+                                             {"eval", policy},
+                                             {"train", "reach"}}) {
+    const auto refused = write({words, ""}, out.string());
+    EXPECT_EQ(refused.exit_code, 2) << words[0];
+    EXPECT_THAT(only_line(refused), HasSubstr("run: took 81 s to make")) << words[0];
+    EXPECT_EQ(folder_.read("run/report.json"), "kept") << words[0];
+  }
+  EXPECT_EQ(write({{"run", "point", "--headless", "--overwrite"}, ""}, out.string()).exit_code, 0);
+  EXPECT_NE(folder_.read("run/report.json"), "kept");
+  EXPECT_TRUE(LongResult::begin(out, {})) << "the new one was quick";
+}
 
 TEST_F(Outputs, ASecondRunWritesTheSameBytesInPlaceOfTheFirst) {
   for (const Writer& writer : writers()) {
@@ -175,6 +223,43 @@ TEST_F(Outputs, AFileThatIsStoppedIsNeverThere) {
     EXPECT_EQ(result.exit_code, 1) << signal;
     EXPECT_THAT(only_line(result), HasSubstr("stopped by the user"));
     EXPECT_TRUE(fs::is_empty(folder_.path() / "out"));
+  }
+}
+
+/// A bar that turns about its end, between two posts: no way leads from one side of them to the
+/// other, and a search goes on as long as it may.
+constexpr const char* kCaged = R"(<mujoco><compiler angle="radian"/><worldbody><body>
+<joint name="turn" axis="0 0 1" range="-2.5 2.5"/><geom type="capsule" fromto=".1 0 0 .9 0 0" size=".03"/>
+<body pos="1 0 0"><joint name="roll" axis="1 0 0" range="-3 3"/><geom type="box" size=".02 .05 .02"/>
+<site name="tip" pos=".1 0 0"/></body></body><geom type="box" pos=".5 .5 0" size=".1 .1 .2"/>
+<geom type="box" pos=".5 -.5 0" size=".1 .1 .2"/></worldbody><actuator><position joint="turn"/>
+<position joint="roll"/></actuator></mujoco>)";
+constexpr const char* kCagedProblem =
+    R"({"robot":{"name":"bar","base":"base","joints":[{"name":"turn",
+"type":"revolute","parent":"base","child":"bar","xyz":[0,0,0],"quat":[1,0,0,0],"axis":[0,0,1],
+"limits":[-2.5,2.5]},{"name":"roll","type":"revolute","parent":"bar","child":"end","xyz":[1,0,0],
+"quat":[1,0,0,0],"axis":[1,0,0],"limits":[-3,3]}],"spheres":[{"link":"end","center":[0,0,0],
+"radius":0.1}],"self_collision_link_pairs":[]},"problems":[{"id":"p","start":[1.6,0],"goals":[[0,0]],
+"obstacles":[{"type":"sphere","pos":[0.7,0.7,0],"radius":0.2},{"type":"sphere","pos":[0.7,-0.7,0],
+"radius":0.2}]}]})";
+
+TEST_F(Outputs, ASearchThatIsStoppedEndsAtOnceAndLeavesNothing) {
+  folder_.write("caged.xml", kCaged);
+  folder_.write("caged.json", kCagedProblem);
+  for (const char* const problem :
+       {"--robot caged.xml --start 1.6rad,0 --goal 0,0", "--in caged.json"}) {
+    for (const char* const signal : {"INT", "TERM"}) {
+      // The temporary file tells that it has begun; a search of so many samples takes minutes.
+      const auto result = disturb(
+          folder_, robot_,
+          "mkdir -p out; \"$mjarm\" plan --samples 10000000 --out out/path.json " +
+              std::string(problem) +
+              " & while [ -z \"$(ls out)\" ]; do sleep 0.02; done; sleep 0.3; end " + signal);
+      EXPECT_EQ(result.exit_code, 1) << problem << result.err;
+      EXPECT_EQ(only_line(result), "stopped by the user") << problem;
+      EXPECT_LT(result.cpu_seconds, 30) << problem;
+      EXPECT_TRUE(fs::is_empty(folder_.path() / "out")) << problem;
+    }
   }
 }
 

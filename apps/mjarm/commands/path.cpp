@@ -151,7 +151,7 @@ Result<int> answer_one(const Job& job, const Options& options) {
   std::string line;
   const std::optional<std::string> why = answer(job, *request, line);
   if (interrupted()) return fail(stopped());
-  return finish_one(options.batch.out, line, why, msg::path_command_impossible);
+  return finish_one(options.batch, line, why, msg::path_command_impossible);
 }
 
 Result<int> answer_all(const Job& job, const Options& options) {

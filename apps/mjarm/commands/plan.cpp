@@ -98,7 +98,7 @@ Result<void> select(const Options& options, ProblemFile& file) {
 
 /// @param show  how the only problem is shown, after its answer is written.
 Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const PlanOptions& plan,
-                       int threads, const Options& options,
+                       int threads, const Options& options, AnswerOutput& output,
                        const std::optional<session::PlanShow>& show) {
   const std::size_t count = file.problems.size();
   std::vector<PlanAnswer> answers(count);
@@ -123,7 +123,7 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
     }
   }
   out += '}';
-  if (Result<void> written = write_answer(options.batch.out, out); !written) {
+  if (Result<void> written = write_answer(output, out); !written) {
     return fail(std::move(written.error()));
   }
   if (failed == 0 && show) {
@@ -144,13 +144,16 @@ Result<int> run(const Options& options) {
   if (!plan) return fail(plan.error());
   const Result<std::optional<session::PlanShow>> show = read_plan_show(options.show);
   if (!show) return fail(show.error());
+  // Where its answer cannot go is said before a search of minutes.
+  Result<AnswerOutput> output = AnswerOutput::open(options.batch.out, options.batch.replace);
+  if (!output) return fail(std::move(output.error()));
   plan->keep_trees = show->has_value();
   plan->stop = interrupted;
   if (is_given(options.request)) {
     if (!options.problem.empty()) {
       return fail(Errc::usage, text(msg::app_exclusive_options, "--robot", "--problem"));
     }
-    return plan_for_robot(options.request, *plan, *show, options.batch.out, !options.no_timing);
+    return plan_for_robot(options.request, *plan, *show, *output, !options.no_timing);
   }
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
@@ -164,13 +167,14 @@ Result<int> run(const Options& options) {
   }
   const Result<FastRobot> robot = FastRobot::create(file->arm, file->spheres);
   if (!robot) return fail(robot.error().code, options.batch.in + ": " + robot.error().what);
-  return answer_all(*file, *robot, *plan, *threads, options, *show);
+  return answer_all(*file, *robot, *plan, *threads, options, *output, *show);
 }
 
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "--in", options->batch.in, msg::plan_option_in, "FILE");
   add_option(app, "--out", options->batch.out, msg::app_option_out, "FILE");
+  add_overwrite_option(app, options->batch.replace);
   add_robot_request(app, options->request);
   add_option(app, "--problem", options->problem, msg::plan_option_problem, "ID");
   add_option(app, "--planner", options->planner, msg::plan_option_planner, "NAME");

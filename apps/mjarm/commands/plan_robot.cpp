@@ -200,7 +200,7 @@ bool is_given(const RobotRequest& request) {
 }
 
 Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
-                           const std::optional<session::PlanShow>& show, const std::string& out,
+                           const std::optional<session::PlanShow>& show, AnswerOutput& output,
                            bool timing) {
   const Result<Robot> robot = load_robot(request.robot);
   if (!robot) return fail(robot.error());
@@ -231,7 +231,7 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   json.end_object();
   const std::optional<std::string> why =
       found ? std::nullopt : std::optional<std::string>(found.error().what);
-  const Result<int> exit_code = finish_one(out, line, why, msg::plan_no_path);
+  const Result<int> exit_code = finish_one(output, line, why, msg::plan_no_path);
   if (!exit_code || !show || !found) return exit_code;
   const auto shown =
       session::show_plan(*show, {robot->model, robot->arm, (*level)->checker, (*level)->cover.scene,

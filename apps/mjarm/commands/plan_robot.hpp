@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/commands/plan_show.hpp"
 #include "mjarm/core/result.hpp"
@@ -30,12 +31,12 @@ void add_robot_request(CLI::App& app, RobotRequest& request);
 /// Whether something of it was given.
 [[nodiscard]] bool is_given(const RobotRequest& request);
 
-/// Plans the way and writes it to `out` (a file, `-` or empty) as a problem file's answers are
+/// Plans the way and writes it to `output` as a problem file's answers are
 /// written; its id is the robot's name.
 /// @param show  how it is shown then.
 /// @return the exit code, or what is wrong with the request.
 [[nodiscard]] Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
                                          const std::optional<session::PlanShow>& show,
-                                         const std::string& out, bool timing);
+                                         AnswerOutput& output, bool timing);
 
 }  // namespace mjarm::app

@@ -158,7 +158,7 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
   if (!player) {
     return fail(player.error().code, loaded.file.string() + ": " + player.error().what);
   }
-  const Result<OutputFolder> folder = OutputFolder::open(options.out);
+  const Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
   if (!folder) return fail(folder.error());
   const Stopwatch watch;
   auto evaluation = judged(*model, loaded, trial);
@@ -190,6 +190,7 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
           })
           .and_then([&] { return show->end_film(); });
   if (!written) return fail(std::move(written.error()));
+  if (!show->has_window()) folder->made();
   return PolicyOutcome{std::move(report), std::move(*evaluation)};
 }
 

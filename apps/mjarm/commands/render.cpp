@@ -89,8 +89,11 @@ Result<int> run(const Options& options) {
   if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::render_command_which));
   const Result<PictureRequest> wanted = read_picture_options(options.picture);
   if (!wanted) return fail(wanted.error());
+  const auto result = LongResult::begin(options.picture.out, options.picture.replace);
+  if (!result) return fail(result.error());
   const Result<std::string> line = render(options, *wanted);
   if (!line) return fail(line.error());
+  result->made();
   std::printf("%s\n", line->c_str());
   return 0;
 }

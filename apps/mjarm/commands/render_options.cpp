@@ -65,6 +65,7 @@ Result<render::CameraView> read_view(const Model& model, const std::string& word
 
 void add_picture_options(CLI::App& app, PictureArguments& arguments) {
   add_option(app, "--out", arguments.out, msg::render_command_option_out, "F.png|mp4|gif");
+  add_overwrite_option(app, arguments.replace);
   add_option(app, "--size", arguments.size, msg::render_command_option_size, "WxH");
   add_option(app, "--camera", arguments.camera, msg::render_command_option_camera, "C");
   add_option(app, "--quality", arguments.quality, msg::render_command_option_quality, "Q");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/mjarm/cli/options.hpp"
+#include "mjarm/core/long_result.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/render/camera.hpp"
@@ -14,9 +15,11 @@ namespace mjarm::app {
 /// What picture or video is asked for, as it stands on the command line.
 struct PictureArguments {
   std::string out, size, camera, quality, fps, seconds;
+  Replace replace = {};
 };
 
-/// Adds `--out`, `--size`, `--camera`, `--quality`, `--fps` and `--seconds`, bound to `arguments`.
+/// Adds `--out`, `--overwrite`, `--size`, `--camera`, `--quality`, `--fps` and `--seconds`, bound
+/// to `arguments`.
 void add_picture_options(CLI::App& app, PictureArguments& arguments);
 
 /// A picture or a video that can be made, and of what.

@@ -20,6 +20,7 @@ struct Options {
   std::string file, out, control, tolerance, max_duration = "3600";
   RobotChoice robot;  // that the program names: how its files are read
   bool headless = false, video = false, no_timing = false;
+  Replace replace;
 };
 
 Result<session::StageOptions> stage_options(const Options& options) {
@@ -28,6 +29,7 @@ Result<session::StageOptions> stage_options(const Options& options) {
   out.headless = options.headless;
   out.video = options.video;
   out.timing = !options.no_timing;
+  out.replace = options.replace;
   if (options.control.empty()) return out;
   const Result<ControlMode> mode = control_mode(options.control);
   if (!mode) return fail(mode.error());
@@ -61,6 +63,8 @@ Result<int> run(const Options& options) {
   if (!longest) return fail(longest.error());
   Result<session::StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
+  const Result<LongResult> free = LongResult::begin(chosen->out, chosen->replace);
+  if (!free) return fail(free.error());  // before it is planned
   catch_interrupts();
   Result<program::LoadedProgram> loaded =
       program::load_sound_program(options.file, interrupted, load_options(options.robot));
@@ -82,6 +86,7 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "program", options->file, msg::motion_program_file, "PROGRAM.yaml");
   add_option(app, "--out", options->out, msg::demo_option_out, "DIR");
+  add_overwrite_option(app, options->replace);
   add_flag(app, "--headless", options->headless, msg::demo_option_headless);
   add_flag(app, "--video", options->video, msg::demo_option_video);
   add_option(app, "--control", options->control, msg::demo_option_control, "MODE");

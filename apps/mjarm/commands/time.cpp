@@ -125,10 +125,10 @@ std::optional<std::string> answer(const Job& job, const TimeCase& entry, std::st
   return why;
 }
 
-Result<int> answer_one(const Job& job, const TimeCase& entry, const std::string& out) {
+Result<int> answer_one(const Job& job, const TimeCase& entry, const BatchOptions& batch) {
   std::string line;
   const std::optional<std::string> why = answer(job, entry, line);
-  return finish_one(out, line, why, msg::app_time_no_answer);
+  return finish_one(batch, line, why, msg::app_time_no_answer);
 }
 
 Result<int> answer_all(Job job, const Options& options) {
@@ -143,7 +143,7 @@ Result<int> answer_all(Job job, const Options& options) {
   cases->limits.torque = job.limits.torque;
   job.limits = std::move(cases->limits);
   Progress progress(text(msg::app_time_progress), cases->cases.size());
-  Result<AnswerOutput> output = AnswerOutput::open(options.batch.out);
+  Result<AnswerOutput> output = AnswerOutput::open(options.batch.out, options.batch.replace);
   if (!output) return fail(std::move(output.error()));
   std::string out = "{";
   BatchResult result;
@@ -242,7 +242,7 @@ Result<int> run(const Options& options) {
   if (with_file) return answer_all(std::move(job), options);
   const Result<TimeCase> entry = read_points(options, *problem, robot->arm);
   if (!entry) return fail(entry.error());
-  return answer_one(job, *entry, options.batch.out);
+  return answer_one(job, *entry, options.batch);
 }
 
 Run setup(CLI::App& app) {
@@ -250,6 +250,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--problem", options->problem, msg::app_time_option_problem, "NAME");
   add_option(app, "--in", options->batch.in, msg::app_time_option_in, "FILE");
   add_option(app, "--out", options->batch.out, msg::app_option_out, "FILE");
+  add_overwrite_option(app, options->batch.replace);
   add_option(app, "--points", options->points, msg::app_time_option_points, "Q1,Q2,...;...");
   add_robot_options(app, options->robot);
   add_option(app, "--torque", options->torque, msg::app_time_option_torque, "SHARE", "1");

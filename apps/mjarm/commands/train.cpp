@@ -32,7 +32,8 @@ namespace {
 struct Options {
   TaskArguments task;
   std::string config, resume, out, steps, seeds = "1";
-  bool overwrite = false, print_config = false, no_timing = false, video = false;
+  Replace replace;
+  bool print_config = false, no_timing = false, video = false;
 };
 
 void add_fact(JsonDoc& doc, const Fact& fact) {
@@ -112,6 +113,7 @@ Result<void> film_best(const std::filesystem::path& folder, bool timing) {
   options.out = folder / "result";
   options.headless = options.video = true;
   options.timing = timing;
+  options.replace.overwrite = true;  // as the training itself
   const Result<PolicyOutcome> outcome = run_policy(*best, {.name = "reach"}, options);
   if (!outcome) return fail(outcome.error());
   return {};
@@ -130,13 +132,19 @@ std::filesystem::path folder_of(const Options& options, std::uint64_t seeds, std
   return seeds > 1 ? out / ("seed-" + std::to_string(seed)) : out;
 }
 
-/// What a training took long to learn is not replaced unless that is asked for.
-Result<void> check_overwriting(const Options& options, const std::filesystem::path& folder) {
+/// Whether what lies in the folder is to be replaced: as it is asked for, or as it goes on there.
+Replace replacing(const Options& options, const std::filesystem::path& folder) {
   std::error_code code;
   const std::filesystem::path from = std::filesystem::path(options.resume).parent_path();
   const bool goes_on = !options.resume.empty() &&
                        std::filesystem::equivalent(from.empty() ? "." : from, folder, code);
-  if (options.overwrite || goes_on) return {};
+  return {.overwrite = options.replace.overwrite || goes_on};
+}
+
+/// What a training learned is not replaced unless that is asked for.
+Result<void> check_overwriting(const Options& options, const std::filesystem::path& folder) {
+  std::error_code code;
+  if (replacing(options, folder).overwrite) return {};
   for (const char* const name : {rl::Training::kBest, rl::Training::kLast}) {
     if (!std::filesystem::exists(folder / name, code)) continue;
     return fail(Errc::usage, text(msg::train_would_overwrite, (folder / name).string(),
@@ -160,7 +168,7 @@ Result<int> train_seeds(const Options& options, const Model& model,
     chosen.ppo.seed += i;
     const std::filesystem::path folder = folder_of(options, seeds, chosen.ppo.seed);
     std::optional<Result<OutputFolder>> held;  // by the first of several processes, for all
-    if (first) held = OutputFolder::open(folder);
+    if (first) held = OutputFolder::open(folder, replacing(options, folder));
     if (held && !*held) return fail(std::move(held->error()));
     Result<TrainedSeed> trained = train(model, chosen, folder, options.resume, ranks->get());
     if (!trained) return fail(std::move(trained.error()));
@@ -174,6 +182,7 @@ Result<int> train_seeds(const Options& options, const Model& model,
         }
       }
     }
+    if (held) (*held)->made();
     runs.push_back(std::move(*trained));
   }
   if (!first) return 0;
@@ -237,7 +246,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--out", options->out, msg::train_option_out, "DIR");
   add_option(app, "--steps", options->steps, msg::train_option_steps, "N");
   add_option(app, "--seeds", options->seeds, msg::train_option_seeds, "N");
-  add_flag(app, "--overwrite", options->overwrite, msg::train_option_overwrite);
+  add_flag(app, "--overwrite", options->replace.overwrite, msg::train_option_overwrite);
   add_flag(app, "--video", options->video, msg::train_option_video);
   add_flag(app, "--print-config", options->print_config, msg::train_option_print_config);
   add_flag(app, "--no-timing", options->no_timing, msg::train_option_no_timing);

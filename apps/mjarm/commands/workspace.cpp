@@ -15,6 +15,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/workspace.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/long_result.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -25,6 +26,7 @@ namespace {
 struct Options {
   RobotChoice robot;
   std::string slice = "z=0.4", step = "20mm", euler, quat, out, threads = "1";
+  Replace replace;
   bool tool_down = false, position_only = false, json = false;
 };
 
@@ -78,6 +80,8 @@ Result<WorkspaceOptions> read_work(const Options& options, const Arm& arm) {
 Result<int> run(const Options& options) {
   const Result<WorkspaceFormat> format = workspace_format(options.out);
   if (!format) return fail(format.error());
+  const Result<LongResult> result = LongResult::begin(options.out, options.replace);
+  if (!result) return fail(result.error());
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
   Result<WorkspaceOptions> work = read_work(options, robot->arm);
@@ -93,6 +97,7 @@ Result<int> run(const Options& options) {
   if (Result<void> written = write_workspace(report, options.out, *format); !written) {
     return fail(written.error());
   }
+  result->made();
   const std::string out = options.json ? workspace_json(report) : workspace_summary(report) + '\n';
   std::fwrite(out.data(), 1, out.size(), stdout);
   return 0;
@@ -108,6 +113,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--quat", options->quat, msg::app_option_quat, "W,X,Y,Z");
   add_flag(app, "--position-only", options->position_only, msg::workspace_option_position);
   add_option(app, "--out", options->out, msg::workspace_option_out, "F.png|svg|csv|json");
+  add_overwrite_option(app, options->replace);
   add_option(app, "--threads", options->threads, msg::workspace_option_threads, "N");
   add_flag(app, "--json", options->json, msg::app_option_json);
   return [options] { return run(*options); };

@@ -145,7 +145,7 @@ Result<Report> run_car(const DemoOptions& options) {
       (options.meshes ? install::find_mesh_scene("car") : find_model_file("car"))
           .and_then([](const std::filesystem::path& file) { return Model::load(file); });
   if (!model) return fail(model.error());
-  const Result<OutputFolder> folder = OutputFolder::open(options.out);
+  const Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
   if (!folder) return fail(folder.error());
   Sim sim(*model);
   Result<session::RunShow> show = session::RunShow::open(*model, "mjarm car", options.headless);
@@ -174,6 +174,7 @@ Result<Report> run_car(const DemoOptions& options) {
                      })
                      .and_then([&] { return show->end_film(); });
   if (!written) return fail(std::move(written.error()));
+  if (!show->has_window()) folder->made();
   show->linger(sim);
   return report;
 }

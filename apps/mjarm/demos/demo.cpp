@@ -28,6 +28,7 @@ struct DemoArguments {
   std::vector<std::string> package_paths;
   bool headless = false, meshes = false, guide = false, video = false, no_timing = false,
        allow_outside = false;
+  Replace replace;
 };
 
 /// One option of demos, and which demos take it.
@@ -116,6 +117,7 @@ Result<DemoOptions> read_options(const Demo& demo, const DemoArguments& argument
   options.guide = arguments.guide;
   options.video = arguments.video;
   options.timing = !arguments.no_timing;
+  options.replace = arguments.replace;
   options.text = arguments.text;
   if (!arguments.seconds.empty()) {
     const Result<double> seconds = parse_quantity(arguments.seconds, Quantity::time);
@@ -148,12 +150,14 @@ Result<int> run_demo(const Demo& demo, const DemoArguments& arguments) {
 Run setup(CLI::App& app) {
   auto arguments = std::make_shared<DemoArguments>();
   for (const DemoOption& option : demo_options()) add(app, option, *arguments);
+  add_overwrite_option(app, arguments->replace);
   std::vector<std::pair<const CLI::App*, const Demo*>> commands;
   for (const Demo& demo : demos()) {
     CLI::App& sub = add_subcommand(app, demo.name, demo.summary, {demo.examples, demo.examples});
     for (const DemoOption& option : demo_options()) {
       if (takes(demo, option)) add(sub, option, *arguments);
     }
+    add_overwrite_option(sub, arguments->replace);
     commands.emplace_back(&sub, &demo);
   }
   return [arguments, commands]() -> Result<int> {

@@ -19,8 +19,8 @@ struct DemoOptions : session::StageOptions {
   std::string text;     ///< for `letters`
 };
 
-/// What a demo takes besides --out, --headless, --video and --no-timing; whatever else is given is
-/// refused.
+/// What a demo takes besides --out, --overwrite, --headless, --video and --no-timing; whatever else
+/// is given is refused.
 enum DemoUse : unsigned {
   kUseRobot = 1,     ///< --robot, --tip
   kUseFiles = 2,     ///< --package-path, --allow-outside
