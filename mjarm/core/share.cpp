@@ -1,13 +1,36 @@
 #include "mjarm/core/share.hpp"
 
+#include <algorithm>
+#include <system_error>
+
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_libraries.hpp"
 
 namespace mjarm {
+namespace fs = std::filesystem;
 
-Result<std::filesystem::path> share_folder() {
-  const Result<std::filesystem::path> self = executable_path();
-  if (!self) return fail(self.error());
-  return (self->parent_path() / ".." / "share" / "mjarm").lexically_normal();
+std::vector<fs::path> share_folders() {
+  std::vector<fs::path> folders;
+  if (const Result<fs::path> program = executable_path()) {
+    folders.push_back((program->parent_path() / ".." / "share" / "mjarm").lexically_normal());
+  }
+  // mjarm itself is linked in and has no place of its own; MuJoCo is installed beside it.
+  if (const fs::path mujoco = loaded_library("libmujoco"); !mujoco.empty()) {
+    folders.push_back((mujoco.parent_path() / MJARM_LIBRARY_TO_SHARE).lexically_normal());
+  }
+  return folders;
+}
+
+Result<fs::path> share_folder() {
+  const std::vector<fs::path> folders = share_folders();
+  const auto found = std::ranges::find_if(folders, [](const fs::path& folder) {
+    std::error_code ignored;
+    return fs::is_directory(folder, ignored);
+  });
+  if (found != folders.end()) return *found;
+  const Result<fs::path> program = executable_path();
+  if (!program) return fail(program.error());
+  return folders.front();
 }
 
 }  // namespace mjarm

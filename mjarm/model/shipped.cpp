@@ -5,6 +5,7 @@
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/share.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/model/preflight_internal.hpp"
@@ -31,10 +32,9 @@ std::vector<fs::path> model_folders() {
   if (const auto named = environment("MJARM_MODELS"); named && !named->empty()) {
     folders.push_back(fs::absolute(*named));
   }
+  for (const fs::path& share : share_folders()) folders.push_back(share / "models");
   if (const Result<fs::path> program = executable_path()) {
-    const fs::path beside = program->parent_path();
-    folders.push_back((beside / ".." / "share" / "mjarm" / "models").lexically_normal());
-    folders.push_back(beside / "models");
+    folders.push_back(program->parent_path() / "models");
   }
   return folders;
 }

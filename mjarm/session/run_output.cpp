@@ -7,22 +7,20 @@
 #include "mjarm/render/png.hpp"
 
 namespace mjarm::session {
-namespace {
 
-Result<void> write_picture(const std::filesystem::path& file, const Model& model,
-                           const Snapshot& snapshot, const RunOutput& output) {
+Result<void> write_end_picture(const std::filesystem::path& folder, const Model& model,
+                               const Snapshot& snapshot, const render::Camera& camera,
+                               const render::Overlay& overlay) {
   Result<render::OffscreenRenderer> renderer = render::OffscreenRenderer::create(model);
   if (!renderer) {
     if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
     log_warning(text(msg::show_no_picture, renderer.error().what));
     return {};
   }
-  const Result<render::Image> image = renderer->draw(snapshot, output.camera, output.overlay);
+  const Result<render::Image> image = renderer->draw(snapshot, camera, overlay);
   if (!image) return fail(image.error());
-  return render::write_png(*image, file);
+  return render::write_png(*image, folder / "picture.png");
 }
-
-}  // namespace
 
 Result<void> write_output(const std::filesystem::path& folder, const Model& model,
                           const Snapshot& snapshot, const RunOutput& output) {
@@ -31,7 +29,9 @@ Result<void> write_output(const std::filesystem::path& folder, const Model& mode
         return output.plot.panels.empty() ? Result<void>()
                                           : render::save_plot(output.plot, folder / "plot");
       })
-      .and_then([&] { return write_picture(folder / "picture.png", model, snapshot, output); });
+      .and_then([&] {
+        return write_end_picture(folder, model, snapshot, output.camera, output.overlay);
+      });
 }
 
 }  // namespace mjarm::session

@@ -22,8 +22,15 @@ struct RunOutput {
 
 inline constexpr const char* kVideoFile = "video.mp4";
 
-/// Writes report.json, plot.svg, plot.png and picture.png into `folder`. A machine without any GL
-/// back end gets everything but the picture, and a line that says so.
+/// Writes picture.png into `folder`. A machine without any GL back end gets none, and a line that
+/// says so.
+[[nodiscard]] Result<void> write_end_picture(const std::filesystem::path& folder,
+                                             const Model& model, const Snapshot& snapshot,
+                                             const render::Camera& camera,
+                                             const render::Overlay& overlay);
+
+/// Writes report.json, plot.svg, plot.png and picture.png into `folder`; the picture as
+/// `write_end_picture` does.
 [[nodiscard]] Result<void> write_output(const std::filesystem::path& folder, const Model& model,
                                         const Snapshot& snapshot, const RunOutput& output);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "mjarm/core/csv.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -11,14 +12,6 @@
 
 namespace mjarm {
 namespace {
-
-/// Text as one CSV field (RFC 4180).
-std::string field(const std::string& words) {
-  if (words.find_first_of(",\"\n\r") == std::string::npos) return words;
-  std::string quoted = "\"";
-  for (const char c : words) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
 
 std::string joined(const std::vector<Contact>& contacts) {
   std::string all;
@@ -48,7 +41,7 @@ void append_titles(std::string& line, const Arm& arm, const std::string& quantit
                    const std::string& turning, const std::string& sliding) {
   for (const ArmJoint& joint : arm.joints) {
     const std::string& unit = joint.type == JointType::hinge ? turning : sliding;
-    line += ',' + field(quantity + " " + joint.name + (unit.empty() ? "" : " [" + unit + "]"));
+    line += ',' + csv_field(quantity + " " + joint.name + (unit.empty() ? "" : " [" + unit + "]"));
   }
 }
 
@@ -183,7 +176,7 @@ std::string Recorder::to_csv() const {
     append_pose(csv, line.X_WT);
     append_joints(csv, line.ctrl);
     append_joints(csv, line.torque);
-    csv += ',' + field(line.contacts) + '\n';
+    csv += ',' + csv_field(line.contacts) + '\n';
   }
   return csv;
 }

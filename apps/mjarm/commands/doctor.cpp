@@ -14,6 +14,7 @@
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_child_input.hpp"
+#include "mjarm/core/os_system.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/install/installed.hpp"
 #include "mjarm/model/model.hpp"
@@ -57,6 +58,9 @@ void look_at_mujoco(Findings& findings) {
 }
 
 void look_at_machine(Findings& findings) {
+  const OperatingSystem system = operating_system();
+  const Msg said = system.is_wsl ? msg::app_doctor_wsl : msg::app_doctor_linux_only;
+  add(findings, "system", text(msg::app_doctor_system), system.name, text(said, system.name));
   const std::string simd(name(simd_level()));
   add(findings, "compiler", text(msg::app_doctor_compiler), compiler(), compiler());
   add(findings, "simd", text(msg::app_doctor_simd), simd, simd);

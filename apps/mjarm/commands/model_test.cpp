@@ -159,7 +159,9 @@ TEST(Doctor, TellsVersionsGraphicsAndModels) {
   for (const char* name : {"ur5e", "panda"}) {
     EXPECT_TRUE(std::find(names.begin(), names.end(), name) != names.end()) << name;
   }
+  EXPECT_TRUE(facts.at("system").get<std::string>().starts_with("Linux "));
   const auto people = mjarm({"doctor"});
+  EXPECT_NE(people.out.find(facts.at("system").get<std::string>()), std::string::npos);
   EXPECT_EQ(people.exit_code, result.exit_code);
   EXPECT_NE(people.out.find("MuJoCo"), std::string::npos);
   EXPECT_NE(mjarm({"doctor", "--lang", "zh-CN"}).out.find("模型"), std::string::npos);

@@ -1,102 +1,21 @@
 #include "apps/mjarm/messages/demo.hpp"
 
-#include <array>
 #include <cstdio>
 #include <memory>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
+#include "apps/mjarm/demos/demo_options.hpp"
 #include "apps/mjarm/demos/demos.hpp"
-#include "apps/mjarm/messages/app.hpp"
-#include "apps/mjarm/messages/models.hpp"
 #include "apps/mjarm/messages/train.hpp"
-#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
-#include "mjarm/core/units.hpp"
 #include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
-
-/// Options as the user wrote them.
-struct DemoArguments {
-  std::string out, seconds, text, control, robot, tip;
-  std::vector<std::string> package_paths;
-  bool headless = false, meshes = false, guide = false, video = false, no_timing = false,
-       allow_outside = false;
-  Replace replace;
-};
-
-/// One option of demos, and which demos take it.
-struct DemoOption {
-  using Value = std::variant<std::string DemoArguments::*, bool DemoArguments::*,
-                             std::vector<std::string> DemoArguments::*>;
-  const char* name;
-  unsigned use;  ///< of DemoUse; 0: all of them
-  Value value;
-  Msg help;
-  const char* type;
-};
-
-const std::array<DemoOption, 13>& demo_options() {
-  using A = DemoArguments;
-  static const std::array<DemoOption, 13> kOptions = {
-      {{"--out", 0, &A::out, msg::demo_option_out, "DIR"},
-       {"--headless", 0, &A::headless, msg::demo_option_headless, ""},
-       {"--video", 0, &A::video, msg::demo_option_video, ""},
-       {"--no-timing", 0, &A::no_timing, msg::demo_option_no_timing, ""},
-       {"--robot", kUseRobot, &A::robot, msg::app_option_robot, "ROBOT"},
-       {"--tip", kUseRobot, &A::tip, msg::app_option_tip, "FRAME"},
-       {"--package-path", kUseFiles, &A::package_paths, msg::app_option_package_path, "DIR"},
-       {"--allow-outside", kUseFiles, &A::allow_outside, msg::app_option_outside, ""},
-       {"--meshes", kUseMeshes, &A::meshes, msg::models_option_meshes, ""},
-       {"--seconds", kUseSeconds, &A::seconds, msg::demo_option_seconds, "S"},
-       {"--control", kUseControl, &A::control, msg::demo_option_control, "MODE"},
-       {"--guide", kUseGuide, &A::guide, msg::demo_option_guide, ""},
-       {"--text", kUseText, &A::text, msg::demo_option_text, "TEXT"}}};
-  return kOptions;
-}
-
-bool takes(const Demo& demo, const DemoOption& option) {
-  return option.use == 0 || (demo.uses & option.use) != 0;
-}
-
-void add(CLI::App& app, const DemoOption& option, DemoArguments& arguments) {
-  if (const auto* flag = std::get_if<bool DemoArguments::*>(&option.value)) {
-    add_flag(app, option.name, arguments.*(*flag), option.help);
-  } else if (const auto* word = std::get_if<std::string DemoArguments::*>(&option.value)) {
-    add_option(app, option.name, arguments.*(*word), option.help, option.type);
-  } else {
-    add_option(app, option.name, arguments.*std::get<2>(option.value), option.help, option.type);
-  }
-}
-
-bool is_given(const DemoOption& option, const DemoArguments& arguments) {
-  if (const auto* flag = std::get_if<bool DemoArguments::*>(&option.value)) {
-    return arguments.*(*flag);
-  }
-  if (const auto* word = std::get_if<std::string DemoArguments::*>(&option.value)) {
-    return !(arguments.*(*word)).empty();
-  }
-  return !(arguments.*std::get<2>(option.value)).empty();
-}
-
-/// An option that would do nothing is a mistake.
-Result<void> check_use(const Demo& demo, const DemoArguments& arguments) {
-  std::vector<std::string> taken;
-  for (const DemoOption& option : demo_options()) {
-    if (takes(demo, option)) taken.emplace_back(option.name);
-  }
-  for (const DemoOption& option : demo_options()) {
-    if (takes(demo, option) || !is_given(option, arguments)) continue;
-    return fail(Errc::usage, text(msg::demo_not_used, demo.name, option.name, listed(taken)));
-  }
-  return {};
-}
 
 void list_demos() {
   for (const Demo& demo : demos()) {
@@ -104,39 +23,8 @@ void list_demos() {
   }
 }
 
-Result<DemoOptions> read_options(const Demo& demo, const DemoArguments& arguments) {
-  DemoOptions options;
-  options.robot = {.robot = arguments.robot.empty() ? "ur5e" : arguments.robot,
-                   .tip = arguments.tip,
-                   .package_paths = arguments.package_paths,
-                   .allow_outside = arguments.allow_outside};
-  options.out = arguments.out.empty() ? std::filesystem::path("mjarm-out") / demo.name
-                                      : std::filesystem::path(arguments.out);
-  options.headless = arguments.headless;
-  options.meshes = arguments.meshes;
-  options.guide = arguments.guide;
-  options.video = arguments.video;
-  options.timing = !arguments.no_timing;
-  options.replace = arguments.replace;
-  options.text = arguments.text;
-  if (!arguments.seconds.empty()) {
-    const Result<double> seconds = parse_quantity(arguments.seconds, Quantity::time);
-    if (!seconds || !(*seconds > 0)) {
-      return fail(Errc::usage, text(msg::demo_bad_seconds, arguments.seconds));
-    }
-    options.seconds = *seconds;
-  }
-  if (!arguments.control.empty()) {
-    const Result<ControlMode> mode = control_mode(arguments.control);
-    if (!mode) return fail(mode.error());
-    options.control = *mode;
-  }
-  return options;
-}
-
 Result<int> run_demo(const Demo& demo, const DemoArguments& arguments) {
-  if (Result<void> used = check_use(demo, arguments); !used) return fail(used.error());
-  const Result<DemoOptions> options = read_options(demo, arguments);
+  const Result<DemoOptions> options = read_demo_options(demo, arguments);
   if (!options) return fail(options.error());
   catch_interrupts();
   const Result<Report> report =
@@ -149,15 +37,11 @@ Result<int> run_demo(const Demo& demo, const DemoArguments& arguments) {
 /// stand before the name as well.
 Run setup(CLI::App& app) {
   auto arguments = std::make_shared<DemoArguments>();
-  for (const DemoOption& option : demo_options()) add(app, option, *arguments);
-  add_overwrite_option(app, arguments->replace);
+  add_demo_options(app, ~0U, *arguments);
   std::vector<std::pair<const CLI::App*, const Demo*>> commands;
   for (const Demo& demo : demos()) {
     CLI::App& sub = add_subcommand(app, demo.name, demo.summary, {demo.examples, demo.examples});
-    for (const DemoOption& option : demo_options()) {
-      if (takes(demo, option)) add(sub, option, *arguments);
-    }
-    add_overwrite_option(sub, arguments->replace);
+    add_demo_options(sub, demo.uses, *arguments);
     commands.emplace_back(&sub, &demo);
   }
   return [arguments, commands]() -> Result<int> {
@@ -175,20 +59,34 @@ std::span<const Demo> demos() {
   constexpr unsigned kArm = kUseRobot | kUseFiles | kUseMeshes | kUseSeconds;
   constexpr unsigned kDriven = kArm | kUseControl;
   constexpr unsigned kGuided = kDriven | kUseGuide;
+  constexpr unsigned kGoal = kUseTo | kUseOrientation | kUseSeed;
   static constexpr Demo kDemos[] = {
       {"car", msg::demo_about_car, run_car, kUseMeshes | kUseSeconds,
        "  mjarm demo car --headless"},
-      {"ur5e", msg::demo_about_ur5e, run_ur5e, kDriven,
-       "  mjarm demo ur5e --control servo_gravity"},
-      {"ur5e_vision", msg::demo_about_ur5e_vision, run_ur5e_vision, kDriven,
+      {"ur5e", msg::demo_about_ur5e, run_ur5e, kDriven | kUseCtrl,
+       "  mjarm demo ur5e --control servo_gravity\n"
+       "  mjarm demo ur5e --ctrl -90deg,-90deg,90deg,-90deg,-90deg,0"},
+      {"ur5e_vision", msg::demo_about_ur5e_vision, run_ur5e_vision, kDriven | kUseCtrl,
        "  mjarm demo ur5e_vision --seconds 2"},
-      {"point", msg::demo_about_point, run_point, kArm, "  mjarm demo point --headless"},
-      {"movej", msg::demo_about_movej, run_movej, kGuided, "  mjarm demo movej --guide"},
-      {"movel", msg::demo_about_movel, run_movel, kGuided, "  mjarm demo movel --control servo"},
-      {"ellipse", msg::demo_about_ellipse, run_ellipse, kGuided,
-       "  mjarm demo ellipse --headless --video"},
-      {"letters", msg::demo_about_letters, run_letters, kDriven | kUseText,
-       "  mjarm demo letters --text HELLO"},
+      {"point", msg::demo_about_point, run_point, kArm | kUsePos | kUseOrientation | kUseSeed,
+       "  mjarm demo point --headless\n"
+       "  mjarm demo point --pos 0.3,-0.4,0.3 --euler 180deg,0,0"},
+      {"movej", msg::demo_about_movej, run_movej, kGuided | kGoal | kUseJoints,
+       "  mjarm demo movej --guide\n"
+       "  mjarm demo movej --to 300mm,-0.4,0.3 --euler 180deg,0,0\n"
+       "  mjarm demo movej --joints 0,-90deg,90deg,-90deg,-90deg,0"},
+      {"movel", msg::demo_about_movel, run_movel, kGuided | kGoal | kUseFrom,
+       "  mjarm demo movel --control servo\n"
+       "  mjarm demo movel --from 0.3,-0.4,0.3 --to -0.3,-0.4,0.3 --euler 180deg,0,0"},
+      {"ellipse", msg::demo_about_ellipse, run_ellipse,
+       kGuided | kUsePlane | kUseAxes | kUseOrientation,
+       "  mjarm demo ellipse --headless --video\n"
+       "  mjarm demo ellipse --center 0.4,0,0.4 --a 0.2 --b 0.1 --normal 1,0,0\n"
+       "  mjarm demo ellipse --radius 10cm"},
+      {"letters", msg::demo_about_letters, run_letters,
+       kDriven | kUseText | kUsePlane | kUseOrientation,
+       "  mjarm demo letters --text HELLO\n"
+       "  mjarm demo letters --text LZ --center 0,-0.45,0.3 --normal 0,0,1 --height 10cm"},
       {"singularity", msg::demo_about_singularity, run_singularity, kDriven,
        "  mjarm demo singularity --headless"},
       {"flip", msg::demo_about_flip, run_flip, kDriven, "  mjarm demo flip --headless"},

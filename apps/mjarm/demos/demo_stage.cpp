@@ -2,7 +2,9 @@
 
 #include <utility>
 
+#include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "apps/mjarm/messages/demo_values.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/install/installed.hpp"
 
@@ -29,6 +31,28 @@ Result<std::unique_ptr<session::Stage>> open_stage(const std::string& demo,
   const Result<Robot> robot = load_demo_robot(demo, options, dof);
   if (!robot) return fail(robot.error());
   return session::Stage::open(demo, options, *robot);
+}
+
+Result<std::vector<double>> read_posture(const std::string& option, const std::string& words,
+                                         const Arm& arm) {
+  constexpr double kRounding = 1e-6;  // [rad or m]
+  Result<std::vector<double>> q = parse_joints(option, words, arm);
+  if (!q) return q;
+  for (int i = 0; i < arm.dof(); ++i) {
+    const double value = (*q)[static_cast<std::size_t>(i)];
+    const double lower = arm.limits.lower[i], upper = arm.limits.upper[i];
+    if (value >= lower - kRounding && value <= upper + kRounding) continue;
+    return fail(Errc::bad_input,
+                text(msg::demo_values_limit, option, arm.joints[static_cast<std::size_t>(i)].name,
+                     lower, upper, value));
+  }
+  return q;
+}
+
+Pose changed(Pose goal, const std::optional<Eigen::Vector3d>& p, const DemoValues& values) {
+  if (p) goal.p = *p;
+  if (values.R) goal.R = *values.R;
+  return goal;
 }
 
 IkSolver reach_solver(const Robot& robot) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/mjarm/demos/demos.hpp"
 #include "mjarm/kinematics/ik.hpp"
@@ -18,6 +20,15 @@ namespace mjarm::app {
 [[nodiscard]] Result<std::unique_ptr<session::Stage>> open_stage(const std::string& demo,
                                                                  const DemoOptions& options,
                                                                  int dof = 0);
+
+/// Reads one value a joint, which must be within the joint's limits.
+/// @return bad_input that names `option`, and the joint that cannot stand there.
+[[nodiscard]] Result<std::vector<double>> read_posture(const std::string& option,
+                                                       const std::string& words, const Arm& arm);
+
+/// `goal`, with what the user wants otherwise of it.
+[[nodiscard]] Pose changed(Pose goal, const std::optional<Eigen::Vector3d>& p,
+                           const DemoValues& values);
 
 /// Geometry alone: what the arm can reach.
 [[nodiscard]] IkSolver reach_solver(const Robot& robot);

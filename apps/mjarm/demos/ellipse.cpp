@@ -44,6 +44,12 @@ Result<Report> run_ellipse(const DemoOptions& options) {
   auto* drawn = std::get_if<program::DrawEllipse>(&program->instructions.front().what);
   if (drawn == nullptr) return fail(Errc::bad_input, text(msg::demo_no_ellipse));
   if (options.guide) drawn->center.y() = kGuideY;
+  const DemoValues& values = options.values;
+  drawn->center = values.center.value_or(drawn->center);
+  drawn->normal = values.normal.value_or(drawn->normal);
+  drawn->a = values.a.value_or(drawn->a);
+  drawn->b = values.b.value_or(drawn->b);
+  drawn->R_FT = values.R.value_or(drawn->R_FT);
   const Ellipse ellipse{drawn->center, drawn->a, drawn->b, drawn->normal, drawn->R_FT};
   const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());

@@ -1,3 +1,5 @@
+#include <variant>
+
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
@@ -11,11 +13,16 @@ namespace {
 
 /// 100 joint waypoints, each waited for until all joints are within 0.02 rad, as the tutorial does.
 Result<Report> run_waypoints(const DemoOptions& options) {
-  Result<std::unique_ptr<session::Stage>> opened = open_stage("movej", options, 6);
+  const DemoValues& values = options.values;
+  const Result<Robot> robot = load_demo_robot("movej", options, values.seed_q.empty() ? 6 : 0);
+  if (!robot) return fail(robot.error());
+  const auto read = tutorial_seed(values, robot->arm);
+  if (!read) return fail(read.error());
+  const std::vector<double>& seed = *read;
+  Result<std::unique_ptr<session::Stage>> opened = session::Stage::open("movej", options, *robot);
   if (!opened) return fail(std::move(opened.error()));
   session::Stage& stage = **opened;
-  const Pose goal = tutorial_goal();
-  const std::vector<double> seed = tutorial_seed();
+  const Pose goal = changed(tutorial_goal(), values.to, values);
   const Result<IkSolution, IkFailure> solution = free_solver(stage.robot()).solve(goal, seed);
   if (!solution) {
     return stage.refuse(name(solution.error().code), describe(solution.error(), stage.arm()));
@@ -46,10 +53,28 @@ Result<Report> run_waypoints(const DemoOptions& options) {
   return stage.finish(std::move(report), kTolerance);
 }
 
+/// The goal of the program's first move as the user wants it.
+Result<void> change_goal(program::Program& program, const DemoValues& values, const Arm& arm) {
+  auto* move = std::get_if<program::MoveJ>(&program.instructions.front().what);
+  if (move == nullptr) return {};
+  if (!values.joints.empty()) {
+    Result<std::vector<double>> q = read_posture("--joints", values.joints, arm);
+    if (!q) return fail(std::move(q.error()));
+    move->goal = program::JointValues{.values = std::move(*q)};
+  } else if (auto* goal = std::get_if<program::ProgramPose>(&move->goal)) {
+    goal->X_FT = changed(goal->X_FT, values.to, values);
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Report> run_movej(const DemoOptions& options) {
-  return options.guide ? run_waypoints(options) : run_program_demo("movej", options);
+  if (options.guide) return run_waypoints(options);
+  return run_program_demo("movej", options,
+                          [&values = options.values](program::Program& program, const Arm& arm) {
+                            return change_goal(program, values, arm);
+                          });
 }
 
 }  // namespace mjarm::app

@@ -1,3 +1,5 @@
+#include <variant>
+
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
@@ -11,11 +13,22 @@ namespace {
 
 /// The tutorial's follower: 100 poses, each commanded until the tool is within 10 mm of it.
 Result<Report> run_follower(const DemoOptions& options) {
-  Result<std::unique_ptr<session::Stage>> opened = open_stage("movel", options, 6);
+  const DemoValues& values = options.values;
+  const Result<Robot> robot = load_demo_robot("movel", options, values.seed_q.empty() ? 6 : 0);
+  if (!robot) return fail(robot.error());
+  const auto read = tutorial_seed(values, robot->arm);
+  if (!read) return fail(read.error());
+  std::vector<double> seed = *read;
+  Result<std::unique_ptr<session::Stage>> opened = session::Stage::open("movel", options, *robot);
   if (!opened) return fail(std::move(opened.error()));
   session::Stage& stage = **opened;
-  const std::vector<double> seed = tutorial_seed();
-  const Result<Curve> line = Curve::line(fk(stage.arm(), seed), tutorial_goal());
+  const Pose goal = changed(tutorial_goal(), values.to, values);
+  if (values.from) {
+    const auto begin = free_solver(stage.robot()).solve({*values.from, goal.R}, seed);
+    if (!begin) return stage.refuse(name(begin.error().code), describe(begin.error(), stage.arm()));
+    seed.assign(begin->q.begin(), begin->q.end());
+  }
+  const Result<Curve> line = Curve::line(fk(stage.arm(), seed), goal);
   if (!line) return fail(line.error());
 
   constexpr int kPoses = 100;
@@ -42,10 +55,25 @@ Result<Report> run_follower(const DemoOptions& options) {
   return stage.finish(std::move(report));
 }
 
+/// The ends of the program's first line as the user wants them.
+Result<void> change_ends(program::Program& program, const DemoValues& values) {
+  auto* move = std::get_if<program::MoveL>(&program.instructions.front().what);
+  if (move == nullptr) return {};
+  move->goal.X_FT = changed(move->goal.X_FT, values.to, values);
+  if (!values.from) return {};
+  const Pose begin{*values.from, move->goal.X_FT.R};
+  program.instructions.insert(program.instructions.begin(), program::move_j(begin));
+  return {};
+}
+
 }  // namespace
 
 Result<Report> run_movel(const DemoOptions& options) {
-  return options.guide ? run_follower(options) : run_program_demo("movel", options);
+  if (options.guide) return run_follower(options);
+  return run_program_demo("movel", options,
+                          [&values = options.values](program::Program& program, const Arm&) {
+                            return change_ends(program, values);
+                          });
 }
 
 }  // namespace mjarm::app

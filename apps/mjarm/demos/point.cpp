@@ -1,6 +1,8 @@
 #include <numbers>
+#include <variant>
 
 #include "apps/mjarm/commands/program_run.hpp"
+#include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/messages/demo.hpp"
@@ -20,7 +22,13 @@ constexpr ControlMode kModes[] = {ControlMode::servo, ControlMode::servo_gravity
 Result<Report> run_point(const DemoOptions& options) {
   Result<program::Program> program = demo_program("point");
   if (!program) return fail(std::move(program.error()));
-  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  const auto to_goal = [&options](program::Program& changing, const Arm&) -> Result<void> {
+    auto* move = std::get_if<program::MoveJ>(&changing.instructions.front().what);
+    auto* goal = move == nullptr ? nullptr : std::get_if<program::ProgramPose>(&move->goal);
+    if (goal != nullptr) goal->X_FT = changed(goal->X_FT, options.values.to, options.values);
+    return {};
+  };
+  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options, to_goal);
   if (!loaded) return fail(loaded.error());
   if (!loaded->plan.ok()) return run_demo_plan(*loaded, options);
   Result<std::unique_ptr<session::Stage>> opened =

@@ -15,12 +15,27 @@ Result<program::Program> demo_program(const std::string& demo) {
       [](const std::filesystem::path& file) { return program::read_program(file); });
 }
 
-Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOptions& options) {
-  Result<Robot> robot =
-      load_demo_robot(program.name, options, static_cast<int>(program.start.values.size()));
+Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOptions& options,
+                                         const ProgramEdit& edit) {
+  const std::string& seed = options.values.seed_q;
+  const std::size_t dof = seed.empty() ? program.start.values.size() : 0;
+  Result<Robot> robot = load_demo_robot(program.name, options, static_cast<int>(dof));
   if (!robot) return fail(std::move(robot.error()));
-  const std::string file = program.name + ".yaml";
+  if (!seed.empty()) {
+    Result<std::vector<double>> q = read_posture("--seed-q", seed, robot->arm);
+    if (!q) return fail(std::move(q.error()));
+    program.start = {.values = std::move(*q)};
+  }
+  if (edit) {
+    if (Result<void> edited = edit(program, robot->arm); !edited) return fail(edited.error());
+  }
   if (options.control) program.control = options.control;
+  // What the user wants stands on no line of the program.
+  const bool own = options.values.of_geometry();
+  for (program::Instruction& instruction : program.instructions) {
+    if (own) instruction.place = {};
+  }
+  const std::string file = own ? "demo " + program.name : program.name + ".yaml";
   return program::plan_loaded(file, std::move(program), std::move(*robot), interrupted);
 }
 
@@ -34,10 +49,11 @@ Result<Report> run_demo_plan(const program::LoadedProgram& loaded, const DemoOpt
   return (*stage)->refuse(loaded.plan.faults.front().reason, program::first_fault(loaded).what);
 }
 
-Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options) {
+Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options,
+                                const ProgramEdit& edit) {
   Result<program::Program> program = demo_program(demo);
   if (!program) return fail(std::move(program.error()));
-  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
+  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options, edit);
   if (!loaded) return fail(loaded.error());
   return run_demo_plan(*loaded, options);
 }

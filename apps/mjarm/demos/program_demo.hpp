@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "apps/mjarm/demos/demos.hpp"
@@ -10,10 +11,15 @@ namespace mjarm::app {
 /// The shipped program of a demo.
 [[nodiscard]] Result<program::Program> demo_program(const std::string& demo);
 
-/// Plans `program` on the robot that the user chose.
+/// Changes a program to what the user wants, for the robot that he chose.
+using ProgramEdit = std::function<Result<void>(program::Program& program, const Arm& arm)>;
+
+/// Plans `program` on the robot that the user chose, with his start where he gives one.
+/// @param edit  maybe empty.
 /// @return usage where the program's postures are for another number of joints.
 [[nodiscard]] Result<program::LoadedProgram> plan_demo(program::Program program,
-                                                       const DemoOptions& options);
+                                                       const DemoOptions& options,
+                                                       const ProgramEdit& edit = {});
 
 /// Runs and shows it; a plan with faults ends the demo with the first of them.
 /// @param camera  of the picture at the end, where the model has it.
@@ -22,6 +28,7 @@ namespace mjarm::app {
                                            const std::string& camera = "overview");
 
 /// All of that: the demo is its program.
-[[nodiscard]] Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options);
+[[nodiscard]] Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options,
+                                              const ProgramEdit& edit = {});
 
 }  // namespace mjarm::app

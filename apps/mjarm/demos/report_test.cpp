@@ -3,11 +3,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <set>
-#include <sstream>
 
 #include "apps/mjarm/commands/crane_test.hpp"
+#include "apps/mjarm/commands/log_columns_test.hpp"
 #include "apps/mjarm/commands/oracle_test.hpp"
 #include "apps/mjarm/commands/program_test.hpp"
 
@@ -16,25 +15,6 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-/// The columns of numbers of a log by their headings.
-using Columns = std::map<std::string, std::vector<double>>;
-
-Columns columns_of(const std::string& csv) {
-  const std::vector<std::string> lines = support::lines_of(csv);
-  std::vector<std::string> headings;
-  std::stringstream first(lines.at(0));
-  for (std::string cell; std::getline(first, cell, ',');) headings.push_back(cell);
-  Columns out;
-  for (std::size_t i = 1; i < lines.size(); ++i) {
-    std::stringstream row(lines[i]);
-    std::string cell;
-    for (std::size_t k = 0; std::getline(row, cell, ','); ++k) {
-      if (headings.at(k) != "contacts") out[headings[k]].push_back(std::stod(cell));
-    }
-  }
-  return out;
-}
 
 double largest(const std::vector<double>& values) {
   double out = 0;
