@@ -11,6 +11,7 @@
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/never_meet_internal.hpp"
 #include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/core/rng.hpp"
@@ -215,34 +216,46 @@ struct ExactChecker::Impl {
     for (const auto& [ids, apart] : same) constant_pairs->insert(ids);
   }
 
+  /// True for two geoms that no joint brings nearer, or that the joints cannot bring together.
+  bool is_no_risk(GeomIds ids) {
+    if (constant_pairs->contains(ids)) return true;
+    if (!never_meet) never_meet.emplace(model, arm, options.rules, q_rest);
+    return (*never_meet)(ids);
+  }
+
+  /// All pairs nearer than the margin.
+  std::vector<std::pair<GeomIds, NearestPair>> near_pairs() {
+    std::vector<std::pair<GeomIds, NearestPair>> out;
+    for (const GeomIds ids : candidates()) {
+      std::array<mjtNum, 6> segment{};
+      const double distance = gap_of(
+          ids, mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, segment.data()));
+      if (distance >= options.margin) continue;
+      out.push_back({ids, {{}, distance, vector(segment.data()), vector(segment.data() + 3)}});
+    }
+    for (const GeomIds ids : capsule_boxes) {
+      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
+      if (!gap || gap->distance >= options.margin) continue;
+      const Eigen::Vector3d half = 0.5 * gap->distance * gap->normal_W;
+      out.push_back(
+          {ids, {{}, gap_of(ids, gap->distance), gap->point_W - half, gap->point_W + half}});
+    }
+    return out;
+  }
+
   std::optional<NearestPair> nearest(std::span<const double> q) {
     if (!constant_pairs) {
       find_constant_pairs();
       place(q);
     }
-    GeomIds which;
-    NearestPair best;
-    best.distance = options.margin;
-    for (const GeomIds ids : candidates()) {
-      if (constant_pairs->contains(ids)) continue;
-      std::array<mjtNum, 6> segment{};
-      const double distance = gap_of(
-          ids, mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, segment.data()));
-      if (distance >= best.distance) continue;
-      which = ids;
-      best = {{}, distance, vector(segment.data()), vector(segment.data() + 3)};
+    auto pairs = near_pairs();
+    std::ranges::stable_sort(pairs, {}, [](const auto& entry) { return entry.second.distance; });
+    for (auto& [ids, pair] : pairs) {
+      if (is_no_risk(ids)) continue;
+      pair.pair = name_pair(ids);
+      return std::move(pair);
     }
-    for (const GeomIds ids : capsule_boxes) {
-      if (constant_pairs->contains(ids)) continue;
-      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
-      if (!gap || gap_of(ids, gap->distance) >= best.distance) continue;
-      which = ids;
-      const Eigen::Vector3d half = 0.5 * gap->distance * gap->normal_W;
-      best = {{}, gap_of(ids, gap->distance), gap->point_W - half, gap->point_W + half};
-    }
-    if (which.geom1 < 0) return std::nullopt;
-    best.pair = name_pair(which);
-    return best;
+    return std::nullopt;
   }
 
   Model model;  // keeps the arrays alive
@@ -256,6 +269,7 @@ struct ExactChecker::Impl {
   std::vector<double> q_rest;
   std::vector<GeomIds> capsule_boxes;
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
+  std::optional<detail::NeverMeet> never_meet;      // once it was asked for; each copy its own
   std::unique_ptr<mjData, DeleteData> d;
 };
 

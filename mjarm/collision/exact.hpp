@@ -42,8 +42,9 @@ struct ContactPoint {
   Eigen::Vector3d normal_W;  ///< unit, from geom 1 to geom 2
 };
 
-/// The two geoms that are nearest to each other, of those whose distance the arm can change (a
-/// first link that turns over the floor always is as near to it).
+/// The two geoms that are nearest to each other, of those that the arm can bring together: pairs
+/// whose distance no joint changes (a first link that turns over the floor), and neighbouring links
+/// that are proved never to meet within the limits of the joints between them, do not count.
 struct NearestPair {
   GeomPair pair;
   double distance = 0;   ///< [m] between the surfaces; negative where they overlap
