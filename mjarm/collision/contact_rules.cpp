@@ -48,7 +48,7 @@ bool is_pose(const Pose& X) {
 
 Result<void> check_attached(const mjModel& m, const detail::ArmBodies& bodies,
                             const AttachedBody& attached, std::set<int>& known) {
-  const int body = mj_name2id(&m, mjOBJ_BODY, attached.body.c_str());
+  const int body = detail::find_body(m, attached.body);
   if (body < 0) {
     return fail(Errc::bad_input, text(msg::collision_held_unknown, attached.body,
                                       did_you_mean(attached.body, free_bodies(m))));
@@ -101,7 +101,7 @@ Result<AttachedBody> attach_in_place(const Model& model, const Arm& arm, const s
   std::copy(rest.begin(), rest.end(), d->qpos);
   mj_kinematics(&m, d.get());
   using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const int id = mj_name2id(&m, mjOBJ_BODY, body.c_str());
+  const int id = detail::find_body(m, body);
   const Pose X_WB{Eigen::Vector3d(d->xpos + 3 * id), Eigen::Map<const Rows>(d->xmat + 9 * id)};
   attached.X_TB = fk(arm, q).inverse() * X_WB;
   return attached;

@@ -118,7 +118,7 @@ class GeomSorter {
   /// Name of the geom's body; of the geom where another group has it.
   std::string free_name(int geom) {
     std::string name = body_name(m_, m_.geom_bodyid[geom]);
-    if (name.empty() || !names_.insert(name).second) name = geom_name(m_, geom);
+    if (name.starts_with('#') || !names_.insert(name).second) name = geom_name(m_, geom);
     names_.insert(name);
     return name;
   }

@@ -11,6 +11,8 @@
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/never_meet_internal.hpp"
+#include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -46,7 +48,7 @@ struct ExactChecker::Impl {
     }
     m_wide.opt.enableflags |= mjENBL_OVERRIDE;
     m_wide.opt.o_margin = options.margin;
-    q_rest = detail::rest_configuration(m);
+    q_rest = options.qpos.empty() ? detail::rest_configuration(m) : options.qpos;
     std::vector<bool> moves;
     for (const int joints : bodies.pieces) moves.push_back(joints > 0);
     capsule_boxes = detail::capsule_box_pairs(m, moves);
@@ -70,7 +72,7 @@ struct ExactChecker::Impl {
 
   void make_data() {
     d.reset(mj_makeData(&m));
-    if (d) std::copy(q_rest.begin(), q_rest.end(), d->qpos);
+    if (d && fits()) std::copy(q_rest.begin(), q_rest.end(), d->qpos);
   }
 
   /// True where no joint of the arm is between two geoms: both are at rest, or both on one link or
@@ -86,8 +88,26 @@ struct ExactChecker::Impl {
     return are_rigid(geom1, geom2) || filter.may_touch(geom1, geom2);
   }
 
+  /// [m] how deep two geoms may be in each other where one is attached and the other stands.
+  double rest_depth(GeomIds ids) const {
+    const auto at = [&](int geom) { return static_cast<std::size_t>(m.geom_bodyid[geom]); };
+    const std::size_t b1 = at(ids.geom1), b2 = at(ids.geom2);
+    const bool rests = (bodies.carried[b1] && bodies.pieces[b2] == 0) ||
+                       (bodies.carried[b2] && bodies.pieces[b1] == 0);
+    return rests ? options.rest_depth : 0;
+  }
+
+  /// A gap as it counts: bodies that rest on each other touch at most.
+  double gap_of(GeomIds ids, double distance) const {
+    return distance < 0 && distance >= -rest_depth(ids) ? 0 : distance;
+  }
+
+  bool fits() const {
+    return q_rest.size() == static_cast<std::size_t>(m.nq) && all_finite(q_rest);
+  }
+
   bool accepts(std::span<const double> q) const {
-    return sound && bodies.matches && d && q.size() == bodies.addresses.size() &&
+    return sound && fits() && bodies.matches && d && q.size() == bodies.addresses.size() &&
            std::all_of(q.begin(), q.end(), [](double value) { return std::isfinite(value); });
   }
 
@@ -116,12 +136,14 @@ struct ExactChecker::Impl {
   bool overlaps() {
     const double max = -options.allow_depth;
     const std::span<const mjContact> all = detect(m);
-    return std::any_of(
-               all.begin(), all.end(),
-               [&](const mjContact& contact) { return contact.dist < max && counts(contact); }) ||
+    return std::any_of(all.begin(), all.end(),
+                       [&](const mjContact& contact) {
+                         return contact.dist < max && counts(contact) &&
+                                gap_of({contact.geom[0], contact.geom[1]}, contact.dist) < max;
+                       }) ||
            std::any_of(capsule_boxes.begin(), capsule_boxes.end(), [&](GeomIds ids) {
              const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
-             return gap && gap->distance < max;
+             return gap && gap_of(ids, gap->distance) < max;
            });
   }
 
@@ -136,13 +158,15 @@ struct ExactChecker::Impl {
     std::map<GeomIds, GeomGap> deepest;  // ordered, so that equal depths come in a fixed order
     for (const mjContact& contact : detect(m)) {
       if (contact.dist >= 0 || !counts(contact)) continue;
+      const GeomIds ids{contact.geom[0], contact.geom[1]};
+      if (gap_of(ids, contact.dist) == 0) continue;
       const GeomGap gap{contact.dist, vector(contact.pos), vector(contact.frame)};
-      const auto [entry, fresh] = deepest.try_emplace({contact.geom[0], contact.geom[1]}, gap);
+      const auto [entry, fresh] = deepest.try_emplace(ids, gap);
       if (!fresh && gap.distance < entry->second.distance) entry->second = gap;
     }
     for (const GeomIds ids : capsule_boxes) {
       const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
-      if (gap && gap->distance < 0) deepest.emplace(ids, *gap);
+      if (gap && gap_of(ids, gap->distance) < 0) deepest.emplace(ids, *gap);
     }
     std::vector<ContactPoint> out;
     for (const auto& [ids, gap] : deepest) {
@@ -192,34 +216,46 @@ struct ExactChecker::Impl {
     for (const auto& [ids, apart] : same) constant_pairs->insert(ids);
   }
 
+  /// True for two geoms that no joint brings nearer, or that the joints cannot bring together.
+  bool is_no_risk(GeomIds ids) {
+    if (constant_pairs->contains(ids)) return true;
+    if (!never_meet) never_meet.emplace(model, arm, options.rules, q_rest);
+    return (*never_meet)(ids);
+  }
+
+  /// All pairs nearer than the margin.
+  std::vector<std::pair<GeomIds, NearestPair>> near_pairs() {
+    std::vector<std::pair<GeomIds, NearestPair>> out;
+    for (const GeomIds ids : candidates()) {
+      std::array<mjtNum, 6> segment{};
+      const double distance = gap_of(
+          ids, mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, segment.data()));
+      if (distance >= options.margin) continue;
+      out.push_back({ids, {{}, distance, vector(segment.data()), vector(segment.data() + 3)}});
+    }
+    for (const GeomIds ids : capsule_boxes) {
+      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
+      if (!gap || gap->distance >= options.margin) continue;
+      const Eigen::Vector3d half = 0.5 * gap->distance * gap->normal_W;
+      out.push_back(
+          {ids, {{}, gap_of(ids, gap->distance), gap->point_W - half, gap->point_W + half}});
+    }
+    return out;
+  }
+
   std::optional<NearestPair> nearest(std::span<const double> q) {
     if (!constant_pairs) {
       find_constant_pairs();
       place(q);
     }
-    GeomIds which;
-    NearestPair best;
-    best.distance = options.margin;
-    for (const GeomIds ids : candidates()) {
-      if (constant_pairs->contains(ids)) continue;
-      std::array<mjtNum, 6> segment{};
-      const double distance =
-          mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, segment.data());
-      if (distance >= best.distance) continue;
-      which = ids;
-      best = {{}, distance, vector(segment.data()), vector(segment.data() + 3)};
+    auto pairs = near_pairs();
+    std::ranges::stable_sort(pairs, {}, [](const auto& entry) { return entry.second.distance; });
+    for (auto& [ids, pair] : pairs) {
+      if (is_no_risk(ids)) continue;
+      pair.pair = name_pair(ids);
+      return std::move(pair);
     }
-    for (const GeomIds ids : capsule_boxes) {
-      if (constant_pairs->contains(ids)) continue;
-      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
-      if (!gap || gap->distance >= best.distance) continue;
-      which = ids;
-      const Eigen::Vector3d half = 0.5 * gap->distance * gap->normal_W;
-      best = {{}, gap->distance, gap->point_W - half, gap->point_W + half};
-    }
-    if (which.geom1 < 0) return std::nullopt;
-    best.pair = name_pair(which);
-    return best;
+    return std::nullopt;
   }
 
   Model model;  // keeps the arrays alive
@@ -233,19 +269,23 @@ struct ExactChecker::Impl {
   std::vector<double> q_rest;
   std::vector<GeomIds> capsule_boxes;
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
+  std::optional<detail::NeverMeet> never_meet;      // once it was asked for; each copy its own
   std::unique_ptr<mjData, DeleteData> d;
 };
 
 Result<ExactChecker> ExactChecker::create(const Model& model, const Arm& arm,
                                           const ExactOptions& options) {
   const auto fits = [](double length) { return length >= 0 && std::isfinite(length); };
-  if (!fits(options.margin) || !fits(options.allow_depth)) {
+  if (!fits(options.margin) || !fits(options.allow_depth) || !fits(options.rest_depth)) {
     return fail(Errc::bad_input, text(msg::collision_exact_options));
   }
   ExactChecker out(model, arm, options);
   if (!out.impl_->sound) return fail(out.impl_->sound.error());
   if (!out.impl_->bodies.matches) {
     return fail(Errc::bad_input, text(msg::collision_other_arm, arm.name));
+  }
+  if (!out.impl_->fits()) {
+    return fail(Errc::bad_input, text(msg::collision_cover_qpos, out.impl_->m.nq));
   }
   return out;
 }
@@ -264,6 +304,9 @@ ExactChecker& ExactChecker::operator=(ExactChecker&&) noexcept = default;
 
 Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
   if (!impl_->sound) return fail(impl_->sound.error());
+  if (!impl_->fits()) {
+    return fail(Errc::bad_input, text(msg::collision_cover_qpos, impl_->m.nq));
+  }
   if (!impl_->accepts(q)) {
     return fail(Errc::bad_input,
                 text(msg::collision_bad_q, impl_->bodies.addresses.size(), q.size()));

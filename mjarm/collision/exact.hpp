@@ -20,6 +20,11 @@ struct ExactOptions {
   double margin = 0.1;      ///< [m] up to where check() looks for the nearest pair, >= 0; 0 = never
   double allow_depth = 0;   ///< [m] overlap that still counts as free, >= 0
   ContactRules rules = {};  ///< what hangs on the tool, what may touch
+  /// (nq,) [rad or m] where joints off the arm stand; empty: keyframe `home`, else initial values.
+  std::vector<double> qpos = {};
+  /// [m] by which attached bodies may overlap what the arm does not move, >= 0: they lie on things
+  /// when they are picked up and put down. So much of an overlap counts as a distance of 0.
+  double rest_depth = 0;
 };
 
 /// Two geoms and the bodies they belong to, by name. A geom without a name is called BODY[k], the
@@ -37,8 +42,9 @@ struct ContactPoint {
   Eigen::Vector3d normal_W;  ///< unit, from geom 1 to geom 2
 };
 
-/// The two geoms that are nearest to each other, of those whose distance the arm can change (a
-/// first link that turns over the floor always is as near to it).
+/// The two geoms that are nearest to each other, of those that the arm can bring together: pairs
+/// whose distance no joint changes (a first link that turns over the floor), and neighbouring links
+/// that are proved never to meet within the limits of the joints between them, do not count.
 struct NearestPair {
   GeomPair pair;
   double distance = 0;   ///< [m] between the surfaces; negative where they overlap

@@ -24,7 +24,7 @@ std::string name_of(const mjModel& m, int type, int id) {
 }  // namespace
 
 ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<AttachedBody>& attached_in)
-    : pieces(static_cast<std::size_t>(m.nbody)) {
+    : pieces(static_cast<std::size_t>(m.nbody)), carried(static_cast<std::size_t>(m.nbody)) {
   for (const ArmJoint& joint : arm.joints) {
     const int id = joint_at(m, joint.qpos);
     if (id < 0) {
@@ -36,13 +36,16 @@ ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<Attache
     pieces[static_cast<std::size_t>(m.jnt_bodyid[id])] = static_cast<int>(addresses.size());
   }
   for (const AttachedBody& one : attached_in) {
-    const int body = mj_name2id(&m, mjOBJ_BODY, one.body.c_str());
+    const int body = find_body(m, one.body);
     attached.push_back({m.jnt_qposadr[m.body_jntadr[body]], one.X_TB});
     pieces[static_cast<std::size_t>(body)] = static_cast<int>(addresses.size());
+    carried[static_cast<std::size_t>(body)] = true;
   }
   for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
+    const auto parent = static_cast<std::size_t>(m.body_parentid[b]);
     int& piece = pieces[static_cast<std::size_t>(b)];
-    piece = std::max(piece, pieces[static_cast<std::size_t>(m.body_parentid[b])]);
+    piece = std::max(piece, pieces[parent]);
+    if (carried[parent]) carried[static_cast<std::size_t>(b)] = true;
   }
 }
 
@@ -69,6 +72,18 @@ std::string geom_name(const mjModel& m, int geom) {
   return body_name(m, body) + "[" + std::to_string(geom - m.body_geomadr[body]) + "]";
 }
 
-std::string body_name(const mjModel& m, int body) { return name_of(m, mjOBJ_BODY, body); }
+std::string body_name(const mjModel& m, int body) {
+  std::string name = name_of(m, mjOBJ_BODY, body);
+  return name.empty() ? "#" + std::to_string(body) : name;
+}
+
+int find_body(const mjModel& m, const std::string& name) {
+  const int body = mj_name2id(&m, mjOBJ_BODY, name.c_str());
+  if (body >= 0 || !name.starts_with('#')) return body;
+  for (int b = 1; b < static_cast<int>(m.nbody); ++b) {
+    if (body_name(m, b) == name) return b;
+  }
+  return -1;
+}
 
 }  // namespace mjarm::detail

@@ -27,8 +27,9 @@ struct ArmBodies {
   std::vector<int> addresses;  ///< of the arm's joints in qpos
   std::vector<int> bodies;     ///< that these joints are of
   std::vector<Attached> attached;
-  std::vector<int> pieces;  ///< per body: how many joints of the arm move it
-  bool matches = true;      ///< the arm is one of this model
+  std::vector<int> pieces;    ///< per body: how many joints of the arm move it
+  std::vector<bool> carried;  ///< per body: it is attached, or hangs on what is
+  bool matches = true;        ///< the arm is one of this model
 };
 
 /// Pairs of geoms that ContactRules let touch.
@@ -46,7 +47,9 @@ class ContactFilter {
 
 /// Name of a geom; BODY[k], the k-th (from 0) of its body, where it has none.
 [[nodiscard]] std::string geom_name(const mjModel& m, int geom);
-/// Name of a body; empty where it has none.
+/// Name of a body; `#7`, its number, where it has none.
 [[nodiscard]] std::string body_name(const mjModel& m, int body);
+/// The body of that name; -1 where there is none.
+[[nodiscard]] int find_body(const mjModel& m, const std::string& name);
 
 }  // namespace mjarm::detail

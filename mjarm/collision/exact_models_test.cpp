@@ -200,5 +200,55 @@ TEST(ExactCheckerModels, PandaHandInTheFloorIsNamed) {
       << describe(*report);
 }
 
+/// Least distance of two geoms over many postures, [m].
+double least_distance(const Shipped& robot, const GeomPair& pair) {
+  const mjModel& m = *robot.model.raw();
+  const int a = mj_name2id(&m, mjOBJ_GEOM, pair.geom1.c_str());
+  const int b = mj_name2id(&m, mjOBJ_GEOM, pair.geom2.c_str());
+  if (a < 0 || b < 0) return 0;
+  Rng rng(5);
+  double least = 1;
+  for (int k = 0; k < 4000 && least > 0.02; ++k) {
+    const std::vector<double> q = robot.random_q(rng);
+    for (std::size_t i = 0; i < q.size(); ++i) robot.d->qpos[robot.arm.joints[i].qpos] = q[i];
+    mj_kinematics(&m, robot.d.get());
+    least = std::min(least, detail::geom_distance(m, robot.d.get(), {a, b}, least));
+  }
+  return least;
+}
+
+/// Neighbouring links that cannot meet are as near to each other in nearly every posture, and would
+/// hide all else.
+TEST(ExactChecker, TheNearestPairIsOneThatCanMeet) {
+  for (const char* name : {"ur5e", "panda"}) {
+    const Shipped robot(name);
+    ExactChecker checker(robot.model, robot.arm);
+    std::set<std::pair<std::string, std::string>> told;
+    Rng rng(3);
+    for (int k = 0; k < 200; ++k) {
+      const std::vector<double> q = robot.random_q(rng);
+      const CollisionReport report = checker.check(q).value();
+      if (!report.free || !report.nearest) continue;
+      const GeomPair& pair = report.nearest->pair;
+      if (!told.insert({pair.geom1, pair.geom2}).second) continue;
+      EXPECT_LE(least_distance(robot, pair), 0.02)
+          << name << ": " << pair.geom1 << " - " << pair.geom2;
+    }
+    EXPECT_GT(told.size(), 3U) << name;
+  }
+}
+
+/// The elbow near the floor: nothing else of the arm is as near to anything that it could touch.
+TEST(ExactChecker, AnElbowNearTheFloorIsSeen) {
+  const Shipped robot("ur5e");
+  ExactChecker checker(robot.model, robot.arm);
+  const std::vector<double> q{0, -2.95, 1.5, 0, 1.57, 0};
+  const CollisionReport report = checker.check(q).value();
+  ASSERT_TRUE(report.free) << describe(report);
+  ASSERT_TRUE(report.nearest);
+  EXPECT_EQ(report.nearest->pair.geom1, "floor") << describe(report);
+  EXPECT_LT(report.nearest->distance, 0.1);
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -11,7 +11,8 @@ Execution::Execution(const Model& model, const MotionPlan& plan, Controller cont
     : plan_(&plan),
       controller_(std::move(controller)),
       clock_(plan, model.timestep(), options.rest),
-      recorder_(options.recorder) {}
+      recorder_(options.recorder),
+      watch_(model, plan) {}
 
 Result<Execution> Execution::create(const Model& model, const MotionPlan& plan,
                                     const ExecutionOptions& options) {
@@ -35,6 +36,7 @@ void Execution::restart() {
   clock_.restart();
   stepper_.reset();
   motions_.clear();
+  watch_.restart();
 }
 
 void Execution::begin_motion(Sim& sim, std::size_t move) {
@@ -50,6 +52,9 @@ void Execution::take_measures(const Sim& sim) {
   motions_.back().to = sim.time();
   motions_.back().outcome = stepper_->outcome(sim);
   motions_.back().outcome.reached = reached;
+  const std::optional<TimedContact>& contact = watch_.first_contact();
+  const bool here = contact && contact->time >= motions_.back().from;
+  motions_.back().outcome.first_contact = here ? contact : std::nullopt;
 }
 
 MotionClock::Step Execution::next(Sim& sim) {
@@ -66,10 +71,14 @@ Result<void> Execution::step(Sim& sim) { return make_step(sim, next(sim)); }
 Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
   if (step.begins) begin_motion(sim, step.motion);
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
+  if (step.begins && motions_.size() == 1) watch_.look(sim, step.motion);
   if (auto stepped = stepper_->step(sim, controller_, step.reference, recorder_); !stepped) {
     return stepped;
   }
+  watch_.look(sim, step.motion);
   if (step.ends) {
+    const std::size_t all = plan_->moves.size();
+    if (step.motion + 1 == all) watch_.look(sim, all);
     motions_.back().outcome.reached = 1;
     take_measures(sim);
   }

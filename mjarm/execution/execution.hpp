@@ -9,6 +9,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/execution/motion_clock.hpp"
 #include "mjarm/execution/motion_plan.hpp"
+#include "mjarm/execution/object_watch.hpp"
 #include "mjarm/sim/recorder.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/sim/stepper.hpp"
@@ -69,8 +70,10 @@ class Execution {
   [[nodiscard]] State state() const { return clock_.state(); }
   /// The motions that were begun since the start, in order.
   [[nodiscard]] const std::vector<ExecutedMotion>& motions() const { return motions_; }
-  /// What all of them did together.
+  /// What all of them did together; its first contact is one that the plan does not know.
   [[nodiscard]] FollowOutcome outcome() const;
+  /// What became of the objects of the scene.
+  [[nodiscard]] std::vector<ObservedObject> objects() const { return watch_.objects(); }
 
  private:
   Execution(const Model& model, const MotionPlan& plan, Controller controller,
@@ -87,6 +90,7 @@ class Execution {
   Recorder* recorder_;
   std::optional<Stepper> stepper_;
   std::vector<ExecutedMotion> motions_;
+  ObjectWatch watch_;
 };
 
 }  // namespace mjarm

@@ -51,6 +51,7 @@ struct PlannedMove {
   /// as well.
   std::vector<JointVec> corners = {};
   std::optional<bool> close = {};             ///< the gripper closes or opens at its beginning
+  std::vector<AttachedBody> attached = {};    ///< to the first arm's tool, at its end
   std::vector<SpeedDip> dips = {};            ///< where the tool is slower than asked
   std::optional<MoveMeasures> measures = {};  ///< none for rests
 

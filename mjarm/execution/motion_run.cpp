@@ -24,11 +24,10 @@ Pose tool_in_tool(const MotionPlan& plan, std::size_t i) {
 }  // namespace
 
 MotionRun::MotionRun(const Model& model, const Arm& arm)
-    : model_(model),
-      arm_(arm),
-      sim_(model),
-      recorder_(model, arm),
-      q_command_(sim_.arm_state(arm).q) {}
+    : model_(model), arm_(arm), sim_(model), recorder_(model, arm) {
+  sim_.reset_home();
+  q_command_ = sim_.arm_state(arm).q;
+}
 
 void MotionRun::start_at(std::span<const double> q) {
   sim_.place(arm_, q);
@@ -65,6 +64,7 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
     return !after_step_ || after_step_(sim, !move.is_approach());
   });
   if (!outcome) return fail(outcome.error());
+  objects_ = execution->objects();
   for (const ExecutedMotion& motion : execution->motions()) {
     const PlannedMove& move = plan.moves[motion.move];
     add(motion.outcome);
@@ -142,12 +142,34 @@ Report MotionRun::report(const MotionPlan& plan, std::span<const MeasuredRun> ru
     told.duration = move.trajectory.duration();
     if (is_measured(plan, i) && k < runs.size()) told.path_error = runs[k++].error;
   }
+  out.objects = objects_;
   if (!ended_early() && !plan.moves.empty()) {
     const Arm& arm = plan.arms.front();
     out.done = 1;
     out.static_error = pose_error(fk(arm, as_span(plan.q_end())), sim_.tool(arm));
   }
-  return report(runs, tolerance, std::move(out));
+  out = report(runs, tolerance, std::move(out));
+  look_at_contacts(out);
+  return out;
+}
+
+/// What went wrong beside the path says more about it than how far off the arm was.
+void MotionRun::look_at_contacts(Report& report) const {
+  if (ended_early()) return;
+  const auto lost = std::ranges::find_if(
+      objects_, [](const ObservedObject& one) { return one.fault != ObjectFault::none; });
+  if (lost != objects_.end()) {
+    report.reason = name(lost->fault);
+    report.detail = describe(*lost);
+  } else if (total_.first_contact) {
+    const TimedContact& first = *total_.first_contact;
+    report.reason = "contact";
+    report.detail =
+        text(msg::execution_touched, first.contact.first, first.contact.second, first.time);
+  } else {
+    return;
+  }
+  report.ok = false;
 }
 
 Report MotionRun::report(std::span<const MeasuredRun> runs, double tolerance, Report begun) const {

@@ -24,7 +24,7 @@ namespace mjarm {
 ///   Report report = run.report(plan, run.measured_runs(), 5e-4);
 class MotionRun {
  public:
-  /// The arm stands where the model begins.
+  /// All stands as at keyframe `home`, else where the model begins.
   MotionRun(const Model& model, const Arm& arm);
 
   /// Called after every step; `measured` tells that of approaches from the rest. Returns false to
@@ -68,7 +68,8 @@ class MotionRun {
   [[nodiscard]] Report report(std::span<const MeasuredRun> runs, double tolerance,
                               Report begun = {}) const;
   /// The same of an executed plan, with what was planned, what each motion did and how well the arm
-  /// stands at the end.
+  /// stands at the end. Contacts that the plan does not know withdraw `ok`, and so do objects that
+  /// were moved, touched or lost.
   [[nodiscard]] Report report(const MotionPlan& plan, std::span<const MeasuredRun> runs,
                               double tolerance, Report begun = {}) const;
 
@@ -79,6 +80,7 @@ class MotionRun {
   /// Keeps what a motion did.
   void add(const FollowOutcome& outcome);
   void put_sums(Report& report) const;
+  void look_at_contacts(Report& report) const;
 
   Model model_;
   Arm arm_;
@@ -88,6 +90,7 @@ class MotionRun {
   JointVec q_command_;
   FollowOutcome total_;
   std::vector<MeasuredSpan> spans_;
+  std::vector<ObservedObject> objects_;  ///< of the last plan
   std::string end_reason_, end_detail_;
 };
 

@@ -46,6 +46,20 @@ JsonDoc to_json(const ReportedMove& move) {
   return out;
 }
 
+JsonDoc to_json(const ObservedObject& object) {
+  JsonDoc out{{"name", object.name},         {"ok", object.fault == ObjectFault::none},
+              {"carried", object.carried},   {"moved", object.moved},
+              {"off_plan", object.off_plan}, {"turned", object.turned},
+              {"fell", object.fell}};
+  if (object.fault != ObjectFault::none) out.set("reason", std::string(name(object.fault)));
+  if (object.at) out.set("at", *object.at);
+  if (!object.touched.empty()) {
+    out.set("touched", {{"what", object.touched}, {"at", object.touched_at}});
+  }
+  if (object.by_itself) out.set("by_itself", true);
+  return out;
+}
+
 JsonDoc to_json(const std::map<std::string, double>& figures) {
   JsonDoc out{std::initializer_list<JsonDoc::Member>{}};
   for (const auto& [name, value] : figures) out.set(name.c_str(), value);
@@ -134,6 +148,7 @@ std::string to_json(const Report& report) {
   }
   for (const Fact& fact : report.facts) put_fact(fact, out);
   put_list("moves", report.moves, [](const auto& move) { return to_json(move); }, out);
+  put_list("objects", report.objects, [](const auto& one) { return to_json(one); }, out);
   if (report.rtf) out.set("rtf", *report.rtf);
   return out.document();
 }

@@ -11,6 +11,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/execution/metrics.hpp"
 #include "mjarm/execution/motion_plan.hpp"
+#include "mjarm/execution/object_watch.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm {
@@ -69,7 +70,8 @@ struct Report {
   std::vector<std::size_t> unreachable;      ///< indices of the poses that cannot be reached
   std::optional<Eigen::Vector3d> shift;      ///< [m] shift of the path that was verified to mend it
   std::vector<ReportedMove> moves;           ///< of a plan, in order
-  std::vector<Fact> facts;                   ///< what this run alone has to tell
+  std::vector<ObservedObject> objects;  ///< of the scene, that were carried or are not in place
+  std::vector<Fact> facts;              ///< what this run alone has to tell
   std::optional<double> rtf;  ///< simulated seconds a wall-clock second, without rendering
 };
 

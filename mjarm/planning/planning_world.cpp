@@ -53,7 +53,8 @@ Result<PlanningWorld> PlanningWorld::create(const Robot& robot, WorldOptions opt
 
 Result<WorldLevel> PlanningWorld::covered(double bound, const StopCheck& stop) const {
   const CoverOptions options{.bound = bound,
-                             .whole_stroke = robot_.arm.gripper.has_value(),
+                             .qpos = options_.qpos,
+                             .whole_stroke = robot_.arm.gripper && options_.qpos.empty(),
                              .rules = options_.rules,
                              .stop = stop};
   Result<ModelCover> cover = cover_model(robot_.model, robot_.arm, options);

@@ -31,6 +31,9 @@ struct WorldOptions {
   /// as much between two of these links. Pairs that may touch by `rules` or by the model, and pairs
   /// that are proved never to meet (ModelCover), are not held to it.
   double margin = 0;
+  /// (nq,) [rad or m] where joints off the arm stand, those of its gripper as well; empty: keyframe
+  /// `home`, else initial values, and all that a gripper can do counts.
+  std::vector<double> qpos = {};
   /// [m] kMinSphereBound to kMaxSphereBound: by how much spheres may stick out of the links; each
   /// is tried where the one before may have been what was in the way.
   std::vector<double> bounds = {0.012, 0.003};
@@ -67,8 +70,7 @@ struct WorldFailure {
 
 /// Plans paths of one robot in its scene. The model is covered with spheres when a path is asked
 /// for first, and again with finer ones when coarse ones may be what is in the way; what was made
-/// is kept. Joints off the arm stand at keyframe `home`, else at their initial values; all that a
-/// gripper can do counts. The same input gives the same path. Copy it to use it from another
+/// is kept. The same input gives the same path. Copy it to use it from another
 /// thread.
 class PlanningWorld {
  public:

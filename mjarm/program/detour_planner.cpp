@@ -200,7 +200,7 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
   limits.velocity *= share;
   limits.acceleration *= share;
   if (!world_) {
-    Result<PlanningWorld> made = PlanningWorld::create(robot_);
+    Result<PlanningWorld> made = PlanningWorld::create(robot_, options_);
     if (!made) return no_detour("bad_input", made.error().what);
     world_ = std::move(*made);
   }

@@ -37,11 +37,14 @@ class DetourPlanner {
  public:
   /// @param ik     whose answers to poses become goals.
   /// @param judge  by which start, goals and motions are checked.
+  /// @param world  what is attached, and where things stand.
   /// @param stop   ends the work with the fault `stopped`.
-  DetourPlanner(Robot robot, IkSolver ik, MoveJudge judge, StopCheck stop = {})
+  DetourPlanner(Robot robot, IkSolver ik, MoveJudge judge, WorldOptions world = {},
+                StopCheck stop = {})
       : robot_(std::move(robot)),
         ik_(std::move(ik)),
         judge_(std::move(judge)),
+        options_(std::move(world)),
         stop_(std::move(stop)) {}
 
   /// All answers to a pose from `q`, or the fault of the start or of the pose.
@@ -68,6 +71,7 @@ class DetourPlanner {
   Robot robot_;
   IkSolver ik_;
   MoveJudge judge_;
+  WorldOptions options_;
   StopCheck stop_;
   std::optional<PlanningWorld> world_;  // made when a detour is asked for first
 };

@@ -121,7 +121,7 @@ Result<ModelRunReport> simulate_model(const Model& model, const ModelRunOptions&
   }
   Result<Sim> sim = start_model(model, options.start);
   if (!sim) return fail(std::move(sim.error()));
-  const Result<OutputFolder> folder = OutputFolder::open(output.out);
+  const Result<OutputFolder> folder = OutputFolder::open(output.out, output.replace);
   if (!folder) return fail(folder.error());
   Watched watched(model);
   if (output.video) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "mjarm/core/long_result.hpp"
 #include "mjarm/render/camera.hpp"
 #include "mjarm/render/plot.hpp"
 #include "mjarm/session/run_model.hpp"
@@ -17,6 +18,7 @@ struct ModelOutput {
   render::Camera camera = {};
   bool video = false;  ///< video.mp4 as well
   bool timing = true;  ///< wall-clock fields in the report
+  Replace replace = {};
 };
 
 /// What came of it.

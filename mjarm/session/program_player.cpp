@@ -34,7 +34,7 @@ Result<ProgramPlayer> ProgramPlayer::create(const program::LoadedProgram& loaded
 }
 
 void ProgramPlayer::restart() {
-  (void)sim_.reset();  // to no keyframe, which cannot fail
+  sim_.reset_home();
   sim_.place(loaded_->robot.arm, as_span(loaded_->plan.q_start));
   execution_.restart();
   record_.clear();

@@ -20,6 +20,7 @@ class ProgramRun {
  public:
   explicit ProgramRun(const program::LoadedProgram& loaded)
       : loaded_(loaded), sim_(loaded.robot.model) {
+    sim_.reset_home();
     sim_.place(loaded.robot.arm, as_span(loaded.plan.q_start));
     add_planned_paths(planned_, loaded.plan);
   }

@@ -97,8 +97,9 @@ struct Sim::Impl {
         return geom >= 0 && moved_by(m(), m().geom_bodyid[geom], root);
       };
       if (!counts(contact.geom[0]) && !counts(contact.geom[1])) continue;
+      const auto body = [&](int geom) { return geom >= 0 ? m().geom_bodyid[geom] : -1; };
       add_contact(all, {raw::geom_name(m(), contact.geom[0]), raw::geom_name(m(), contact.geom[1]),
-                        -contact.dist});
+                        -contact.dist, body(contact.geom[0]), body(contact.geom[1])});
     }
     return all;
   }
@@ -126,6 +127,10 @@ Result<void> Sim::reset(std::string_view keyframe) {
     impl_->refresh();
   }
   return {};
+}
+
+void Sim::reset_home() {
+  if (mj_name2id(&impl_->m(), mjOBJ_KEY, "home") < 0 || !reset("home")) impl_->reset();
 }
 
 void Sim::place(const Arm& arm, std::span<const double> q) {
@@ -263,6 +268,12 @@ JointVec Sim::arm_torque(const Arm& arm) const {
 }
 
 Pose Sim::tool(const Arm& arm) const { return raw::tool_pose(impl_->m(), impl_->d(), arm); }
+
+Pose Sim::body_pose(int body) const {
+  using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const mjData& d = impl_->d();
+  return {Eigen::Vector3d(d.xpos + 3 * body), Eigen::Map<const Rows>(d.xmat + 9 * body)};
+}
 
 std::vector<Contact> Sim::contacts() const { return impl_->contacts(0); }
 

@@ -19,6 +19,8 @@ struct Contact {
   std::string first;  ///< geom name, or body name where the geom has none
   std::string second;
   double depth = 0;  ///< [m] > 0 where they overlap, of the deepest point
+  int body1 = -1;    ///< the body of `first` in the model; -1 where it is no geom
+  int body2 = -1;    ///< that of `second`
 };
 
 /// A copy of the full state, for drawing and for going back; holds no MuJoCo types.
@@ -42,6 +44,8 @@ class Sim {
   /// Back to keyframe `name`, or to the initial state where `name` is empty.
   /// @return an error with the nearest name.
   [[nodiscard]] Result<void> reset(std::string_view keyframe = {});
+  /// Back to keyframe `home` where there is one, else to the initial state: as plans take a scene.
+  void reset_home();
   /// Puts the arm's joints at `q` (dof,), at rest, with matching ctrl where its actuators are
   /// servos. All else stays.
   void place(const Arm& arm, std::span<const double> q);
@@ -77,6 +81,7 @@ class Sim {
   [[nodiscard]] JointState arm_state(const Arm& arm) const;  ///< q, v, a of the arm's joints
   [[nodiscard]] JointVec arm_torque(const Arm& arm) const;   ///< (dof,) [N m or N] of its drives
   [[nodiscard]] Pose tool(const Arm& arm) const;             ///< X_WT as simulated
+  [[nodiscard]] Pose body_pose(int body) const;              ///< X_WB of a body, by its number
   [[nodiscard]] std::vector<Contact> contacts() const;
   /// Contacts of what the arm moves (links, gripper), with the world or with itself.
   [[nodiscard]] std::vector<Contact> contacts(const Arm& arm) const;

@@ -39,6 +39,20 @@ std::vector<std::string> row_of(const program::ProgramPlan& plan, const PlannedM
                   : text(msg::motion_program_far))};
 }
 
+std::vector<std::string> held_names(const PlannedMove& move) {
+  std::vector<std::string> out;
+  for (const AttachedBody& one : move.attached) out.push_back(one.body);
+  return out;
+}
+
+/// What the gripper holds once it has closed.
+std::string grip_line(const PlannedMove& move) {
+  std::string names;
+  for (const std::string& name : held_names(move)) names += (names.empty() ? "" : ", ") + name;
+  if (names.empty()) return text(msg::motion_program_holds_nothing, move.place.line) + "\n";
+  return text(msg::motion_program_holds, move.place.line, names) + "\n";
+}
+
 JsonDoc move_json(const program::ProgramPlan& plan, const PlannedMove& move) {
   const Arm& arm = plan.arms[move.tool];
   JsonDoc out = {{"line", move.place.line},
@@ -46,6 +60,7 @@ JsonDoc move_json(const program::ProgramPlan& plan, const PlannedMove& move) {
                  {"instructions", move.instructions},
                  {"duration", move.trajectory.duration()}};
   if (move.curve) out.set("length", move.curve->length());
+  if (move.close || !move.attached.empty()) out.set("holds", held_names(move));
   if (!move.measures) return out;
   const MoveMeasures& measures = *move.measures;
   out.set("min_singular_value", measures.singularity.smallest);
@@ -120,6 +135,9 @@ std::string plan_text(const program::LoadedProgram& loaded) {
        text(msg::motion_program_clearance)}};
   for (const PlannedMove& move : plan.moves) rows.push_back(row_of(plan, move));
   std::string out = aligned(rows);
+  for (const PlannedMove& move : plan.moves) {
+    if (move.close.value_or(false)) out += grip_line(move);
+  }
   for (const PlannedMove& move : plan.moves) {
     for (const SpeedDip& dip : move.dips) {
       out += text(msg::motion_program_dip, move.place.line, describe(dip, plan.arms[move.tool])) +

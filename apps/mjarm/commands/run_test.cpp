@@ -5,6 +5,7 @@
 
 #include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/program/held_part_test.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -106,6 +107,32 @@ TEST(Run, DoesWhatItPlannedAndWritesItDown) {
     EXPECT_TRUE(std::filesystem::exists(out / name)) << name;
   }
   EXPECT_NE(read_file(out / "plot.svg").value().find(">limits<"), std::string::npos);
+}
+
+/// A part that is too smooth for the fingers: the plan holds it, the run does not.
+TEST(Run, AHeldPartIsToldAndItsLossSaid) {
+  const support::TempFolder folder;
+  const std::string lift = "  - movel: " + testing::pose_at(0.5, -0.2, 0.15) + "\n";
+  const auto file = folder
+                        .write("job.yaml", "robot: panda\nscene: cell.xml\nprogram:\n" +
+                                               testing::pick_up() + lift)
+                        .string();
+  folder.write("cell.xml", testing::PartAndFence{.friction = 0.01}.scene());
+  const auto check = mjarm({"check", file});
+  EXPECT_EQ(check.exit_code, 0) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("line 7: the gripper then holds part"));
+  const auto moves = nlohmann::json::parse(mjarm({"check", file, "--json"}).out).at("moves");
+  EXPECT_EQ(moves.back().at("holds"), nlohmann::json::array({"part"}));
+  const auto out = folder.path() / "out";
+  const auto run = mjarm({"run", file, "--headless", "--out", out.string()});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(only_line(run), HasSubstr("part"));
+  const auto report = support::load_json(out / "report.json");
+  EXPECT_EQ(report.at("ok"), false);
+  EXPECT_EQ(report.at("reason"), "object_lost");
+  ASSERT_EQ(report.at("objects").size(), 1U);
+  EXPECT_EQ(report.at("objects")[0].at("name"), "part");
+  EXPECT_EQ(report.at("objects")[0].at("carried"), true);
 }
 
 TEST(Check, BlockedMovesTellTheDetour) {

@@ -27,6 +27,7 @@ struct Options {
   SimArguments sim;
   std::string seconds = "5", out = "mjarm-out/sim", camera;
   bool video = false, no_timing = false;
+  Replace replace;
 };
 
 /// From where to where the parts went that moved most.
@@ -72,8 +73,11 @@ Result<int> run(const Options& options) {
   const Result<render::Camera> camera = choose_camera(*model, options.camera);
   if (!camera) return fail(camera.error());
   if (model->nq() == 0) log_warning(text(msg::sim_command_nothing_moves, file));
-  const session::ModelOutput output{
-      .out = options.out, .camera = *camera, .video = options.video, .timing = !options.no_timing};
+  const session::ModelOutput output{.out = options.out,
+                                    .camera = *camera,
+                                    .video = options.video,
+                                    .timing = !options.no_timing,
+                                    .replace = options.replace};
   const auto report = session::simulate_model(*model, *how, output);
   if (!report) return fail(report.error());
   return conclude(*model, *report, options.out);
@@ -88,6 +92,7 @@ Run setup(CLI::App& app) {
   add_flag(app, "--video", options->video, msg::demo_option_video);
   add_option(app, "--camera", options->camera, msg::render_command_option_camera, "C");
   add_flag(app, "--no-timing", options->no_timing, msg::demo_option_no_timing);
+  add_overwrite_option(app, options->replace);
   add_package_path_option(app, options->robot.package_paths);
   add_outside_option(app, options->robot.allow_outside);
   return [options] { return run(*options); };

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "mjarm/collision/cover_pairs_internal.hpp"
+#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/core/result.hpp"
+
+namespace mjarm::detail {
+
+/// Which geoms the arm's joints cannot bring together, whatever they do within their limits; proved
+/// for each pair when it is asked for, and remembered.
+class NeverMeet {
+ public:
+  /// @param rules, qpos  as for the cover of the model.
+  NeverMeet(const Model& model, const Arm& arm, const ContactRules& rules,
+            const std::vector<double>& qpos);
+
+  [[nodiscard]] bool operator()(GeomIds ids);
+
+ private:
+  /// Where a geom is in the groups.
+  struct Place {
+    int joint = -1;
+    std::size_t group = 0;
+    PlacedGeom placed;
+  };
+  Result<GeomGroups> groups_;
+  std::map<int, Place> places_;
+  std::unique_ptr<MeetingProof> proof_;  ///< none where the model cannot be sorted
+  std::map<GeomIds, bool> known_;
+};
+
+}  // namespace mjarm::detail

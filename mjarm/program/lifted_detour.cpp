@@ -1,0 +1,93 @@
+#include <optional>
+#include <utility>
+
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/program/lifted_detour_internal.hpp"
+
+namespace mjarm::program::detail {
+namespace {
+
+constexpr double kLift = 0.03;        // [m] more than spheres stick out, twice over
+constexpr std::size_t kMaxGoals = 4;  // that are looked at from above, the first ones
+
+/// Where the arm is with the tool moved off, near `q`; none where it cannot stand there.
+std::optional<JointVec> lifted(const Tool& with, const JointVec& q, bool up) {
+  Pose X = fk(with.arm, as_span(q));
+  const Eigen::Vector3d way = up ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(-X.R.col(2));
+  X.p += kLift * way;
+  const auto answer = with.ik.solve(X, as_span(q));
+  constexpr double kNear = 0.5;  // [rad or m] another branch is no way up
+  if (!answer || (answer->q - q).cwiseAbs().maxCoeff() > kNear) return std::nullopt;
+  return answer->q;
+}
+
+class LiftedPlanner {
+ public:
+  LiftedPlanner(Tool& with, const JointVec& q, std::span<const JointVec> goals, double share,
+                const MoveTo& move_to)
+      : with_(with), q_(q), goals_(goals), share_(share), move_to_(move_to) {}
+
+  Result<LiftedDetour, DetourFault> plan() {
+    Result<LiftedDetour, DetourFault> first = attempt(false, false, true);
+    if (first || first.error().reason != "collision") return first;
+    for (const bool up : {true, false}) {
+      for (const auto& [lift, lower] : {std::pair(true, false), {false, true}, {true, true}}) {
+        if (auto found = attempt(lift, lower, up)) return found;
+      }
+    }
+    return first;
+  }
+
+ private:
+  Result<LiftedDetour, DetourFault> attempt(bool lift, bool lower, bool up) {
+    const DetourFault none{"collision", {}};
+    LiftedDetour out;
+    JointVec from = q_;
+    if (lift) {
+      const auto above = lifted(with_, q_, up);
+      if (!above || !move_to_(q_, *above, "lift", out.before)) return tl::unexpected(none);
+      from = *above;
+    }
+    std::vector<JointVec> to(goals_.begin(), goals_.end());
+    std::vector<std::size_t> index;
+    if (lower) to = above_goals(up, index);
+    if (to.empty()) return tl::unexpected(none);
+    Result<DetourMotion, DetourFault> motion = with_.detours.plan(from, to, share_);
+    if (!motion) return tl::unexpected(std::move(motion.error()));
+    out.goal = lower ? index[motion->goal] : motion->goal;
+    if (lower) {
+      const JointVec& last = motion->corners.back();
+      if (!move_to_(last, goals_[out.goal], "lower", out.after)) return tl::unexpected(none);
+    }
+    out.motion = std::move(*motion);
+    return out;
+  }
+
+  /// @param index  gets of each the goal that it is above.
+  std::vector<JointVec> above_goals(bool up, std::vector<std::size_t>& index) const {
+    std::vector<JointVec> out;
+    for (std::size_t g = 0; g < goals_.size() && out.size() < kMaxGoals; ++g) {
+      if (const auto above = lifted(with_, goals_[g], up)) {
+        out.push_back(*above);
+        index.push_back(g);
+      }
+    }
+    return out;
+  }
+
+  Tool& with_;
+  const JointVec& q_;
+  std::span<const JointVec> goals_;
+  double share_;
+  const MoveTo& move_to_;
+};
+
+}  // namespace
+
+Result<LiftedDetour, DetourFault> plan_lifted(Tool& with, const JointVec& q,
+                                              std::span<const JointVec> goals, double share,
+                                              const MoveTo& move_to) {
+  return LiftedPlanner(with, q, goals, share, move_to).plan();
+}
+
+}  // namespace mjarm::program::detail

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mjarm/program/closed_way_internal.hpp"
+#include "mjarm/program/program_plan.hpp"
+#include "mjarm/program/program_steps_internal.hpp"
+#include "mjarm/program/workplaces_internal.hpp"
+
+namespace mjarm::program::detail {
+
+/// Ends the work on one step.
+struct PlanFault {
+  std::size_t step;
+  std::string reason;
+  std::string what;
+  Errc code = Errc::impossible;
+  std::optional<ClosedWay> way = {};
+};
+
+/// Moves that follow each other, and what ended them early.
+struct Attempt {
+  std::vector<PlannedMove> moves;
+  std::size_t next = 0;  ///< the first step that is not done
+  Stand at;              ///< where the arm is then
+  std::optional<PlanFault> fault;
+};
+
+/// Where a `plan` may end: its joint values, or the answers to its pose.
+[[nodiscard]] Result<Answers, NoAnswer> goals_of(const Tool& with, const Step& step,
+                                                 const JointVec& q);
+
+/// Plans steps one by one, each with what hangs on its answer.
+class StepPlanner {
+ public:
+  /// All of them outlive this.
+  /// @param tell  called with the index of each step that is begun.
+  StepPlanner(std::span<const Step> steps, const ProgramPlanOptions& options, Workplaces& places,
+              std::function<void(std::size_t)> tell)
+      : steps_(steps), options_(options), places_(places), tell_(std::move(tell)) {}
+
+  /// Plans step `i`, and what hangs on its answer.
+  [[nodiscard]] Attempt from(std::size_t i, const Stand& at);
+
+ private:
+  using ToolPtr = std::shared_ptr<Tool>;
+
+  [[nodiscard]] ToolPtr tool(std::size_t i, const Stand& at) const {
+    return places_.tool(at.scene, steps_[i].tool);
+  }
+  [[nodiscard]] PlannedMove begun(std::size_t i, std::size_t scene) const;
+  [[nodiscard]] Attempt rest(std::size_t i, const Stand& at, double seconds) const;
+  [[nodiscard]] Attempt grip(std::size_t i, const Stand& at);
+  [[nodiscard]] Attempt to_joints(std::size_t i, const Stand& at);
+  [[nodiscard]] Attempt to_pose(std::size_t i, const Stand& at);
+  [[nodiscard]] Attempt to_curve(std::size_t i, const Stand& at);
+  [[nodiscard]] Attempt tool_move(std::size_t i, const Stand& at);
+  [[nodiscard]] Attempt detour(std::size_t i, const Stand& at);
+  [[nodiscard]] Attempt detour_to(std::size_t i, const Stand& at, std::span<const JointVec> to);
+  void tool_moves(Attempt& attempt);
+  [[nodiscard]] std::optional<PlanFault> joint_move(std::size_t i, const Stand& at,
+                                                    const JointVec& goal, const char* word,
+                                                    std::vector<PlannedMove>& moves) const;
+  [[nodiscard]] std::optional<PlanFault> out_of_place(std::size_t i, const Pose& X_WT,
+                                                      const Stand& at) const;
+  [[nodiscard]] Attempt along(std::size_t i, const Stand& at, const Curve& curve, bool here,
+                              std::size_t count = 1);
+
+  std::span<const Step> steps_;
+  const ProgramPlanOptions& options_;
+  Workplaces& places_;
+  std::function<void(std::size_t)> tell_;
+};
+
+}  // namespace mjarm::program::detail
