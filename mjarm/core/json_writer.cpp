@@ -1,5 +1,7 @@
 #include "mjarm/core/json_writer.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -7,6 +9,27 @@
 #include "mjarm/core/number.hpp"
 
 namespace mjarm {
+namespace {
+
+/// DEL and U+0080 to U+009F by their numbers: JSON may hold them as they are, in strings, but
+/// terminals obey them.
+std::string safe(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const auto next = static_cast<unsigned char>(i + 1 < json.size() ? json[i + 1] : 0);
+    const bool c1 = json[i] == '\xC2' && next >= 0x80 && next < 0xA0;
+    if (c1 || json[i] == '\x7F') {
+      out += fmt::format("\\u{:04x}", c1 ? next : 0x7F);
+      i += c1 ? 1 : 0;
+    } else {
+      out += json[i];
+    }
+  }
+  return out;
+}
+
+}  // namespace
 
 void JsonWriter::separate() {
   constexpr std::string_view kNoComma = "{[: ";
@@ -128,11 +151,11 @@ void JsonDoc::set_all(const JsonDoc& other) {
 }
 
 std::string JsonDoc::document() const {
-  return tree_->json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+  return safe(tree_->json.dump(2, ' ', false, ordered_json::error_handler_t::replace)) + '\n';
 }
 
 std::string JsonDoc::line() const {
-  return tree_->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return safe(tree_->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 }  // namespace mjarm

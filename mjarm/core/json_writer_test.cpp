@@ -98,5 +98,17 @@ TEST(JsonDoc, WhatIsNoUtf8OrNoNumberIsReplaced) {
   EXPECT_EQ(doc.line(), "{\"name\":\"a\xEF\xBF\xBD\",\"x\":null}");
 }
 
+TEST(JsonDoc, NothingThatATerminalWouldObey) {
+  const std::string name =
+      "\xc2\x9b"
+      "1m\x7f\x1b\xc2\xa0";
+  const JsonDoc doc{{name.c_str(), name}};
+  EXPECT_EQ(doc.line(), R"({"\u009b1m\u007f\u001b)"
+                        "\xc2\xa0"
+                        R"(":"\u009b1m\u007f\u001b)"
+                        "\xc2\xa0\"}");
+  EXPECT_EQ(nlohmann::json::parse(doc.document()).at(name), name);
+}
+
 }  // namespace
 }  // namespace mjarm

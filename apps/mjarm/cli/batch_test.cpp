@@ -137,25 +137,27 @@ TEST_F(Batch, FilesThatCannotBeOpenedAreNamed) {
   EXPECT_THAT(files(), ElementsAre("in.txt"));
 }
 
+BatchOptions to(const std::string& out) { return {.in = {}, .out = out}; }
+
 TEST_F(Batch, OneAnswerAloneGoesWhereManyWould) {
-  ASSERT_TRUE(write_answer(out_, "{}"));
+  ASSERT_TRUE(write_answer(to(out_), "{}"));
   EXPECT_EQ(folder_.read("out.txt"), "{}\n");
-  ASSERT_TRUE(write_answer(out_, "[]"));
+  ASSERT_TRUE(write_answer(to(out_), "[]"));
   EXPECT_EQ(folder_.read("out.txt"), "[]\n");
   ::testing::internal::CaptureStdout();
-  ASSERT_TRUE(write_answer("-", "a"));
-  ASSERT_TRUE(write_answer("", "b"));
+  ASSERT_TRUE(write_answer(to("-"), "a"));
+  ASSERT_TRUE(write_answer(to(""), "b"));
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "a\nb\n");
 }
 
 TEST_F(Batch, ExitCodesFollowWhatCouldNotBeDone) {
   constexpr Msg kOne{"no: {}", "不：{}"}, kSome{"{}: {} ({} of {})", "{}：{}（{}/{}）"};
   ::testing::internal::CaptureStderr();
-  EXPECT_EQ(finish_one(out_, "1", std::nullopt, kOne).value(), 0);
+  EXPECT_EQ(finish_one(to(out_), "1", std::nullopt, kOne).value(), 0);
   EXPECT_EQ(finish_all({3, 0, "", ""}, kSome), 0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   ::testing::internal::CaptureStderr();
-  EXPECT_EQ(finish_one(out_, "2", "far", kOne).value(), 1);
+  EXPECT_EQ(finish_one(to(out_), "2", "far", kOne).value(), 1);
   EXPECT_EQ(finish_all({3, 2, "f:1", "near"}, kSome), 1);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "no: far\nf:1: near (2 of 3)\n");
   // What cannot be done is answered all the same.
