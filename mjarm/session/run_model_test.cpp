@@ -124,6 +124,14 @@ TEST_F(RunModel, PlotsWhatThereIsAndAtMostEightCurves) {
   const render::Plot plot = state_plot("chain", log);
   ASSERT_EQ(plot.panels.size(), 2U) << "angles and their speeds; no command, no sensor";
   for (const render::PlotPanel& panel : plot.panels) EXPECT_EQ(panel.lines.size(), 8U);
+  // Of what only falls the turning speeds, which are noise, have no panel.
+  Sim falling = start_model(ball_, {}).value();
+  StateLog fall(ball_);
+  ASSERT_TRUE(run_model(falling, {.seconds = 0.2}, [&fall](const Sim& now, auto ctrl) {
+    fall.record(now, ctrl);
+    return true;
+  }));
+  EXPECT_EQ(state_plot("ball", fall).panels.size(), 2U) << "places and their speeds";
   const Model still = Model::from_mjcf("<mujoco/>").value();
   EXPECT_TRUE(state_plot("", StateLog(still)).panels.empty());
 }

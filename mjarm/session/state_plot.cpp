@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "mjarm/core/messages/run_charts.hpp"
@@ -15,6 +17,7 @@ constexpr std::size_t kMaxPoints = 2000;  // of a curve
 struct StateCurve {
   render::PlotLine line;
   double travel = 0;  ///< from its least to its largest value
+  double size = 0;    ///< largest magnitude
 };
 
 StateCurve curve_of(const StateLog& log, std::size_t column, const std::string& label) {
@@ -26,7 +29,10 @@ StateCurve curve_of(const StateLog& log, std::size_t column, const std::string& 
     curve.line.y.push_back(log.row(i)[column]);
   }
   const auto [least, largest] = std::ranges::minmax_element(curve.line.y);
-  if (least != curve.line.y.end()) curve.travel = *largest - *least;
+  if (least != curve.line.y.end()) {
+    curve.travel = *largest - *least;
+    curve.size = std::max(std::abs(*least), std::abs(*largest));
+  }
   return curve;
 }
 
@@ -49,7 +55,12 @@ void add_panel(render::Plot& plot, const StateLog& log, const std::vector<StateC
     if (unit != nullptr && columns[i].unit != unit) continue;
     curves.push_back(curve_of(log, first + i, columns[i].name));
   }
-  if (curves.empty()) return;
+  // Speeds of what stands still are noise.
+  const bool speeds = unit != nullptr && std::string_view(unit).ends_with("/s");
+  const double least = speeds ? 1e-9 : -1;
+  if (std::ranges::none_of(curves, [least](const auto& curve) { return curve.size > least; })) {
+    return;
+  }
   keep_the_liveliest(curves);
   render::PlotPanel panel{.title = text(title), .x_label = text(msg::run_chart_time)};
   panel.y_label = unit != nullptr ? unit : "";
