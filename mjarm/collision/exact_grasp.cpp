@@ -1,4 +1,4 @@
-#include "mjarm/collision/grasp.hpp"
+#include "mjarm/collision/exact_grasp.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
-#include "mjarm/collision/gripper_way_internal.hpp"
+#include "mjarm/collision/exact_gripper_way_internal.hpp"
 #include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/kinematics/fk.hpp"
