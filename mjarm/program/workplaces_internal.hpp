@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/collision/grasp.hpp"
+#include "mjarm/collision/exact_grasp.hpp"
 #include "mjarm/core/stop.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/arm.hpp"

@@ -1,4 +1,4 @@
-#include "mjarm/collision/grasp.hpp"
+#include "mjarm/collision/exact_grasp.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

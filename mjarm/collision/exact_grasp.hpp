@@ -26,7 +26,7 @@ struct SceneState {
 /// alone, in steps of 1/200 of the way: no mass, no friction. Linkages that close loops are not
 /// followed: with them nothing is attached.
 /// @param q       (dof,) [rad or m]
-/// @param before  what is attached already stays so.
+/// @param before  what is attached already stays so, and then the fingers stand.
 /// @return bad_input for sizes that do not fit, rules that are not sound, or an arm without
 /// gripper.
 [[nodiscard]] Result<SceneState> close_gripper(const Model& model, const Arm& arm,

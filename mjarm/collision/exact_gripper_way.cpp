@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "mjarm/collision/gripper_way_internal.hpp"
+#include "mjarm/collision/exact_gripper_way_internal.hpp"
 
 namespace mjarm::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "mjarm/collision/grasp.hpp"
+#include "mjarm/collision/exact_grasp.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
-#include "mjarm/collision/gripper_way_internal.hpp"
+#include "mjarm/collision/exact_gripper_way_internal.hpp"
 #include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -53,10 +53,13 @@ Side measure(const mjModel& m, mjData* d, GeomIds ids) {
     if (gap) out = {gap->distance, swapped ? Vector3d(-gap->normal_W) : gap->normal_W};
     return out;
   }
+  const bool turned = m.geom_type[ids.geom1] > m.geom_type[ids.geom2];  // MuJoCo's order
   std::array<mjtNum, 6> segment{};
-  out.distance = mj_geomDistance(&m, d, ids.geom1, ids.geom2, kLook, segment.data());
+  out.distance = mj_geomDistance(&m, d, turned ? ids.geom2 : ids.geom1,
+                                 turned ? ids.geom1 : ids.geom2, kLook, segment.data());
   const Vector3d way(segment[3] - segment[0], segment[4] - segment[1], segment[5] - segment[2]);
-  if (way.norm() > kTouch) out.push = way.normalized() * (out.distance < 0 ? -1 : 1);
+  const bool against = turned != (out.distance < 0);
+  if (way.norm() > kTouch) out.push = way.normalized() * (against ? -1 : 1);
   return out;
 }
 
@@ -74,6 +77,7 @@ class Closing {
   }
 
   SceneState run() {
+    if (!state_.attached.empty()) return std::move(state_);  // it is closed on that
     const std::vector<double> from = state_.qpos;
     const int steps = way_.has_ends() && !candidates_.empty() ? kSteps : 0;
     for (int k = 0; k <= steps; ++k) {
