@@ -21,7 +21,7 @@ struct Jump {
 Result<Jump> read_jump(const DemoValues& values, const Arm& arm) {
   const bool tutorials = arm.dof() == 6;
   Jump jump{
-      .start = tutorials ? joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0}) : arm.home,
+      .start = tutorials ? joint_vec(std::vector<double>{0, -1.0, 2.2, -1.3, 1.55, 0}) : arm.home,
       .goal = tutorials ? joint_vec(tutorial_seed()) : arm.home};
   const auto read = [&arm](const char* option, const std::string& words,
                            JointVec& out) -> Result<void> {
@@ -48,8 +48,6 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   Result<std::unique_ptr<session::Stage>> opened = session::Stage::open(demo, options, *robot);
   if (!opened) return fail(std::move(opened.error()));
   session::Stage& stage = **opened;
-  const Pose X_start = fk(stage.arm(), as_span(start));
-  if (X_start.p.z() < 0) log_warning(text(msg::demo_below_floor, X_start.p.z()));
   stage.run().start_at(as_span(start));
   if (vision) {
     stage.show().set_balls(true);
