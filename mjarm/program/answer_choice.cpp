@@ -11,7 +11,7 @@ namespace mjarm::program::detail {
 namespace {
 
 constexpr int kMaxLookedAt = 64;       // answers to one pose
-constexpr double kClearlyWorse = 0.5;  // of PostureCost
+constexpr double kClearlyWorse = 0.2;  // of PostureCost
 
 ClearanceMeasure distance_by(const ClearanceCheck& clearance) {
   if (!clearance) return {};
