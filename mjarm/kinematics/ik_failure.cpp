@@ -6,7 +6,8 @@ namespace {
 
 std::string describe_reach(const IkFailure& failure) {
   constexpr double kFar = 1e6;  // [m] beyond it nobody wants to know how far
-  if (failure.amount > kFar) return text(msg::kinematics_far_out_of_reach, kFar / 1000, failure.bound);
+  if (failure.amount > kFar)
+    return text(msg::kinematics_far_out_of_reach, kFar / 1000, failure.bound);
   switch (failure.shape) {
     case ReachShape::cylinder:
       return text(msg::kinematics_inside_cylinder, failure.bound, failure.amount);

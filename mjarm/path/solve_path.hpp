@@ -42,9 +42,10 @@ struct PathOptions {
 /// and of all tracks that reach the last pose the least tight is taken. Tightness is the worst of
 /// the largest joint step (as a share of max_step), the nearness to limits, the smallest singular
 /// value and the clearance, in levels of 0.02; of equally tight tracks that which starts nearest to
-/// q_start is taken (see best_posture), then the shortest. Answers that `ik.options().valid` refuses are left out. An
-/// arm of six axes in closed form misses no track; any other is followed from the answers found for
-/// pose 0, a redundant one moving aside within itself where it gets tight. Same input, same answer.
+/// q_start is taken (see best_posture), then the shortest. Answers that `ik.options().valid`
+/// refuses are left out. An arm of six axes in closed form misses no track; any other is followed
+/// from the answers found for pose 0, a redundant one moving aside within itself where it gets
+/// tight. Same input, same answer.
 ///
 /// Memory: 512 answers a pose at most, kept for 512 poses at a time, so that any number of poses
 /// needs under 100 MB besides its own input and output.

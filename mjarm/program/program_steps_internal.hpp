@@ -34,7 +34,7 @@ struct Step {
   /// pose, curve, plan: nobody gave joint values from which the nearest answer would be meant.
   bool is_free = false;
   double seconds = 0;  ///< wait
-  bool close = false;               ///< grip
+  bool close = false;  ///< grip
 };
 
 struct Steps {
