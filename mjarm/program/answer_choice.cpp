@@ -35,6 +35,15 @@ Result<Answers, NoAnswer> AnswerChoice::to(const Step& step, const Pose& X_WT,
   return among(step, std::move(answers), q);
 }
 
+Result<Answers, NoAnswer> AnswerChoice::goals(const Step& step, const DetourPlanner& planner,
+                                              const JointVec& q) const {
+  const bool joints = step.q.size() > 0;
+  auto found = joints ? planner.goals(q, step.q) : planner.goals(q, step.X_WT);
+  if (!found) return tl::unexpected(NoAnswer{found.error().reason, found.error().what});
+  if (joints) return Answers{std::move(*found), 1};
+  return among(step, std::move(*found), q);
+}
+
 Result<Answers, NoAnswer> AnswerChoice::among(const Step& step, std::vector<JointVec> answers,
                                               const JointVec& q) const {
   if (!step.branch.empty()) {

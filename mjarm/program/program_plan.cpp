@@ -151,7 +151,7 @@ class ProgramPlanner {
                      (step.kind == Step::Kind::line && !detail::is_blended(steps_, fault.step));
     if (!one || fault.reason != "collision") return std::nullopt;
     detail::DetourPlanner& planner = tools_[step.tool].detours;
-    const auto goals = goals_of(step, q);
+    const auto goals = tool(step).answers.goals(step, planner, q);
     if (!goals) return std::nullopt;
     auto found = planner.plan(q, goals->good_ones(), step.share);
     if (!found && !goals->others().empty()) {
@@ -296,19 +296,9 @@ class ProgramPlanner {
     return std::move(*best);
   }
 
-  /// Where a `plan` may end: its joint values, or the answers to its pose.
-  Result<detail::Answers, detail::NoAnswer> goals_of(const Step& step, const JointVec& q) const {
-    const Tool& with = tool(step);
-    const bool joints = step.q.size() > 0;
-    auto found = joints ? with.detours.goals(q, step.q) : with.detours.goals(q, step.X_WT);
-    if (!found) return tl::unexpected(detail::NoAnswer{found.error().reason, found.error().what});
-    if (joints) return detail::Answers{std::move(*found), 1};
-    return with.answers.among(step, std::move(*found), q);
-  }
-
   /// Round what stands in the way, to a goal in good posture if that can be had.
   Attempt detour(std::size_t i, const JointVec& q) {
-    const auto goals = goals_of(steps_[i], q);
+    const auto goals = tool(steps_[i]).answers.goals(steps_[i], tool(steps_[i]).detours, q);
     if (!goals) return failed(i, q, {i, goals.error().reason, goals.error().what});
     Attempt best = detour_to(i, q, goals->good_ones());
     if (!best.fault || goals->others().empty()) return best;
