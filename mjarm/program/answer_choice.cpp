@@ -11,7 +11,7 @@ namespace mjarm::program::detail {
 namespace {
 
 constexpr int kMaxLookedAt = 64;       // answers to one pose
-constexpr double kClearlyWorse = 0.5;  // of PostureCost
+constexpr double kClearlyWorse = 0.2;  // of PostureCost
 
 ClearanceMeasure distance_by(const ClearanceCheck& clearance) {
   if (!clearance) return {};
@@ -33,6 +33,15 @@ Result<Answers, NoAnswer> AnswerChoice::to(const Step& step, const Pose& X_WT,
   std::vector<JointVec> answers;
   for (const IkSolution& answer : *found) answers.push_back(answer.q);
   return among(step, std::move(answers), q);
+}
+
+Result<Answers, NoAnswer> AnswerChoice::goals(const Step& step, const DetourPlanner& planner,
+                                              const JointVec& q) const {
+  const bool joints = step.q.size() > 0;
+  auto found = joints ? planner.goals(q, step.q) : planner.goals(q, step.X_WT);
+  if (!found) return tl::unexpected(NoAnswer{found.error().reason, found.error().what});
+  if (joints) return Answers{std::move(*found), 1};
+  return among(step, std::move(*found), q);
 }
 
 Result<Answers, NoAnswer> AnswerChoice::among(const Step& step, std::vector<JointVec> answers,

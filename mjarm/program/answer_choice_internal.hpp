@@ -10,6 +10,7 @@
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/kinematics/posture.hpp"
 #include "mjarm/path/clearance.hpp"
+#include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
 
 namespace mjarm::program::detail {
@@ -40,6 +41,9 @@ class AnswerChoice {
   /// @param q  shape (dof,); where the arm is.
   [[nodiscard]] Result<Answers, NoAnswer> to(const Step& step, const Pose& X_WT,
                                              const JointVec& q) const;
+  /// Where a `plan` may end: its joint values, or the answers to its pose.
+  [[nodiscard]] Result<Answers, NoAnswer> goals(const Step& step, const DetourPlanner& planner,
+                                                const JointVec& q) const;
   /// Out of these, which are sorted by their distance from `q`.
   [[nodiscard]] Result<Answers, NoAnswer> among(const Step& step, std::vector<JointVec> answers,
                                                 const JointVec& q) const;

@@ -112,7 +112,7 @@ class ProgramPlanner {
                      (step.kind == Step::Kind::line && !detail::is_blended(steps_, fault.step));
     if (!one || fault.reason != "collision") return std::nullopt;
     const auto with = places_.tool(at.scene, step.tool);
-    const auto goals = goals_of(*with, step, at.q);
+    const auto goals = with->answers.goals(step, with->detours, at.q);
     if (!goals) return std::nullopt;
     auto found = with->detours.plan(at.q, goals->good_ones(), step.share);
     if (!found && !goals->others().empty()) {

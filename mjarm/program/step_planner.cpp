@@ -25,14 +25,6 @@ PlanFault motion_fault(std::size_t i, const Arm& arm, const MotionFailure& failu
 
 }  // namespace
 
-Result<Answers, NoAnswer> goals_of(const Tool& with, const Step& step, const JointVec& q) {
-  const bool joints = step.q.size() > 0;
-  auto found = joints ? with.detours.goals(q, step.q) : with.detours.goals(q, step.X_WT);
-  if (!found) return tl::unexpected(NoAnswer{found.error().reason, found.error().what});
-  if (joints) return Answers{std::move(*found), 1};
-  return with.answers.among(step, std::move(*found), q);
-}
-
 Attempt StepPlanner::from(std::size_t i, const Stand& at) {
   switch (steps_[i].kind) {
     case Step::Kind::joints:
@@ -139,7 +131,8 @@ Attempt StepPlanner::to_pose(std::size_t i, const Stand& at) {
 
 /// Round what stands in the way, to a goal in good posture if that can be had.
 Attempt StepPlanner::detour(std::size_t i, const Stand& at) {
-  const auto goals = goals_of(*tool(i, at), steps_[i], at.q);
+  const ToolPtr with = tool(i, at);
+  const auto goals = with->answers.goals(steps_[i], with->detours, at.q);
   if (!goals) return failed(i, at, {i, goals.error().reason, goals.error().what});
   Attempt best = detour_to(i, at, goals->good_ones());
   if (!best.fault || goals->others().empty()) return best;

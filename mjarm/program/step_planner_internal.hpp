@@ -31,10 +31,6 @@ struct Attempt {
   std::optional<PlanFault> fault;
 };
 
-/// Where a `plan` may end: its joint values, or the answers to its pose.
-[[nodiscard]] Result<Answers, NoAnswer> goals_of(const Tool& with, const Step& step,
-                                                 const JointVec& q);
-
 /// Plans steps one by one, each with what hangs on its answer.
 class StepPlanner {
  public:

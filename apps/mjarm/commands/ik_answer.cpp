@@ -107,7 +107,7 @@ class IkDesk::Worker {
 
  private:
   Chosen choose_branch(const IkRequest& request) {
-    const bool free = job_.single && !request.has_seed;
+    const bool free = job_.single && !request.has_seed && !job_.prefer;
     if (!free && job_.branch.empty()) {
       Result<IkSolution, IkFailure> answer = ik_.solve(request.X_WT, request.q_seed);
       if (!answer) return tl::unexpected(no_answer(answer.error()));

@@ -24,8 +24,8 @@ struct IkJob {
   Branch branch = {};                 ///< what answers must be
   bool all = false, windings = false;
   bool timing = true;
-  /// One request by itself: its answer tells its branch, and without a seed the best posture is
-  /// taken. Else nearest to the seed, or to home.
+  /// One request by itself: its answer tells its branch, and where neither a seed nor `prefer` says
+  /// more the best posture is taken. Else the answer nearest to the seed, or to home.
   bool single = false;
 };
 
