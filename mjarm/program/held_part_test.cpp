@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mjarm/execution/motion_run.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -77,18 +78,36 @@ TEST(HeldPart, PlanCarriesItOverTheFenceAndSetsItDown) {
 }
 
 /// The fingers clear the fence at this height, the part does not.
-TEST(HeldPart, StraightMovesAndJointMovesIntoTheFenceAreRefused) {
-  for (const char* word : {"movel", "movej"}) {
-    const std::string over = "  - movel: " + pose_at(0.5, -0.2, 0.29) + "\n  - " + word + ": " +
-                             pose_at(0.5, 0.2, 0.29) + "\n";
-    const LoadedProgram held = planned({}, lifted() + over);
-    ASSERT_EQ(held.plan.faults.size(), 1U) << word << "\n" << faults_of(held);
-    EXPECT_EQ(held.plan.faults[0].reason, "collision");
-    EXPECT_THAT(held.plan.faults[0].what, HasSubstr("fence"));
-    EXPECT_THAT(held.plan.faults[0].what, HasSubstr("part"));
-    EXPECT_TRUE(planned({}, "  - movej: " + pose_at(0.5, -0.2, 0.29) + "\n" + over).plan.ok())
-        << word << " without the part";
+TEST(HeldPart, StraightMovesIntoTheFenceAreRefused) {
+  const std::string over =
+      "  - movel: " + pose_at(0.5, -0.2, 0.29) + "\n  - movel: " + pose_at(0.5, 0.2, 0.29) + "\n";
+  const LoadedProgram held = planned({}, lifted() + over);
+  ASSERT_EQ(held.plan.faults.size(), 1U) << faults_of(held);
+  EXPECT_EQ(held.plan.faults[0].reason, "collision");
+  EXPECT_THAT(held.plan.faults[0].what, HasSubstr("fence"));
+  EXPECT_THAT(held.plan.faults[0].what, HasSubstr("part"));
+  EXPECT_TRUE(planned({}, "  - movej: " + pose_at(0.5, -0.2, 0.29) + "\n" + over).plan.ok())
+      << "without the part";
+}
+
+/// A joint move goes where the part clears the fence as well, or is refused.
+TEST(HeldPart, JointMovesKnowIt) {
+  const std::string moves = lifted() + "  - movel: " + pose_at(0.5, -0.2, 0.29) + "\n  - movej: ";
+  const LoadedProgram pose = planned({}, moves + pose_at(0.5, 0.2, 0.29) + "\n");
+  if (pose.plan.ok()) {
+    EXPECT_GT(lowest_over_fence(pose.plan), 0.25);
   }
+  // Where the tool has come on the other side, turned about the base alone.
+  const LoadedProgram there = planned({}, moves + pose_at(0.5, -0.2, 0.3) + "\n");
+  JointVec q = there.plan.q_end();
+  q[0] += 2 * std::atan2(0.2, 0.5);
+  std::string joints = "{joints: [";
+  for (const double value : q) joints += std::to_string(value) + ", ";
+  joints.replace(joints.size() - 2, 2, "]}");
+  const LoadedProgram turned =
+      planned({}, moves + pose_at(0.5, -0.2, 0.3) + "\n  - movej: " + joints + "\n");
+  ASSERT_EQ(turned.plan.faults.size(), 1U) << faults_of(turned);
+  EXPECT_THAT(turned.plan.faults[0].what, HasSubstr("fence"));
 }
 
 TEST(HeldPart, IsAnObstacleWhereItWasLeftAndNoMoreWhereItWas) {

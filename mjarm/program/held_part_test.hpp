@@ -10,7 +10,7 @@ namespace mjarm::testing {
 /// A Panda, a part of 40 x 40 x 80 mm that stands on the floor on one side of a fence, and room for
 /// it on the other side.
 struct PartAndFence {
-  double friction = 1;    ///< of the part
+  double friction = 1.5;  ///< of the part
   double fence = 0.25;    ///< [m] its height
   std::string more = {};  ///< what else stands there
 
@@ -19,7 +19,7 @@ struct PartAndFence {
   <include file="scenes/studio.xml"/>
   <worldbody>
     <body name="part" pos="0.5 -0.2 0.04"><freejoint/>
-      <geom name="part" type="box" size="0.02 0.02 0.04" mass="0.1" priority="2" friction=")" +
+      <geom name="part" type="box" size="0.02 0.02 0.04" mass="0.03" priority="2" friction=")" +
            std::to_string(friction) + R"("/></body>
     <geom name="fence" type="box" size="0.3 0.01 )" +
            std::to_string(fence / 2) + R"(" pos="0.5 0 )" + std::to_string(fence / 2) + R"("/>)" +

@@ -8,7 +8,7 @@ namespace mjarm::program::detail {
 namespace {
 
 constexpr double kLift = 0.03;        // [m] more than spheres stick out, twice over
-constexpr std::size_t kMaxLifted = 4;  // that are looked at from above, the first ones
+constexpr std::size_t kMaxAbove = 4;  // that are looked at from above, the first ones
 
 /// Where the arm is with the tool moved off, near `q`; none where it cannot stand there.
 std::optional<JointVec> lifted(const Tool& with, const JointVec& q, bool up) {
@@ -66,7 +66,7 @@ class LiftedPlanner {
   /// @param index  gets of each the goal that it is above.
   std::vector<JointVec> above_goals(bool up, std::vector<std::size_t>& index) const {
     std::vector<JointVec> out;
-    for (std::size_t g = 0; g < goals_.size() && out.size() < kMaxLifted; ++g) {
+    for (std::size_t g = 0; g < goals_.size() && out.size() < kMaxAbove; ++g) {
       if (const auto above = lifted(with_, goals_[g], up)) {
         out.push_back(*above);
         index.push_back(g);
