@@ -17,6 +17,7 @@ find_package(OpenGL REQUIRED COMPONENTS EGL OpenGL)
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
+pkg_check_modules(FONTCONFIG REQUIRED IMPORTED_TARGET fontconfig)
 
 if(MJARM_MPI)
   find_package(MPI REQUIRED COMPONENTS CXX)

@@ -1,11 +1,13 @@
 # Part of ./dev: brings the machine to where mjarm can be built. Sourced, never run.
 
-# What a run needs, and what the tests need besides. Optional ones: not every release has them, and
-# nothing asks for them alone.
+# What a run needs, and what the tests need besides. Plots and windows need a Chinese font for
+# `--lang zh-CN`: fonts-wqy-microhei is the smallest (1.6 MB to fetch, fonts-noto-cjk 57) and depends
+# on nothing. Optional ones: not every release has them, and nothing asks for them alone.
 run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libexpected-dev
   libfmt-dev libspdlog-dev nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libcli11-dev
-  libpng-dev libcairo2-dev libglfw3-dev libegl-dev libgl-dev libopengl-dev libgl1-mesa-dri
-  ca-certificates libcurl4-openssl-dev libssl-dev zlib1g-dev fonts-dejavu-core"
+  libpng-dev libcairo2-dev libfontconfig-dev libglfw3-dev libegl-dev libgl-dev libopengl-dev
+  libgl1-mesa-dri ca-certificates libcurl4-openssl-dev libssl-dev zlib1g-dev fonts-dejavu-core
+  fonts-wqy-microhei"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev ccache xvfb xauth xdotool ffmpeg
   libopenmpi-dev openmpi-bin"
 optional_packages="libosmesa6"

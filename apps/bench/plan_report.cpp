@@ -9,6 +9,8 @@
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/plan.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/language_scope.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {
@@ -256,6 +258,7 @@ Result<void> write_paths(const PlanTable& table, bool timing, const std::filesys
 Result<void> draw_plan_times(const std::vector<PlanTable>& sets,
                              const std::vector<CrowdedSet>& crowds, const PlanTable& crowded,
                              const std::filesystem::path& folder) {
+  const LanguageScope drawn(render::picture_language());
   render::Plot plot{.title = text(msg::bench_plan_title)};
   for (const PlanTable& table : sets) plot.panels.push_back(panel_of(table));
   const auto add = [&](Msg title, Msg axis, const auto& value) {

@@ -6,6 +6,8 @@
 
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/rl.hpp"
+#include "mjarm/core/language_scope.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {
@@ -174,6 +176,7 @@ std::vector<BenchEntry> learning_entries(const std::vector<LearningRun>& runs, b
 
 Result<void> draw_learning_curves(const std::vector<LearningRun>& runs, bool timing,
                                   const std::filesystem::path& folder) {
+  const LanguageScope drawn(render::picture_language());
   render::Plot plot{.title = text(msg::bench_rl_title)};
   std::vector<std::string> sets;
   for (const LearningRun& run : runs) {

@@ -1,76 +1,17 @@
-#include <cairo.h>
-
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "mjarm/core/messages/render.hpp"
-#include "mjarm/render/canvas_internal.hpp"
+#include "mjarm/render/cairo_internal.hpp"
 
 namespace mjarm::canvas {
 namespace {
 
-struct DeleteContext {
-  void operator()(cairo_t* cr) const { cairo_destroy(cr); }
-};
-struct DeleteSurface {
-  void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-};
-using Context = std::unique_ptr<cairo_t, DeleteContext>;
-using Surface = std::unique_ptr<cairo_surface_t, DeleteSurface>;
-
-constexpr const char* kLatinFont = "DejaVu Sans";
-
-/// Letters are placed as in print, the same at every size, and smoothed in grey.
-void set_font_options(cairo_t* cr) {
-  cairo_font_options_t* options = cairo_font_options_create();
-  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
-  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
-  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
-  cairo_set_font_options(cr, options);
-  cairo_font_options_destroy(options);
-}
-
-void select_font(cairo_t* cr, const char* family, const TextStyle& style) {
-  cairo_select_font_face(cr, family, CAIRO_FONT_SLANT_NORMAL,
-                         style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(cr, style.size);
-}
-
-/// True where the selected font has a shape for the text (a font that lacks it uses shape 0).
-bool font_shows(cairo_t* cr, const char* sample) {
-  cairo_glyph_t* glyphs = nullptr;
-  int count = 0;
-  const cairo_status_t status = cairo_scaled_font_text_to_glyphs(
-      cairo_get_scaled_font(cr), 0, 0, sample, -1, &glyphs, &count, nullptr, nullptr, nullptr);
-  const bool shows = status == CAIRO_STATUS_SUCCESS && count > 0 && glyphs[0].index != 0;
-  cairo_glyph_free(glyphs);
-  return shows;
-}
-
-/// A font of this machine that has Chinese characters; the Latin one where there is none.
-const char* cjk_font(cairo_t* cr) {
-  static const char* const found = [cr] {
-    for (const char* family :
-         {"Noto Sans CJK SC", "Source Han Sans SC", "Noto Sans SC", "WenQuanYi Micro Hei",
-          "WenQuanYi Zen Hei", "Droid Sans Fallback", "AR PL UMing CN", "sans-serif"}) {
-      select_font(cr, family, {});
-      if (font_shows(cr, "中")) return family;
-    }
-    return kLatinFont;
-  }();
-  return found;
-}
-
-void select_font(cairo_t* cr, const Run& run, const TextStyle& style) {
-  select_font(cr, run.cjk ? cjk_font(cr) : kLatinFont, style);
-}
-
 double width_of(cairo_t* cr, std::string_view text, const TextStyle& style) {
   double width = 0;
   for (const Run& run : runs_of(text)) {
-    select_font(cr, run, style);
+    select_font(cr, run.cjk, style);
     cairo_text_extents_t extents;
     cairo_text_extents(cr, run.text.c_str(), &extents);
     width += extents.x_advance;
@@ -117,7 +58,7 @@ struct Painter {
     constexpr std::array<double, 3> kShare = {0, -0.5, -1};
     cairo_move_to(cr, kShare[static_cast<std::size_t>(text.style.align)] * width, 0);
     for (const Run& run : runs_of(text.text)) {
-      select_font(cr, run, text.style);
+      select_font(cr, run.cjk, text.style);
       cairo_show_text(cr, run.text.c_str());
     }
     cairo_restore(cr);

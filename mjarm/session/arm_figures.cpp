@@ -2,14 +2,16 @@
 
 #include <utility>
 
+#include "mjarm/core/messages/panels.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::session {
 namespace {
 
 constexpr double kRowPeriod = 0.01;  ///< [s] of the figures' time
-constexpr const char* kFigureNames[kLiveFigures] = {
-    "Tool position", "Tracking error", "Joint error", "Joints", "Torque", "Manipulability"};
+constexpr Msg kFigureNames[kLiveFigures] = {msg::panel_tool_position, msg::panel_tracking_error,
+                                            msg::panel_joint_error,   msg::panel_joints,
+                                            msg::panel_torque,        msg::panel_manipulability};
 
 }  // namespace
 
@@ -24,10 +26,10 @@ bool ArmFigures::handle(const view::PanelEvent& event) {
 }
 
 view::PanelSection ArmFigures::section() const {
-  view::PanelSection out{"Plots", {}};
+  view::PanelSection out{text(msg::panel_plots), {}};
   for (std::size_t i = 0; i < kLiveFigures; ++i) {
     out.items.push_back(
-        {first_item_ + static_cast<int>(i), kFigureNames[i], view::PanelCheckbox{shown_[i]}});
+        {first_item_ + static_cast<int>(i), text(kFigureNames[i]), view::PanelCheckbox{shown_[i]}});
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/panels.hpp"
 #include "mjarm/session/max_moments.hpp"
 
 namespace mjarm::session {
@@ -46,7 +47,7 @@ void FreeSim::reset() {
   if (controller_) controller_->restart();
   history_.clear();
   remember();
-  status_.clear();
+  unstable_ = false;
 }
 
 void FreeSim::remember() { history_.add({sim_.snapshot(), q_before_, q_now_, q_goal_}); }
@@ -78,10 +79,14 @@ void FreeSim::step() {
   if (auto stepped = sim_.step(ctrl_); !stepped) {
     log_warning(stepped.error().what);
     reset();
-    status_ = "the simulation became unstable and began anew";
+    unstable_ = true;
     return;
   }
   remember();
+}
+
+std::string FreeSim::status() const {
+  return unstable_ ? text(msg::panel_unstable) : std::string();
 }
 
 std::vector<int> FreeSim::jog_dofs() const {

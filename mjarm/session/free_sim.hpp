@@ -35,7 +35,7 @@ class FreeSim {
   [[nodiscard]] const Sim& sim() const { return sim_; }
   [[nodiscard]] const view::Playback& playback() const { return playback_; }
   /// One line for the window, ASCII; empty = nothing to say.
-  [[nodiscard]] const std::string& status() const { return status_; }
+  [[nodiscard]] std::string status() const;
   /// True where an arm is held, which goes where it is sent.
   [[nodiscard]] bool is_held() const noexcept { return controller_.has_value(); }
   /// Where the held arm goes, shape (dof,) [rad or m].
@@ -68,7 +68,7 @@ class FreeSim {
   view::History<Moment> history_;
   std::vector<double> ctrl_;
   JointVec q_before_, q_now_, q_goal_;
-  std::string status_;
+  bool unstable_ = false;  ///< it was, and began anew
 };
 
 }  // namespace mjarm::session

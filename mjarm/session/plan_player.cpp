@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mjarm/core/messages/panels.hpp"
+
 namespace mjarm::session {
 namespace {
 
@@ -16,12 +18,12 @@ std::string plan_words(const char* format, Values... values) {
   return text;
 }
 
-view::PanelItem plan_checkbox(PlanItem item, const char* name, bool on) {
-  return {item, name, view::PanelCheckbox{on}};
+view::PanelItem plan_checkbox(PlanItem item, Msg name, bool on) {
+  return {item, text(name), view::PanelCheckbox{on}};
 }
 
-view::PanelItem plan_line(const char* name, std::string value) {
-  return {kPlanText, name, view::PanelText{std::move(value)}};
+view::PanelItem plan_line(Msg name, std::string value) {
+  return {kPlanText, text(name), view::PanelText{std::move(value)}};
 }
 
 }  // namespace
@@ -102,40 +104,40 @@ std::vector<view::PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look
   const PlannedPath& path = subject_->path;
   const std::size_t edge = way.edge_at(place_), edges = path.q.size() - 1;
   view::PanelSection place{
-      "Path",
+      text(msg::panel_path),
       {{kPlanTime, "",
         view::PanelTimeline{place_ / kPlanSpeed, std::max(way.length() / kPlanSpeed, 1e-3)}},
-       {kPlanTightest, "Tightest place", view::PanelButton{}},
-       plan_line("Edge", plan_words("%zu of %zu", edge + 1, edges)),
-       plan_line("Way", plan_words("%.2f / %.2f", place_, way.length()))}};
+       {kPlanTightest, text(msg::panel_tightest), view::PanelButton{}},
+       plan_line(msg::panel_edge, text(msg::panel_edge_value, edge + 1, edges)),
+       plan_line(msg::panel_way, plan_words("%.2f / %.2f", place_, way.length()))}};
   if (edge < path.proof.size()) {
     const EdgeCertificate& proof = path.proof[edge];
     place.items.push_back(
-        plan_line("Proved clear by", plan_words("%.1f mm", 1e3 * proof.nearest.distance)));
-    place.items.push_back(plan_line("In intervals of", plan_words("%.2g", proof.step)));
+        plan_line(msg::panel_proved, text(msg::panel_mm, 1e3 * proof.nearest.distance)));
+    place.items.push_back(plan_line(msg::panel_intervals, plan_words("%.2g", proof.step)));
   }
   if (look.pair) {
     place.items.push_back(
-        plan_line("Closest now", plan_words("%.1f mm", 1e3 * look.pair->to.distance)));
+        plan_line(msg::panel_closest_now, text(msg::panel_mm, 1e3 * look.pair->to.distance)));
   }
   if (look.obstacle_pair) {
-    place.items.push_back(
-        plan_line("To obstacles", plan_words("%.1f mm", 1e3 * look.obstacle_pair->to.distance)));
+    place.items.push_back(plan_line(msg::panel_to_obstacles,
+                                    text(msg::panel_mm, 1e3 * look.obstacle_pair->to.distance)));
   }
   return {std::move(place),
-          {"Show",
-           {plan_checkbox(kPlanSpheres, "Spheres", layers_.spheres),
-            plan_checkbox(kPlanPair, "Closest pair", layers_.pair),
-            plan_checkbox(kPlanPath, "Path", layers_.path),
-            plan_checkbox(kPlanTree, "Search tree", layers_.tree),
-            plan_checkbox(kPlanEnds, "Start, goal", layers_.ends),
-            plan_checkbox(kPlanCorners, "Corners", layers_.corners)}},
-          {"Search",
-           {plan_line("Samples", std::to_string(path.counts.samples)),
-            plan_line("Nodes", std::to_string(path.counts.nodes)),
-            plan_line("Edges looked at", std::to_string(path.counts.edges)),
-            plan_line("Corners", std::to_string(path.q.size() - 2)),
-            plan_line("Length", plan_words("%.3f", path.cost))}}};
+          {text(msg::panel_show),
+           {plan_checkbox(kPlanSpheres, msg::panel_spheres, layers_.spheres),
+            plan_checkbox(kPlanPair, msg::panel_closest_pair, layers_.pair),
+            plan_checkbox(kPlanPath, msg::panel_path, layers_.path),
+            plan_checkbox(kPlanTree, msg::panel_tree, layers_.tree),
+            plan_checkbox(kPlanEnds, msg::panel_ends, layers_.ends),
+            plan_checkbox(kPlanCorners, msg::panel_corners, layers_.corners)}},
+          {text(msg::panel_search),
+           {plan_line(msg::panel_samples, std::to_string(path.counts.samples)),
+            plan_line(msg::panel_nodes, std::to_string(path.counts.nodes)),
+            plan_line(msg::panel_edges_checked, std::to_string(path.counts.edges)),
+            plan_line(msg::panel_corners, std::to_string(path.q.size() - 2)),
+            plan_line(msg::panel_length, plan_words("%.3f", path.cost))}}};
 }
 
 void PlanPlayer::fill(view::ViewFrame& frame) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/panels.hpp"
 #include "mjarm/session/max_moments.hpp"
 
 namespace mjarm::session {
@@ -39,7 +40,7 @@ void ProgramPlayer::restart() {
   record_.clear();
   scene_.clear();
   to_present();
-  note_.clear();
+  unstable_ = false;
 }
 
 void ProgramPlayer::keep() {
@@ -67,7 +68,7 @@ void ProgramPlayer::step_simulation() {
   if (auto stepped = execution_.step(sim_); !stepped) {
     log_warning(stepped.error().what);
     restart();
-    note_ = "the simulation became unstable and began anew";
+    unstable_ = true;
     return;
   }
   if (recorded) keep();
@@ -140,7 +141,7 @@ void ProgramPlayer::choose(const view::PanelEvent& event) {
 }
 
 void ProgramPlayer::handle(const view::ViewEvent& event) {
-  note_.clear();
+  unstable_ = false;
   const bool present = look_ == ProgramLook::present;
   if (const auto* panel = std::get_if<view::PanelEvent>(&event)) {
     press(*panel);
@@ -184,11 +185,11 @@ ProgramFacts ProgramPlayer::facts() const {
 }
 
 std::string ProgramPlayer::status() const {
-  if (look_ == ProgramLook::present) return note_;
-  char line[80];
-  std::snprintf(line, sizeof(line), "%s at %.2f s; Now goes on from the present",
-                look_ == ProgramLook::past ? "looking back" : "replay", facts().shown);
-  return line;
+  if (look_ == ProgramLook::present) {
+    return unstable_ ? text(msg::panel_unstable) : std::string();
+  }
+  const bool past = look_ == ProgramLook::past;
+  return text(past ? msg::panel_looking_back : msg::panel_replaying, facts().shown);
 }
 
 void ProgramPlayer::fill(view::ViewFrame& frame) const {

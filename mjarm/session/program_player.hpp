@@ -68,8 +68,8 @@ class ProgramPlayer {
   ProgramScene::Choice choice_;
   std::vector<std::string> lines_;
   ProgramLook look_ = ProgramLook::present;
-  double cursor_ = 0;  ///< [s] of the simulation, where it does not look at the present
-  std::string note_;   ///< what happened
+  double cursor_ = 0;      ///< [s] of the simulation, where it does not look at the present
+  bool unstable_ = false;  ///< the simulation was, and began anew
 };
 
 }  // namespace mjarm::session

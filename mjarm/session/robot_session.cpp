@@ -1,7 +1,5 @@
 #include "mjarm/session/robot_session.hpp"
 
-#include "mjarm/core/language_scope.hpp"
-
 namespace mjarm::session {
 
 RobotSession::RobotSession(const Model& model, const std::optional<Arm>& arm, FreeSim& sim)
@@ -51,8 +49,6 @@ void RobotSession::fill(view::ViewFrame& frame) {
     show_->add_overlay(frame.overlay, sim_);
     frame.plots = show_->plots();
   }
-  // The window's font is ASCII.
-  const LanguageScope english(Language::english);
   frame.status = sim_.status();
   if (frame.status.empty()) frame.status = render::overlay_notice(frame.overlay);
   if (frame.status.empty() && target_) frame.status = target_->line();

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numbers>
 
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::session {
@@ -191,6 +193,34 @@ TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
   bare.handle(view::TargetEvent{});
   bare.fill(frame);
   EXPECT_TRUE(frame.panels.empty());
+}
+
+/// In Chinese every word of the panels is Chinese; names of the model, units and axes stay.
+TEST_F(RobotInView, ThePanelsSpeakTheLanguageInUse) {
+  const LanguageScope chinese(Language::chinese);
+  const auto is_translated = [](const std::string& text) {
+    static constexpr const char* kSame[] = {" mm", " rad", "[mm]", "_joint"};
+    const bool word = std::ranges::count_if(text, [](char c) { return std::isalpha(c) != 0; }) > 2;
+    return !word || std::ranges::any_of(text, [](char c) { return (c & 0x80) != 0; }) ||
+           std::ranges::any_of(
+               kSame, [&](const char* same) { return text.find(same) != std::string::npos; });
+  };
+  int items = 0;
+  for (const view::PanelSection& section : frame().panels) {
+    EXPECT_TRUE(is_translated(section.title)) << section.title;
+    for (const view::PanelItem& item : section.items) {
+      ++items;
+      EXPECT_TRUE(is_translated(item.name)) << item.name;
+      if (const auto* line = std::get_if<view::PanelText>(&item.what)) {
+        EXPECT_TRUE(is_translated(line->value)) << line->value;
+      } else if (const auto* choice = std::get_if<view::PanelChoice>(&item.what)) {
+        for (const std::string& word : choice->words) EXPECT_TRUE(is_translated(word)) << word;
+      }
+    }
+  }
+  EXPECT_GT(items, 30);
+  EXPECT_TRUE(is_translated(frame().status)) << frame().status;
+  EXPECT_FALSE(frame().status.empty());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "mjarm/core/messages/panels.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/manipulability_ellipsoid.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
@@ -59,12 +60,14 @@ void RobotShow::add(const FreeSim& sim) {
 
 void RobotShow::add_sections(std::vector<view::PanelSection>& sections) const {
   sections.push_back(
-      {"Show",
-       {{kGhostItem, "Ghost of goal", view::PanelCheckbox{ghost_}},
-        {kEllipsoidItem, "Ellipsoid", view::PanelCheckbox{ellipsoid_}},
-        {kContactItem, "Contacts", view::PanelCheckbox{contacts_}},
-        {kNearestItem, "Closest pair", view::PanelCheckbox{nearest_}},
-        {kTrailItem, "Trail", view::PanelChoice{{"off", "line", "balls"}, trail_look_}}}});
+      {text(msg::panel_show),
+       {{kGhostItem, text(msg::panel_ghost), view::PanelCheckbox{ghost_}},
+        {kEllipsoidItem, text(msg::panel_ellipsoid), view::PanelCheckbox{ellipsoid_}},
+        {kContactItem, text(msg::panel_contacts), view::PanelCheckbox{contacts_}},
+        {kNearestItem, text(msg::panel_closest_pair), view::PanelCheckbox{nearest_}},
+        {kTrailItem, text(msg::panel_trail),
+         view::PanelChoice{{text(msg::panel_off), text(msg::panel_line), text(msg::panel_balls)},
+                           trail_look_}}}});
   sections.push_back(figures_.section());
 }
 

@@ -3,9 +3,12 @@
 #include <chrono>
 #include <thread>
 
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/panels.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
 namespace mjarm::session {
@@ -50,10 +53,12 @@ render::Overlay RunShow::overlay() const {
 
 std::vector<view::LivePlot> RunShow::plots() const {
   if (!plots_tool_) return {};
-  view::LivePlot path{.title = "tool from above [m]", .x_label = "x [m]", .series = {}};
+  view::LivePlot path{.title = text(msg::panel_from_above), .x_label = "x [m]", .series = {}};
   path.equal_aspect = true;
   path.series.push_back({.name = ""});
-  view::LivePlot time{.title = "tool position [m]", .x_label = "time [s]", .series = {}};
+  view::LivePlot time{.title = text(msg::panel_tool_over_time),
+                      .x_label = text(msg::panel_time_axis),
+                      .series = {}};
   time.series = {{.name = "x", .color = {0.90F, 0.35F, 0.30F, 1}},
                  {.name = "y", .color = {0.30F, 0.75F, 0.35F, 1}},
                  {.name = "z", .color = {0.35F, 0.55F, 0.95F, 1}}};
@@ -137,11 +142,12 @@ void RunShow::offer() {
   view::Mailbox<view::ViewFrame>& frames = window_->link().frames;
   if (!changed_ || !frames.is_empty() || history_.size() == 0) return;
   changed_ = false;
+  const LanguageScope drawn(render::picture_language());
   frame_.snapshot = history_.at();
   frame_.overlay = overlay();
   frame_.plots = plots();
-  frame_.status = history_.is_past() ? "looking back; space goes on from now"
-                                     : render::overlay_notice(frame_.overlay);
+  frame_.status =
+      history_.is_past() ? text(msg::panel_space_goes_on) : render::overlay_notice(frame_.overlay);
   frames.post(frame_);
 }
 

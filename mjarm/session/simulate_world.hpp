@@ -3,6 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "mjarm/core/language_scope.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/view/view_link.hpp"
 
 namespace mjarm::session {
@@ -23,6 +25,7 @@ void simulate_world(World& world, view::ViewLink& link) {
   const auto offer = [&] {
     if (!changed || !link.frames.is_empty()) return;
     changed = false;
+    const LanguageScope drawn(render::picture_language());
     world.fill(frame);
     link.frames.post(frame);
   };

@@ -3,9 +3,11 @@
 #include <utility>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/session/picture.hpp"
 #include "mjarm/session/run_charts.hpp"
 #include "mjarm/session/run_output.hpp"
@@ -94,6 +96,7 @@ Result<Report> Stage::finish(Report begun, double tolerance) {
 }
 
 Result<Report> Stage::finish(Report report, double tolerance, std::span<const MeasuredRun> runs) {
+  const LanguageScope drawn(render::picture_language());
   render::Plot plot = motion_plot(name_, robot_.arm, runs, tolerance);
   if (report.path_error) {
     plot.note = text(msg::show_plot_note, control_, 1e3 * report.path_error->max,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "mjarm/core/messages/panels.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
@@ -31,20 +32,20 @@ constexpr double kDeg = std::numbers::pi / 180;
 constexpr const char* kJogAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
 constexpr float kGhostAlpha = 0.3F;
 
-const char* word_of(TargetGrade grade) {
+Msg word_of(TargetGrade grade) {
   switch (grade) {
     case TargetGrade::good:
-      return "reachable";
+      return msg::panel_reachable;
     case TargetGrade::near_limit:
-      return "near a limit";
+      return msg::panel_near_limit;
     case TargetGrade::near_singular:
-      return "singular";
+      return msg::panel_singular;
     case TargetGrade::jump:
-      return "by a jump";
+      return msg::panel_by_jump;
     case TargetGrade::unreachable:
-      return "not reachable";
+      break;
   }
-  return "";
+  return msg::panel_unreachable;
 }
 
 /// Without a minus before a zero; a panel has room for 14 characters.
@@ -154,35 +155,43 @@ void TargetControl::post_look() {
 }
 
 view::PanelSection TargetControl::target_section() const {
-  char room[32] = "none";
+  std::string room = text(msg::panel_none);
   std::string joint;
   if (std::isfinite(target_.room())) {
     const ArmJoint& nearest = target_.arm().joints[static_cast<std::size_t>(target_.tightest())];
     const char* unit = nearest.type == JointType::hinge ? "rad" : "m";
-    std::snprintf(room, sizeof(room), "%.2f %s", target_.room(), unit);
+    char printed[32];
+    std::snprintf(printed, sizeof(printed), "%.2f %s", target_.room(), unit);
+    room = printed;
     joint = nearest.name;
   }
   char singular[32];
   std::snprintf(singular, sizeof(singular), "%.3f", target_.singular().smallest);
-  return {"Target",
-          {{kShownItem, "Target", view::PanelCheckbox{shown_}},
-           {kFollowItem, "Follow", view::PanelCheckbox{follow_}},
-           {kGoItem, "Go", view::PanelButton{}},
-           {kBackItem, "Back to arm", view::PanelButton{}},
-           {kTextItem, "State", view::PanelText{word_of(target_.grade())}},
-           {kTextItem, "Room to limit", view::PanelText{room}},
-           {kTextItem, "of joint", view::PanelText{joint}},
-           {kTextItem, "Singular value", view::PanelText{singular}}}};
+  return {text(msg::panel_target),
+          {{kShownItem, text(msg::panel_target), view::PanelCheckbox{shown_}},
+           {kFollowItem, text(msg::panel_follow), view::PanelCheckbox{follow_}},
+           {kGoItem, text(msg::panel_go), view::PanelButton{}},
+           {kBackItem, text(msg::panel_back), view::PanelButton{}},
+           {kTextItem, text(msg::panel_state), view::PanelText{text(word_of(target_.grade()))}},
+           {kTextItem, text(msg::panel_room), view::PanelText{room}},
+           {kTextItem, text(msg::panel_of_joint), view::PanelText{joint}},
+           {kTextItem, text(msg::panel_singular_value), view::PanelText{singular}}}};
 }
 
 view::PanelSection TargetControl::tool_section() const {
   view::PanelSection section{
-      "Tool",
-      {{kFrameItem, "Frame", view::PanelChoice{{"world", "tool", "base"}, frame_}},
-       {kMoveItem, "Move by", view::PanelChoice{{"1 mm", "10 mm", "50 mm"}, move_step_}}}};
+      text(msg::panel_tool),
+      {{kFrameItem, text(msg::panel_frame),
+        view::PanelChoice{
+            {text(msg::panel_world), text(msg::panel_tool_frame), text(msg::panel_base)}, frame_}},
+       {kMoveItem, text(msg::panel_move_by),
+        view::PanelChoice{{"1 mm", "10 mm", "50 mm"}, move_step_}}}};
   if (target_.turns()) {
     section.items.push_back(
-        {kTurnItem, "Turn by", view::PanelChoice{{"1 deg", "5 deg", "15 deg"}, turn_step_}});
+        {kTurnItem, text(msg::panel_turn_by),
+         view::PanelChoice{{text(msg::panel_degrees, 1), text(msg::panel_degrees, 5),
+                            text(msg::panel_degrees, 15)},
+                           turn_step_}});
   }
   for (int i = 0; i < (target_.turns() ? 12 : 6); ++i) {
     const std::string sign = i % 2 == 0 ? "- " : "+ ";

@@ -38,7 +38,7 @@ struct ActionRow {
   ViewAction action;
   int key;  ///< as GLFW numbers keys
   KeyModifier modifier;
-  const char* shown;  ///< name of the key in the help
+  Msg shown;  ///< name of the key in the help
   Msg about;
 };
 [[nodiscard]] std::span<const ActionRow> action_rows() noexcept;
@@ -49,9 +49,9 @@ struct ActionRow {
 /// One line of the help.
 struct ControlHelp {
   std::string keys;
-  Msg about;
+  std::string about;
 };
-/// Every control of a window: mouse, keys, settings.
+/// Every control of a window: mouse, keys, settings; in the language in use.
 [[nodiscard]] std::vector<ControlHelp> control_help();
 
 /// The speeds that + and - go through, simulated seconds a second.

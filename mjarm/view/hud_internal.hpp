@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mjarm/view/pick_internal.hpp"
+#include "mjarm/view/text_block_internal.hpp"
 #include "mjarm/view/view_stats.hpp"
 
 namespace mjarm::view {
@@ -25,6 +26,6 @@ struct HudText {
 
 /// Draws it into the current buffer: facts at the upper left, lines at the lower left, the help in
 /// the middle.
-void draw_hud(const HudText& text, const mjrRect& view, const mjrContext& context);
+void draw_hud(const HudText& text, const mjrRect& view, const TextTools& tools);
 
 }  // namespace mjarm::view

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mjarm/core/messages/view.hpp"
 #include "mjarm/view/interaction_internal.hpp"
 #include "mjarm/view/ray.hpp"
 #include "mjarm/view/settings_internal.hpp"
@@ -111,11 +112,11 @@ void Interaction::press(const RawInput& input, const mjrContext& context) {
 
 void Interaction::take_hold(const RawInput& input) {
   if (!may_.push) {
-    say("pushing is off here");
+    say(text(msg::view_no_push));
   } else if (picker.take_hold(point_of(input), input.button == 0)) {
     drag_ = Drag::push;
   } else {
-    say("there is nothing that moves");
+    say(text(msg::view_nothing_moves));
   }
 }
 
@@ -241,7 +242,7 @@ void Interaction::act(ViewAction action) {
       return pause(!paused_);
     case ViewAction::step:
     case ViewAction::step_back:
-      if (!may_.step) return say("single steps are off here");
+      if (!may_.step) return say(text(msg::view_no_step));
       pause(true);
       events_.push_back(StepEvent{action == ViewAction::step ? 1 : -1});
       return;
@@ -250,7 +251,7 @@ void Interaction::act(ViewAction action) {
     case ViewAction::slower:
       return change_speed(-1);
     case ViewAction::reset:
-      if (!may_.reset) return say("reset is off here: what runs would not know where it is");
+      if (!may_.reset) return say(text(msg::view_no_reset));
       events_.push_back(ResetEvent{});
       return;
     case ViewAction::first_view:
@@ -270,7 +271,7 @@ void Interaction::act(ViewAction action) {
       settings.label = (settings.label + 1) % static_cast<int>(view_label_names().size());
       return;
     case ViewAction::target:
-      if (!may_.target) return say("there is no target here");
+      if (!may_.target) return say(text(msg::view_no_target));
       events_.emplace_back(TargetEvent{});
       return;
     case ViewAction::screenshot:

@@ -312,9 +312,9 @@ TEST_F(UserTest, AKeyOfASettingTogglesThatAloneAndTwiceIsNothing) {
     ViewSettings expected = before;
     expected.set(row.flag, !before.shows(row.flag));
     key(row.key);
-    EXPECT_EQ(user_->settings, expected) << row.label;
+    EXPECT_EQ(user_->settings, expected) << row.label.english;
     key(row.key);
-    EXPECT_EQ(user_->settings, before) << row.label;
+    EXPECT_EQ(user_->settings, before) << row.label.english;
   }
   for (int i = 0; i < kViewGroups; ++i) {
     ViewSettings expected = before;

@@ -70,6 +70,7 @@ class Range {
 
 template <std::size_t N>
 void copy_text(char (&target)[N], std::string_view text) {
+  if (!is_ascii(text)) text = {};
   const std::size_t count = std::min(text.size(), N - 1);
   std::memcpy(target, text.data(), count);
   target[count] = '\0';
@@ -110,7 +111,10 @@ std::vector<std::vector<Eigen::Vector3d>> parts_of(const LiveSeries& series) {
 class Pen {
  public:
   /// @param apart  points are ends of separate pieces, two each.
-  Pen(mjvFigure& figure, bool apart) : figure_(figure) { figure.flg_barplot = apart ? 1 : 0; }
+  /// @param legend  the figure's own.
+  Pen(mjvFigure& figure, bool apart, bool legend) : figure_(figure), legend_(legend) {
+    figure.flg_barplot = apart ? 1 : 0;
+  }
   /// @return false where no line is left.
   bool begin(const LiveSeries& series) {
     name_ = series.name;
@@ -134,13 +138,14 @@ class Pen {
   bool next_line() {
     if (line_ + 1 == mjMAXLINE) return false;
     ++line_;
-    copy_text(figure_.linename[line_], std::exchange(name_, {}));
+    copy_text(figure_.linename[line_], legend_ ? std::exchange(name_, {}) : std::string());
     figure_.flg_legend = figure_.flg_legend != 0 || figure_.linename[line_][0] != '\0';
     const float rgb[3] = {color_.r, color_.g, color_.b};
     std::copy(rgb, rgb + 3, figure_.linergb[line_]);
     return true;
   }
   mjvFigure& figure_;
+  bool legend_;
   int line_ = -1;
   std::string name_;
   render::Rgba color_;
@@ -203,7 +208,8 @@ void fill_figure(const LivePlot& plot, mjvFigure& figure) {
     curves.push_back(parts_of(series));
     apart = apart || series.style != render::LineStyle::solid || curves.back().size() > 1;
   }
-  Pen pen(figure, apart);
+  const bool legend = std::ranges::all_of(plot.series, is_ascii, &LiveSeries::name);
+  Pen pen(figure, apart, legend);
   for (std::size_t i = 0; i < curves.size(); ++i) {
     if (!pen.begin(plot.series[i])) return;
     for (std::vector<Eigen::Vector3d>& part : curves[i]) {

@@ -10,7 +10,7 @@ namespace mjarm::view {
 
 /// One curve of a live plot. The caller appends while it runs; long curves are thinned for display.
 struct LiveSeries {
-  std::string name = {};  ///< in the legend; ASCII; empty = not in the legend
+  std::string name = {};  ///< in the legend; empty = not in the legend
   render::Rgba color = {0.90F, 0.35F, 0.30F, 1};
   std::vector<double> x = {};                          ///< shape (n,)
   std::vector<double> y = {};                          ///< shape (n,); NaN leaves a gap
@@ -20,8 +20,8 @@ struct LiveSeries {
 
 /// A figure at the right edge of a window: a tool path (`equal_aspect`) or curves over time.
 struct LivePlot {
-  std::string title = {};    ///< ASCII
-  std::string x_label = {};  ///< ASCII, with its unit
+  std::string title = {};
+  std::string x_label = {};  ///< with its unit
   std::vector<LiveSeries> series = {};
   bool equal_aspect = false;  ///< one unit is equally long on both axes
   bool y_from_zero = false;   ///< the y axis begins at 0 (errors)

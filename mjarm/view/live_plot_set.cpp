@@ -193,8 +193,8 @@ void LivePlotSet::add(const LiveRow& row) {
 LivePlot LivePlotSet::figure(LiveFigure which, LiveSpan span) const {
   const Chart chart = impl_->chart(which, span);
   LivePlot plot;
-  plot.title = std::string(chart.title.in(Language::english)) + " [" + chart.unit + "]";
-  plot.x_label = std::string(msg::view_plot_time.in(Language::english));
+  plot.title = text(chart.title) + " [" + chart.unit + "]";
+  plot.x_label = text(msg::view_plot_time);
   plot.y_from_zero = chart.from_zero;
   for (const render::PlotLine& line : chart.lines) {
     plot.series.push_back({line.label, figure_color(line), line.x, line.y, line.style});

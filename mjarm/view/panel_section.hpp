@@ -8,7 +8,8 @@ namespace mjarm::view {
 
 /// What a panel of a window shows: plain data that the application hands over with every frame.
 /// What the user does with it comes back as a `PanelEvent`; the application decides what it means
-/// and shows it with the next frames. Names are ASCII and cut after 39 characters.
+/// and shows it with the next frames. Names are UTF-8, cut where their
+/// place ends.
 
 /// The value of its event is 1. Two in a row stand beside each other.
 struct PanelButton {};

@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <string>
 
+#include "mjarm/core/messages/view.hpp"
 #include "mjarm/view/panels_internal.hpp"
 
 namespace mjarm::view {
@@ -24,18 +25,26 @@ PanelItem button(ViewAction action, std::string name, bool enabled = true) {
   return {kActionItems + static_cast<int>(action), std::move(name), PanelButton{}, enabled};
 }
 
+/// MuJoCo's words for kinds of objects, in the language in use.
 std::vector<std::string> words(std::span<const char* const> names) {
-  return {names.begin(), names.end()};
+  static constexpr Msg kKinds[] = {
+      msg::view_kind_none,       msg::view_kind_body,           msg::view_kind_joint,
+      msg::view_kind_geom,       msg::view_kind_site,           msg::view_kind_camera,
+      msg::view_kind_light,      msg::view_kind_tendon,         msg::view_kind_actuator,
+      msg::view_kind_constraint, msg::view_kind_flex,           msg::view_kind_skin,
+      msg::view_kind_selection,  msg::view_kind_selected_point, msg::view_kind_contact,
+      msg::view_kind_island,     msg::view_kind_contact_force,  msg::view_kind_world};
+  std::vector<std::string> out;
+  for (const char* name : names) {
+    const auto* known = std::ranges::find(
+        kKinds, std::string_view(name), [](const Msg& kind) { return kind.in(Language::english); });
+    out.push_back(known != std::end(kKinds) ? text(*known) : name);
+  }
+  return out;
 }
 
 /// Without the digits of a zero that is almost one.
 double shown(double value) { return std::round(1e4 * value) / 1e4 + 0.0; }
-
-std::string in_range(const char* format, double lower, double upper) {
-  char text[64];
-  std::snprintf(text, sizeof(text), format, lower, upper);
-  return text;
-}
 
 }  // namespace
 
@@ -78,43 +87,44 @@ void Panels::toggle_right() { right_shown_ = !right_shown_; }
 
 std::vector<PanelSection> Panels::left_sections(const ViewSettings& settings,
                                                 const PanelFacts& facts) const {
-  char speed[32];
-  std::snprintf(speed, sizeof(speed), "%g x", facts.speed);
   PanelSection simulation{
-      "Simulation",
-      {{kActionItems + static_cast<int>(ViewAction::pause), "Pause", PanelCheckbox{facts.paused}},
-       {kTextItem, "Speed", PanelText{speed}},
-       button(ViewAction::step_back, "Step back", can_step_),
-       button(ViewAction::step, "Step", can_step_),
-       button(ViewAction::slower, "Slower"),
-       button(ViewAction::faster, "Faster"),
-       button(ViewAction::reset, "Reset", can_reset_),
-       button(ViewAction::first_view, "First view"),
-       button(ViewAction::screenshot, "Screenshot"),
-       button(ViewAction::help, "Help")}};
-  PanelSection flags{"Settings", {}};
-  flags.items = {{kLabelItem, "Labels", PanelChoice{words(view_label_names()), settings.label}},
-                 {kFrameItem, "Frames", PanelChoice{words(view_frame_names()), settings.frame}}};
+      text(msg::view_simulation),
+      {{kActionItems + static_cast<int>(ViewAction::pause), text(msg::view_item_pause),
+        PanelCheckbox{facts.paused}},
+       {kTextItem, text(msg::view_speed), PanelText{text(msg::view_speed_value, facts.speed)}},
+       button(ViewAction::step_back, text(msg::view_item_step_back), can_step_),
+       button(ViewAction::step, text(msg::view_item_step), can_step_),
+       button(ViewAction::slower, text(msg::view_item_slower)),
+       button(ViewAction::faster, text(msg::view_item_faster)),
+       button(ViewAction::reset, text(msg::view_item_reset), can_reset_),
+       button(ViewAction::first_view, text(msg::view_item_first_view)),
+       button(ViewAction::screenshot, text(msg::view_item_screenshot)),
+       button(ViewAction::help, text(msg::view_item_help))}};
+  PanelSection flags{text(msg::view_settings), {}};
+  flags.items = {{kLabelItem, text(msg::view_item_labels),
+                  PanelChoice{words(view_label_names()), settings.label}},
+                 {kFrameItem, text(msg::view_item_frames),
+                  PanelChoice{words(view_frame_names()), settings.frame}}};
   for (const SettingRow& row : setting_rows()) {
-    flags.items.push_back({kFlagItems + static_cast<int>(row.flag), row.label,
+    flags.items.push_back({kFlagItems + static_cast<int>(row.flag), text(row.label),
                            PanelCheckbox{settings.shows(row.flag)}});
   }
-  PanelSection groups{"Groups", {}};
+  PanelSection groups{text(msg::view_groups), {}};
   for (int i = 0; i < kViewGroups; ++i) {
     const auto group = static_cast<std::size_t>(i);
-    groups.items.push_back({kGeomGroupItems + i, "Geom " + std::to_string(i),
+    groups.items.push_back({kGeomGroupItems + i, text(msg::view_item_geom_group, i),
                             PanelCheckbox{settings.geom_groups[group]}});
-    groups.items.push_back({kSiteGroupItems + i, "Site " + std::to_string(i),
+    groups.items.push_back({kSiteGroupItems + i, text(msg::view_item_site_group, i),
                             PanelCheckbox{settings.site_groups[group]}});
   }
   return {std::move(simulation), std::move(flags), std::move(groups)};
 }
 
 PanelSection Panels::joint_section(const PanelFacts& facts) const {
-  PanelSection section{"Joints", {}, joints_open_};
+  PanelSection section{text(msg::view_joints), {}, joints_open_};
   for (const Joint& joint : joints_) {
     section.items.push_back({joint.dof, joint.name,
-                             PanelText{in_range("%.3g to %.3g", joint.lower, joint.upper)},
+                             PanelText{text(msg::view_range, joint.lower, joint.upper)},
                              joint.live});
     section.items.push_back(
         {joint.dof, "", PanelSlider{shown(facts.d->qpos[joint.qpos]), joint.lower, joint.upper},
@@ -134,9 +144,9 @@ void Panels::show(const ViewSettings& settings, const PanelFacts& facts,
   layout();
 }
 
-void Panels::render(const mjrContext& context) {
-  if (left_shown_) left_.render(state_, context);
-  if (right_shown_) right_.render(state_, context);
+void Panels::render(const mjrContext& context, GlyphFont& font) {
+  if (left_shown_) left_.render(state_, context, font);
+  if (right_shown_) right_.render(state_, context, font);
 }
 
 bool Panels::owns_event() const {

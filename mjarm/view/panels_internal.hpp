@@ -40,7 +40,7 @@ class Panels {
   /// Brings what they show up to date.
   void show(const ViewSettings& settings, const PanelFacts& facts,
             std::span<const PanelSection> sections, mjrContext& context);
-  void render(const mjrContext& context);
+  void render(const mjrContext& context, GlyphFont& font);
 
   /// Mouse and place of the picture, `view()`, as MuJoCo keeps them.
   [[nodiscard]] mjuiState& state() { return state_; }

@@ -9,6 +9,7 @@
 
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/render/gl_context.hpp"
+#include "mjarm/view/gl_function_test.hpp"
 #include "mjarm/view/interaction_internal.hpp"
 #include "mjarm/view/panels_internal.hpp"
 
@@ -36,6 +37,7 @@ class PanelTest : public ::testing::Test {
     ASSERT_FALSE(
         call_mujoco([&] { mjr_makeContext(&scene_.model(), &context_, mjFONTSCALE_100); }).failed);
     mjr_setBuffer(mjFB_OFFSCREEN, &context_);
+    font_.emplace(context_.charHeight, testing::gl_function);
     panels_.resize(1200, 3000);  // high enough for all items at once
   }
   void TearDown() override {
@@ -68,6 +70,7 @@ class PanelTest : public ::testing::Test {
   render::Scene scene_{model_, render::RenderQuality::low};
   std::optional<render::GlContext> gl_;
   mjrContext context_{};
+  std::optional<GlyphFont> font_;
   Panels panels_{scene_.model(), {0}, true, false};
   Interaction user_{scene_, panels_, {.reset = false}, false};
   double time_ = 0;
@@ -242,7 +245,7 @@ TEST_F(PanelTest, TakesAnything) {
                        {5, "", PanelList{{}, -1}}};
   show(sections);
   EXPECT_TRUE(panels_.place(false, 0, -1));
-  panels_.render(context_);
+  panels_.render(context_, *font_);
   show(sections);
   show({});
   EXPECT_FALSE(panels_.place(false, 1, -1));

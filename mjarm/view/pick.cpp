@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "mjarm/core/messages/view.hpp"
 #include "mjarm/view/pick_internal.hpp"
 
 namespace mjarm::view {
@@ -122,10 +123,10 @@ std::vector<Picker::Row> Picker::describe() const {
   if (selected < 0) return {};
   const mjModel& m = scene_.model();
   const mjData& d = scene_.data();
-  std::vector<Row> rows = {{"Body", name_of(m, mjOBJ_BODY, selected, "body")}};
-  if (geom_ >= 0) rows.push_back({"Geom", geom_name(m, geom_)});
-  rows.push_back({"Position [m]", vector_text(d.xpos + 3 * selected, 3)});
-  rows.push_back({"Quaternion", vector_text(d.xquat + 4 * selected, 4)});
+  std::vector<Row> rows = {{text(msg::view_body), name_of(m, mjOBJ_BODY, selected, "body")}};
+  if (geom_ >= 0) rows.push_back({text(msg::view_geom), geom_name(m, geom_)});
+  rows.push_back({text(msg::view_position), vector_text(d.xpos + 3 * selected, 3)});
+  rows.push_back({text(msg::view_quaternion), vector_text(d.xquat + 4 * selected, 4)});
   std::vector<std::string> pairs;
   for (int i = 0; i < d.ncon; ++i) {
     const mjContact& contact = d.contact[i];
@@ -136,7 +137,7 @@ std::vector<Picker::Row> Picker::describe() const {
     std::string pair = geom_name(m, contact.geom[0]) + " - " + geom_name(m, contact.geom[1]);
     if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
   }
-  rows.push_back({"Contacts", pairs.empty() ? "none" : pairs.front()});
+  rows.push_back({text(msg::view_contacts), pairs.empty() ? text(msg::view_none) : pairs.front()});
   for (std::size_t i = 1; i < std::min(pairs.size(), kMaxPairs); ++i) {
     rows.push_back({" ", pairs[i]});
   }

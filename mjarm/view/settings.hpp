@@ -55,9 +55,9 @@ struct ViewSettings {
 /// One flag as keys, the settings panel and the help know it.
 struct SettingRow {
   ViewFlag flag;
-  int key;            ///< as GLFW numbers keys (ASCII, capital); 0 = none
-  const char* label;  ///< in the panel
-  Msg about;          ///< in the help
+  int key;    ///< as GLFW numbers keys (ASCII, capital); 0 = none
+  Msg label;  ///< in the panel
+  Msg about;  ///< in the help
 };
 /// All flags, in the order of `ViewFlag`.
 [[nodiscard]] std::span<const SettingRow> setting_rows() noexcept;

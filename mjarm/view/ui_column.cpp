@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mjarm/view/ui_column_internal.hpp"
+#include "mjarm/view/ui_labels_internal.hpp"
 
 namespace mjarm::view {
 namespace {
@@ -14,16 +15,13 @@ constexpr int kLabelWidth = 150;
 constexpr int kListLines = 30;  // mjMAXUIMULTI is the most
 constexpr int kSliderDivisions = 2000;
 
-/// At most N - 1 characters that MuJoCo's font has; never empty, which it does not take.
+/// At most N - 1 characters that MuJoCo's font has; never empty, which it does not take. Other
+/// texts leave a blank: `render` draws them.
 template <std::size_t N>
 void copy_ascii(char (&target)[N], std::string_view text) {
+  if (!is_ascii(text)) text = " ";
   std::size_t length = 0;
-  for (const char c : text) {
-    if (length + 1 == N) break;
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte & 0xC0U) == 0x80U) continue;  // inside of a UTF-8 character, shown as one `?`
-    target[length++] = byte >= 32 && byte < 127 ? c : '?';
-  }
+  for (const char c : text.substr(0, N - 1)) target[length++] = c >= 32 && c < 127 ? c : '?';
   target[length] = '\0';
 }
 
@@ -204,6 +202,7 @@ void UiColumn::show(const std::vector<PanelSection>& sections, mjuiState& state,
       const int section = static_cast<int>(i);
       const int item = static_cast<int>(k);
       if (is_held(section, item)) continue;
+      sections_[i].items[k].what = sections[i].items[k].what;
       if (!write(sections[i].items[k], cells_[i][k], ui_->sect[i].item[k])) continue;
       mjui_update(section, item, ui_.get(), &state, &context);
     }
@@ -236,8 +235,14 @@ std::optional<UiChange> UiColumn::handle(mjuiState& state, const mjrContext& con
   return change;
 }
 
-void UiColumn::render(const mjuiState& state, const mjrContext& context) {
+void UiColumn::render(const mjuiState& state, const mjrContext& context, GlyphFont& font) {
   mjui_render(ui_.get(), &state, &context);
+  std::vector<std::vector<int>> first_lines;
+  for (const std::deque<Cell>& cells : cells_) {
+    std::vector<int>& lines = first_lines.emplace_back();
+    for (const Cell& cell : cells) lines.push_back(cell.first);
+  }
+  draw_labels({*ui_, sections_, first_lines}, state, context, font);
 }
 
 std::optional<mjrRect> UiColumn::place(int section, int item, const mjuiState& state) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/view/glyph_font_internal.hpp"
 #include "mjarm/view/panel_section.hpp"
 
 namespace mjarm::view {
@@ -33,7 +34,8 @@ class UiColumn {
   void refresh(mjuiState& state, mjrContext& context);
   /// Lets an event of the mouse act.
   std::optional<UiChange> handle(mjuiState& state, const mjrContext& context);
-  void render(const mjuiState& state, const mjrContext& context);
+  /// @param font  for what MuJoCo's has no letters for.
+  void render(const mjuiState& state, const mjrContext& context, GlyphFont& font);
 
   [[nodiscard]] int width() const { return ui_->width; }
   /// Middle of an item in the window, from its lower left, or of a title where `item` < 0; for

@@ -8,11 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/gl_context.hpp"
 #include "mjarm/view/display_internal.hpp"
 #include "mjarm/view/figure_internal.hpp"
+#include "mjarm/view/glyph_font_internal.hpp"
 #include "mjarm/view/hud_internal.hpp"
 #include "mjarm/view/interaction_internal.hpp"
 #include "mjarm/view/screenshot_internal.hpp"
@@ -85,7 +88,7 @@ struct Window::Impl {
   void handle_inputs();
   void prepare(const render::Overlay& overlay, std::span<const PanelSection> sections);
   void render();
-  void render_plots(const mjrRect& view);
+  void render_plots(const mjrRect& view, const TextTools& tools);
   [[nodiscard]] HudText hud() const;
   [[nodiscard]] render::Image read_picture();
   void save_picture();
@@ -97,6 +100,7 @@ struct Window::Impl {
   Interaction user;
   FrameCounter counter;
   mjrContext context{};
+  std::unique_ptr<GlyphFont> font;
   RawInputs inputs;
   DrawHook draw_hook;
   double time = 0;  ///< [s] of the state shown
@@ -116,6 +120,7 @@ Result<void> Window::Impl::upload() {
   glfwGetWindowContentScale(handle, &scale, nullptr);
   const MujocoOutcome outcome =
       call_mujoco([&] { mjr_makeContext(&scene.model(), &context, font_scale(scale)); });
+  if (!outcome.failed) font = std::make_unique<GlyphFont>(context.charHeight, glfwGetProcAddress);
   glfwMakeContextCurrent(nullptr);
   if (!outcome.failed) return {};
   return fail(Errc::not_available, text(msg::view_no_window, outcome.error));
@@ -191,13 +196,15 @@ void Window::Impl::render() {
   mjr_setBuffer(mjFB_WINDOW, &context);
   const mjrRect& view = panels.view();
   if (view.width > 0) mjr_render(view, &scene.raw(), &context);
-  render_plots(view);
-  draw_hud(hud(), view, context);
-  panels.render(context);
+  const mjrRect& whole = panels.state().rect[0];
+  const TextTools tools{context, *font, {0, 0, whole.width, whole.height}};
+  render_plots(view, tools);
+  draw_hud(hud(), view, tools);
+  panels.render(context, *font);
 }
 
 /// Figures stand one above the other at the right edge.
-void Window::Impl::render_plots(const mjrRect& view) {
+void Window::Impl::render_plots(const mjrRect& view, const TextTools& tools) {
   const int count = static_cast<int>(figures.size());
   if (count == 0) return;
   const int width = view.width * 3 / 10;
@@ -205,7 +212,8 @@ void Window::Impl::render_plots(const mjrRect& view) {
   for (int i = 0; i < count; ++i) {
     const mjrRect place = {view.left + view.width - width, view.height - (i + 1) * height, width,
                            height};
-    mjr_figure(place, &figures[static_cast<std::size_t>(i)], &context);
+    const auto k = static_cast<std::size_t>(i);
+    draw_figure(*figures_of[k], figures[k], place, tools);
   }
 }
 
@@ -220,7 +228,7 @@ render::Image Window::Impl::read_picture() {
 
 void Window::Impl::save_picture() {
   if (options.screenshots.empty()) {
-    user.say("no folder for screenshots was named (--out DIR)");
+    user.say(text(msg::view_no_folder));
     return;
   }
   ScreenshotEvent event;
@@ -229,7 +237,7 @@ void Window::Impl::save_picture() {
   } else {
     event.error = file.error().what;
   }
-  user.say(event.error.empty() ? "written: " + event.file : "the screenshot was not written");
+  user.say(event.error.empty() ? text(msg::view_written, event.file) : text(msg::view_not_written));
   user.tell(std::move(event));
 }
 
@@ -308,6 +316,7 @@ Result<void> Window::draw(const Snapshot& snapshot, const render::Overlay& overl
     impl_->next_frame = begin + kIconPeriod;
     return {};
   }
+  const LanguageScope drawn(render::picture_language());
   impl_->fill_figures(plots);
   glfwMakeContextCurrent(impl_->handle);
   impl_->handle_inputs();
@@ -326,6 +335,7 @@ Result<void> Window::draw(const Snapshot& snapshot, const render::Overlay& overl
 
 Result<render::Image> Window::picture() {
   if (display_lost()) return fail(display_lost_error());
+  const LanguageScope drawn(render::picture_language());
   glfwMakeContextCurrent(impl_->handle);
   impl_->render();
   render::Image image = impl_->read_picture();

@@ -67,7 +67,7 @@ class Window {
   /// True while the user has paused the simulation.
   [[nodiscard]] bool paused() const noexcept;
   void set_paused(bool paused) noexcept;
-  /// One line at the lower left, ASCII, e.g. the worst error so far; empty = none.
+  /// One line at the lower left, e.g. the worst error so far; empty = none.
   void set_status(std::string line);
   /// What is shown; the user changes it by keys and in the panel.
   [[nodiscard]] const ViewSettings& settings() const noexcept;

@@ -34,7 +34,8 @@ TEST_F(Controls, EveryKeyOfASettingTogglesIt) {
     if (key == "/") key = "slash";
     ViewSettings expected = window_->settings();
     expected.set(row.flag, !expected.shows(row.flag));
-    EXPECT_TRUE(key_until(key, [&] { return window_->settings() == expected; })) << row.label;
+    EXPECT_TRUE(key_until(key, [&] { return window_->settings() == expected; }))
+        << row.label.english;
   }
 }
 

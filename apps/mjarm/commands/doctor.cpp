@@ -19,6 +19,7 @@
 #include "mjarm/model/model.hpp"
 #include "mjarm/model/mujoco_library.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/gl_context.hpp"
 
 namespace mjarm::app {
@@ -82,6 +83,13 @@ void look_at_graphics(Findings& findings) {
   if (!any) findings.problems.push_back(text(msg::app_doctor_no_gl));
 }
 
+/// Without one everything works, but plots and windows speak English.
+void look_at_fonts(Findings& findings) {
+  const std::string& font = render::chinese_font();
+  add(findings, "chinese_font", text(msg::app_doctor_font), font,
+      font.empty() ? text(msg::app_doctor_no_font) : font);
+}
+
 /// Only videos need it.
 void look_at_ffmpeg(Findings& findings) {
   const std::string file = find_program("ffmpeg").string();
@@ -137,6 +145,7 @@ Result<int> run(bool json) {
   look_at_mujoco(findings);
   look_at_machine(findings);
   look_at_graphics(findings);
+  look_at_fonts(findings);
   look_at_ffmpeg(findings);
   look_at_ompl(findings);
   look_at_models(findings);
@@ -148,7 +157,9 @@ Result<int> run(bool json) {
     std::fputs(findings.facts.document().c_str(), stdout);
   } else {
     std::fputs(findings.lines.c_str(), stdout);
-    if (fine) std::fputs((text(msg::app_doctor_fine) + "\n").c_str(), stdout);
+    // Not all is well for somebody whose language no picture shows: the note says what to install.
+    const bool shown = render::picture_language() == language();
+    if (fine && shown) std::fputs((text(msg::app_doctor_fine) + "\n").c_str(), stdout);
   }
   for (const std::string& problem : findings.problems) log_error(problem);
   return fine ? 0 : 1;

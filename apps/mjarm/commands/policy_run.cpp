@@ -9,12 +9,14 @@
 #include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/session/policy_player.hpp"
 #include "mjarm/session/run_output.hpp"
@@ -100,6 +102,7 @@ Result<Played> play(PolicyPlayer& player, const PolicyTrial& trial, session::Run
 }
 
 render::Plot plot_of(const std::string& title, const rl::Evaluation& evaluation, Played& played) {
+  const LanguageScope drawn(render::picture_language());
   render::PlotPanel over_time{.title = text(msg::train_plot_over_time),
                               .x_label = text(msg::train_plot_time),
                               .y_label = text(msg::train_plot_mm)};

@@ -9,6 +9,8 @@
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/language_scope.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {
@@ -96,6 +98,7 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
   const Result<std::string> csv = read_file(folder / rl::Training::kProgress);
   if (!csv) return fail(csv.error());
   const Columns table = read_columns(*csv);
+  const LanguageScope drawn(render::picture_language());
   render::PlotPanel success{.title = text(msg::train_plot_success),
                             .x_label = text(msg::train_plot_steps),
                             .y_label = text(msg::train_plot_share)};

@@ -10,6 +10,7 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/render_options.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
@@ -153,11 +154,10 @@ Result<int> run_program(const Options& options) {
 
 /// Examples, and below them every control, in one language.
 std::string help_end(Language language) {
-  std::string lines(msg::view_examples.in(language));
-  lines += "\n\n";
-  lines += msg::view_controls.in(language);
+  const LanguageScope scope(language);
+  std::string lines = text(msg::view_examples) + "\n\n" + text(msg::view_controls);
   for (const view::ControlHelp& row : view::control_help()) {
-    lines += "\n  " + padded(row.keys, 20) + std::string(row.about.in(language));
+    lines += "\n  " + padded(row.keys, 20) + row.about;
   }
   return lines;
 }

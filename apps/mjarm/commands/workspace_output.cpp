@@ -9,8 +9,10 @@
 #include "apps/mjarm/messages/workspace.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/plot.hpp"
 #include "mjarm/render/png.hpp"
 
@@ -100,6 +102,7 @@ render::PlotPanel panel_of(const WorkspaceReport& report, const std::string& tit
 }
 
 render::Plot plot_of(const WorkspaceReport& report) {
+  const LanguageScope drawn(render::picture_language());
   const WorkspaceMap& map = report.map;
   std::vector<double> counts;
   for (const int branches : map.branches) counts.push_back(branches > 0 ? branches : kNone);

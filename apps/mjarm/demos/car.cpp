@@ -5,12 +5,14 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/run_charts.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/install/installed.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/session/run_output.hpp"
 #include "mjarm/session/run_show.hpp"
 
@@ -90,6 +92,7 @@ std::string to_csv(const Drive& drive) {
 }
 
 render::Plot plot_of(const Drive& drive) {
+  const LanguageScope drawn(render::picture_language());
   render::PlotPanel path{.title = text(msg::run_chart_top), .x_label = "x [m]", .y_label = "y [m]"};
   path.equal_aspect = true;
   render::PlotLine line;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/language_scope.hpp"
+#include "mjarm/render/fonts.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -90,6 +92,7 @@ double largest_distance(const MeasuredRun& run) {
 
 render::Plot comparison_plot(const ComparisonText& about, const Arm& arm,
                              std::span<const ComparedRun> runs, std::span<const Chart> rows) {
+  const LanguageScope drawn(render::picture_language());
   render::Plot page;
   page.title = about.title;
   page.note = about.note;

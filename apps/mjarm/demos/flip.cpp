@@ -7,6 +7,7 @@
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/render/fonts.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -74,13 +75,14 @@ Result<Report> run_flip(const DemoOptions& options) {
   log_info(text(msg::demo_flip_ours, report.max_joint_step));
   constexpr Chart kCharts[] = {Chart::joints, Chart::front, Chart::error};
   const std::string note =
-      naive->flip ? text(msg::demo_flip_note, 100 * naive->flip->fraction,
-                         1e3 * largest_distance(*naive_run), 1e3 * largest_distance(runs.back()))
+      naive->flip ? render::picture_text(msg::demo_flip_note, 100 * naive->flip->fraction,
+                                         1e3 * largest_distance(*naive_run),
+                                         1e3 * largest_distance(runs.back()))
                   : std::string();
-  const ComparedRun compared[] = {{text(msg::demo_naive), *naive_run},
-                                  {text(msg::demo_ours), runs.back()}};
-  auto saved = stage.save_comparison(
-      comparison_plot({text(msg::demo_flip_title), note}, stage.arm(), compared, kCharts));
+  const ComparedRun compared[] = {{render::picture_text(msg::demo_naive), *naive_run},
+                                  {render::picture_text(msg::demo_ours), runs.back()}};
+  auto saved = stage.save_comparison(comparison_plot(
+      {render::picture_text(msg::demo_flip_title), note}, stage.arm(), compared, kCharts));
   if (!saved) return fail(std::move(saved.error()));
   return stage.finish(std::move(report));
 }

@@ -12,6 +12,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/solve_curve.hpp"
+#include "mjarm/render/fonts.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -87,8 +88,8 @@ std::string tell(const session::Stage& stage, const MeasuredRun& naive, const Me
                         {"naive_path_error_max", off}};
   report.facts.insert(report.facts.end(), std::begin(facts), std::end(facts));
   log_info(text(msg::demo_singularity_naive, joint, whip.speed, limit, 1e3 * off));
-  return text(msg::demo_singularity_note, joint, whip.speed, limit, 1e3 * off, calm.speed,
-              1e3 * largest_distance(ours));
+  return render::picture_text(msg::demo_singularity_note, joint, whip.speed, limit, 1e3 * off,
+                              calm.speed, 1e3 * largest_distance(ours));
 }
 
 }  // namespace
@@ -113,26 +114,26 @@ Result<Report> run_singularity(const DemoOptions& options) {
   const ControlMode mode = stage.control(ControlMode::computed_torque);
   const Result<MeasuredRun> naive_run = stage.rehearse(naive->trajectory, mode, *line);
   if (!naive_run) return fail(naive_run.error());
-  std::vector<ComparedRun> compared{{text(msg::demo_naive), *naive_run}};
+  std::vector<ComparedRun> compared{{render::picture_text(msg::demo_naive), *naive_run}};
   stage.run().start_at(as_span(q_start));
   const Result<void> done =
       stage.move([&](MotionRun& run) { return run.follow(motion->trajectory, mode, 0.3, &*line); });
   if (!done) return fail(done.error());
   stage.tell(*motion, report);
   const std::vector<MeasuredRun> runs = stage.run().measured_runs();
-  compared.push_back({text(msg::demo_slows), runs.back()});
+  compared.push_back({render::picture_text(msg::demo_slows), runs.back()});
   const std::string note = tell(stage, *naive_run, runs.back(), report);
   log_info(text(msg::demo_singularity_ours, peak_speed(runs.back()).speed,
                 motion->trajectory.duration(), naive->trajectory.duration()));
   if (const auto tilt = ask_for_speed(ik, *line, as_span(q_start), report)) {
     auto tilted = run_tilted(stage, ik, *line, *tilt, as_span(q_start), mode, report);
     if (!tilted) return fail(std::move(tilted.error()));
-    if (*tilted) compared.push_back({text(msg::demo_tilts), std::move(**tilted)});
+    if (*tilted) compared.push_back({render::picture_text(msg::demo_tilts), std::move(**tilted)});
   }
 
   constexpr Chart kCharts[] = {Chart::joint_speeds, Chart::tool_speed, Chart::error};
-  auto saved = stage.save_comparison(
-      comparison_plot({text(msg::demo_singularity_title), note}, stage.arm(), compared, kCharts));
+  auto saved = stage.save_comparison(comparison_plot(
+      {render::picture_text(msg::demo_singularity_title), note}, stage.arm(), compared, kCharts));
   if (!saved) return fail(std::move(saved.error()));
   return stage.finish(std::move(report));
 }
