@@ -197,7 +197,6 @@ TEST(RobotSession, WithoutAHeldArmThereIsNoTarget) {
 
 /// In Chinese every word of the panels is Chinese; names of the model, units and axes stay.
 TEST_F(RobotInView, ThePanelsSpeakTheLanguageInUse) {
-  use("Target", "Target");
   const LanguageScope chinese(Language::chinese);
   const auto is_translated = [](const std::string& text) {
     static constexpr const char* kSame[] = {" mm", " rad", "[mm]", "_joint"};

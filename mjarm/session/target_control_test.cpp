@@ -65,7 +65,7 @@ TEST_F(Control, OutOfReachTheReasonIsToldInTheLanguageInUse) {
   {
     const LanguageScope chinese(Language::chinese);
     EXPECT_THAT(control_.line(), HasSubstr("不可达"));
-    EXPECT_EQ(shown("State"), "not reachable");  // the window's font is ASCII
+    EXPECT_EQ(shown("状态"), "不可达");
   }
   // The arm goes as far as it can, no further.
   EXPECT_GT(goal_pose().p.x(), fk(robot_.arm, as_span(robot_.arm.home)).p.x());

@@ -314,7 +314,7 @@ TEST_F(UserTest, AKeyOfASettingTogglesThatAloneAndTwiceIsNothing) {
     key(row.key);
     EXPECT_EQ(user_->settings, expected) << row.label.english;
     key(row.key);
-    EXPECT_EQ(user_->settings, before) << row.label;
+    EXPECT_EQ(user_->settings, before) << row.label.english;
   }
   for (int i = 0; i < kViewGroups; ++i) {
     ViewSettings expected = before;

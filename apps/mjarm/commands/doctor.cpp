@@ -163,8 +163,7 @@ Result<int> run(bool json) {
     print_lines(findings.lines);
     // Not all is well for somebody whose language no picture shows: the note says what to install.
     const bool shown = render::picture_language() == language();
-    if (fine && shown) print_lines(text(msg::app_doctor_fine) + "
-");
+    if (fine && shown) print_lines(text(msg::app_doctor_fine) + "\n");
   }
   for (const std::string& problem : findings.problems) log_error(problem);
   return fine ? 0 : 1;
