@@ -153,7 +153,7 @@ render::PlotLine share_over_time(const render::PlotLine& style, std::vector<doub
   render::PlotLine line = style;
   std::sort(us.begin(), us.end());
   for (std::size_t i = 0; i < us.size(); ++i) {
-    line.x.push_back(std::log10(us[i]));
+    line.x.push_back(us[i]);
     line.y.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(problems));
   }
   return line;
@@ -164,6 +164,7 @@ render::PlotPanel panel_of(const PlanTable& table) {
                           .x_label = text(msg::bench_plan_time_axis),
                           .y_label = text(msg::bench_plan_share_axis)};
   panel.y_range = render::PlotRange{0, 100};
+  panel.x_log = true;
   int color = 0;
   for (const PlanRun& run : sums_of(table.runs)) {
     std::vector<double> us;
@@ -176,18 +177,19 @@ render::PlotPanel panel_of(const PlanTable& table) {
   return panel;
 }
 
-/// log10 of `value` of each crowd over log10 of its size: one line for boxes, one for points.
+/// `value` of each crowd over its size, both by their ratios: one line for boxes, one for points.
 template <class Value>
 render::PlotPanel panel_over_crowds(const std::vector<CrowdedSet>& crowds, Msg title, Msg axis,
                                     const Value& value) {
   render::PlotPanel panel{
       .title = text(title), .x_label = text(msg::bench_plan_count_axis), .y_label = text(axis)};
+  panel.x_log = panel.y_log = true;
   render::PlotLine boxes{.label = text(msg::bench_plan_boxes)};
   render::PlotLine points{.label = text(msg::bench_plan_points)};
   for (std::size_t i = 0; i < crowds.size(); ++i) {
     render::PlotLine& line = crowds[i].points ? points : boxes;
-    line.x.push_back(std::log10(static_cast<double>(crowds[i].obstacles)));
-    line.y.push_back(std::log10(value(i)));
+    line.x.push_back(static_cast<double>(crowds[i].obstacles));
+    line.y.push_back(value(i));
   }
   for (render::PlotLine* line : {&boxes, &points}) {
     if (!line->x.empty()) panel.lines.push_back(std::move(*line));

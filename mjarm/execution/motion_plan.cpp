@@ -1,5 +1,6 @@
 #include "mjarm/execution/motion_plan.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mjarm/kinematics/fk.hpp"
@@ -24,6 +25,13 @@ JointVec MotionPlan::q_end() const {
   if (moves.empty()) return q_start;
   const Trajectory& last = moves.back().trajectory;
   return last.at(last.duration()).q;
+}
+
+MotionPart MotionPlan::part(std::size_t move) const {
+  const auto has_way = [](const PlannedMove& one) { return one.curve || !one.corners.empty(); };
+  if (moves[move].is_approach()) return MotionPart::approach;
+  if (has_way(moves[move]) || std::ranges::none_of(moves, has_way)) return MotionPart::work;
+  return MotionPart::travel;
 }
 
 std::vector<Pose> planned_tool_path(const PlannedMove& move, const Arm& arm) {

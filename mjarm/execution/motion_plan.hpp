@@ -57,6 +57,10 @@ struct PlannedMove {
   [[nodiscard]] bool is_approach() const { return word == "approach"; }
 };
 
+/// What a motion is for whoever looks at the tool: on its way to where a curve begins; a joint move
+/// between the curves of a plan, as with a pen that is lifted; or what the plan is about.
+enum class MotionPart { approach, travel, work };
+
 /// Motions that follow each other, each from rest to rest: what an Execution executes.
 struct MotionPlan {
   std::vector<Arm> arms;           ///< the arm with each tool that is used, at least one
@@ -67,6 +71,8 @@ struct MotionPlan {
   [[nodiscard]] static MotionPlan of(const Arm& arm, Trajectory trajectory);
   [[nodiscard]] double duration() const;  ///< [s] of all moves
   [[nodiscard]] JointVec q_end() const;   ///< [rad or m] (dof,) where it ends
+  /// Of the motion with that index.
+  [[nodiscard]] MotionPart part(std::size_t move) const;
 };
 
 /// Where the tool goes in a motion; fewer than two poses where it rests.

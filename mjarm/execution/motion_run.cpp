@@ -1,6 +1,8 @@
 #include "mjarm/execution/motion_run.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
@@ -31,6 +33,7 @@ MotionRun::MotionRun(const Model& model, const Arm& arm)
       q_command_(sim_.arm_state(arm).q) {}
 
 void MotionRun::start_at(std::span<const double> q) {
+  if (recorder_.size() > 0) restarted_ = sim_.time();
   sim_.place(arm_, q);
   q_command_ = joint_vec(q);
 }
@@ -43,6 +46,8 @@ void MotionRun::add(const FollowOutcome& outcome) {
 }
 
 void MotionRun::add_span(const Curve* curve, double from, double to, const Pose& X_TU) {
+  // What was recorded where the arm was put somewhere else is of what came before.
+  if (from <= restarted_) from = std::nextafter(restarted_, std::numeric_limits<double>::max());
   spans_.push_back({.curve = curve != nullptr ? std::optional(*curve) : std::nullopt,
                     .from = from,
                     .to = to,
@@ -61,8 +66,7 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
       Execution::create(model_, plan, {.control = mode, .rest = rest, .recorder = &recorder_});
   if (!execution) return fail(std::move(execution.error()));
   const Result<FollowOutcome> outcome = execution->run_to_end(sim_, [&](const Sim& sim) {
-    const PlannedMove& move = plan.moves[execution->motions().back().move];
-    return !after_step_ || after_step_(sim, !move.is_approach());
+    return !after_step_ || after_step_(sim, plan.part(execution->motions().back().move));
   });
   if (!outcome) return fail(outcome.error());
   for (const ExecutedMotion& motion : execution->motions()) {
@@ -105,12 +109,13 @@ Result<void> MotionRun::wait_through(std::span<const JointVec> waypoints,
   if (!waypoints.empty()) q_command_ = waypoints.back();
   Result<Controller> controller = Controller::create(model_, arm_, mode);
   if (!controller) return fail(std::move(controller.error()));
-  const FollowSetup setup{
-      .sim = sim_,
-      .controller = *controller,
-      .arm = arm_,
-      .recorder = &recorder_,
-      .after_step = [this](const Sim& sim) { return !after_step_ || after_step_(sim, true); }};
+  const FollowSetup setup{.sim = sim_,
+                          .controller = *controller,
+                          .arm = arm_,
+                          .recorder = &recorder_,
+                          .after_step = [this](const Sim& sim) {
+                            return !after_step_ || after_step_(sim, MotionPart::work);
+                          }};
   const double from = sim_.time();
   const Result<FollowOutcome, FollowFailure> outcome =
       points.empty() ? follow_joints(setup, waypoints) : follow_tool(setup, waypoints, points);

@@ -27,9 +27,8 @@ class MotionRun {
   /// The arm stands where the model begins.
   MotionRun(const Model& model, const Arm& arm);
 
-  /// Called after every step; `measured` tells that of approaches from the rest. Returns false to
-  /// end the run.
-  using AfterStep = std::function<bool(const Sim& sim, bool measured)>;
+  /// Called after every step. Returns false to end the run.
+  using AfterStep = std::function<bool(const Sim& sim, MotionPart part)>;
   void set_after_step(AfterStep after_step) { after_step_ = std::move(after_step); }
 
   /// Puts the arm at `q` (dof,), at rest.
@@ -88,6 +87,7 @@ class MotionRun {
   JointVec q_command_;
   FollowOutcome total_;
   std::vector<MeasuredSpan> spans_;
+  double restarted_ = -1;  ///< [s] when the arm was last put somewhere else; < 0 = never
   std::string end_reason_, end_detail_;
 };
 

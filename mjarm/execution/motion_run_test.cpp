@@ -114,7 +114,7 @@ TEST(MotionRun, WithdrawsOkWhereATargetIsMissed) {
 TEST(MotionRun, OnceStoppedNothingMovesAnyMore) {
   const Loaded robot = load_text(small_world());
   MotionRun run(robot.model, robot.arm);
-  run.set_after_step([](const Sim& sim, bool) { return sim.time() < 0.1; });
+  run.set_after_step([](const Sim& sim, MotionPart) { return sim.time() < 0.1; });
   const MotionPlan plan = there_and_half_back(robot.arm);
   ASSERT_TRUE(run.execute(plan, kMode));
   EXPECT_TRUE(run.ended_early());
@@ -160,8 +160,9 @@ TEST(MotionRun, TellsApproachesFromWhatIsMeasured) {
   MotionRun run(robot.model, robot.arm);
   run.start_at(as_span(robot.arm.home));
   int measured = 0, other = 0;
-  run.set_after_step(
-      [&](const Sim&, bool is_measured) { return ++(is_measured ? measured : other); });
+  run.set_after_step([&](const Sim&, MotionPart part) {
+    return ++(part != MotionPart::approach ? measured : other) > 0;
+  });
   const JointVec there = shifted(robot.arm.home, 0.1);
   ASSERT_TRUE(run.approach(as_span(there), kMode));
   EXPECT_EQ(measured, 0);
@@ -206,6 +207,37 @@ TEST(MeasuredRuns, AnotherToolIsMeasuredWhereItIs) {
   ASSERT_EQ(runs[0].rows.size(), 1U);
   EXPECT_LT((runs[0].rows[0].X_WT.p - (sim.tool(robot.arm) * X_TU).p).norm(), 1e-15);
   EXPECT_FALSE(runs[0].error);
+}
+
+/// A second execution begins where the first one began: no run holds the jump back to there.
+TEST(MotionRun, RunsEndWhereTheArmIsPutSomewhereElse) {
+  const Loaded robot = load_text(small_world());
+  const JointVec home = robot.arm.home;
+  const MotionPlan plan = MotionPlan::of(
+      robot.arm,
+      time_joint_move(as_span(home), as_span(shifted(home, 0.5)), robot.arm.limits).value());
+  MotionRun run(robot.model, robot.arm);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(run.execute(plan, kMode));
+  const std::vector<MeasuredRun> runs = run.measured_runs();
+  ASSERT_EQ(runs.size(), 3U);
+  for (const MeasuredRun& one : runs) {
+    ASSERT_GT(one.rows.size(), 100U);
+    EXPECT_LT((one.rows.front().q - home).cwiseAbs().maxCoeff(), 0.01);
+    for (std::size_t i = 1; i < one.rows.size(); ++i) {
+      ASSERT_LT((one.rows[i].q - one.rows[i - 1].q).cwiseAbs().maxCoeff(), 0.02) << i;
+    }
+  }
+}
+
+TEST(MotionPlan, JointMovesBetweenCurvesAreTravel) {
+  const Line line;
+  MotionPlan plan = line.plan();
+  plan.moves.push_back({.word = "movej", .trajectory = plan.moves.front().trajectory});
+  EXPECT_EQ(plan.part(0), MotionPart::approach);
+  EXPECT_EQ(plan.part(1), MotionPart::work);
+  EXPECT_EQ(plan.part(2), MotionPart::travel);
+  plan.moves.erase(plan.moves.begin(), plan.moves.begin() + 2);
+  EXPECT_EQ(plan.part(0), MotionPart::work) << "all that the plan is about";
 }
 
 }  // namespace

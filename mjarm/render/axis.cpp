@@ -84,6 +84,28 @@ Ticks ticks_for(const render::PlotRange& range, int count) {
   return ticks;
 }
 
+Ticks log_ticks_for(const render::PlotRange& range, int count) {
+  const int from = static_cast<int>(std::floor(range.lower));
+  const int to = static_cast<int>(std::ceil(range.upper));
+  constexpr double kSlack = 1e-9;
+  const int every = std::max(1, (to - from) / std::max(count, 1));
+  const bool few = range.upper - range.lower < 2;
+  Ticks ticks;
+  for (int exponent = from; exponent <= to && ticks.at.size() < 100; exponent += every) {
+    for (const int factor : {1, 2, 5}) {
+      const double at = exponent + std::log10(factor);
+      if ((factor > 1 && !few) || at < range.lower - kSlack || at > range.upper + kSlack) continue;
+      const bool plain = std::abs(exponent) <= 3;
+      ticks.at.push_back(at);
+      ticks.labels.push_back(plain
+                                 ? fixed(factor * std::pow(10.0, exponent), std::max(-exponent, 0))
+                                 : (factor > 1 ? fixed(factor, 0) : std::string()) +
+                                       power_of_ten(exponent).substr(factor > 1 ? 0 : 2));
+    }
+  }
+  return ticks;
+}
+
 void equalise(render::PlotRange& x, render::PlotRange& y, double width, double height) {
   const double x_unit = (x.upper - x.lower) / width;
   const double y_unit = (y.upper - y.lower) / height;

@@ -33,6 +33,10 @@ struct Ticks {
 /// @param range lower < upper, both finite.
 [[nodiscard]] Ticks ticks_for(const render::PlotRange& range, int count);
 
+/// Marks of an axis of logarithms: powers of ten; where that are too few, 2 and 5 times them too.
+/// @param range  of the logarithms to base 10; so are the places of the marks.
+[[nodiscard]] Ticks log_ticks_for(const render::PlotRange& range, int count);
+
 /// Widens the range whose unit is drawn longer, so that a unit has one length on both axes.
 /// @param width, height of the drawn area, > 0.
 void equalise(render::PlotRange& x, render::PlotRange& y, double width, double height);

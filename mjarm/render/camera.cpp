@@ -8,6 +8,7 @@
 
 #include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/render/clear_view.hpp"
 
 namespace mjarm::render {
 namespace {
@@ -34,12 +35,21 @@ Result<void> check_view(const CameraView& view) {
 }  // namespace
 
 CameraView default_view(const Model& model) {
+  constexpr double kRoom = 1.35;  // round what moves, for its way
+  constexpr double kTiny = 0.6;   // of the model's own distance
   mjvCamera camera;
   mjv_defaultFreeCamera(model.raw(), &camera);
-  return {.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
-          .distance = camera.distance,
-          .azimuth = camera.azimuth * kRadPerDeg,
-          .elevation = camera.elevation * kRadPerDeg};
+  const CameraView own{.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
+                       .distance = camera.distance,
+                       .azimuth = camera.azimuth * kRadPerDeg,
+                       .elevation = camera.elevation * kRadPerDeg};
+  const Snapshot start;
+  const std::vector<FramedBall> balls = moving_parts(model, {&start, 1});
+  if (balls.empty()) return own;
+  CameraView near =
+      framing_view(model, balls, {.azimuth = own.azimuth, .elevation = own.elevation});
+  near.distance *= kRoom;
+  return near.distance < kTiny * own.distance ? near : own;
 }
 
 std::vector<std::string> camera_names(const Model& model) {

@@ -44,12 +44,13 @@ Fit fit(std::span<const FramedBall> balls, const Vector3d& axis, const Vector3d&
 
 CameraView framing_view(const Model& model, std::span<const FramedBall> balls,
                         const LineOfSight& sight) {
-  CameraView view = default_view(model);
-  view.azimuth = sight.azimuth;
-  view.elevation = sight.elevation;
   const bool usable = std::ranges::all_of(balls, [](const FramedBall& ball) {
     return ball.p_W.allFinite() && std::isfinite(ball.radius);
   });
+  CameraView view;
+  if (balls.empty() || !usable) view = default_view(model);
+  view.azimuth = sight.azimuth;
+  view.elevation = sight.elevation;
   if (balls.empty() || !usable) return view;
   const Vector3d forward = forward_of(view);
   const Vector3d right(std::sin(view.azimuth), -std::cos(view.azimuth), 0);

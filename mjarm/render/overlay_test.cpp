@@ -14,6 +14,7 @@
 #include "mjarm/render/overlay_shapes.hpp"
 #include "mjarm/render/polyline.hpp"
 #include "mjarm/render/scene.hpp"
+#include "mjarm/render/trail.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::render {
@@ -317,6 +318,10 @@ TEST(OverlayShapes, APlannedPathIsDashedOverItsLength) {
   EXPECT_EQ(overlay.lines.at(0).points_W.size(), 101U);
   add_planned_path(overlay, poses, {.dashed = false});
   EXPECT_EQ(overlay.lines.at(1).dash, 0);
+  // What was done is seen in what was planned.
+  EXPECT_GT(overlay.lines.at(0).width, 2 * TrailOptions{}.width);
+  EXPECT_LT(overlay.lines.at(0).color.a, 0.6F);
+  EXPECT_EQ(TrailOptions{}.color.a, 1);
 }
 
 TEST(OverlayShapes, AGhostNamesTheJointsOfTheArm) {

@@ -39,18 +39,33 @@ constexpr double kLegendHeight = 11;  // of one row
 constexpr double kAwayFromText = 4;
 constexpr double kMarginShare = 0.04;
 
+/// Ranges and marks of an axis of logarithms are those of the logarithms.
 struct Axes {
   Box box;
   render::PlotRange x;
   render::PlotRange y;
+  bool x_log = false;
+  bool y_log = false;
 
+  [[nodiscard]] double mark_x(double at) const {
+    return box.x + (at - x.lower) / (x.upper - x.lower) * box.width;
+  }
+  [[nodiscard]] double mark_y(double at) const {
+    return box.y + box.height - (at - y.lower) / (y.upper - y.lower) * box.height;
+  }
   [[nodiscard]] double to_x(double value) const {
-    return box.x + (value - x.lower) / (x.upper - x.lower) * box.width;
+    return mark_x(x_log ? std::log10(value) : value);
   }
   [[nodiscard]] double to_y(double value) const {
-    return box.y + box.height - (value - y.lower) / (y.upper - y.lower) * box.height;
+    return mark_y(y_log ? std::log10(value) : value);
   }
 };
+
+double on_axis(double value, bool log) { return log ? std::log10(value) : value; }
+
+render::PlotRange on_axis(const render::PlotRange& range, bool log) {
+  return {on_axis(range.lower, log), on_axis(range.upper, log)};
+}
 
 struct Entry {
   const render::PlotLine* line = nullptr;  ///< null for a band
@@ -116,23 +131,29 @@ Axes ranges_of(const render::PlotPanel& panel) {
   for (const render::PlotLine& line : panel.lines) {
     if (!line.fits) continue;
     for (std::size_t i = 0; i < line.x.size(); ++i) {
-      if (std::isnan(line.x[i]) || std::isnan(line.y[i])) continue;
-      x.add(line.x[i]);
-      y.add(line.y[i]);
+      const double at_x = on_axis(line.x[i], panel.x_log);
+      const double at_y = on_axis(line.y[i], panel.y_log);
+      if (!std::isfinite(at_x) || !std::isfinite(at_y)) continue;
+      x.add(at_x);
+      y.add(at_y);
     }
   }
   for (const render::PlotBand& band : panel.bands) {
     if (!band.fits) continue;
-    y.add(band.lower);
-    y.add(band.upper);
+    y.add(on_axis(band.lower, panel.y_log));
+    y.add(on_axis(band.upper, panel.y_log));
   }
   if (panel.field) {
     for (const double edge : {panel.field->x.lower, panel.field->x.upper}) x.add(edge);
     for (const double edge : {panel.field->y.lower, panel.field->y.upper}) y.add(edge);
   }
   Axes axes{{},
-            panel.x_range.value_or(x.range(panel.equal_aspect ? kMarginShare : 0.02)),
-            panel.y_range.value_or(y.range(kMarginShare))};
+            x.range(panel.equal_aspect ? kMarginShare : 0.02),
+            y.range(kMarginShare),
+            panel.x_log,
+            panel.y_log};
+  if (panel.x_range) axes.x = on_axis(*panel.x_range, panel.x_log);
+  if (panel.y_range) axes.y = on_axis(*panel.y_range, panel.y_log);
   if (panel.y_from_zero && !panel.y_range && axes.y.upper > 0) axes.y.lower = 0;
   return axes;
 }
@@ -147,10 +168,12 @@ Axes fitted(const render::PlotPanel& panel, const Layout& layout) {
 }
 
 axis::Ticks x_ticks(const Axes& axes) {
-  return axis::ticks_for(axes.x, static_cast<int>(axes.box.width / 38));
+  const int count = static_cast<int>(axes.box.width / 38);
+  return axes.x_log ? axis::log_ticks_for(axes.x, count) : axis::ticks_for(axes.x, count);
 }
 axis::Ticks y_ticks(const Axes& axes) {
-  return axis::ticks_for(axes.y, static_cast<int>(axes.box.height / 24));
+  const int count = static_cast<int>(axes.box.height / 24);
+  return axes.y_log ? axis::log_ticks_for(axes.y, count) : axis::ticks_for(axes.y, count);
 }
 
 double widest(const axis::Ticks& ticks) {
@@ -176,14 +199,14 @@ void draw_grid(const Axes& axes, const axis::Ticks& xs, const axis::Ticks& ys, P
   const Box& box = axes.box;
   const double bottom = box.y + box.height;
   for (std::size_t i = 0; i < xs.at.size(); ++i) {
-    const double x = axes.to_x(xs.at[i]);
+    const double x = axes.mark_x(xs.at[i]);
     add_line(page, {{x, box.y}, {x, bottom}}, kGrid, 0.5);
     add_line(page, {{x, bottom}, {x, bottom + kTickLength}}, kAxis, 0.6);
     page.items.push_back(
         canvas::Text{{x, bottom + 10}, xs.labels[i], aligned(kTick, Align::middle)});
   }
   for (std::size_t i = 0; i < ys.at.size(); ++i) {
-    const double y = axes.to_y(ys.at[i]);
+    const double y = axes.mark_y(ys.at[i]);
     add_line(page, {{box.x, y}, {box.x + box.width, y}}, kGrid, 0.5);
     add_line(page, {{box.x - kTickLength, y}, {box.x, y}}, kAxis, 0.6);
     page.items.push_back(

@@ -41,8 +41,9 @@ Result<void> check_panel(const PlotPanel& panel, std::size_t number) {
     return fail(Errc::bad_input,
                 text(msg::render_plot_lengths, number, i + 1, line.x.size(), line.y.size()));
   }
-  for (const std::optional<PlotRange>& range : {panel.x_range, panel.y_range}) {
-    if (!range || is_range(*range)) continue;
+  for (const auto& [range, log] :
+       {std::pair(panel.x_range, panel.x_log), {panel.y_range, panel.y_log}}) {
+    if (!range || (is_range(*range) && (!log || range->lower > 0))) continue;
     return fail(Errc::bad_input, text(msg::render_plot_range, number, range->lower, range->upper));
   }
   for (const PlotBand& band : panel.bands) {

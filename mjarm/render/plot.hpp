@@ -78,9 +78,11 @@ struct PlotPanel {
   std::vector<PlotLine> lines = {};
   std::vector<PlotBand> bands = {};
   std::optional<PlotField> field = {};
-  bool equal_aspect = false;              ///< one unit is equally long on both axes (tool paths)
-  bool legend = true;                     ///< shown where a curve or band has a label
-  bool y_from_zero = false;               ///< the y axis begins at 0 (errors, speeds)
+  bool equal_aspect = false;  ///< one unit is equally long on both axes (tool paths)
+  bool legend = true;         ///< shown where a curve or band has a label
+  bool y_from_zero = false;   ///< the y axis begins at 0 (errors, speeds)
+  bool x_log = false;         ///< equal ratios are equally long; what is not > 0 is left out
+  bool y_log = false;         ///< the same of the y axis
   std::optional<PlotRange> x_range = {};  ///< default: fits the data
   std::optional<PlotRange> y_range = {};
 };

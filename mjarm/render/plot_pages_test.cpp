@@ -375,5 +375,28 @@ TEST(PlotNumbers, ThatAreNoneAreRefused) {
   EXPECT_FALSE(plot_svg({.panels = {{}}, .panel_width = INFINITY}));
 }
 
+/// An axis of logarithms is marked with the values themselves; equal ratios are equally far apart.
+TEST(PlotPages, LogarithmicAxesAreMarkedWithValues) {
+  PlotPanel panel{.x_label = "time [us]", .y_label = "share"};
+  panel.x_log = panel.y_log = true;
+  panel.lines.push_back({.x = {1, 10, 100, 1000, 0, 1e5}, .y = {2, 20, 200, 2000, 5, 2e5}});
+  const auto svg = testing::SvgReader::read(plot_svg({.panels = {panel}, .columns = 1}).value());
+  std::map<std::string, double> places;
+  std::vector<std::pair<double, double>> points;
+  for (const testing::SvgElement& element : svg) {
+    if (element.name == "text" && !element.is("text-anchor", "end")) {
+      places[element.text] = element.number("x");
+    }
+    if (element.name == "polyline" && element.points().size() > 3) points = element.points();
+  }
+  ASSERT_EQ(points.size(), 4U) << "0 has no place, and ends the curve";
+  for (const char* mark : {"1", "10", "100", "1000"}) EXPECT_EQ(places.count(mark), 1U) << mark;
+  EXPECT_EQ(places.count("10\u2074"), 1U);
+  EXPECT_NEAR(places["10"] - places["1"], places["1000"] - places["100"], 0.1);
+  EXPECT_NEAR(points[1].first, places["10"], 0.1);
+  panel.x_range = PlotRange{0, 10};
+  EXPECT_FALSE(plot_svg({.panels = {panel}, .columns = 1})) << "0 cannot be on it";
+}
+
 }  // namespace
 }  // namespace mjarm::render

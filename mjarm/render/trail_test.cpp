@@ -61,5 +61,55 @@ TEST(Trail, IsALineOrBalls) {
   }
 }
 
+/// Two strokes with the pen up between them are two lines; a joint move between them is pale and
+/// thin, and meets both.
+TEST(Trail, ThePenLeavesGapsAndPaleWays) {
+  Trail trail({.spacing = 0.01});
+  const auto go = [&trail](double from, double to) {
+    for (int i = 0; i <= 100; ++i) trail.add({from + (to - from) * i / 100, 0, 0});
+  };
+  go(0, 1);
+  trail.set_pen(Pen::up);
+  go(1, 2);
+  trail.set_pen(Pen::down);
+  go(2, 3);
+  trail.set_pen(Pen::travel);
+  go(3, 4);
+  trail.set_pen(Pen::down);
+  go(4, 5);
+  Overlay overlay;
+  trail.draw(overlay);
+  ASSERT_EQ(overlay.lines.size(), 4U);
+  const double ends[][2] = {{0, 1}, {2, 3}, {3, 4}, {4, 5}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(overlay.lines[i].points_W.front().x(), ends[i][0], 1e-9) << i;
+    EXPECT_NEAR(overlay.lines[i].points_W.back().x(), ends[i][1], 1e-9) << i;
+  }
+  EXPECT_LT(overlay.lines[2].width, 0.5 * overlay.lines[1].width);
+  EXPECT_GT(overlay.lines[2].color.r, overlay.lines[1].color.r + 0.3F) << "pale";
+  EXPECT_EQ(overlay.lines[3].width, overlay.lines[1].width);
+  trail.set_balls(true);
+  Overlay balls;
+  trail.draw(balls);
+  for (const OverlaySphere& ball : balls.spheres) {
+    const double x = ball.p_W.x();
+    EXPECT_TRUE(x <= 1.001 || (x >= 1.999 && x <= 3.001) || x >= 3.999) << x;
+  }
+}
+
+TEST(Trail, APenThatIsUpAtFirstDrawsNothing) {
+  Trail trail({.pen = Pen::up});
+  trail.add({0, 0, 0});
+  EXPECT_EQ(trail.size(), 0U);
+  trail.set_pen(Pen::travel);
+  trail.set_pen(Pen::down);
+  trail.add({1, 0, 0});
+  trail.add({2, 0, 0});
+  Overlay overlay;
+  trail.draw(overlay);
+  ASSERT_EQ(overlay.lines.size(), 1U);
+  EXPECT_EQ(overlay.lines[0].points_W.front().x(), 1);
+}
+
 }  // namespace
 }  // namespace mjarm::render

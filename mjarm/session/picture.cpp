@@ -17,17 +17,19 @@ render::OffscreenOptions offscreen_options(const PictureOptions& options) {
   return out;
 }
 
-render::Camera default_camera(const Model& model, const std::string& name) {
+render::Camera default_camera(const Model& model) {
+  constexpr const char* kName = "overview";
   render::Camera camera;
-  if (std::ranges::count(render::camera_names(model), name) > 0) camera.name = name;
+  if (std::ranges::count(render::camera_names(model), kName) > 0) camera.name = kName;
   return camera;
 }
 
 Result<std::string> write_picture(render::OffscreenRenderer& renderer,
                                   const PictureOptions& options, const Snapshot& snapshot,
                                   const render::Camera& camera, const render::Overlay& overlay) {
-  const Result<render::Image> image = renderer.draw(snapshot, camera, overlay);
+  Result<render::Image> image = renderer.draw(snapshot, camera, overlay);
   if (!image) return fail(image.error());
+  render::add_legend(*image, options.legend);
   if (Result<void> written = render::write_png(*image, options.out); !written) {
     return fail(std::move(written.error()));
   }

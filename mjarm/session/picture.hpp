@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/overlay.hpp"
+#include "mjarm/render/picture_legend.hpp"
 
 namespace mjarm::session {
 
@@ -18,14 +20,14 @@ struct PictureOptions {
   int height = 720;                                   ///< [px]
   std::optional<render::RenderQuality> quality = {};  ///< default: as `offscreen_options` chooses
   double fps = 30;                                    ///< [1/s]
+  std::vector<render::LegendEntry> legend = {};       ///< drawn into every picture
 };
 
 /// How to draw: without a quality asked for, high; low for a video without a GPU.
 [[nodiscard]] render::OffscreenOptions offscreen_options(const PictureOptions& options);
 
-/// The camera `name` where the model has one, else the model's own view.
-[[nodiscard]] render::Camera default_camera(const Model& model,
-                                            const std::string& name = "overview");
+/// The camera `overview` where the model has one, else the model's own view.
+[[nodiscard]] render::Camera default_camera(const Model& model);
 
 /// Draws one picture and writes it. @return the line to tell.
 [[nodiscard]] Result<std::string> write_picture(render::OffscreenRenderer& renderer,

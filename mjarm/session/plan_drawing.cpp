@@ -11,12 +11,11 @@
 
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
+#include "mjarm/session/posture_rods.hpp"
 
 namespace mjarm::session {
 namespace {
 
-constexpr render::Rgba kStartColor = {0.15F, 0.60F, 0.30F, 1};
-constexpr render::Rgba kGoalColor = {0.15F, 0.35F, 0.85F, 1};
 constexpr render::Rgba kCornerColor = {0.15F, 0.15F, 0.18F, 1};
 constexpr render::Rgba kUnknownColor = {0.55F, 0.60F, 0.66F, 1};
 constexpr float kEndPosture = 0.6F;  // how dense they are
@@ -50,16 +49,6 @@ double work_of(const SphereSet& set, const Obstacles& obstacles) {
     parts += static_cast<double>(cloud.points_W.size());
   }
   return parts * static_cast<double>(set.size());
-}
-
-/// Where the arm stands, its joints and its tool, in the world.
-std::vector<Eigen::Vector3d> chain_of(const Arm& arm, const JointVec& q) {
-  std::vector<Pose> X_WJ(arm.joints.size());
-  const Pose X_WT = fk_all(arm, as_span(q), X_WJ);
-  std::vector<Eigen::Vector3d> out;
-  for (const Pose& X : X_WJ) out.push_back(X.p);
-  out.push_back(X_WT.p);
-  return out;
 }
 
 bool has_obstacles(const Obstacles& obstacles) {
@@ -185,8 +174,8 @@ void PlanDrawing::draw_path() {
     const bool end = i == 0 || i + 1 == q.size();
     path_.spheres.push_back({.p_W = fk(subject_->arm, as_span(q[i])).p,
                              .radius = end ? 0.018 : 0.011,
-                             .color = i == 0 ? kStartColor
-                                      : end  ? kGoalColor
+                             .color = i == 0 ? kPlanStartColor
+                                      : end  ? kPlanGoalColor
                                              : kCornerColor});
   }
 }
@@ -208,7 +197,7 @@ void PlanDrawing::draw_trees() {
   });
   if (edges == 0) return;
   const double step = std::max(kTreeStep, length / std::max(kTreePieces - edges, 1.0));
-  const std::array colors{kStartColor, kGoalColor};
+  const std::array colors{kPlanStartColor, kPlanGoalColor};
   for (std::size_t t = 0; t < subject_->path.trees.size(); ++t) {
     tree_.segments.push_back({.ends_W = {},
                               .width = 0.003,
@@ -232,15 +221,11 @@ void PlanDrawing::draw_trees() {
 void PlanDrawing::draw_postures() {
   const auto add = [this](render::Overlay& overlay, const JointVec& q, const render::Rgba& color,
                           double radius) {
-    const std::vector<Eigen::Vector3d> chain = chain_of(subject_->arm, q);
-    for (std::size_t i = 1; i < chain.size(); ++i) {
-      overlay.capsules.push_back(
-          {.from_W = chain[i - 1], .to_W = chain[i], .radius = radius, .color = color});
-    }
+    add_posture_rods(overlay, subject_->arm, q, color, radius);
   };
   const std::vector<JointVec>& q = subject_->path.q;
-  add(ends_, q.front(), with_alpha(kStartColor, kEndPosture), 0.016);
-  add(ends_, q.back(), with_alpha(kGoalColor, kEndPosture), 0.016);
+  add(ends_, q.front(), with_alpha(kPlanStartColor, kEndPosture), 0.016);
+  add(ends_, q.back(), with_alpha(kPlanGoalColor, kEndPosture), 0.016);
   // Evenly some of them, where there are many.
   const std::size_t corners = q.size() - 2, max = std::min(corners, kMaxPostures);
   for (std::size_t i = 0; i < max; ++i) {

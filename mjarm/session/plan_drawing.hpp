@@ -62,6 +62,9 @@ struct PlanLayers {
 /// spheres of the last joint that are farthest from it, to 2 cm, as between the tips of a gripper.
 [[nodiscard]] Arm with_tool(Arm arm, const SphereSet& spheres);
 
+inline constexpr render::Rgba kPlanStartColor = {0.15F, 0.60F, 0.30F, 1};
+inline constexpr render::Rgba kPlanGoalColor = {0.15F, 0.35F, 0.85F, 1};
+
 /// Colour of a clearance [m]: red where there is none, amber at 1 cm, yellow at 3 cm, green at
 /// 10 cm, blue from 30 cm on.
 [[nodiscard]] render::Rgba clearance_color(double clearance);

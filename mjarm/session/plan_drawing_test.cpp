@@ -169,6 +169,25 @@ TEST_F(WallPlan, TheViewFramesTheWay) {
   EXPECT_GT(high - low, 100);
 }
 
+/// The wall, which the path goes round, is in the picture with all its corners.
+TEST_F(WallPlan, TheViewHoldsWhatThePathGoesRound) {
+  for (const double aspect : {1.0, 1.5, 2.5}) {
+    const render::CameraView from = plan_view(subject(), drawing(), aspect);
+    for (const double x : {-0.02, 0.02}) {
+      for (const double y : {-0.72, -0.28}) {
+        for (const double z : {0.0, 0.4}) {
+          const int width = static_cast<int>(400 * aspect);
+          const Eigen::Vector2d pixel = pixel_of(world().model, from, {x, y, z}, width, 400);
+          EXPECT_GT(pixel.x(), 0) << aspect;
+          EXPECT_LT(pixel.x(), width) << aspect;
+          EXPECT_GT(pixel.y(), 0) << aspect;
+          EXPECT_LT(pixel.y(), 400) << aspect;
+        }
+      }
+    }
+  }
+}
+
 class WallPicture : public WallPlan {
  protected:
   static constexpr int kWidth = 480, kHeight = 320;

@@ -7,7 +7,8 @@
 
 namespace mjarm::session {
 
-/// A view of a planned path with all of the arm on its way in the picture, half from above and
+/// A view of a planned path with all of the arm on its way and what it goes round in the picture,
+/// half from above and
 /// across the line from start to goal, from the side of the base on which the path lies.
 /// @param aspect  width of the picture by its height, > 0.
 [[nodiscard]] render::CameraView plan_view(const PlanSubject& subject, const PlanDrawing& drawing,

@@ -16,7 +16,7 @@ TEST(ProgramPlayer, GoesAsARunWithoutAWindowDoes) {
   const program::LoadedProgram& loaded = there_and_back();
   std::vector<JointVec> q;
   MotionRun run(loaded.robot.model, loaded.robot.arm);
-  run.set_after_step([&](const Sim& sim, bool) {
+  run.set_after_step([&](const Sim& sim, MotionPart) {
     q.push_back(sim.arm_state(loaded.robot.arm).q);
     return true;
   });

@@ -11,6 +11,11 @@ constexpr render::Rgba kJointMoveColor = {0.55F, 0.55F, 0.60F, 1};
 
 }  // namespace
 
+render::Pen pen_of(MotionPart part) {
+  if (part == MotionPart::approach) return render::Pen::up;
+  return part == MotionPart::travel ? render::Pen::travel : render::Pen::down;
+}
+
 void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan) {
   for (const PlannedMove& move : plan.moves) {
     if (!move.curve && move.corners.empty()) continue;
@@ -31,7 +36,9 @@ ProgramScene::ProgramScene(const program::LoadedProgram& loaded, int first_figur
 void ProgramScene::add(const Sim& sim, double time, std::size_t motion, const JointVec& q_ref) {
   const program::ProgramPlan& plan = loaded_->plan;
   if (plan.moves.empty()) return;
-  const Arm& arm = plan.arms[plan.moves[std::min(motion, plan.moves.size() - 1)].tool];
+  const std::size_t move = std::min(motion, plan.moves.size() - 1);
+  const Arm& arm = plan.arms[plan.moves[move].tool];
+  trail_.set_pen(pen_of(plan.part(move)));
   trail_.add(sim.tool(arm).p);
   figures_.add(sim, time, arm, q_ref);
   has_curves_ = true;

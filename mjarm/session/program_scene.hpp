@@ -11,6 +11,9 @@
 
 namespace mjarm::session {
 
+/// How a trail is drawn along a part of a plan.
+[[nodiscard]] render::Pen pen_of(MotionPart part);
+
 /// Draws where a plan leads the tool: along its curves, and round what stands in the way.
 void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan);
 

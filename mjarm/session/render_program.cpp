@@ -33,8 +33,9 @@ class ProgramRun {
         Execution::create(loaded_.robot.model, plan, {.control = loaded_.control()});
     if (!execution) return fail(std::move(execution.error()));
     const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
-      const PlannedMove& move = plan.moves[execution->motions().back().move];
-      trail_.add(sim.tool(plan.arms[move.tool]).p);
+      const std::size_t move = execution->motions().back().move;
+      trail_.set_pen(pen_of(plan.part(move)));
+      trail_.add(sim.tool(plan.arms[plan.moves[move].tool]).p);
       return after_step() && !(seconds && sim.time() >= *seconds);
     });
     if (!done) return fail(Errc::impossible, done.error().what);

@@ -1,16 +1,19 @@
 #include "mjarm/session/run_charts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "mjarm/core/messages/run_charts.hpp"
 
 namespace mjarm::session {
 namespace {
 
-constexpr std::size_t kMaxPoints = 2000;  // a curve; more than that no page can show
+constexpr double kShareOfTolerance = 0.05;  ///< that an error has to reach to be seen below it
+constexpr std::size_t kMaxPoints = 2000;    // a curve; more than that no page can show
 
 /// The rows of all runs to be drawn, with a gap (null) between runs.
 using Rows = std::vector<const RecordRow*>;
@@ -128,8 +131,17 @@ render::PlotPanel error_panel(std::span<const MeasuredRun> runs, double toleranc
     line.x.insert(line.x.end(), t.begin(), t.end());
     line.y.insert(line.y.end(), error.begin(), error.end());
   }
+  if (ideal) {
+    // Errors far below the tolerance would be a line on the axis: then they set the scale.
+    const double largest = std::transform_reduce(
+        line.y.begin(), line.y.end(), 0.0, [](double a, double b) { return std::max(a, b); },
+        [](double error) { return std::isnan(error) ? 0.0 : error; });
+    panel.bands.push_back({.lower = 0,
+                           .upper = 1e3 * tolerance,
+                           .label = text(msg::run_chart_tolerance, 1e3 * tolerance),
+                           .fits = largest > kShareOfTolerance * 1e3 * tolerance});
+  }
   panel.lines.push_back(std::move(line));
-  if (ideal) panel.bands.push_back({0, 1e3 * tolerance, text(msg::run_chart_tolerance)});
   return panel;
 }
 

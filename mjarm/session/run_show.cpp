@@ -77,7 +77,7 @@ std::vector<view::LivePlot> RunShow::plots() const {
 
 bool RunShow::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   if (interrupted()) return false;
-  if (trail_on_) trail_.add(p_WT);
+  trail_.add(p_WT);
   if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
   if (!window_) return true;
   history_.add(sim.snapshot());

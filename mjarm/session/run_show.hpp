@@ -34,8 +34,8 @@ class RunShow {
 
   /// Red balls at every `every`-th of the positions.
   void add_points(std::span<const Pose> X_WT, std::size_t every);
-  /// The trail grows with every call of `step` while on.
-  void set_trail(bool on) { trail_on_ = on; }
+  /// How the trail goes on with every call of `step`; at first it does not.
+  void set_pen(render::Pen pen) { trail_.set_pen(pen); }
   /// Red balls along the trail, as the tutorial draws it.
   void set_balls(bool on) { trail_.set_balls(on); }
   /// The way of the tool as it is planned, dashed.
@@ -88,10 +88,9 @@ class RunShow {
   int due_ = 0;
   bool changed_ = true;    ///< since the last frame
   view::ViewFrame frame_;  ///< memory that is used again
-  bool trail_on_ = false;
   bool filming_ = true;
   std::optional<VideoOfRun> video_;
-  render::Trail trail_{{.max_points = 10000}};
+  render::Trail trail_{{.max_points = 10000, .pen = render::Pen::up}};
   render::Overlay planned_;
   std::optional<render::OverlaySphere> goal_;
   view::ThinnedRecord<Eigen::Vector3d> tool_{kMaxToolPoints};  ///< [m] what is plotted of it

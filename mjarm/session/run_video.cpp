@@ -21,7 +21,8 @@ Result<VideoOfRun> VideoOfRun::open(const Model& model, const PictureOptions& op
 bool VideoOfRun::add(const Snapshot& snapshot, const render::Camera& camera,
                      const render::Overlay& overlay) {
   if (error_ || interrupted()) return false;
-  const Result<render::Image> image = renderer_.draw(snapshot, camera, overlay);
+  Result<render::Image> image = renderer_.draw(snapshot, camera, overlay);
+  if (image) render::add_legend(*image, options_.legend);
   const Result<void> added = image ? writer_.add(*image) : fail(image.error());
   if (!added) error_ = added.error();
   return !error_;

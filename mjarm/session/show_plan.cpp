@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "mjarm/collision/sphere_model.hpp"
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/execution/motion_clock.hpp"
+#include "mjarm/render/fonts.hpp"
 #include "mjarm/session/plan_player.hpp"
 #include "mjarm/session/plan_view.hpp"
 #include "mjarm/session/run_video.hpp"
@@ -35,6 +37,26 @@ Result<render::Camera> camera_of(const PlanShow& show, const PlanSubject& subjec
   return render::Camera{.view = plan_view(subject, drawing, aspect_of(show))};
 }
 
+/// What a picture shows: what a window lets the user add would be too much at once.
+PlanLayers picture_layers() {
+  PlanLayers layers;
+  layers.tree = layers.corners = false;
+  return layers;
+}
+
+/// What the colours of these layers mean.
+std::vector<render::LegendEntry> legend_of(bool film) {
+  const LanguageScope drawn(render::picture_language());
+  std::vector<render::Rgba> scale;
+  for (const double clearance : {0.0, 0.01, 0.03, 0.1, 0.3}) {
+    scale.push_back(clearance_color(clearance));
+  }
+  return {{scale, text(msg::show_plan_legend_scale)},
+          {{kPlanStartColor}, text(msg::show_plan_legend_start)},
+          {{kPlanGoalColor}, text(msg::show_plan_legend_goal)},
+          {{}, text(film ? msg::show_plan_legend_now : msg::show_plan_legend_tightest)}};
+}
+
 Snapshot standing(const PlanSubject& subject, const JointVec& q) {
   Sim sim(subject.model);
   place_subject(sim, subject, q);
@@ -48,7 +70,7 @@ Result<std::string> draw_picture(const PictureOptions& options, const PlanSubjec
   if (!renderer) return fail(std::move(renderer.error()));
   const JointVec q = drawing.way().at(drawing.way().tightest());
   return write_picture(*renderer, options, standing(subject, q), camera,
-                       drawing.overlay({}, drawing.look(q)));
+                       drawing.overlay(picture_layers(), drawing.look(q)));
 }
 
 /// The arm goes from start to goal.
@@ -56,8 +78,7 @@ Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& 
                               const PlanDrawing& drawing, const render::Camera& camera) {
   Result<VideoOfRun> video = VideoOfRun::open(subject.model, options, camera);
   if (!video) return fail(std::move(video.error()));
-  PlanLayers layers;
-  layers.corners = false;
+  const PlanLayers layers = picture_layers();
   const double length = drawing.way().length();
   const auto frames =
       static_cast<int>(std::ceil((length / kFilmSpeed + kRestAtEnd) * options.fps)) + 1;
@@ -74,7 +95,8 @@ Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& 
 
 Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject,
                           const PlanDrawing& drawing) {
-  const PictureOptions& options = *show.picture;
+  PictureOptions options = *show.picture;
+  options.legend = legend_of(options.video);
   const Result<render::Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
   const Result<std::string> line = options.video ? draw_film(options, subject, drawing, *camera)

@@ -9,6 +9,7 @@
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/render/fonts.hpp"
 #include "mjarm/session/picture.hpp"
+#include "mjarm/session/program_scene.hpp"
 #include "mjarm/session/run_charts.hpp"
 #include "mjarm/session/run_output.hpp"
 
@@ -20,8 +21,8 @@ Stage::Stage(std::string name, const StageOptions& options, const Robot& robot, 
       robot_(robot),
       run_(robot.model, robot.arm),
       show_(std::move(show)) {
-  run_.set_after_step([this](const Sim& sim, bool measured) {
-    show_.set_trail(measured);
+  run_.set_after_step([this](const Sim& sim, MotionPart part) {
+    show_.set_pen(pen_of(part));
     return show_step(sim);
   });
   run_.start_at(as_span(robot_.arm.home));
@@ -57,17 +58,23 @@ bool Stage::show_step(const Sim& sim) {
 
 Result<void> Stage::begin_film() {
   if (!options_.video || show_.is_filming()) return {};
-  return show_.film(robot_.model, options_.out / kVideoFile,
-                    default_camera(robot_.model, camera_name_));
+  return show_.film(robot_.model, options_.out / kVideoFile, camera());
+}
+
+/// Of what will be done, else of what was.
+render::Camera Stage::camera() const {
+  if (!outline_ && run_.recorder().size() == 0) return default_camera(robot_.model);
+  const MotionOutline outline = outline_ ? *outline_ : outline_of(run_.recorder());
+  return {.view = motion_view(robot_.model, robot_.arm, outline, options_.video)};
 }
 
 Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mode,
                                     const Curve& curve) {
   constexpr double kRest = 0.3;  // [s]
-  show_.set_trail(false);
+  show_.set_pen(render::Pen::up);
   show_.set_filming(false);
   MotionRun apart(robot_.model, robot_.arm);
-  apart.set_after_step([this](const Sim& sim, bool) { return show_step(sim); });
+  apart.set_after_step([this](const Sim& sim, MotionPart) { return show_step(sim); });
   apart.start_at(as_span(trajectory.at(0).q));
   Result<void> done = apart.follow(trajectory, mode, kRest);
   show_.set_filming(true);
@@ -111,8 +118,7 @@ Result<Report> Stage::write(Report report, render::Plot plot) {
   if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {
     report.rtf = run_.outcome().duration / wall_seconds_;
   }
-  const RunOutput output{report, std::move(plot), show_.overlay(),
-                         default_camera(robot_.model, camera_name_)};
+  const RunOutput output{report, std::move(plot), show_.overlay(), camera()};
   auto written = run_.recorder().write_csv(options_.out / "log.csv").and_then([&] {
     return write_output(options_.out, robot_.model, run_.sim().snapshot(), output);
   });

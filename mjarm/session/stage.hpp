@@ -15,6 +15,7 @@
 #include "mjarm/model/robot.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/render/plot.hpp"
+#include "mjarm/session/motion_view.hpp"
 #include "mjarm/session/run_show.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
@@ -46,8 +47,8 @@ class Stage {
   /// The control the user chose, else `fallback`; the report names it.
   [[nodiscard]] ControlMode control(ControlMode fallback);
 
-  /// Camera of the picture at the end, where the model has it (default: `overview`).
-  void set_camera(const std::string& name) { camera_name_ = name; }
+  /// What picture and film are of, where it is known before anything moves.
+  void set_outline(MotionOutline outline) { outline_ = std::move(outline); }
   /// `tick` is called after every step of the simulation.
   void set_tick(std::function<void()> tick) { tick_ = std::move(tick); }
 
@@ -90,6 +91,7 @@ class Stage {
   /// Shows a step of any world; false when the user or a limit ended it.
   [[nodiscard]] bool show_step(const Sim& sim);
   [[nodiscard]] Result<void> begin_film();
+  [[nodiscard]] render::Camera camera() const;
   [[nodiscard]] Result<Report> write(Report report, render::Plot plot);
 
   std::string name_;
@@ -99,7 +101,7 @@ class Stage {
   RunShow show_;
   std::optional<OutputFolder> folder_;  // held as long as it is written to
   std::string control_;
-  std::string camera_name_ = "overview";
+  std::optional<MotionOutline> outline_;
   std::function<void()> tick_;
   double wall_seconds_ = 0;
 };

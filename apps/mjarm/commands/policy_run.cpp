@@ -172,7 +172,7 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
   Result<session::RunShow> show =
       session::RunShow::open(*model, "mjarm " + trial.name, options.headless);
   if (!show) return fail(std::move(show.error()));
-  show->set_trail(true);
+  show->set_pen(render::Pen::down);
   if (options.video) {
     auto filming = show->film(*model, options.out / session::kVideoFile, {});
     if (!filming) return fail(std::move(filming.error()));

@@ -22,6 +22,7 @@ Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loa
   render::Overlay paths;
   session::add_planned_paths(paths, plan);
   stage.show().add(paths);
+  stage.set_outline(session::outline_of(plan));
   const ControlMode mode = stage.control(loaded.control());
   auto done = stage.move([&](MotionRun& run) { return run.execute(plan, mode); });
   if (!done) return fail(std::move(done.error()));
@@ -36,12 +37,10 @@ session::StageOptions out_of_sight(session::StageOptions options) {
 }
 
 Result<Report> run_and_show(const program::LoadedProgram& loaded,
-                            const session::StageOptions& options, double tolerance,
-                            const std::string& camera) {
+                            const session::StageOptions& options, double tolerance) {
   const Result<std::unique_ptr<session::Stage>> stage =
       session::Stage::open(loaded.program.name, out_of_sight(options), loaded.robot);
   if (!stage) return fail(stage.error());
-  (*stage)->set_camera(camera);
   Result<Report> report = run_plan(**stage, loaded, tolerance);
   if (!report || options.headless) return report;
   if (auto shown = session::show_program(loaded, options.seconds); !shown)

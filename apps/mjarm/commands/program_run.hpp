@@ -13,10 +13,8 @@ namespace mjarm::app {
 
 /// The same with a stage of its own, out of sight, since nobody could look as fast as that; then
 /// `session::show_program`, unless there is to be no window.
-/// @param camera  of the picture at the end, where the model has it.
 [[nodiscard]] Result<Report> run_and_show(const program::LoadedProgram& loaded,
-                                          const session::StageOptions& options, double tolerance,
-                                          const std::string& camera = "overview");
+                                          const session::StageOptions& options, double tolerance);
 
 /// Options for a stage that nobody looks at.
 [[nodiscard]] session::StageOptions out_of_sight(session::StageOptions options);

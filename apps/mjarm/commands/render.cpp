@@ -12,6 +12,7 @@
 #include "mjarm/core/progress.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/program/load_program.hpp"
+#include "mjarm/session/motion_view.hpp"
 #include "mjarm/session/render_program.hpp"
 #include "mjarm/session/run_video.hpp"
 
@@ -71,8 +72,13 @@ Result<std::string> picture(const Model& model, const PictureRequest& options) {
 Result<std::string> program_picture(const std::string& file, const PictureRequest& wanted) {
   const Result<program::LoadedProgram> loaded = program::load_sound_program(file, interrupted);
   if (!loaded) return fail(loaded.error());
-  const Result<render::Camera> camera = choose_camera(loaded->robot.model, wanted.camera);
+  const Robot& robot = loaded->robot;
+  Result<render::Camera> camera = choose_camera(robot.model, wanted.camera);
   if (!camera) return fail(camera.error());
+  if (wanted.camera.empty()) {
+    camera->view = session::motion_view(robot.model, robot.arm, session::outline_of(loaded->plan),
+                                        wanted.video, 1.0 * wanted.width / wanted.height);
+  }
   return session::render_program(*loaded, wanted, *camera, wanted.seconds);
 }
 

@@ -12,11 +12,12 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
+#include "mjarm/session/posture_rods.hpp"
 
 namespace mjarm::app {
 namespace {
 
-constexpr render::Rgba kHit = {0.90F, 0.15F, 0.10F, 0.35F};
+constexpr render::Rgba kHit = {0.90F, 0.15F, 0.10F, 0.5F};
 constexpr render::Rgba kNearest = {0.95F, 0.65F, 0.10F, 1};
 constexpr double kStep = 0.005;  // [rad] between configurations that are looked at
 
@@ -92,9 +93,7 @@ Result<void> try_straight(session::Stage& stage, ExactChecker& checker, const Pl
   render::add_planned_path(overlay, std::vector<Pose>{line->at(0), line->at(line->end())});
   overlay.spheres.push_back({.p_W = contact.point_W, .radius = 0.015, .color = {0.9F, 0, 0, 1}});
   overlay.labels.push_back({contact.point_W, contact.pair.geom1 + " - " + contact.pair.geom2});
-  render::OverlayGhost ghost = render::ghost_of(stage.arm(), as_span(touch->q));
-  ghost.color = kHit;
-  overlay.ghosts.push_back(std::move(ghost));
+  session::add_posture_rods(overlay, stage.arm(), touch->q, kHit, 0.012);
   stage.show().add(overlay);
   return {};
 }

@@ -93,7 +93,7 @@ std::string to_csv(const Drive& drive) {
 
 render::Plot plot_of(const Drive& drive) {
   const LanguageScope drawn(render::picture_language());
-  render::PlotPanel path{.title = text(msg::run_chart_top), .x_label = "x [m]", .y_label = "y [m]"};
+  render::PlotPanel path{.title = text(msg::run_chart_car), .x_label = "x [m]", .y_label = "y [m]"};
   path.equal_aspect = true;
   render::PlotLine line;
   for (const Eigen::Vector3d& p : drive.p_W) {
@@ -150,7 +150,7 @@ Result<Report> run_car(const DemoOptions& options) {
   Sim sim(*model);
   Result<session::RunShow> show = session::RunShow::open(*model, "mjarm car", options.headless);
   if (!show) return fail(std::move(show.error()));
-  show->set_trail(true);
+  show->set_pen(render::Pen::down);
   if (options.video) {
     auto filming =
         show->film(*model, options.out / session::kVideoFile, session::default_camera(*model));

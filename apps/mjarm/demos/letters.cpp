@@ -45,7 +45,7 @@ Result<Report> run_letters(const DemoOptions& options) {
   if (!program) return fail(std::move(program.error()));
   const Result<program::LoadedProgram> loaded = plan_demo(std::move(*program), options);
   if (!loaded) return fail(loaded.error());
-  return run_demo_plan(*loaded, options, "front");
+  return run_demo_plan(*loaded, options);
 }
 
 }  // namespace mjarm::app

@@ -24,10 +24,9 @@ Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOpt
   return program::plan_loaded(file, std::move(program), std::move(*robot), interrupted);
 }
 
-Result<Report> run_demo_plan(const program::LoadedProgram& loaded, const DemoOptions& options,
-                             const std::string& camera) {
+Result<Report> run_demo_plan(const program::LoadedProgram& loaded, const DemoOptions& options) {
   constexpr double kTolerance = 5e-4;  // [m]
-  if (loaded.plan.ok()) return run_and_show(loaded, options, kTolerance, camera);
+  if (loaded.plan.ok()) return run_and_show(loaded, options, kTolerance);
   const Result<std::unique_ptr<session::Stage>> stage =
       session::Stage::open(loaded.program.name, options, loaded.robot);
   if (!stage) return fail(stage.error());

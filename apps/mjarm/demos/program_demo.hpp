@@ -16,10 +16,8 @@ namespace mjarm::app {
                                                        const DemoOptions& options);
 
 /// Runs and shows it; a plan with faults ends the demo with the first of them.
-/// @param camera  of the picture at the end, where the model has it.
 [[nodiscard]] Result<Report> run_demo_plan(const program::LoadedProgram& loaded,
-                                           const DemoOptions& options,
-                                           const std::string& camera = "overview");
+                                           const DemoOptions& options);
 
 /// All of that: the demo is its program.
 [[nodiscard]] Result<Report> run_program_demo(const std::string& demo, const DemoOptions& options);

@@ -212,5 +212,30 @@ TEST_F(DemoReport, ACarThatIsStoppedEarlyHasNotDriven) {
   EXPECT_THAT(stopped.err, HasSubstr("expected more than 0.5 m and 30 deg"));
 }
 
+/// The tool starts above the floor and stays there.
+TEST_F(DemoReport, TheFirstMoveIsAboveTheFloor) {
+  const auto result = demo({"ur5e", "--seconds", "2"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::vector<double> z = log().at("tool z [m]");
+  EXPECT_GT(*std::ranges::min_element(z), 0.03);
+  EXPECT_GT(*std::ranges::max_element(z) - *std::ranges::min_element(z), 0.02) << "it moved";
+}
+
+/// Three runs of one motion are three curves; before, two spikes of 150 m/s hid them.
+TEST_F(DemoReport, RunsAreNotJoinedInThePlot) {
+  EXPECT_EQ(demo({"point"}).exit_code, 0);
+  const std::string svg = folder_.read("out/plot.svg");
+  const std::size_t speed = svg.find(">tool speed<");
+  ASSERT_NE(speed, std::string::npos);
+  EXPECT_EQ(svg.find(">150<"), std::string::npos);
+}
+
+TEST_F(DemoReport, TheCarHasNoTool) {
+  EXPECT_EQ(demo({"car", "--seconds", "1"}).exit_code, 1) << "not driven far enough";
+  const std::string svg = folder_.read("out/plot.svg");
+  EXPECT_THAT(svg, HasSubstr("way of the car from above"));
+  EXPECT_THAT(svg, ::testing::Not(HasSubstr("tool")));
+}
+
 }  // namespace
 }  // namespace mjarm::app

@@ -14,10 +14,8 @@ Result<Report> jump(const std::string& demo, const DemoOptions& options, bool vi
   Result<std::unique_ptr<session::Stage>> opened = open_stage(demo, options, 6);
   if (!opened) return fail(std::move(opened.error()));
   session::Stage& stage = **opened;
-  const JointVec start = joint_vec(std::vector<double>{0, 0, 2.65, -1.3, 1.55, 0});
+  const JointVec start = joint_vec(std::vector<double>{0, -1.0, 2.2, -1.3, 1.55, 0});
   const JointVec goal = joint_vec(std::vector<double>{-1.57, -1.34, 2.65, -1.3, 1.55, 0});
-  const Pose X_start = fk(stage.arm(), as_span(start));
-  if (X_start.p.z() < 0) log_warning(text(msg::demo_below_floor, X_start.p.z()));
   stage.run().start_at(as_span(start));
   if (vision) {
     stage.show().set_balls(true);

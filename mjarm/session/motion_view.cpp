@@ -1,0 +1,61 @@
+#include "mjarm/session/motion_view.hpp"
+
+#include <algorithm>
+
+#include "mjarm/render/clear_view.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm::session {
+namespace {
+
+constexpr std::size_t kPostures = 30;  ///< that are looked at, about
+
+}  // namespace
+
+MotionOutline outline_of(const MotionPlan& plan) {
+  MotionOutline out{{plan.q_start}};
+  const double period = std::max(plan.duration() / kPostures, 1e-3);
+  for (std::size_t i = 0; i < plan.moves.size(); ++i) {
+    const PlannedMove& move = plan.moves[i];
+    for (double t = 0; t < move.trajectory.duration(); t += period) {
+      out.postures.push_back(move.trajectory.at(t).q);
+    }
+    if (plan.part(i) != MotionPart::work) continue;
+    for (const Pose& X_WT : planned_tool_path(move, plan.arms[move.tool])) {
+      out.marks_W.push_back(X_WT.p);
+    }
+  }
+  out.postures.push_back(plan.q_end());
+  return out;
+}
+
+MotionOutline outline_of(const Recorder& recorder) {
+  MotionOutline out;
+  const std::size_t rows = recorder.size();
+  for (std::size_t k = 0; k <= kPostures && rows > 0; ++k) {
+    const RecordRow row = recorder.row(k * (rows - 1) / kPostures);
+    out.postures.push_back(row.q);
+    out.marks_W.push_back(row.X_WT.p);
+  }
+  return out;
+}
+
+render::CameraView motion_view(const Model& model, const Arm& arm, const MotionOutline& outline,
+                               bool film, double aspect) {
+  Sim sim(model);
+  std::vector<Snapshot> moments;
+  for (const JointVec& q : outline.postures) {
+    sim.place(arm, as_span(q));
+    moments.push_back(sim.snapshot());
+  }
+  render::ViewSubject subject{render::moving_parts(model, moments), outline.marks_W, {}};
+  for (const Eigen::Vector3d& p_W : outline.marks_W) subject.balls.push_back({p_W, 0});
+  if (!moments.empty()) subject.moments.push_back(moments.back());
+  if (film && !moments.empty()) {
+    for (const std::size_t part : {1, 2})
+      subject.moments.push_back(moments[part * moments.size() / 3]);
+  }
+  return render::clear_view(model, subject, aspect);
+}
+
+}  // namespace mjarm::session

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "mjarm/execution/motion_plan.hpp"
+#include "mjarm/render/camera.hpp"
+#include "mjarm/sim/recorder.hpp"
+
+namespace mjarm::session {
+
+/// What a camera has to know of a motion: some postures on its way, the last one at its end, and
+/// where the tool works [m].
+struct MotionOutline {
+  std::vector<JointVec> postures = {};
+  std::vector<Eigen::Vector3d> marks_W = {};
+};
+[[nodiscard]] MotionOutline outline_of(const MotionPlan& plan);
+[[nodiscard]] MotionOutline outline_of(const Recorder& recorder);
+
+/// The view of a picture of the end of a motion, or of a film of it: all that moves is in it, and
+/// the arm hides as little as possible of where its tool works.
+/// @param aspect  width of the picture by its height, > 0.
+[[nodiscard]] render::CameraView motion_view(const Model& model, const Arm& arm,
+                                             const MotionOutline& outline, bool film,
+                                             double aspect = 16.0 / 9);
+
+}  // namespace mjarm::session
