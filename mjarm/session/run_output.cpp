@@ -11,7 +11,8 @@ namespace {
 
 Result<void> write_picture(const std::filesystem::path& file, const Model& model,
                            const Snapshot& snapshot, const RunOutput& output) {
-  Result<render::OffscreenRenderer> renderer = render::OffscreenRenderer::create(model);
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(model, {.supersampling = 2});
   if (!renderer) {
     if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
     log_warning(text(msg::show_no_picture, renderer.error().what));
