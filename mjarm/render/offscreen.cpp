@@ -23,6 +23,28 @@ void flip_rows(Image& image) {
   }
 }
 
+/// Each pixel the mean of 2 x 2.
+Image halved(const Image& image) {
+  Image out{image.width / 2, image.height / 2, {}};
+  out.rgb.reserve(image.rgb.size() / 4);
+  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+  for (int y = 0; y < out.height; ++y) {
+    const std::uint8_t* above = image.rgb.data() + 2 * row * static_cast<std::size_t>(y);
+    for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(out.width); ++i) {
+      const std::uint8_t* four = above + 6 * (i / 3) + i % 3;
+      const int sum = four[0] + four[3] + four[row] + four[row + 3];
+      out.rgb.push_back(static_cast<std::uint8_t>((sum + 2) / 4));
+    }
+  }
+  return out;
+}
+
+/// As asked for, where so many pixels can be drawn.
+int supersampling_of(const OffscreenOptions& options) {
+  const bool fits = 2 * std::max(options.width, options.height) <= kMaxSize;
+  return options.supersampling > 1 && fits ? 2 : 1;
+}
+
 }  // namespace
 
 struct OffscreenRenderer::Impl {
@@ -31,7 +53,8 @@ struct OffscreenRenderer::Impl {
         quality(gl.is_software() ? options.software_quality.value_or(options.quality)
                                  : options.quality),
         scene(model, quality, gl.is_software()),
-        viewport{0, 0, options.width, options.height} {
+        supersampling(supersampling_of(options)),
+        viewport{0, 0, supersampling * options.width, supersampling * options.height} {
     mjr_defaultContext(&context_);
   }
   ~Impl() {
@@ -45,8 +68,9 @@ struct OffscreenRenderer::Impl {
     mjModel m = scene.model();
     m.vis.global.offwidth = viewport.width;
     m.vis.global.offheight = viewport.height;
-    const MujocoOutcome outcome =
-        call_mujoco([&] { mjr_makeContext(&m, &context_, mjFONTSCALE_150); });
+    m.vis.quality.offsamples /= supersampling * supersampling;
+    const int font = supersampling > 1 ? mjFONTSCALE_300 : mjFONTSCALE_150;
+    const MujocoOutcome outcome = call_mujoco([&] { mjr_makeContext(&m, &context_, font); });
     gl.release();
     if (outcome.failed) {
       return fail(Errc::not_available, text(msg::render_upload_failed, outcome.error));
@@ -57,6 +81,7 @@ struct OffscreenRenderer::Impl {
   GlContext gl;  ///< must outlive `context_`
   RenderQuality quality;
   Scene scene;
+  int supersampling;
   mjrRect viewport;
   mjrContext context_{};
 };
@@ -89,6 +114,11 @@ Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& ca
     return fail(std::move(current.error()));
   }
   scene.update(overlay);
+  // Lines have their width in pixels.
+  for (int i = 0; i < scene.raw().ngeom; ++i) {
+    mjvGeom& geom = scene.raw().geoms[i];
+    if (geom.type == mjGEOM_LINE) geom.size[0] *= static_cast<float>(impl_->supersampling);
+  }
   impl_->context_.shadowClip = static_cast<float>(scene.shadow_reach());
   mjr_setBuffer(mjFB_OFFSCREEN, &impl_->context_);
   mjr_render(impl_->viewport, &scene.raw(), &impl_->context_);
@@ -101,7 +131,7 @@ Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& ca
     return fail(Errc::system, text(msg::render_gl_error, error));
   }
   flip_rows(image);
-  return image;
+  return impl_->supersampling > 1 ? halved(image) : image;
 }
 
 const GlContext& OffscreenRenderer::gl() const noexcept { return impl_->gl; }

@@ -196,6 +196,45 @@ TEST_P(Offscreen, HighQualitySmoothsEdges) {
   EXPECT_EQ(color_at(picture(), column_of(1), row_of(0)), Color::blue);
 }
 
+/// Each pixel is the mean of four of a picture twice as large; thin lines are as wide as without.
+TEST_P(Offscreen, SupersamplingIsTheMeanOfALargerPicture) {
+  const auto draw = [&](int scale, int supersampling, const Overlay& overlay) {
+    return OffscreenRenderer::create(*model_, {.width = scale * kWidth,
+                                               .height = scale * kHeight,
+                                               .quality = RenderQuality::low,
+                                               .gl = GetParam(),
+                                               .supersampling = supersampling})
+        .value()
+        .draw({}, kFront, overlay)
+        .value();
+  };
+  const Image large = draw(2, 1, {}), small = draw(1, 2, {});
+  ASSERT_EQ(small.width, kWidth);
+  ASSERT_EQ(small.height, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const int sum = large.pixel(2 * x, 2 * y)[c] + large.pixel(2 * x + 1, 2 * y)[c] +
+                        large.pixel(2 * x, 2 * y + 1)[c] + large.pixel(2 * x + 1, 2 * y + 1)[c];
+        ASSERT_NEAR(small.pixel(x, y)[c], sum / 4.0, 0.51) << x << " " << y;
+      }
+    }
+  }
+  Overlay line;
+  line.lines.push_back({.points_W = {{-2, -0.5, 1}, {2, -0.5, 1}},
+                        .width = 0.006,
+                        .color = {1, 1, 1, 1},
+                        .look = LineLook::thin});
+  const auto added = [](const Image& with, const Image& without) {
+    double sum = 0;
+    for (std::size_t i = 0; i < with.rgb.size(); ++i) sum += std::abs(with.rgb[i] - without.rgb[i]);
+    return sum;
+  };
+  const double plain = added(draw(1, 1, line), draw(1, 1, {}));
+  EXPECT_GT(plain, 1000);
+  EXPECT_NEAR(added(draw(1, 2, line), small), plain, 0.25 * plain);
+}
+
 TEST_P(Offscreen, RefusesWhatDoesNotFit) {
   Snapshot other;
   other.state.resize(1000);

@@ -14,6 +14,7 @@ render::OffscreenOptions offscreen_options(const PictureOptions& options) {
   } else if (options.video) {
     out.software_quality = render::RenderQuality::low;
   }
+  if (!options.video && out.quality == render::RenderQuality::high) out.supersampling = 2;
   return out;
 }
 

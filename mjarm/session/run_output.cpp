@@ -11,7 +11,8 @@ namespace mjarm::session {
 Result<void> write_end_picture(const std::filesystem::path& folder, const Model& model,
                                const Snapshot& snapshot, const render::Camera& camera,
                                const render::Overlay& overlay) {
-  Result<render::OffscreenRenderer> renderer = render::OffscreenRenderer::create(model);
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(model, {.supersampling = 2});
   if (!renderer) {
     if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
     log_warning(text(msg::show_no_picture, renderer.error().what));
