@@ -50,8 +50,9 @@ Result<CtrlSchedule> read_table(const Model& model, const std::string& file,
   if (!table) return fail(in_option("--ctrl-csv", std::move(table.error())));
   for (const int actuator : table->actuators()) {
     if (std::ranges::count(constants.actuators(), actuator) == 0) continue;
-    const auto& name = state_columns(model).ctrl[static_cast<std::size_t>(actuator)].name;
-    return fail(Errc::usage, text(msg::sim_command_both, name));
+    const std::vector<StateColumn> columns = state_columns(model).ctrl;
+    return fail(Errc::usage,
+                text(msg::sim_command_both, columns[static_cast<std::size_t>(actuator)].name));
   }
   return table;
 }
