@@ -49,6 +49,10 @@ TEST_F(DemoValuesTest, AnotherArmGoesToItsOwnPoint) {
   const Columns log = log_of({"movej", "--robot", "panda", "--seed-q", "0,-0.5,0,-2,0,1.57,0.785",
                               "--to", "0.4,0.2,0.4", "--quat", "0,1,0,0"});
   EXPECT_LT((tool(log, last(log)) - Eigen::Vector3d(0.4, 0.2, 0.4)).norm(), 1e-3);
+  // Without a start of its own it begins at home.
+  const Columns home =
+      log_of({"point", "--robot", "panda", "--pos", "0.4,0.2,0.4", "--quat", "0,1,0,0"});
+  EXPECT_LT((tool(home, last(home)) - Eigen::Vector3d(0.4, 0.2, 0.4)).norm(), 1e-3);
 }
 
 TEST_F(DemoValuesTest, JointsGoWhereTheyAreSent) {

@@ -14,7 +14,7 @@ namespace {
 /// 100 joint waypoints, each waited for until all joints are within 0.02 rad, as the tutorial does.
 Result<Report> run_waypoints(const DemoOptions& options) {
   const DemoValues& values = options.values;
-  const Result<Robot> robot = load_demo_robot("movej", options, values.seed_q.empty() ? 6 : 0);
+  const Result<Robot> robot = load_demo_robot("movej", options, tutorial_dof(values));
   if (!robot) return fail(robot.error());
   const auto read = tutorial_seed(values, robot->arm);
   if (!read) return fail(read.error());

@@ -14,7 +14,7 @@ namespace {
 /// The tutorial's follower: 100 poses, each commanded until the tool is within 10 mm of it.
 Result<Report> run_follower(const DemoOptions& options) {
   const DemoValues& values = options.values;
-  const Result<Robot> robot = load_demo_robot("movel", options, values.seed_q.empty() ? 6 : 0);
+  const Result<Robot> robot = load_demo_robot("movel", options, tutorial_dof(values));
   if (!robot) return fail(robot.error());
   const auto read = tutorial_seed(values, robot->arm);
   if (!read) return fail(read.error());

@@ -18,9 +18,13 @@ Result<program::Program> demo_program(const std::string& demo) {
 Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOptions& options,
                                          const ProgramEdit& edit) {
   const std::string& seed = options.values.seed_q;
-  const std::size_t dof = seed.empty() ? program.start.values.size() : 0;
-  Result<Robot> robot = load_demo_robot(program.name, options, static_cast<int>(dof));
+  const bool own = options.values.of_geometry();
+  const std::size_t dof = program.start.values.size();
+  const bool any = own || !seed.empty();
+  Result<Robot> robot = load_demo_robot(program.name, options, any ? 0 : static_cast<int>(dof));
   if (!robot) return fail(std::move(robot.error()));
+  // On its way to a goal of the user's another arm starts at home.
+  if (robot->arm.dof() != static_cast<int>(dof)) program.start = {};
   if (!seed.empty()) {
     Result<std::vector<double>> q = read_posture("--seed-q", seed, robot->arm);
     if (!q) return fail(std::move(q.error()));
@@ -31,7 +35,6 @@ Result<program::LoadedProgram> plan_demo(program::Program program, const DemoOpt
   }
   if (options.control) program.control = options.control;
   // What the user wants stands on no line of the program.
-  const bool own = options.values.of_geometry();
   for (program::Instruction& instruction : program.instructions) {
     if (own) instruction.place = {};
   }

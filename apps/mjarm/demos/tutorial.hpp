@@ -11,7 +11,11 @@ namespace mjarm::app {
 /// Start of the IK demos [rad]; the tool stands at (-0.136, 0.297, 0.097).
 [[nodiscard]] std::vector<double> tutorial_seed();
 
-/// The same, or what the user gives in its place with --seed-q.
+/// Number of joints that the tutorial's start is for; 0 = any, where the user gives a start or a
+/// goal of his own.
+[[nodiscard]] int tutorial_dof(const DemoValues& values);
+
+/// What the user gives in its place with --seed-q; home of an arm with another number of joints.
 [[nodiscard]] Result<std::vector<double>> tutorial_seed(const DemoValues& values, const Arm& arm);
 
 /// Goal of the IK demos: (-0.13, 0.6, 0.1), euler (3.14, 0, 1.57).
