@@ -11,6 +11,7 @@ namespace {
 constexpr double kLegendLine = 15;     // [pt] from one line to the next
 constexpr double kSwatch = 12;         // [pt] width of one colour
 constexpr double kLegendEdge = 7;      // [pt] round all
+constexpr int kLeastHigh = 120;        // [px] of a picture with a legend that can be read
 constexpr double kPointsHigh = 520;    // of a picture
 constexpr double kGroundShare = 0.82;  // of white over the picture
 constexpr canvas::TextStyle kLegendText{.size = 10, .color = {0.1F, 0.1F, 0.12F, 1}};
@@ -45,7 +46,7 @@ canvas::Page page_of(std::span<const LegendEntry> entries) {
 }  // namespace
 
 void add_legend(Image& image, std::span<const LegendEntry> entries) {
-  if (entries.empty()) return;
+  if (entries.empty() || image.height < kLeastHigh) return;
   const Result<Image> legend = canvas::to_image(page_of(entries), image.height / kPointsHigh);
   if (!legend || legend->width > image.width || legend->height > image.height) return;
   for (int y = 0; y < legend->height; ++y) {
