@@ -185,7 +185,7 @@ CameraView clear_view(const Model& model, const ViewSubject& subject, double asp
   double widest = 1e-12;
   for (const Candidate& one : all) widest = std::max(widest, one.spread);
   const auto worth = [&](const Candidate& one) {
-    return one.seen + 0.5 * std::sqrt(one.spread / widest) -
+    return 2 * one.seen + 0.5 * std::sqrt(one.spread / widest) -
            0.15 * turned(one.view.azimuth, own.azimuth) / std::numbers::pi;
   };
   return std::ranges::max_element(all, {}, worth)->view;
