@@ -7,7 +7,7 @@
 namespace mjarm {
 
 /// While it lives, the messages of this thread are in one language, whatever the others use: for
-/// what stands in a window, whose font is ASCII.
+/// what stands in pictures, where the fonts of a machine lack the letters of its language.
 class LanguageScope {
  public:
   explicit LanguageScope(Language language) noexcept;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace mjarm {
 
@@ -11,12 +12,22 @@ std::vector<MeasuredRun> measured_runs(const Recorder& recorder,
   for (const MeasuredSpan& span : spans) {
     runs.push_back({.rows = {}, .curve = span.curve ? &*span.curve : nullptr});
   }
-  // Runs follow each other; a row at the border of two belongs to both.
+  // Runs follow each other; a row at the border of two belongs to both. Where there are two rows of
+  // one time, another execution began, and the arm may have been put somewhere else in between: the
+  // first one is of what ends there, the second one of what begins.
   std::size_t first = 0;
+  RecordRow row, next;
+  if (recorder.size() > 0) next = recorder.row(0);
   for (std::size_t i = 0; i < recorder.size(); ++i) {
-    const RecordRow row = recorder.row(i);
+    const bool second = i > 0 && row.time == next.time;
+    row = std::move(next);
+    if (i + 1 < recorder.size()) next = recorder.row(i + 1);
+    const bool former = i + 1 < recorder.size() && next.time == row.time;
     while (first < runs.size() && spans[first].to < row.time) ++first;
     for (std::size_t k = first; k < runs.size() && spans[k].from <= row.time; ++k) {
+      const bool lasts = spans[k].to > spans[k].from;
+      if (lasts && second && spans[k].to <= row.time) continue;
+      if (lasts && former && spans[k].from >= row.time) continue;
       RecordRow& kept = runs[k].rows.emplace_back(row);
       kept.X_ref = kept.X_ref * spans[k].X_TU;
       kept.X_WT = kept.X_WT * spans[k].X_TU;
@@ -25,7 +36,7 @@ std::vector<MeasuredRun> measured_runs(const Recorder& recorder,
   for (MeasuredRun& run : runs) {
     if (run.curve == nullptr) continue;
     std::vector<Eigen::Vector3d> p_W;
-    for (const RecordRow& row : run.rows) p_W.push_back(row.X_WT.p);
+    for (const RecordRow& kept : run.rows) p_W.push_back(kept.X_WT.p);
     run.error = path_error(*run.curve, p_W);
   }
   return runs;

@@ -1,8 +1,6 @@
 #include "mjarm/execution/motion_run.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
@@ -32,7 +30,6 @@ MotionRun::MotionRun(const Model& model, const Arm& arm)
 }
 
 void MotionRun::start_at(std::span<const double> q) {
-  if (recorder_.size() > 0) restarted_ = sim_.time();
   sim_.place(arm_, q);
   q_command_ = joint_vec(q);
 }
@@ -45,8 +42,6 @@ void MotionRun::add(const FollowOutcome& outcome) {
 }
 
 void MotionRun::add_span(const Curve* curve, double from, double to, const Pose& X_TU) {
-  // What was recorded where the arm was put somewhere else is of what came before.
-  if (from <= restarted_) from = std::nextafter(restarted_, std::numeric_limits<double>::max());
   spans_.push_back({.curve = curve != nullptr ? std::optional(*curve) : std::nullopt,
                     .from = from,
                     .to = to,

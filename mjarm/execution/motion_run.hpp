@@ -90,7 +90,6 @@ class MotionRun {
   FollowOutcome total_;
   std::vector<MeasuredSpan> spans_;
   std::vector<ObservedObject> objects_;  ///< of the last plan
-  double restarted_ = -1;  ///< [s] when the arm was last put somewhere else; < 0 = never
   std::string end_reason_, end_detail_;
 };
 

@@ -170,8 +170,8 @@ TEST(MotionRun, TellsApproachesFromWhatIsMeasured) {
   ASSERT_TRUE(run.jump(there, kMode, 0.2));
   EXPECT_EQ(measured, 100);
   EXPECT_EQ(run.measured_runs().size(), 1U);
-  EXPECT_EQ(run.measured_runs().front().rows.size(), 102U)
-      << "the row at the border counts to both";
+  EXPECT_EQ(run.measured_runs().front().rows.size(), 101U)
+      << "of the two rows at the border the second one";
 }
 
 TEST(MeasuredRuns, ErrorsOfSeveralCurvesAreWeighedByRowsAndLengths) {

@@ -35,8 +35,8 @@ Result<void> check_view(const CameraView& view) {
 }  // namespace
 
 CameraView default_view(const Model& model) {
-  constexpr double kRoom = 1.35;  // round what moves, for its way
-  constexpr double kTiny = 0.6;   // of the model's own distance
+  constexpr double kRoom = 1.2;  // round what moves, for its way
+  constexpr double kTiny = 0.4;  // of the model's own distance
   mjvCamera camera;
   mjv_defaultFreeCamera(model.raw(), &camera);
   const CameraView own{.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
@@ -46,9 +46,15 @@ CameraView default_view(const Model& model) {
   const Snapshot start;
   const std::vector<FramedBall> balls = moving_parts(model, {&start, 1});
   if (balls.empty()) return own;
-  CameraView near =
-      framing_view(model, balls, {.azimuth = own.azimuth, .elevation = own.elevation});
-  near.distance *= kRoom;
+  Eigen::Vector3d low = balls.front().p_W, high = low;
+  for (const FramedBall& ball : balls) {
+    low = low.cwiseMin(ball.p_W);
+    high = high.cwiseMax(ball.p_W);
+  }
+  // A ball, since it will not stay as it is: what is flat from there now need not be later.
+  const FramedBall round{0.5 * (low + high), 0.5 * kRoom * (high - low).norm()};
+  const CameraView near =
+      framing_view(model, {&round, 1}, {.azimuth = own.azimuth, .elevation = own.elevation});
   return near.distance < kTiny * own.distance ? near : own;
 }
 

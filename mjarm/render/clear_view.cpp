@@ -75,7 +75,7 @@ void add_corners(const mjModel& m, const mjData& d, int geom, std::vector<Framed
   }
 }
 
-/// Solids that are within the box round all that moves, and no larger.
+/// Solids near the box round all that moves that are not much larger.
 void add_solids_in_reach(const mjModel& m, const mjData& d, const std::vector<bool>& moves,
                          std::vector<FramedBall>& balls) {
   Vector3d low = balls.front().p_W, high = low;
@@ -88,9 +88,9 @@ void add_solids_in_reach(const mjModel& m, const mjData& d, const std::vector<bo
     const bool solid = m.geom_contype[g] != 0 || m.geom_conaffinity[g] != 0;
     if (!solid || !is_drawn(m, g) || moves[static_cast<std::size_t>(m.geom_bodyid[g])]) continue;
     const Eigen::Map<const Vector3d> p_W(d.geom_xpos + 3 * g);
-    if (m.geom_rbound[g] < reach && (p_W - 0.5 * (low + high)).norm() < reach) {
-      add_corners(m, d, g, balls);
-    }
+    const double radius = m.geom_rbound[g];
+    const double way = (p_W - 0.5 * (low + high)).norm() - radius;
+    if (radius < 2 * reach && way < 1.5 * reach) add_corners(m, d, g, balls);
   }
 }
 
@@ -185,7 +185,7 @@ CameraView clear_view(const Model& model, const ViewSubject& subject, double asp
   double widest = 1e-12;
   for (const Candidate& one : all) widest = std::max(widest, one.spread);
   const auto worth = [&](const Candidate& one) {
-    return one.seen + 0.5 * std::sqrt(one.spread / widest) -
+    return 2 * one.seen + 0.5 * std::sqrt(one.spread / widest) -
            0.15 * turned(one.view.azimuth, own.azimuth) / std::numbers::pi;
   };
   return std::ranges::max_element(all, {}, worth)->view;

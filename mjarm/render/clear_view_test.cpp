@@ -47,6 +47,12 @@ TEST(ClearView, WhatMovesIsNotTinyInALargeHall) {
                          place_in(model, view, {0, 0, 0.37}, 16.0 / 9))
                             .y();
   EXPECT_GT(height, 0.5) << "a quarter of the picture";
+  // As long as it is flat and near from where the camera looks, an arm of 1 m is not tiny.
+  const Model arm = Model::from_mjcf(R"(<mujoco><visual><global azimuth="90"/></visual>
+      <statistic center="0 0 0" extent="1.2"/><worldbody><body><joint axis="1 0 0"/>
+      <geom type="capsule" fromto="0 0 0 0 1 0" size="0.05"/></body></worldbody></mujoco>)")
+                        .value();
+  EXPECT_NEAR(default_view(arm).distance, 1.8, 1e-6);
   const Model still = Model::from_mjcf(
                           "<mujoco><statistic extent='30'/><worldbody><geom size='1'/>"
                           "</worldbody></mujoco>")

@@ -35,10 +35,10 @@ void add_contacts(Overlay& overlay, std::span<const ContactMark> contacts,
 void add_closest_pair(Overlay& overlay, const Eigen::Vector3d& p1_W, const Eigen::Vector3d& p2_W,
                       double distance, double margin = 0);
 
-/// How a planned path is drawn: wide and pale, so that the trail, thin and dark, is seen in it.
+/// How a planned path is drawn: thin, so that it is seen in the trail, which is wide.
 struct PathLook {
-  double width = 0.012;  ///< [m] > 0
-  Rgba color = {0.95F, 0.30F, 0.20F, 0.45F};
+  double width = 0.003;  ///< [m] > 0
+  Rgba color = {0.85F, 0.12F, 0.10F, 1};
   bool dashed = true;  ///< about 60 dashes, of 5 mm at least
 };
 

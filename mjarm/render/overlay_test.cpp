@@ -318,10 +318,7 @@ TEST(OverlayShapes, APlannedPathIsDashedOverItsLength) {
   EXPECT_EQ(overlay.lines.at(0).points_W.size(), 101U);
   add_planned_path(overlay, poses, {.dashed = false});
   EXPECT_EQ(overlay.lines.at(1).dash, 0);
-  // What was done is seen in what was planned.
-  EXPECT_GT(overlay.lines.at(0).width, 2 * TrailOptions{}.width);
-  EXPECT_LT(overlay.lines.at(0).color.a, 0.6F);
-  EXPECT_EQ(TrailOptions{}.color.a, 1);
+  EXPECT_LT(overlay.lines.at(0).width, 0.5 * TrailOptions{}.width) << "seen in what was done";
 }
 
 TEST(OverlayShapes, AGhostNamesTheJointsOfTheArm) {

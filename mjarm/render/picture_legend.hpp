@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,8 +16,16 @@ struct LegendEntry {
   std::string text = {};
 };
 
-/// Draws a legend into the lower left corner of a picture, on a pale ground; as large as the
-/// picture allows. Pictures too small for it stay as they are.
-void add_legend(Image& image, std::span<const LegendEntry> entries);
+/// A corner of a picture.
+struct Corner {
+  bool right = false;
+  bool top = false;
+};
+/// Draws a legend into a corner of a picture, on a pale ground; as large as the picture allows.
+/// Pictures too small for it stay as they are.
+/// @param corner  none = where it hides least of what has a colour.
+/// @return the corner; for all pictures of a film.
+Corner add_legend(Image& image, std::span<const LegendEntry> entries,
+                  std::optional<Corner> corner = {});
 
 }  // namespace mjarm::render

@@ -20,9 +20,9 @@ enum class Pen {
 struct TrailOptions {
   std::size_t max_points = 2000;   ///< then the oldest go, >= 2
   double spacing = 0.002;          ///< [m] nearer points are left out, >= 0
-  double width = 0.004;            ///< [m] diameter of the line, > 0
+  double width = 0.007;            ///< [m] diameter of the line, > 0
   LineLook look = LineLook::thin;  ///< the same however long it grows
-  Rgba color = {0.05F, 0.30F, 0.80F, 1};
+  Rgba color = {0.20F, 0.52F, 0.95F, 1};
   double travel_width = 0.0015;  ///< [m] > 0
   Rgba travel_color = {0.62F, 0.66F, 0.72F, 1};
   Pen pen = Pen::down;         ///< at first

@@ -44,8 +44,10 @@ render::CameraView motion_view(const Model& model, const Arm& arm, const MotionO
                                bool film, double aspect) {
   Sim sim(model);
   std::vector<Snapshot> moments;
-  for (const JointVec& q : outline.postures) {
-    sim.place(arm, as_span(q));
+  // A picture shows the end only.
+  const std::size_t first = film || outline.postures.empty() ? 0 : outline.postures.size() - 1;
+  for (std::size_t i = first; i < outline.postures.size(); ++i) {
+    sim.place(arm, as_span(outline.postures[i]));
     moments.push_back(sim.snapshot());
   }
   render::ViewSubject subject{render::moving_parts(model, moments), outline.marks_W, {}};

@@ -30,7 +30,7 @@ Result<std::string> write_picture(render::OffscreenRenderer& renderer,
                                   const render::Camera& camera, const render::Overlay& overlay) {
   Result<render::Image> image = renderer.draw(snapshot, camera, overlay);
   if (!image) return fail(image.error());
-  render::add_legend(*image, options.legend);
+  (void)render::add_legend(*image, options.legend);
   if (Result<void> written = render::write_png(*image, options.out); !written) {
     return fail(std::move(written.error()));
   }

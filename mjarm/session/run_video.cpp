@@ -22,7 +22,7 @@ bool VideoOfRun::add(const Snapshot& snapshot, const render::Camera& camera,
                      const render::Overlay& overlay) {
   if (error_ || interrupted()) return false;
   Result<render::Image> image = renderer_.draw(snapshot, camera, overlay);
-  if (image) render::add_legend(*image, options_.legend);
+  if (image) legend_ = render::add_legend(*image, options_.legend, legend_);
   const Result<void> added = image ? writer_.add(*image) : fail(image.error());
   if (!added) error_ = added.error();
   return !error_;

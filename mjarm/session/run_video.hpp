@@ -62,7 +62,8 @@ class VideoOfRun {
   render::Camera camera_;
   render::OffscreenRenderer renderer_;
   render::VideoWriter writer_;
-  std::optional<double> start_;  ///< [s] of the first frame
+  std::optional<render::Corner> legend_;  ///< where the first picture has it
+  std::optional<double> start_;           ///< [s] of the first frame
   std::optional<Error> error_;
 };
 
