@@ -104,7 +104,7 @@ TEST_F(PanelTest, EveryCheckboxOfTheSettingsTogglesItsOwnFlag) {
     const auto flag = static_cast<ViewFlag>(i);
     expected.set(flag, !before.shows(flag));
     click(true, 1, 2 + i);
-    EXPECT_EQ(user_.settings, expected) << setting_rows()[static_cast<std::size_t>(i)].label;
+    EXPECT_EQ(user_.settings, expected) << text(setting_rows()[static_cast<std::size_t>(i)].label);
     show();
     click(true, 1, 2 + i);
     EXPECT_EQ(user_.settings, before);
