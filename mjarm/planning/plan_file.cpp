@@ -28,6 +28,13 @@ Result<double> number_at(const JsonValue& object, const char* key) {
   return found->number();
 }
 
+/// One that a path can keep.
+Result<double> length_at(const JsonValue& object, const char* key) {
+  Result<double> value = number_at(object, key);
+  if (!value || (*value >= 0 && *value <= kMaxClearanceAsked)) return value;
+  return fail(Errc::bad_input, text(msg::planning_verify_bad_length, key, kMaxClearanceAsked));
+}
+
 Result<void> read_rows(const JsonValue& rows, std::size_t dof, GivenPath& out) {
   if (!rows.is_list()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -47,6 +54,11 @@ Result<GivenCertificate> certificate_of(const JsonValue& entry) {
     const Result<double> value = number_at(entry, key);
     if (!value) return fail(value.error());
     *target = *value;
+  }
+  if (entry.contains("kept")) {
+    const Result<double> kept = length_at(entry, "kept");
+    if (!kept) return fail(kept.error());
+    out.kept = *kept;
   }
   const JsonValue* const pair = entry.find("pair");
   if (pair == nullptr) return out;
@@ -113,9 +125,19 @@ Result<void> read_words(const JsonValue& entry, const char* key, std::vector<std
 Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out) {
   if (entry.is_list()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
-  constexpr std::string_view kKnown[] = {"ok",    "path",   "us",         "simplify_us",
-                                         "cost",  "reason", "spheres",    "hold",
-                                         "allow", "tilt",   "certificate"};
+  constexpr std::string_view kKnown[] = {"ok",
+                                         "path",
+                                         "us",
+                                         "simplify_us",
+                                         "cost",
+                                         "reason",
+                                         "spheres",
+                                         "hold",
+                                         "allow",
+                                         "tilt",
+                                         "certificate",
+                                         "clearance",
+                                         "possible_clearance"};
   if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
   const JsonValue* const ok = entry.find("ok");
   if (ok != nullptr && !ok->is_boolean()) {
@@ -129,6 +151,11 @@ Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out)
     const Result<double> cost = number_at(entry, "cost");
     if (!cost) return fail(cost.error());
     out.cost = *cost;
+  }
+  if (entry.contains("clearance")) {
+    const Result<double> clearance = length_at(entry, "clearance");
+    if (!clearance) return fail(clearance.error());
+    out.clearance = *clearance;
   }
   if (entry.contains("spheres")) {
     const Result<double> spheres = number_at(entry, "spheres");

@@ -101,6 +101,8 @@ struct Set {
 /// Round obstacles, by the planner.
 struct PlanMove {
   std::variant<JointValues, ProgramPose> goal;
+  /// [m] >= 0: kept from all else on the way, as PlanOptions::clearance has it.
+  std::optional<double> clearance = {};
 };
 
 struct Grip {

@@ -12,6 +12,7 @@
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/joint_path.hpp"
 #include "mjarm/program/closed_way_internal.hpp"
+#include "mjarm/program/detour_chain_internal.hpp"
 #include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
@@ -38,6 +39,7 @@ struct Attempt {
   std::size_t next = 0;  ///< the first step that is not done
   JointVec q;            ///< where the arm is then
   std::optional<PlanFault> fault;
+  std::optional<WorldPath> detour = {};  ///< of the first move, where it is one
 };
 
 /// What can be asked of one tool.
@@ -83,6 +85,10 @@ class ProgramPlanner {
       }
       Attempt attempt = from(i, q);
       if (is_stopped(options_.stop)) break;
+      if (attempt.detour) {
+        chain_.add(i, steps_[i], std::move(*attempt.detour), tools_[steps_[i].tool].detours,
+                   plan_.moves, attempt.moves);
+      }
       std::ranges::move(attempt.moves, std::back_inserter(plan_.moves));
       i = attempt.next;
       q = std::move(attempt.q);
@@ -151,10 +157,10 @@ class ProgramPlanner {
     detail::DetourPlanner& planner = tools_[step.tool].detours;
     const auto goals = goals_of(planner, step, q);
     if (!goals) return std::nullopt;
-    const auto found = planner.plan(q, *goals, step.share);
+    const auto found = planner.plan(q, *goals, step.share, step.clearance);
     if (!found) return std::nullopt;
     q = found->corners.back();
-    return Detour{found->corners.size() - 1, found->trajectory.duration(),
+    return Detour{found->corners.size() - 1, found->motion.trajectory.duration(),
                   found->measures.clearance};
   }
 
@@ -308,18 +314,18 @@ class ProgramPlanner {
     if (!goals) return failed(i, q, {i, goals.error().reason, goals.error().what});
     std::optional<Attempt> best;
     for (std::size_t k = 0; k < kMaxAnswers && !goals->empty(); ++k) {
-      auto found = with.detours.plan(q, *goals, step.share);
+      auto found = with.detours.plan(q, *goals, step.share, step.clearance);
       if (!found && best) break;
       if (!found) return failed(i, q, {i, found.error().reason, found.error().what});
       Attempt attempt{{begun(step)}, i + 1, found->corners.back(), {}};
       PlannedMove& move = attempt.moves.back();
-      move.measures = std::move(found->measures);
-      move.trajectory = std::move(found->trajectory);
-      move.corners = std::move(found->corners);
+      const std::size_t goal = found->goal();
+      attempt.detour = found->paths.front();
+      detail::put(std::move(*found), move);
       tool_moves(attempt);
       if (!attempt.fault) return attempt;
       if (!best || attempt.next > best->next) best = std::move(attempt);
-      goals->erase(goals->begin() + static_cast<std::ptrdiff_t>(found->goal));
+      goals->erase(goals->begin() + static_cast<std::ptrdiff_t>(goal));
     }
     return std::move(*best);
   }
@@ -467,6 +473,7 @@ class ProgramPlanner {
   const ProgramPlanOptions& options_;
   std::vector<Tool> tools_;
   std::size_t told_ = 0;        // steps that were told of
+  detail::DetourChain chain_;   // the last one
   std::set<FilePlace> mended_;  // places of faults for which a change was looked for
   ProgramPlan plan_;
 };

@@ -274,6 +274,7 @@ class StepWriter {
     Step step = begun(Step::Kind::plan, instruction);
     set_goal(step, what.goal);
     step.kind = Step::Kind::plan;
+    step.clearance = what.clearance;
     push(std::move(step));
   }
 

@@ -23,15 +23,16 @@ struct Step {
   double speed = 0;      ///< [m/s]
   bool keep_speed = false;
   double share = 1;
-  JointVec q = {};                  ///< joints
-  Pose X_WT = {};                   ///< pose, line, arc: where it ends
-  Pose X_via = {};                  ///< arc
-  bool whole = false;               ///< arc
-  double blend = 0;                 ///< [m] line, arc: of the corner at its end; curve: of all
-  std::optional<Curve> curve = {};  ///< curve
-  std::vector<Pose> points = {};    ///< curve: its corners X_WT, where it is straight between
-  double seconds = 0;               ///< wait
-  bool close = false;               ///< grip
+  JointVec q = {};                       ///< joints
+  Pose X_WT = {};                        ///< pose, line, arc: where it ends
+  Pose X_via = {};                       ///< arc
+  bool whole = false;                    ///< arc
+  double blend = 0;                      ///< [m] line, arc: of the corner at its end; curve: of all
+  std::optional<Curve> curve = {};       ///< curve
+  std::vector<Pose> points = {};         ///< curve: its corners X_WT, where it is straight between
+  double seconds = 0;                    ///< wait
+  std::optional<double> clearance = {};  ///< [m] plan: what is asked
+  bool close = false;                    ///< grip
 };
 
 struct Steps {

@@ -45,6 +45,7 @@ JsonDoc move_json(const program::ProgramPlan& plan, const PlannedMove& move) {
                  {"instruction", move.word},
                  {"instructions", move.instructions},
                  {"duration", move.trajectory.duration()}};
+  if (move.stopping) out.set("stopping_duration", *move.stopping);
   if (move.curve) out.set("length", move.curve->length());
   if (!move.measures) return out;
   const MoveMeasures& measures = *move.measures;
@@ -121,6 +122,11 @@ std::string plan_text(const program::LoadedProgram& loaded) {
   for (const PlannedMove& move : plan.moves) rows.push_back(row_of(plan, move));
   std::string out = aligned(rows);
   for (const PlannedMove& move : plan.moves) {
+    if (move.stopping && move.corners.size() > 2) {
+      out += text(msg::motion_program_one_motion, move.place.line, move.trajectory.duration(),
+                  *move.stopping) +
+             "\n";
+    }
     for (const SpeedDip& dip : move.dips) {
       out += text(msg::motion_program_dip, move.place.line, describe(dip, plan.arms[move.tool])) +
              "\n";
