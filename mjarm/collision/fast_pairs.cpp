@@ -12,15 +12,18 @@ namespace mjarm::detail {
 namespace {
 
 constexpr int kMaxProved = 3;    // joints between two links; for more the search is too large
-constexpr int kMaxBoxes = 1000;  // of one search
+constexpr int kMaxBoxes = 1000;  // of one search,
+constexpr int kFewBoxes = 100;   // where there are margins: such a robot is made for a few searches
 constexpr double kSpare = 1e-5;  // [m] by which spheres that never meet keep apart at least
 
 using Joints = std::array<double, kMaxProved>;
 
 class MeetingSearch {
  public:
-  MeetingSearch(const Arm& arm, const LinkChain& chain, int a, int b)
+  MeetingSearch(const FastRobotData& data, const LinkChain& chain, int a, int b)
       : chain_(chain), a_(a), b_(b) {
+    const Arm& arm = data.arm;
+    if (data.margins.obstacles > 0 || data.margins.links > 0) max_boxes_ = kFewBoxes;
     for (int k = a; k < b && k < a + kMaxProved; ++k) {
       const auto i = static_cast<std::size_t>(k - a);
       const FastLimits limits = fast_limits(arm, k);
@@ -44,7 +47,7 @@ class MeetingSearch {
  private:
   bool search(const Eigen::Vector3d& center_a, const Eigen::Vector3d& center_b, double reach,
               const Joints& middle, const Joints& half) {
-    if (++boxes_ > kMaxBoxes) return true;
+    if (++boxes_ > max_boxes_) return true;
     const double gap = (place(center_b, middle) - center_a).norm() - reach;
     if (gap <= 0) return true;
     double slack = 0;
@@ -84,6 +87,7 @@ class MeetingSearch {
   int a_, b_;
   Joints middle_{}, half_{}, levers_{};
   int boxes_ = 0;
+  int max_boxes_ = kMaxBoxes;
 };
 
 Eigen::Vector3d center_of(const FastSphere& sphere) { return {sphere.x, sphere.y, sphere.z}; }
@@ -105,8 +109,14 @@ class LinkPairs {
   std::vector<bool> paired_;
 };
 
-float reach_of(const FastSphere& a, const FastSphere& b) {
-  return round_up(static_cast<double>(a.radius) + b.radius);
+/// [m] by how much two radii, which have the margin from obstacles in them, are too much for links.
+double surplus(const FastRobotData& data) {
+  return 2 * data.margins.obstacles - data.margins.links;
+}
+
+/// How near two spheres, or balls round some, come until their links are too near.
+float reach_of(const FastRobotData& data, const FastSphere& a, const FastSphere& b) {
+  return round_up(static_cast<double>(a.radius) + b.radius - surplus(data));
 }
 
 /// The spheres of two parts that `meets` keeps; without any the parts are left out.
@@ -118,14 +128,14 @@ void add_part_pair(FastRobotData& data, FastRow& row, int a, int b, const Meets&
   for (int i = from.first; i < from.first + from.count; ++i) {
     for (int j = to.first; j < to.first + to.count; ++j) {
       if (!meets(i, j)) continue;
-      const float reach = reach_of(data.spheres[static_cast<std::size_t>(i)],
+      const float reach = reach_of(data, data.spheres[static_cast<std::size_t>(i)],
                                    data.spheres[static_cast<std::size_t>(j)]);
       data.partners.push_back({i, j, reach, -round_up(static_cast<double>(reach) * reach)});
     }
   }
   const int count = static_cast<int>(data.partners.size()) - first;
   if (count == 0) return;
-  data.part_pairs.push_back({a, b, reach_of(from.ball, to.ball), first, count});
+  data.part_pairs.push_back({a, b, reach_of(data, from.ball, to.ball), first, count});
   ++row.count;
 }
 
@@ -134,9 +144,9 @@ template <class Meets>
 void add_pair(FastRobotData& data, std::vector<FastPair>& pairs, int a, int b, const Meets& meets) {
   const FastGroup& from = data.groups[static_cast<std::size_t>(a)];
   const FastGroup& to = data.groups[static_cast<std::size_t>(b)];
-  FastPair pair{a, b, static_cast<int>(data.rows.size()), 0, reach_of(from.ball, to.ball)};
+  FastPair pair{a, b, static_cast<int>(data.rows.size()), 0, reach_of(data, from.ball, to.ball)};
   for (int i = from.parts.first; i < from.parts.first + from.parts.count; ++i) {
-    FastRow row{i, reach_of(data.parts[static_cast<std::size_t>(i)].ball, to.ball),
+    FastRow row{i, reach_of(data, data.parts[static_cast<std::size_t>(i)].ball, to.ball),
                 static_cast<int>(data.part_pairs.size()), 0};
     for (int j = to.parts.first; j < to.parts.first + to.parts.count; ++j) {
       add_part_pair(data, row, i, j, meets);
@@ -161,7 +171,7 @@ void add_pairs(FastRobotData& data, const LinkChain& chain) {
   const int count = static_cast<int>(data.groups.size());
   for (int a = count - 1; a >= 0; --a) {
     for (int b = a; b >= 0; --b) {
-      MeetingSearch search(data.arm, chain, body(a), body(b));
+      MeetingSearch search(data, chain, body(a), body(b));
       add_pair(data, data.pairs, a, b, [&](int one, int other) {
         const FastSphere& from = data.spheres[static_cast<std::size_t>(one)];
         const FastSphere& to = data.spheres[static_cast<std::size_t>(other)];
@@ -169,7 +179,7 @@ void add_pairs(FastRobotData& data, const LinkChain& chain) {
         return (a != b || one < other) && paired(one, other) &&
                search.may_meet(center_of(from), center_of(to),
                                data.levers_of_sphere[static_cast<std::size_t>(other)],
-                               from.radius + to.radius);
+                               from.radius + to.radius - surplus(data));
       });
       add_pair(data, data.every_pair, a, b,
                [&](int one, int other) { return (a != b || one < other) && paired(one, other); });

@@ -126,7 +126,9 @@ void add_groups(FastRobotData& data, const LinkChain& chain) {
     std::vector<LinkSphere> from;
     for (std::size_t l = 0; l < in_bodies.size(); ++l) {
       if (data.set.links[l].joint + 1 != body) continue;
-      for (const Sphere& s : in_bodies[l]) from.push_back({s, static_cast<int>(l)});
+      for (const Sphere& s : in_bodies[l]) {
+        from.push_back({{s.center, s.radius + data.margins.obstacles}, static_cast<int>(l)});
+      }
     }
     if (from.empty()) continue;
     detail::GroupBounds bounds;
@@ -206,16 +208,22 @@ std::vector<std::vector<Sphere>> spheres_in_bodies(const SphereSet& set, const A
 
 }  // namespace detail
 
-Result<FastRobot> FastRobot::create(const Arm& arm, const SphereSet& set) {
+Result<FastRobot> FastRobot::create(const Arm& arm, const SphereSet& set,
+                                    const SphereMargins& margins) {
   const Chain chain(arm);
   if (chain.dof == 0) {
     return fail(Errc::bad_input, text(msg::collision_arm_joints, arm.dof(), kMaxDof));
   }
   if (const Result<void> fine = check_sphere_set(set, arm); !fine) return fail(fine.error());
+  for (const double margin : {margins.obstacles, margins.links}) {
+    if (margin >= 0 && margin <= kMaxSphereMargin) continue;
+    return fail(Errc::bad_input, text(msg::collision_margin, margin, kMaxSphereMargin));
+  }
   const LinkChain links(chain);
   auto data = std::make_shared<FastRobotData>();
   data->arm = arm;
   data->set = set;
+  data->margins = margins;
   data->tables.dof = arm.dof();
   for (int i = 0; i < arm.dof(); ++i) data->tables.joints[i] = fast_joint(arm, links, i);
   data->R_WB = link_frame(links, 0).R;

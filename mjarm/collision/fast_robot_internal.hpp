@@ -41,6 +41,7 @@ struct FastRobotData {
 
   Arm arm;
   SphereSet set;
+  SphereMargins margins;
   std::vector<FastGroup> groups;
   std::vector<FastPart> parts;
   std::vector<FastSphere> spheres;

@@ -47,10 +47,12 @@ struct PlannedMove {
   /// have a center.
   std::vector<PlannedPoint> points = {};
   /// Of a way round obstacles: the joint values that its edges run between, start and goal
-  /// included. Every edge is proved free of contact; the trajectory cuts the corners where that is
-  /// as well.
+  /// included. Every edge is proved free of contact; the trajectory leaves them where that is as
+  /// well.
   std::vector<JointVec> corners = {};
-  std::optional<bool> close = {};             ///< the gripper closes or opens at its beginning
+  std::vector<std::size_t> passed = {};  ///< of `corners`, by index: goals that are met on the way
+  std::optional<double> stopping = {};   ///< [s] what it would take to stop at every corner
+  std::optional<bool> close = {};        ///< the gripper closes or opens at its beginning
   std::vector<AttachedBody> attached = {};    ///< to the first arm's tool, at its end
   std::vector<SpeedDip> dips = {};            ///< where the tool is slower than asked
   std::optional<MoveMeasures> measures = {};  ///< none for rests

@@ -140,6 +140,7 @@ Report MotionRun::report(const MotionPlan& plan, std::span<const MeasuredRun> ru
     told.line = move.place.line;
     told.word = move.word;
     told.duration = move.trajectory.duration();
+    told.stopping = move.stopping;
     if (is_measured(plan, i) && k < runs.size()) told.path_error = runs[k++].error;
   }
   out.objects = objects_;

@@ -38,6 +38,7 @@ JsonDoc to_json(const ReportedDip& entry) {
 
 JsonDoc to_json(const ReportedMove& move) {
   JsonDoc out{{"line", move.line}, {"instruction", move.word}, {"duration", move.duration}};
+  if (move.stopping) out.set("stopping_duration", *move.stopping);
   if (move.path_error) {
     out.set("path_error_max", move.path_error->max);
     out.set("path_error_rms", move.path_error->rms);

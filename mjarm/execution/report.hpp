@@ -38,7 +38,9 @@ struct Fact {
 struct ReportedMove {
   int line = 0;  ///< of the program, 0 = of none
   std::string word;
-  double duration = 0;                  ///< [s] as planned
+  double duration = 0;  ///< [s] as planned
+  /// [s] of a way round obstacles: what it would take to stop at every corner.
+  std::optional<double> stopping;
   std::optional<PathError> path_error;  ///< against its curve, where it has one
 };
 

@@ -70,8 +70,16 @@ void add_samples(JointPath& path, double length, double step, const At& at) {
 Result<JointPolyline> joint_polyline(std::span<const JointVec> waypoints,
                                      const JointPolylineOptions& options) {
   constexpr double kMaxSamples = 1e7, kCellsOfABend = 8;
-  if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
-    return fail(Errc::bad_input, text(msg::path_blend_radius, options.blend));
+  std::vector<double> blends = options.blends;
+  blends.push_back(options.blend);
+  for (const double blend : blends) {
+    if (blend >= 0 && std::isfinite(blend)) continue;
+    return fail(Errc::bad_input, text(msg::path_blend_radius, blend));
+  }
+  blends.pop_back();
+  if (blends.empty() && waypoints.size() > 2) blends.assign(waypoints.size() - 2, options.blend);
+  if (!blends.empty() && blends.size() + 2 != waypoints.size()) {
+    return fail(Errc::bad_input, text(msg::path_blend_count, blends.size(), waypoints.size()));
   }
   if (!(options.step > 0)) return fail(Errc::bad_input, text(msg::path_joint_step, options.step));
   const Result<std::vector<Leg>> legs = legs_of(waypoints);
@@ -93,7 +101,7 @@ Result<JointPolyline> joint_polyline(std::span<const JointVec> waypoints,
   for (std::size_t i = 0; i < legs->size(); ++i) {
     const Leg& leg = (*legs)[i];
     const bool last = i + 1 == legs->size();
-    const double radius = last ? 0 : std::min({options.blend, share(i), share(i + 1)});
+    const double radius = last ? 0 : std::min({blends[i], share(i), share(i + 1)});
     const auto corner = last ? std::nullopt : corner_of(leg, (*legs)[i + 1], radius);
     const double back = corner ? radius : 0;
     const double straight = leg.length - front - back;

@@ -10,7 +10,9 @@ namespace mjarm {
 /// How a joint polyline is rounded and sampled. Lengths are those of joint space: the L2 norm over
 /// all joints, [rad or m].
 struct JointPolylineOptions {
-  double blend = 0;    ///< the straight legs are left within this of a waypoint, >= 0; 0: sharp
+  double blend = 0;  ///< the straight legs are left within this of a waypoint, >= 0; 0: sharp
+  /// The same for every inner waypoint, each its own; empty: `blend` for all.
+  std::vector<double> blends = {};
   double step = 0.05;  ///< largest distance of neighbouring samples, > 0
 };
 

@@ -110,6 +110,14 @@ TEST(JointPolyline, KeepsWhatCannotOrNeedNotBeRounded) {
   EXPECT_THAT(straight.corners, ::testing::ElementsAre(0, 3));
 }
 
+TEST(JointPolyline, EveryWaypointMayHaveABlendOfItsOwn) {
+  const auto q = [](double a, double b) { return joint_vec(std::vector{a, b}); };
+  const std::vector corners{q(0, 0), q(1, 0), q(1, 1), q(0, 1)};
+  const JointPolyline line = *joint_polyline(corners, {.blend = 0.4, .blends = {0.2, 0}});
+  EXPECT_THAT(line.radii, ::testing::ElementsAre(0.2, 0));
+  ASSERT_EQ(line.corners.size(), 3U);
+}
+
 TEST(JointPolyline, RefusesWhatIsNoPolyline) {
   using ::testing::HasSubstr;
   const auto complaint = [](const std::vector<JointVec>& waypoints,
@@ -128,6 +136,7 @@ TEST(JointPolyline, RefusesWhatIsNoPolyline) {
       complaint({a, joint_vec(std::vector{1e308, -1e308}), joint_vec(std::vector{-1e308, 1e308})}),
       HasSubstr("1"));
   EXPECT_THAT(complaint({a, b}, {.blend = -1}), HasSubstr("blend"));
+  EXPECT_THAT(complaint({a, b}, {.blends = {0.1}}), HasSubstr("1 blends"));
   EXPECT_THAT(complaint({a, b}, {.step = 0}), HasSubstr("step"));
   EXPECT_THAT(complaint({a, b}, {.step = 1e-300}), HasSubstr("step"));
   EXPECT_THAT(complaint({a, b}, {.step = kNaN}), HasSubstr("step"));

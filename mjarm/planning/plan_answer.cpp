@@ -5,6 +5,7 @@
 
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/stopwatch.hpp"
+#include "mjarm/planning/clear_path_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -17,12 +18,14 @@ std::string other_of(const SphereClearance& nearest, const FastRobot& robot,
   return robot.spheres().links[static_cast<std::size_t>(nearest.other_link)].name;
 }
 
-void append_proof(JsonWriter& json, const EdgeCertificate& proof, const FastRobot& robot,
-                  const Obstacles& obstacles) {
+/// @param kept  [m] proved all along the edge, where a clearance was asked.
+void append_proof(JsonWriter& json, const EdgeCertificate& proof, std::optional<double> kept,
+                  const FastRobot& robot, const Obstacles& obstacles) {
   json.object()
       .member("step", proof.step)
       .member("clearance", proof.nearest.distance)
       .member("t", proof.nearest_t);
+  if (kept) json.member("kept", *kept);
   if (proof.nearest.link >= 0) {
     json.key("pair")
         .list()
@@ -48,6 +51,24 @@ void append_words(JsonWriter& json, const char* key, const std::vector<std::stri
   if (!words.empty()) json.member(key, words);
 }
 
+/// With the clearance that is asked; where that fails, what is possible.
+Result<PlannedPath, PlanFailure> plan_clear(const FastChecker& checker, const PlanProblem& problem,
+                                            const PlanOptions& options, PlanTimes& times) {
+  const detail::ClearScene scene{checker, problem.obstacles};
+  const auto plan = [&](const PlanOptions& how, PlanTimes* taken) {
+    return detail::plan_clear(scene, problem.start, problem.goals, how, detail::ClearEnds::own,
+                              taken);
+  };
+  Result<PlannedPath, PlanFailure> path = plan(options, &times);
+  if (path || !detail::is_for_clearance(path.error())) return path;
+  const auto any = plan_path(checker, problem.start, problem.goals, options);
+  if (!any) return any;
+  const double possible = detail::largest_clearance(
+      options, [&](const PlanOptions& less) { return plan(less, nullptr).has_value(); });
+  if (is_stopped(options.stop)) return path;
+  return tl::unexpected(detail::too_near(*options.clearance, possible));
+}
+
 }  // namespace
 
 PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
@@ -57,7 +78,14 @@ PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
   const Result<FastChecker> checker = FastChecker::create(robot, problem.obstacles);
   assert(checker);  // the obstacles were checked when they were read
   PlanTimes times;
-  out.path = plan_path(*checker, problem.start, problem.goals, options, &times);
+  if (!detail::is_sound_clearance(options.clearance)) {
+    out.path =
+        tl::unexpected(PlanFailure{.code = PlanErrc::bad_clearance, .limit = *options.clearance});
+  } else if (options.clearance.value_or(0) > 0) {
+    out.path = plan_clear(*checker, problem, options, times);
+  } else {
+    out.path = plan_path(*checker, problem.start, problem.goals, options, &times);
+  }
   out.us = watch.us();
   if (options.time_budget > 0) return out;
   out.simplify_us = times.finish_us;
@@ -71,16 +99,22 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
   json.object().member("ok", answer.path.has_value());
   if (answer.path) {
     json.member("path", answer.path->q).member("cost", answer.path->cost).key("certificate").list();
-    for (const EdgeCertificate& proof : answer.path->proof) {
-      append_proof(json, proof, robot, obstacles);
+    const std::vector<double>& kept = answer.path->kept;
+    for (std::size_t i = 0; i < answer.path->proof.size(); ++i) {
+      append_proof(json, answer.path->proof[i],
+                   kept.empty() ? std::nullopt : std::optional<double>(kept[i]), robot, obstacles);
     }
     json.end_list();
+    if (!kept.empty()) json.member("clearance", answer.path->clearance);
     if (answer.tilt) append_tilt(json, *answer.tilt, answer.path->tilt);
     append_words(json, "hold", answer.rules.hold);
     append_words(json, "allow", answer.rules.allow);
     if (answer.spheres) json.member("spheres", *answer.spheres);
   } else {
     json.member("reason", describe(answer.path.error(), robot, obstacles));
+    if (answer.path.error().code == PlanErrc::too_near) {
+      json.member("possible_clearance", answer.path.error().possible);
+    }
   }
   if (timing) json.member_us("us", answer.us).member_us("simplify_us", answer.simplify_us);
   json.end_object();

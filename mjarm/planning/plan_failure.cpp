@@ -64,6 +64,11 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return text(msg::planning_budget, failure.samples, failure.nearest);
     case PlanErrc::stopped:
       return stopped().what;
+    case PlanErrc::bad_clearance:
+      return text(msg::planning_bad_clearance, failure.limit, kMaxClearanceAsked);
+    case PlanErrc::too_near:
+      return text(failure.possible > 0 ? msg::planning_less_clearance : msg::planning_no_clearance,
+                  1e3 * failure.limit, 1e3 * failure.possible);
     case PlanErrc::unproved:
       return text(msg::planning_unproved);
     case PlanErrc::not_available:

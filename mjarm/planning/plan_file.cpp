@@ -28,6 +28,13 @@ Result<double> number_at(const JsonValue& object, const char* key) {
   return found->number();
 }
 
+/// One that a path can keep.
+Result<double> length_at(const JsonValue& object, const char* key) {
+  Result<double> value = number_at(object, key);
+  if (!value || (*value >= 0 && *value <= kMaxClearanceAsked)) return value;
+  return fail(Errc::bad_input, text(msg::planning_verify_bad_length, key, kMaxClearanceAsked));
+}
+
 Result<void> read_rows(const JsonValue& rows, std::size_t dof, GivenPath& out) {
   if (!rows.is_list()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -48,8 +55,13 @@ Result<GivenCertificate> certificate_of(const JsonValue& entry) {
     if (!value) return fail(value.error());
     *target = *value;
   }
-  constexpr std::string_view kKnown[] = {"step", "clearance", "t", "pair"};
+  constexpr std::string_view kKnown[] = {"step", "clearance", "t", "kept", "pair"};
   if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
+  if (entry.contains("kept")) {
+    const Result<double> kept = length_at(entry, "kept");
+    if (!kept) return fail(kept.error());
+    out.kept = *kept;
+  }
   const JsonValue* const pair = entry.find("pair");
   if (pair == nullptr) return out;
   if (!pair->is_list() || pair->size() != 2 || !(*pair)[0].is_string() || !(*pair)[1].is_string()) {
@@ -118,9 +130,19 @@ Result<void> read_words(const JsonValue& entry, const char* key, std::vector<std
 Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out) {
   if (entry.is_list()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
-  constexpr std::string_view kKnown[] = {"ok",    "path",   "us",         "simplify_us",
-                                         "cost",  "reason", "spheres",    "hold",
-                                         "allow", "tilt",   "certificate"};
+  constexpr std::string_view kKnown[] = {"ok",
+                                         "path",
+                                         "us",
+                                         "simplify_us",
+                                         "cost",
+                                         "reason",
+                                         "spheres",
+                                         "hold",
+                                         "allow",
+                                         "tilt",
+                                         "certificate",
+                                         "clearance",
+                                         "possible_clearance"};
   if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
   const JsonValue* const ok = entry.find("ok");
   if (ok != nullptr && !ok->is_boolean()) {
@@ -134,6 +156,11 @@ Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out)
     const Result<double> cost = number_at(entry, "cost");
     if (!cost) return fail(cost.error());
     out.cost = *cost;
+  }
+  if (entry.contains("clearance")) {
+    const Result<double> clearance = length_at(entry, "clearance");
+    if (!clearance) return fail(clearance.error());
+    out.clearance = *clearance;
   }
   if (entry.contains("spheres")) {
     const Result<double> spheres = number_at(entry, "spheres");

@@ -13,6 +13,7 @@ struct GivenCertificate {
   double step = 0;                ///< [rad or m, L2] of the narrowest interval
   double clearance = 0;           ///< [m]
   double t = 0;                   ///< where on the edge
+  std::optional<double> kept;     ///< [m] all along the edge
   std::vector<std::string> pair;  ///< link, and obstacle or link; empty: nothing near
 };
 
@@ -38,7 +39,8 @@ struct GivenPath {
   std::optional<double> cost;             ///< [rad or m]
   std::optional<std::vector<GivenCertificate>> certificate;
   std::optional<GivenTilt> tilt;
-  std::optional<double> spheres;  ///< [m] bound of the cover it was planned with, as plan has it
+  std::optional<double> clearance;  ///< [m] kept by all edges but, maybe, the first and the last
+  std::optional<double> spheres;    ///< [m] bound of the cover it was planned with, as plan has it
   RuleWords rules;
 };
 

@@ -23,13 +23,20 @@ enum class Planner {
   ompl,         ///< PlanOptions::ompl_planner, where OMPL is built in (ompl_planners.hpp)
 };
 
+/// [m] the widest PlanOptions::clearance.
+inline constexpr double kMaxClearanceAsked = 0.5;
+/// [m] what PlanningWorld prefers to keep where nothing is asked.
+inline constexpr double kPreferredClearance = 0.005;
+/// [rad or m, L2] ends of a path where less than PlanOptions::clearance will do are no longer.
+inline constexpr double kFarthestExit = 1;
+
 /// How a path is searched. Every default is usable as is.
 struct PlanOptions {
   Planner planner = Planner::rrt_connect;
   std::uint64_t seed = 1;  ///< same problem and seed, same path
   double range = 1.5;      ///< [rad or m, L2] longest edge that is grown at once, > 0
   /// Budget: configurations that are drawn at most until there is a path, and as many that rrt_star
-  /// draws after that; 0: 100,000 and 3,000.
+  /// draws after that; 0: 100,000 (with a clearance 30,000) and 3,000.
   int samples = 0;
   int shortcuts = 12;        ///< attempts to cut corners of what was found, >= 0
   double resolution = 1e-3;  ///< [rad or m, L2] narrowest interval of the proof of an edge, > 0
@@ -45,6 +52,12 @@ struct PlanOptions {
   /// and then go on for `time_budget` where one is given. No search takes longer than that, so
   /// there may be no path in time. There are no rounds.
   std::string_view ompl_planner = "RRTConnect";
+  /// [m] 0 to kMaxClearanceAsked: what links keep from obstacles and from each other all along a
+  /// path. Where start or goal have less, the path begins or ends with an edge, no longer than
+  /// kFarthestExit, on which their own clearance is kept (to 0.1 mm). A matter of answer_problem(),
+  /// where none is 0, and of PlanningWorld, where none is kPreferredClearance as long as a path is
+  /// soon found with it, else 0. plan_path() keeps what its checker was made for.
+  std::optional<double> clearance = {};
   bool keep_trees = false;  ///< hand over what was searched, to be drawn, say
   StopCheck stop = {};      ///< ends the work with PlanErrc::stopped
 };
@@ -52,6 +65,7 @@ struct PlanOptions {
 enum class PlanErrc {
   bad_input,       ///< no goal, a wrong size, a number that is not finite
   bad_tilt,        ///< PlanOptions::tilt is out of range
+  bad_clearance,   ///< PlanOptions::clearance is out of range
   base_hit,        ///< a link at rest overlaps an obstacle
   start_outside,   ///< the start is outside of the joint limits
   start_hit,       ///< the start is in collision
@@ -61,6 +75,7 @@ enum class PlanErrc {
   goals_tilted,    ///< the tool leans too far at every goal that is free of collisions
   budget_spent,    ///< PlanOptions::samples did not do
   stopped,         ///< PlanOptions::stop ended the work
+  too_near,        ///< no path keeps PlanOptions::clearance, but one with less was found
   unproved,        ///< a path was found, but an edge of it could not be proved (never seen)
   not_available,   ///< OMPL is not built in, or it is and has no PlanOptions::ompl_planner
   tilt_with_ompl,  ///< PlanOptions::tilt is for our own planners
@@ -71,12 +86,15 @@ enum class PlanErrc {
 struct PlanFailure {
   PlanErrc code = PlanErrc::bad_input;
   SphereClearance pair =
-      {};              ///< what overlaps: start_hit, goals_hit (least deep of all goals), base_hit
-  int joint = -1;      ///< the first outside of its limits: start_outside, goals_outside
-  double value = 0;    ///< [rad or m] where that joint is; start_tilted, goals_tilted: the tilt
-  double limit = 0;    ///< [rad] start_tilted, goals_tilted: the largest that is allowed
-  double nearest = 0;  ///< [rad or m, L2] budget_spent: how near the trees came to each other
-  int samples = 0;     ///< drawn
+      {};            ///< what overlaps: start_hit, goals_hit (least deep of all goals), base_hit
+  int joint = -1;    ///< the first outside of its limits: start_outside, goals_outside
+  double value = 0;  ///< [rad or m] where that joint is; start_tilted, goals_tilted: the tilt
+  /// [rad] start_tilted, goals_tilted: the largest that is allowed; [m] too_near, bad_clearance:
+  /// what was asked.
+  double limit = 0;
+  double possible = 0;  ///< [m] too_near: the largest clearance for which a path was found
+  double nearest = 0;   ///< [rad or m, L2] budget_spent: how near the trees came to each other
+  int samples = 0;      ///< drawn
 };
 
 /// What a search did.
@@ -109,6 +127,11 @@ struct PlannedPath {
   double cost = 0;                     ///< [rad or m] sum of the L2 lengths of the edges
   std::vector<EdgeCertificate> proof;  ///< one an edge
   double tilt = 0;                     ///< [rad] with a limit: the tool leans by no more anywhere
+  /// [m] PlanOptions::clearance as it is kept; 0: none was, or none was asked.
+  double clearance = 0;
+  /// [m] with a clearance: what every configuration of each edge is proved to keep. Less than
+  /// `clearance` for the first or the last edge at most.
+  std::vector<double> kept = {};
   PlanCounts counts;
   std::vector<SearchTree> trees = {};  ///< as in RawPath
 };

@@ -1,18 +1,29 @@
 #include "mjarm/planning/planning_world.hpp"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <utility>
 
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/planning/clear_path_internal.hpp"
 
 namespace mjarm {
 namespace {
+
+constexpr int kPreferSamples = 3000;  // of each search with a clearance that nobody asked for
+constexpr int kAloneSamples = 2000;   // of a search to one goal, once there is a path to another
+constexpr int kCoarseSamples = 5000;  // of a search with a clearance where finer spheres are left
 
 /// Whether finer spheres may do better.
 bool is_coarse(PlanErrc reason) {
   return reason == PlanErrc::start_hit || reason == PlanErrc::goals_hit ||
          reason == PlanErrc::goals_tilted || reason == PlanErrc::base_hit ||
-         reason == PlanErrc::budget_spent;
+         reason == PlanErrc::budget_spent || reason == PlanErrc::too_near;
+}
+
+int least_samples(const PlanOptions& options, int max) {
+  return options.samples > 0 ? std::min(options.samples, max) : max;
 }
 
 Result<void> check_world_options(const WorldOptions& options) {
@@ -24,14 +35,61 @@ Result<void> check_world_options(const WorldOptions& options) {
   return fail(Errc::bad_input, text(msg::planning_bad_bounds, kMinSphereBound, kMaxSphereBound));
 }
 
-/// plan_path() as an attempt at one level.
-Result<PlannedPath, WorldFailure> search(const FastChecker& checker,
+/// To all goals at once the first straight way that is free is taken, be it to the farthest. So the
+/// nearest ones are tried alone, and the shortest path is kept.
+/// @param plan  plan(goals, options): a path to one of them, or why there is none.
+template <class Plan>
+void try_goals_alone(std::span<const double> q_start, std::span<const JointVec> goals,
+                     const PlanOptions& options, const Plan& plan, PlannedPath& path) {
+  constexpr std::size_t kMaxAlone = 8;
+  PlanOptions search = options;
+  search.samples = least_samples(options, kAloneSamples);
+  search.time_budget = 0;
+  const JointVec start = joint_vec(q_start);
+  std::vector<std::size_t> order(goals.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto far = [&](std::size_t g) { return (goals[g] - start).norm(); };
+  std::ranges::stable_sort(order, {}, far);
+  for (std::size_t k = 0; k < std::min(order.size(), kMaxAlone); ++k) {
+    const std::size_t g = order[k];
+    if (far(g) >= path.cost || is_stopped(options.stop)) return;
+    Result<PlannedPath, PlanFailure> other = plan(goals.subspan(g, 1), search);
+    if (!other || other->cost >= path.cost) continue;
+    path = std::move(*other);
+    path.goal = static_cast<int>(g);
+  }
+}
+
+/// One search at one level, for a clearance where one is asked.
+/// @param ends  what may be nearer.
+Result<PlannedPath, WorldFailure> search(const detail::ClearScene& scene, detail::ClearEnds ends,
                                          std::span<const double> q_start,
                                          std::span<const JointVec> goals,
                                          const PlanOptions& options, PlanTimes* times) {
-  return plan_path(checker, q_start, goals, options, times).map_error([](const PlanFailure& why) {
-    return WorldFailure{.what = {}, .search = why};
-  });
+  PlanOptions how = options;
+  const bool clear = options.clearance.value_or(0) > 0;
+  if (clear && ends == detail::ClearEnds::also)
+    how.samples = least_samples(options, kCoarseSamples);
+  const auto plan = [&](std::span<const JointVec> to, const PlanOptions& with) {
+    PlanTimes taken;
+    auto path = clear ? detail::plan_clear(scene, q_start, to, with, ends, &taken)
+                      : plan_path(scene.checker, q_start, to, with, &taken);
+    if (times != nullptr) {
+      times->search_us += taken.search_us;
+      times->finish_us += taken.finish_us;
+    }
+    return path;
+  };
+  Result<PlannedPath, PlanFailure> found = plan(goals, how);
+  if (found && goals.size() > 1) try_goals_alone(q_start, goals, how, plan, *found);
+  return std::move(found).map_error(
+      [](const PlanFailure& why) { return WorldFailure{.what = {}, .search = why}; });
+}
+
+WorldFailure bad_clearance(double asked) {
+  return {.code = WorldErrc::no_path,
+          .what = text(msg::planning_bad_clearance, asked, kMaxClearanceAsked),
+          .search = {.code = PlanErrc::bad_clearance, .limit = asked}};
 }
 
 WorldFailure not_found(const PlanFailure& search, const WorldLevel& level, std::size_t index) {
@@ -77,25 +135,30 @@ Result<const WorldLevel*> PlanningWorld::level(std::size_t index, const StopChec
     Result<WorldLevel> made = covered(options_.bounds[levels_.size()], stop);
     if (!made) return fail(std::move(made.error()));
     levels_.push_back(std::move(*made));
+    wide_.emplace_back();
   }
   return &levels_[index];
 }
 
 /// One level after the other, until there is a path or finer spheres are no help.
-/// @param attempt  gets a checker; gives a path or a failure whose words and level are filled in
-/// here, where it is one of a search.
+/// @param attempt  gets a scene, what may be nearer than a clearance and the options; gives a path
+/// or a failure whose words and level are filled in here, where it is one of a search.
 template <class Attempt>
-Result<WorldPath, WorldFailure> PlanningWorld::climb(const StopCheck& stop,
+Result<WorldPath, WorldFailure> PlanningWorld::climb(const PlanOptions& options, Ask ask,
                                                      const Attempt& attempt) {
   WorldFailure why;
   for (std::size_t i = 0; i < options_.bounds.size(); ++i) {
-    const Result<const WorldLevel*> here = level(i, stop);
-    if (!here && is_stopped(stop)) {
+    const Result<const WorldLevel*> here = level(i, options.stop);
+    if (!here && is_stopped(options.stop)) {
       return tl::unexpected(WorldFailure{
           .what = here.error().what, .search = {.code = PlanErrc::stopped}, .level = i});
     }
     if (!here) return tl::unexpected(WorldFailure{WorldErrc::bad_model, here.error().what});
-    Result<PlannedPath, WorldFailure> found = attempt((*here)->checker);
+    // Start and goal that coarse spheres call too near may keep what is asked all the same.
+    const bool strict = ask == Ask::required && i + 1 < options_.bounds.size();
+    const auto ends = strict ? detail::ClearEnds::also : detail::ClearEnds::own;
+    Result<PlannedPath, WorldFailure> found = attempt(
+        detail::ClearScene{(*here)->checker, (*here)->cover.scene, &wide_[i]}, ends, options);
     if (found) return WorldPath{std::move(*found), i};
     if (found.error().code != WorldErrc::no_path) return tl::unexpected(std::move(found.error()));
     why = not_found(found.error().search, **here, i);
@@ -104,11 +167,73 @@ Result<WorldPath, WorldFailure> PlanningWorld::climb(const StopCheck& stop,
   return tl::unexpected(std::move(why));
 }
 
+/// climb() with the clearance that is asked, or with the one that is preferred and without.
+template <class Attempt>
+Result<WorldPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions& options,
+                                                              const Attempt& attempt) {
+  PlanOptions bare = options;
+  bare.clearance = 0;
+  if (options.clearance == 0) return climb(bare, Ask::preferred, attempt);
+  if (!detail::is_sound_clearance(options.clearance)) {
+    return tl::unexpected(bad_clearance(*options.clearance));
+  }
+  PlanOptions clear = options;
+  if (!options.clearance) {
+    clear.clearance = kPreferredClearance;
+    clear.samples = least_samples(options, kPreferSamples);
+    Result<WorldPath, WorldFailure> found = climb(clear, Ask::preferred, attempt);
+    const bool decided = found || is_stopped(options.stop);
+    return decided ? std::move(found) : climb(bare, Ask::preferred, attempt);
+  }
+  Result<WorldPath, WorldFailure> found = climb(clear, Ask::required, attempt);
+  if (found || found.error().code != WorldErrc::no_path ||
+      !detail::is_for_clearance(found.error().search)) {
+    return found;
+  }
+  PlanOptions quick = bare;
+  quick.rounds = 0;
+  quick.time_budget = 0;
+  if (auto any = climb(quick, Ask::required, attempt); !any) return any;
+  const double possible = detail::largest_clearance(clear, [&](const PlanOptions& less) {
+    return climb(less, Ask::required, attempt).has_value();
+  });
+  if (is_stopped(options.stop)) return found;
+  const std::size_t at = found.error().level;
+  return tl::unexpected(not_found(detail::too_near(*options.clearance, possible), levels_[at], at));
+}
+
+Result<WayProver> PlanningWorld::prover(std::span<const WorldPath> paths, const StopCheck& stop) {
+  constexpr double kBeside = 1.2;  // of the length of an edge, as a way need not be on it
+  std::size_t finest = 0;
+  double clearance = kMaxClearanceAsked;
+  for (const WorldPath& path : paths) {
+    finest = std::max(finest, path.level);
+    clearance = std::min(clearance, path.clearance);
+  }
+  const Result<const WorldLevel*> here = level(finest, stop);
+  if (!here) return fail(here.error());
+  const detail::ClearScene scene{(*here)->checker, (*here)->cover.scene, &wide_[finest]};
+  std::vector<WayProver::NearEnd> ends;
+  for (const WorldPath& path : paths) {
+    const std::size_t last = path.q.size() - 1;
+    for (const auto& [end, next, edge] :
+         {std::array<std::size_t, 3>{0, 1, 0}, {last, last - 1, last - 1}}) {
+      if (path.kept.empty() || !(path.kept[edge] < clearance)) continue;
+      const double kept = std::max(path.kept[edge], WayProver::kSpare);
+      ends.push_back({path.q[end], kBeside * (path.q[next] - path.q[end]).norm(),
+                      detail::checker_with(scene, kept)});
+    }
+  }
+  return WayProver(detail::checker_with(scene, std::max(clearance, WayProver::kSpare)),
+                   std::move(ends));
+}
+
 Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
                                                     std::span<const JointVec> goals,
                                                     const PlanOptions& options, PlanTimes* times) {
-  return climb(options.stop, [&](const FastChecker& checker) {
-    return search(checker, q_start, goals, options, times);
+  return keep_clearance(options, [&](const detail::ClearScene& scene, detail::ClearEnds ends,
+                                     const PlanOptions& how) {
+    return search(scene, ends, q_start, goals, how, times);
   });
 }
 
@@ -116,16 +241,19 @@ Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_st
                                                     const GoalRegion& region,
                                                     const PlanOptions& options, IkTask task,
                                                     PlanTimes* times) {
-  return climb(options.stop, [&](const FastChecker& checker) -> Result<PlannedPath, WorldFailure> {
-    const IkSolver ik(robot_.arm, {.seed = options.seed, .task = task});
-    const auto goals = goals_in(checker, ik, region, q_start,
-                                {.seed = options.seed, .tilt = options.tilt, .stop = options.stop});
-    if (!goals) {
-      return tl::unexpected(
-          WorldFailure{WorldErrc::no_answer, describe(goals.error(), robot_.arm)});
-    }
-    return search(checker, q_start, *goals, options, times);
-  });
+  return keep_clearance(options,
+                        [&](const detail::ClearScene& scene, detail::ClearEnds ends,
+                            const PlanOptions& how) -> Result<PlannedPath, WorldFailure> {
+                          const IkSolver ik(robot_.arm, {.seed = how.seed, .task = task});
+                          const auto goals =
+                              goals_in(scene.checker, ik, region, q_start,
+                                       {.seed = how.seed, .tilt = how.tilt, .stop = how.stop});
+                          if (!goals) {
+                            return tl::unexpected(WorldFailure{
+                                WorldErrc::no_answer, describe(goals.error(), robot_.arm)});
+                          }
+                          return search(scene, ends, q_start, *goals, how, times);
+                        });
 }
 
 }  // namespace mjarm

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "mjarm/model/robot.hpp"
 #include "mjarm/planning/goal_region.hpp"
 #include "mjarm/planning/plan_path.hpp"
+#include "mjarm/planning/way_prover.hpp"
 
 namespace mjarm {
 
@@ -26,10 +28,11 @@ inline constexpr double kMaxMargin = 0.5;
 /// How a robot and its scene are taken. Every default is usable as is.
 struct WorldOptions {
   ContactRules rules = {};  ///< what is attached to the tool, what may touch
-  /// [m] 0 to kMaxMargin. Every configuration of a path keeps this distance between the exact
-  /// geometry of the moving links (with gripper and attached bodies) and every obstacle, and twice
-  /// as much between two of these links. Pairs that may touch by `rules` or by the model, and pairs
-  /// that are proved never to meet (ModelCover), are not held to it.
+  /// [m] 0 to kMaxMargin. Every configuration of a path, start and goal included, keeps this
+  /// distance between the exact geometry of the moving links (with gripper and attached bodies) and
+  /// every obstacle, and twice as much between two of these links. Pairs that may touch by `rules`
+  /// or by the model, and pairs that are proved never to meet (ModelCover), are not held to it.
+  /// PlanOptions::clearance is what a path keeps beyond that.
   double margin = 0;
   /// (nq,) [rad or m] where joints off the arm stand, those of its gripper as well; empty: keyframe
   /// `home`, else initial values, and all that a gripper can do counts.
@@ -78,10 +81,12 @@ class PlanningWorld {
   /// @return bad_input: check_contact_rules()'s error, or one line about the margin or the bounds.
   [[nodiscard]] static Result<PlanningWorld> create(const Robot& robot, WorldOptions options = {});
 
-  /// From `q_start` to whichever of the goals is reached first, by plan_path().
+  /// From `q_start` to one of the goals, by plan_path(): the shortest path of one to all of them
+  /// and those to the nearest ones alone; of the clearances of PlanOptions::clearance the links of
+  /// ModelCover are held to, as they are to the margin.
   /// @param q_start  shape (dof,) [rad or m].
   /// @param goals    shape (n,), n >= 1, each (dof,).
-  /// @param times    as for plan_path(), at the level that was searched last.
+  /// @param times    where given, the times of all searches are added to it.
   [[nodiscard]] Result<WorldPath, WorldFailure> plan(std::span<const double> q_start,
                                                      std::span<const JointVec> goals,
                                                      const PlanOptions& options = {},
@@ -104,6 +109,12 @@ class PlanningWorld {
     return plan(q_start, GoalRegion{.X_WR = X_WT}, options, task);
   }
 
+  /// That of what paths of this world keep together, by the spheres of the finest of their levels.
+  /// A way that is to be proved must keep WayProver::kSpare at least.
+  /// @param paths  at least one.
+  [[nodiscard]] Result<WayProver> prover(std::span<const WorldPath> paths,
+                                         const StopCheck& stop = {});
+
   /// What paths are searched in; stays in place as long as the world does.
   /// @param index  of WorldOptions::bounds. Levels are made in order, when they are asked for.
   /// @param stop   ends the work.
@@ -115,13 +126,18 @@ class PlanningWorld {
       : robot_(robot), options_(std::move(options)) {}
 
   [[nodiscard]] Result<WorldLevel> covered(double bound, const StopCheck& stop) const;
+  enum class Ask { preferred, required };
   template <class Attempt>
-  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const StopCheck& stop,
+  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const PlanOptions& options, Ask ask,
                                                       const Attempt& attempt);
+  template <class Attempt>
+  [[nodiscard]] Result<WorldPath, WorldFailure> keep_clearance(const PlanOptions& options,
+                                                               const Attempt& attempt);
 
   Robot robot_;
   WorldOptions options_;
-  std::deque<WorldLevel> levels_;  // as they were needed, coarse ones first
+  std::deque<WorldLevel> levels_;                   // as they were needed, coarse ones first
+  std::deque<std::map<double, FastChecker>> wide_;  // of each level, by the clearance they keep
 };
 
 }  // namespace mjarm

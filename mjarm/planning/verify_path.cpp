@@ -11,7 +11,9 @@
 #include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/planning/plan_path.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
+#include "mjarm/planning/verify_kept_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -61,6 +63,7 @@ class PathJudge {
     if (is_stopped(rules_.stop)) return fail(stopped());
     check_cost();
     if (Result<void> done = check_certificates(); !done) return fail(std::move(done.error()));
+    if (Result<void> done = check_clearance(); !done) return fail(std::move(done.error()));
     return std::move(out_);
   }
 
@@ -325,6 +328,51 @@ class PathJudge {
       return {};
     }
     return {};
+  }
+
+  /// That every edge keeps what is stated, and that this is the clearance but near the ends. Of the
+  /// edges the first that is faulty counts.
+  Result<void> check_clearance() {
+    if (!path_.clearance || told_length_ || !path_.certificate) return {};
+    const auto given = static_cast<int>(path_.certificate->size());
+    for (int edge = 0; edge < std::min(given, edges()); ++edge) {
+      const Result<std::string> fault = clearance_fault(edge);
+      if (!fault) return fail(fault.error());
+      if (fault->empty()) continue;
+      add("clearance", edge, *fault);
+      return {};
+    }
+    return {};
+  }
+
+  Result<std::string> clearance_fault(int edge) const {
+    const auto kept = (*path_.certificate)[static_cast<std::size_t>(edge)].kept;
+    if (!kept) return text(msg::planning_verify_no_kept, edge);
+    if (*kept < *path_.clearance) {
+      const Result<bool> fine = may_be_nearer(edge, *kept);
+      if (!fine) return fail(fine.error());
+      if (!*fine) {
+        return text(msg::planning_verify_kept_less, edge, *kept, *path_.clearance, kFarthestExit);
+      }
+    }
+    const Result<VerifyResult> found =
+        verify_kept({arm_, set_, problem_.obstacles}, row(edge), row(edge + 1), *kept, rules_.stop);
+    if (!found) return fail(found.error());
+    if (found->verdict == EdgeVerdict::free) return std::string();
+    return text(msg::planning_verify_kept, edge, *kept, found->t);
+  }
+
+  /// Whether an edge is a short one at an end of the path that has no more clearance itself.
+  Result<bool> may_be_nearer(int edge, double kept) const {
+    if (length_of(row(edge), row(edge + 1)) > kFarthestExit + kEndSlack) return false;
+    for (const auto& [here, end] : {std::pair{edge == 0, 0}, {edge + 1 == edges(), edges()}}) {
+      if (!here) continue;
+      const Result<VerifyResult> own =
+          verify_edge(arm_, set_, problem_.obstacles, row(end), row(end), {});
+      if (!own) return fail(own.error());
+      if (kept > own->distance - kClearanceBelow) return true;
+    }
+    return false;
   }
 
   const Arm& arm_;

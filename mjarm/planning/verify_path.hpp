@@ -26,8 +26,8 @@ struct VerifyRules {
 
 /// What is wrong with a path.
 struct PathFault {
-  const char* kind;  ///< start, goal, limits, hit, undecided, length, contact, tilt, cost or
-                     ///< certificate
+  const char* kind;  ///< start, goal, limits, hit, undecided, length, contact, tilt, cost,
+                     ///< certificate or clearance
   int edge = -1;     ///< from 0; -1: none in particular
   std::string what;  ///< one line
 };

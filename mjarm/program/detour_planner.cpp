@@ -1,14 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
-#include "mjarm/collision/edge_check.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
-#include "mjarm/path/joint_polyline.hpp"
 #include "mjarm/program/detour_planner_internal.hpp"
-#include "mjarm/trajectory/path_timing.hpp"
 
 namespace mjarm::program::detail {
 namespace {
@@ -28,6 +24,8 @@ const char* name_of(PlanErrc reason) {
       return "joint_limit";
     case PlanErrc::stopped:
       return "stopped";
+    case PlanErrc::too_near:
+      return "clearance";
     case PlanErrc::budget_spent:
     case PlanErrc::unproved:
     case PlanErrc::not_available:
@@ -36,55 +34,13 @@ const char* name_of(PlanErrc reason) {
     case PlanErrc::start_tilted:
     case PlanErrc::goals_tilted:
       return "tilt";
+    case PlanErrc::bad_clearance:
     case PlanErrc::bad_tilt:
     case PlanErrc::tilt_with_ompl:
     case PlanErrc::bad_input:
       break;
   }
   return "bad_input";
-}
-
-/// The motion along the corners, each rounded within `blend` where it can be; rests at the others.
-Result<Trajectory> time_corners(std::span<const JointVec> corners, double blend,
-                                const JointLimits& limits) {
-  constexpr double kSample = 0.05;  // [rad or m, L2]
-  if (corners.size() == 1) return Trajectory::through({0.0}, {JointState::at_rest(corners[0])});
-  const Result<JointPolyline> line = joint_polyline(corners, {.blend = blend, .step = kSample});
-  if (!line) return fail(line.error());
-  std::vector<Trajectory> parts;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < line->path.s.size(); ++i) {
-    if (i == first || !std::ranges::binary_search(line->corners, line->path.s[i])) continue;
-    const std::span<const JointVec> part(line->path.q.data() + first, i - first + 1);
-    Result<Trajectory> trajectory = time_waypoint_path(part, limits);
-    if (!trajectory) return trajectory;
-    parts.push_back(std::move(*trajectory));
-    first = i;
-  }
-  return Trajectory::chain(parts);
-}
-
-/// The shortest path that is found to the goals that are nearest, each by itself: to all at once
-/// the first straight path that is free is taken, be it to the farthest.
-void replace_by_shorter(const FastChecker& checker, const JointVec& q,
-                        std::span<const JointVec> goals, const StopCheck& stop, PlannedPath& path) {
-  constexpr std::size_t kMaxAlone = 8;
-  PlanOptions search = kSearch;
-  search.samples /= 10;
-  search.stop = stop;
-  std::vector<std::size_t> order(goals.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto far = [&](std::size_t g) { return (goals[g] - q).norm(); };
-  std::ranges::stable_sort(order, {}, far);
-  for (std::size_t k = 0; k < std::min(order.size(), kMaxAlone); ++k) {
-    const std::size_t g = order[k];
-    if (far(g) >= path.cost) return;
-    Result<PlannedPath, PlanFailure> other =
-        plan_path(checker, as_span(q), goals.subspan(g, 1), search);
-    if (!other || other->cost >= path.cost) continue;
-    path = std::move(*other);
-    path.goal = static_cast<int>(g);
-  }
 }
 
 /// The motion in steps of at most kWayStep.
@@ -101,21 +57,22 @@ std::vector<JointVec> sampled(const Trajectory& trajectory, const JointLimits& l
   return way;
 }
 
-/// Whether the chords of the samples are free. Between two samples the motion leaves its chord by
-/// less than 1e-5 rad, which the padding of the checker is for.
-bool is_proved(const FastChecker& checker, const std::vector<JointVec>& way) {
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const EdgeResult edge = check_edge(checker, as_span(way[i - 1]), as_span(way[i]), {1e-5});
-    if (edge.verdict != EdgeVerdict::free) return false;
-  }
-  return true;
-}
+/// The corners of all paths, and which of them are the ends of paths but the last.
+struct Corners {
+  std::vector<JointVec> q;
+  std::vector<std::size_t> passed;
+};
 
-std::vector<JointVec> without_repeats(std::vector<JointVec> corners) {
+Corners corners_of(std::span<const WorldPath> paths) {
   constexpr double kSame = 1e-9;
-  const auto same = [](const JointVec& a, const JointVec& b) { return (a - b).norm() < kSame; };
-  corners.erase(std::unique(corners.begin(), corners.end(), same), corners.end());
-  return corners;
+  Corners out;
+  for (const WorldPath& path : paths) {
+    if (!out.q.empty()) out.passed.push_back(out.q.size() - 1);
+    for (const JointVec& q : path.q) {
+      if (out.q.empty() || (q - out.q.back()).norm() >= kSame) out.q.push_back(q);
+    }
+  }
+  return out;
 }
 
 tl::unexpected<DetourFault> no_detour(std::string reason, std::string what) {
@@ -171,34 +128,31 @@ Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& 
   return std::vector<JointVec>{goal};
 }
 
-/// Times the path with the widest rounding of its corners that is proved free.
-Result<DetourMotion, DetourFault> DetourPlanner::timed(const FastChecker& checker,
-                                                       const std::vector<JointVec>& path,
-                                                       const JointLimits& limits) const {
+Result<DetourMotion, DetourFault> DetourPlanner::timed(std::vector<WorldPath> paths, double share) {
+  JointLimits limits = robot_.arm.limits;
+  limits.velocity *= share;
+  limits.acceleration *= share;
+  const Result<WayProver> prover = world_->prover(paths, stop_);
+  if (!prover) return no_detour("bad_input", prover.error().what);
+  Corners corners = corners_of(paths);
+  Result<PathMotion> motion =
+      time_path(corners.q, limits, *prover, {.passed = corners.passed, .stop = stop_});
+  if (!motion) return no_detour("timing", motion.error().what);
   DetourMotion out;
-  out.corners = without_repeats(path);
-  std::vector<JointVec> way;
-  for (const double blend : {0.4, 0.2, 0.1, 0.05, 0.0}) {
-    Result<Trajectory> trajectory = time_corners(out.corners, blend, limits);
-    if (!trajectory) return no_detour("timing", trajectory.error().what);
-    way = sampled(*trajectory, limits);
-    if (blend > 0 && !is_proved(checker, way)) continue;
-    out.trajectory = std::move(*trajectory);
-    break;
-  }
-  out.measures = judge_.measure(ik_, way);
+  out.measures = judge_.measure(ik_, sampled(motion->trajectory, limits));
   if (const auto pair = MoveJudge::touches(out.measures)) {
     return no_detour("collision", text(msg::program_move_touches, *pair));
   }
+  out.motion = std::move(*motion);
+  out.corners = std::move(corners.q);
+  out.passed = std::move(corners.passed);
+  out.paths = std::move(paths);
   return out;
 }
 
 Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
-                                                      std::span<const JointVec> goals,
-                                                      double share) {
-  JointLimits limits = robot_.arm.limits;
-  limits.velocity *= share;
-  limits.acceleration *= share;
+                                                      std::span<const JointVec> goals, double share,
+                                                      const std::optional<double>& clearance) {
   if (!world_) {
     Result<PlanningWorld> made = PlanningWorld::create(robot_, options_);
     if (!made) return no_detour("bad_input", made.error().what);
@@ -206,6 +160,7 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
   }
   PlanOptions search = kSearch;
   search.stop = stop_;
+  search.clearance = clearance;
   Result<WorldPath, WorldFailure> path = world_->plan(as_span(q), goals, search);
   if (!path) {
     const WorldFailure& why = path.error();
@@ -213,11 +168,7 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
     return no_detour(reason,
                      why.what + (why.bound > 0 ? text(msg::program_spheres, 1e3 * why.bound) : ""));
   }
-  const FastChecker& checker = (*world_->level(path->level))->checker;
-  if (goals.size() > 1) replace_by_shorter(checker, q, goals, stop_, *path);
-  Result<DetourMotion, DetourFault> motion = timed(checker, path->q, limits);
-  if (motion) motion->goal = static_cast<std::size_t>(path->goal);
-  return motion;
+  return timed({std::move(*path)}, share);
 }
 
 }  // namespace mjarm::program::detail

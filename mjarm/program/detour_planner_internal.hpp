@@ -6,25 +6,26 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/stop.hpp"
+#include "mjarm/execution/path_motion.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/planning/planning_world.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
-#include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm::program::detail {
 
 /// A motion round what stands between two configurations.
 struct DetourMotion {
   std::vector<JointVec> corners;  ///< both ends included; every edge between them is proved free
-  /// From rest to rest. Corners are rounded as far as that is proved free too, else the arm stops.
-  Trajectory trajectory;
+  std::vector<std::size_t> passed = {};  ///< corners where a path ends and the next begins
+  PathMotion motion;                     ///< along them
   MoveMeasures measures;  ///< of the motion, every 5e-3 rad or m of the joint that moves most
-  std::size_t goal = 0;   ///< index of the goal reached
+  std::vector<WorldPath> paths = {};  ///< one after another; the last ends at the goal reached
+
+  [[nodiscard]] std::size_t goal() const { return static_cast<std::size_t>(paths.back().goal); }
 };
 
 struct DetourFault {
@@ -56,17 +57,18 @@ class DetourPlanner {
 
   /// @param goals  at least one; the motion ends at one of them.
   /// @param share  of the joints' velocity and acceleration limits, (0, 1].
+  /// @param clearance  as in PlanOptions.
   [[nodiscard]] Result<DetourMotion, DetourFault> plan(const JointVec& q,
                                                        std::span<const JointVec> goals,
-                                                       double share);
+                                                       double share,
+                                                       const std::optional<double>& clearance = {});
+  /// One motion along paths of plan() that follow each other, at least one.
+  [[nodiscard]] Result<DetourMotion, DetourFault> timed(std::vector<WorldPath> paths, double share);
 
  private:
   [[nodiscard]] std::optional<std::string> touches(const JointVec& q) const;
   /// What touches in the answer to a pose that touches least.
   [[nodiscard]] std::optional<std::string> least_touch(const JointVec& q, const Pose& X_WT) const;
-  [[nodiscard]] Result<DetourMotion, DetourFault> timed(const FastChecker& checker,
-                                                        const std::vector<JointVec>& path,
-                                                        const JointLimits& limits) const;
 
   Robot robot_;
   IkSolver ik_;

@@ -44,6 +44,8 @@ std::string told(const ProgramPlan& plan) {
 }
 
 std::string plan_to(const std::string& goal) { return "  - plan: " + goal + "\n"; }
+/// That, and a stop there.
+std::string stop_at(const std::string& goal) { return plan_to(goal) + "  - wait: 0.1\n"; }
 
 Pose tool_at_end(const PlannedMove& move) {
   return fk(walled().arm, as_span(move.trajectory.at(move.trajectory.duration()).q));
@@ -72,9 +74,10 @@ TEST(DetourPlanner, TheStraightWayHitsAndThePlannedOneDoesNot) {
   ASSERT_EQ(hits.faults.size(), 1U) << told(hits);
   EXPECT_THAT(told(hits), AllOf(HasSubstr("4 movel collision"), HasSubstr("wall")));
 
-  const ProgramPlan plan = walled_plan(plan_to(kBefore) + plan_to(kBehind));
+  ProgramPlan plan = walled_plan(stop_at(kBefore) + plan_to(kBehind));
   ASSERT_TRUE(plan.ok()) << told(plan);
-  ASSERT_EQ(plan.moves.size(), 2U);
+  ASSERT_EQ(plan.moves.size(), 3U);
+  plan.moves.erase(plan.moves.begin() + 1);
   for (const PlannedMove& move : plan.moves) {
     EXPECT_EQ(move.word, "plan");
     expect_free(move);
@@ -93,11 +96,11 @@ TEST(DetourPlanner, BlockedMovesTellTheDetour) {
   const ProgramPlan line = walled_plan(before + "  - movel: " + kBehind + "\n" + before);
   ASSERT_EQ(line.faults.size(), 1U) << told(line);
   ASSERT_TRUE(line.faults[0].detour.has_value());
-  const ProgramPlan done = walled_plan(before + plan_to(kBehind) + before);
+  const ProgramPlan done = walled_plan(stop_at(kBefore) + stop_at(kBehind) + before);
   ASSERT_TRUE(done.ok()) << told(done);
-  EXPECT_EQ(line.faults[0].detour->edges, done.moves[1].corners.size() - 1);
-  EXPECT_EQ(line.faults[0].detour->duration, done.moves[1].trajectory.duration());
-  EXPECT_EQ(line.faults[0].detour->clearance, done.moves[1].measures->clearance);
+  EXPECT_EQ(line.faults[0].detour->edges, done.moves[2].corners.size() - 1);
+  EXPECT_EQ(line.faults[0].detour->duration, done.moves[2].trajectory.duration());
+  EXPECT_EQ(line.faults[0].detour->clearance, done.moves[2].measures->clearance);
   // It goes on from where the detour ends.
   EXPECT_EQ(line.moves.back().corners, done.moves.back().corners);
 
@@ -123,19 +126,92 @@ TEST(DetourPlanner, SamePlanEveryTime) {
 
 TEST(DetourPlanner, JointGoalsRotationsOfAllKindsAndTheSpeedThatIsSet) {
   const ProgramPlan plan =
-      walled_plan(plan_to("{pos: [0.3, -0.45, 0.2], quat: [0, 1, 0, 0]}") +
-                  plan_to("{pos: [-0.3, -0.45, 0.2], matrix: [1, 0, 0, 0, -1, 0, 0, 0, -1]}") +
-                  plan_to("{joints: home}") + "  - set: {joint_speed: 0.25}\n" + plan_to(kBefore) +
+      walled_plan(stop_at("{pos: [0.3, -0.45, 0.2], quat: [0, 1, 0, 0]}") +
+                  stop_at("{pos: [-0.3, -0.45, 0.2], matrix: [1, 0, 0, 0, -1, 0, 0, 0, -1]}") +
+                  plan_to("{joints: home}") + "  - set: {joint_speed: 0.25}\n" + stop_at(kBefore) +
                   plan_to(kBefore));
   ASSERT_TRUE(plan.ok()) << told(plan);
-  ASSERT_EQ(plan.moves.size(), 5U);
-  const PlannedMove& home = plan.moves[2];
+  ASSERT_EQ(plan.moves.size(), 8U);
+  const PlannedMove& home = plan.moves[4];
   EXPECT_EQ(home.trajectory.at(home.trajectory.duration()).q, walled().arm.home);
-  const PlannedMove& slow = plan.moves[3];
+  const PlannedMove& slow = plan.moves[5];
   EXPECT_LE(check_limits(slow.trajectory, walled().arm.limits).velocity.maxCoeff(), 0.25 + 1e-9);
   EXPECT_GT(check_limits(slow.trajectory, walled().arm.limits).velocity.maxCoeff(), 0.2);
-  for (std::size_t i = 0; i < 4; ++i) expect_free(plan.moves[i]);
-  EXPECT_EQ(plan.moves[4].trajectory.duration(), 0) << "it is there already";
+  for (const std::size_t i : {0, 2, 4, 5}) expect_free(plan.moves[i]);
+  EXPECT_EQ(plan.moves[7].trajectory.duration(), 0) << "it is there already";
+}
+
+/// [s] how long all joints are slower than 1 % of their limits, ends left out.
+double standstill(const PlannedMove& move) {
+  constexpr double kStep = 1e-3;
+  double out = 0;
+  const double duration = move.trajectory.duration();
+  for (double t = 0.1; t < duration - 0.1; t += kStep) {
+    const JointVec v = move.trajectory.at(t).v.cwiseQuotient(walled().arm.limits.velocity);
+    if (v.cwiseAbs().maxCoeff() < 0.01) out += kStep;
+  }
+  return out;
+}
+
+TEST(DetourPlanner, IsOneMotionWithoutStopsThatKeepsItsClearance) {
+  const ProgramPlan plan =
+      walled_plan(stop_at(kBefore) +
+                  "  - plan: {pos: [-0.3, -0.45, 0.2], euler: [180deg, 0, 0], clearance: 10mm}\n");
+  ASSERT_TRUE(plan.ok()) << told(plan);
+  const PlannedMove& round = plan.moves.back();
+  ASSERT_GT(round.corners.size(), 2U);
+  EXPECT_EQ(standstill(round), 0);
+  expect_free(round);
+  EXPECT_GE(round.measures->clearance, 0.01 - 1e-5);
+  ASSERT_TRUE(round.stopping.has_value());
+  double stopping = 0;
+  for (std::size_t i = 1; i < round.corners.size(); ++i) {
+    stopping += time_joint_move(as_span(round.corners[i - 1]), as_span(round.corners[i]),
+                                walled().arm.limits)
+                    ->duration();
+  }
+  EXPECT_NEAR(*round.stopping, stopping, 1e-9);
+  EXPECT_LT(round.trajectory.duration(), 0.75 * stopping);
+  const LimitUse use = check_limits(round.trajectory, walled().arm.limits);
+  EXPECT_LE(use.jerk.maxCoeff(), 1 + 1e-3);
+}
+
+TEST(DetourPlanner, OneAfterAnotherPassesTheGoalBetweenThemWithoutAStop) {
+  const ProgramPlan plan = walled_plan(plan_to(kBefore) + plan_to(kBehind));
+  ASSERT_TRUE(plan.ok()) << told(plan);
+  ASSERT_EQ(plan.moves.size(), 1U);
+  const PlannedMove& both = plan.moves[0];
+  EXPECT_EQ(both.instructions, 2U);
+  EXPECT_EQ(both.place.line, 3);
+  expect_free(both);
+  EXPECT_EQ(standstill(both), 0);
+  ASSERT_EQ(both.passed.size(), 1U);
+  const JointVec& before = both.corners[both.passed[0]];
+  EXPECT_LT((fk(walled().arm, as_span(before)).p - Eigen::Vector3d(0.3, -0.45, 0.2)).norm(), 1e-6);
+  double nearest = 1;
+  for (double t = 0; t < both.trajectory.duration(); t += 1e-4) {
+    nearest = std::min(nearest, (both.trajectory.at(t).q - before).norm());
+  }
+  EXPECT_LT(nearest, 1e-3) << "to within what it moves in a tenth of a millisecond";
+  const ProgramPlan apart = walled_plan(stop_at(kBefore) + plan_to(kBehind));
+  ASSERT_TRUE(apart.ok());
+  EXPECT_LT(both.trajectory.duration(), apart.duration() - 0.1);
+  // What is not a plan, or has another speed, makes it stop.
+  for (const char* between : {"  - wait: 0\n", "  - set: {joint_speed: 0.5}\n"}) {
+    EXPECT_GT(walled_plan(plan_to(kBefore) + between + plan_to(kBehind)).moves.size(), 1U);
+  }
+}
+
+TEST(DetourPlanner, AClearanceThatCannotBeKeptIsAFaultWithWhatCan) {
+  const ProgramPlan plan =
+      walled_plan(stop_at(kBefore) +
+                  "  - plan: {pos: [-0.3, -0.45, 0.2], euler: [180deg, 0, 0], clearance: 0.4}\n");
+  EXPECT_THAT(told(plan), AllOf(HasSubstr("5 plan clearance"), HasSubstr("the largest")))
+      << told(plan);
+  const auto far = parse_program(
+      "robot: ur5e\nprogram:\n  - plan: {joints: home, clearance: 600mm}\n", "p.yaml");
+  ASSERT_FALSE(far.has_value());
+  EXPECT_THAT(far.error().what, AllOf(HasSubstr("p.yaml:3"), HasSubstr("clearance")));
 }
 
 TEST(DetourPlanner, EndsWhereTheStraightMovesThatFollowCanBeDone) {

@@ -4,6 +4,7 @@
 
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/planning/plan_path.hpp"
 #include "mjarm/program/fields_internal.hpp"
 
 namespace mjarm::program::detail {
@@ -208,9 +209,18 @@ Instruction::What read_set(const YamlNode& node, const NamedThings& named) {
 
 Instruction::What read_plan(const YamlNode& node, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) return PlanMove{pose_of(node, "plan", named)};
-  const Fields fields(node, "plan", {"joints", MJARM_POSE_KEYS, "branch"}, named.faults);
+  const Fields fields(node, "plan", {"joints", MJARM_POSE_KEYS, "branch", "clearance"},
+                      named.faults);
   const std::optional<Branch> branch = branch_of(fields);
-  return PlanMove{goal_of(fields, named), branch};
+  const auto clearance = [](const YamlNode& given, const std::string& what) {
+    const double value = number_of(given, what, Quantity::length);
+    if (value >= 0 && value <= kMaxClearanceAsked) return std::optional<double>(value);
+    throw ReadFault{given.place, text(msg::program_not_between, what, kMaxClearanceAsked, value)};
+  };
+  const bool asked = fields.find("clearance") != nullptr;
+  const auto kept = asked ? fields.take("clearance", std::optional<double>(), clearance)
+                          : std::optional<double>();
+  return PlanMove{goal_of(fields, named), branch, kept};
 }
 
 Instruction::What read_grip(const YamlNode& node, const NamedThings&) {

@@ -23,9 +23,9 @@ std::optional<JointVec> lifted(const Tool& with, const JointVec& q, bool up) {
 
 class LiftedPlanner {
  public:
-  LiftedPlanner(Tool& with, const JointVec& q, std::span<const JointVec> goals, double share,
-                const MoveTo& move_to)
-      : with_(with), q_(q), goals_(goals), share_(share), move_to_(move_to) {}
+  LiftedPlanner(Tool& with, const JointVec& q, std::span<const JointVec> goals,
+                const DetourWish& wish, const MoveTo& move_to)
+      : with_(with), q_(q), goals_(goals), wish_(wish), move_to_(move_to) {}
 
   Result<LiftedDetour, DetourFault> plan() {
     Result<LiftedDetour, DetourFault> first = attempt(false, false, true);
@@ -52,9 +52,10 @@ class LiftedPlanner {
     std::vector<std::size_t> index;
     if (lower) to = above_goals(up, index);
     if (to.empty()) return tl::unexpected(none);
-    Result<DetourMotion, DetourFault> motion = with_.detours.plan(from, to, share_);
+    Result<DetourMotion, DetourFault> motion =
+        with_.detours.plan(from, to, wish_.share, wish_.clearance);
     if (!motion) return tl::unexpected(std::move(motion.error()));
-    out.goal = lower ? index[motion->goal] : motion->goal;
+    out.goal = lower ? index[motion->goal()] : motion->goal();
     if (lower) {
       const JointVec& last = motion->corners.back();
       if (!move_to_(last, goals_[out.goal], "lower", out.after)) return tl::unexpected(none);
@@ -78,16 +79,16 @@ class LiftedPlanner {
   Tool& with_;
   const JointVec& q_;
   std::span<const JointVec> goals_;
-  double share_;
+  const DetourWish& wish_;
   const MoveTo& move_to_;
 };
 
 }  // namespace
 
 Result<LiftedDetour, DetourFault> plan_lifted(Tool& with, const JointVec& q,
-                                              std::span<const JointVec> goals, double share,
-                                              const MoveTo& move_to) {
-  return LiftedPlanner(with, q, goals, share, move_to).plan();
+                                              std::span<const JointVec> goals,
+                                              const DetourWish& wish, const MoveTo& move_to) {
+  return LiftedPlanner(with, q, goals, wish, move_to).plan();
 }
 
 }  // namespace mjarm::program::detail

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct LiftedDetour {
   std::size_t goal = 0;            ///< index of the goal reached
 };
 
+/// What is asked of a detour.
+struct DetourWish {
+  double share;                     ///< of the joints' velocity and acceleration limits, (0, 1]
+  std::optional<double> clearance;  ///< [m] as in PlanOptions
+};
+
 /// Adds a straight joint move, which is looked at exactly, to `moves`; false where it touches
 /// something.
 using MoveTo = std::function<bool(const JointVec& from, const JointVec& to, const char* word,
@@ -28,6 +35,7 @@ using MoveTo = std::function<bool(const JointVec& from, const JointVec& to, cons
 /// the tool is first moved off, and last down, by 30 mm, straight up or back along its own axis.
 [[nodiscard]] Result<LiftedDetour, DetourFault> plan_lifted(Tool& with, const JointVec& q,
                                                             std::span<const JointVec> goals,
-                                                            double share, const MoveTo& move_to);
+                                                            const DetourWish& wish,
+                                                            const MoveTo& move_to);
 
 }  // namespace mjarm::program::detail

@@ -105,6 +105,8 @@ struct Set {
 struct PlanMove {
   std::variant<JointValues, ProgramPose> goal;
   std::optional<Branch> branch = {};  ///< of the answer to a pose
+  /// [m] >= 0: kept from all else on the way, as PlanOptions::clearance has it.
+  std::optional<double> clearance = {};
 };
 
 struct Grip {

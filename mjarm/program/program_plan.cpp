@@ -6,6 +6,7 @@
 
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/program/detour_chain_internal.hpp"
 #include "mjarm/program/step_motion_internal.hpp"
 #include "mjarm/program/step_planner_internal.hpp"
 
@@ -41,6 +42,11 @@ class ProgramPlanner {
       }
       Attempt attempt = planner_.from(i, at);
       if (is_stopped(options_.stop)) break;
+      if (attempt.detour) {
+        const auto with = places_.tool(at.scene, steps_[i].tool);
+        chain_.add(i, steps_[i], std::move(*attempt.detour), with->detours, plan_.moves,
+                   attempt.moves);
+      }
       std::ranges::move(attempt.moves, std::back_inserter(plan_.moves));
       i = attempt.next;
       at = std::move(attempt.at);
@@ -114,13 +120,13 @@ class ProgramPlanner {
     const auto with = places_.tool(at.scene, step.tool);
     const auto goals = with->answers.goals(step, with->detours, at.q);
     if (!goals) return std::nullopt;
-    auto found = with->detours.plan(at.q, goals->good_ones(), step.share);
+    auto found = with->detours.plan(at.q, goals->good_ones(), step.share, step.clearance);
     if (!found && !goals->others().empty()) {
-      found = with->detours.plan(at.q, goals->others(), step.share);
+      found = with->detours.plan(at.q, goals->others(), step.share, step.clearance);
     }
     if (!found) return std::nullopt;
     at.q = found->corners.back();
-    return Detour{found->corners.size() - 1, found->trajectory.duration(),
+    return Detour{found->corners.size() - 1, found->motion.trajectory.duration(),
                   found->measures.clearance};
   }
 
@@ -153,6 +159,7 @@ class ProgramPlanner {
   FilePlace start_place_;
   const ProgramPlanOptions& options_;
   std::size_t told_ = 0;        // steps that were told of
+  detail::DetourChain chain_;   // the last one
   std::set<FilePlace> mended_;  // places of faults for which a change was looked for
   ProgramPlan plan_;
   detail::Workplaces places_;  // of the plan's arms

@@ -290,6 +290,7 @@ class StepWriter {
     if (what.branch) step.branch = known(*what.branch, step.place);
     set_goal(step, what.goal);
     step.kind = Step::Kind::plan;
+    step.clearance = what.clearance;
     push(std::move(step));
   }
 

@@ -4,6 +4,7 @@
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/joint_path.hpp"
+#include "mjarm/program/detour_chain_internal.hpp"
 #include "mjarm/program/lifted_detour_internal.hpp"
 #include "mjarm/program/step_motion_internal.hpp"
 #include "mjarm/program/step_planner_internal.hpp"
@@ -151,20 +152,19 @@ Attempt StepPlanner::detour_to(std::size_t i, const Stand& at, std::span<const J
   };
   std::optional<Attempt> best;
   for (std::size_t k = 0; k < kMaxAnswers && !goals.empty(); ++k) {
-    auto found = plan_lifted(*with, at.q, goals, step.share, move_to);
+    auto found = plan_lifted(*with, at.q, goals, {step.share, step.clearance}, move_to);
     if (!found && best) break;
     if (!found) return failed(i, at, {i, found.error().reason, found.error().what});
     Attempt attempt{{}, i + 1, {goals[found->goal], at.scene}, {}};
+    const std::size_t goal = found->goal;
+    if (found->before.empty() && found->after.empty()) attempt.detour = found->motion.paths.front();
     std::ranges::move(found->before, std::back_inserter(attempt.moves));
-    PlannedMove& move = attempt.moves.emplace_back(begun(i, at.scene));
-    move.measures = std::move(found->motion.measures);
-    move.trajectory = std::move(found->motion.trajectory);
-    move.corners = std::move(found->motion.corners);
+    put(std::move(found->motion), attempt.moves.emplace_back(begun(i, at.scene)));
     std::ranges::move(found->after, std::back_inserter(attempt.moves));
     tool_moves(attempt);
     if (!attempt.fault) return attempt;
     if (!best || attempt.next > best->next) best = std::move(attempt);
-    goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(found->goal));
+    goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(goal));
   }
   return std::move(*best);
 }

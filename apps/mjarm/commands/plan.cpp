@@ -34,7 +34,7 @@ constexpr int kMaxSamples = 10'000'000;
 
 struct Options {
   BatchOptions batch;
-  std::string planner = "rrtc", seed = "1", threads = "1", samples, budget, problem;
+  std::string planner = "rrtc", seed = "1", threads = "1", samples, budget, problem, clearance;
   RobotRequest request;
   bool no_timing = false;
   PlanShowArguments show;
@@ -75,6 +75,15 @@ Result<PlanOptions> read_options(const Options& options) {
       return fail(Errc::usage, text(msg::plan_bad_budget, options.budget));
     }
     out.time_budget = *budget;
+  }
+  if (!options.clearance.empty()) {
+    const Result<double> clearance = parse_quantity(options.clearance, Quantity::length);
+    if (!clearance) return fail(in_option("--clearance", clearance.error()));
+    if (!(*clearance >= 0 && *clearance <= kMaxClearanceAsked)) {
+      return fail(Errc::usage,
+                  text(msg::plan_bad_clearance, options.clearance, kMaxClearanceAsked));
+    }
+    out.clearance = *clearance;
   }
   return out;
 }
@@ -177,6 +186,7 @@ Run setup(CLI::App& app) {
   add_overwrite_option(app, options->batch.replace);
   add_robot_request(app, options->request);
   add_option(app, "--problem", options->problem, msg::plan_option_problem, "ID");
+  add_option(app, "--clearance", options->clearance, msg::plan_option_clearance, "M");
   add_option(app, "--planner", options->planner, msg::plan_option_planner, "NAME");
   add_option(app, "--time-budget", options->budget, msg::plan_option_budget, "S");
   add_option(app, "--samples", options->samples, msg::plan_option_samples, "N");

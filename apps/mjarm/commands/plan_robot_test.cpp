@@ -57,6 +57,43 @@ TEST_F(PlanRobot, AStraightWayThroughTheWallIsNotVerified) {
   EXPECT_NE(faults[1].at("what").get<std::string>().find("\"wall\""), std::string::npos);
 }
 
+TEST_F(PlanRobot, KeepsTheClearanceThatIsAskedAndSaysWhatIsPossible) {
+  const Words way{"--start", kBefore, "--goal", kBehind};
+  const auto with = [&](const char* clearance) {
+    Words words = way;
+    words.insert(words.end(), {"--clearance", clearance});
+    return words;
+  };
+  ASSERT_EQ(plan(way).exit_code, 0);
+  EXPECT_EQ(answer().at("clearance"), 0.005) << "preferred where nothing is asked";
+  ASSERT_EQ(plan(with("30mm")).exit_code, 0);
+  EXPECT_EQ(answer().at("clearance"), 0.03);
+  for (const json& edge : answer().at("certificate")) {
+    EXPECT_EQ(edge.at("kept"), 0.03);
+    EXPECT_GE(edge.at("clearance").get<double>(), 0.03 - 1e-6);
+  }
+  EXPECT_EQ(verify().exit_code, 0);
+  // More than is true is found out.
+  json file = json::parse(folder_.read("path.json"));
+  for (json& edge : file.front()["certificate"]) edge["kept"] = 0.3;
+  folder_.write("path.json", file.dump());
+  const auto wrong = verify();
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_NE(wrong.err.find("stated to keep 0.3 m"), std::string::npos) << wrong.err;
+  // What no path keeps.
+  const auto none = plan(with("350mm"));
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(only_line(none).find("no path keeps a clearance of 350 mm"), std::string::npos);
+  const double possible = answer().at("possible_clearance");
+  EXPECT_GT(possible, 0.03);
+  EXPECT_LT(possible, 0.35);
+  ASSERT_EQ(plan(with("0")).exit_code, 0);
+  EXPECT_FALSE(answer().contains("clearance"));
+  const auto unknown = plan(with("600mm"));
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(only_line(unknown).find("--clearance"), std::string::npos);
+}
+
 TEST_F(PlanRobot, KeepsTheToolUprightAndSaysByHowMuch) {
   const Words way{"--start", kBefore, "--goal", kBehind, "--keep-upright"};
   Words words = way;

@@ -59,6 +59,7 @@ JsonDoc move_json(const program::ProgramPlan& plan, const PlannedMove& move) {
                  {"instruction", move.word},
                  {"instructions", move.instructions},
                  {"duration", move.trajectory.duration()}};
+  if (move.stopping) out.set("stopping_duration", *move.stopping);
   if (move.curve) out.set("length", move.curve->length());
   if (move.close || !move.attached.empty()) out.set("holds", held_names(move));
   if (!move.measures) return out;
@@ -139,6 +140,11 @@ std::string plan_text(const program::LoadedProgram& loaded) {
     if (move.close.value_or(false)) out += grip_line(move);
   }
   for (const PlannedMove& move : plan.moves) {
+    if (move.stopping && move.corners.size() > 2) {
+      out += text(msg::motion_program_one_motion, move.place.line, move.trajectory.duration(),
+                  *move.stopping) +
+             "\n";
+    }
     for (const SpeedDip& dip : move.dips) {
       out += text(msg::motion_program_dip, move.place.line, describe(dip, plan.arms[move.tool])) +
              "\n";

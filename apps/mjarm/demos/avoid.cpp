@@ -67,7 +67,7 @@ std::optional<NearestPair> nearest_pair(ExactChecker& checker, const program::Pr
 /// tells and draws what it would hit.
 Result<void> try_straight(session::Stage& stage, ExactChecker& checker, const PlannedMove& round,
                           Report& report) {
-  const JointVec q = round.corners.front();
+  const JointVec q = round.corners[round.passed.empty() ? 0 : round.passed.back()];
   const Result<Curve> line =
       Curve::line(fk(stage.arm(), as_span(q)), fk(stage.arm(), as_span(round.corners.back())));
   if (!line) return fail(line.error());
@@ -107,8 +107,8 @@ void tell_round(session::Stage& stage, ExactChecker& checker, const program::Pro
   }
   report.facts.push_back({"edges", static_cast<double>(round.corners.size() - 1)});
   report.facts.push_back({"cost", length});
-  log_info(
-      text(msg::demo_avoid_round, round.corners.size() - 1, length, round.trajectory.duration()));
+  log_info(text(msg::demo_avoid_round, round.corners.size() - 1, length,
+                round.trajectory.duration(), round.stopping.value_or(round.trajectory.duration())));
   const auto nearest = nearest_pair(checker, plan, stage.arm().limits);
   if (!nearest) return;
   const GeomPair& pair = nearest->pair;

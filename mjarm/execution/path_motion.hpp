@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "mjarm/core/joint_vec.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/core/stop.hpp"
+#include "mjarm/model/arm.hpp"
+#include "mjarm/planning/way_prover.hpp"
+#include "mjarm/trajectory/trajectory.hpp"
+
+namespace mjarm {
+
+/// A planned path in time.
+struct PathMotion {
+  Trajectory trajectory;  ///< from rest to rest
+  double stopping = 0;    ///< [s] what it would take to stop at every corner
+};
+
+/// How hard to try. Every default is usable as is.
+struct PathMotionOptions {
+  std::vector<std::size_t> passed = {};  ///< corners that are met exactly, by index, ascending
+  int changes = 100;                     ///< attempts to get faster by moving points, >= 0
+  StopCheck stop = {};                   ///< ends the attempts; what was found so far counts
+};
+
+/// The fastest motion that is found along a path of straight edges in joint space, within velocity,
+/// acceleration and jerk limits: corners are cut or swung round, each as far as the whole motion is
+/// proved free; it stops only where nothing else is. Same input, same bytes.
+/// @param corners  [rad or m] at least 1, each (dof,), neighbours apart; their edges are proved.
+/// @param prover   of the paths that they are of.
+/// @return an error for sizes, numbers or limits that make no sense.
+[[nodiscard]] Result<PathMotion> time_path(std::span<const JointVec> corners,
+                                           const JointLimits& limits, const WayProver& prover,
+                                           const PathMotionOptions& options = {});
+
+}  // namespace mjarm

@@ -1,0 +1,140 @@
+#include "mjarm/execution/path_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mjarm/collision/exact.hpp"
+#include "mjarm/planning/planning_world.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace mjarm {
+namespace {
+
+/// Two slides carry a ball of 20 mm over a fence, whose sides are 10 mm and whose top is 0.2 m from
+/// the middle.
+Robot slider() {
+  const support::TempFolder folder;
+  const char* const xml = R"(<mujoco><worldbody>
+    <geom name="fence" type="box" size="0.01 1 0.2"/>
+    <body name="x"><joint name="x" type="slide" axis="1 0 0" range="-0.6 0.6" limited="true"/>
+      <geom type="sphere" size="0.001" contype="0" conaffinity="0"/>
+      <body name="z"><joint name="z" type="slide" axis="0 0 1" range="0 0.6" limited="true"/>
+        <geom name="ball" type="sphere" size="0.02"/><site name="tcp"/></body></body>
+    </worldbody>
+    <actuator><position joint="x"/><position joint="z"/></actuator></mujoco>)";
+  return load_robot(folder.write("slider.xml", xml).string(), {.tip = "tcp"}).value();
+}
+
+JointVec at(double x, double z) { return joint_vec(std::vector{x, z}); }
+
+class PathMotionTest : public ::testing::Test {
+ protected:
+  PathMotionTest() {
+    limits_.velocity = JointVec::Constant(2, 1);
+    limits_.acceleration = JointVec::Constant(2, 4);
+    limits_.jerk = JointVec::Constant(2, 40);
+  }
+
+  WorldPath planned(const JointVec& from, const JointVec& to, double clearance) {
+    return world_.plan(as_span(from), std::vector{to}, {.rounds = 4, .clearance = clearance})
+        .value();
+  }
+  PathMotion timed(const std::vector<JointVec>& corners, std::span<const WorldPath> paths,
+                   const PathMotionOptions& options = {}) {
+    return time_path(corners, limits_, world_.prover(paths).value(), options).value();
+  }
+  /// [m] the least distance by MuJoCo's own geometry, every millisecond.
+  double least_clearance(const Trajectory& motion) {
+    ExactChecker checker(robot_.model, robot_.arm, {.margin = 1});
+    double least = 1;
+    for (double t = 0; t <= motion.duration(); t += 1e-3) {
+      const auto report = checker.check(as_span(motion.at(t).q)).value();
+      if (report.nearest) least = std::min(least, report.nearest->distance);
+    }
+    return least;
+  }
+  void expect_limits(const Trajectory& motion) {
+    JointLimits limits = robot_.arm.limits;
+    limits.velocity = limits_.velocity;
+    limits.acceleration = limits_.acceleration;
+    limits.jerk = limits_.jerk;
+    const LimitUse use = check_limits(motion, limits);
+    EXPECT_LE(use.worst(), 1 + 1e-6);
+    EXPECT_LE(use.jerk.maxCoeff(), 1 + 1e-3);
+    EXPECT_LE(use.position.maxCoeff(), 1e-9);
+  }
+  static bool stops_between(const Trajectory& motion) {
+    for (double t = 0.05; t < motion.duration() - 0.05; t += 1e-3) {
+      if (motion.at(t).v.cwiseAbs().maxCoeff() < 1e-3) return true;
+    }
+    return false;
+  }
+
+  Robot robot_ = slider();
+  PlanningWorld world_ = PlanningWorld::create(robot_, {.bounds = {0.0005}}).value();
+  JointLimits limits_ = robot_.arm.limits;
+};
+
+TEST_F(PathMotionTest, GoesRoundWithoutAStopAndKeepsTheClearance) {
+  for (const double clearance : {0.0, 0.01, 0.05}) {
+    const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), clearance);
+    ASSERT_GT(path.q.size(), 2U);
+    const PathMotion motion = timed(path.q, {&path, 1});
+    EXPECT_FALSE(stops_between(motion.trajectory)) << clearance;
+    EXPECT_LT(motion.trajectory.duration(), 0.8 * motion.stopping);
+    EXPECT_GE(least_clearance(motion.trajectory), clearance - 1e-5);
+    expect_limits(motion.trajectory);
+    EXPECT_LT((motion.trajectory.at(0).q - path.q.front()).norm(), 1e-9);
+    EXPECT_LT((motion.trajectory.at(motion.trajectory.duration()).q - path.q.back()).norm(), 1e-9);
+  }
+}
+
+/// Two edges up and down again beside the fence: whatever leaves them to the right touches it.
+TEST_F(PathMotionTest, StopsWhereNothingElseIsProved) {
+  WorldPath path = planned(at(-0.4, 0.1), at(-0.05, 0.1), 0);
+  path.q = {at(-0.4, 0.1), at(-0.0302, 0.1), at(-0.4, 0.1)};
+  const PathMotion motion = timed(path.q, {&path, 1});
+  EXPECT_GE(least_clearance(motion.trajectory), 0);
+  EXPECT_LE(motion.trajectory.duration(), motion.stopping);
+}
+
+TEST_F(PathMotionTest, PassesWhatItHasToMeet) {
+  const WorldPath one = planned(at(-0.4, 0.1), at(-0.1, 0.4), 0.01);
+  const WorldPath two = planned(at(-0.1, 0.4), at(0.4, 0.1), 0.01);
+  std::vector<JointVec> corners = one.q;
+  corners.insert(corners.end(), two.q.begin() + 1, two.q.end());
+  const WorldPath paths[] = {one, two};
+  const PathMotion motion = timed(corners, paths, {.passed = {one.q.size() - 1}});
+  double nearest = 1;
+  for (double t = 0; t < motion.trajectory.duration(); t += 1e-4) {
+    nearest = std::min(nearest, (motion.trajectory.at(t).q - at(-0.1, 0.4)).norm());
+  }
+  EXPECT_LT(nearest, 1.5e-4);
+  EXPECT_FALSE(stops_between(motion.trajectory));
+  EXPECT_GE(least_clearance(motion.trajectory), 0.01 - 1e-5);
+  expect_limits(motion.trajectory);
+}
+
+/// It begins 1 mm beside the fence.
+TEST_F(PathMotionTest, NearAnEndItKeepsWhatTheEndHas) {
+  const WorldPath path = planned(at(-0.031, 0.1), at(0.4, 0.3), 0.03);
+  ASSERT_LT(path.kept.front(), 0.0011);
+  const PathMotion motion = timed(path.q, {&path, 1});
+  EXPECT_GE(least_clearance(motion.trajectory), path.kept.front() - 1e-6);
+  EXPECT_LE(motion.trajectory.duration(), motion.stopping);
+}
+
+TEST_F(PathMotionTest, SameMotionEveryTimeAndRestsWhereItIs) {
+  const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), 0.01);
+  const PathMotion a = timed(path.q, {&path, 1}), b = timed(path.q, {&path, 1});
+  EXPECT_EQ(a.trajectory.duration(), b.trajectory.duration());
+  const double t = 0.4 * a.trajectory.duration();
+  EXPECT_EQ(a.trajectory.at(t).q, b.trajectory.at(t).q);
+  const PathMotion still = timed({at(0.3, 0.3)}, {&path, 1});
+  EXPECT_EQ(still.trajectory.duration(), 0);
+  EXPECT_EQ(still.stopping, 0);
+}
+
+}  // namespace
+}  // namespace mjarm

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mjarm/execution/motion_plan.hpp"
+#include "mjarm/program/detour_planner_internal.hpp"
+#include "mjarm/program/program_steps_internal.hpp"
+
+namespace mjarm::program::detail {
+
+/// Makes `move` that motion.
+void put(DetourMotion motion, PlannedMove& move);
+
+/// Joins detours that follow each other at once into one motion, which passes the goals between
+/// them without a stop.
+class DetourChain {
+ public:
+  /// Takes the detour of step `i`, the first of the moves `added`. Where it follows the last of
+  /// `moves`, and one motion of both is faster, that becomes this motion and the first added move
+  /// is gone.
+  void add(std::size_t i, const Step& step, WorldPath path, DetourPlanner& planner,
+           std::vector<PlannedMove>& moves, std::vector<PlannedMove>& added);
+
+ private:
+  std::size_t next_ = 0;  // the step that may go on with it
+  std::size_t tool_ = 0;
+  double share_ = 1;
+  std::vector<WorldPath> paths_;
+};
+
+}  // namespace mjarm::program::detail
