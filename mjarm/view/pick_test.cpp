@@ -184,7 +184,7 @@ TEST_F(PickTest, CamerasGoRoundAndADragMakesAFreeOne) {
 TEST(ControlTable, EveryKeyDoesOneThing) {
   std::set<std::pair<int, KeyModifier>> taken;
   for (const ActionRow& row : action_rows()) {
-    EXPECT_TRUE(taken.insert({row.key, row.modifier}).second) << row.shown;
+    EXPECT_TRUE(taken.insert({row.key, row.modifier}).second) << text(row.shown);
     EXPECT_EQ(action_of(row.key, row.modifier == KeyModifier::control,
                         row.modifier == KeyModifier::shift),
               row.action)
