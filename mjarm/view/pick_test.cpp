@@ -188,7 +188,7 @@ TEST(ControlTable, EveryKeyDoesOneThing) {
     EXPECT_EQ(action_of(row.key, row.modifier == KeyModifier::control,
                         row.modifier == KeyModifier::shift),
               row.action)
-        << row.shown;
+        << text(row.shown);
   }
   int i = 0;
   for (const SettingRow& row : setting_rows()) {
