@@ -16,7 +16,7 @@ struct PostureWeights {
   double middle = 2;              ///< of a joint at its limit, over the number of joints
   double elbow = 1;               ///< of an elbow below the line from the shoulder to the wrist
   double travel = 0.5;            ///< of a joint's way of pi rad or 1 m from where the arm is
-  double enough_clearance = 0.1;  ///< [m] > 0
+  double enough_clearance = 0.05;  ///< [m] > 0
 };
 
 /// Weighs the postures of one arm where nothing else decides between them.

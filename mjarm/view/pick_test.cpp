@@ -184,11 +184,11 @@ TEST_F(PickTest, CamerasGoRoundAndADragMakesAFreeOne) {
 TEST(ControlTable, EveryKeyDoesOneThing) {
   std::set<std::pair<int, KeyModifier>> taken;
   for (const ActionRow& row : action_rows()) {
-    EXPECT_TRUE(taken.insert({row.key, row.modifier}).second) << row.shown;
+    EXPECT_TRUE(taken.insert({row.key, row.modifier}).second) << text(row.shown);
     EXPECT_EQ(action_of(row.key, row.modifier == KeyModifier::control,
                         row.modifier == KeyModifier::shift),
               row.action)
-        << row.shown;
+        << text(row.shown);
   }
   int i = 0;
   for (const SettingRow& row : setting_rows()) {
