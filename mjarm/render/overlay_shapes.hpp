@@ -37,7 +37,7 @@ void add_closest_pair(Overlay& overlay, const Eigen::Vector3d& p1_W, const Eigen
 
 /// How a planned path is drawn: thin, so that it is seen in the trail, which is wide.
 struct PathLook {
-  double width = 0.003;  ///< [m] > 0
+  double width = 0.002;  ///< [m] > 0
   Rgba color = {0.85F, 0.12F, 0.10F, 1};
   bool dashed = true;  ///< about 60 dashes, of 5 mm at least
 };

@@ -49,6 +49,12 @@ bool is_infinite_plane(const mjvGeom& geom) {
   return geom.type == mjGEOM_PLANE && geom.size[0] == 0 && geom.size[1] == 0;
 }
 
+bool is_floor(const mjvGeom& geom) {
+  constexpr float kLarge = 2;  // [m] from its middle to its edges
+  return is_infinite_plane(geom) ||
+         (geom.type == mjGEOM_PLANE && geom.size[0] >= kLarge && geom.size[1] >= kLarge);
+}
+
 /// [m] Radius about its position in which all of a geom lies; infinite where that is not known.
 double radius_of(const mjModel& m, const mjvGeom& geom) {
   if (geom.type == mjGEOM_PLANE || geom.type >= mjGEOM_FLEX) return mjMAXVAL;
@@ -129,11 +135,12 @@ struct Scene::Impl {
   }
 
   /// Puts the floor behind everything else, so that what is hidden of it costs nothing (not with
-  /// reflections: MuJoCo reflects in the first that can). It casts no shadow: nothing lies below.
+  /// reflections: MuJoCo reflects in the first that can). It casts no shadow, nor does a large one
+  /// that ends: nothing lies below, and on itself that would be specks.
   void tame_floors() {
     const std::span geoms(scene.geoms, static_cast<std::size_t>(scene.ngeom));
     for (mjvGeom& geom : geoms) {
-      if (is_infinite_plane(geom)) geom.castshadow = 0;
+      if (is_floor(geom)) geom.castshadow = 0;
     }
     if (scene.flags[mjRND_REFLECTION] != 0) return;
     std::stable_partition(geoms.begin(), geoms.end(),

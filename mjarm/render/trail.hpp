@@ -20,7 +20,7 @@ enum class Pen {
 struct TrailOptions {
   std::size_t max_points = 2000;   ///< then the oldest go, >= 2
   double spacing = 0.002;          ///< [m] nearer points are left out, >= 0
-  double width = 0.007;            ///< [m] diameter of the line, > 0
+  double width = 0.008;            ///< [m] diameter of the line, > 0
   LineLook look = LineLook::thin;  ///< the same however long it grows
   Rgba color = {0.20F, 0.52F, 0.95F, 1};
   double travel_width = 0.0015;  ///< [m] > 0
