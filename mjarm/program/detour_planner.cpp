@@ -196,24 +196,41 @@ Result<DetourMotion, DetourFault> DetourPlanner::timed(const FastChecker& checke
 Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
                                                       std::span<const JointVec> goals,
                                                       double share) {
+  if (options_.margin > 0) {
+    WorldOptions wide = options_;
+    wide.bounds.resize(1);  // what finer spheres are needed for has no room for a margin
+    Result<DetourMotion, DetourFault> found = plan_in(wide_, wide, q, goals, share);
+    if (found || is_stopped(stop_)) return found;
+  }
+  WorldOptions tight = options_;
+  tight.margin = 0;
+  return plan_in(tight_, tight, q, goals, share);
+}
+
+/// @param world  of `options`; made when it is needed first.
+Result<DetourMotion, DetourFault> DetourPlanner::plan_in(std::optional<PlanningWorld>& world,
+                                                         const WorldOptions& options,
+                                                         const JointVec& q,
+                                                         std::span<const JointVec> goals,
+                                                         double share) {
   JointLimits limits = robot_.arm.limits;
   limits.velocity *= share;
   limits.acceleration *= share;
-  if (!world_) {
-    Result<PlanningWorld> made = PlanningWorld::create(robot_, options_);
+  if (!world) {
+    Result<PlanningWorld> made = PlanningWorld::create(robot_, options);
     if (!made) return no_detour("bad_input", made.error().what);
-    world_ = std::move(*made);
+    world = std::move(*made);
   }
   PlanOptions search = kSearch;
   search.stop = stop_;
-  Result<WorldPath, WorldFailure> path = world_->plan(as_span(q), goals, search);
+  Result<WorldPath, WorldFailure> path = world->plan(as_span(q), goals, search);
   if (!path) {
     const WorldFailure& why = path.error();
     const char* reason = why.code == WorldErrc::no_path ? name_of(why.search.code) : "bad_input";
     return no_detour(reason,
                      why.what + (why.bound > 0 ? text(msg::program_spheres, 1e3 * why.bound) : ""));
   }
-  const FastChecker& checker = (*world_->level(path->level))->checker;
+  const FastChecker& checker = (*world->level(path->level))->checker;
   if (goals.size() > 1) replace_by_shorter(checker, q, goals, stop_, *path);
   Result<DetourMotion, DetourFault> motion = timed(checker, path->q, limits);
   if (motion) motion->goal = static_cast<std::size_t>(path->goal);

@@ -37,7 +37,8 @@ class DetourPlanner {
  public:
   /// @param ik     whose answers to poses become goals.
   /// @param judge  by which start, goals and motions are checked.
-  /// @param world  what is attached, and where things stand.
+  /// @param world  what is attached, where things stand, and the margin that is kept where a path
+  ///               with it can be had.
   /// @param stop   ends the work with the fault `stopped`.
   DetourPlanner(Robot robot, IkSolver ik, MoveJudge judge, WorldOptions world = {},
                 StopCheck stop = {})
@@ -60,7 +61,15 @@ class DetourPlanner {
                                                        std::span<const JointVec> goals,
                                                        double share);
 
+  /// [m] that is kept where it can be.
+  [[nodiscard]] double margin() const { return options_.margin; }
+
  private:
+  [[nodiscard]] Result<DetourMotion, DetourFault> plan_in(std::optional<PlanningWorld>& world,
+                                                          const WorldOptions& options,
+                                                          const JointVec& q,
+                                                          std::span<const JointVec> goals,
+                                                          double share);
   [[nodiscard]] std::optional<std::string> touches(const JointVec& q) const;
   /// What touches in the answer to a pose that touches least.
   [[nodiscard]] std::optional<std::string> least_touch(const JointVec& q, const Pose& X_WT) const;
@@ -73,7 +82,7 @@ class DetourPlanner {
   MoveJudge judge_;
   WorldOptions options_;
   StopCheck stop_;
-  std::optional<PlanningWorld> world_;  // made when a detour is asked for first
+  std::optional<PlanningWorld> wide_, tight_;  // with and without margin, made when needed
 };
 
 }  // namespace mjarm::program::detail

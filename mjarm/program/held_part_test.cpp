@@ -74,7 +74,7 @@ TEST(HeldPart, PlanCarriesItOverTheFenceAndSetsItDown) {
   ASSERT_NE(part, nullptr);
   EXPECT_TRUE(part->carried);
   EXPECT_NEAR(part->moved, 0.4, 5e-3);
-  EXPECT_LT(part->off_plan, kObjectPosition);
+  EXPECT_LT(part->off_plan, kCarriedPosition);
 }
 
 /// The fingers clear the fence at this height, the part does not.
