@@ -219,6 +219,7 @@ struct ExactChecker::Impl {
   /// True for two geoms that no joint brings nearer, or that the joints cannot bring together.
   bool is_no_risk(GeomIds ids) {
     if (constant_pairs->contains(ids)) return true;
+    if (!options.only_meeting) return false;
     if (!never_meet) never_meet.emplace(model, arm, options.rules, q_rest);
     return (*never_meet)(ids);
   }

@@ -25,6 +25,9 @@ struct ExactOptions {
   /// [m] by which attached bodies may overlap what the arm does not move, >= 0: they lie on things
   /// when they are picked up and put down. So much of an overlap counts as a distance of 0.
   double rest_depth = 0;
+  /// Look for the nearest pair only among those that the arm can bring together: not among
+  /// neighbouring links that are proved never to meet within the limits of the joints between them.
+  bool only_meeting = false;
 };
 
 /// Two geoms and the bodies they belong to, by name. A geom without a name is called BODY[k], the
@@ -42,9 +45,8 @@ struct ContactPoint {
   Eigen::Vector3d normal_W;  ///< unit, from geom 1 to geom 2
 };
 
-/// The two geoms that are nearest to each other, of those that the arm can bring together: pairs
-/// whose distance no joint changes (a first link that turns over the floor), and neighbouring links
-/// that are proved never to meet within the limits of the joints between them, do not count.
+/// The two geoms that are nearest to each other, of those whose distance the arm can change (a
+/// first link that turns over the floor always is as near to it).
 struct NearestPair {
   GeomPair pair;
   double distance = 0;   ///< [m] between the surfaces; negative where they overlap

@@ -208,7 +208,7 @@ double least_distance(const Shipped& robot, const GeomPair& pair) {
   if (a < 0 || b < 0) return 0;
   Rng rng(5);
   double least = 1;
-  for (int k = 0; k < 4000 && least > 0.02; ++k) {
+  for (int k = 0; k < 4000 && least > 0.03; ++k) {
     const std::vector<double> q = robot.random_q(rng);
     for (std::size_t i = 0; i < q.size(); ++i) robot.d->qpos[robot.arm.joints[i].qpos] = q[i];
     mj_kinematics(&m, robot.d.get());
@@ -222,7 +222,7 @@ double least_distance(const Shipped& robot, const GeomPair& pair) {
 TEST(ExactChecker, TheNearestPairIsOneThatCanMeet) {
   for (const char* name : {"ur5e", "panda"}) {
     const Shipped robot(name);
-    ExactChecker checker(robot.model, robot.arm);
+    ExactChecker checker(robot.model, robot.arm, {.only_meeting = true});
     std::set<std::pair<std::string, std::string>> told;
     Rng rng(3);
     for (int k = 0; k < 200; ++k) {
@@ -231,7 +231,7 @@ TEST(ExactChecker, TheNearestPairIsOneThatCanMeet) {
       if (!report.free || !report.nearest) continue;
       const GeomPair& pair = report.nearest->pair;
       if (!told.insert({pair.geom1, pair.geom2}).second) continue;
-      EXPECT_LE(least_distance(robot, pair), 0.02)
+      EXPECT_LE(least_distance(robot, pair), 0.03)
           << name << ": " << pair.geom1 << " - " << pair.geom2;
     }
     EXPECT_GT(told.size(), 3U) << name;
@@ -241,8 +241,8 @@ TEST(ExactChecker, TheNearestPairIsOneThatCanMeet) {
 /// The elbow near the floor: nothing else of the arm is as near to anything that it could touch.
 TEST(ExactChecker, AnElbowNearTheFloorIsSeen) {
   const Shipped robot("ur5e");
-  ExactChecker checker(robot.model, robot.arm);
-  const std::vector<double> q{0, -2.95, 1.5, 0, 1.57, 0};
+  ExactChecker checker(robot.model, robot.arm, {.only_meeting = true});
+  const std::vector<double> q{0, -3.3, 1.5, -0.5, 1.57, 0};
   const CollisionReport report = checker.check(q).value();
   ASSERT_TRUE(report.free) << describe(report);
   ASSERT_TRUE(report.nearest);

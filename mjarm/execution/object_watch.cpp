@@ -10,7 +10,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kFall = 0.02;  // [m]
+constexpr double kFall = 0.02;  // [m] no less than is allowed
 
 }  // namespace
 
@@ -106,7 +106,9 @@ void ObjectWatch::compare(const Sim& sim, std::size_t move, std::size_t object) 
   seen.off_plan = std::max(seen.off_plan, off);
   seen.turned = std::max(seen.turned, turned);
   seen.fell = seen.fell || planned.p.z() - X_WB.p.z() > kFall;
-  if (!seen.at && (off > kObjectPosition || turned > kObjectRotation)) seen.at = sim.time();
+  const double max_off = seen.carried ? kCarriedPosition : kObjectPosition;
+  const double max_turn = seen.carried ? kCarriedRotation : kObjectRotation;
+  if (!seen.at && (off > max_off || turned > max_turn)) seen.at = sim.time();
 }
 
 /// Contacts of the hand with itself and with what it carries at some time, and all that the arm has

@@ -14,9 +14,10 @@
 
 namespace mjarm {
 
-/// [m] and [rad] so far an object may be from where the plan has it: in the gripper, where it was
-/// put down, where it stood.
+/// [m] and [rad] so far an object may be from where the plan has it: where it stood, and of one
+/// that is carried in the gripper, where it swings and slips a little, and where it was put down.
 inline constexpr double kObjectPosition = 0.01, kObjectRotation = 0.2;
+inline constexpr double kCarriedPosition = 0.02, kCarriedRotation = 0.35;
 
 /// What is wrong with an object after a plan was executed.
 enum class ObjectFault {
@@ -36,7 +37,7 @@ struct ObservedObject {
   double off_plan = 0;       ///< [m] at most, from where the plan has it
   double turned = 0;         ///< [rad] at most, from how the plan has it
   bool fell = false;         ///< it came to be more than 20 mm lower than the plan has it
-  std::optional<double> at;  ///< [s] when it was off by more than kObjectPosition, kObjectRotation
+  std::optional<double> at;  ///< [s] when it was off by more than may be
   std::string touched;       ///< what it touched first that the plan does not know; may be empty
   double touched_at = 0;     ///< [s]
   bool by_itself = false;    ///< it moved, and nothing that the arm moved had touched it

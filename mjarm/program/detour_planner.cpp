@@ -153,6 +153,10 @@ Result<DetourMotion, DetourFault> DetourPlanner::timed(std::vector<WorldPath> pa
 Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
                                                       std::span<const JointVec> goals, double share,
                                                       const std::optional<double>& clearance) {
+  if (!clearance && margin_ > 0) {
+    Result<DetourMotion, DetourFault> found = plan(q, goals, share, margin_);
+    if (found || is_stopped(stop_)) return found;
+  }
   if (!world_) {
     Result<PlanningWorld> made = PlanningWorld::create(robot_, options_);
     if (!made) return no_detour("bad_input", made.error().what);

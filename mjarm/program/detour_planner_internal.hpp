@@ -38,15 +38,17 @@ class DetourPlanner {
  public:
   /// @param ik     whose answers to poses become goals.
   /// @param judge  by which start, goals and motions are checked.
-  /// @param world  what is attached, and where things stand.
-  /// @param stop   ends the work with the fault `stopped`.
+  /// @param world   what is attached, and where things stand.
+  /// @param stop    ends the work with the fault `stopped`.
+  /// @param margin  [m] clearance that is kept where a path with it can be had and none is asked.
   DetourPlanner(Robot robot, IkSolver ik, MoveJudge judge, WorldOptions world = {},
-                StopCheck stop = {})
+                StopCheck stop = {}, double margin = 0)
       : robot_(std::move(robot)),
         ik_(std::move(ik)),
         judge_(std::move(judge)),
         options_(std::move(world)),
-        stop_(std::move(stop)) {}
+        stop_(std::move(stop)),
+        margin_(margin) {}
 
   /// All answers to a pose from `q`, or the fault of the start or of the pose.
   [[nodiscard]] Result<std::vector<JointVec>, DetourFault> goals(const JointVec& q,
@@ -65,6 +67,9 @@ class DetourPlanner {
   /// One motion along paths of plan() that follow each other, at least one.
   [[nodiscard]] Result<DetourMotion, DetourFault> timed(std::vector<WorldPath> paths, double share);
 
+  /// [m] that is kept where it can be.
+  [[nodiscard]] double margin() const { return margin_; }
+
  private:
   [[nodiscard]] std::optional<std::string> touches(const JointVec& q) const;
   /// What touches in the answer to a pose that touches least.
@@ -75,6 +80,7 @@ class DetourPlanner {
   MoveJudge judge_;
   WorldOptions options_;
   StopCheck stop_;
+  double margin_;
   std::optional<PlanningWorld> world_;  // made when a detour is asked for first
 };
 

@@ -17,6 +17,7 @@ using ::testing::HasSubstr;
 using testing::PartAndFence;
 using testing::pick_up;
 using testing::planned;
+using testing::planned_blindly;
 using testing::pose_at;
 
 std::string lifted() { return pick_up() + "  - movel: " + pose_at(0.5, -0.2, 0.2) + "\n"; }
@@ -74,7 +75,7 @@ TEST(HeldPart, PlanCarriesItOverTheFenceAndSetsItDown) {
   ASSERT_NE(part, nullptr);
   EXPECT_TRUE(part->carried);
   EXPECT_NEAR(part->moved, 0.4, 5e-3);
-  EXPECT_LT(part->off_plan, kObjectPosition);
+  EXPECT_LT(part->off_plan, kCarriedPosition);
 }
 
 /// The fingers clear the fence at this height, the part does not.
@@ -149,10 +150,9 @@ TEST(HeldPart, WhatSlipsOutOfTheFingersIsSaid) {
 
 /// A plan that never looked at contact: the part is knocked off by the fence.
 TEST(HeldPart, WhatHitsTheFenceWithdrawsOk) {
-  LoadedProgram loaded = planned({}, lifted() + "  - movel: " + pose_at(0.5, -0.2, 0.29) +
-                                         "\n  - movel: " + pose_at(0.5, 0.2, 0.29) + "\n");
-  loaded.plan =
-      plan_program(loaded.robot.model, loaded.robot.arm, loaded.program, {.collision = false});
+  const LoadedProgram loaded =
+      planned_blindly({}, lifted() + "  - movel: " + pose_at(0.5, -0.2, 0.29) +
+                              "\n  - movel: " + pose_at(0.5, 0.2, 0.29) + "\n");
   ASSERT_TRUE(loaded.plan.ok());
   const Executed done(loaded);
   EXPECT_FALSE(done.report.ok);
@@ -171,10 +171,8 @@ TEST(HeldPart, WhatTheArmPushesAwayWithdrawsOkAndWhatFallsByItselfDoesNot) {
   const std::string sweep =
       "  - movej: " + pose_at(0.5, -0.25, 0.2) + "\n  - movel: " + pose_at(0.5, -0.25, 0.12) + "\n";
   const PartAndFence cell{.more = things};
-  LoadedProgram loaded = planned(cell, sweep + "  - movel: " + pose_at(0.5, -0.05, 0.09) + "\n");
-  EXPECT_FALSE(loaded.plan.ok());
-  loaded.plan =
-      plan_program(loaded.robot.model, loaded.robot.arm, loaded.program, {.collision = false});
+  const LoadedProgram loaded =
+      planned_blindly(cell, sweep + "  - movel: " + pose_at(0.5, -0.05, 0.09) + "\n");
   const Executed pushed(loaded);
   EXPECT_FALSE(pushed.report.ok);
   EXPECT_THAT(pushed.report.reason, HasSubstr("object_"));

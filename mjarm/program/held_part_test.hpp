@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "mjarm/program/load_program.hpp"
+#include "mjarm/program/program_reader.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::testing {
@@ -47,6 +49,19 @@ inline program::LoadedProgram planned(const PartAndFence& cell, const std::strin
   const auto file =
       folder.write("job.yaml", "robot: panda\nscene: cell.xml\nprogram:\n" + instructions);
   return program::load_program(file.string()).value();
+}
+
+/// The same by somebody who never looks at contact.
+inline program::LoadedProgram planned_blindly(const PartAndFence& cell,
+                                              const std::string& instructions) {
+  const support::TempFolder folder;
+  folder.write("cell.xml", cell.scene());
+  program::Program program =
+      program::parse_program("scene: cell.xml\nprogram:\n" + instructions, "job.yaml").value();
+  Robot robot = program::load_program_robot(program, folder.path() / "job.yaml").value();
+  program::ProgramPlan plan =
+      program::plan_program(robot.model, robot.arm, program, {.collision = false});
+  return {"job.yaml", std::move(program), std::move(robot), std::move(plan)};
 }
 
 }  // namespace mjarm::testing

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -28,18 +29,43 @@ class LiftedPlanner {
       : with_(with), q_(q), goals_(goals), wish_(wish), move_to_(move_to) {}
 
   Result<LiftedDetour, DetourFault> plan() {
-    Result<LiftedDetour, DetourFault> first = attempt(false, false, true);
-    if (first || first.error().reason != "collision") return first;
-    for (const bool up : {true, false}) {
-      for (const auto& [lift, lower] : {std::pair(true, false), {false, true}, {true, true}}) {
-        if (auto found = attempt(lift, lower, up)) return found;
+    if (!with_.gripped) return attempt({}, true);
+    // First what is needed where coarse spheres stand for the links: finer ones take their time.
+    const Ends likely{is_near(q_), std::ranges::all_of(goals_, [this](const JointVec& goal) {
+                        return is_near(goal);
+                      })};
+    std::vector<Ends> order{likely};
+    for (const Ends& other : {Ends{}, Ends{true, false}, Ends{false, true}, Ends{true, true}}) {
+      if (other != likely) order.push_back(other);
+    }
+    std::optional<DetourFault> first;
+    for (const Ends& ends : order) {
+      for (const bool up : {true, false}) {
+        auto found = attempt(ends, up);
+        if (found || found.error().reason != "collision") return found;
+        if (!first || first->what.empty()) first = found.error();
+        if (ends == Ends{}) break;  // there is no up in it
       }
     }
-    return first;
+    return tl::unexpected(std::move(*first));
   }
 
  private:
-  Result<LiftedDetour, DetourFault> attempt(bool lift, bool lower, bool up) {
+  /// Which ends of the way are moved off.
+  struct Ends {
+    bool lift = false, lower = false;
+    bool operator==(const Ends&) const = default;
+  };
+
+  /// So near to something that spheres may hit it.
+  bool is_near(const JointVec& q) const {
+    constexpr double kSpheres = 0.012;  // [m] that the first ones stick out
+    const ClearanceCheck& clearance = with_.judge.clearance();
+    return clearance && clearance(as_span(q)).distance < kSpheres + with_.detours.margin();
+  }
+
+  Result<LiftedDetour, DetourFault> attempt(const Ends& ends, bool up) {
+    const auto [lift, lower] = ends;
     const DetourFault none{"collision", {}};
     LiftedDetour out;
     JointVec from = q_;

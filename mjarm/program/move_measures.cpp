@@ -18,8 +18,11 @@ std::vector<JointVec> joint_way(const JointVec& from, const JointVec& to) {
   return out;
 }
 
-MoveJudge::MoveJudge(const Arm& arm, const std::optional<ExactChecker>& checker)
-    : arm_(arm), clearance_(checker ? clearance_check(*checker) : ClearanceCheck{}) {}
+MoveJudge::MoveJudge(const Arm& arm, const std::optional<ExactChecker>& checker,
+                     const std::optional<ExactChecker>& shown)
+    : arm_(arm),
+      clearance_(checker ? clearance_check(*checker) : ClearanceCheck{}),
+      shown_(shown ? clearance_check(*shown) : clearance_) {}
 
 std::optional<std::string> MoveJudge::beyond_limits(const JointVec& q) const {
   constexpr double kRounded = 1e-9;
@@ -45,7 +48,7 @@ std::optional<std::string> MoveJudge::beyond_limits(const JointVec& q) const {
 }
 
 MoveMeasures MoveJudge::measure(const IkSolver& ik, const std::vector<JointVec>& way) const {
-  const PathMeasures least = measure_path(arm_, way, clearance_);
+  const PathMeasures least = measure_path(arm_, way, shown_);
   MoveMeasures out;
   out.singularity = singularity(ik, as_span(way[least.singular_value.at]));
   out.manipulability = least.manipulability.value;
@@ -59,7 +62,7 @@ MoveMeasures MoveJudge::measure(const IkSolver& ik, const std::vector<JointVec>&
     out.limit_joint = i;
   }
   out.clearance = least.clearance.value;
-  if (clearance_) out.nearest = clearance_(as_span(way[least.clearance.at])).pair;
+  if (shown_) out.nearest = shown_(as_span(way[least.clearance.at])).pair;
   for (std::size_t i = 1; i < way.size(); ++i) {
     out.max_step = std::max(out.max_step, (way[i] - way[i - 1]).cwiseAbs().maxCoeff());
   }

@@ -17,7 +17,9 @@ namespace mjarm::program {
 class MoveJudge {
  public:
   /// @param checker  none: contact is not looked at.
-  MoveJudge(const Arm& arm, const std::optional<ExactChecker>& checker);
+  /// @param shown    whose nearest pair is told; none: that of `checker`.
+  MoveJudge(const Arm& arm, const std::optional<ExactChecker>& checker,
+            const std::optional<ExactChecker>& shown = {});
 
   /// One line about the worst joint where `q` is beyond its limits.
   [[nodiscard]] std::optional<std::string> beyond_limits(const JointVec& q) const;
@@ -28,7 +30,7 @@ class MoveJudge {
 
  private:
   Arm arm_;
-  ClearanceCheck clearance_;
+  ClearanceCheck clearance_, shown_;
 };
 
 }  // namespace mjarm::program

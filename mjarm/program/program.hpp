@@ -134,7 +134,7 @@ struct Instruction {
 /// A motion program: what shall be done, and with what; a plain value. Nothing of it was tried.
 struct Program {
   std::string name;   ///< of the file, without folder and extension
-  std::string robot;  ///< name of a shipped robot, or the path of a file
+  std::string robot;  ///< name of a shipped robot, or the path of a file; empty = that of `scene`
   std::string scene;  ///< path of a file that holds the robot; empty = the robot's own
   std::string tool;   ///< frame of the robot that is moved; empty = the robot's own
   FilePlace robot_place, scene_place, tool_place;

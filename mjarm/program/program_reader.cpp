@@ -75,7 +75,9 @@ void read_robot(const Fields& fields, Program& out) {
   out.robot = text_at(fields, "robot", out.robot_place);
   out.scene = text_at(fields, "scene", out.scene_place);
   out.tool = text_at(fields, "tool", out.tool_place);
-  or_noted(fields.faults(), 0, [&] { return fields.need("robot").place.line; });
+  if (fields.find("scene") == nullptr) {
+    or_noted(fields.faults(), 0, [&] { return fields.need("robot").place.line; });
+  }
   const YamlNode* control = fields.find("control");
   if (control == nullptr) return;
   out.control = or_noted(fields.faults(), out.control, [&]() -> std::optional<ControlMode> {

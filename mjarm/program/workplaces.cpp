@@ -12,6 +12,13 @@ constexpr std::size_t kMaxTools = 16;  // that are kept; each has copies of the 
 /// at rest sinks in a little, and one is put down to the hair.
 constexpr double kRestDepth = 1e-3;
 
+/// Of the joints' acceleration and jerk limits, while something is carried: fingers hold by
+/// friction, and what they hold swings and slips where an empty hand could be thrown about.
+constexpr double kCarryingShare = 0.3;
+/// [m] What is carried keeps so far from things, where a path with it can be had: it moves a little
+/// in the fingers.
+constexpr double kCarryingMargin = 0.01;
+
 /// All that is in a scene, byte by byte.
 std::string key_of(const SceneState& scene) {
   std::string key;
@@ -29,25 +36,33 @@ std::string key_of(const SceneState& scene) {
 
 }  // namespace
 
-std::shared_ptr<Tool> Workplaces::make(const SceneState& scene, const Arm& arm) const {
+std::shared_ptr<Tool> Workplaces::make(const SceneState& scene, const Arm& of_tool) const {
+  Arm arm = of_tool;
+  if (!scene.attached.empty()) {
+    arm.limits.acceleration *= kCarryingShare;
+    arm.limits.jerk *= kCarryingShare;
+  }
   ContactRules rules{.attached = attached_to(arm, arms_.front(), scene.attached)};
   IkOptions options;
   options.task = task_for(arm);
-  std::optional<ExactChecker> checker;
+  std::optional<ExactChecker> checker, shown;
   if (collision_) {
-    checker.emplace(model_, arm,
-                    ExactOptions{.rules = rules, .qpos = scene.qpos, .rest_depth = kRestDepth});
+    ExactOptions exact{.rules = rules, .qpos = scene.qpos, .rest_depth = kRestDepth};
+    checker.emplace(model_, arm, exact);
+    exact.only_meeting = true;
+    shown.emplace(model_, arm, exact);
     options.valid = checker->predicate();
   }
   const IkSolver ik(arm, options);
-  const MoveJudge judge(arm, checker);
+  const MoveJudge judge(arm, checker, shown);
   WorldOptions world;
   world.rules = std::move(rules);
   world.qpos = scene.qpos;
+  const double margin = scene.attached.empty() ? 0 : kCarryingMargin;
   return std::make_shared<Tool>(
       Tool{arm, IkSolver(arm, {.task = options.task}), ik, judge,
-           DetourPlanner({model_, arm}, ik, judge, std::move(world), stop_),
-           AnswerChoice(ik, judge.clearance())});
+           DetourPlanner({model_, arm}, ik, judge, std::move(world), stop_, margin),
+           AnswerChoice(ik, judge.clearance()), !scene.qpos.empty()});
 }
 
 std::shared_ptr<Tool> Workplaces::tool(std::size_t scene, std::size_t tool) {

@@ -34,6 +34,8 @@ struct Tool {
   MoveJudge judge;
   DetourPlanner detours;
   AnswerChoice answers;
+  bool gripped =
+      false;  ///< the gripper was used before: things may lie on things, or in its fingers
 };
 
 /// The scenes of a program: how things stand at first, and after each time the gripper closed or

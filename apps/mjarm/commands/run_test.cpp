@@ -126,7 +126,7 @@ TEST(Run, AHeldPartIsToldAndItsLossSaid) {
   const auto out = folder.path() / "out";
   const auto run = mjarm({"run", file, "--headless", "--out", out.string()});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(only_line(run), HasSubstr("part"));
+  EXPECT_THAT(run.err, HasSubstr("object_lost: object \"part\""));
   const auto report = support::load_json(out / "report.json");
   EXPECT_EQ(report.at("ok"), false);
   EXPECT_EQ(report.at("reason"), "object_lost");
