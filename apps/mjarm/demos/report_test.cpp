@@ -194,7 +194,7 @@ TEST_F(DemoReport, ACarThatIsStoppedEarlyHasNotDriven) {
 
 /// The tool starts above the floor and stays there.
 TEST_F(DemoReport, TheFirstMoveIsAboveTheFloor) {
-  const auto result = demo({"ur5e", "--seconds", "2"});
+  const auto result = demo({"ur5e"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const std::vector<double> z = log().at("tool z [m]");
   EXPECT_GT(*std::ranges::min_element(z), 0.03);
