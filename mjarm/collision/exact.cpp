@@ -216,10 +216,16 @@ struct ExactChecker::Impl {
     for (const auto& [ids, apart] : same) constant_pairs->insert(ids);
   }
 
-  /// True for two geoms that no joint brings nearer, or that the joints cannot bring together.
-  bool is_no_risk(GeomIds ids) {
-    if (constant_pairs->contains(ids)) return true;
-    if (!options.only_meeting) return false;
+  /// True for two geoms that ExactOptions::skip_neighbours leaves out.
+  bool are_neighbours(GeomIds ids, double distance) {
+    constexpr int kJoints = 3;
+    constexpr double kFar = 0.02;  // [m]
+    if (!options.skip_neighbours) return false;
+    const auto piece = [&](int geom) {
+      return bodies.pieces[static_cast<std::size_t>(m.geom_bodyid[geom])];
+    };
+    const int a = piece(ids.geom1), b = piece(ids.geom2);
+    if (a > 0 && b > 0 && std::abs(a - b) <= kJoints && distance >= kFar) return true;
     if (!never_meet) never_meet.emplace(model, arm, options.rules, q_rest);
     return (*never_meet)(ids);
   }
@@ -252,7 +258,7 @@ struct ExactChecker::Impl {
     auto pairs = near_pairs();
     std::ranges::stable_sort(pairs, {}, [](const auto& entry) { return entry.second.distance; });
     for (auto& [ids, pair] : pairs) {
-      if (is_no_risk(ids)) continue;
+      if (constant_pairs->contains(ids) || are_neighbours(ids, pair.distance)) continue;
       pair.pair = name_pair(ids);
       return std::move(pair);
     }

@@ -25,9 +25,10 @@ struct ExactOptions {
   /// [m] by which attached bodies may overlap what the arm does not move, >= 0: they lie on things
   /// when they are picked up and put down. So much of an overlap counts as a distance of 0.
   double rest_depth = 0;
-  /// Look for the nearest pair only among those that the arm can bring together: not among
-  /// neighbouring links that are proved never to meet within the limits of the joints between them.
-  bool only_meeting = false;
+  /// Look for the nearest pair not among neighbours, which are near to each other whatever the arm
+  /// does: links with at most three joints between them, unless they are nearer than 20 mm and not
+  /// proved never to meet within the limits of these joints.
+  bool skip_neighbours = false;
 };
 
 /// Two geoms and the bodies they belong to, by name. A geom without a name is called BODY[k], the

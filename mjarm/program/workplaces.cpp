@@ -49,7 +49,7 @@ std::shared_ptr<Tool> Workplaces::make(const SceneState& scene, const Arm& of_to
   if (collision_) {
     ExactOptions exact{.rules = rules, .qpos = scene.qpos, .rest_depth = kRestDepth};
     checker.emplace(model_, arm, exact);
-    exact.only_meeting = true;
+    exact.skip_neighbours = true;
     shown.emplace(model_, arm, exact);
     options.valid = checker->predicate();
   }
