@@ -12,20 +12,26 @@ constexpr std::size_t kPostures = 30;  ///< that are looked at, about
 
 }  // namespace
 
-MotionOutline outline_of(const MotionPlan& plan) {
+MotionOutline outline_of(const MotionPlan& plan, double until) {
   MotionOutline out{{plan.q_start}};
   const double period = std::max(plan.duration() / kPostures, 1e-3);
+  double begin = 0;  // [s] of the move
   for (std::size_t i = 0; i < plan.moves.size(); ++i) {
     const PlannedMove& move = plan.moves[i];
-    for (double t = 0; t < move.trajectory.duration(); t += period) {
+    const double duration = move.trajectory.duration();
+    for (double t = 0; t < duration && begin + t <= until; t += period) {
       out.postures.push_back(move.trajectory.at(t).q);
     }
+    if (begin <= until && begin + duration > until) {
+      out.postures.push_back(move.trajectory.at(until - begin).q);
+    }
+    begin += duration;
     if (plan.part(i) != MotionPart::work) continue;
     for (const Pose& X_WT : planned_tool_path(move, plan.arms[move.tool])) {
       out.marks_W.push_back(X_WT.p);
     }
   }
-  out.postures.push_back(plan.q_end());
+  if (begin <= until) out.postures.push_back(plan.q_end());
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "mjarm/execution/motion_plan.hpp"
@@ -14,7 +15,9 @@ struct MotionOutline {
   std::vector<JointVec> postures = {};
   std::vector<Eigen::Vector3d> marks_W = {};
 };
-[[nodiscard]] MotionOutline outline_of(const MotionPlan& plan);
+/// @param until  [s] since the beginning, when it is left.
+[[nodiscard]] MotionOutline outline_of(const MotionPlan& plan,
+                                       double until = std::numeric_limits<double>::infinity());
 [[nodiscard]] MotionOutline outline_of(const Recorder& recorder);
 
 /// The view of a picture of the end of a motion, or of a film of it: all that moves is in it, and

@@ -38,5 +38,19 @@ TEST(MotionView, TheArmDoesNotHideWhatItWrote) {
   EXPECT_GT(std::abs((eye - view.lookat_W).normalized().y()), 0.45);
 }
 
+/// A picture of a moment in between is of where the arm is then.
+TEST(MotionView, AnOutlineEndsWhenItIsLeft) {
+  const program::LoadedProgram loaded =
+      program::load_program(program::find_shipped_program("letters").value().string()).value();
+  const MotionPlan& plan = loaded.plan;
+  const MotionOutline whole = outline_of(plan);
+  EXPECT_EQ(whole.postures.back(), plan.q_end());
+  const double begin = plan.moves.at(0).trajectory.duration();
+  const MotionOutline part = outline_of(plan, begin + 0.1);
+  EXPECT_EQ(part.postures.back(), plan.moves.at(1).trajectory.at(0.1).q);
+  EXPECT_LT(part.postures.size(), whole.postures.size());
+  EXPECT_EQ(part.marks_W.size(), whole.marks_W.size()) << "all that is planned is drawn";
+}
+
 }  // namespace
 }  // namespace mjarm::session

@@ -23,6 +23,7 @@ bool is_ascii(std::string_view text) noexcept {
 struct GlyphFont::Gl {
   unsigned texture = 0;
   decltype(&glGenTextures) gen_textures = nullptr;
+  decltype(&glActiveTexture) active_texture = nullptr;
   decltype(&glBindTexture) bind_texture = nullptr;
   decltype(&glTexParameteri) tex_parameter = nullptr;
   decltype(&glTexImage2D) tex_image = nullptr;
@@ -52,6 +53,7 @@ struct GlyphFont::Gl {
       all = all && target != nullptr;
     };
     find(gen_textures, "glGenTextures");
+    find(active_texture, "glActiveTexture");
     find(bind_texture, "glBindTexture");
     find(tex_parameter, "glTexParameteri");
     find(tex_image, "glTexImage2D");
@@ -76,6 +78,7 @@ struct GlyphFont::Gl {
     return all;
   }
   void make_texture(int side) {
+    active_texture(GL_TEXTURE0);  // MuJoCo may have left another one in use
     gen_textures(1, &texture);
     bind_texture(GL_TEXTURE_2D, texture);
     tex_parameter(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
@@ -85,6 +88,9 @@ struct GlyphFont::Gl {
   /// For texts in pixels of the window; `pop_attrib` ends it.
   void set_state(const PixelBox& window, const PixelBox& box, const float rgb[3]) const {
     push_attrib(GL_ALL_ATTRIB_BITS);
+    active_texture(GL_TEXTURE1);  // of shadows
+    disable(GL_TEXTURE_2D);
+    active_texture(GL_TEXTURE0);
     for (const unsigned what : {GL_DEPTH_TEST, GL_CULL_FACE, GL_LIGHTING, GL_COLOR_MATERIAL,
                                 GL_TEXTURE_GEN_S, GL_TEXTURE_GEN_T, GL_TEXTURE_CUBE_MAP, GL_FOG}) {
       disable(what);

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -124,8 +125,10 @@ Result<std::string> program_picture(const RobotChoice& chosen, const PictureRequ
   Result<render::Camera> camera = choose_camera(robot.model, wanted.camera);
   if (!camera) return fail(camera.error());
   if (wanted.camera.empty()) {
-    camera->view = session::motion_view(robot.model, robot.arm, session::outline_of(loaded->plan),
-                                        wanted.video, 1.0 * wanted.width / wanted.height);
+    constexpr double kWhole = std::numeric_limits<double>::infinity();
+    const auto outline = session::outline_of(loaded->plan, wanted.seconds.value_or(kWhole));
+    camera->view = session::motion_view(robot.model, robot.arm, outline, wanted.video,
+                                        1.0 * wanted.width / wanted.height);
   }
   return session::render_program(*loaded, wanted, *camera, wanted.seconds);
 }
