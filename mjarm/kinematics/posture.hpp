@@ -12,10 +12,10 @@ namespace mjarm {
 
 /// What makes one of several postures better, as weights >= 0. Every default is usable as is.
 struct PostureWeights {
-  double clearance = 4;           ///< of nothing left; falls to 0 at `enough_clearance`
-  double middle = 2;              ///< of a joint at its limit, over the number of joints
-  double elbow = 1;               ///< of an elbow below the line from the shoulder to the wrist
-  double travel = 0.5;            ///< of a joint's way of pi rad or 1 m from where the arm is
+  double clearance = 4;            ///< of nothing left; falls to 0 at `enough_clearance`
+  double middle = 2;               ///< of a joint at its limit, over the number of joints
+  double elbow = 1;                ///< of an elbow below the line from the shoulder to the wrist
+  double travel = 0.5;             ///< of a joint's way of pi rad or 1 m from where the arm is
   double enough_clearance = 0.05;  ///< [m] > 0
 };
 
