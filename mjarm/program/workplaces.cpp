@@ -17,7 +17,7 @@ constexpr double kRestDepth = 1e-3;
 constexpr double kCarryingShare = 0.3;
 /// [m] What is carried keeps so far from things, where a path with it can be had: it moves a little
 /// in the fingers.
-constexpr double kCarryingMargin = 0.01;
+constexpr double kCarryingMargin = 0.005;
 
 /// All that is in a scene, byte by byte.
 std::string key_of(const SceneState& scene) {
