@@ -138,7 +138,7 @@ TEST_F(Render, ModelsOfEveryKind) {
 TEST_F(Render, TheEndOfAProgramWithPathAndTrail) {
   const auto program = folder_.write("cell.yaml", kRenderedProgram).string();
   const std::vector<std::string> how = {"--size", "320x180", "--camera",
-                                        "-90deg,-30deg,1.2,0,-0.45,0.4"};
+                                        "90deg,-30deg,1.2,0,-0.45,0.4"};
   const auto with = [&how](std::vector<std::string> words) {
     words.insert(words.end(), how.begin(), how.end());
     return words;
