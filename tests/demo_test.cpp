@@ -213,12 +213,6 @@ TEST(DemoMovel, TutorialsFollowerSaysWhatItWaitsForInsteadOfHanging) {
   EXPECT_LT(run.report["coverage"].get<double>(), 1.0);
 }
 
-TEST(DemoUr5e, WarnsThatTheStartIsBelowTheFloor) {
-  const TempFolder folder;
-  const DemoRun run = run_demo(folder, {"ur5e"});
-  EXPECT_NE(run.result.err.find("-0.141"), std::string::npos) << run.result.err;
-}
-
 TEST(DemoLetters, WritesOtherTexts) {
   const TempFolder folder;
   const DemoRun run = run_demo(folder, {"letters", "--text", "HI 5"});
