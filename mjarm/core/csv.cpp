@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mjarm/core/trim.hpp"
+
 namespace mjarm {
 namespace {
 
@@ -27,11 +29,7 @@ std::string take_quoted(std::string_view& rest) {
   return field;
 }
 
-std::string_view without_blanks(std::string_view words) {
-  const std::size_t first = words.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return words.substr(first, words.find_last_not_of(" \t") - first + 1);
-}
+constexpr std::string_view kBlanks = " \t";
 
 }  // namespace
 
@@ -47,12 +45,12 @@ std::vector<std::string> csv_fields(std::string_view line) {
   if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   std::vector<std::string> fields;
   for (;;) {
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
     if (line.starts_with('"')) {
-      fields.emplace_back(without_blanks(take_quoted(line)));
+      fields.emplace_back(trimmed(take_quoted(line), kBlanks));
     } else {
       const std::size_t comma = std::min(line.find(','), line.size());
-      fields.emplace_back(without_blanks(line.substr(0, comma)));
+      fields.emplace_back(trimmed(line.substr(0, comma), kBlanks));
       line.remove_prefix(comma);
     }
     if (line.empty()) return fields;

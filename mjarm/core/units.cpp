@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/trim.hpp"
 
 namespace mjarm {
 namespace {
@@ -36,13 +37,6 @@ std::span<const Unit> units_of(Quantity quantity) {
       break;
   }
   return {};
-}
-
-std::string_view trimmed(std::string_view words) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const std::size_t first = words.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return words.substr(first, words.find_last_not_of(kBlank) - first + 1);
 }
 
 /// "rad, mrad, deg", for the message.

@@ -9,6 +9,7 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/trim.hpp"
 
 namespace mjarm::install {
 namespace {
@@ -18,15 +19,11 @@ using Values = std::map<std::string, std::string>;
 
 std::string variable(const std::string& name) { return environment(name).value_or(""); }
 
-std::string_view trimmed(std::string_view words) {
-  const std::size_t first = words.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return words.substr(first, words.find_last_not_of(" \t\r") - first + 1);
-}
+constexpr std::string_view kBlanks = " \t\r";
 
 /// `Index_URL` and `index-url` are one key.
 std::string key_of(std::string_view written) {
-  std::string key(trimmed(written));
+  std::string key(trimmed(written, kBlanks));
   std::transform(key.begin(), key.end(), key.begin(), [](char c) {
     if (c == '_') return '-';
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
@@ -42,12 +39,12 @@ void add_file(const fs::path& file, Values& values) {
     std::istringstream lines(*content);
     bool inside = false;
     for (std::string line; std::getline(lines, line);) {
-      const std::string_view words = trimmed(line);
+      const std::string_view words = trimmed(line, kBlanks);
       if (words.empty() || words.front() == '#' || words.front() == ';') continue;
       if (words.front() == '[') inside = words == wanted;
       const std::size_t equals = words.find_first_of("=:");
       if (inside && equals != std::string_view::npos) {
-        values[key_of(words.substr(0, equals))] = trimmed(words.substr(equals + 1));
+        values[key_of(words.substr(0, equals))] = trimmed(words.substr(equals + 1), kBlanks);
       }
     }
   }

@@ -6,12 +6,14 @@
 
 #include "mjarm/core/messages/kinematics.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/trim.hpp"
 #include "mjarm/kinematics/bend_internal.hpp"
 #include "mjarm/kinematics/ik.hpp"
 
 namespace mjarm {
 namespace {
 
+constexpr std::string_view kBlank = " ";
 constexpr std::string_view kPartNames[] = {"shoulder", "elbow", "wrist"};
 constexpr std::string_view kWayNames[][2] = {
     {"left", "right"}, {"up", "down"}, {"no_flip", "flip"}};
@@ -23,12 +25,6 @@ Result<int> index_of(std::string_view word, std::span<const std::string_view> wo
   const std::vector<std::string> known(words.begin(), words.end());
   return fail(Errc::bad_input,
               text(msg::kinematics_branch_word, word, listed(known)) + did_you_mean(word, known));
-}
-
-std::string_view trimmed(std::string_view word) {
-  while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
-  while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
-  return word;
 }
 
 }  // namespace
@@ -48,8 +44,9 @@ Result<void> set_way(Branch& branch, std::string_view part, std::string_view way
   const Result<int> index = index_of(part, kPartNames);
   if (!index) return fail(index.error());
   const Result<int> chosen = index_of(way, kWayNames[*index]);
-  if (!chosen)
+  if (!chosen) {
     return fail(Errc::bad_input, text(msg::kinematics_branch_in, part, chosen.error().what));
+  }
   branch.way[static_cast<std::size_t>(*index)] = *chosen;
   return {};
 }
@@ -58,7 +55,7 @@ Result<Branch> parse_branch(std::string_view words) {
   Branch out;
   for (bool more = true; more;) {
     const std::size_t comma = words.find(',');
-    const std::string_view one = trimmed(words.substr(0, comma));
+    const std::string_view one = trimmed(words.substr(0, comma), kBlank);
     more = comma != std::string_view::npos;
     if (more) words.remove_prefix(comma + 1);
     const std::size_t equals = one.find('=');
@@ -66,8 +63,8 @@ Result<Branch> parse_branch(std::string_view words) {
       return fail(Errc::bad_input, text(msg::kinematics_branch_form, one));
     }
     const Branch before = out;
-    const std::string_view part = trimmed(one.substr(0, equals));
-    Result<void> set = set_way(out, part, trimmed(one.substr(equals + 1)));
+    const std::string_view part = trimmed(one.substr(0, equals), kBlank);
+    Result<void> set = set_way(out, part, trimmed(one.substr(equals + 1), kBlank));
     if (!set) return fail(std::move(set.error()));
     for (std::size_t k = 0; k < before.way.size(); ++k) {
       if (before.way[k] >= 0 && part == kPartNames[k]) {
