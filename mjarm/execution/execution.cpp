@@ -39,10 +39,10 @@ void Execution::restart() {
   watch_.restart();
 }
 
-void Execution::begin_motion(Sim& sim, std::size_t move) {
+void Execution::begin_motion(Sim& sim, std::size_t move, double from) {
   controller_.restart();
   stepper_.emplace(sim, plan_->arms.front());
-  motions_.push_back({.move = move, .from = sim.time(), .to = sim.time(), .outcome = {}});
+  motions_.push_back({.move = move, .from = from, .to = from, .outcome = {}});
 }
 
 /// Notes down how the current motion went so far.
@@ -57,6 +57,11 @@ void Execution::take_measures(const Sim& sim) {
   motions_.back().outcome.first_contact = here ? contact : std::nullopt;
 }
 
+void Execution::end_motion(const Sim& sim) {
+  motions_.back().outcome.reached = 1;
+  take_measures(sim);
+}
+
 MotionClock::Step Execution::next(Sim& sim) {
   MotionClock::Step step = clock_.next();
   if (step.close) {
@@ -69,7 +74,10 @@ MotionClock::Step Execution::next(Sim& sim) {
 Result<void> Execution::step(Sim& sim) { return make_step(sim, next(sim)); }
 
 Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
-  if (step.begins) begin_motion(sim, step.motion);
+  if (step.passes) end_motion(sim);
+  // A motion that was passed ends within the step.
+  const double passed = step.passes ? sim.model().timestep() - clock_.time() : 0;
+  if (step.begins) begin_motion(sim, step.motion, sim.time() + passed);
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
   if (step.begins && motions_.size() == 1) watch_.look(sim, step.motion);
   if (auto stepped = stepper_->step(sim, controller_, step.reference, recorder_); !stepped) {
@@ -79,8 +87,7 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
   if (step.ends) {
     const std::size_t all = plan_->moves.size();
     if (step.motion + 1 == all) watch_.look(sim, all);
-    motions_.back().outcome.reached = 1;
-    take_measures(sim);
+    end_motion(sim);
   }
   return {};
 }

@@ -81,7 +81,8 @@ class Execution {
   /// What the next step is; the gripper is told what it has to do from then on.
   [[nodiscard]] MotionClock::Step next(Sim& sim);
   [[nodiscard]] Result<void> make_step(Sim& sim, const MotionClock::Step& step);
-  void begin_motion(Sim& sim, std::size_t move);
+  void begin_motion(Sim& sim, std::size_t move, double from);
+  void end_motion(const Sim& sim);
   void take_measures(const Sim& sim);
 
   const MotionPlan* plan_;

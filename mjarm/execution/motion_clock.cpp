@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace mjarm {
+namespace {
+
+constexpr double kWhole = 1e-9;  // [steps] more than a whole number is rounding
+
+}  // namespace
 
 MotionClock::MotionClock(const MotionPlan& plan, double timestep, double rest_at_end)
     : plan_(&plan), timestep_(timestep), rest_at_end_(rest_at_end) {
@@ -47,12 +52,17 @@ MotionClock::State MotionClock::state() const noexcept {
 
 double MotionClock::steps_of(std::size_t motion) const {
   const double rest = motion + 1 == plan_->moves.size() ? rest_at_end_ : 0;
-  return std::ceil((plan_->moves[motion].trajectory.duration() + rest) / timestep_ - 1e-9);
+  const PlannedMove& move = plan_->moves[motion];
+  const double steps = (move.trajectory.duration() + rest) / timestep_;
+  return move.passes ? steps : std::ceil(steps - kWhole);
 }
 
 double MotionClock::duration() const {
   double steps = 0;
-  for (std::size_t i = 0; i < plan_->moves.size(); ++i) steps += steps_of(i);
+  for (std::size_t i = 0; i < plan_->moves.size(); ++i) {
+    steps += steps_of(i);
+    if (!plan_->moves[i].passes) steps = std::ceil(steps - kWhole);
+  }
   return steps * timestep_;
 }
 
@@ -77,6 +87,16 @@ void MotionClock::end_motion() {
   pace_ = going_ ? kBrakeSteps : 0;
 }
 
+/// Goes over into the next motion where this one is passed, between two steps.
+void MotionClock::pass_on(Step& step) {
+  while (plan_->moves[motion_].passes && at_ > steps_of(motion_)) {
+    at_ -= steps_of(motion_);
+    ++motion_;
+    step.begins = step.passes = true;
+    step.motion = motion_;
+  }
+}
+
 MotionClock::Step MotionClock::next() {
   Step step;
   begin_motion(step);
@@ -87,13 +107,15 @@ MotionClock::Step MotionClock::next() {
     pace_ = std::clamp(pace_ + (going_ ? 1 : -1), 0, kBrakeSteps);
     const double share = static_cast<double>(pace_) / kBrakeSteps;
     // The speed of time along a cubic: its own rate does not jump either.
-    at_ = std::min(at_ + share * share * (3 - 2 * share), steps_of(motion_));
+    at_ += share * share * (3 - 2 * share);
+    pass_on(step);
+    at_ = std::min(at_, steps_of(motion_));
     q = plan_->moves[motion_].trajectory.at(at_ * timestep_).q;
   }
   step.reference = {before_, now_, q};
   before_ = now_;
   now_ = q;
-  step.ends = step.moves && at_ == steps_of(motion_);
+  step.ends = step.moves && at_ == steps_of(motion_) && !plan_->moves[motion_].passes;
   if (step.ends) end_motion();
   return step;
 }

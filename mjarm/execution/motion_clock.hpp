@@ -14,7 +14,7 @@ inline constexpr double kRestAtEnd = 0.5;
 /// The time of a plan: goes along its motions, step by step of a simulation, and can be stopped
 /// anywhere: it is slowed down to rest within `kBrakeSteps`, and taken up again in the same way, so
 /// the arm stays on its path and neither its place nor its speed ever jumps. Where nobody stops,
-/// each motion is met on its own grid of time steps. Knows no simulation.
+/// each motion that begins at rest is met on its own grid of time steps. Knows no simulation.
 class MotionClock {
  public:
   enum class State {
@@ -34,7 +34,7 @@ class MotionClock {
 
   /// Goes on to the end of all motions.
   void run();
-  /// Goes on to the end of the current motion.
+  /// Goes on to the end of the current motion; of one that passes, to where the arm next stops.
   void run_one();
   void stop();
   /// Is back at the start.
@@ -46,6 +46,7 @@ class MotionClock {
     std::size_t motion = 0;          ///< whose step it is; where it stands, as motion()
     bool moves = false;              ///< along that motion; else the arm is held where it is
     bool begins = false;             ///< it is the first one of that motion
+    bool passes = false;             ///< and the motion before was passed without a stop
     bool ends = false;               ///< it is the last one
     std::optional<bool> close = {};  ///< the gripper closes or opens at its beginning
   };
@@ -60,7 +61,8 @@ class MotionClock {
   [[nodiscard]] double time() const noexcept { return at_ * timestep_; }
   /// Where the arm should be now, (dof,) [rad or m].
   [[nodiscard]] const JointVec& q_ref() const noexcept { return now_; }
-  /// Steps that a motion takes where nobody stops; the last one rests at its end.
+  /// Steps that a motion takes where nobody stops; the last one rests at its end. Whole but where a
+  /// motion passes.
   [[nodiscard]] double steps_of(std::size_t motion) const;
   /// [s] of all motions.
   [[nodiscard]] double duration() const;
@@ -70,12 +72,13 @@ class MotionClock {
   void set_out(bool one);
   void begin_motion(Step& step);
   void end_motion();
+  void pass_on(Step& step);
 
   const MotionPlan* plan_;
   double timestep_;
   double rest_at_end_;
   std::size_t motion_ = 0;
-  double at_ = 0;       ///< [steps] of the current motion; whole where nobody stopped
+  double at_ = 0;       ///< [steps] of the current motion; whole where nobody stopped or passed
   int pace_ = 0;        ///< from 0 at rest to kBrakeSteps at full speed
   bool going_ = false;  ///< the user wants it to move
   bool one_ = false;    ///< to the end of this motion only

@@ -191,5 +191,85 @@ TEST(MotionClock, APlanWithoutMotionsIsDone) {
   EXPECT_EQ(clock.duration(), 0);
 }
 
+/// One swing in two motions, cut between two steps where it is fast, and a joint move after it.
+MotionPlan passing() {
+  const JointVec from = two(0, 0), middle = two(0.4, -0.3), to = two(1, -0.5);
+  const JointState fast{middle, two(0.9, -0.5), two(0.3, 0.2)};
+  MotionPlan plan = there_and_on();
+  plan.moves.erase(plan.moves.begin());
+  PlannedMove first = joint_move(from, from), second = first;
+  first.trajectory = Trajectory::through({0, 0.7007}, {JointState::at_rest(from), fast}).value();
+  first.passes = true;
+  second.trajectory = Trajectory::through({0, 1.0}, {fast, JointState::at_rest(to)}).value();
+  plan.moves.insert(plan.moves.begin(), {first, second});
+  return plan;
+}
+
+/// [rad/s^2] of the reference, by its second differences: far more where its speed jumps.
+double largest_acceleration(const std::vector<JointVec>& q) {
+  double largest = 0;
+  for (std::size_t i = 2; i < q.size(); ++i) {
+    const JointVec a = (q[i] - 2 * q[i - 1] + q[i - 2]) / (kTick * kTick);
+    largest = std::max(largest, a.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+TEST(MotionClock, PassesIntoTheNextMotionWithoutAJump) {
+  const MotionPlan plan = passing();
+  MotionClock clock(plan, kTick, 0);
+  clock.run();
+  std::vector<JointVec> q{plan.q_start, plan.q_start};
+  std::vector<std::size_t> begun, ended;
+  int passed = 0;
+  while (clock.state() == State::running) {
+    const MotionClock::Step step = clock.next();
+    q.push_back(step.reference.next);
+    if (step.begins) begun.push_back(step.motion);
+    if (step.ends) ended.push_back(step.motion);
+    if (!step.passes) continue;
+    ++passed;
+    // 0.7007 s are 350.35 steps: this one is 0.65 steps into the second motion.
+    EXPECT_EQ(step.motion, 1U);
+    EXPECT_LT((q.back() - plan.moves[1].trajectory.at(0.65 * kTick).q).norm(), 1e-12);
+  }
+  EXPECT_EQ(passed, 1);
+  EXPECT_EQ(begun, (std::vector<std::size_t>{0, 1, 3}));
+  EXPECT_EQ(ended, (std::vector<std::size_t>{1, 3}));
+  EXPECT_LT(largest_acceleration(q), 20);
+  const auto steps = static_cast<double>(q.size() - 2);
+  EXPECT_NEAR(clock.duration(), steps * kTick, 1e-12);
+}
+
+TEST(MotionClock, OneMotionGoesOnWhereItPasses) {
+  const MotionPlan plan = passing();
+  MotionClock clock(plan, kTick, 0);
+  clock.run_one();
+  finish(clock);
+  EXPECT_EQ(clock.motion(), 2U);
+  EXPECT_LT((clock.q_ref() - two(1, -0.5)).norm(), 1e-12);
+}
+
+/// Wherever it is stopped, before, at or after the goal that is passed.
+TEST(MotionClock, StopsAndGoesOnRoundAGoalThatIsPassed) {
+  const MotionPlan plan = passing();
+  for (int stop_after = 90; stop_after < 480; stop_after += 30) {
+    MotionClock clock(plan, kTick, 0);
+    std::vector<JointVec> q{plan.q_start, plan.q_start};
+    clock.run();
+    for (int i = 0; i < stop_after; ++i) q.push_back(clock.next().reference.next);
+    clock.stop();
+    for (int i = 0; i < 2 * MotionClock::kBrakeSteps; ++i) {
+      q.push_back(clock.next().reference.next);
+    }
+    EXPECT_EQ(clock.state(), State::stopped);
+    clock.run();
+    finish(clock, &q);
+    EXPECT_EQ(clock.state(), State::done);
+    EXPECT_LT((q.back() - two(-0.3, 2)).norm(), 1e-12);
+    EXPECT_LT(largest_acceleration(q), 30) << stop_after;
+  }
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -52,6 +52,7 @@ struct PlannedMove {
   std::vector<JointVec> corners = {};
   std::vector<std::size_t> passed = {};  ///< of `corners`, by index: goals that are met on the way
   std::optional<double> stopping = {};   ///< [s] what it would take to stop at every corner
+  bool passes = false;                   ///< ends moving, as the next one begins: no stop
   std::optional<bool> close = {};        ///< the gripper closes or opens at its beginning
   std::vector<AttachedBody> attached = {};    ///< to the first arm's tool, at its end
   std::vector<SpeedDip> dips = {};            ///< where the tool is slower than asked
@@ -64,7 +65,8 @@ struct PlannedMove {
 /// between the curves of a plan, as with a pen that is lifted; or what the plan is about.
 enum class MotionPart { approach, travel, work };
 
-/// Motions that follow each other, each from rest to rest: what an Execution executes.
+/// Motions that follow each other, from rest to rest but where one passes into the next: what an
+/// Execution executes.
 struct MotionPlan {
   std::vector<Arm> arms;           ///< the arm with each tool that is used, at least one
   JointVec q_start;                ///< [rad or m] (dof,) where it begins

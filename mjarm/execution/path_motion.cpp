@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/path/joint_polyline.hpp"
+#include "mjarm/trajectory/at_speed.hpp"
 #include "mjarm/trajectory/path_timing.hpp"
+#include "mjarm/trajectory/point_to_point.hpp"
 #include "mjarm/trajectory/via_points.hpp"
 
 namespace mjarm {
@@ -27,6 +30,19 @@ struct LedMotion {
   std::vector<char> fixed;  ///< of each point: it must be met
 };
 
+/// A motion in pieces whose chords no joint leaves by more than kSag.
+std::vector<JointVec> sampled(const Trajectory& motion, const JointLimits& limits) {
+  const double step = std::sqrt(8 * kSag / limits.acceleration.maxCoeff());
+  const std::size_t count = static_cast<std::size_t>(motion.duration() / step) + 2;
+  std::vector<JointVec> way;
+  way.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    way.push_back(motion.at(share * motion.duration()).q);
+  }
+  return way;
+}
+
 class MotionSearch {
  public:
   MotionSearch(std::span<const JointVec> corners, const JointLimits& limits,
@@ -44,12 +60,10 @@ class MotionSearch {
     out.stopping = out.trajectory.duration();
     if (corners_.size() <= 2) return out;
     keep(round_corners(), out.trajectory);
-    std::optional<LedMotion> led = pull_out(), other = swing_round();
-    if (!led || (other && other->trajectory.duration() < led->trajectory.duration())) {
-      led = std::move(other);
+    if (std::optional<LedMotion> led = swing_round_fewer()) {
+      improve(*led);
+      keep(std::move(led->trajectory), out.trajectory);
     }
-    if (led) improve(*led);
-    if (led) keep(std::move(led->trajectory), out.trajectory);
     return out;
   }
 
@@ -70,22 +84,9 @@ class MotionSearch {
     return Trajectory::chain(edges);
   }
 
-  /// A motion in pieces whose chords no joint leaves by more than kSag.
-  std::size_t sampled_size(const Trajectory& motion) const {
-    const double step = std::sqrt(8 * kSag / limits_.acceleration.maxCoeff());
-    return static_cast<std::size_t>(motion.duration() / step) + 2;
+  bool is_proved(const Trajectory& motion) const {
+    return prover_.is_proved(sampled(motion, limits_));
   }
-  std::vector<JointVec> sampled(const Trajectory& motion) const {
-    const std::size_t count = sampled_size(motion);
-    std::vector<JointVec> way;
-    way.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-      way.push_back(motion.at(share * motion.duration()).q);
-    }
-    return way;
-  }
-  bool is_proved(const Trajectory& motion) const { return prover_.is_proved(sampled(motion)); }
 
   /// The widest blend of corner `i` that is proved free, 0: none.
   double blend_at(std::size_t i) const {
@@ -125,81 +126,90 @@ class MotionSearch {
     return std::move(*motion);
   }
 
-  /// Through what must be met alone, and through more points where that is not free: each is taken
-  /// from where the motion is in the way and moved towards the path just as far as it has to be.
-  std::optional<LedMotion> pull_out() const {
-    LedMotion led;
-    for (std::size_t i = 0; i < corners_.size(); ++i) {
-      if (fixed_[i] == 0) continue;
-      led.points.push_back(corners_[i]);
-      led.fixed.push_back(1);
-    }
-    for (int turn = 0; turn < kMaxTurns; ++turn) {
-      if (is_stopped(options_.stop)) return std::nullopt;
-      const std::optional<Blocked> blocked = lead(led);
-      if (!blocked) return led.trajectory.dof() > 0 ? std::optional(std::move(led)) : std::nullopt;
-      const JointVec q = led.trajectory.at(blocked->middle).q;
-      if (!add_point(blocked->after, beside(q), led)) return std::nullopt;
-    }
-    return std::nullopt;
-  }
-
-  /// Through the corners, free to swing out between them; where that is not free, through more
-  /// points of the edges.
-  std::optional<LedMotion> swing_round() const {
+  /// The fastest of motions led through all corners, and through ever fewer of them: those go that
+  /// are nearest to the straight way between their neighbours.
+  std::optional<LedMotion> swing_round_fewer() const {
+    constexpr int kFewLoose = 4;
     LedMotion led{{}, {corners_.begin(), corners_.end()}, fixed_};
-    for (int turn = 0; turn < kMaxTurns; ++turn) {
-      if (is_stopped(options_.stop)) return std::nullopt;
-      const std::optional<Blocked> blocked = lead(led);
-      if (!blocked) return led.trajectory.dof() > 0 ? std::optional(std::move(led)) : std::nullopt;
-      const JointVec middle = 0.5 * (led.points[blocked->after - 1] + led.points[blocked->after]);
-      if (!add_point(blocked->after, middle, led)) return std::nullopt;
+    std::optional<LedMotion> best = swing_round(led);
+    for (std::size_t i = flattest(led); i > 0; i = flattest(led)) {
+      remove_point(i, led);
+      if (std::ranges::count(led.fixed, 0) > kFewLoose) continue;
+      std::optional<LedMotion> other = swing_round(led);
+      const bool faster =
+          other && (!best || other->trajectory.duration() < best->trajectory.duration());
+      if (faster) best = std::move(other);
+    }
+    return best;
+  }
+
+  /// The point that need not be met and is nearest to the straight way between its neighbours; 0:
+  /// none is left.
+  static std::size_t flattest(const LedMotion& led) {
+    std::size_t out = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i + 1 < led.points.size(); ++i) {
+      if (led.fixed[i] != 0) continue;
+      const double off =
+          (nearest_on(led.points[i - 1], led.points[i + 1], led.points[i]) - led.points[i]).norm();
+      if (off >= least) continue;
+      least = off;
+      out = i;
+    }
+    return out;
+  }
+
+  /// The place of the edge from `a` to `b` that is nearest to `q`.
+  static JointVec nearest_on(const JointVec& a, const JointVec& b, const JointVec& q) {
+    const JointVec edge = b - a;
+    const double along = (q - a).dot(edge) / std::max(edge.squaredNorm(), 1e-18);
+    return a + std::clamp(along, 0.0, 1.0) * edge;
+  }
+
+  static void remove_point(std::size_t i, LedMotion& led) {
+    led.points.erase(led.points.begin() + static_cast<std::ptrdiff_t>(i));
+    led.fixed.erase(led.fixed.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+
+  /// Through the points, free to swing out between them; where that is not free, through more
+  /// points on the path.
+  std::optional<LedMotion> swing_round(LedMotion led) const {
+    for (int turn = 0; turn < kMaxTurns && !is_stopped(options_.stop); ++turn) {
+      const std::size_t i = lead(led);
+      if (led.trajectory.dof() == 0) return std::nullopt;
+      if (i == 0) return led;
+      const JointVec middle = on_path(0.5 * (led.points[i - 1] + led.points[i]));
+      if (!add_point(i, middle, led)) return std::nullopt;
     }
     return std::nullopt;
   }
 
-  /// Where a motion is not proved.
-  struct Blocked {
-    double middle = 0;      ///< [s] of the first stretch
-    std::size_t after = 1;  ///< the point that follows there
-  };
+  /// The place of the path that is nearest to `q`.
+  JointVec on_path(const JointVec& q) const {
+    JointVec nearest = corners_.front();
+    for (std::size_t i = 1; i < corners_.size(); ++i) {
+      const JointVec p = nearest_on(corners_[i - 1], corners_[i], q);
+      if ((p - q).norm() < (nearest - q).norm()) nearest = p;
+    }
+    return nearest;
+  }
 
   /// Times the motion through the points; an empty one where that fails.
-  /// @return where it is not proved, none: all of it is.
-  std::optional<Blocked> lead(LedMotion& led) const {
+  /// @return the point after the first stretch that is not proved; 0: all of it is.
+  std::size_t lead(LedMotion& led) const {
     led.trajectory = {};
     Result<ViaMotion> motion = time_via_points(led.points, limits_);
-    if (!motion) return std::nullopt;
+    if (!motion) return 0;
     led.trajectory = std::move(motion->trajectory);
-    const std::vector<JointVec> way = sampled(led.trajectory);
+    const std::vector<JointVec> way = sampled(led.trajectory, limits_);
     const std::size_t pieces = way.size() - 1, first = prover_.first_unproved(way);
-    if (first == pieces) return std::nullopt;
+    if (first == pieces) return 0;
     std::size_t last = first;
     while (last < pieces && !prover_.is_proved(std::span(way).subspan(last, 2))) ++last;
     const double share = 0.5 * static_cast<double>(first + last) / static_cast<double>(pieces);
     const double middle = share * led.trajectory.duration();
     const auto after = std::ranges::upper_bound(motion->times, middle) - motion->times.begin();
-    return Blocked{
-        middle, std::clamp<std::size_t>(static_cast<std::size_t>(after), 1, led.points.size() - 1)};
-  }
-
-  /// The point nearest to `q` that is free on the straight way from there to the path.
-  JointVec beside(const JointVec& q) const {
-    constexpr int kHalvings = 6;
-    JointVec nearest = corners_.front();
-    for (std::size_t i = 1; i < corners_.size(); ++i) {
-      const JointVec edge = corners_[i] - corners_[i - 1];
-      const double along = (q - corners_[i - 1]).dot(edge) / edge.squaredNorm();
-      const JointVec p = corners_[i - 1] + std::clamp(along, 0.0, 1.0) * edge;
-      if ((p - q).norm() < (nearest - q).norm()) nearest = p;
-    }
-    double blocked = 0, free = 1;
-    for (int k = 0; k < kHalvings; ++k) {
-      const double share = 0.5 * (blocked + free);
-      const JointVec p = q + share * (nearest - q);
-      (prover_.is_proved(std::vector{p, p}) ? free : blocked) = share;
-    }
-    return q + free * (nearest - q);
+    return std::clamp<std::size_t>(static_cast<std::size_t>(after), 1, led.points.size() - 1);
   }
 
   /// False where there are too many points, or one is there already.
@@ -236,31 +246,36 @@ class MotionSearch {
     }
   }
 
-  /// Leaves out points and moves them at random; keeps what makes the motion faster.
+  /// Leaves out points, moves others at random, or the other way; keeps what makes the motion
+  /// faster.
   void improve(LedMotion& led) const {
     for (std::size_t i = led.points.size() - 1; i-- > 1;) {
-      if (led.fixed[i] == 0) leave_out(i, led);
-    }
-    add_helpers(led);
-    Rng rng(1, 9);
-    double step = kFirstMove;
-    for (int k = 0; k < options_.changes && !is_stopped(options_.stop); ++k) {
-      const auto i = static_cast<std::size_t>(rng.below(led.points.size()));
       if (led.fixed[i] != 0) continue;
       LedMotion changed = led;
+      remove_point(i, changed);
+      try_points(std::move(changed), led);
+    }
+    add_helpers(led);
+    if (std::ranges::count(led.fixed, 0) == 0) return;
+    Rng rng(1, 9);
+    double step = kFirstMove;
+    for (int k = 0; k < options_.changes && !is_stopped(options_.stop);) {
+      const auto i = static_cast<std::size_t>(rng.below(led.points.size()));
+      if (led.fixed[i] != 0) continue;
       JointVec way(led.points[i].size());
       for (double& x : way) x = rng.uniform() < 0.5 ? rng.normal() : 0.0;
-      changed.points[i] += way * (step / std::max(way.norm(), 1e-9));
-      step *= try_points(std::move(changed), led) ? kLonger : kShorter;
+      way *= step / std::max(way.norm(), 1e-9);
+      bool better = false;
+      for (const double side : {1.0, -1.0}) {
+        if (better) continue;
+        LedMotion changed = led;
+        changed.points[i] += side * way;
+        ++k;
+        better = try_points(std::move(changed), led);
+      }
+      step *= better ? kLonger : kShorter;
       if (step < kLastMove || step > kFirstMove) step = kFirstMove;
     }
-  }
-
-  void leave_out(std::size_t i, LedMotion& led) const {
-    LedMotion changed = led;
-    changed.points.erase(changed.points.begin() + static_cast<std::ptrdiff_t>(i));
-    changed.fixed.erase(changed.fixed.begin() + static_cast<std::ptrdiff_t>(i));
-    try_points(std::move(changed), led);
   }
 
   std::span<const JointVec> corners_;
@@ -275,6 +290,32 @@ class MotionSearch {
 Result<PathMotion> time_path(std::span<const JointVec> corners, const JointLimits& limits,
                              const WayProver& prover, const PathMotionOptions& options) {
   return MotionSearch(corners, limits, prover, options).run();
+}
+
+std::optional<Trajectory> lead_into(const Trajectory& motion, const JointState& end,
+                                    const JointLimits& limits, const WayProver& prover) {
+  constexpr int kTails = 30;
+  constexpr double kTail = 0.05;  // [s] from one to the next longer one
+  struct Led {
+    double first;  // [s] of the motion that stay
+    Trajectory tail;
+    double duration() const { return first + tail.duration(); }
+  };
+  std::vector<Led> ways;
+  for (int i = 1; i <= kTails && i * kTail < motion.duration(); ++i) {
+    const double first = motion.duration() - i * kTail;
+    auto tail = point_to_point(motion.at(first), end, limits);
+    if (tail && first + tail->duration() < motion.duration()) ways.push_back({first, *tail});
+  }
+  std::ranges::stable_sort(ways, {}, &Led::duration);
+  for (const Led& way : ways) {
+    if (!prover.is_proved(sampled(way.tail, limits))) continue;
+    const Result<Trajectory> front = part_of(motion, 0, way.first);
+    if (!front) continue;
+    Result<Trajectory> whole = Trajectory::chain(std::vector{*front, way.tail});
+    if (whole) return std::move(*whole);
+  }
+  return std::nullopt;
 }
 
 }  // namespace mjarm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,5 +36,14 @@ struct PathMotionOptions {
 [[nodiscard]] Result<PathMotion> time_path(std::span<const JointVec> corners,
                                            const JointLimits& limits, const WayProver& prover,
                                            const PathMotionOptions& options = {});
+
+/// The same motion, but for its last part, which goes over into a state that moves instead of to
+/// rest: the shortest of those that are proved free, within the limits.
+/// @param motion  of time_path(), by the same limits and prover.
+/// @param end     where the motion ends, with the velocity and acceleration to have there.
+/// @return none where that is not proved, or no faster.
+[[nodiscard]] std::optional<Trajectory> lead_into(const Trajectory& motion, const JointState& end,
+                                                  const JointLimits& limits,
+                                                  const WayProver& prover);
 
 }  // namespace mjarm

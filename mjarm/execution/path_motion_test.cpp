@@ -136,5 +136,27 @@ TEST_F(PathMotionTest, SameMotionEveryTimeAndRestsWhereItIs) {
   EXPECT_EQ(still.stopping, 0);
 }
 
+TEST_F(PathMotionTest, LeadsIntoAStateThatMoves) {
+  const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.3), 0.01);
+  const Trajectory rest = timed(path.q, {&path, 1}).trajectory;
+  const WayProver prover = world_.prover({&path, 1}).value();
+  const JointState end{at(0.4, 0.3), at(0.3, -0.2), at(0, 0)};
+  const auto moving = lead_into(rest, end, limits_, prover);
+  ASSERT_TRUE(moving);
+  EXPECT_LT(moving->duration(), rest.duration());
+  const JointState last = moving->at(moving->duration());
+  EXPECT_LT((last.q - end.q).norm(), 1e-9);
+  EXPECT_LT((last.v - end.v).norm(), 1e-9);
+  EXPECT_LT((last.a - end.a).norm(), 1e-9);
+  EXPECT_GE(least_clearance(*moving), 0.01 - 1e-5);
+  expect_limits(*moving);
+  // Faster than a joint may be, and back into the fence from beside it.
+  EXPECT_FALSE(lead_into(rest, {at(0.4, 0.3), at(1.3, 0), at(0, 0)}, limits_, prover));
+  const WorldPath beside = planned(at(0.4, 0.3), at(0.032, 0.1), 0.001);
+  const Trajectory up_to = timed(beside.q, {&beside, 1}).trajectory;
+  EXPECT_FALSE(lead_into(up_to, {at(0.032, 0.1), at(0.5, 0), at(0, 0)}, limits_,
+                         world_.prover({&beside, 1}).value()));
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -35,4 +35,13 @@ void DetourChain::add(std::size_t i, const Step& step, WorldPath path, DetourPla
   added.erase(added.begin());
 }
 
+bool DetourChain::pass_into(const JointState& begin, DetourPlanner& planner,
+                            PlannedMove& move) const {
+  MoveMeasures measures;
+  if (!planner.lead_into(begin, paths_, share_, move.trajectory, measures)) return false;
+  move.measures = std::move(measures);
+  move.passes = true;
+  return true;
+}
+
 }  // namespace mjarm::program::detail

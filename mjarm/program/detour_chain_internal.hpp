@@ -22,6 +22,11 @@ class DetourChain {
   void add(std::size_t i, const Step& step, WorldPath path, DetourPlanner& planner,
            std::vector<PlannedMove>& moves, std::vector<PlannedMove>& added);
 
+  /// The motion that was added last passes into a move that begins in that state, where it can.
+  /// @return whether `move`, which is that motion, was changed.
+  [[nodiscard]] bool pass_into(const JointState& begin, DetourPlanner& planner,
+                               PlannedMove& move) const;
+
  private:
   std::size_t next_ = 0;  // the step that may go on with it
   std::size_t tool_ = 0;

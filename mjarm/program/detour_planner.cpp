@@ -128,10 +128,29 @@ Result<std::vector<JointVec>, DetourFault> DetourPlanner::goals(const JointVec& 
   return std::vector<JointVec>{goal};
 }
 
-Result<DetourMotion, DetourFault> DetourPlanner::timed(std::vector<WorldPath> paths, double share) {
+JointLimits DetourPlanner::limits_at(double share) const {
   JointLimits limits = robot_.arm.limits;
   limits.velocity *= share;
   limits.acceleration *= share;
+  return limits;
+}
+
+bool DetourPlanner::lead_into(const JointState& end, std::span<const WorldPath> paths, double share,
+                              Trajectory& motion, MoveMeasures& measures) {
+  const JointLimits limits = limits_at(share);
+  const Result<WayProver> prover = world_->prover(paths, stop_);
+  if (!prover) return false;
+  std::optional<Trajectory> led = mjarm::lead_into(motion, end, limits, *prover);
+  if (!led) return false;
+  MoveMeasures found = judge_.measure(ik_, sampled(*led, limits));
+  if (MoveJudge::touches(found)) return false;
+  motion = std::move(*led);
+  measures = std::move(found);
+  return true;
+}
+
+Result<DetourMotion, DetourFault> DetourPlanner::timed(std::vector<WorldPath> paths, double share) {
+  const JointLimits limits = limits_at(share);
   const Result<WayProver> prover = world_->prover(paths, stop_);
   if (!prover) return no_detour("bad_input", prover.error().what);
   Corners corners = corners_of(paths);

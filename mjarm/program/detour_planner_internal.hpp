@@ -67,10 +67,16 @@ class DetourPlanner {
   /// One motion along paths of plan() that follow each other, at least one.
   [[nodiscard]] Result<DetourMotion, DetourFault> timed(std::vector<WorldPath> paths, double share);
 
+  /// A motion of timed(), led over into a state that moves instead of to rest.
+  /// @return false where that is not free or no faster; then nothing changes.
+  [[nodiscard]] bool lead_into(const JointState& end, std::span<const WorldPath> paths,
+                               double share, Trajectory& motion, MoveMeasures& measures);
+
   /// [m] that is kept where it can be.
   [[nodiscard]] double margin() const { return margin_; }
 
  private:
+  [[nodiscard]] JointLimits limits_at(double share) const;
   [[nodiscard]] std::optional<std::string> touches(const JointVec& q) const;
   /// What touches in the answer to a pose that touches least.
   [[nodiscard]] std::optional<std::string> least_touch(const JointVec& q, const Pose& X_WT) const;

@@ -202,6 +202,43 @@ TEST(DetourPlanner, OneAfterAnotherPassesTheGoalBetweenThemWithoutAStop) {
   }
 }
 
+/// Down from where the way round ends, at the speed that is asked for.
+TEST(DetourPlanner, PassesItsGoalIntoTheStraightMoveAfterIt) {
+  const std::string down =
+      "  - movel: {pos: [-0.3, -0.45, 0.1], euler: [180deg, 0, 0], speed: 0.1}\n";
+  const ProgramPlan rests = walled_plan(stop_at(kBefore) + stop_at(kBehind) + down);
+  const ProgramPlan plan = walled_plan(stop_at(kBefore) + plan_to(kBehind) + down);
+  ASSERT_TRUE(rests.ok() && plan.ok()) << told(rests) << told(plan);
+  ASSERT_EQ(plan.moves.size(), 4U);
+  const PlannedMove &way = plan.moves[2], &line = plan.moves[3];
+  EXPECT_TRUE(way.passes);
+  EXPECT_FALSE(line.passes);
+  EXPECT_EQ(way.corners, rests.moves[2].corners);
+  expect_free(way);
+  EXPECT_GT(way.measures->clearance, 0);
+  // It meets the goal exactly, as fast and as fast changing as the line begins.
+  const JointState end = way.trajectory.at(way.trajectory.duration());
+  const JointState begin = line.trajectory.at(0);
+  EXPECT_LT((end.q - way.corners.back()).norm(), 1e-9);
+  EXPECT_LT((end.q - begin.q).norm(), 1e-9);
+  EXPECT_LT((end.v - begin.v).norm(), 1e-9);
+  EXPECT_LT((end.a - begin.a).norm(), 1e-9);
+  EXPECT_GT(begin.v.norm(), 0.1);
+  EXPECT_NEAR(line.trajectory.duration(), rests.moves[4].trajectory.duration() - 0.1, 0.01);
+  EXPECT_LT(way.trajectory.duration(), rests.moves[2].trajectory.duration());
+  ASSERT_TRUE(line.curve);
+  EXPECT_NEAR(line.curve->length(), 0.1, 1e-12);
+  // It stops where something happens there, and where the way after it is blended.
+  for (const char* const other :
+       {"  - wait: 0.1\n",
+        "  - movel: {pos: [-0.3, -0.45, 0.15], euler: [180deg, 0, 0], blend: 10mm}\n"
+        "  - movel: {pos: [-0.35, -0.45, 0.15], euler: [180deg, 0, 0]}\n"}) {
+    const ProgramPlan stops = walled_plan(stop_at(kBefore) + plan_to(kBehind) + other);
+    ASSERT_TRUE(stops.ok()) << told(stops);
+    EXPECT_TRUE(std::ranges::none_of(stops.moves, &PlannedMove::passes)) << other;
+  }
+}
+
 TEST(DetourPlanner, AClearanceThatCannotBeKeptIsAFaultWithWhatCan) {
   const ProgramPlan plan =
       walled_plan(stop_at(kBefore) +

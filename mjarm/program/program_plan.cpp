@@ -42,12 +42,14 @@ class ProgramPlanner {
       }
       Attempt attempt = planner_.from(i, at);
       if (is_stopped(options_.stop)) break;
+      const std::size_t moves = attempt.moves.size();
       if (attempt.detour) {
         const auto with = places_.tool(at.scene, steps_[i].tool);
         chain_.add(i, steps_[i], std::move(*attempt.detour), with->detours, plan_.moves,
                    attempt.moves);
       }
       std::ranges::move(attempt.moves, std::back_inserter(plan_.moves));
+      if (attempt.detour && attempt.next > i + 1) pass_goal(i, at.scene, moves - 1);
       i = attempt.next;
       at = std::move(attempt.at);
       if (!attempt.fault) continue;
@@ -109,6 +111,26 @@ class ProgramPlanner {
   std::optional<PathFix> find_fix(const PlanFault& fault, std::size_t scene) {
     if (!fault.way || !mended_.insert(steps_[fault.step].place).second) return std::nullopt;
     return detail::find_fix(places_.tool(scene, steps_[fault.step].tool)->ik, *fault.way);
+  }
+
+  /// Lets the detour of step `i` pass into the straight move after it, without a stop at its goal.
+  void pass_goal(std::size_t i, std::size_t scene, std::size_t moves_after) {
+    const Step &detour = steps_[i], &line = steps_[i + 1];
+    if (line.kind != Step::Kind::line || line.tool != detour.tool ||
+        detail::is_blended(steps_, i + 1)) {
+      return;
+    }
+    PlannedMove& way = *(plan_.moves.end() - static_cast<std::ptrdiff_t>(moves_after) - 1);
+    PlannedMove& after = *(&way + 1);
+    if (!after.curve) return;
+    Attempt fast = planner_.from(i + 1, {way.corners.back(), scene, true});
+    if (fast.fault || fast.moves.size() != 1) return;
+    Trajectory& motion = fast.moves.front().trajectory;
+    const auto with = places_.tool(scene, line.tool);
+    if (motion.duration() < after.trajectory.duration() &&
+        chain_.pass_into(motion.at(0), with->detours, way)) {
+      after = std::move(fast.moves.front());
+    }
   }
 
   /// What `plan` would do in the place of a move that something blocks; `at` is then where it ends.

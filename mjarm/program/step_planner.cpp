@@ -271,6 +271,7 @@ Attempt StepPlanner::along(std::size_t i, const Stand& at, const Curve& curve, b
     }
   }
   MotionOptions options = motion_options(steps_.subspan(i, count), curve, options_.tool_speed);
+  options.at_speed = at.passes;
   options.path.keep_start = here;
   options.path.best_posture = step.is_free && !here;
   options.path.stop = options_.stop;

@@ -24,6 +24,7 @@ namespace mjarm::program::detail {
 struct Stand {
   JointVec q;             ///< [rad or m] (dof,)
   std::size_t scene = 0;  ///< of Workplaces
+  bool passes = false;    ///< it need not stop there where a straight move follows
 };
 
 /// What can be asked of one tool while the scene stands as it does.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mjarm/path/solve_curve.hpp"
+#include "mjarm/trajectory/at_speed.hpp"
 
 namespace mjarm {
 namespace {
@@ -52,8 +53,8 @@ Result<ToolMotion, MotionFailure> plan_tool_motion(const IkSolver& ik, const Cur
     return fail(MotionFailure{std::move(failure), {}});
   };
   if (is_stopped(stop)) return ended();
-  Result<Trajectory> trajectory =
-      time_tool_path(*path, curve.corners(), ik.arm().limits, options.timing);
+  const auto timed = options.at_speed ? time_tool_path_at_speed : time_tool_path;
+  Result<Trajectory> trajectory = timed(*path, curve.corners(), ik.arm().limits, options.timing);
   if (!trajectory) return fail(MotionFailure{{}, std::move(trajectory.error())});
   ToolMotion motion{curve, std::move(*path), std::move(*trajectory), {}};
   if (is_stopped(stop)) return ended();

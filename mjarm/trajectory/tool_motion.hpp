@@ -26,6 +26,8 @@ struct MotionOptions {
   /// True: a motion on which the tool cannot keep `timing.tool_speed` is a failure; the branch is
   /// chosen so that it can. False: it slows down where it must, and `dips` tells where.
   bool keep_speed = false;
+  /// The tool is on its way already and begins at its speed (time_tool_path_at_speed()).
+  bool at_speed = false;
 };
 
 /// A curve, the joint values along it, and when each is met.

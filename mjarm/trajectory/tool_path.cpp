@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -8,6 +7,7 @@
 #include "mjarm/trajectory/limits_internal.hpp"
 #include "mjarm/trajectory/smooth_timing_internal.hpp"
 #include "mjarm/trajectory/spline_internal.hpp"
+#include "mjarm/trajectory/tool_path_internal.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
 
 namespace mjarm {
@@ -15,20 +15,6 @@ namespace {
 
 using detail::Bounds;
 using detail::CubicSpline;
-
-/// Index of the first waypoint that is not as it should be.
-std::optional<std::size_t> bad_waypoint(const JointPath& path) {
-  if (path.q.empty() || path.q.size() != path.s.size()) return 0;
-  const Eigen::Index dof = path.q[0].size();
-  for (std::size_t i = 0; i < path.q.size(); ++i) {
-    const bool ascends = i == 0 || path.s[i] > path.s[i - 1];
-    if (dof == 0 || path.q[i].size() != dof || !path.q[i].allFinite() ||
-        !std::isfinite(path.s[i]) || !ascends) {
-      return i;
-    }
-  }
-  return std::nullopt;
-}
 
 /// Indices of the waypoints to rest at, first and last included, ascending.
 Result<std::vector<std::size_t>> rests_of(const JointPath& path, std::span<const double> stops) {
@@ -49,11 +35,25 @@ Result<std::vector<std::size_t>> rests_of(const JointPath& path, std::span<const
 
 }  // namespace
 
+Result<void> detail::check_tool_path(const JointPath& path) {
+  const auto bad = [](std::size_t i) {
+    return fail(Errc::bad_input, text(msg::trajectory_bad_path, i));
+  };
+  if (path.q.empty() || path.q.size() != path.s.size()) return bad(0);
+  const Eigen::Index dof = path.q[0].size();
+  for (std::size_t i = 0; i < path.q.size(); ++i) {
+    const bool ascends = i == 0 || path.s[i] > path.s[i - 1];
+    if (dof == 0 || path.q[i].size() != dof || !path.q[i].allFinite() ||
+        !std::isfinite(path.s[i]) || !ascends) {
+      return bad(i);
+    }
+  }
+  return {};
+}
+
 Result<Trajectory> time_tool_path(const JointPath& path, std::span<const double> stops,
                                   const JointLimits& limits, const TimingOptions& options) {
-  if (const auto bad = bad_waypoint(path)) {
-    return fail(Errc::bad_input, text(msg::trajectory_bad_path, *bad));
-  }
+  if (auto checked = detail::check_tool_path(path); !checked) return fail(checked.error());
   const Result<Bounds> bounds = detail::bounds_of(limits, options, path.q[0].size());
   if (!bounds) return fail(bounds.error());
   const Result<std::vector<std::size_t>> rests = rests_of(path, stops);
