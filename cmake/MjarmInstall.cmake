@@ -5,7 +5,8 @@ get_property(rooms GLOBAL PROPERTY mjarm_rooms)
 list(TRANSFORM rooms PREPEND mjarm_)
 install(TARGETS ${rooms} EXPORT mjarmTargets FILE_SET HEADERS FILE_SET lists)
 install(TARGETS mjarm_all EXPORT mjarmTargets)
-install(TARGETS mjarm mjarm-bench)
+install(TARGETS mjarm)
+install(TARGETS mjarm-bench OPTIONAL)  # `./dev` builds it when it is asked for first
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/models"
         OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/programs" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm")

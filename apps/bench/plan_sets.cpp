@@ -121,7 +121,8 @@ CrowdedSet crowded(const PlanSet& like, const std::vector<double>& rows, std::si
 Result<PlanSet> load_plan_set(const std::filesystem::path& folder, const std::string& name) {
   const std::filesystem::path file = file_in(folder, name);
   if (folder.empty() || file.empty()) {
-    return fail(Errc::not_available, text(msg::bench_plan_no_data, name, folder.string()));
+    return fail(Errc::not_available,
+                text(msg::bench_plan_no_data, name, folder.empty() ? "." : folder.string()));
   }
   Result<ProblemFile> content = read_problem_file(file.string());
   if (!content) return fail(std::move(content.error()));

@@ -40,7 +40,6 @@ void Execution::restart() {
 }
 
 void Execution::begin_motion(Sim& sim, std::size_t move, double from) {
-  controller_.restart();
   stepper_.emplace(sim, plan_->arms.front());
   motions_.push_back({.move = move, .from = from, .to = from, .outcome = {}});
 }
@@ -77,6 +76,7 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
   if (step.passes) end_motion(sim);
   // A motion that was passed ends within the step.
   const double passed = step.passes ? sim.model().timestep() - clock_.time() : 0;
+  if (step.begins && !step.passes) controller_.restart();
   if (step.begins) begin_motion(sim, step.motion, sim.time() + passed);
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
   if (step.begins && motions_.size() == 1) watch_.look(sim, step.motion);

@@ -365,6 +365,11 @@ TEST(ShippedModels, AreFoundByNameAndByEnvironment) {
   folder.write("car.xml", "<mujoco model=\"my car\"/>");
   const Environment models("MJARM_MODELS", folder.path().string());
   EXPECT_EQ(find_model_file("car").value(), folder.path() / "car.xml");
+  const Environment nowhere("MJARM_MODELS", (folder.path() / "none").string());
+  const auto refused = find_model_file("car");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::usage);
+  EXPECT_NE(refused.error().what.find("none: expected a folder"), std::string::npos);
 }
 
 TEST(Model, FromATextThatAProgramWrote) {

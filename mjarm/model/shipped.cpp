@@ -88,6 +88,11 @@ std::vector<ShippedModel> shipped_models() {
 }
 
 Result<fs::path> find_model_file(std::string_view name_or_path) {
+  std::error_code ignored;
+  if (const auto named = environment("MJARM_MODELS");
+      named && !named->empty() && !fs::is_directory(*named, ignored)) {
+    return fail(Errc::usage, text(msg::model_no_models_folder, *named));
+  }
   const auto entry = std::find_if(kShipped.begin(), kShipped.end(),
                                   [&](const Entry& e) { return e.name == name_or_path; });
   if (entry != kShipped.end()) {

@@ -18,6 +18,8 @@ class ToolClock {
   [[nodiscard]] double time_at(double s) const;
   /// [m/s], or [rad/s] in a turn on the spot: the greatest between two parameters.
   [[nodiscard]] double peak(double s_from, double s_to) const;
+  /// [m/s] 0: it begins at rest.
+  [[nodiscard]] double speed_at_start() const { return speed_.front(); }
 
  private:
   std::vector<double> t_, s_, speed_;

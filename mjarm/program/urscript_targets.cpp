@@ -115,7 +115,11 @@ class TargetMaker {
     }
     const bool uncut = out_.size() - first == legs.size();
     if (legs.size() == 1 && uncut) {
-      pace(first, trapezoid(s_to - s_from, seconds, out_[first].speed));
+      const double way = s_to - s_from, speed = out_[first].speed;
+      // One that goes on from a planned way lacks the ramp that it begins with here.
+      const bool moving = s_from == 0 && clock_.speed_at_start() > 0;
+      const double ramp = moving ? std::max(seconds - way / speed, 0.0) : 0;
+      pace(first, trapezoid(way, seconds + ramp, speed));
       return;
     }
     double accel = kPlainAccel;

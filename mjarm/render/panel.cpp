@@ -318,9 +318,11 @@ void draw(const render::PlotPanel& panel, const Layout& layout, Page& page) {
                       page);
   }
   for (const render::PlotBand& band : panel.bands) {
-    const double top = axes.to_y(band.upper);
+    constexpr double kFar = 1e5;  // [pt] coordinates of millions are too many for cairo
+    const auto edge = [&](double value) { return std::clamp(axes.to_y(value), -kFar, kFar); };
+    const double top = edge(band.upper);
     page.items.push_back(
-        canvas::Fill{{axes.box.x, top, axes.box.width, axes.to_y(band.lower) - top}, kBand});
+        canvas::Fill{{axes.box.x, top, axes.box.width, edge(band.lower) - top}, kBand});
   }
   const std::vector<render::Rgba> colors = colors_of(panel);
   for (std::size_t i = 0; i < panel.lines.size(); ++i) {

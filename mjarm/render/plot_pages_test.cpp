@@ -227,6 +227,23 @@ TEST(PlotPages, LegendsWrapAboveTheirAxes) {
 }
 
 /// A colour that is asked for takes none from those that are given in turn.
+/// Millions of panel heights away: cairo would lose it.
+TEST(PlotPages, BandsFarBeyondTheirAxesAreDrawnAllTheSame) {
+  PlotPanel panel{.title = "distance"};
+  panel.lines.push_back({.x = {0, 1}, .y = {0, 1e-10}});
+  panel.bands.push_back({.lower = 0, .upper = 5e-4, .label = "tolerance", .fits = false});
+  const Svg svg = svg_of(one_panel(panel));
+  const canvas::Box box = axes_in(svg).at(0);
+  int bands = 0;
+  for (const SvgElement& element : svg) {
+    if (element.name != "rect" || element.parents != "svg/g/") continue;
+    EXPECT_LT(element.number("y"), box.y);
+    EXPECT_LT(element.number("height"), 2.1e5);
+    ++bands;
+  }
+  EXPECT_GE(bands, 1);
+}
+
 TEST(PlotPages, ColoursAreGivenInTurnAndGoRound) {
   const auto hex = [](const Rgba& color) {
     char text[8];

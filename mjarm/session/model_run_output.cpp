@@ -124,6 +124,7 @@ Result<ModelRunReport> simulate_model(const Model& model, const ModelRunOptions&
   const Result<OutputFolder> folder = OutputFolder::open(output.out, output.replace);
   if (!folder) return fail(folder.error());
   Watched watched(model);
+  if (!output.video) remove_stale(output.out, {kVideoFile});
   if (output.video) {
     if (Result<void> filming = watched.film(model, output); !filming) return fail(filming.error());
   }

@@ -8,6 +8,11 @@
 
 namespace mjarm::session {
 
+void remove_stale(const std::filesystem::path& folder, std::initializer_list<const char*> names) {
+  std::error_code ignored;
+  for (const char* const name : names) std::filesystem::remove(folder / name, ignored);
+}
+
 Result<void> write_end_picture(const std::filesystem::path& folder, const Model& model,
                                const Snapshot& snapshot, const render::Camera& camera,
                                const render::Overlay& overlay) {
@@ -15,6 +20,7 @@ Result<void> write_end_picture(const std::filesystem::path& folder, const Model&
       render::OffscreenRenderer::create(model, {.supersampling = 2});
   if (!renderer) {
     if (renderer.error().code != Errc::not_available) return fail(std::move(renderer.error()));
+    remove_stale(folder, {"picture.png"});
     log_warning(text(msg::show_no_picture, renderer.error().what));
     return {};
   }
@@ -25,6 +31,8 @@ Result<void> write_end_picture(const std::filesystem::path& folder, const Model&
 
 Result<void> write_output(const std::filesystem::path& folder, const Model& model,
                           const Snapshot& snapshot, const RunOutput& output) {
+  if (output.plot.panels.empty()) remove_stale(folder, {"plot.png", "plot.svg"});
+  if (!output.film) remove_stale(folder, {kVideoFile});
   return write_file(folder / "report.json", to_json(output.report))
       .and_then([&] {
         return output.plot.panels.empty() ? Result<void>()

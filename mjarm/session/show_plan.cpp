@@ -135,8 +135,10 @@ Result<void> show_plan(const PlanShow& show, const PlanSubject& subject) {
   const PlanDrawing drawing(subject);
   const PlanDrawing::Look look = drawing.look(drawing.way().at(drawing.way().tightest()));
   if (look.pair) {
-    log_info(text(msg::show_plan_tightest, subject.path.q.size() - 1,
-                  drawing.pair_line(look, *look.pair)));
+    const std::string place = drawing.pair_line(look, *look.pair);
+    const std::size_t edges = subject.path.q.size() - 1;
+    log_info(edges == 1 ? text(msg::show_plan_straight, place)
+                        : text(msg::show_plan_tightest, edges, place));
   }
   return show.picture ? show_in_file(show, subject, drawing)
                       : show_in_a_window(show, subject, drawing);

@@ -118,7 +118,7 @@ Result<Report> Stage::write(Report report, render::Plot plot) {
   if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {
     report.rtf = run_.outcome().duration / wall_seconds_;
   }
-  const RunOutput output{report, std::move(plot), show_.overlay(), camera()};
+  const RunOutput output{report, std::move(plot), show_.overlay(), camera(), show_.is_filming()};
   auto written = run_.recorder().write_csv(options_.out / "log.csv").and_then([&] {
     return write_output(options_.out, robot_.model, run_.sim().snapshot(), output);
   });

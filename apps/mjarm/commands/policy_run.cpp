@@ -182,7 +182,7 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
   Report report = report_of(trial, *model, loaded.task, *evaluation, *played);
   if (options.timing) report.rtf = report.duration / seconds;
   const session::RunOutput output{
-      report, plot_of(trial.name, *evaluation, *played), show->overlay(), {}};
+      report, plot_of(trial.name, *evaluation, *played), show->overlay(), {}, show->is_filming()};
   auto written =
       write_file(options.out / "log.csv", played->csv)
           .and_then([&] {

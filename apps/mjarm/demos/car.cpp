@@ -167,7 +167,7 @@ Result<Report> run_car(const DemoOptions& options) {
   }
   Report report = report_of(drive, sim);
   const session::RunOutput output{report, plot_of(drive), show->overlay(),
-                                  session::default_camera(*model)};
+                                  session::default_camera(*model), show->is_filming()};
   auto written = write_file(options.out / "log.csv", to_csv(drive))
                      .and_then([&] {
                        return session::write_output(options.out, *model, sim.snapshot(), output);

@@ -43,6 +43,7 @@ Result<Report> run_point(const DemoOptions& options) {
   report.control = "computed_torque";
   for (const PlannedMove& move : plan.moves) add_motion(move, stage.arm(), report);
   for (const ControlMode mode : kModes) {
+    stage.show().set_pen(render::Pen::up);  // it begins at the start again, and goes there no way
     auto done = stage.move([&](MotionRun& run) { return run.execute(plan, mode, 0); });
     if (!done) return fail(std::move(done.error()));
     if (stage.run().ended_early()) break;

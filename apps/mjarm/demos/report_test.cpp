@@ -51,6 +51,20 @@ TEST_F(DemoReport, ArmsOfOtherSizesAreRefusedBeforeAFolderIsMade) {
   EXPECT_FALSE(folder_.exists("out"));
 }
 
+/// A video and a plot of another run would be taken for those of this one.
+TEST_F(DemoReport, NothingOfAnEarlierRunStaysBesideTheReport) {
+  ASSERT_EQ(demo({"movel"}).exit_code, 0);
+  EXPECT_TRUE(folder_.exists("out/plot.png"));
+  folder_.write("out/video.mp4", "of another run");
+  folder_.write("out/notes.txt", "of the user");
+  EXPECT_EQ(demo({"movel", "--to", "2,2,2"}).exit_code, 1);
+  EXPECT_FALSE(report().at("ok").get<bool>());
+  for (const char* const stale : {"out/plot.png", "out/plot.svg", "out/video.mp4"}) {
+    EXPECT_FALSE(folder_.exists(stale)) << stale;
+  }
+  EXPECT_EQ(folder_.read("out/notes.txt"), "of the user");
+}
+
 TEST_F(DemoReport, WordsThatMakeNoSenseAreOneLineForEveryDemo) {
   const std::pair<std::vector<std::string>, const char*> wrong[] = {
       {{"squares"}, "did you mean \"square\"?"},
