@@ -224,12 +224,12 @@ TEST_F(Ompl, PlannersThatImproveUseTheirTimeAndTheOthersDoNot) {
   const FastChecker checker = flat.checker();
   for (const bool improves : {false, true}) {
     PlanOptions options = ompl_options(improves ? "BITstar" : "RRTConnect", 0);
-    options.time_budget = 0.3;
+    options.time_budget = improves ? 0.3 : 60;
     const Stopwatch watch;
     const auto path = plan_path(checker, kHere, goal_at(kThere), options);
     ASSERT_TRUE(path);
     expect_clear(checker, flat.world, path->q);
-    EXPECT_EQ(watch.us() > 0.2e6, improves);
+    EXPECT_TRUE(improves ? watch.us() > 0.2e6 : watch.us() < 30e6);
   }
 }
 
