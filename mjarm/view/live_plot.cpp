@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -71,9 +70,7 @@ class Range {
 template <std::size_t N>
 void copy_text(char (&target)[N], std::string_view text) {
   if (!is_ascii(text)) text = {};
-  const std::size_t count = std::min(text.size(), N - 1);
-  std::memcpy(target, text.data(), count);
-  target[count] = '\0';
+  target[text.copy(target, N - 1)] = '\0';
 }
 
 void set_colors(mjvFigure& figure) {
