@@ -73,10 +73,13 @@ MotionClock::Step Execution::next(Sim& sim) {
 Result<void> Execution::step(Sim& sim) { return make_step(sim, next(sim)); }
 
 Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
-  if (step.passes) end_motion(sim);
-  // A motion that was passed ends within the step.
+  // A motion that is passed ends within the step, and the controller goes on as it is.
   const double passed = step.passes ? sim.model().timestep() - clock_.time() : 0;
-  if (step.begins && !step.passes) controller_.restart();
+  if (step.passes) {
+    end_motion(sim);
+  } else if (step.begins) {
+    controller_.restart();
+  }
   if (step.begins) begin_motion(sim, step.motion, sim.time() + passed);
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
   if (step.begins && motions_.size() == 1) watch_.look(sim, step.motion);

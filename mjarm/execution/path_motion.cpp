@@ -267,11 +267,11 @@ class MotionSearch {
       way *= step / std::max(way.norm(), 1e-9);
       bool better = false;
       for (const double side : {1.0, -1.0}) {
-        if (better) continue;
         LedMotion changed = led;
         changed.points[i] += side * way;
         ++k;
         better = try_points(std::move(changed), led);
+        if (better) break;
       }
       step *= better ? kLonger : kShorter;
       if (step < kLastMove || step > kFirstMove) step = kFirstMove;

@@ -6,25 +6,10 @@
 
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/planning/planning_world.hpp"
-#include "tests/support/temp_folder.hpp"
+#include "mjarm/planning/slider_test.hpp"
 
 namespace mjarm {
 namespace {
-
-/// Two slides carry a ball of 20 mm over a fence, whose sides are 10 mm and whose top is 0.2 m from
-/// the middle.
-Robot slider() {
-  const support::TempFolder folder;
-  const char* const xml = R"(<mujoco><worldbody>
-    <geom name="fence" type="box" size="0.01 1 0.2"/>
-    <body name="x"><joint name="x" type="slide" axis="1 0 0" range="-0.6 0.6" limited="true"/>
-      <geom type="sphere" size="0.001" contype="0" conaffinity="0"/>
-      <body name="z"><joint name="z" type="slide" axis="0 0 1" range="0 0.6" limited="true"/>
-        <geom name="ball" type="sphere" size="0.02"/><site name="tcp"/></body></body>
-    </worldbody>
-    <actuator><position joint="x"/><position joint="z"/></actuator></mujoco>)";
-  return load_robot(folder.write("slider.xml", xml).string(), {.tip = "tcp"}).value();
-}
 
 JointVec at(double x, double z) { return joint_vec(std::vector{x, z}); }
 
@@ -71,7 +56,7 @@ class PathMotionTest : public ::testing::Test {
     return false;
   }
 
-  Robot robot_ = slider();
+  Robot robot_ = testing::slider(1);
   PlanningWorld world_ = PlanningWorld::create(robot_, {.bounds = {0.0005}}).value();
   JointLimits limits_ = robot_.arm.limits;
 };

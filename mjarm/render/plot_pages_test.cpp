@@ -226,7 +226,6 @@ TEST(PlotPages, LegendsWrapAboveTheirAxes) {
   }
 }
 
-/// A colour that is asked for takes none from those that are given in turn.
 /// Millions of panel heights away: cairo would lose it.
 TEST(PlotPages, BandsFarBeyondTheirAxesAreDrawnAllTheSame) {
   PlotPanel panel{.title = "distance"};
@@ -244,6 +243,7 @@ TEST(PlotPages, BandsFarBeyondTheirAxesAreDrawnAllTheSame) {
   EXPECT_GE(bands, 1);
 }
 
+/// A colour that is asked for takes none from those that are given in turn.
 TEST(PlotPages, ColoursAreGivenInTurnAndGoRound) {
   const auto hex = [](const Rgba& color) {
     char text[8];

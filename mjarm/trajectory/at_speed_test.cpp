@@ -60,7 +60,7 @@ TEST_F(AtSpeed, BeginsAtTheSpeedAskedForAndSavesTheTimeToGetThere) {
   }
 }
 
-/// From where the one from rest has come up to speed both are the same way.
+/// All along the line, its first moments included.
 TEST_F(AtSpeed, GoesTheSameWay) {
   const JointPath path = line();
   const Trajectory moving = time_tool_path_at_speed(path, {}, arm_.limits).value();
