@@ -133,6 +133,16 @@ struct ExactChecker::Impl {
     return {d->contact, static_cast<std::size_t>(d->ncon)};
   }
 
+  /// A solver and who asked it often ask of the same configuration, one after the other.
+  bool is_free(std::span<const double> q) {
+    if (!std::ranges::equal(q, last_q)) {
+      place(q);
+      last_free = !overlaps();
+      last_q.assign(q.begin(), q.end());
+    }
+    return last_free;
+  }
+
   bool overlaps() {
     const double max = -options.allow_depth;
     const std::span<const mjContact> all = detect(m);
@@ -250,12 +260,9 @@ struct ExactChecker::Impl {
     return out;
   }
 
-  std::optional<NearestPair> nearest(std::span<const double> q) {
-    if (!constant_pairs) {
-      find_constant_pairs();
-      place(q);
-    }
-    auto pairs = near_pairs();
+  /// @param pairs  that are near.
+  std::optional<NearestPair> nearest(std::vector<std::pair<GeomIds, NearestPair>> pairs) {
+    if (!constant_pairs) find_constant_pairs();
     std::ranges::stable_sort(pairs, {}, [](const auto& entry) { return entry.second.distance; });
     for (auto& [ids, pair] : pairs) {
       if (constant_pairs->contains(ids) || are_neighbours(ids, pair.distance)) continue;
@@ -263,6 +270,23 @@ struct ExactChecker::Impl {
       return std::move(pair);
     }
     return std::nullopt;
+  }
+
+  CollisionReport check(std::span<const double> q) {
+    constexpr double kApart = 1e-3;  // [m] clearly
+    place(q);
+    CollisionReport report;
+    const bool measures = options.margin > 0;
+    auto pairs = measures ? near_pairs() : std::vector<std::pair<GeomIds, NearestPair>>();
+    // Where all that is near is clearly apart nothing overlaps.
+    if (options.margin < kApart ||
+        std::ranges::any_of(
+            pairs, [](const auto& entry) { return entry.second.distance < kApart; })) {
+      report.contacts = overlapping();
+    }
+    report.free = report.contacts.empty() || report.contacts.front().depth <= options.allow_depth;
+    if (measures) report.nearest = nearest(std::move(pairs));
+    return report;
   }
 
   Model model;  // keeps the arrays alive
@@ -277,6 +301,8 @@ struct ExactChecker::Impl {
   std::vector<GeomIds> capsule_boxes;
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
   std::optional<detail::NeverMeet> never_meet;      // once it was asked for; each copy its own
+  std::vector<double> last_q;                       // of is_free()
+  bool last_free = false;
   std::unique_ptr<mjData, DeleteData> d;
 };
 
@@ -318,19 +344,11 @@ Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
     return fail(Errc::bad_input,
                 text(msg::collision_bad_q, impl_->bodies.addresses.size(), q.size()));
   }
-  impl_->place(q);
-  CollisionReport report;
-  report.contacts = impl_->overlapping();
-  report.free =
-      report.contacts.empty() || report.contacts.front().depth <= impl_->options.allow_depth;
-  if (impl_->options.margin > 0) report.nearest = impl_->nearest(q);
-  return report;
+  return impl_->check(q);
 }
 
 bool ExactChecker::is_free(std::span<const double> q) {
-  if (!impl_->accepts(q)) return false;
-  impl_->place(q);
-  return !impl_->overlaps();
+  return impl_->accepts(q) && impl_->is_free(q);
 }
 
 std::function<bool(std::span<const double>)> ExactChecker::predicate() const {

@@ -91,6 +91,34 @@ void compare_with_forward(const Shipped& robot, std::uint64_t seed) {
   EXPECT_LT(touching, 1000);
 }
 
+/// A checker that measures finds the same overlaps as one that does not, also where things only
+/// just touch: between a free posture and one that is not, halved until they are the same.
+void expect_same_overlaps(const Shipped& robot, std::uint64_t seed) {
+  ExactChecker plain(robot.model, robot.arm, {.margin = 0}), measuring(robot.model, robot.arm);
+  Rng rng(seed);
+  const std::vector<double> home(robot.arm.home.begin(), robot.arm.home.end());
+  int touching = 0;
+  for (int round = 0; round < 40; ++round) {
+    std::vector<double> free = home, hit = robot.random_q(rng), at = hit;
+    if (plain.is_free(hit)) continue;
+    ++touching;
+    for (int k = 0; k < 50; ++k) {
+      const auto a = plain.check(at), b = measuring.check(at);
+      ASSERT_TRUE(a && b);
+      EXPECT_EQ(a->free, b->free);
+      EXPECT_EQ(a->free, plain.is_free(at));
+      EXPECT_EQ(b->free, measuring.is_free(at));
+      ASSERT_EQ(a->contacts.size(), b->contacts.size());
+      for (std::size_t i = 0; i < a->contacts.size(); ++i) {
+        EXPECT_EQ(a->contacts[i].depth, b->contacts[i].depth);
+      }
+      (a->free ? free : hit) = at;
+      for (std::size_t i = 0; i < at.size(); ++i) at[i] = 0.5 * (free[i] + hit[i]);
+    }
+  }
+  EXPECT_GT(touching, 10);
+}
+
 constexpr double kMargin = 0.15;  // [m]
 
 /// Distances of all pairs that may collide, up to the margin, where the robot was placed.
@@ -161,6 +189,11 @@ TEST(ExactCheckerModels, AgreesWithForwardOnThePanda) {
 TEST(ExactCheckerModels, NearestIsNearestOnTheUr5e) { compare_with_all_pairs(Shipped("ur5e"), 83); }
 TEST(ExactCheckerModels, NearestIsNearestOnThePanda) {
   compare_with_all_pairs(Shipped("panda"), 84);
+}
+
+TEST(ExactCheckerModels, MeasuringChangesNoVerdict) {
+  expect_same_overlaps(Shipped("ur5e"), 85);
+  expect_same_overlaps(Shipped("panda"), 86);
 }
 
 TEST(ExactCheckerModels, HomeIsFree) {

@@ -7,7 +7,7 @@ namespace mjarm {
 
 ClearanceCheck clearance_check(const ExactChecker& checker) {
   auto own = std::make_shared<ExactChecker>(checker);
-  return [own](std::span<const double> q) {
+  const auto measure = [own](std::span<const double> q) {
     Clearance out;
     Result<CollisionReport> report = own->check(q);
     if (!report) {
@@ -19,6 +19,7 @@ ClearanceCheck clearance_check(const ExactChecker& checker) {
     }
     return out;
   };
+  return {measure, [own](std::span<const double> q) { return own->is_free(q); }};
 }
 
 }  // namespace mjarm

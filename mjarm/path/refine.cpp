@@ -86,9 +86,8 @@ class Refiner {
     if (!answer) return std::nullopt;
     const auto step = [&](const JointVec& q) { return (answer->q - q).cwiseAbs().maxCoeff(); };
     if (step(q0) > options_.path.max_step || step(q1) > options_.path.max_step) return std::nullopt;
-    if (options_.path.clearance && !(options_.path.clearance(as_span(answer->q)).distance >= 0)) {
-      return std::nullopt;
-    }
+    const ClearanceCheck& clearance = options_.path.clearance;
+    if (clearance && !clearance.is_free(as_span(answer->q))) return std::nullopt;
     return answer->q;
   }
 

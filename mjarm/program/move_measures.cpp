@@ -22,7 +22,7 @@ MoveJudge::MoveJudge(const Arm& arm, const std::optional<ExactChecker>& checker,
                      const std::optional<ExactChecker>& shown)
     : arm_(arm),
       clearance_(checker ? clearance_check(*checker) : ClearanceCheck{}),
-      shown_(shown ? clearance_check(*shown) : clearance_) {}
+      shown_(shown ? clearance_check(*shown) : ClearanceCheck{}) {}
 
 std::optional<std::string> MoveJudge::beyond_limits(const JointVec& q) const {
   constexpr double kRounded = 1e-9;
@@ -48,6 +48,7 @@ std::optional<std::string> MoveJudge::beyond_limits(const JointVec& q) const {
 }
 
 MoveMeasures MoveJudge::measure(const IkSolver& ik, const std::vector<JointVec>& way) const {
+  const std::lock_guard turn(*measuring_);
   const PathMeasures least = measure_path(arm_, way, shown_);
   MoveMeasures out;
   out.singularity = singularity(ik, as_span(way[least.singular_value.at]));

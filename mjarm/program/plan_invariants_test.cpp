@@ -321,6 +321,32 @@ TEST(PlanInvariants, ASpeedBeyondTheJointsIsRefusedByNameAndTheDefaultDips) {
   EXPECT_NEAR(least, dip.least, 0.002);
 }
 
+/// Its timing fails while the paths of the moves after it are planned already.
+TEST(PlanInvariants, AMoveThatCannotKeepItsSpeedEndsNoneButItself) {
+  const Pose a{{0.3, -0.45, 0.4}, kDown}, b{{-0.3, -0.45, 0.4}, kDown}, c{{-0.3, -0.4, 0.4}, kDown};
+  const Instruction fast = move_l(a, 5.0);
+  const auto with = [&](const std::vector<Instruction>& some) {
+    std::vector<Instruction> all{move_j(a), move_l(b)};
+    all.insert(all.end(), some.begin(), some.end());
+    return plan_with(all);
+  };
+  const ProgramPlan good = with({move_l(a), move_l(b), move_l(c)});
+  ASSERT_TRUE(good.ok()) << told_of(good);
+  const ProgramPlan plan = with({fast, move_l(b), move_l(c), fast});
+  ASSERT_EQ(plan.faults.size(), 2U) << told_of(plan);
+  for (const ProgramFault& fault : plan.faults) EXPECT_EQ(fault.reason, "joint_speed");
+  // The moves of `good` but for the fast one.
+  ASSERT_EQ(plan.moves.size(), good.moves.size() - 1);
+  for (const auto& [one, same] : {std::pair{0, 0}, {1, 1}, {2, 3}, {3, 4}}) {
+    const PlannedMove &move = plan.moves[static_cast<std::size_t>(one)],
+                      &twin = good.moves[static_cast<std::size_t>(same)];
+    EXPECT_EQ(move.trajectory.duration(), twin.trajectory.duration()) << one;
+    EXPECT_LT((move.trajectory.at(0).q - twin.trajectory.at(0).q).norm(), 1e-9) << one;
+    ASSERT_TRUE(move.measures && twin.measures) << one;
+    EXPECT_EQ(move.measures->clearance, twin.measures->clearance) << one;
+  }
+}
+
 TEST(PlanInvariants, ContactIsLookedAtOnlyWhereAsked) {
   const Pose above{{0, -0.45, 0.3}, kDown}, below{{0, -0.45, -0.1}, kDown};
   const std::vector<Instruction> through{move_j(kSeed), move_j(above), move_l(below)};

@@ -123,7 +123,7 @@ class ProgramPlanner {
     PlannedMove& way = *(plan_.moves.end() - static_cast<std::ptrdiff_t>(moves_after) - 1);
     PlannedMove& after = *(&way + 1);
     if (!after.curve) return;
-    Attempt fast = planner_.from(i + 1, {way.corners.back(), scene, true});
+    Attempt fast = planner_.only(i + 1, {way.corners.back(), scene, true});
     if (fast.fault || fast.moves.size() != 1) return;
     Trajectory& motion = fast.moves.front().trajectory;
     const auto with = places_.tool(scene, line.tool);

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/program.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/joint_path.hpp"
 #include "mjarm/program/detour_chain_internal.hpp"
@@ -27,6 +28,19 @@ PlanFault motion_fault(std::size_t i, const Arm& arm, const MotionFailure& failu
 }  // namespace
 
 Attempt StepPlanner::from(std::size_t i, const Stand& at) {
+  Attempt out = begin(i, at);
+  if (!out.pending.empty()) tool_moves(out);
+  return out;
+}
+
+Attempt StepPlanner::only(std::size_t i, const Stand& at) {
+  Attempt out = begin(i, at);
+  await(out, 0);
+  return out;
+}
+
+/// Plans step `i`; motions may be pending.
+Attempt StepPlanner::begin(std::size_t i, const Stand& at) {
   switch (steps_[i].kind) {
     case Step::Kind::joints:
       return to_joints(i, at);
@@ -202,18 +216,51 @@ Attempt StepPlanner::to_curve(std::size_t i, const Stand& at) {
 
 /// Goes on with all that needs no other answer: straight moves, arcs and rests.
 void StepPlanner::tool_moves(Attempt& attempt) {
+  const auto ahead = static_cast<std::size_t>(core_count());
   while (attempt.next < steps_.size() && !attempt.fault && !is_stopped(options_.stop)) {
     tell_(attempt.next);
     const Step::Kind kind = steps_[attempt.next].kind;
     if (kind != Step::Kind::line && kind != Step::Kind::arc && kind != Step::Kind::wait &&
         kind != Step::Kind::grip) {
-      return;
+      break;
     }
-    Attempt more = from(attempt.next, attempt.at);
+    Attempt more = begin(attempt.next, attempt.at);
+    for (PendingMotion& one : more.pending) {
+      one.first += attempt.moves.size();
+      one.move += attempt.moves.size();
+      attempt.pending.push_back(std::move(one));
+    }
     std::ranges::move(more.moves, std::back_inserter(attempt.moves));
     attempt.next = more.next;
     attempt.at = std::move(more.at);
     attempt.fault = std::move(more.fault);
+    await(attempt, ahead);
+  }
+  await(attempt, 0);
+}
+
+/// Takes over motions until so many are left. The first that fails ends the attempt before its
+/// step, whatever came after it.
+void StepPlanner::await(Attempt& attempt, std::size_t left) {
+  while (attempt.pending.size() > left) {
+    PendingMotion one = std::move(attempt.pending.front());
+    attempt.pending.pop_front();
+    auto [motion, measures] = one.judged.get();
+    if (motion) {
+      PlannedMove& move = attempt.moves[one.move];
+      move.trajectory = std::move(motion->trajectory);
+      move.dips = std::move(motion->dips);
+      move.measures = std::move(measures);
+      continue;
+    }
+    PlanFault fault = motion_fault(one.step, tool(one.step, one.at)->arm, motion.error());
+    if (motion.error().path) fault.way = ClosedWay{one.curve, one.at.q, {.path = one.options}};
+    attempt.pending.clear();
+    attempt.moves.erase(attempt.moves.begin() + static_cast<std::ptrdiff_t>(one.first),
+                        attempt.moves.end());
+    attempt.next = one.step;
+    attempt.at = std::move(one.at);
+    attempt.fault = std::move(fault);
   }
 }
 
@@ -280,20 +327,27 @@ Attempt StepPlanner::along(std::size_t i, const Stand& at, const Curve& curve, b
     const Pose X_now = fk(with->arm, as_span(at.q));
     options.path.keep_start = same_pose(X_now, curve.at(0));
   }
-  Result<ToolMotion, MotionFailure> motion =
-      plan_tool_motion(with->ik, curve, as_span(at.q), options);
-  if (!motion) {
-    PlanFault fault = motion_fault(i, with->arm, motion.error());
-    if (motion.error().path) fault.way = ClosedWay{curve, at.q, {.path = options.path}};
+  Result<JointPath, PathFailure> path = plan_tool_path(with->ik, curve, as_span(at.q), options);
+  if (!path) {
+    PlanFault fault = motion_fault(i, with->arm, {std::move(path.error()), {}});
+    fault.way = ClosedWay{curve, at.q, {.path = options.path}};
     return failed(i, at, std::move(fault));
   }
   Attempt out{{}, i, at, {}};
-  const JointVec& first = motion->path.q.front();
+  const JointVec& first = path->q.front();
   constexpr double kThere = 1e-9;
   if ((first - at.q).cwiseAbs().maxCoeff() > kThere && !here) {
     out.fault = joint_move(i, at, first, "approach", out.moves);
     if (out.fault) return out;
   }
+  const auto judge = [with, curve, path = *path, options] {
+    JudgedMotion judged{time_tool_motion(with->ik, curve, path, options), {}};
+    if (judged.motion) judged.measures = with->judge.measure(with->ik, path.q);
+    return judged;
+  };
+  // Without another thread the work is done when it is asked for.
+  constexpr auto kHow = std::launch::async | std::launch::deferred;
+  out.pending.push_back({i, at, 0, out.moves.size(), curve, options.path, std::async(kHow, judge)});
   PlannedMove move = begun(i, at.scene);
   move.instructions = count;
   for (std::size_t k = i + 1; k < i + count; ++k) {
@@ -301,12 +355,9 @@ Attempt StepPlanner::along(std::size_t i, const Stand& at, const Curve& curve, b
       move.word += "+" + std::string(steps_[k].word);
     }
   }
-  move.measures = with->judge.measure(with->ik, motion->path.q);
-  move.trajectory = std::move(motion->trajectory);
   move.curve = curve;
   for (const Pose& X_WT : step.points) move.points.push_back({X_WT, step.place});
-  move.dips = std::move(motion->dips);
-  out.at.q = motion->path.q.back();
+  out.at.q = path->q.back();
   out.moves.push_back(std::move(move));
   out.next = i + count;
   return out;

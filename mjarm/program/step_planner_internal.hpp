@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <functional>
+#include <future>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +13,7 @@
 #include "mjarm/program/program_plan.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
 #include "mjarm/program/workplaces_internal.hpp"
+#include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm::program::detail {
 
@@ -23,6 +26,24 @@ struct PlanFault {
   std::optional<ClosedWay> way = {};
 };
 
+/// A timed motion, and how near it comes to what it should keep away from.
+struct JudgedMotion {
+  Result<ToolMotion, MotionFailure> motion;
+  MoveMeasures measures;
+};
+
+/// A motion of the tool whose path is planned; it is timed and measured on another thread while the
+/// paths of what follows are planned.
+struct PendingMotion {
+  std::size_t step = 0;   ///< the first it does
+  Stand at;               ///< where the arm was before
+  std::size_t first = 0;  ///< of the attempt's moves, the first of that step
+  std::size_t move = 0;   ///< of the attempt's moves, the one that lacks it
+  Curve curve;
+  PathOptions options;
+  std::future<JudgedMotion> judged;
+};
+
 /// Moves that follow each other, and what ended them early.
 struct Attempt {
   std::vector<PlannedMove> moves;
@@ -30,6 +51,7 @@ struct Attempt {
   Stand at;              ///< where the arm is then
   std::optional<PlanFault> fault;
   std::optional<WorldPath> detour = {};  ///< of the first move, where it is one
+  std::deque<PendingMotion> pending = {};
 };
 
 /// Plans steps one by one, each with what hangs on its answer.
@@ -41,8 +63,11 @@ class StepPlanner {
               std::function<void(std::size_t)> tell)
       : steps_(steps), options_(options), places_(places), tell_(std::move(tell)) {}
 
-  /// Plans step `i`, and what hangs on its answer.
+  /// Plans step `i` and what hangs on its answer; after a straight move or arc also what follows
+  /// without a choice, so that the paths of some are planned while others are timed.
   [[nodiscard]] Attempt from(std::size_t i, const Stand& at);
+  /// Plans step `i`, and what hangs on its answer.
+  [[nodiscard]] Attempt only(std::size_t i, const Stand& at);
 
  private:
   using ToolPtr = std::shared_ptr<Tool>;
@@ -50,6 +75,7 @@ class StepPlanner {
   [[nodiscard]] ToolPtr tool(std::size_t i, const Stand& at) const {
     return places_.tool(at.scene, steps_[i].tool);
   }
+  [[nodiscard]] Attempt begin(std::size_t i, const Stand& at);
   [[nodiscard]] PlannedMove begun(std::size_t i, std::size_t scene) const;
   [[nodiscard]] Attempt rest(std::size_t i, const Stand& at, double seconds) const;
   [[nodiscard]] Attempt grip(std::size_t i, const Stand& at);
@@ -60,6 +86,7 @@ class StepPlanner {
   [[nodiscard]] Attempt detour(std::size_t i, const Stand& at);
   [[nodiscard]] Attempt detour_to(std::size_t i, const Stand& at, std::span<const JointVec> to);
   void tool_moves(Attempt& attempt);
+  void await(Attempt& attempt, std::size_t left);
   [[nodiscard]] std::optional<PlanFault> joint_move(std::size_t i, const Stand& at,
                                                     const JointVec& goal, const char* word,
                                                     std::vector<PlannedMove>& moves) const;

@@ -51,10 +51,14 @@ std::shared_ptr<Tool> Workplaces::make(const SceneState& scene, const Arm& of_to
     checker.emplace(model_, arm, exact);
     exact.skip_neighbours = true;
     shown.emplace(model_, arm, exact);
-    options.valid = checker->predicate();
+  }
+  const MoveJudge judge(arm, checker, shown);
+  if (checker) {
+    options.valid = [clearance = judge.clearance()](std::span<const double> q) {
+      return clearance.is_free(q);
+    };
   }
   const IkSolver ik(arm, options);
-  const MoveJudge judge(arm, checker, shown);
   WorldOptions world;
   world.rules = std::move(rules);
   world.qpos = scene.qpos;

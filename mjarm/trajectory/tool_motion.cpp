@@ -39,13 +39,16 @@ std::string describe(const MotionFailure& failure, const Arm& arm) {
   return describe(*failure.path, arm);
 }
 
-Result<ToolMotion, MotionFailure> plan_tool_motion(const IkSolver& ik, const Curve& curve,
-                                                   std::span<const double> q_start,
-                                                   const MotionOptions& options) {
+Result<JointPath, PathFailure> plan_tool_path(const IkSolver& ik, const Curve& curve,
+                                              std::span<const double> q_start,
+                                              const MotionOptions& options) {
   CurveOptions follow{.path = options.path, .pos_tol = options.pos_tol, .rot_tol = options.rot_tol};
   if (options.keep_speed) follow.path.tool_speed = options.timing.tool_speed;
-  Result<JointPath, PathFailure> path = solve_curve(ik, curve, q_start, follow);
-  if (!path) return fail(MotionFailure{std::move(path.error()), {}});
+  return solve_curve(ik, curve, q_start, follow);
+}
+
+Result<ToolMotion, MotionFailure> time_tool_motion(const IkSolver& ik, const Curve& curve,
+                                                   JointPath path, const MotionOptions& options) {
   const StopCheck& stop = options.path.stop;
   const auto ended = [] {
     PathFailure failure;
@@ -54,14 +57,22 @@ Result<ToolMotion, MotionFailure> plan_tool_motion(const IkSolver& ik, const Cur
   };
   if (is_stopped(stop)) return ended();
   const auto timed = options.at_speed ? time_tool_path_at_speed : time_tool_path;
-  Result<Trajectory> trajectory = timed(*path, curve.corners(), ik.arm().limits, options.timing);
+  Result<Trajectory> trajectory = timed(path, curve.corners(), ik.arm().limits, options.timing);
   if (!trajectory) return fail(MotionFailure{{}, std::move(trajectory.error())});
-  ToolMotion motion{curve, std::move(*path), std::move(*trajectory), {}};
+  ToolMotion motion{curve, std::move(path), std::move(*trajectory), {}};
   if (is_stopped(stop)) return ended();
   motion.dips = find_speed_dips(ik, curve, motion.trajectory, options.timing);
   if (options.keep_speed && !motion.dips.empty())
     return fail(too_fast(ik.arm(), motion, options.timing.joint_share));
   return motion;
+}
+
+Result<ToolMotion, MotionFailure> plan_tool_motion(const IkSolver& ik, const Curve& curve,
+                                                   std::span<const double> q_start,
+                                                   const MotionOptions& options) {
+  Result<JointPath, PathFailure> path = plan_tool_path(ik, curve, q_start, options);
+  if (!path) return fail(MotionFailure{std::move(path.error()), {}});
+  return time_tool_motion(ik, curve, std::move(*path), options);
 }
 
 }  // namespace mjarm

@@ -55,4 +55,14 @@ struct MotionFailure {
                                                                  std::span<const double> q_start,
                                                                  const MotionOptions& options = {});
 
+/// The two halves of plan_tool_motion(), for those who plan the path of what follows while the
+/// timing of one motion is worked out on another thread: the path,
+[[nodiscard]] Result<JointPath, PathFailure> plan_tool_path(const IkSolver& ik, const Curve& curve,
+                                                            std::span<const double> q_start,
+                                                            const MotionOptions& options = {});
+/// and its timing.
+[[nodiscard]] Result<ToolMotion, MotionFailure> time_tool_motion(const IkSolver& ik,
+                                                                 const Curve& curve, JointPath path,
+                                                                 const MotionOptions& options = {});
+
 }  // namespace mjarm
