@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
 #include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_memory_internal.hpp"
 #include "mjarm/collision/never_meet_internal.hpp"
 #include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
@@ -26,6 +28,8 @@ using detail::GeomIds;
 struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::Vector3d vector(const mjtNum* v) { return {v[0], v[1], v[2]}; }
 
@@ -47,7 +51,7 @@ struct ExactChecker::Impl {
       head->opt.enableflags &= ~(mjENBL_SLEEP | mjENBL_SPECULATIVE);
     }
     m_wide.opt.enableflags |= mjENBL_OVERRIDE;
-    m_wide.opt.o_margin = options.margin;
+    m_wide.opt.o_margin = range();
     q_rest = options.qpos.empty() ? detail::rest_configuration(m) : options.qpos;
     std::vector<bool> moves;
     for (const int joints : bodies.pieces) moves.push_back(joints > 0);
@@ -68,6 +72,13 @@ struct ExactChecker::Impl {
         capsule_boxes(other.capsule_boxes),
         constant_pairs(other.constant_pairs) {
     make_data();
+  }
+
+  /// [m] up to where distances are measured: beyond the margin, so that configurations beside one
+  /// that was looked at are known to keep it.
+  double range() const {
+    constexpr double kBeyond = 0.02;
+    return options.margin + kBeyond;
   }
 
   void make_data() {
@@ -117,6 +128,7 @@ struct ExactChecker::Impl {
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     if (m.nflex > 0) mj_flex(&m, d.get());
+    if (!memory.has_levers()) memory.set_levers(detail::longest_levers(m, *d, bodies));
   }
 
   /// True for a contact between two geoms that the arm moves against each other and no rule lets
@@ -133,14 +145,25 @@ struct ExactChecker::Impl {
     return {d->contact, static_cast<std::size_t>(d->ncon)};
   }
 
-  /// A solver and who asked it often ask of the same configuration, one after the other.
-  bool is_free(std::span<const double> q) {
-    if (!std::ranges::equal(q, last_q)) {
-      place(q);
-      last_free = !overlaps();
-      last_q.assign(q.begin(), q.end());
+  /// [m] by which any point is elsewhere than at the last look; infinite beyond the limits, where
+  /// pairs may meet that never do within.
+  double moved(std::span<const double> q) const {
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (!(q[i] >= arm.limits.lower[k] && q[i] <= arm.limits.upper[k])) return kInfinity;
     }
-    return last_free;
+    return memory.moved(q);
+  }
+
+  bool is_free(std::span<const double> q) {
+    constexpr double kBeside = 0.05;  // [m] so near to what was looked at that more will follow
+    const double moved = this->moved(q);
+    if (memory.is_free(moved)) return true;
+    if (moved < kBeside && options.margin > 0) return check(q).free;
+    place(q);
+    const bool free = !overlaps();
+    memory.remember(q, {0, 0, 0});
+    return free;
   }
 
   bool overlaps() {
@@ -229,30 +252,34 @@ struct ExactChecker::Impl {
   /// True for two geoms that ExactOptions::skip_neighbours leaves out.
   bool are_neighbours(GeomIds ids, double distance) {
     constexpr int kJoints = 3;
-    constexpr double kFar = 0.02;  // [m]
+    constexpr double kFar = detail::ClearanceMemory::kNeighboursFrom;
     if (!options.skip_neighbours) return false;
     const auto piece = [&](int geom) {
       return bodies.pieces[static_cast<std::size_t>(m.geom_bodyid[geom])];
     };
     const int a = piece(ids.geom1), b = piece(ids.geom2);
     if (a > 0 && b > 0 && std::abs(a - b) <= kJoints && distance >= kFar) return true;
+    return never_meets(ids);
+  }
+
+  bool never_meets(GeomIds ids) {
     if (!never_meet) never_meet.emplace(model, arm, options.rules, q_rest);
     return (*never_meet)(ids);
   }
 
-  /// All pairs nearer than the margin.
+  /// All pairs within range().
   std::vector<std::pair<GeomIds, NearestPair>> near_pairs() {
     std::vector<std::pair<GeomIds, NearestPair>> out;
     for (const GeomIds ids : candidates()) {
       std::array<mjtNum, 6> segment{};
-      const double distance = gap_of(
-          ids, mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, options.margin, segment.data()));
-      if (distance >= options.margin) continue;
+      const double distance =
+          gap_of(ids, mj_geomDistance(&m, d.get(), ids.geom1, ids.geom2, range(), segment.data()));
+      if (distance >= range()) continue;
       out.push_back({ids, {{}, distance, vector(segment.data()), vector(segment.data() + 3)}});
     }
     for (const GeomIds ids : capsule_boxes) {
-      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, options.margin);
-      if (!gap || gap->distance >= options.margin) continue;
+      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, range());
+      if (!gap || gap->distance >= range()) continue;
       const Eigen::Vector3d half = 0.5 * gap->distance * gap->normal_W;
       out.push_back(
           {ids, {{}, gap_of(ids, gap->distance), gap->point_W - half, gap->point_W + half}});
@@ -260,16 +287,30 @@ struct ExactChecker::Impl {
     return out;
   }
 
-  /// @param pairs  that are near.
-  std::optional<NearestPair> nearest(std::vector<std::pair<GeomIds, NearestPair>> pairs) {
+  /// That of the pairs which is told; remembers what they prove of other configurations.
+  std::optional<NearestPair> nearest(std::span<const double> q,
+                                     std::vector<std::pair<GeomIds, NearestPair>> pairs) {
     if (!constant_pairs) find_constant_pairs();
     std::ranges::stable_sort(pairs, {}, [](const auto& entry) { return entry.second.distance; });
+    detail::ClearanceMemory::Seen seen{range(), range(), range()};
+    std::optional<NearestPair> out;
     for (auto& [ids, pair] : pairs) {
-      if (constant_pairs->contains(ids) || are_neighbours(ids, pair.distance)) continue;
-      pair.pair = name_pair(ids);
-      return std::move(pair);
+      const bool constant = constant_pairs->contains(ids);
+      const bool neighbours = !constant && are_neighbours(ids, pair.distance);
+      if (!constant && !neighbours) {
+        seen.told = std::min(seen.told, pair.distance);
+        if (!out && pair.distance < options.margin) {
+          out = pair;
+          out->pair = name_pair(ids);
+        }
+      }
+      const bool nearer = pair.distance < (neighbours ? seen.neighbours : seen.all);
+      if (!nearer || never_meets(ids)) continue;
+      seen.all = std::min(seen.all, pair.distance);
+      if (neighbours) seen.neighbours = pair.distance;
     }
-    return std::nullopt;
+    memory.remember(q, seen);
+    return out;
   }
 
   CollisionReport check(std::span<const double> q) {
@@ -279,13 +320,12 @@ struct ExactChecker::Impl {
     const bool measures = options.margin > 0;
     auto pairs = measures ? near_pairs() : std::vector<std::pair<GeomIds, NearestPair>>();
     // Where all that is near is clearly apart nothing overlaps.
-    if (options.margin < kApart ||
-        std::ranges::any_of(
-            pairs, [](const auto& entry) { return entry.second.distance < kApart; })) {
+    if (!measures || std::ranges::any_of(
+                         pairs, [](const auto& entry) { return entry.second.distance < kApart; })) {
       report.contacts = overlapping();
     }
     report.free = report.contacts.empty() || report.contacts.front().depth <= options.allow_depth;
-    if (measures) report.nearest = nearest(std::move(pairs));
+    if (measures) report.nearest = nearest(q, std::move(pairs));
     return report;
   }
 
@@ -301,8 +341,7 @@ struct ExactChecker::Impl {
   std::vector<GeomIds> capsule_boxes;
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
   std::optional<detail::NeverMeet> never_meet;      // once it was asked for; each copy its own
-  std::vector<double> last_q;                       // of is_free()
-  bool last_free = false;
+  detail::ClearanceMemory memory;
   std::unique_ptr<mjData, DeleteData> d;
 };
 
@@ -349,6 +388,11 @@ Result<CollisionReport> ExactChecker::check(std::span<const double> q) {
 
 bool ExactChecker::is_free(std::span<const double> q) {
   return impl_->accepts(q) && impl_->is_free(q);
+}
+
+double ExactChecker::least_distance(std::span<const double> q) const {
+  if (!impl_->accepts(q)) return -kInfinity;
+  return impl_->memory.least_told(impl_->moved(q), impl_->options.margin);
 }
 
 std::function<bool(std::span<const double>)> ExactChecker::predicate() const {

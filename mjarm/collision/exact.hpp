@@ -95,6 +95,11 @@ class ExactChecker {
   /// The short way: true where check(q) would be free; false where it would fail.
   [[nodiscard]] bool is_free(std::span<const double> q);
 
+  /// [m] The distance of the nearest pair that check(q) would tell is not less, as far as that
+  /// follows from what was looked at last: takes no look. Infinite where check(q) would tell none,
+  /// minus infinity where nothing is known.
+  [[nodiscard]] double least_distance(std::span<const double> q) const;
+
   /// is_free() of a checker of its own, as a predicate for IkOptions::valid. Copies of the
   /// predicate share that checker, so each thread needs one of its own.
   [[nodiscard]] std::function<bool(std::span<const double>)> predicate() const;

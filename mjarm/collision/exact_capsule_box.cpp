@@ -71,16 +71,24 @@ std::optional<GeomGap> capsule_box_gap(const mjModel& m, mjData* d, GeomIds ids,
   if ((p1 - p2).norm() > m.geom_rbound[ids.geom1] + m.geom_rbound[ids.geom2] + margin) {
     return std::nullopt;
   }
-  // The entry for a cylinder and a box is the convex collider, which takes any convex shape.
+  // The entry for a cylinder and a box is the convex collider, which takes any convex shape. With a
+  // margin it may be off by centimetres.
   std::array<mjPreContact, mjMAXCONPAIR> found;
-  const int count = mjCOLLISIONFUNC[mjGEOM_CYLINDER][mjGEOM_BOX](&m, d, found.data(), ids.geom1,
-                                                                 ids.geom2, margin);
-  if (count <= 0) return std::nullopt;
-  const mjPreContact& nearest =
-      *std::min_element(found.begin(), found.begin() + count,
-                        [](const auto& a, const auto& b) { return a.dist < b.dist; });
-  return GeomGap{nearest.dist, Eigen::Map<const Eigen::Vector3d>(nearest.pos),
-                 Eigen::Map<const Eigen::Vector3d>(nearest.normal)};
+  const int count =
+      mjCOLLISIONFUNC[mjGEOM_CYLINDER][mjGEOM_BOX](&m, d, found.data(), ids.geom1, ids.geom2, 0);
+  if (count > 0) {
+    const mjPreContact& nearest =
+        *std::min_element(found.begin(), found.begin() + count,
+                          [](const auto& a, const auto& b) { return a.dist < b.dist; });
+    return GeomGap{nearest.dist, Eigen::Map<const Eigen::Vector3d>(nearest.pos),
+                   Eigen::Map<const Eigen::Vector3d>(nearest.normal)};
+  }
+  if (margin <= 0) return std::nullopt;
+  std::array<mjtNum, 6> segment{};
+  const double distance = mj_geomDistance(&m, d, ids.geom1, ids.geom2, margin, segment.data());
+  if (distance >= margin) return std::nullopt;
+  const Eigen::Map<const Eigen::Vector3d> from(segment.data()), to(segment.data() + 3);
+  return GeomGap{distance, 0.5 * (from + to), (to - from).normalized()};
 }
 
 double geom_distance(const mjModel& m, mjData* d, GeomIds ids, double max) {

@@ -2,6 +2,7 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <set>
@@ -119,6 +120,42 @@ void expect_same_overlaps(const Shipped& robot, std::uint64_t seed) {
   EXPECT_GT(touching, 10);
 }
 
+/// What a checker remembers of the last look: its verdicts are those of one that never looked
+/// before, and its bounds hold, along ways that come near to things and into them.
+void expect_memory_holds(const Shipped& robot, std::uint64_t seed) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const ExactOptions told{.skip_neighbours = true};
+  ExactChecker walking(robot.model, robot.arm), fresh(robot.model, robot.arm, {.margin = 0});
+  ExactChecker bounded(robot.model, robot.arm, told), looking(robot.model, robot.arm, told);
+  Rng rng(seed);
+  int touching = 0, known = 0, tight = 0;
+  for (int way = 0; way < 60; ++way) {
+    const std::vector<double> from = robot.random_q(rng), to = robot.random_q(rng);
+    const double step = rng.uniform(5e-4, 5e-3);
+    for (int k = 0; k < 200; ++k) {
+      std::vector<double> q = from;
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] += k * step * (to[i] - from[i]);
+      const bool free = walking.is_free(q);
+      ASSERT_EQ(free, fresh.is_free(q)) << way << ", " << k;
+      touching += free ? 0 : 1;
+      const double bound = bounded.least_distance(q);
+      const auto report = looking.check(q);
+      ASSERT_TRUE(report);
+      double distance = report->nearest ? report->nearest->distance : kInfinity;
+      if (!report->free) distance = std::min(distance, -report->contacts.front().depth);
+      ASSERT_LE(bound, distance) << way << ", " << k;
+      known += bound > 0 ? 1 : 0;
+      tight += bound > distance - 0.01 ? 1 : 0;
+      if (!(bound > 0)) {
+        ASSERT_TRUE(bounded.check(q));
+      }
+    }
+  }
+  EXPECT_GT(touching, 200);
+  EXPECT_GT(known, 500);
+  EXPECT_GT(tight, 100);
+}
+
 constexpr double kMargin = 0.15;  // [m]
 
 /// Distances of all pairs that may collide, up to the margin, where the robot was placed.
@@ -194,6 +231,11 @@ TEST(ExactCheckerModels, NearestIsNearestOnThePanda) {
 TEST(ExactCheckerModels, MeasuringChangesNoVerdict) {
   expect_same_overlaps(Shipped("ur5e"), 85);
   expect_same_overlaps(Shipped("panda"), 86);
+}
+
+TEST(ExactCheckerModels, WhatWasSeenBeforeChangesNoVerdict) {
+  expect_memory_holds(Shipped("ur5e"), 87);
+  expect_memory_holds(Shipped("panda"), 88);
 }
 
 TEST(ExactCheckerModels, HomeIsFree) {

@@ -185,6 +185,32 @@ TEST(ExactChecker, CapsuleAndBox) {
   EXPECT_GT(apart, 500);
 }
 
+/// A compact box, to which MuJoCo's convex collider with a margin tells wrong distances.
+TEST(ExactChecker, DistancesOfACapsuleFromABox) {
+  const support::TempFolder folder;
+  const World world = load(
+      folder,
+      slider(R"(<geom name="crate" type="box" size="0.1 0.2 0.05"/>)",
+             R"(<geom name="rod" type="capsule" size="0.05" fromto="-.1 -.05 0 .1 .1 .05"/>)"));
+  ExactChecker checker(world.model, world.arm);
+  Rng rng(75);
+  int apart = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d p(rng.uniform(-0.3, 0.3), rng.uniform(-0.4, 0.4), rng.uniform(-0.2, 0.2));
+    const double distance =
+        segment_box_distance(p + Eigen::Vector3d(-0.1, -0.05, 0),
+                             p + Eigen::Vector3d(0.1, 0.1, 0.05), {0.1, 0.2, 0.05}) -
+        0.05;
+    if (distance < 1e-6 || distance > 0.0999) continue;
+    ++apart;
+    const CollisionReport report = check(checker, {p.x(), p.y(), p.z()});
+    ASSERT_TRUE(report.free && report.nearest) << distance;
+    EXPECT_NEAR(report.nearest->distance, distance, 1e-7);
+    EXPECT_NEAR((report.nearest->p1_W - report.nearest->p2_W).norm(), distance, 1e-7);
+  }
+  EXPECT_GT(apart, 200);
+}
+
 /// With a margin as wide as the world MuJoCo lists all pairs that it would ever let collide.
 TEST(ExactChecker, PairRulesAreMujocos) {
   const char* const xml = R"(<mujoco><option o_margin="100"><flag override="enable"/></option>

@@ -19,7 +19,8 @@ ClearanceCheck clearance_check(const ExactChecker& checker) {
     }
     return out;
   };
-  return {measure, [own](std::span<const double> q) { return own->is_free(q); }};
+  return {measure, [own](std::span<const double> q) { return own->is_free(q); },
+          [own](std::span<const double> q) { return own->least_distance(q); }};
 }
 
 }  // namespace mjarm
