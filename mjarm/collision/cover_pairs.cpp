@@ -112,6 +112,14 @@ MeetingProof::MeetingProof(const Model& model, const Arm& arm, const GeomGroups&
   }
 }
 
+std::vector<double> MeetingProof::longest_levers() const {
+  std::vector<double> out(arm_.joints.size(), 0.0);
+  for (const auto& levers : levers_) {
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = std::max(out[k], levers[k]);
+  }
+  return out;
+}
+
 bool MeetingProof::is_allowed(const GeomGroup& a, const GeomGroup& b) const {
   const int first = a.geoms.front().geom, second = b.geoms.front().geom;
   return a.joint != b.joint && may_collide(m_, first, second) && !filter_.may_touch(first, second);

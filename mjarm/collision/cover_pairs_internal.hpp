@@ -22,6 +22,9 @@ class MeetingProof {
   /// True where it is proved that the two never meet; `b` is link `index`, on the joint farther
   /// from the base.
   [[nodiscard]] bool never_meet(const GeomGroup& a, const GeomGroup& b, std::size_t index);
+  /// [m a radian or metre] (dof,) By how much each joint moves any point of a link at most, within
+  /// the limits of all.
+  [[nodiscard]] std::vector<double> longest_levers() const;
 
  private:
   struct Search;

@@ -128,7 +128,6 @@ struct ExactChecker::Impl {
     mj_kinematics(&m, d.get());
     mj_comPos(&m, d.get());
     if (m.nflex > 0) mj_flex(&m, d.get());
-    if (!memory.has_levers()) memory.set_levers(detail::longest_levers(m, *d, bodies));
   }
 
   /// True for a contact between two geoms that the arm moves against each other and no rule lets
@@ -262,8 +261,14 @@ struct ExactChecker::Impl {
     return never_meets(ids);
   }
 
+  void prove_meetings() {
+    if (never_meet) return;
+    never_meet.emplace(model, arm, options.rules, q_rest);
+    memory.set_levers(never_meet->longest_levers());
+  }
+
   bool never_meets(GeomIds ids) {
-    if (!never_meet) never_meet.emplace(model, arm, options.rules, q_rest);
+    prove_meetings();
     return (*never_meet)(ids);
   }
 
@@ -291,6 +296,7 @@ struct ExactChecker::Impl {
   std::optional<NearestPair> nearest(std::span<const double> q,
                                      std::vector<std::pair<GeomIds, NearestPair>> pairs) {
     if (!constant_pairs) find_constant_pairs();
+    prove_meetings();
     std::ranges::stable_sort(pairs, {}, [](const auto& entry) { return entry.second.distance; });
     detail::ClearanceMemory::Seen seen{range(), range(), range()};
     std::optional<NearestPair> out;

@@ -32,7 +32,6 @@ ArmBodies::ArmBodies(const mjModel& m, const Arm& arm, const std::vector<Attache
       continue;
     }
     addresses.push_back(joint.qpos);
-    joints.push_back(id);
     bodies.push_back(m.jnt_bodyid[id]);
     pieces[static_cast<std::size_t>(m.jnt_bodyid[id])] = static_cast<int>(addresses.size());
   }

@@ -25,7 +25,6 @@ struct ArmBodies {
     Pose X_TB;
   };
   std::vector<int> addresses;  ///< of the arm's joints in qpos
-  std::vector<int> joints;     ///< their ids
   std::vector<int> bodies;     ///< that these joints are of
   std::vector<Attached> attached;
   std::vector<int> pieces;    ///< per body: how many joints of the arm move it

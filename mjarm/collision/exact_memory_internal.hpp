@@ -1,21 +1,10 @@
 #pragma once
 
-#include <mujoco/mujoco.h>
-
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "mjarm/collision/exact_arm_bodies_internal.hpp"
-
 namespace mjarm::detail {
-
-/// [m a radian or metre] By how much each joint of an arm can move any point of what hangs on it,
-/// whatever the others do: the longest lever, by the triangle inequality along the joints. Infinite
-/// for a hinge with a slide after it.
-/// @param d  placed somewhere, by mj_kinematics().
-[[nodiscard]] std::vector<double> longest_levers(const mjModel& m, const mjData& d,
-                                                 const ArmBodies& bodies);
 
 /// What a look at one configuration proves of those beside it: distances change by no more than
 /// what the arm moves.
@@ -29,7 +18,8 @@ class ClearanceMemory {
   };
   static constexpr double kNeighboursFrom = 0.02;  ///< [m]
 
-  [[nodiscard]] bool has_levers() const { return !levers_.empty(); }
+  /// Without them nothing is remembered.
+  /// @param levers  [m a radian or metre] (dof,) by which a joint moves any point at most.
   void set_levers(std::vector<double> levers) { levers_ = std::move(levers); }
   void remember(std::span<const double> q, const Seen& seen);
 

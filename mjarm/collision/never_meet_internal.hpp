@@ -19,6 +19,10 @@ class NeverMeet {
             const std::vector<double>& qpos);
 
   [[nodiscard]] bool operator()(GeomIds ids);
+  /// Those of MeetingProof; empty where the model cannot be sorted.
+  [[nodiscard]] std::vector<double> longest_levers() const {
+    return proof_ ? proof_->longest_levers() : std::vector<double>();
+  }
 
  private:
   /// Where a geom is in the groups.
