@@ -103,10 +103,9 @@ class Rewirer {
     const double radius =
         std::min(range_, kNeighbourhood * problem_.max_cost *
                              std::pow(std::log(n + 1) / n, 1.0 / static_cast<double>(dof_)));
-    for (int node = 0; node < tree_.size(); ++node) {
-      const double length = distance(tree_.q(node), q);
-      if (length <= std::max(radius, 1e-9))
-        near_.push_back({tree_.cost(node) + length, length, node});
+    tree_.within(q, std::max(radius, 1e-9), within_);
+    for (const auto& [node, length] : within_) {
+      near_.push_back({tree_.cost(node) + length, length, node});
     }
     if (near_.empty()) {
       const Tree::Near nearest = tree_.nearest(q);
@@ -146,6 +145,7 @@ class Rewirer {
   WideningBox box_;
   Tree tree_;
   int best_ = 0;
+  std::vector<Tree::Near> within_;
   std::vector<Near> near_;
 };
 

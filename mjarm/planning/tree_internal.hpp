@@ -1,13 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <span>
 #include <vector>
 
 #include "mjarm/core/joint_vec.hpp"
+#include "mjarm/planning/near_nodes_internal.hpp"
 #include "mjarm/planning/plan_path.hpp"
 
 namespace mjarm::detail {
@@ -15,11 +14,9 @@ namespace mjarm::detail {
 /// Configurations that are joined by proved edges, each with the one it was reached from.
 class Tree {
  public:
-  explicit Tree(std::size_t dof) : dof_(dof) {
+  explicit Tree(std::size_t dof) : dof_(dof), places_(dof) {
     rows_.reserve(64 * dof);
-    places_.reserve(64 * dof);
     parents_.reserve(64);
-    weights_.reserve(64);
   }
 
   int size() const { return static_cast<int>(parents_.size()); }
@@ -38,7 +35,7 @@ class Tree {
   /// @param length  [rad or m] of the edge from there.
   int add(std::span<const double> q, int parent, double length) {
     rows_.insert(rows_.end(), q.begin(), q.end());
-    place(q);
+    places_.add(q);
     parents_.push_back(parent);
     costs_.push_back(parent < 0 ? 0 : cost(parent) + length);
     children_.push_back({});
@@ -50,10 +47,8 @@ class Tree {
   void move(int node, int parent, double cost);
 
   /// Makes a node from which a way was blocked look farther away, so that others have their turn.
-  void push_away(int node, double factor) {
-    float& weight = weights_[static_cast<std::size_t>(node)];
-    weight = std::min(weight * static_cast<float>(factor), kMaxWeight);
-  }
+  /// @param factor  >= 1: of its squared distance, a million times at most altogether.
+  void push_away(int node, double factor) { places_.push_away(node, factor); }
 
   struct Near {
     int node = -1;
@@ -61,6 +56,9 @@ class Tree {
   };
   /// The node that looks nearest to `q`, the first of equals.
   Near nearest(std::span<const double> q) const;
+  /// Writes the nodes that are no farther from `q` than `radius` [rad or m, L2], in any order, with
+  /// their true distances.
+  void within(std::span<const double> q, double radius, std::vector<Near>& out) const;
 
   /// Nodes from `node` to its root.
   std::vector<JointVec> branch(int node) const;
@@ -79,21 +77,12 @@ class Tree {
     children(parent).first = node;
   }
 
-  static constexpr std::size_t kLanes = 8;  // nodes that are compared at once
-  static constexpr float kMaxWeight = 1e6F;
-  static constexpr float kNowhere =
-      1e9F;  // [rad or m] where lanes without a node are: out of reach
-
-  /// Writes the next node where nearest() looks for it.
-  void place(std::span<const double> q);
-
   std::size_t dof_;
-  std::vector<double> rows_;   // dof_ a node
-  std::vector<float> places_;  // the same in single precision: kLanes nodes joint by joint, ...
+  std::vector<double> rows_;  // dof_ a node
+  NearNodes places_;
   std::vector<int> parents_;
   std::vector<double> costs_;
   std::vector<Children> children_;
-  std::vector<float> weights_;  // of the squared distance, kLanes at least
 };
 
 }  // namespace mjarm::detail

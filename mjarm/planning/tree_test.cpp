@@ -54,7 +54,7 @@ void expect_costs_are_ways_to_roots(const Tree& tree) {
 TEST(Tree, TheNearestNodeIsThatOfAllComparedOneByOne) {
   Rng rng(1, 1);
   for (const std::size_t dof : {1, 2, 6, 8}) {
-    for (const int nodes : {1, 7, 8, 9, 64, 301}) {
+    for (const int nodes : {1, 7, 8, 9, 64, 301, 3000}) {
       const Tree tree = random_tree(rng, dof, nodes);
       for (int k = 0; k < 20; ++k) {
         const std::vector<double> q = random_q(rng, dof);
@@ -66,6 +66,57 @@ TEST(Tree, TheNearestNodeIsThatOfAllComparedOneByOne) {
         EXPECT_NEAR(near.distance, least, 1e-5) << dof << " joints, " << nodes << " nodes";
       }
     }
+  }
+}
+
+/// Nodes in all orders, many in one place, many pushed away, so that boxes are cut where they can
+/// be.
+TEST(Tree, WhatIsNearestCountsHowFarNodesWerePushedAway) {
+  Rng rng(4, 1);
+  using Kind = std::pair<std::size_t, double>;
+  for (const auto& [dof, spread] : {Kind{1, 1}, Kind{2, 0.01}, Kind{6, 1}, Kind{7, 0}}) {
+    Tree tree(dof);
+    std::vector<double> weights;
+    while (tree.size() < 3000) {
+      std::vector<double> q = random_q(rng, dof);
+      for (double& x : q) x = tree.size() * (1 - spread) * 1e-3 + spread * std::round(20 * x) / 20;
+      tree.add(q, tree.size() - 1, 0);
+      weights.push_back(1);
+      const auto node = rng.below(static_cast<std::uint64_t>(tree.size()));
+      const double factor = 1 + 3 * rng.uniform();
+      tree.push_away(static_cast<int>(node), factor);
+      weights[node] = std::min(weights[node] * factor, 1e6);
+    }
+    const auto look = [&](std::span<const double> q, int node) {
+      const double far = apart(q, tree.q(node));
+      return far * far * weights[static_cast<std::size_t>(node)];
+    };
+    for (int k = 0; k < 300; ++k) {
+      const std::vector<double> q = random_q(rng, dof);
+      double least = look(q, 0);
+      for (int node = 1; node < tree.size(); ++node) least = std::min(least, look(q, node));
+      ASSERT_LE(look(q, tree.nearest(q).node), least * 1.00001 + 1e-9) << dof << " joints";
+    }
+  }
+}
+
+TEST(Tree, WithinARadiusAreTheNodesThatAreNoFarther) {
+  Rng rng(5, 1);
+  std::vector<Tree::Near> found;
+  for (const std::size_t dof : {1, 3, 7}) {
+    const Tree tree = random_tree(rng, dof, 2000);
+    std::size_t all = 0;
+    for (int k = 0; k < 50; ++k) {
+      const std::vector<double> q = random_q(rng, dof);
+      const double radius = 4 * rng.uniform();
+      tree.within(q, radius, found);
+      std::size_t expected = 0;
+      for (int node = 0; node < tree.size(); ++node) expected += apart(q, tree.q(node)) <= radius;
+      ASSERT_EQ(found.size(), expected);
+      for (const Tree::Near& near : found) EXPECT_EQ(near.distance, apart(q, tree.q(near.node)));
+      all += expected;
+    }
+    EXPECT_GT(all, 100U);
   }
 }
 
