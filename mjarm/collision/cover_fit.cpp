@@ -106,7 +106,7 @@ class CoverFit {
       if ((points_[k] - p).squaredNorm() <= radius * radius) points.push_back(static_cast<int>(k));
     }
     candidates_.push_back({p, radius});
-    return cover_.add_set(std::move(points));
+    return cover_.add_set(points);
   }
 
   void add_point(const Vector3d& p) {

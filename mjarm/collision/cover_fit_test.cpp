@@ -16,10 +16,8 @@ CoverSolid wedge(double size) {
   out.kind = SolidKind::hull;
   out.points = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
   out.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
-  out.facets = {{-Vector3d::UnitX(), 0},
-                {-Vector3d::UnitY(), 0},
-                {-Vector3d::UnitZ(), 0},
-                {Vector3d::Constant(1 / std::numbers::sqrt3), size / std::numbers::sqrt3}};
+  for (int k = 0; k < 3; ++k) out.facets.add({-Vector3d::Unit(k), 0});
+  out.facets.add({Vector3d::Constant(1 / std::numbers::sqrt3), size / std::numbers::sqrt3});
   return out;
 }
 

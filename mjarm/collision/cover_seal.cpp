@@ -29,41 +29,60 @@ class CoverSeal {
 
   std::vector<Vector3d> run() {
     const CoverBounds bounds = bounds_of(solids_);
-    std::vector<int> solids(solids_.size()), spheres(spheres_.size());
-    for (std::size_t i = 0; i < solids.size(); ++i) solids[i] = static_cast<int>(i);
-    for (std::size_t i = 0; i < spheres.size(); ++i) spheres[i] = static_cast<int>(i);
+    for (std::size_t i = 0; i < solids_.size(); ++i) lists_.push_back(static_cast<int>(i));
+    const List solids{0, lists_.size()};
+    for (std::size_t i = 0; i < spheres_.size(); ++i) lists_.push_back(static_cast<int>(i));
+    const List spheres{solids.end, lists_.size()};
     look({0.5 * (bounds.low + bounds.high), 0.5 * (bounds.high - bounds.low)}, solids, spheres);
     return std::move(gaps_);
   }
 
  private:
-  static double farthest(const Cell& cell, const Vector3d& center) {
-    return ((cell.center - center).cwiseAbs() + cell.half).norm();
+  /// A part of lists_.
+  struct List {
+    std::size_t begin, end;
+  };
+
+  static double farthest2(const Cell& cell, const Vector3d& center) {
+    return ((cell.center - center).cwiseAbs() + cell.half).squaredNorm();
   }
 
   /// `solids` and `spheres`: those that the cell above this one meets.
-  void look(const Cell& cell, const std::vector<int>& solids, const std::vector<int>& spheres) {
+  void look(const Cell& cell, List solids, List spheres) {
     if (gaps_.size() >= kMaxGaps) return;
+    const std::size_t before = lists_.size();
+    look_closer(cell, solids, spheres);
+    lists_.resize(before);
+  }
+
+  void look_closer(const Cell& cell, List solids, List spheres) {
     const double round = cell.half.norm();
-    std::vector<int> near_solids, near_spheres;
-    for (const int i : solids) {
-      const CoverSolid& solid = solids_[static_cast<std::size_t>(i)];
-      if (solid.signed_distance(cell.center) <= round) near_solids.push_back(i);
+    List near_spheres{lists_.size(), 0};
+    for (std::size_t k = spheres.begin; k < spheres.end; ++k) {
+      const auto i = static_cast<std::size_t>(lists_[k]);
+      const Sphere& sphere = spheres_[i];
+      if (farthest2(cell, sphere.center) <= sphere.radius * sphere.radius) return;
+      const double reach = max_[i] + round;
+      if ((cell.center - sphere.center).squaredNorm() < reach * reach) lists_.push_back(lists_[k]);
     }
-    if (near_solids.empty()) return;
-    for (const int i : spheres) {
-      const Sphere& sphere = spheres_[static_cast<std::size_t>(i)];
-      if (farthest(cell, sphere.center) <= sphere.radius) return;
-      const double reach = max_[static_cast<std::size_t>(i)] + round;
-      if ((cell.center - sphere.center).squaredNorm() < reach * reach) near_spheres.push_back(i);
+    near_spheres.end = lists_.size();
+    List near_solids{near_spheres.end, 0};
+    for (std::size_t k = solids.begin; k < solids.end; ++k) {
+      const CoverSolid& solid = solids_[static_cast<std::size_t>(lists_[k])];
+      if (solid.signed_distance(cell.center) <= round) lists_.push_back(lists_[k]);
     }
+    near_solids.end = lists_.size();
+    if (near_solids.begin == near_solids.end) return;
     Eigen::Index widest = 0;
     const double half = cell.half.maxCoeff(&widest);
     if (half <= kLeastCell * bound_ || ++cells_ > kMaxCells) {
       fill(cell, near_solids, near_spheres);
       return;
     }
-    if (near_spheres.empty() && is_near_gap(cell.center, kApart * bound_ - round)) return;
+    if (near_spheres.begin == near_spheres.end &&
+        is_near_gap(cell.center, kApart * bound_ - round)) {
+      return;
+    }
     Cell child = cell;
     child.half[widest] *= 0.5;
     for (const double side : {-1.0, 1.0}) {
@@ -73,12 +92,12 @@ class CoverSeal {
   }
 
   /// Grows the sphere that needs it least.
-  void fill(const Cell& cell, const std::vector<int>& solids, const std::vector<int>& spheres) {
+  void fill(const Cell& cell, List solids, List spheres) {
     double least = std::numeric_limits<double>::infinity();
     std::size_t which = 0;
-    for (const int k : spheres) {
-      const auto i = static_cast<std::size_t>(k);
-      const double radius = farthest(cell, spheres_[i].center);
+    for (std::size_t k = spheres.begin; k < spheres.end; ++k) {
+      const auto i = static_cast<std::size_t>(lists_[k]);
+      const double radius = std::sqrt(farthest2(cell, spheres_[i].center));
       if (radius > max_[i] || radius - spheres_[i].radius >= least) continue;
       least = radius - spheres_[i].radius;
       which = i;
@@ -87,8 +106,8 @@ class CoverSeal {
       spheres_[which].radius += least;
       return;
     }
-    for (const int i : solids) {
-      const CoverSolid& solid = solids_[static_cast<std::size_t>(i)];
+    for (std::size_t k = solids.begin; k < solids.end; ++k) {
+      const CoverSolid& solid = solids_[static_cast<std::size_t>(lists_[k])];
       const auto point = solid.point_within(cell.center, cell.half.norm());
       if (point && !is_near_gap(*point, kApart * bound_)) gaps_.push_back(*point);
     }
@@ -103,6 +122,7 @@ class CoverSeal {
   std::span<Sphere> spheres_;
   double bound_;
   std::vector<double> max_;  // largest radius of each sphere
+  std::vector<int> lists_;   // of the cell that is looked at, and of all above it
   std::vector<Vector3d> gaps_;
   std::size_t cells_ = 0;
 };

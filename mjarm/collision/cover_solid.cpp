@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -11,6 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr std::size_t kLanes = 4;  // facets of a block
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double from_box(const Vector3d& half, const Vector3d& p) {
@@ -42,12 +44,6 @@ double from_ellipsoid(const Vector3d& a, const Vector3d& p) {
   }
   const double distance = (nearest(0.5 * (low + high)) - y).norm();
   return y.cwiseQuotient(a).squaredNorm() > 1 ? distance : -distance;
-}
-
-double from_hull(std::span<const Facet> facets, const Vector3d& p) {
-  double max = -kInfinity;
-  for (const Facet& facet : facets) max = std::max(max, facet.normal.dot(p) - facet.offset);
-  return max;
 }
 
 /// The point of a segment that is nearest to p.
@@ -110,6 +106,46 @@ std::vector<Vector3d> into_link(const Pose& X_LS, std::vector<Vector3d> points) 
 
 }  // namespace
 
+void Facets::add(const Facet& facet) {
+  const std::size_t lane = size_++ % kLanes;
+  // Lanes without a facet have one that is farther from everything than any other.
+  if (lane == 0) {
+    rows_.resize(rows_.size() + 3 * kLanes, 0);
+    rows_.resize(rows_.size() + kLanes, kInfinity);
+  }
+  double* const block = rows_.data() + rows_.size() - 4 * kLanes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    block[k * kLanes + lane] = facet.normal[static_cast<Eigen::Index>(k)];
+  }
+  block[3 * kLanes + lane] = facet.offset;
+}
+
+Facet Facets::operator[](std::size_t index) const {
+  const double* const at = rows_.data() + index / kLanes * 4 * kLanes + index % kLanes;
+  return {{at[0], at[kLanes], at[2 * kLanes]}, at[3 * kLanes]};
+}
+
+double Facets::farthest(const Vector3d& p) const {
+  typedef double Two __attribute__((vector_size(16)));
+  const auto load = [](const double* from) {
+    Two out;
+    std::memcpy(&out, from, sizeof out);
+    return out;
+  };
+  const Two x = Two{} + p.x(), y = Two{} + p.y(), z = Two{} + p.z();
+  std::array<Two, 2> max{Two{} - kInfinity, Two{} - kInfinity};
+  const double* const end = rows_.data() + rows_.size();
+  for (const double* at = rows_.data(); at != end; at += 4 * kLanes) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double* const pair = at + 2 * k;
+      const Two beyond = load(pair) * x + load(pair + kLanes) * y + load(pair + 2 * kLanes) * z -
+                         load(pair + 3 * kLanes);
+      max[k] = max[k] < beyond ? beyond : max[k];
+    }
+  }
+  return std::max(std::max(max[0][0], max[0][1]), std::max(max[1][0], max[1][1]));
+}
+
 double CoverSolid::signed_distance(const Vector3d& p_L) const {
   const Vector3d p = X_LS.R.transpose() * (p_L - X_LS.p);
   switch (kind) {
@@ -126,7 +162,7 @@ double CoverSolid::signed_distance(const Vector3d& p_L) const {
     case SolidKind::ellipsoid:
       return from_ellipsoid(size, p) - grow;
     case SolidKind::hull:
-      return from_hull(facets, p) - grow;
+      return facets.farthest(p) - grow;
   }
   return kInfinity;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,20 @@ struct Facet {
   double offset = 0;       ///< [m]
 };
 
+/// What bounds a convex solid, kept so that several are looked at at once.
+class Facets {
+ public:
+  void add(const Facet& facet);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] Facet operator[](std::size_t index) const;
+  /// [m] The largest normal . p - offset; minus infinity where there are none.
+  [[nodiscard]] double farthest(const Eigen::Vector3d& p) const;
+
+ private:
+  std::size_t size_ = 0;
+  std::vector<double> rows_;  ///< four normals along x, along y, along z, four offsets, ...
+};
+
 enum class SolidKind { ball, capsule, box, cylinder, ellipsoid, hull };
 
 /// A convex solid of a link, in a frame S of its own, seen from the frame L of the link. `grow` is
@@ -25,7 +40,7 @@ struct CoverSolid {
   Pose X_LS;
   /// [m] radius; radius and half length along z; half extents; or semi-axes.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  std::vector<Facet> facets;                  ///< of a hull, in S
+  Facets facets;                              ///< of a hull, in S
   std::vector<Eigen::Vector3d> points;        ///< vertices of a hull, in S
   std::vector<std::array<int, 3>> triangles;  ///< of them, the surface of a hull
   double grow = 0;                            ///< [m] >= 0

@@ -24,13 +24,12 @@ void add_facet(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Ve
   if (!(area > 1e-12 * std::max((b - a).squaredNorm(), (c - a).squaredNorm()))) return;
   normal /= area;
   if (normal.dot(a - inside) < 0) normal = -normal;
-  const bool known = std::any_of(out.facets.begin(), out.facets.end(), [&](const Facet& facet) {
-    return facet.normal.dot(normal) > 1 - 1e-9;
-  });
-  if (known) return;
+  for (std::size_t k = 0; k < out.facets.size(); ++k) {
+    if (out.facets[k].normal.dot(normal) > 1 - 1e-9) return;
+  }
   double offset = normal.dot(a);
   for (const Vector3d& p : out.points) offset = std::max(offset, normal.dot(p));
-  out.facets.push_back({normal, offset});
+  out.facets.add({normal, offset});
 }
 
 /// The convex hull that MuJoCo keeps of a mesh: numbers of vertices and faces, then per vertex

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mjarm/core/rng.hpp"
@@ -12,7 +15,7 @@ namespace mjarm::detail {
 class SetCover {
  public:
   /// @param elements  that are in it, of those there are. @return its index, from 0.
-  int add_set(std::vector<int> elements);
+  int add_set(std::span<const int> elements);
   /// @param sets  that hold it, at least one. @return its index, from 0.
   int add_element(std::vector<int> sets);
 
@@ -21,16 +24,21 @@ class SetCover {
   const std::vector<int>& solve(int rounds);
 
  private:
-  void take(int set);
+  /// A bit for every element; missing words are zero.
+  using Bits = std::vector<std::uint64_t>;
+
+  void find_open();
+  Bits held_once() const;
   void drop(std::size_t place);
   void complete(double noise);
   void drop_needless();
   void drop_neighbours(int count);
 
-  std::vector<std::vector<int>> sets_;       // elements of each
+  std::vector<Bits> sets_;                   // elements of each
   std::vector<std::vector<int>> sets_with_;  // per element
   std::vector<int> order_;                   // elements, those in the fewest sets first
-  std::vector<int> times_;                   // per element: how often it is covered
+  Bits all_;                                 // elements that there are
+  Bits open_;                                // those that are not held yet, while sets are chosen
   std::vector<int> chosen_;
   Rng rng_{1};
 };
