@@ -10,7 +10,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -36,8 +35,8 @@ constexpr char kEnd = '\x04';
 
 /// [s] Computing time that is no progress.
 constexpr double kWakes = 1e-3;
-
-using Clock = std::chrono::steady_clock;
+/// [ms] How long the listener sleeps before it looks whether the child still computes.
+constexpr int kLook = 20;
 
 /// Address space of this process [bytes]; 0 where unknown.
 std::size_t address_space() {
@@ -86,7 +85,7 @@ class Listener {
       : child_(child), pipe_(pipe), limits_(limits) {}
 
   ChildResult listen() {
-    while (!closed_ && !ended_ && !out_of_time_ && result_.said.size() <= limits_.answer) hear();
+    while (!closed_ && !ended_ && !stuck_ && result_.said.size() <= limits_.answer) hear();
     if (!ended_) {
       // It has said all, or will not be listened to any longer.
       if (!closed_) ::kill(child_, SIGKILL);
@@ -118,16 +117,17 @@ class Listener {
   void hear() {
     // Processes that other threads start at this moment hold the pipe open as well, so its end
     // alone does not tell that of the child.
-    if (poll(20)) {
+    if (poll(kLook)) {
       read();
     } else {
       wait(WNOHANG);
-      out_of_time_ = !ended_ && is_idle();
+      stuck_ = !ended_ && is_idle();
     }
   }
 
-  /// True once it has not computed for as long as it may. (On a busy machine a process that wants
-  /// to compute gets its turn much sooner; one that only wakes up now and then does not compute.)
+  /// True once it has not computed for as long as it may, in time that this process was awake for:
+  /// both may have been stopped for a while. (On a busy machine a process that wants to compute
+  /// gets its turn much sooner; one that only wakes up now and then does not compute.)
   bool is_idle() {
     clockid_t clock{};
     timespec used{};
@@ -137,9 +137,9 @@ class Listener {
         static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
     if (seconds - used_ > kWakes) {
       used_ = seconds;
-      last_progress_ = Clock::now();
+      idle_looks_ = 0;
     }
-    return Clock::now() - last_progress_ > std::chrono::duration<double>(limits_.idle_seconds);
+    return ++idle_looks_ * (1e-3 * kLook) > limits_.idle_seconds;
   }
 
   void wait(int how) {
@@ -156,7 +156,9 @@ class Listener {
   ChildResult judge() {
     if (result_.said.size() > limits_.answer) {
       result_.end = ChildEnd::too_long;
-    } else if (out_of_time_ || result_.signal == SIGXCPU) {
+    } else if (stuck_) {
+      result_.end = ChildEnd::stuck;
+    } else if (result_.signal == SIGXCPU) {
       result_.end = ChildEnd::out_of_time;
     } else if (result_.signal == 0 && !result_.said.empty() && result_.said.back() == kEnd) {
       result_.end = ChildEnd::done;
@@ -169,11 +171,11 @@ class Listener {
   int pipe_;
   ChildLimits limits_;
   double used_ = 0;  ///< [s] computing time of the child when it last went on
-  Clock::time_point last_progress_ = Clock::now();
+  int idle_looks_ = 0;
   ChildResult result_;
   bool closed_ = false;
   bool ended_ = false;
-  bool out_of_time_ = false;
+  bool stuck_ = false;
   std::array<char, 65536> buffer_{};
 };
 

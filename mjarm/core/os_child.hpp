@@ -21,7 +21,8 @@ struct ChildLimits {
 enum class ChildEnd {
   done,         ///< its work came to its end
   crashed,      ///< a signal ended it, or it left by itself
-  out_of_time,  ///< it used up its time, or it waited for too long
+  out_of_time,  ///< it used up its computing time
+  stuck,        ///< it waited for too long
   too_long,     ///< it said more than it may
 };
 
@@ -45,7 +46,9 @@ class ChildVoice {
 
 /// Runs `work` in a copy of this process, so that whatever it does (crash, hang, eat memory) harms
 /// nobody. The copy cannot write to files, is silent on its standard streams and ends with `work`,
-/// which should hold everything it needs and take no lock that another thread may hold.
+/// which should hold everything it needs and take no lock that another thread may hold: such a lock
+/// stays locked in the copy, which then is `stuck`. (The lock of the program loader is among them:
+/// exceptions take it where libunwind looks for their handlers. Another try may succeed.)
 /// May be called from any thread. Where a sanitizer holds the address space, memory is not limited.
 /// @param started  called in this process once the copy is made; may be null.
 /// @return an error where no process can be had.

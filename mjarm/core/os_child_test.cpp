@@ -62,7 +62,7 @@ TEST(Child, NeverEndsLaterThanItMay) {
 TEST(Child, WaitingIsTimeAsWell) {
   const auto idle = run_in_child([](const ChildVoice&) { ::pause(); }, {.idle_seconds = 0.3});
   ASSERT_TRUE(idle);
-  EXPECT_EQ(idle->end, ChildEnd::out_of_time);
+  EXPECT_EQ(idle->end, ChildEnd::stuck);
 }
 
 TEST(Child, MemoryIsBounded) {

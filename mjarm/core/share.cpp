@@ -14,8 +14,11 @@ std::vector<fs::path> share_folders() {
   if (const Result<fs::path> program = executable_path()) {
     folders.push_back((program->parent_path() / ".." / "share" / "mjarm").lexically_normal());
   }
-  // mjarm itself is linked in and has no place of its own; MuJoCo is installed beside it.
-  if (const fs::path mujoco = loaded_library("libmujoco"); !mujoco.empty()) {
+  // mjarm itself is linked in and has no place of its own; MuJoCo is installed beside it. Looked
+  // for once: that takes the program loader's lock, which no thread should hold when another one
+  // copies the process (`run_in_child`).
+  static const fs::path mujoco = loaded_library("libmujoco");
+  if (!mujoco.empty()) {
     folders.push_back((mujoco.parent_path() / MJARM_LIBRARY_TO_SHARE).lexically_normal());
   }
   return folders;

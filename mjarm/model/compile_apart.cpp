@@ -109,6 +109,9 @@ Error bad_end(const SpecSource& source, const ChildResult& result, Stage stage) 
     case ChildEnd::out_of_time:
       return {Errc::bad_input,
               text(msg::guard_out_of_time, source.name(), name_of(stage), kLimits.cpu_seconds)};
+    case ChildEnd::stuck:
+      return {Errc::bad_input,
+              text(msg::guard_stuck, source.name(), name_of(stage), kLimits.idle_seconds)};
     case ChildEnd::too_long:
       return {Errc::bad_input, text(msg::guard_too_large, source.name(), kLimits.answer / 2)};
     default:
@@ -136,10 +139,16 @@ std::optional<LoadedModel> read_model(std::string_view said) {
   return loaded;
 }
 
-Result<LoadedModel> compile_apart(const SpecSource& source) {
+Result<ChildResult> compile_in_child(const SpecSource& source) {
   std::unique_lock forking(compiler_lock());
-  const Result<ChildResult> result = run_in_child(
-      [&](const ChildVoice& voice) { work(source, voice); }, kLimits, [&] { forking.unlock(); });
+  return run_in_child([&](const ChildVoice& voice) { work(source, voice); }, kLimits,
+                      [&] { forking.unlock(); });
+}
+
+Result<LoadedModel> compile_apart(const SpecSource& source) {
+  Result<ChildResult> result = compile_in_child(source);
+  // Threads that are not ours may have held a lock when the copy was made; seldom twice.
+  if (result && result->end == ChildEnd::stuck) result = compile_in_child(source);
   if (!result) return fail(result.error());
   std::string_view said = result->said;
   const Stage stage = take_stages(said);

@@ -2,12 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <link.h>
 #include <mujoco/mujoco.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <future>
 #include <thread>
 
 #include "mjarm/model/find_arm.hpp"
@@ -349,6 +352,31 @@ TEST(Model, ManyThreadsLoadGoodAndBadFilesAtOnce) {
   }
   for (std::thread& thread : threads) thread.join();
   for (const std::string& told : wrong) EXPECT_EQ(told, "");
+}
+
+TEST(Model, LoadsAlthoughAnotherThreadHoldsTheProgramLoadersLock) {
+  if (support::kSanitized) GTEST_SKIP() << "files are not read in a copy of the process";
+  const support::TempFolder folder;
+  const auto bad =
+      folder.write("a.xml", "<mujoco><worldbody><geom wrong=\"1\"/></worldbody></mujoco>");
+  const std::string told = Model::load(bad).error().what;
+  EXPECT_THAT(told, HasSubstr("wrong"));
+  // MuJoCo reports this fault by an exception, whose handler is looked for under that lock: the
+  // first copy hangs, since in it nobody gives the lock back.
+  std::promise<void> held;
+  std::thread other([&] {
+    const auto hold = [](dl_phdr_info*, std::size_t, void* told_to) {
+      static_cast<std::promise<void>*>(told_to)->set_value();
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+      return 1;
+    };
+    ::dl_iterate_phdr(hold, &held);
+  });
+  held.get_future().wait();
+  const auto model = Model::load(bad);
+  other.join();
+  ASSERT_FALSE(model);
+  EXPECT_EQ(model.error().what, told);
 }
 
 TEST(ShippedModels, AreFoundByNameAndByEnvironment) {
