@@ -132,14 +132,16 @@ Result<Curve> Curve::circle(const Pose& from, const Pose& via, const Pose& to) {
 
 Result<Curve> Curve::circle(const Eigen::Vector3d& center, const Eigen::Vector3d& normal,
                             double radius, const Eigen::Matrix3d& R) {
-  if (!(radius > 0 && radius <= detail::kFarthest)) {
+  if (!(radius >= detail::kSamePoint && radius <= detail::kFarthest)) {
     return bad(text(msg::path_circle_radius, radius));
   }
   return ellipse({center, radius, radius, normal, R});
 }
 
 Result<Curve> Curve::ellipse(const Ellipse& ellipse) {
-  const auto sound = [](double axis) { return axis > 0 && axis <= detail::kFarthest; };
+  const auto sound = [](double axis) {
+    return axis >= detail::kSamePoint && axis <= detail::kFarthest;
+  };
   if (!sound(ellipse.a)) return bad(text(msg::path_ellipse_axis, "a", ellipse.a));
   if (!sound(ellipse.b)) return bad(text(msg::path_ellipse_axis, "b", ellipse.b));
   if (!ellipse.normal.allFinite() || ellipse.normal.isZero(0)) {

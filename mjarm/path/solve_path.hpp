@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -14,9 +15,14 @@
 
 namespace mjarm {
 
+/// [rad or m] A hinge that may turn by more between two poses can arrive both ways round, so
+/// nothing follows from the poses for what lies between them.
+inline constexpr double kMaxJointStep = std::numbers::pi;
+
 /// How joint values are chosen along a sequence of poses. Every default is usable as is.
 struct PathOptions {
-  double max_step = 0.5;    ///< [rad or m] largest joint step between neighbours, > 0
+  double max_step =
+      0.5;  ///< [rad or m] largest joint step between neighbours, > 0, <= kMaxJointStep
   bool keep_start = false;  ///< true: the arm stands at q_start; no other answer to pose 0 will do
                             ///< than the one nearest to it
   /// [1] Tracks no tighter than this count as equally good, and the one that starts nearest to

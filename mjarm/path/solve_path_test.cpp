@@ -150,10 +150,11 @@ TEST(SolvePath, BadInputIsRefused) {
   EXPECT_EQ(code(poses, {0, 1, 2, kNaN}, kSeed, {}), PathErrc::bad_input);
   EXPECT_EQ(code(poses, s, {0, 0}, {}), PathErrc::bad_input);
   EXPECT_EQ(code(poses, s, kSeed, {.max_step = 0}), PathErrc::bad_input);
+  EXPECT_EQ(code(poses, s, kSeed, {.max_step = 3.15}), PathErrc::bad_input);
   EXPECT_EQ(code(poses, s, kSeed, {.comfort = 2}), PathErrc::bad_input);
   std::vector<Pose> broken = poses;
   broken[2].p.x() = kNaN;
-  EXPECT_EQ(code(broken, s, kSeed, {.max_step = 10}), PathErrc::bad_input);
+  EXPECT_EQ(code(broken, s, kSeed, {.max_step = 2}), PathErrc::bad_input);
   EXPECT_FALSE(find_shift(ik, {}, kSeed).has_value());
   EXPECT_FALSE(find_shift(ik, poses, kSeed, {}, kNaN).has_value());
 }

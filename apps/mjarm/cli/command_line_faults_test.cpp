@@ -65,7 +65,9 @@ TEST(CommandLineFaults, OptionsAreNamedAsTheyWereWritten) {
     words.insert(words.end(), {option, value});
     return refused_line(words);
   };
-  EXPECT_THAT(with("--max-step", "0"), HasSubstr("--max-step must be above 0"));
+  for (const char* wrong : {"0", "181deg"}) {
+    EXPECT_THAT(with("--max-step", wrong), HasSubstr("--max-step must be above 0 and at most pi"));
+  }
   EXPECT_THAT(with("--orientation-tol", "90deg"), HasSubstr("--orientation-tol must be"));
   EXPECT_THAT(refused_line({"view", "ur5e", "--camera", "1,2"}), HasSubstr("--camera: "));
   EXPECT_THAT(refused_line({"view", "ur5e", "--camera", "fornt"}), HasSubstr("--camera: "));
