@@ -127,6 +127,13 @@ TEST(Clearance, WhereNoPathKeepsItTheLargestThatIsPossibleIsSaid) {
   const auto shut = closed.plan(kLeftOfFence, right(), {.samples = 300, .clearance = 0.01});
   ASSERT_FALSE(shut);
   EXPECT_EQ(shut.error().search.code, PlanErrc::budget_spent);
+  // Nor does a search for it last for longer than all of them may.
+  const auto late =
+      closed.plan(kLeftOfFence, right(), {.samples = 100'000'000, .time_limit = 0.05});
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().search.code, PlanErrc::out_of_time);
+  EXPECT_NE(late.error().what.find("within 0.05 s"), std::string::npos) << late.error().what;
+  EXPECT_EQ(late.error().bound, 0);
   for (const double wrong : {-0.001, 0.6, std::numeric_limits<double>::quiet_NaN()}) {
     const auto refused = world.plan(kLeftOfFence, right(), {.clearance = wrong});
     ASSERT_FALSE(refused);

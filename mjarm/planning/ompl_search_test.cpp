@@ -233,6 +233,22 @@ TEST_F(Ompl, PlannersThatImproveUseTheirTimeAndTheOthersDoNot) {
   }
 }
 
+TEST_F(Ompl, TheTimeLimitEndsASearchThatFindsNothing) {
+  PostWorld flat;
+  flat.world = {};
+  for (const double angle : {-1.1, -0.5}) {
+    flat.add_post(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0.03);
+  }
+  for (const char* name : {"RRTConnect", "RRTstar"}) {
+    PlanOptions options = ompl_options(name, 10'000'000);
+    options.time_limit = 0.05;
+    const auto path = plan_path(flat.checker(), kHere, goal_at(kThere), options);
+    ASSERT_FALSE(path);
+    EXPECT_EQ(path.error().code, PlanErrc::out_of_time) << name;
+    EXPECT_LT(path.error().samples, 10'000'000) << name;
+  }
+}
+
 TEST_F(Ompl, TimeEndsASearchThatFindsNothing) {
   PostWorld flat;
   flat.world = {};

@@ -176,6 +176,7 @@ class EllipsoidSampler : public ob::InformedSampler {
 
 OmplBudget::OmplBudget(const PlanOptions& options, bool improves)
     : deadline_(options.stop, 1e6 * kTimeShare * options.time_budget),
+      limit_({}, 1e6 * options.time_limit),
       timed_(options.time_budget > 0),
       max_(options.samples > 0 ? options.samples
            : improves          ? kMaxWhereImproved
@@ -190,7 +191,7 @@ void OmplBudget::found() {
 
 bool OmplBudget::spent() {
   ++steps_;
-  if (deadline_.passed()) return true;
+  if (deadline_.passed() || (!found_ && limit_.passed())) return true;
   if (found_ && timed_) return false;
   const int draws = found_ ? more_ : max_;
   return counts_.samples >= draws || steps_ >= kStepsOfDraw * draws;

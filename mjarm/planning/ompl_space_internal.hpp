@@ -35,6 +35,7 @@ class OmplBudget {
  private:
   PlanCounts counts_;
   Deadline deadline_;
+  Deadline limit_;  // until there is a path
   bool timed_;
   int max_, more_;          // draws until there is a path, and after that
   std::int64_t steps_ = 0;  // for planners that go on and on without drawing

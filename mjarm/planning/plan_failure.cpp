@@ -62,6 +62,8 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return text(msg::planning_goals_tilted, failure.value, failure.limit);
     case PlanErrc::budget_spent:
       return text(msg::planning_budget, failure.samples, failure.nearest);
+    case PlanErrc::out_of_time:
+      return text(msg::planning_out_of_time, failure.limit, failure.samples, failure.nearest);
     case PlanErrc::stopped:
       return stopped().what;
     case PlanErrc::bad_clearance:

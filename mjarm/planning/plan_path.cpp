@@ -43,13 +43,18 @@ double path_length(std::span<const JointVec> q) noexcept {
 Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<const double> start,
                                        std::span<const JointVec> goals,
                                        const PlanOptions& options) {
-  const auto problem = detail::validate_problem(checker, start, goals, options);
+  auto problem = detail::validate_problem(checker, start, goals, options);
   if (!problem) return tl::unexpected(problem.error());
+  problem->deadline = detail::Deadline(options.stop, 1e6 * options.time_limit);
   const auto search = options.planner == Planner::rrt_star ? detail::rrt_star
                       : options.planner == Planner::ompl   ? detail::ompl_search
                                                            : detail::rrt_connect;
   Result<RawPath, PlanFailure> found = search(*problem, options);
   if (is_stopped(options.stop)) return tl::unexpected(PlanFailure{.code = PlanErrc::stopped});
+  if (!found && found.error().code == PlanErrc::budget_spent && problem->deadline.passed()) {
+    found.error().code = PlanErrc::out_of_time;
+    found.error().limit = options.time_limit;
+  }
   return found;
 }
 

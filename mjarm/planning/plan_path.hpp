@@ -38,6 +38,9 @@ struct PlanOptions {
   /// Budget: configurations that are drawn at most until there is a path, and as many that rrt_star
   /// draws after that; 0: 100,000 (with a clearance 30,000) and 3,000.
   int samples = 0;
+  /// [s] >= 0; 0: none. A search that has no path by then ends with PlanErrc::out_of_time, so that
+  /// whatever is asked ends; what is found in time does not depend on it.
+  double time_limit = 10;
   int shortcuts = 12;        ///< attempts to cut corners of what was found, >= 0
   double resolution = 1e-3;  ///< [rad or m, L2] narrowest interval of the proof of an edge, > 0
   /// More searches, each only for what is shorter than the best path so far, >= 0.
@@ -74,6 +77,7 @@ enum class PlanErrc {
   start_tilted,    ///< the tool leans too far at the start
   goals_tilted,    ///< the tool leans too far at every goal that is free of collisions
   budget_spent,    ///< PlanOptions::samples did not do
+  out_of_time,     ///< PlanOptions::time_limit did not do
   stopped,         ///< PlanOptions::stop ended the work
   too_near,        ///< no path keeps PlanOptions::clearance, but one with less was found
   unproved,        ///< a path was found, but an edge of it could not be proved (never seen)
@@ -90,10 +94,10 @@ struct PlanFailure {
   int joint = -1;    ///< the first outside of its limits: start_outside, goals_outside
   double value = 0;  ///< [rad or m] where that joint is; start_tilted, goals_tilted: the tilt
   /// [rad] start_tilted, goals_tilted: the largest that is allowed; [m] too_near, bad_clearance:
-  /// what was asked.
+  /// what was asked; [s] out_of_time: PlanOptions::time_limit.
   double limit = 0;
   double possible = 0;  ///< [m] too_near: the largest clearance for which a path was found
-  double nearest = 0;   ///< [rad or m, L2] budget_spent: how near the trees came to each other
+  double nearest = 0;   ///< [rad or m, L2] budget_spent, out_of_time: how near the trees came
   int samples = 0;      ///< drawn
 };
 

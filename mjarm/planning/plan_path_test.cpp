@@ -8,6 +8,7 @@
 
 #include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/core/language_scope.hpp"
+#include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
 #include "mjarm/planning/goals_test.hpp"
 #include "mjarm/planning/search_internal.hpp"
@@ -225,14 +226,18 @@ TEST(PlanPath, ALinkAtRestThatOverlapsIsNamed) {
             "link \"foot\" stands still and overlaps obstacle \"floor\": no motion can undo that");
 }
 
-TEST(PlanPath, AGoalWalledInSpendsTheBudgetAndSaysHowNearItCame) {
-  // Posts to both sides of the goal, so close that the arm does not get between them.
+/// Posts to both sides of kRight, so close that the arm does not get between them.
+Obstacles wall_round_the_goal() {
   Obstacles world;
   for (const double angle : {-1.1, -0.5}) {
     const Eigen::Vector3d p(0.3 * std::cos(angle), 0.3 * std::sin(angle), 0);
     world.solids.push_back({"post", {p, Eigen::Matrix3d::Identity()}, CapsuleShape{0.03, 0.2}});
   }
-  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), world);
+  return world;
+}
+
+TEST(PlanPath, AGoalWalledInSpendsTheBudgetAndSaysHowNearItCame) {
+  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), wall_round_the_goal());
   ASSERT_TRUE(checker.is_free(kRight));
   for (const Planner planner : {Planner::rrt_connect, Planner::rrt_star}) {
     PlanOptions options;
@@ -245,6 +250,41 @@ TEST(PlanPath, AGoalWalledInSpendsTheBudgetAndSaysHowNearItCame) {
     EXPECT_GT(path.error().nearest, 0.1);
     EXPECT_LT(path.error().nearest, 1.6);
   }
+}
+
+TEST(PlanPath, TheTimeLimitEndsWhatWouldNotEnd) {
+  const LanguageScope english(Language::english);
+  const Obstacles world = wall_round_the_goal();
+  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), world);
+  for (const Planner planner : {Planner::rrt_connect, Planner::rrt_star}) {
+    const PlanOptions options{
+        .planner = planner, .samples = std::numeric_limits<int>::max(), .time_limit = 0.05};
+    const Stopwatch watch;
+    const auto path = plan_path(checker, kLeft, goal_at(kRight), options);
+    EXPECT_GT(watch.us(), 0.05e6);
+    ASSERT_FALSE(path);
+    EXPECT_EQ(path.error().code, PlanErrc::out_of_time);
+    EXPECT_GT(path.error().samples, 0);
+    EXPECT_GT(path.error().nearest, 0.1);
+    const std::string told = describe(path.error(), checker.robot(), world);
+    EXPECT_NE(told.find("no path within 0.05 s"), std::string::npos) << told;
+  }
+  // A budget that is spent before is told as ever, and so it is where there is no limit.
+  for (const double limit : {3600.0, 0.0}) {
+    const auto path =
+        plan_path(checker, kLeft, goal_at(kRight), {.samples = 50, .time_limit = limit});
+    ASSERT_FALSE(path);
+    EXPECT_EQ(path.error().code, PlanErrc::budget_spent);
+  }
+}
+
+TEST(PlanPath, TheTimeLimitNeverTakesAPathAway) {
+  // The search of a shorter path goes on for longer than the limit.
+  const FastChecker checker = checker_of(flat_arm(), flat_spheres(), {});
+  const PlanOptions options{.time_limit = 1e-9, .time_budget = 0.02};
+  const auto path = plan_path(checker, kLeft, goal_at(kRight), options);
+  ASSERT_TRUE(path);
+  EXPECT_EQ(path->q.size(), 2U);
 }
 
 TEST(PlanPath, SameSeedSamePathAndOthersDiffer) {

@@ -7,6 +7,7 @@
 
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/planning/clear_path_internal.hpp"
+#include "mjarm/planning/search_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -37,10 +38,12 @@ Result<void> check_world_options(const WorldOptions& options) {
 
 /// To all goals at once the first straight way that is free is taken, be it to the farthest. So the
 /// nearest ones are tried alone, and the shortest path is kept.
+/// @param left  of PlanOptions::time_limit.
 /// @param plan  plan(goals, options): a path to one of them, or why there is none.
 template <class Plan>
 void try_goals_alone(std::span<const double> q_start, std::span<const JointVec> goals,
-                     const PlanOptions& options, const Plan& plan, PlannedPath& path) {
+                     const PlanOptions& options, const detail::TimeLeft& left, const Plan& plan,
+                     PlannedPath& path) {
   constexpr std::size_t kMaxAlone = 8;
   PlanOptions search = options;
   search.samples = least_samples(options, kAloneSamples);
@@ -52,8 +55,8 @@ void try_goals_alone(std::span<const double> q_start, std::span<const JointVec> 
   std::ranges::stable_sort(order, {}, far);
   for (std::size_t k = 0; k < std::min(order.size(), kMaxAlone); ++k) {
     const std::size_t g = order[k];
-    if (far(g) >= path.cost || is_stopped(options.stop)) return;
-    Result<PlannedPath, PlanFailure> other = plan(goals.subspan(g, 1), search);
+    if (far(g) >= path.cost || left.none() || is_stopped(options.stop)) return;
+    Result<PlannedPath, PlanFailure> other = plan(goals.subspan(g, 1), left.in(search));
     if (!other || other->cost >= path.cost) continue;
     path = std::move(*other);
     path.goal = static_cast<int>(g);
@@ -66,6 +69,7 @@ Result<PlannedPath, WorldFailure> search(const detail::ClearScene& scene, detail
                                          std::span<const double> q_start,
                                          std::span<const JointVec> goals,
                                          const PlanOptions& options, PlanTimes* times) {
+  const detail::TimeLeft left(options);
   PlanOptions how = options;
   const bool clear = options.clearance.value_or(0) > 0;
   if (clear && ends == detail::ClearEnds::also)
@@ -81,7 +85,7 @@ Result<PlannedPath, WorldFailure> search(const detail::ClearScene& scene, detail
     return path;
   };
   Result<PlannedPath, PlanFailure> found = plan(goals, how);
-  if (found && goals.size() > 1) try_goals_alone(q_start, goals, how, plan, *found);
+  if (found && goals.size() > 1) try_goals_alone(q_start, goals, how, left, plan, *found);
   return std::move(found).map_error(
       [](const PlanFailure& why) { return WorldFailure{.what = {}, .search = why}; });
 }
@@ -92,7 +96,9 @@ WorldFailure bad_clearance(double asked) {
           .search = {.code = PlanErrc::bad_clearance, .limit = asked}};
 }
 
-WorldFailure not_found(const PlanFailure& search, const WorldLevel& level, std::size_t index) {
+WorldFailure not_found(PlanFailure search, const PlanOptions& options, const WorldLevel& level,
+                       std::size_t index) {
+  if (search.code == PlanErrc::out_of_time) search.limit = options.time_limit;
   return {.code = WorldErrc::no_path,
           .what = describe(search, level.checker.robot(), level.cover.scene),
           .search = search,
@@ -144,11 +150,14 @@ Result<const WorldLevel*> PlanningWorld::level(std::size_t index, const StopChec
 /// @param attempt  gets a scene, what may be nearer than a clearance and the options; gives a path
 /// or a failure whose words and level are filled in here, where it is one of a search.
 template <class Attempt>
-Result<WorldPath, WorldFailure> PlanningWorld::climb(const PlanOptions& options, Ask ask,
+Result<WorldPath, WorldFailure> PlanningWorld::climb(const PlanOptions& options,
+                                                     detail::TimeLeft& left, Ask ask,
                                                      const Attempt& attempt) {
   WorldFailure why;
   for (std::size_t i = 0; i < options_.bounds.size(); ++i) {
+    const Stopwatch covering;
     const Result<const WorldLevel*> here = level(i, options.stop);
+    left.add(covering.us());
     if (!here && is_stopped(options.stop)) {
       return tl::unexpected(WorldFailure{
           .what = here.error().what, .search = {.code = PlanErrc::stopped}, .level = i});
@@ -157,11 +166,12 @@ Result<WorldPath, WorldFailure> PlanningWorld::climb(const PlanOptions& options,
     // Start and goal that coarse spheres call too near may keep what is asked all the same.
     const bool strict = ask == Ask::required && i + 1 < options_.bounds.size();
     const auto ends = strict ? detail::ClearEnds::also : detail::ClearEnds::own;
-    Result<PlannedPath, WorldFailure> found = attempt(
-        detail::ClearScene{(*here)->checker, (*here)->cover.scene, &wide_[i]}, ends, options);
+    Result<PlannedPath, WorldFailure> found =
+        attempt(detail::ClearScene{(*here)->checker, (*here)->cover.scene, &wide_[i]}, ends,
+                left.in(options));
     if (found) return WorldPath{std::move(*found), i};
     if (found.error().code != WorldErrc::no_path) return tl::unexpected(std::move(found.error()));
-    why = not_found(found.error().search, **here, i);
+    why = not_found(found.error().search, options, **here, i);
     if (why.bound == 0) break;
   }
   return tl::unexpected(std::move(why));
@@ -171,9 +181,10 @@ Result<WorldPath, WorldFailure> PlanningWorld::climb(const PlanOptions& options,
 template <class Attempt>
 Result<WorldPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions& options,
                                                               const Attempt& attempt) {
+  detail::TimeLeft left(options);
   PlanOptions bare = options;
   bare.clearance = 0;
-  if (options.clearance == 0) return climb(bare, Ask::preferred, attempt);
+  if (options.clearance == 0) return climb(bare, left, Ask::preferred, attempt);
   if (!detail::is_sound_clearance(options.clearance)) {
     return tl::unexpected(bad_clearance(*options.clearance));
   }
@@ -181,11 +192,11 @@ Result<WorldPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions&
   if (!options.clearance) {
     clear.clearance = kPreferredClearance;
     clear.samples = least_samples(options, kPreferSamples);
-    Result<WorldPath, WorldFailure> found = climb(clear, Ask::preferred, attempt);
+    Result<WorldPath, WorldFailure> found = climb(clear, left, Ask::preferred, attempt);
     const bool decided = found || is_stopped(options.stop);
-    return decided ? std::move(found) : climb(bare, Ask::preferred, attempt);
+    return decided ? std::move(found) : climb(bare, left, Ask::preferred, attempt);
   }
-  Result<WorldPath, WorldFailure> found = climb(clear, Ask::required, attempt);
+  Result<WorldPath, WorldFailure> found = climb(clear, left, Ask::required, attempt);
   if (found || found.error().code != WorldErrc::no_path ||
       !detail::is_for_clearance(found.error().search)) {
     return found;
@@ -193,13 +204,14 @@ Result<WorldPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions&
   PlanOptions quick = bare;
   quick.rounds = 0;
   quick.time_budget = 0;
-  if (auto any = climb(quick, Ask::required, attempt); !any) return any;
+  if (auto any = climb(quick, left, Ask::required, attempt); !any) return any;
   const double possible = detail::largest_clearance(clear, [&](const PlanOptions& less) {
-    return climb(less, Ask::required, attempt).has_value();
+    return climb(less, left, Ask::required, attempt).has_value();
   });
   if (is_stopped(options.stop)) return found;
   const std::size_t at = found.error().level;
-  return tl::unexpected(not_found(detail::too_near(*options.clearance, possible), levels_[at], at));
+  return tl::unexpected(
+      not_found(detail::too_near(*options.clearance, possible), options, levels_[at], at));
 }
 
 Result<WayProver> PlanningWorld::prover(std::span<const WorldPath> paths, const StopCheck& stop) {

@@ -19,6 +19,9 @@
 #include "mjarm/planning/way_prover.hpp"
 
 namespace mjarm {
+namespace detail {
+class TimeLeft;
+}
 
 /// [m] what WorldOptions::bounds may be.
 inline constexpr double kMinSphereBound = 1e-4, kMaxSphereBound = 0.1;
@@ -83,7 +86,8 @@ class PlanningWorld {
 
   /// From `q_start` to one of the goals, by plan_path(): the shortest path of one to all of them
   /// and those to the nearest ones alone; of the clearances of PlanOptions::clearance the links of
-  /// ModelCover are held to, as they are to the margin.
+  /// ModelCover are held to, as they are to the margin. PlanOptions::time_limit holds for all
+  /// searches together; making covers does not count.
   /// @param q_start  shape (dof,) [rad or m].
   /// @param goals    shape (n,), n >= 1, each (dof,).
   /// @param times    where given, the times of all searches are added to it.
@@ -128,7 +132,8 @@ class PlanningWorld {
   [[nodiscard]] Result<WorldLevel> covered(double bound, const StopCheck& stop) const;
   enum class Ask { preferred, required };
   template <class Attempt>
-  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const PlanOptions& options, Ask ask,
+  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const PlanOptions& options,
+                                                      detail::TimeLeft& left, Ask ask,
                                                       const Attempt& attempt);
   template <class Attempt>
   [[nodiscard]] Result<WorldPath, WorldFailure> keep_clearance(const PlanOptions& options,

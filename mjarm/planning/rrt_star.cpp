@@ -31,6 +31,7 @@ class Rewirer {
         box_(problem, rng_),
         tree_(dof_) {
     problem_.max_cost = path_length(path_.q);
+    problem_.deadline = Deadline(options.stop);  // the samples bound what follows
     int node = tree_.add(as_span(path_.q.front()), -1, 0);
     for (std::size_t i = 1; i < path_.q.size(); ++i) {
       node = tree_.add(as_span(path_.q[i]), node, (path_.q[i] - path_.q[i - 1]).norm());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -25,6 +26,25 @@ class Deadline {
   StopCheck stop_;
   Stopwatch watch_;
   double left_us_ = 0;  // 0: never
+};
+
+/// What is left of PlanOptions::time_limit to work that consists of several searches.
+class TimeLeft {
+ public:
+  explicit TimeLeft(const PlanOptions& options) : limit_(options.time_limit) {}
+  bool none() const { return limit_ > 0 && left() <= 0; }
+  /// `options` with what is left.
+  PlanOptions in(PlanOptions options) const {
+    if (limit_ > 0) options.time_limit = std::max(left(), 1e-6);
+    return options;
+  }
+  /// Time that does not count.
+  void add(double us) { limit_ += limit_ > 0 ? 1e-6 * us : 0; }
+
+ private:
+  double left() const { return limit_ - 1e-6 * watch_.us(); }
+  Stopwatch watch_;
+  double limit_;  // [s]; 0: none
 };
 
 /// A problem whose start and goals were checked. Its spans are those of the user.

@@ -31,10 +31,12 @@ namespace mjarm::app {
 namespace {
 
 constexpr int kMaxSamples = 10'000'000;
+constexpr double kMaxSeconds = 3600;
 
 struct Options {
   BatchOptions batch;
-  std::string planner = "rrtc", seed = "1", threads = "1", samples, budget, problem, clearance;
+  std::string planner = "rrtc", seed = "1", threads = "1", samples, budget, limit, problem,
+              clearance;
   RobotRequest request;
   bool no_timing = false;
   PlanShowArguments show;
@@ -71,10 +73,18 @@ Result<PlanOptions> read_options(const Options& options) {
   if (!options.budget.empty()) {
     const Result<double> budget = parse_quantity(options.budget, Quantity::time);
     if (!budget) return fail(in_option("--time-budget", budget.error()));
-    if (!(*budget > 0 && *budget <= 3600)) {
+    if (!(*budget > 0 && *budget <= kMaxSeconds)) {
       return fail(Errc::usage, text(msg::plan_bad_budget, options.budget));
     }
     out.time_budget = *budget;
+  }
+  if (!options.limit.empty()) {
+    const Result<double> limit = parse_quantity(options.limit, Quantity::time);
+    if (!limit) return fail(in_option("--time-limit", limit.error()));
+    if (!(*limit >= 0 && *limit <= kMaxSeconds)) {
+      return fail(Errc::usage, text(msg::plan_bad_limit, options.limit, kMaxSeconds));
+    }
+    out.time_limit = *limit;
   }
   if (!options.clearance.empty()) {
     const Result<double> clearance = parse_quantity(options.clearance, Quantity::length);
@@ -189,6 +199,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--clearance", options->clearance, msg::plan_option_clearance, "M");
   add_option(app, "--planner", options->planner, msg::plan_option_planner, "NAME");
   add_option(app, "--time-budget", options->budget, msg::plan_option_budget, "S");
+  add_option(app, "--time-limit", options->limit, msg::plan_option_limit, "S");
   add_option(app, "--samples", options->samples, msg::plan_option_samples, "N");
   add_option(app, "--seed", options->seed, msg::plan_option_seed, "N");
   add_option(app, "--threads", options->threads, msg::plan_option_threads, "N");

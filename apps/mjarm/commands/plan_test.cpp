@@ -168,6 +168,8 @@ TEST_F(Plan, WrongOptionsAreNamed) {
                                                                {"--seed", "-1"},
                                                                {"--samples", "0"},
                                                                {"--time-budget", "-1s"},
+                                                               {"--time-limit", "-1s"},
+                                                               {"--time-limit", "2h"},
                                                                {"--threads", "none"},
                                                                {"--time-budget",
                                                                 "3"
