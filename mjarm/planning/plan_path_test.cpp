@@ -285,6 +285,14 @@ TEST(PlanPath, TheTimeLimitNeverTakesAPathAway) {
   const auto path = plan_path(checker, kLeft, goal_at(kRight), options);
   ASSERT_TRUE(path);
   EXPECT_EQ(path->q.size(), 2U);
+  // Nor one with corners, which is shortened until long after the limit.
+  const FastChecker round = checker_of(flat_arm(), flat_spheres(), post());
+  const Stopwatch watch;
+  const auto shorter =
+      plan_path(round, kLeft, goal_at(kRight), {.time_limit = 0.3, .time_budget = 0.6});
+  ASSERT_TRUE(shorter);
+  EXPECT_GT(shorter->q.size(), 2U);
+  EXPECT_GT(watch.us(), 0.3e6);
 }
 
 TEST(PlanPath, SameSeedSamePathAndOthersDiffer) {
