@@ -124,8 +124,7 @@ Result<Eigen::Vector3d> find_shift(const IkSolver& ik, std::span<const Pose> pos
                                    std::span<const double> q_seed, const PathOptions& options,
                                    double reach) {
   constexpr double kLongest = 1;  // [m] keeps the grid at 33,000 points
-  if (poses.empty() || !(reach >= 0) ||
-      !(options.max_step > 0 && options.max_step <= kMaxJointStep)) {
+  if (poses.empty() || !(reach >= 0) || !is_sound_step(options.max_step)) {
     return fail(Errc::bad_input, text(msg::path_bad_call));
   }
   detail::FixSearch search(ik, poses, 0, q_seed, options, solver(ik, poses, q_seed));

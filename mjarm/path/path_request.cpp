@@ -190,9 +190,7 @@ Result<PathRequest> path_request_of(const JsonValue& object, const Arm& arm) {
   if (object.contains("max_step")) {
     const Result<double> max_step = number_of(object, "max_step");
     if (!max_step) return fail(max_step.error());
-    if (!(*max_step > 0 && *max_step <= kMaxJointStep)) {
-      return fail(Errc::bad_input, text(msg::path_request_max_step));
-    }
+    if (!is_sound_step(*max_step)) return fail(Errc::bad_input, text(msg::path_request_max_step));
     out.max_step = *max_step;
   }
   if (object.contains("speed")) {

@@ -19,10 +19,10 @@ bool is_sound(const IkSolver& ik, std::span<const Pose> poses, std::span<const d
               std::span<const double> q_start, const PathOptions& options) {
   return !poses.empty() && poses.size() == s.size() && all_finite(s) &&
          std::is_sorted(s.begin(), s.end()) && all_finite(q_start) &&
-         q_start.size() == ik.arm().joints.size() && options.max_step > 0 &&
-         options.max_step <= kMaxJointStep && options.orientation_tol >= 0 &&
-         options.orientation_tol < kMaxTilt && options.comfort >= 0 && options.comfort <= 1 &&
-         options.tool_speed >= 0 && std::isfinite(options.tool_speed);
+         q_start.size() == ik.arm().joints.size() && is_sound_step(options.max_step) &&
+         options.orientation_tol >= 0 && options.orientation_tol < kMaxTilt &&
+         options.comfort >= 0 && options.comfort <= 1 && options.tool_speed >= 0 &&
+         std::isfinite(options.tool_speed);
 }
 
 }  // namespace

@@ -18,6 +18,10 @@ namespace mjarm {
 /// [rad or m] A hinge that may turn by more between two poses can arrive both ways round, so
 /// nothing follows from the poses for what lies between them.
 inline constexpr double kMaxJointStep = std::numbers::pi;
+/// Whether PathOptions::max_step may be that.
+[[nodiscard]] constexpr bool is_sound_step(double step) {
+  return step > 0 && step <= kMaxJointStep;
+}
 
 /// How joint values are chosen along a sequence of poses. Every default is usable as is.
 struct PathOptions {

@@ -182,9 +182,7 @@ Result<PathOptions> path_options(const Options& options, const Robot& robot) {
   if (options.max_step.empty()) return path;
   const Result<double> step = parse_quantity(options.max_step, Quantity::angle);
   if (!step) return fail(in_option("--max-step", step.error()));
-  if (!(*step > 0 && *step <= kMaxJointStep)) {
-    return fail(Errc::bad_input, text(msg::path_command_bad_step));
-  }
+  if (!is_sound_step(*step)) return fail(Errc::bad_input, text(msg::path_command_bad_step));
   path.max_step = *step;
   return path;
 }
