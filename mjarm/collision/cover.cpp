@@ -6,6 +6,7 @@
 #include "mjarm/collision/cover_fit_internal.hpp"
 #include "mjarm/collision/cover_geoms_internal.hpp"
 #include "mjarm/collision/cover_pairs_internal.hpp"
+#include "mjarm/collision/solid_geoms_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
 
 namespace mjarm {
@@ -14,6 +15,7 @@ namespace {
 using detail::CoverSolid;
 using detail::GeomGroup;
 using detail::GeomGroups;
+using detail::StandingSolid;
 
 constexpr double kWider = 1.4;  // a bound that takes too many spheres grows by this
 constexpr int kMaxWider = 20;
@@ -45,43 +47,25 @@ bool add_spheres(const mjModel& m, const std::vector<GeomGroup>& links, double b
   return false;
 }
 
-void add_pairs(detail::MeetingProof& proof, const GeomGroups& groups, const StopCheck& stop,
-               ModelCover& out) {
-  for (std::size_t a = 0; a < groups.links.size() && !is_stopped(stop); ++a) {
-    for (std::size_t b = 0; b < groups.links.size(); ++b) {
-      const GeomGroup& near = groups.links[a];
-      const GeomGroup& far = groups.links[b];
-      if (near.joint >= far.joint || !proof.is_allowed(near, far)) continue;
-      if (proof.never_meet(near, far, b)) {
-        ++out.pairs_apart;
-      } else {
-        out.spheres.pairs.push_back({static_cast<int>(a), static_cast<int>(b)});
-      }
-    }
-  }
-}
-
-/// Obstacles that some link can meet, and the links that cannot.
-void add_scene(const mjModel& m, detail::MeetingProof& proof, const GeomGroups& groups,
-               const StopCheck& stop, ModelCover& out) {
-  for (const GeomGroup& obstacle : groups.obstacles) {
-    if (is_stopped(stop)) return;
-    std::vector<int> ignored;
-    for (std::size_t b = 0; b < groups.links.size(); ++b) {
-      const bool allowed = proof.is_allowed(obstacle, groups.links[b]);
-      const bool apart = allowed && proof.never_meet(obstacle, groups.links[b], b);
-      out.pairs_apart += apart ? 1 : 0;
-      if (!allowed || apart) ignored.push_back(static_cast<int>(b));
-    }
-    if (ignored.size() == groups.links.size()) continue;
+/// The obstacles that some link can meet.
+std::vector<StandingSolid> add_scene(const mjModel& m, const GeomGroups& groups,
+                                     const detail::Meetings& meetings, ModelCover& out) {
+  std::vector<StandingSolid> standing;
+  for (const detail::Meetings::Standing& meeting : meetings.standing) {
+    const detail::PlacedGeom& placed = groups.obstacles[meeting.obstacle].geoms.front();
     const int index = static_cast<int>(out.scene.solids.size());
-    detail::SceneSolid solid = detail::obstacle_of_geom(m, obstacle.geoms.front());
+    detail::SceneSolid solid = detail::obstacle_of_geom(m, placed);
     out.scene.solids.push_back(std::move(solid.obstacle));
-    for (const int link : ignored) out.scene.ignored.push_back({link, index});
     if (solid.is_larger) out.larger.push_back(index);
-    const int body = m.geom_bodyid[obstacle.geoms.front().geom];
-    if (m.body_rootid[body] == groups.root) out.standing.push_back(index);
+    if (m.body_rootid[m.geom_bodyid[placed.geom]] == groups.root) out.standing.push_back(index);
+    standing.push_back(detail::standing_solid(m, placed));
+    standing.back().ignored.resize(groups.links.size());
+    for (const int link : meeting.ignored) {
+      out.scene.ignored.push_back({link, index});
+      standing.back().ignored[static_cast<std::size_t>(link)] = 1;
+    }
   }
+  return standing;
 }
 
 }  // namespace
@@ -96,9 +80,14 @@ Result<ModelCover> cover_model(const Model& model, const Arm& arm, const CoverOp
                 text(msg::collision_cover_spheres, arm.name, kMaxSpheres, kMaxSphereLinks));
   }
   detail::MeetingProof proof(model, arm, *groups, options.rules);
-  add_pairs(proof, *groups, options.stop, out);
-  add_scene(*model.raw(), proof, *groups, options.stop, out);
+  detail::Meetings meetings = find_meetings(proof, *groups, options.stop);
   if (is_stopped(options.stop)) return fail(stopped());
+  out.pairs_apart = meetings.apart;
+  out.spheres.pairs = std::move(meetings.pairs);
+  auto standing = add_scene(*model.raw(), *groups, meetings, out);
+  out.solids = std::make_shared<const detail::SolidScene>(
+      arm, detail::link_solids(*model.raw(), arm, groups->links), std::move(standing),
+      out.spheres.pairs);
   if (const Result<void> fine = check_sphere_set(out.spheres, arm); !fine)
     return fail(fine.error());
   return out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,14 +14,16 @@
 
 namespace mjarm {
 
+namespace detail {
+class SolidScene;
+}
+
 /// How a model is covered. Every default is usable as is.
 struct CoverOptions {
   double bound = 0.012;  ///< [m] spheres stick out of the geoms of their link by at most this,
                          ///< 1e-5 to 1
   /// (nq,) [rad or m] where joints off the arm stand; empty: keyframe `home`, else initial values.
   std::vector<double> qpos = {};
-  /// Cover what the joints of a gripper can do within their limits, instead of one posture.
-  bool whole_stroke = false;
   ContactRules rules = {};  ///< what hangs on the tool, what may touch
   StopCheck stop = {};
 };
@@ -38,7 +41,10 @@ struct ModelCover {
   Obstacles scene;
   std::vector<int> standing;  ///< obstacles (by index) that belong to the robot itself: its foot
   std::vector<int> larger;    ///< obstacles that are a simpler solid round the geom
-  double bound = 0;           ///< [m] by how much a sphere really sticks out of its link at most
+  /// The same links and obstacles as MuJoCo collides them, for FastChecker to look at what spheres
+  /// cannot call free.
+  std::shared_ptr<const detail::SolidScene> solids;
+  double bound = 0;     ///< [m] by how much a sphere really sticks out of its link at most
   int pairs_apart = 0;  ///< pairs of links (links and obstacles) that were proved never to meet
 };
 

@@ -28,7 +28,6 @@ CoverSolid random_solid(Rng& rng) {
   out.kind = kind;
   out.X_LS = {testing::random_vector(rng, 0.08), from_euler(testing::random_vector(rng, 3))};
   for (int k = 0; k < 3; ++k) out.size[k] = rng.uniform(0.004, 0.1);
-  if (rng.uniform() < 0.2) out.grow = rng.uniform(0, 0.004);
   return out;
 }
 
@@ -42,7 +41,7 @@ double distance_by_walking(const CoverSolid& solid, const Vector3d& p) {
     for (std::size_t f = 0; f < shifts.size(); ++f) {
       const Vector3d normal = solid.X_LS.R * solid.facets[f].normal;
       const Vector3d y = x + shifts[f];
-      const double beyond = normal.dot(y - solid.X_LS.p) - solid.facets[f].offset - solid.grow;
+      const double beyond = normal.dot(y - solid.X_LS.p) - solid.facets[f].offset;
       x = beyond > 0 ? Vector3d(y - beyond * normal) : y;
       shifts[f] = y - x;
     }

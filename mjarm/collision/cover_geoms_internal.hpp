@@ -12,12 +12,10 @@
 
 namespace mjarm::detail {
 
-/// A geom in the frame L of the link it is on (of an obstacle: in the world). `grow`: what joints
-/// of a gripper move it by at most, from here.
+/// A geom in the frame L of the link it is on (of an obstacle: in the world).
 struct PlacedGeom {
   int geom = -1;
   Pose X_LG;
-  double grow = 0;  ///< [m] >= 0
 };
 
 /// Geoms of one link that collide with the same things.

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <set>
 
 #include "mjarm/collision/cover_geoms_internal.hpp"
@@ -16,18 +15,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastBound = 1e-5;  // [m] finer ones need more points than memory has
-constexpr int kMaxPostures = 64;      // of a gripper, for each geom
 
 struct DeletePoses {
   void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-/// A joint that is not the arm's but moves a geom of it.
-struct StrokeJoint {
-  int qpos = 0;
-  double lower = 0, upper = 0;
-  double lever = 1;  ///< [m/rad or 1] what it moves a point of the geom by at most
-  int steps = 1;
 };
 
 class GeomSorter {
@@ -105,14 +95,12 @@ class GeomSorter {
     }
     if (std::find(meets.begin(), meets.end(), true) == meets.end()) return;
     if (piece(geom) == 0) {
-      out_.obstacles.push_back({geom_name(m_, geom), -1, {{geom, pose_of_geom(geom), 0}}});
+      out_.obstacles.push_back({geom_name(m_, geom), -1, {{geom, pose_of_geom(geom)}}});
       return;
     }
     const auto [known, fresh] = groups_.try_emplace({piece(geom), meets}, out_.links.size());
     if (fresh) out_.links.push_back({free_name(geom), piece(geom) - 1, {}});
-    for (const PlacedGeom& placed : placed_on_link(geom)) {
-      out_.links[known->second].geoms.push_back(placed);
-    }
+    out_.links[known->second].geoms.push_back({geom, pose_of_geom(geom)});
   }
 
   /// Name of the geom's body; of the geom where another group has it.
@@ -129,70 +117,6 @@ class GeomSorter {
                     Eigen::Map<const Rows>(d_->geom_xmat + 9 * geom)};
     const int joint = piece(geom) - 1;
     return joint < 0 ? X_WG : X_WJ_[static_cast<std::size_t>(joint)].inverse() * X_WG;
-  }
-
-  /// Once, or in each of a number of postures of the joints between the arm and the geom.
-  std::vector<PlacedGeom> placed_on_link(int geom) {
-    std::vector<StrokeJoint> joints;
-    if (options_.whole_stroke) joints = stroke_joints(geom);
-    std::vector<PlacedGeom> out;
-    double grow = 0;
-    std::size_t count = 1;
-    for (const StrokeJoint& joint : joints) {
-      grow += joint.lever * (joint.upper - joint.lower) / (2 * joint.steps);
-      count *= static_cast<std::size_t>(joint.steps);
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      std::vector<double> qpos = rest_;
-      std::size_t left = k;
-      for (const StrokeJoint& joint : joints) {
-        const auto steps = static_cast<std::size_t>(joint.steps);
-        const double share = (static_cast<double>(left % steps) + 0.5) / joint.steps;
-        qpos[static_cast<std::size_t>(joint.qpos)] =
-            joint.lower + share * (joint.upper - joint.lower);
-        left /= steps;
-      }
-      if (!joints.empty()) place(qpos);
-      out.push_back({geom, pose_of_geom(geom), grow});
-    }
-    if (!joints.empty()) place(rest_);
-    return out;
-  }
-
-  std::vector<StrokeJoint> stroke_joints(int geom) const {
-    std::vector<StrokeJoint> out;
-    double lever = m_.geom_rbound[geom] + Vector3d(m_.geom_pos + 3 * geom).norm();
-    for (int b = m_.geom_bodyid[geom]; b > 0; b = m_.body_parentid[b]) {
-      bool last = false;
-      for (int j = m_.body_jntadr[b]; j < m_.body_jntadr[b] + m_.body_jntnum[b]; ++j) {
-        const auto is_ours = [&](int address) { return address == m_.jnt_qposadr[j]; };
-        last |= std::any_of(bodies_.addresses.begin(), bodies_.addresses.end(), is_ours);
-        const bool hinge = m_.jnt_type[j] == mjJNT_HINGE;
-        if (last || (!hinge && m_.jnt_type[j] != mjJNT_SLIDE)) continue;
-        if (!hinge && !m_.jnt_limited[j]) continue;  // endless: it stays where it is
-        StrokeJoint joint{m_.jnt_qposadr[j], -std::numbers::pi, std::numbers::pi};
-        if (m_.jnt_limited[j]) {
-          joint.lower = m_.jnt_range[2 * j];
-          joint.upper = m_.jnt_range[2 * j + 1];
-        }
-        joint.lever = hinge ? lever + Vector3d(m_.jnt_pos + 3 * j).norm() : 1;
-        out.push_back(joint);
-      }
-      if (last) break;
-      lever += Vector3d(m_.body_pos + 3 * b).norm();
-    }
-    // The joint that moves the geom most is cut first.
-    const auto step = [](const StrokeJoint& joint) {
-      return joint.lever * (joint.upper - joint.lower) / joint.steps;
-    };
-    for (int count = 1; !out.empty();) {
-      StrokeJoint& widest = *std::max_element(
-          out.begin(), out.end(), [&](const auto& a, const auto& b) { return step(a) < step(b); });
-      count = count / widest.steps * (widest.steps + 1);
-      if (count > kMaxPostures || step(widest) <= 0.25 * options_.bound) break;
-      ++widest.steps;
-    }
-    return out;
   }
 
   const mjModel& m_;

@@ -79,8 +79,7 @@ struct MeetingProof::Search {
         put_geom(d, ids.geom1, one.X_LG);
         put_geom(d, ids.geom2, X_AB * other.X_LG);
         if (m.geom_type[ids.geom1] > m.geom_type[ids.geom2]) std::swap(ids.geom1, ids.geom2);
-        const double grow = one.grow + other.grow;
-        least = std::min(least, geom_distance(m, &d, ids, max + grow) - grow);
+        least = std::min(least, geom_distance(m, &d, ids, max));
       }
     }
     return least;
@@ -141,6 +140,35 @@ bool MeetingProof::never_meet(const GeomGroup& a, const GeomGroup& b, std::size_
     }
   }
   return search.is_clear(middle, half);
+}
+
+Meetings find_meetings(MeetingProof& proof, const GeomGroups& groups, const StopCheck& stop) {
+  Meetings out;
+  const std::size_t count = groups.links.size();
+  for (std::size_t a = 0; a < count && !is_stopped(stop); ++a) {
+    for (std::size_t b = 0; b < count; ++b) {
+      const GeomGroup& near = groups.links[a];
+      const GeomGroup& far = groups.links[b];
+      if (near.joint >= far.joint || !proof.is_allowed(near, far)) continue;
+      if (proof.never_meet(near, far, b)) {
+        ++out.apart;
+      } else {
+        out.pairs.push_back({static_cast<int>(a), static_cast<int>(b)});
+      }
+    }
+  }
+  for (std::size_t k = 0; k < groups.obstacles.size() && !is_stopped(stop); ++k) {
+    const GeomGroup& obstacle = groups.obstacles[k];
+    std::vector<int> ignored;
+    for (std::size_t b = 0; b < count; ++b) {
+      const bool allowed = proof.is_allowed(obstacle, groups.links[b]);
+      const bool apart = allowed && proof.never_meet(obstacle, groups.links[b], b);
+      out.apart += apart ? 1 : 0;
+      if (!allowed || apart) ignored.push_back(static_cast<int>(b));
+    }
+    if (ignored.size() < count) out.standing.push_back({k, std::move(ignored)});
+  }
+  return out;
 }
 
 }  // namespace mjarm::detail

@@ -39,4 +39,20 @@ class MeetingProof {
   std::vector<std::array<double, kMaxDof>> levers_;  // per link
 };
 
+/// What can meet what, by index into the groups.
+struct Meetings {
+  /// An obstacle that some link can meet, and the links that cannot.
+  struct Standing {
+    std::size_t obstacle = 0;
+    std::vector<int> ignored;
+  };
+  std::vector<std::array<int, 2>> pairs;  ///< of links
+  std::vector<Standing> standing;
+  int apart = 0;  ///< pairs of links (links and obstacles) that were proved never to meet
+};
+
+/// @param stop  ends the search: what was found so far comes back.
+[[nodiscard]] Meetings find_meetings(MeetingProof& proof, const GeomGroups& groups,
+                                     const StopCheck& stop);
+
 }  // namespace mjarm::detail

@@ -150,19 +150,19 @@ double CoverSolid::signed_distance(const Vector3d& p_L) const {
   const Vector3d p = X_LS.R.transpose() * (p_L - X_LS.p);
   switch (kind) {
     case SolidKind::ball:
-      return p.norm() - size.x() - grow;
+      return p.norm() - size.x();
     case SolidKind::capsule: {
       const double beyond = std::max(std::abs(p.z()) - size.y(), 0.0);
-      return std::sqrt(p.x() * p.x() + p.y() * p.y() + beyond * beyond) - size.x() - grow;
+      return std::sqrt(p.x() * p.x() + p.y() * p.y() + beyond * beyond) - size.x();
     }
     case SolidKind::box:
-      return from_box(size, p) - grow;
+      return from_box(size, p);
     case SolidKind::cylinder:
-      return from_cylinder(size.x(), size.y(), p) - grow;
+      return from_cylinder(size.x(), size.y(), p);
     case SolidKind::ellipsoid:
-      return from_ellipsoid(size, p) - grow;
+      return from_ellipsoid(size, p);
     case SolidKind::hull:
-      return facets.farthest(p) - grow;
+      return facets.farthest(p);
   }
   return kInfinity;
 }
@@ -190,9 +190,8 @@ std::optional<Vector3d> CoverSolid::point_within(const Vector3d& p_L, double dis
     const Vector3d x = nearest_on(p, vertex(i), vertex(j), vertex(k));
     if ((x - p).squaredNorm() < (best - p).squaredNorm()) best = x;
   }
-  const double way = (best - p).norm();
-  if (way > distance + grow) return std::nullopt;
-  return X_LS * (way > grow ? Vector3d(best + grow / way * (p - best)) : p);
+  if ((best - p).norm() > distance) return std::nullopt;
+  return X_LS * best;
 }
 
 std::vector<Vector3d> CoverSolid::skeleton() const {
@@ -230,8 +229,8 @@ std::vector<Vector3d> CoverSolid::sharp_points(double spacing) const {
 CoverBounds bounds_of(std::span<const CoverSolid> solids) {
   CoverBounds out{Vector3d::Constant(kInfinity), Vector3d::Constant(-kInfinity)};
   for (const CoverSolid& solid : solids) {
-    double round = solid.grow;
-    if (solid.kind == SolidKind::ball || solid.kind == SolidKind::capsule) round += solid.size.x();
+    const bool is_round = solid.kind == SolidKind::ball || solid.kind == SolidKind::capsule;
+    const double round = is_round ? solid.size.x() : 0;
     for (const Vector3d& p : solid.skeleton()) {
       out.low = out.low.cwiseMin(p - Vector3d::Constant(round));
       out.high = out.high.cwiseMax(p + Vector3d::Constant(round));

@@ -33,8 +33,7 @@ class Facets {
 
 enum class SolidKind { ball, capsule, box, cylinder, ellipsoid, hull };
 
-/// A convex solid of a link, in a frame S of its own, seen from the frame L of the link. `grow` is
-/// put round it, for what a joint moves it by.
+/// A convex solid of a link, in a frame S of its own, seen from the frame L of the link.
 struct CoverSolid {
   SolidKind kind = SolidKind::ball;
   Pose X_LS;
@@ -43,7 +42,6 @@ struct CoverSolid {
   Facets facets;                              ///< of a hull, in S
   std::vector<Eigen::Vector3d> points;        ///< vertices of a hull, in S
   std::vector<std::array<int, 3>> triangles;  ///< of them, the surface of a hull
-  double grow = 0;                            ///< [m] >= 0
 
   /// Distance of a point in L to the surface: inside of the solid exact, and negative; outside
   /// exact or (hull) too small.

@@ -82,7 +82,6 @@ CoverSolid solid_of_geom(const mjModel& m, const PlacedGeom& placed) {
   CoverSolid out;
   out.X_LS = placed.X_LG;
   out.size = Vector3d(m.geom_size + 3 * geom);
-  out.grow = placed.grow;
   switch (m.geom_type[geom]) {
     case mjGEOM_SPHERE:
       out.kind = SolidKind::ball;
@@ -110,7 +109,6 @@ CoverSolid solid_of_geom(const mjModel& m, const PlacedGeom& placed) {
   box.kind = SolidKind::box;
   box.X_LS = box_frame(m, placed);
   box.size = box_half(m, geom);
-  box.grow = placed.grow;
   return box;
 }
 

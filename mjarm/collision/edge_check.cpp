@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mjarm/collision/fast_access_internal.hpp"
+#include "mjarm/collision/solid_scene_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -15,6 +16,11 @@ using detail::FastAccess;
 
 constexpr std::size_t kMaxOpen = 2048;  // intervals that wait; more means: undecided
 constexpr int kMaxWidth = 16;
+constexpr std::size_t kMaxLeft = 512;    // intervals that wait to be looked at closer
+constexpr int kMaxStations = 20'000;     // of an edge that is looked at closer
+constexpr int kSphereRounds = 3;         // of a checker that looks closer, before it does
+constexpr double kGrain = 0x1p-40;       // of places on an edge: sums of them are exact
+constexpr double kCloserShare = 0x1p-6;  // of the resolution: exact distances leave no other room
 
 /// So many floats fill whole registers.
 constexpr std::size_t kWhole(int n) {
@@ -42,7 +48,10 @@ class EdgeSearch {
  public:
   EdgeSearch(const FastChecker& checker, std::span<const double> q0, std::span<const double> q1,
              const EdgeOptions& options)
-      : checker_(checker), data_(FastAccess::data(checker.robot())), width_(checker.width()) {
+      : checker_(checker),
+        data_(FastAccess::data(checker.robot())),
+        solids_(FastAccess::solids(checker)),
+        width_(checker.width()) {
     double length = 0;
     for (std::size_t i = 0; i < q0.size(); ++i) {
       start_[i] = q0[i];
@@ -61,24 +70,76 @@ class EdgeSearch {
   }
 
   EdgeResult run(std::vector<EdgeInterval>* proof) {
+    proof_ = proof;
     if (checker_.fixed_overlap()) return {EdgeVerdict::hit, 0, 0};
     if (outside_ <= 1) return {EdgeVerdict::outside, outside_, 0};
-    IntervalQueue* now = &queues_[0];
-    IntervalQueue* next = &queues_[1];
-    split({0.5F, 0.5F}, width_, *now);
-    while (now->size > 0 && is_open_) {
-      next->size = 0;
-      for (std::size_t first = 0; first < now->size && is_open_; first += width_) {
-        look(*now, first, *next, proof);
-      }
-      if (is_open_) refine(*next, *now);
-    }
+    run_spheres();
+    if (solids_ != nullptr && is_open_) run_solids();
     return result_;
   }
 
   double length() const { return length_; }
 
  private:
+  void run_spheres() {
+    IntervalQueue* now = &queues_[0];
+    IntervalQueue* next = &queues_[1];
+    split({0.5F, 0.5F}, width_, *now);
+    for (int round = 1; now->size > 0 && is_open_; ++round) {
+      next->size = 0;
+      for (std::size_t first = 0; first < now->size && is_open_; first += width_) {
+        look(*now, first, *next);
+      }
+      if (is_open_ && solids_ != nullptr && round == kSphereRounds) return leave(*next);
+      if (is_open_) refine(*next, *now);
+    }
+  }
+
+  void leave(const IntervalQueue& rest) {
+    for (std::size_t k = 0; k < rest.size && is_open_; ++k) {
+      leave(rest.open[k].t, rest.open[k].half);
+    }
+  }
+
+  /// For the solids.
+  void leave(double t, double half) {
+    if (left_size_ == left_->size()) return end(EdgeVerdict::undecided, t);
+    (*left_)[left_size_++] = {t, half};
+  }
+
+  /// What spheres left: the middle of each interval proves what lies next to it; then what is left.
+  void run_solids() {
+    while (left_size_ > 0 && is_open_) {
+      const std::size_t count = left_size_;
+      std::swap(left_, looked_at_);
+      left_size_ = 0;
+      for (std::size_t k = 0; k < count && is_open_; ++k) {
+        look_closer((*looked_at_)[k].t, (*looked_at_)[k].half);
+      }
+    }
+  }
+
+  void look_closer(double t, double half) {
+    std::array<double, kMaxDof> q;
+    const auto dof = static_cast<std::size_t>(data_.tables.dof);
+    for (std::size_t i = 0; i < dof; ++i) q[i] = start_[i] + t * way_[i];
+    const SphereMargins& margins = FastAccess::closer_margins(checker_);
+    double proved = solids_->free_half({q.data(), dof}, {way_.data(), dof}, half,
+                                       {margins.obstacles, margins.links});
+    ++result_.stations;
+    if (proved < 0) return end(EdgeVerdict::hit, t);
+    if (proved < half) proved = std::floor(proved / kGrain) * kGrain;
+    const double rest = 0.5 * (half - proved);
+    if (proved < half && (proved < kCloserShare * static_cast<double>(least_half_) ||
+                          result_.stations > kMaxStations)) {
+      return end(EdgeVerdict::undecided, t);
+    }
+    if (proof_ != nullptr) proof_->push_back({t, proved});
+    if (rest <= 0) return;
+    leave(t - proved - rest, rest);
+    if (is_open_) leave(t + proved + rest, rest);
+  }
+
   /// Bounds of speeds and second derivatives along the edge, for every group and every pair.
   void bound_motion() {
     std::array<float, kMaxDof> rate, turn;
@@ -105,8 +166,7 @@ class EdgeSearch {
   }
 
   /// One block of intervals; those that are not proved go to `rest`.
-  void look(const IntervalQueue& queue, std::size_t first, IntervalQueue& rest,
-            std::vector<EdgeInterval>* proof) {
+  void look(const IntervalQueue& queue, std::size_t first, IntervalQueue& rest) {
     const std::size_t count = std::min(width_, queue.size - first);
     const OpenInterval* const open = &queue.open[first];
     alignas(64) float t[kMaxWidth], half[kMaxWidth];
@@ -119,13 +179,20 @@ class EdgeSearch {
                                     rate_.data(),     bend_.data(), pair_rate_.data(),
                                     pair_bend_.data()};
     const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
-    const detail::FastVerdict found = FastAccess::kernels(checker_).cover(
-        data_.tables, FastAccess::world(checker_).tables, lanes, motion, t, half);
+    const detail::FastVerdict found =
+        FastAccess::kernels(checker_).cover(data_.tables, FastAccess::world(checker_).tables, lanes,
+                                            motion, t, half, solids_ == nullptr);
     result_.stations += static_cast<int>(count);
-    if (found.hit != 0) return end(EdgeVerdict::hit, open[__builtin_ctz(found.hit)].t);
-    for (std::size_t k = 0; k < count; ++k) {
+    if (found.hit != 0 && solids_ == nullptr) {
+      return end(EdgeVerdict::hit, open[__builtin_ctz(found.hit)].t);
+    }
+    for (std::size_t k = 0; k < count && is_open_; ++k) {
       if (((found.blocked >> k) & 1) == 0) {
-        if (proof != nullptr) proof->push_back({open[k].t, open[k].half});
+        if (proof_ != nullptr) proof_->push_back({open[k].t, open[k].half});
+      } else if (((found.hit >> k) & 1) != 0) {
+        look_closer(open[k].t, open[k].half);
+      } else if (solids_ != nullptr && open[k].half <= least_half_) {
+        leave(open[k].t, open[k].half);
       } else if (open[k].half <= least_half_) {
         return end(EdgeVerdict::undecided, open[k].t);
       } else {
@@ -151,8 +218,15 @@ class EdgeSearch {
     is_open_ = false;
   }
 
+  /// Intervals that solids are to look at; not cleared when it is made.
+  struct LeftInterval {
+    double t, half;
+  };
+  using LeftIntervals = std::array<LeftInterval, kMaxLeft>;
+
   const FastChecker& checker_;
   const detail::FastRobotData& data_;
+  const detail::SolidScene* solids_;  // null: spheres decide
   std::size_t width_;
   std::array<double, kMaxDof> start_, way_;
   std::array<float, kMaxDof> dq_;
@@ -162,6 +236,11 @@ class EdgeSearch {
   double outside_ = 2;  // where the edge is outside of the limits; 2: nowhere
   float least_half_ = 0;
   IntervalQueue queues_[2];
+  LeftIntervals some_, others_;
+  LeftIntervals* left_ = &some_;
+  LeftIntervals* looked_at_ = &others_;
+  std::size_t left_size_ = 0;
+  std::vector<EdgeInterval>* proof_ = nullptr;
   EdgeResult result_;
   bool is_open_ = true;
 };

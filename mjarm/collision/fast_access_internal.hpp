@@ -10,6 +10,8 @@ namespace mjarm::detail {
 struct FastAccess {
   static const FastRobotData& data(const FastRobot& robot) { return *robot.data_; }
   static const FastWorld& world(const FastChecker& checker) { return *checker.world_; }
+  static const SolidScene* solids(const FastChecker& checker) { return checker.solids_.get(); }
+  static const SphereMargins& closer_margins(const FastChecker& checker) { return checker.closer_; }
   static const FastKernels& kernels(const FastChecker& checker) { return *checker.kernels_; }
 };
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "mjarm/collision/fast_access_internal.hpp"
 #include "mjarm/collision/fast_clearance_internal.hpp"
 #include "mjarm/collision/fast_kernel_internal.hpp"
+#include "mjarm/collision/solid_scene_internal.hpp"
+#include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
 namespace detail {
@@ -18,6 +21,7 @@ const FastKernels kFastBaseline = {kFloats, collide_block, cover_block, bound_mo
 namespace {
 
 constexpr int kMaxLanes = 16;
+constexpr double kFarther = 0.05;  // [m]
 
 const detail::FastKernels& fast_kernels([[maybe_unused]] SimdLevel level) {
 #if defined(__x86_64__)
@@ -91,6 +95,14 @@ Result<FastChecker> FastChecker::create(FastRobot robot, const Obstacles& obstac
   return FastChecker(std::move(robot), obstacles, level);
 }
 
+FastChecker FastChecker::looking_closer(std::shared_ptr<const detail::SolidScene> solids,
+                                        std::optional<SphereMargins> margins) const {
+  FastChecker out = *this;
+  out.solids_ = std::move(solids);
+  out.closer_ = margins.value_or(robot_.margins());
+  return out;
+}
+
 int FastChecker::width() const noexcept { return kernels_->width; }
 
 std::uint32_t FastChecker::collide(std::span<const double> q, std::size_t first,
@@ -100,7 +112,27 @@ std::uint32_t FastChecker::collide(std::span<const double> q, std::size_t first,
   const std::size_t count =
       std::min(static_cast<std::size_t>(kernels_->width), q.size() / dof - first);
   const detail::FastRows rows{q.data() + first * dof, static_cast<int>(count)};
-  return kernels_->collide(detail::FastAccess::data(robot_).tables, world_->tables, rows, any);
+  const std::uint32_t hit = kernels_->collide(detail::FastAccess::data(robot_).tables,
+                                              world_->tables, rows, any && !solids_);
+  if (hit == 0 || !solids_) return hit;
+  const std::uint32_t lanes = (std::uint32_t{1} << count) - 1;
+  return look_closer(q.subspan(first * dof, count * dof), hit & lanes, any);
+}
+
+std::uint32_t FastChecker::look_closer(std::span<const double> rows, std::uint32_t hit,
+                                       bool any) const noexcept {
+  const auto dof = static_cast<std::size_t>(robot_.dof());
+  std::uint32_t out = 0;
+  for (std::uint32_t left = hit; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+    const std::span<const double> q = rows.subspan(lane * dof, dof);
+    const bool free = within_limits(robot_.arm(), q, -detail::kLimitSlack) &&
+                      solids_->is_free(q, {closer_.obstacles, closer_.links});
+    if (free) continue;
+    out |= std::uint32_t{1} << lane;
+    if (any) break;
+  }
+  return out;
 }
 
 void FastChecker::check(std::span<const double> q, std::span<std::uint8_t> free) const noexcept {
@@ -133,22 +165,60 @@ SphereClearance FastChecker::clearance_of(const detail::FastNearest& from) const
   return {from.distance, link_of(from.sphere), from.obstacle, link_of(from.other)};
 }
 
-void FastChecker::clearances(std::span<const double> q,
-                             std::span<SphereClearance> out) const noexcept {
+SphereClearance FastChecker::closer_clearance(std::span<const double> q,
+                                              double max) const noexcept {
+  const auto found = solids_->clearance(q, max, {closer_.obstacles, closer_.links});
+  return {found.distance, found.pair.link, found.pair.obstacle, found.pair.other_link};
+}
+
+void FastChecker::clearances(std::span<const double> q, std::span<SphereClearance> out,
+                             double max) const noexcept {
+  const auto dof = static_cast<std::size_t>(robot_.dof());
+  assert(q.size() == out.size() * dof);
+  if (!solids_) return sphere_clearances(q, out, max);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k] = closer_clearance(q.subspan(k * dof, dof), max);
+  }
+}
+
+void FastChecker::sphere_clearances(std::span<const double> q, std::span<SphereClearance> out,
+                                    double max) const noexcept {
   const auto dof = static_cast<std::size_t>(robot_.dof());
   const auto width = static_cast<std::size_t>(kernels_->width);
-  assert(q.size() == out.size() * dof);
   for (std::size_t first = 0; first < out.size(); first += width) {
     const std::size_t count = std::min(width, out.size() - first);
     const LaneInput input(q.data() + first * dof, count, dof, width);
     detail::FastNearest nearest[kMaxLanes];
     kernels_->clearances(detail::FastAccess::data(robot_).tables, world_->tables, input.q,
-                         static_cast<float>(detail::kMaxClearance), false, nearest);
+                         static_cast<float>(max), false, nearest);
     for (std::size_t k = 0; k < count; ++k) out[first + k] = clearance_of(nearest[k]);
   }
 }
 
-FastChecker::LeastClearance FastChecker::least_clearance(std::span<const double> q) const noexcept {
+/// Spheres tell a lower bound of each, so that only those that they call near are looked at closer.
+FastChecker::LeastClearance FastChecker::least_looking_closer(std::span<const double> q) const {
+  const auto dof = static_cast<std::size_t>(robot_.dof());
+  std::vector<SphereClearance> bounds(q.size() / dof);
+  sphere_clearances(q, bounds, detail::kMaxClearance);
+  std::vector<std::size_t> order(bounds.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return bounds[k].distance; });
+  LeastClearance out;
+  out.nearest.distance = detail::kMaxClearance;
+  for (const std::size_t k : order) {
+    if (bounds[k].distance >= out.nearest.distance) break;
+    // Solids are little farther away than the spheres round them.
+    const std::span<const double> row = q.subspan(k * dof, dof);
+    const double max = std::min(out.nearest.distance, 2 * std::abs(bounds[k].distance) + kFarther);
+    SphereClearance found = closer_clearance(row, max);
+    if (found.link < 0) found = closer_clearance(row, out.nearest.distance);
+    if (found.distance < out.nearest.distance) out = {found, k};
+  }
+  return out;
+}
+
+FastChecker::LeastClearance FastChecker::least_clearance(std::span<const double> q) const {
+  if (solids_) return least_looking_closer(q);
   const auto dof = static_cast<std::size_t>(robot_.dof());
   const auto width = static_cast<std::size_t>(kernels_->width);
   const std::size_t rows = q.size() / dof;

@@ -18,7 +18,12 @@ struct FastAccess;
 struct FastWorld;
 struct FastKernels;
 struct FastNearest;
+class SolidScene;
 }  // namespace detail
+
+/// [m] What keeps this far from everything is never called in collision by a checker that looks
+/// closer.
+inline constexpr double kSolidClearance = 1e-4;
 
 /// How far a configuration is from its nearest collision, as a lower bound.
 struct SphereClearance {
@@ -37,6 +42,9 @@ struct SphereClearance {
 /// collision, but beside solid meshes: their faces get thicker where spheres are small against
 /// them. Immutable; may be used from many threads at once. The same input gives the same answer on
 /// one level of SIMD.
+///
+/// One that looks closer asks the exact convex solids of a model where spheres overlap: then what
+/// keeps the margins and kSolidClearance is called free, whatever the spheres stick out by.
 class FastChecker {
  public:
   /// Takes the obstacles apart; they are not needed afterwards.
@@ -44,6 +52,15 @@ class FastChecker {
   /// @return check_obstacles()'s error.
   [[nodiscard]] static Result<FastChecker> create(FastRobot robot, const Obstacles& obstacles,
                                                   SimdLevel level = simd_level());
+
+  /// The same, looking closer.
+  /// @param solids   ModelCover::solids, of the cover that robot and obstacles are from; null: not.
+  /// @param margins  where given, less than those of the robot: as little counts where solids tell.
+  [[nodiscard]] FastChecker looking_closer(std::shared_ptr<const detail::SolidScene> solids,
+                                           std::optional<SphereMargins> margins = {}) const;
+  [[nodiscard]] const std::shared_ptr<const detail::SolidScene>& solids() const noexcept {
+    return solids_;
+  }
 
   /// Whether each configuration is free; one outside of the limits (by more than 2e-4) or with a
   /// number that is not finite is not.
@@ -57,9 +74,12 @@ class FastChecker {
   /// @param q  shape (n, dof), row by row [rad or m].
   [[nodiscard]] bool all_free(std::span<const double> q) const noexcept;
 
-  /// Lower bounds of the clearance of configurations within the limits.
-  /// @param q  shape (n, dof), row by row [rad or m], finite.
-  void clearances(std::span<const double> q, std::span<SphereClearance> out) const noexcept;
+  /// Lower bounds of the clearance of configurations within the limits; exact for one that looks
+  /// closer.
+  /// @param q    shape (n, dof), row by row [rad or m], finite.
+  /// @param max  [m] <= 1: that, and no pair, where nothing is as near.
+  void clearances(std::span<const double> q, std::span<SphereClearance> out,
+                  double max = 1) const noexcept;
   [[nodiscard]] SphereClearance clearance(std::span<const double> q) const noexcept;
 
   /// The least clearance of several configurations, faster than all of them. Where some overlap, it
@@ -69,7 +89,7 @@ class FastChecker {
     std::size_t row = 0;  ///< of `q`
   };
   /// @param q  as for clearances(), at least one row.
-  [[nodiscard]] LeastClearance least_clearance(std::span<const double> q) const noexcept;
+  [[nodiscard]] LeastClearance least_clearance(std::span<const double> q) const;
 
   /// The link at rest and the obstacle that overlap, which no configuration can undo.
   struct FixedOverlap {
@@ -92,11 +112,21 @@ class FastChecker {
   [[nodiscard]] std::uint32_t collide(std::span<const double> q, std::size_t first,
                                       bool any) const noexcept;
   [[nodiscard]] SphereClearance clearance_of(const detail::FastNearest& from) const noexcept;
+  void sphere_clearances(std::span<const double> q, std::span<SphereClearance> out,
+                         double max) const noexcept;
+  [[nodiscard]] LeastClearance least_looking_closer(std::span<const double> q) const;
+  [[nodiscard]] SphereClearance closer_clearance(std::span<const double> q,
+                                                 double max) const noexcept;
+  /// Of lanes that collide those that still do when looked at closer.
+  [[nodiscard]] std::uint32_t look_closer(std::span<const double> rows, std::uint32_t hit,
+                                          bool any) const noexcept;
 
   FastRobot robot_;
   std::shared_ptr<const detail::FastWorld> world_;
   const detail::FastKernels* kernels_;
   std::optional<FixedOverlap> fixed_overlap_;
+  std::shared_ptr<const detail::SolidScene> solids_;  // null: it does not look closer
+  SphereMargins closer_;                              // margins of the solids
 };
 
 }  // namespace mjarm

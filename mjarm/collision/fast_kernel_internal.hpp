@@ -72,8 +72,8 @@ inline std::uint32_t collide_block(const FastRobotTables& robot, const FastWorld
 
 inline FastVerdict cover_block(const FastRobotTables& robot, const FastWorldTables& world,
                                std::uint32_t active, const FastMotion& motion, const float* t,
-                               const float* half) {
-  return BlockSearch<true>(robot, world, active, true).cover(motion, t, half);
+                               const float* half, bool any) {
+  return BlockSearch<true>(robot, world, active, any).cover(motion, t, half);
 }
 
 inline void bound_motion(const FastRates& rates, const FastLevers& levers, float* speed,

@@ -251,6 +251,7 @@ Result<FastRobot> FastRobot::create(const Arm& arm, const SphereSet& set,
 int FastRobot::dof() const noexcept { return data_->tables.dof; }
 const Arm& FastRobot::arm() const noexcept { return data_->arm; }
 const SphereSet& FastRobot::spheres() const noexcept { return data_->set; }
+const SphereMargins& FastRobot::margins() const noexcept { return data_->margins; }
 double FastRobot::padding() const noexcept { return data_->padding; }
 
 }  // namespace mjarm

@@ -34,6 +34,7 @@ class FastRobot {
   [[nodiscard]] int dof() const noexcept;
   [[nodiscard]] const Arm& arm() const noexcept;
   [[nodiscard]] const SphereSet& spheres() const noexcept;  ///< as given, without the margins
+  [[nodiscard]] const SphereMargins& margins() const noexcept;
   /// [m] by how much the radii grow to make up for single precision; a sphere of the set that keeps
   /// this far (two spheres: twice as far) from everything is never called in collision.
   [[nodiscard]] double padding() const noexcept;

@@ -90,7 +90,7 @@ struct BlockState {
     if constexpr (kCover) {
       verdict.blocked |= lanes;
       verdict.hit |= bare;
-      done = verdict.hit != 0;
+      done = any ? verdict.hit != 0 : verdict.hit == active;
       half = zero_where(lanes, half);  // such a lane goes on as a single configuration
       grow = zero_where(lanes, grow);
     } else {

@@ -281,9 +281,9 @@ struct FastKernels {
   /// found end the search.
   std::uint32_t (*collide)(const FastRobotTables&, const FastWorldTables&, const FastRows& rows,
                            bool any);
-  /// Looks at intervals t[lane] +- half[lane] of an edge. Ends with the first hit.
+  /// Looks at intervals t[lane] +- half[lane] of an edge. With `any` it ends with the first hit.
   FastVerdict (*cover)(const FastRobotTables&, const FastWorldTables&, std::uint32_t active,
-                       const FastMotion& motion, const float* t, const float* half);
+                       const FastMotion& motion, const float* t, const float* half, bool any);
   /// Bounds of speeds and of half of the second derivatives along the edge, (stride,) each. A point
   /// moves by at most (lever * rate), summed over the joints; each joint also turns what those
   /// after it do. What the joints before the first that counts do moves both links of a pair alike.

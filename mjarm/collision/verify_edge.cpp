@@ -2,22 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <queue>
 #include <vector>
 
-#include "mjarm/core/messages/collision.hpp"
-#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/collision/edge_march_internal.hpp"
 
 namespace mjarm {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using detail::Look;
+using detail::Twist;
+using detail::Watch;
+
 constexpr double kRounding = 1e-12;    // of a distance, a metre of coordinates
 constexpr double kSlopeLength = 1e-6;  // [m] way over which a slope is measured
 constexpr double kLeastSpeed = 1e-30;  // [m a unit of t] below which no slope is measured
-constexpr double kTurnError = 1e-5;    // an obstacle's rotation may be off by 1e-6
-constexpr double kShare = 0.999;       // of a step that is taken, for the rounding of the step
 
 /// Whether the distance to a shape is a convex function of the place.
 struct IsConvex {
@@ -29,278 +27,93 @@ struct IsConvex {
   }
 };
 
-/// A link against an obstacle or another link: proved to be apart on [0, until].
-struct Watch {
-  double until = 0;  // t
-  double bend = 0;   // [m] bound of the second derivative of a place on `link`, seen from `base`
-  int link = 0;
-  int base = -1;      // the joint that moves the other one; -1: the world
-  int obstacle = -1;  // -1: a link
-  int other_link = -1;
-};
-struct LaterWatch {
-  bool operator()(const Watch& a, const Watch& b) const { return a.until > b.until; }
-};
-
-/// Velocity [m a unit of t] of a place, as a field over the world.
-struct Twist {
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // of the world's origin
-  Eigen::Vector3d at(const Eigen::Vector3d& p) const { return turn.cross(p) + shift; }
-};
-
-/// The nearest of a watch at one t, and how far along the edge it is proved to stay apart.
-struct Look {
-  double clearance = kInfinity;  // [m] allow_depth not counted
-  double step = kInfinity;       // in t
-  bool overlaps = false;
-};
-
-/// The largest h with d + slope h - bend h^2 / 2 >= 0.
-double safe_step(double d, double slope, double bend) {
-  if (d <= 0) return 0;
-  const double root = std::sqrt(slope * slope + 2 * bend * d);
-  if (slope <= 0) return root > slope ? 2 * d / (root - slope) : kInfinity;
-  return bend > 0 ? (slope + root) / bend : kInfinity;
-}
-
-constexpr long kLooksUnasked = 64;  // between two questions whether to stop
-
-class EdgeMarch {
+/// Spheres against solids, clouds and each other.
+class SphereMarch : public detail::MarchGeometry {
  public:
-  EdgeMarch(const Arm& arm, const SphereSet& set, const Obstacles& obstacles,
-            std::span<const double> q0, std::span<const double> q1, const VerifyOptions& options)
-      : arm_(arm),
-        set_(set),
-        obstacles_(obstacles),
-        options_(options),
-        q0_(q0.begin(), q0.end()),
-        way_(q0.size()),
-        X_WJ_(q0.size()) {
-    double squares = 0;
-    for (std::size_t i = 0; i < q0.size(); ++i) {
-      way_[i] = q1[i] - q0[i];
-      squares += way_[i] * way_[i];
-    }
-    least_ = options.least_step / std::max(std::sqrt(squares), options.least_step);
-  }
+  SphereMarch(const SphereSet& set, const Obstacles& obstacles)
+      : set_(set), obstacles_(obstacles) {}
 
-  Result<VerifyResult> run() {
-    VerifyResult nearest;
-    nearest.distance = kInfinity;
-    watch_all();
-    for (long looks = 0; !watches_.empty(); ++looks) {
-      Watch watch = watches_.top();
-      watches_.pop();
-      if (looks % kLooksUnasked == 0 && is_stopped(options_.stop)) return fail(stopped());
-      const Look now = look(watch, watch.until);
-      if (now.clearance < nearest.distance) {
-        nearest = result_of(EdgeVerdict::free, watch, watch.until, now);
-      }
-      if (now.overlaps) return result_of(EdgeVerdict::hit, watch, watch.until, now);
-      if (looks == options_.max_looks) {
-        return result_of(EdgeVerdict::undecided, watch, watch.until, now);
-      }
-      const double next = watch.until + kShare * now.step;
-      if (next >= 1 || watch.until >= 1) continue;
-      if (kShare * now.step < least_) return refuse(watch, now);
-      watch.until = next;
-      watches_.push(watch);
+  int links() const override { return static_cast<int>(set_.links.size()); }
+  int joint_of(int link) const override { return link_at(link).joint; }
+  double reach_of(int link) const override {
+    double reach = 0;
+    for (const Sphere& sphere : link_at(link).spheres) {
+      reach = std::max(reach, sphere.center.norm());
     }
-    return nearest;
+    return reach;
+  }
+  int obstacles() const override {
+    return static_cast<int>(obstacles_.solids.size() + obstacles_.clouds.size());
+  }
+  bool is_held(int link, int obstacle) const override {
+    const auto& ignored = obstacles_.ignored;
+    return std::find(ignored.begin(), ignored.end(), IgnoredPair{link, obstacle}) == ignored.end();
+  }
+  std::span<const std::array<int, 2>> pairs() const override { return set_.pairs; }
+
+  void look(const Watch& watch, std::span<const Pose> X_WJ, const Twist& twist, double need,
+            Look& out) override {
+    for (const Sphere& sphere : link_at(watch.link).spheres) {
+      const Eigen::Vector3d p = center_of(watch.link, sphere, X_WJ);
+      const Place place{p, twist.at(p), sphere.radius, need, watch.bend};
+      if (watch.obstacle >= 0) {
+        look_at_obstacle(static_cast<std::size_t>(watch.obstacle), place, out);
+        continue;
+      }
+      for (const Sphere& other : link_at(watch.other_link).spheres) {
+        const Eigen::Vector3d center = center_of(watch.other_link, other, X_WJ);
+        look_at([&](const Eigen::Vector3d& x) { return (x - center).norm(); }, place, other.radius,
+                kRounding * (1 + p.norm() + center.norm()), out);
+      }
+    }
   }
 
  private:
-  /// Something is about to touch: it overlaps a little further on, or nothing is known.
-  VerifyResult refuse(const Watch& watch, const Look& now) {
-    for (double step = least_; step < 1000 * least_; step *= 2) {
-      const double next = std::min(watch.until + step, 1.0);
-      const Look then = look(watch, next);
-      if (then.overlaps) return result_of(EdgeVerdict::hit, watch, next, then);
-    }
-    return result_of(EdgeVerdict::undecided, watch, watch.until, now);
-  }
+  /// A point that moves with `v`, the radius round it, and what is kept beyond that.
+  struct Place {
+    Eigen::Vector3d p, v;
+    double radius, need, bend;
+  };
 
-  static VerifyResult result_of(EdgeVerdict verdict, const Watch& watch, double t,
-                                const Look& look) {
-    return {verdict, t, look.clearance, watch.link, watch.obstacle, watch.other_link, -1};
-  }
+  const LinkSpheres& link_at(int link) const { return set_.links[static_cast<std::size_t>(link)]; }
 
-  void watch_all() {
-    const int links = static_cast<int>(set_.links.size());
-    for (int link = 0; link < links; ++link) {
-      const double bend = bend_of(link, -1);
-      const std::size_t count = obstacles_.solids.size() + obstacles_.clouds.size();
-      for (int k = 0; k < static_cast<int>(count); ++k) {
-        const auto& ignored = obstacles_.ignored;
-        if (std::find(ignored.begin(), ignored.end(), IgnoredPair{link, k}) != ignored.end())
-          continue;
-        watches_.push({0, bend, link, -1, k, -1});
-      }
-    }
-    for (const auto& pair : set_.pairs) {
-      // Seen from the link nearer to the base, only the joints between the two count.
-      const bool in_order = joint_of(pair[0]) <= joint_of(pair[1]);
-      const int near = in_order ? pair[0] : pair[1];
-      const int far = in_order ? pair[1] : pair[0];
-      watches_.push({0, bend_of(far, joint_of(near)), far, joint_of(near), -1, near});
-    }
-  }
-
-  int joint_of(int link) const { return set_.links[static_cast<std::size_t>(link)].joint; }
-  bool is_slide(int joint) const {
-    return arm_.joints[static_cast<std::size_t>(joint)].type == JointType::slide;
-  }
-  double rate(int joint) const { return std::abs(way_[static_cast<std::size_t>(joint)]); }
-
-  /// Bound of |p''| on the whole edge, for the centres of a link seen from joint `base`. For joints
-  /// i < k the mixed derivative is axis_i x (axis_k x (p - o_k)), no longer than the way from o_k
-  /// to p along the chain; axis_i x axis_k where k is a slide; none where i is one.
-  double bend_of(int link, int base) const {
-    double reach = 0;  // of a centre from the origin of joint k
-    for (const Sphere& sphere : set_.links[static_cast<std::size_t>(link)].spheres) {
-      reach = std::max(reach, sphere.center.norm());
-    }
-    double turns = 0;  // rates of the hinges from base to k
-    for (int k = base + 1; k <= joint_of(link); ++k) turns += is_slide(k) ? 0 : rate(k);
-    double bend = 0;
-    for (int k = joint_of(link); k > base; --k) {
-      const auto i = static_cast<std::size_t>(k);
-      if (is_slide(k)) {
-        bend += 2 * turns * rate(k);
-        reach += std::max(std::abs(q0_[i]), std::abs(q0_[i] + way_[i]));
-      } else {
-        turns -= rate(k);
-        bend += reach * rate(k) * (rate(k) + 2 * std::max(turns, 0.0));
-      }
-      reach += arm_.joints[i].X_PJ.p.norm();
-    }
-    return bend * (1 + kTurnError);
-  }
-
-  void place(double t) {
-    if (t == t_) return;
-    t_ = t;
-    std::vector<double> q(q0_);
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] += t * way_[i];
-    fk_all(arm_, q, X_WJ_);
-  }
-
-  Eigen::Vector3d center_of(int link, const Sphere& sphere) const {
+  Eigen::Vector3d center_of(int link, const Sphere& sphere, std::span<const Pose> X_WJ) const {
     const int joint = joint_of(link);
-    return joint < 0 ? sphere.center : X_WJ_[static_cast<std::size_t>(joint)] * sphere.center;
+    return joint < 0 ? sphere.center : X_WJ[static_cast<std::size_t>(joint)] * sphere.center;
   }
 
-  /// How joints after `base` move a link.
-  Twist twist_of(int link, int base) const {
-    Twist twist;
-    for (int k = base + 1; k <= joint_of(link); ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      const Eigen::Vector3d axis_W = way_[i] * (X_WJ_[i].R * arm_.joints[i].axis);
-      if (is_slide(k)) {
-        twist.shift += axis_W;
-      } else {
-        twist.turn += axis_W;
-        twist.shift -= axis_W.cross(X_WJ_[i].p);
-      }
-    }
-    return twist;
-  }
-
-  Look look(const Watch& watch, double t) {
-    place(t);
-    const Twist twist = twist_of(watch.link, watch.base);
-    Look out;
-    for (const Sphere& sphere : set_.links[static_cast<std::size_t>(watch.link)].spheres) {
-      const Eigen::Vector3d p = center_of(watch.link, sphere);
-      const Eigen::Vector3d v = twist.at(p);
-      if (watch.obstacle >= 0) {
-        look_at_obstacle(static_cast<std::size_t>(watch.obstacle), p, v, sphere.radius, watch.bend,
-                         out);
-        continue;
-      }
-      for (const Sphere& other : set_.links[static_cast<std::size_t>(watch.other_link)].spheres) {
-        const Eigen::Vector3d center = center_of(watch.other_link, other);
-        look_at([&](const Eigen::Vector3d& x) { return (x - center).norm(); }, p, v,
-                sphere.radius + other.radius, kRounding * (1 + p.norm() + center.norm()),
-                watch.bend, out);
-      }
-    }
-    return out;
-  }
-
-  void look_at_obstacle(std::size_t index, const Eigen::Vector3d& p, const Eigen::Vector3d& v,
-                        double radius, double bend, Look& out) const {
+  void look_at_obstacle(std::size_t index, const Place& place, Look& out) const {
     if (index < obstacles_.solids.size()) {
       const Obstacle& solid = obstacles_.solids[index];
       const auto distance_to = [&](const Eigen::Vector3d& x) { return distance(solid, x); };
-      const double rounding = kRounding * (1 + p.norm() + (p - solid.X_WO.p).norm());
-      look_at(distance_to, p, v, radius, rounding, bend, out, std::visit(IsConvex(), solid.shape));
+      const double rounding = kRounding * (1 + place.p.norm() + (place.p - solid.X_WO.p).norm());
+      look_at(distance_to, place, 0, rounding, out, std::visit(IsConvex(), solid.shape));
       return;
     }
     const PointCloud& cloud = obstacles_.clouds[index - obstacles_.solids.size()];
     for (const Eigen::Vector3d& point : cloud.points_W) {
-      look_at([&](const Eigen::Vector3d& x) { return (x - point).norm(); }, p, v,
-              radius + cloud.radius, kRounding * (1 + p.norm() + point.norm()), bend, out);
+      look_at([&](const Eigen::Vector3d& x) { return (x - point).norm(); }, place, cloud.radius,
+              kRounding * (1 + place.p.norm() + point.norm()), out);
     }
   }
 
-  /// Looks at a point `p` that moves with `v` and must stay `radius` away from something.
+  /// Looks at a point that must stay its radius and `radius` away from something.
   template <class Distance>
-  void look_at(const Distance& distance_to, const Eigen::Vector3d& p, const Eigen::Vector3d& v,
-               double radius, double rounding, double bend, Look& out,
-               bool is_convex = true) const {
-    const double d = distance_to(p);
-    const double clearance = d - radius;
-    out.clearance = std::min(out.clearance, clearance);
-    const double depth = clearance + options_.allow_depth;
-    if (depth < -rounding) out.overlaps = true;
-    const double speed = v.norm();
+  static void look_at(const Distance& distance_to, const Place& place, double radius,
+                      double rounding, Look& out, bool is_convex = true) {
+    const double d = distance_to(place.p), speed = place.v.norm();
     double slope = -speed;
     if (is_convex && speed > kLeastSpeed) {
       // A convex function climbs at least as fast from here on as it did up to here.
       const double back = kSlopeLength / speed;
-      slope = (d - rounding - distance_to(p - back * v)) / back;
+      slope = (d - rounding - distance_to(place.p - back * place.v)) / back;
     }
-    out.step = std::min(out.step, safe_step(depth - rounding, slope, bend));
+    out.add(d - place.radius - radius, place.need, rounding, slope, place.bend);
   }
 
-  const Arm& arm_;
   const SphereSet& set_;
   const Obstacles& obstacles_;
-  const VerifyOptions& options_;
-  std::vector<double> q0_, way_;
-  std::vector<Pose> X_WJ_;  // at t_
-  double t_ = -1;
-  double least_ = 0;  // step in t
-  std::priority_queue<Watch, std::vector<Watch>, LaterWatch> watches_;
 };
-
-Result<void> check_request(const Arm& arm, std::span<const double> q0, std::span<const double> q1,
-                           const VerifyOptions& options) {
-  const auto dof = static_cast<std::size_t>(arm.dof());
-  if (q0.size() != dof || q1.size() != dof) {
-    return fail(Errc::bad_input,
-                text(msg::collision_edge_shape, dof, q0.size() != dof ? q0.size() : q1.size()));
-  }
-  const auto fits = [](double value) { return value >= 0 && std::isfinite(value); };
-  if (!fits(options.allow_depth) || !fits(options.limit_slack) || !fits(options.least_step) ||
-      options.least_step == 0 || options.max_looks < 1) {
-    return fail(Errc::bad_input, text(msg::collision_verify_options));
-  }
-  return {};
-}
-
-/// The first joint that is outside of its limits (NaN is); -1 where none is.
-int outside_joint(const Arm& arm, std::span<const double> q, double slack) {
-  for (int i = 0; i < arm.dof(); ++i) {
-    const double value = q[static_cast<std::size_t>(i)];
-    const bool inside = std::isfinite(value) && value >= arm.limits.lower[i] - slack &&
-                        value <= arm.limits.upper[i] + slack;
-    if (!inside) return i;
-  }
-  return -1;
-}
 
 }  // namespace
 
@@ -309,13 +122,8 @@ Result<VerifyResult> verify_edge(const Arm& arm, const SphereSet& set, const Obs
                                  const VerifyOptions& options) {
   if (auto fits = check_sphere_set(set, arm); !fits) return fail(std::move(fits.error()));
   if (auto fits = check_obstacles(obstacles); !fits) return fail(std::move(fits.error()));
-  if (auto fits = check_request(arm, q0, q1, options); !fits) return fail(std::move(fits.error()));
-  for (const double t : {0.0, 1.0}) {
-    VerifyResult out{.verdict = EdgeVerdict::outside, .t = t};
-    out.joint = outside_joint(arm, t == 0 ? q0 : q1, options.limit_slack);
-    if (out.joint >= 0) return out;
-  }
-  return EdgeMarch(arm, set, obstacles, q0, q1, options).run();
+  SphereMarch spheres(set, obstacles);
+  return detail::march(arm, spheres, q0, q1, options);
 }
 
 }  // namespace mjarm

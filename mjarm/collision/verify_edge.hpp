@@ -1,19 +1,26 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
+#include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/collision/edge_verdict.hpp"
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/stop.hpp"
 #include "mjarm/model/arm.hpp"
+#include "mjarm/model/model.hpp"
 
 namespace mjarm {
 
 /// How an edge is verified. Every default is usable as is.
 struct VerifyOptions {
-  double allow_depth = 0;       ///< [m] overlap that still counts as free, >= 0
+  double allow_depth = 0;  ///< [m] overlap that still counts as free, >= 0
+  /// [m] >= 0: distance that moving links keep from obstacles, and paired links from each other.
+  double keep = 0;
   double limit_slack = 1e-4;    ///< [rad or m] by which a joint may be past its limit, >= 0
   double least_step = 1e-6;     ///< [rad or m, L2] shortest step along the edge, > 0
   long max_looks = 10'000'000;  ///< a link looked at against one obstacle or link, > 0
@@ -51,5 +58,39 @@ struct VerifyResult {
                                                std::span<const double> q0,
                                                std::span<const double> q1,
                                                const VerifyOptions& options = {});
+
+/// The same of the geoms of a model, whose distances MuJoCo measures: the second opinion on a
+/// checker that looks closer. Pairs that are proved never to meet are left out, as by
+/// cover_model(). Speeds take the place of slopes. Ground (height fields), whose distance MuJoCo
+/// does not measure, is left out. Owns its scratch memory: copy it to use it from another thread.
+class ModelMarch {
+ public:
+  /// Joints off the arm stand at the keyframe `home`, else at their initial value.
+  /// @return cover_model()'s errors.
+  [[nodiscard]] static Result<ModelMarch> create(const Model& model, const Arm& arm,
+                                                 const ContactRules& rules = {},
+                                                 const StopCheck& stop = {});
+  ~ModelMarch();
+  ModelMarch(const ModelMarch& other);
+  ModelMarch& operator=(const ModelMarch& other);
+  ModelMarch(ModelMarch&&) noexcept;
+  ModelMarch& operator=(ModelMarch&&) noexcept;
+
+  /// The result has indices for link_name() and obstacle_name().
+  [[nodiscard]] Result<VerifyResult> verify_edge(std::span<const double> q0,
+                                                 std::span<const double> q1,
+                                                 const VerifyOptions& options = {});
+  /// [m] between a link and an obstacle, or two links, of these names at `q`, shape (dof,); none
+  /// where no such pair can meet.
+  [[nodiscard]] std::optional<double> distance(const std::string& link, const std::string& other,
+                                               std::span<const double> q);
+  [[nodiscard]] const std::string& link_name(int link) const;
+  [[nodiscard]] const std::string& obstacle_name(int obstacle) const;
+
+ private:
+  struct Impl;
+  explicit ModelMarch(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace mjarm

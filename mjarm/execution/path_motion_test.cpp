@@ -21,11 +21,11 @@ class PathMotionTest : public ::testing::Test {
     limits_.jerk = JointVec::Constant(2, 40);
   }
 
-  WorldPath planned(const JointVec& from, const JointVec& to, double clearance) {
+  PlannedPath planned(const JointVec& from, const JointVec& to, double clearance) {
     return world_.plan(as_span(from), std::vector{to}, {.rounds = 4, .clearance = clearance})
         .value();
   }
-  PathMotion timed(const std::vector<JointVec>& corners, std::span<const WorldPath> paths,
+  PathMotion timed(const std::vector<JointVec>& corners, std::span<const PlannedPath> paths,
                    const PathMotionOptions& options = {}) {
     return time_path(corners, limits_, world_.prover(paths).value(), options).value();
   }
@@ -57,13 +57,13 @@ class PathMotionTest : public ::testing::Test {
   }
 
   Robot robot_ = testing::slider(1);
-  PlanningWorld world_ = PlanningWorld::create(robot_, {.bounds = {0.0005}}).value();
+  PlanningWorld world_ = PlanningWorld::create(robot_).value();
   JointLimits limits_ = robot_.arm.limits;
 };
 
 TEST_F(PathMotionTest, GoesRoundWithoutAStopAndKeepsTheClearance) {
   for (const double clearance : {0.0, 0.01, 0.05}) {
-    const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), clearance);
+    const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), clearance);
     ASSERT_GT(path.q.size(), 2U);
     const PathMotion motion = timed(path.q, {&path, 1});
     EXPECT_FALSE(stops_between(motion.trajectory)) << clearance;
@@ -77,7 +77,7 @@ TEST_F(PathMotionTest, GoesRoundWithoutAStopAndKeepsTheClearance) {
 
 /// Two edges up and down again beside the fence: whatever leaves them to the right touches it.
 TEST_F(PathMotionTest, StopsWhereNothingElseIsProved) {
-  WorldPath path = planned(at(-0.4, 0.1), at(-0.05, 0.1), 0);
+  PlannedPath path = planned(at(-0.4, 0.1), at(-0.05, 0.1), 0);
   path.q = {at(-0.4, 0.1), at(-0.0302, 0.1), at(-0.4, 0.1)};
   const PathMotion motion = timed(path.q, {&path, 1});
   EXPECT_GE(least_clearance(motion.trajectory), 0);
@@ -85,11 +85,11 @@ TEST_F(PathMotionTest, StopsWhereNothingElseIsProved) {
 }
 
 TEST_F(PathMotionTest, PassesWhatItHasToMeet) {
-  const WorldPath one = planned(at(-0.4, 0.1), at(-0.1, 0.4), 0.01);
-  const WorldPath two = planned(at(-0.1, 0.4), at(0.4, 0.1), 0.01);
+  const PlannedPath one = planned(at(-0.4, 0.1), at(-0.1, 0.4), 0.01);
+  const PlannedPath two = planned(at(-0.1, 0.4), at(0.4, 0.1), 0.01);
   std::vector<JointVec> corners = one.q;
   corners.insert(corners.end(), two.q.begin() + 1, two.q.end());
-  const WorldPath paths[] = {one, two};
+  const PlannedPath paths[] = {one, two};
   const PathMotion motion = timed(corners, paths, {.passed = {one.q.size() - 1}});
   double nearest = 1;
   for (double t = 0; t < motion.trajectory.duration(); t += 1e-4) {
@@ -103,7 +103,7 @@ TEST_F(PathMotionTest, PassesWhatItHasToMeet) {
 
 /// It begins 1 mm beside the fence.
 TEST_F(PathMotionTest, NearAnEndItKeepsWhatTheEndHas) {
-  const WorldPath path = planned(at(-0.031, 0.1), at(0.4, 0.3), 0.03);
+  const PlannedPath path = planned(at(-0.031, 0.1), at(0.4, 0.3), 0.03);
   ASSERT_LT(path.kept.front(), 0.0011);
   const PathMotion motion = timed(path.q, {&path, 1});
   EXPECT_GE(least_clearance(motion.trajectory), path.kept.front() - 1e-6);
@@ -111,7 +111,7 @@ TEST_F(PathMotionTest, NearAnEndItKeepsWhatTheEndHas) {
 }
 
 TEST_F(PathMotionTest, SameMotionEveryTimeAndRestsWhereItIs) {
-  const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), 0.01);
+  const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), 0.01);
   const PathMotion a = timed(path.q, {&path, 1}), b = timed(path.q, {&path, 1});
   EXPECT_EQ(a.trajectory.duration(), b.trajectory.duration());
   const double t = 0.4 * a.trajectory.duration();
@@ -122,7 +122,7 @@ TEST_F(PathMotionTest, SameMotionEveryTimeAndRestsWhereItIs) {
 }
 
 TEST_F(PathMotionTest, LeadsIntoAStateThatMoves) {
-  const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.3), 0.01);
+  const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.3), 0.01);
   const Trajectory rest = timed(path.q, {&path, 1}).trajectory;
   const WayProver prover = world_.prover({&path, 1}).value();
   const JointState end{at(0.4, 0.3), at(0.3, -0.2), at(0, 0)};
@@ -137,7 +137,7 @@ TEST_F(PathMotionTest, LeadsIntoAStateThatMoves) {
   expect_limits(*moving);
   // Faster than a joint may be, and back into the fence from beside it.
   EXPECT_FALSE(lead_into(rest, {at(0.4, 0.3), at(1.3, 0), at(0, 0)}, limits_, prover));
-  const WorldPath beside = planned(at(0.4, 0.3), at(0.032, 0.1), 0.001);
+  const PlannedPath beside = planned(at(0.4, 0.3), at(0.032, 0.1), 0.001);
   const Trajectory up_to = timed(beside.q, {&beside, 1}).trajectory;
   EXPECT_FALSE(lead_into(up_to, {at(0.032, 0.1), at(0.5, 0), at(0, 0)}, limits_,
                          world_.prover({&beside, 1}).value()));

@@ -60,21 +60,6 @@ bool add_exit(const Exit& exit, const JointVec& q, double resolution, bool front
   return true;
 }
 
-/// The least clearance of every edge, as it is without margins.
-void measure_edges(const FastChecker& checker, PlannedPath& path) {
-  for (std::size_t i = 0; i < path.proof.size(); ++i) {
-    EdgeCertificate& proof = path.proof[i];
-    std::vector<double> rows;
-    for (const EdgeInterval& interval : proof.intervals) {
-      const JointVec q = path.q[i] + interval.t * (path.q[i + 1] - path.q[i]);
-      rows.insert(rows.end(), q.begin(), q.end());
-    }
-    const FastChecker::LeastClearance least = checker.least_clearance(rows);
-    proof.nearest = least.nearest;
-    proof.nearest_t = proof.intervals[least.row].t;
-  }
-}
-
 /// Puts both ends onto a path between their exits, and proves what that changes.
 bool join_ends(const FastChecker& wide, const ExitSearch& search, const PlanOptions& options,
                const JointVec& start, const JointVec& goal, Exit& first, Exit& last,
@@ -107,6 +92,20 @@ bool measure_tilt(const TiltKeeper* tilt, PlannedPath& path) {
 }
 
 }  // namespace
+
+void measure_edges(const FastChecker& checker, PlannedPath& path) {
+  for (std::size_t i = 0; i < path.proof.size(); ++i) {
+    EdgeCertificate& proof = path.proof[i];
+    std::vector<double> rows;
+    for (const EdgeInterval& interval : proof.intervals) {
+      const JointVec q = path.q[i] + interval.t * (path.q[i + 1] - path.q[i]);
+      rows.insert(rows.end(), q.begin(), q.end());
+    }
+    const FastChecker::LeastClearance least = checker.least_clearance(rows);
+    proof.nearest = least.nearest;
+    proof.nearest_t = proof.intervals[least.row].t;
+  }
+}
 
 bool is_for_clearance(const PlanFailure& why) {
   return why.code == PlanErrc::too_near || why.code == PlanErrc::budget_spent ||

@@ -31,6 +31,9 @@ enum class ClearEnds {
     const ClearScene& scene, std::span<const double> start, std::span<const JointVec> goals,
     const PlanOptions& options, ClearEnds ends, PlanTimes* times = nullptr);
 
+/// Fills in the least clearance of every edge, as a checker without clearance tells it.
+void measure_edges(const FastChecker& checker, PlannedPath& path);
+
 /// Whether a clearance is in its range, where one is given.
 [[nodiscard]] inline bool is_sound_clearance(const std::optional<double>& clearance) {
   return !clearance || (*clearance >= 0 && *clearance <= kMaxClearanceAsked);
@@ -101,5 +104,9 @@ class ExitSearch {
 
 /// The checker of the scene that calls free only what keeps `clearance`.
 [[nodiscard]] FastChecker checker_with(const ClearScene& scene, double clearance);
+/// The same for less than what `wide` keeps, a checker of the scene: for one that looks closer, it
+/// is made at once.
+[[nodiscard]] FastChecker checker_within(const ClearScene& scene, const FastChecker& wide,
+                                         double clearance);
 
 }  // namespace mjarm::detail

@@ -13,6 +13,7 @@ namespace {
 constexpr double kOwnSlack = 1e-4;  // [m] that an end's own clearance is not kept to
 constexpr double kProbe = 1e-3;     // [rad or m] of the differences that a slope is taken from
 constexpr double kClimb = 0.01;     // [rad or m, L2] of a step up the slope
+constexpr double kFelt = 0.05;  // [m] a slope is that of what is no farther beyond the clearance
 constexpr int kClimbs = 60;
 constexpr double kFirstDraw = 0.02, kWiderDraw = 1.4;       // [rad or m, L2] radii of what is drawn
 constexpr int kDraws = 32;                                  // of each radius
@@ -27,14 +28,24 @@ FastChecker checker_with(const ClearScene& scene, double clearance) {
     if (known != scene.made->end()) return known->second;
   }
   const FastRobot& robot = scene.checker.robot();
-  auto grown = FastRobot::create(robot.arm(), robot.spheres(), {clearance, clearance});
-  assert(grown);  // as without the margins
+  const SphereMargins& own = robot.margins();
+  auto grown = FastRobot::create(robot.arm(), robot.spheres(),
+                                 {own.obstacles + clearance, own.links + clearance});
+  assert(grown);  // as without the clearance
   auto checker = FastChecker::create(std::move(*grown), scene.obstacles);
   assert(checker);
+  *checker = checker->looking_closer(scene.checker.solids());
   if (scene.made != nullptr && scene.made->size() < kMaxKept) {
     scene.made->emplace(clearance, *checker);
   }
   return std::move(*checker);
+}
+
+FastChecker checker_within(const ClearScene& scene, const FastChecker& wide, double clearance) {
+  if (!scene.checker.solids()) return checker_with(scene, clearance);
+  const SphereMargins& own = scene.checker.robot().margins();
+  return wide.looking_closer(scene.checker.solids(),
+                             SphereMargins{own.obstacles + clearance, own.links + clearance});
 }
 
 bool ExitSearch::is_way_out(const JointVec& from, const JointVec& to,
@@ -57,7 +68,7 @@ JointVec ExitSearch::uphill(const JointVec& q) const {
     }
   }
   std::vector<SphereClearance> found(static_cast<std::size_t>(2 * dof));
-  scene_.checker.clearances(rows, found);
+  scene_.checker.clearances(rows, found, *options_.clearance + kFelt);
   JointVec slope(dof);
   for (Eigen::Index k = 0; k < dof; ++k) {
     const auto i = static_cast<std::size_t>(2 * k);
@@ -106,7 +117,7 @@ std::optional<Exit> ExitSearch::leave(const JointVec& q) const {
   if (wide_.is_free(as_span(q))) return Exit{q, *options_.clearance, {}};
   const double own = scene_.checker.clearance(as_span(q)).distance;
   const double kept = std::clamp(own - kOwnSlack, 0.0, *options_.clearance);
-  FastChecker narrow = checker_with(scene_, kept);
+  FastChecker narrow = checker_within(scene_, wide_, kept);
   std::optional<JointVec> to = climb(q, narrow);
   const double farthest = to ? (*to - q).norm() : kFarthestExit;
   if (auto drawn = draw(q, farthest, narrow)) to = std::move(drawn);

@@ -109,7 +109,6 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
     if (answer.tilt) append_tilt(json, *answer.tilt, answer.path->tilt);
     append_words(json, "hold", answer.rules.hold);
     append_words(json, "allow", answer.rules.allow);
-    if (answer.spheres) json.member("spheres", *answer.spheres);
   } else {
     json.member("reason", describe(answer.path.error(), robot, obstacles));
     if (answer.path.error().code == PlanErrc::too_near) {

@@ -16,7 +16,6 @@ struct PlanAnswer {
   double simplify_us = 0;              ///< [us] the path shortened and proved
   std::optional<TiltLimit> tilt = {};  ///< that the path keeps
   RuleWords rules = {};                ///< likewise
-  std::optional<double> spheres = {};  ///< [m] bound of the cover, where the robot is a model
 };
 
 /// Solves one problem. Both times together cover everything, allocation included; with a time

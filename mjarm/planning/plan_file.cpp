@@ -130,19 +130,9 @@ Result<void> read_words(const JsonValue& entry, const char* key, std::vector<std
 Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out) {
   if (entry.is_list()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
-  constexpr std::string_view kKnown[] = {"ok",
-                                         "path",
-                                         "us",
-                                         "simplify_us",
-                                         "cost",
-                                         "reason",
-                                         "spheres",
-                                         "hold",
-                                         "allow",
-                                         "tilt",
-                                         "certificate",
-                                         "clearance",
-                                         "possible_clearance"};
+  constexpr std::string_view kKnown[] = {"ok",   "path",        "us",        "simplify_us",
+                                         "cost", "reason",      "hold",      "allow",
+                                         "tilt", "certificate", "clearance", "possible_clearance"};
   if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
   const JsonValue* const ok = entry.find("ok");
   if (ok != nullptr && !ok->is_boolean()) {
@@ -161,15 +151,6 @@ Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out)
     const Result<double> clearance = length_at(entry, "clearance");
     if (!clearance) return fail(clearance.error());
     out.clearance = *clearance;
-  }
-  if (entry.contains("spheres")) {
-    const Result<double> spheres = number_at(entry, "spheres");
-    if (!spheres) return fail(spheres.error());
-    if (!(*spheres >= kMinSphereBound && *spheres <= kMaxSphereBound)) {
-      return fail(Errc::bad_input,
-                  text(msg::planning_verify_bad_spheres, kMinSphereBound, kMaxSphereBound));
-    }
-    out.spheres = *spheres;
   }
   if (Result<void> read = read_words(entry, "hold", out.rules.hold); !read) return read;
   if (Result<void> read = read_words(entry, "allow", out.rules.allow); !read) return read;

@@ -40,7 +40,6 @@ struct GivenPath {
   std::optional<std::vector<GivenCertificate>> certificate;
   std::optional<GivenTilt> tilt;
   std::optional<double> clearance;  ///< [m] kept by all edges but, maybe, the first and the last
-  std::optional<double> spheres;    ///< [m] bound of the cover it was planned with, as plan has it
   RuleWords rules;
 };
 

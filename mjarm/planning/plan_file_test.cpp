@@ -27,7 +27,6 @@ class PlanFileTest : public ::testing::Test {
         {"ok", true},
         {"path", {{-1, 0}, {1, 0}}},
         {"tilt", {{"limit", 0.1}, {"largest", 0.05}, {"tool", {0, 0, 1}}, {"world", {0, 0, -1}}}},
-        {"spheres", 0.012},
         {"hold", {"cup"}},
         {"allow", {"cup,table"}}};
     if (*place != '\0') entry[json::json_pointer(place)] = value;
@@ -56,7 +55,6 @@ TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   EXPECT_GT(answer.us, 0);
   EXPECT_GT(answer.simplify_us, 0);
   answer.rules = {{"cup \"2\""}, {"cup,table", "a,b"}};
-  answer.spheres = 0.012;
   answer.tilt = TiltLimit{.max = 0.1};
   answer.path->tilt = 0.05;
   std::string text = "{\"round\":";
@@ -81,7 +79,6 @@ TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   }
   EXPECT_EQ(given.rules.hold, answer.rules.hold);
   EXPECT_EQ(given.rules.allow, answer.rules.allow);
-  EXPECT_EQ(given.spheres, 0.012);
   ASSERT_TRUE(given.tilt);
   EXPECT_EQ(given.tilt->limit, 0.1);
   EXPECT_EQ(given.tilt->largest, 0.05);
@@ -148,8 +145,7 @@ TEST_F(PlanFileTest, WhatIsStatedMustBePossible) {
   const std::pair<const char*, json> wrong[] = {
       {"/tilt", 3},           {"/tilt/tool", {0, 0, 0}}, {"/tilt/world", {0, 0, 2}},
       {"/tilt/largest", 0.2}, {"/tilt/limit", 2},        {"/tilt/limit", nullptr},
-      {"/tilt/limit", -1},    {"/spheres", 1e-9},        {"/spheres", -1},
-      {"/spheres", "thin"},   {"/hold", "rod"},          {"/allow", {1, 2}}};
+      {"/tilt/limit", -1},    {"/hold", "rod"},          {"/allow", {1, 2}}};
   for (const auto& [place, value] : wrong) {
     const auto file = read_with(place, value);
     ASSERT_FALSE(file) << place << " " << value;

@@ -14,13 +14,14 @@ namespace {
 
 constexpr int kPreferSamples = 3000;  // of each search with a clearance that nobody asked for
 constexpr int kAloneSamples = 2000;   // of a search to one goal, once there is a path to another
-constexpr int kCoarseSamples = 5000;  // of a search with a clearance where finer spheres are left
+constexpr int kSphereSamples = 2000;  // of a search among spheres alone
 
-/// Whether finer spheres may do better.
-bool is_coarse(PlanErrc reason) {
+/// Whether there may be a path all the same where one looks closer than spheres do.
+bool may_be_spheres(PlanErrc reason) {
   return reason == PlanErrc::start_hit || reason == PlanErrc::goals_hit ||
          reason == PlanErrc::goals_tilted || reason == PlanErrc::base_hit ||
-         reason == PlanErrc::budget_spent || reason == PlanErrc::too_near;
+         reason == PlanErrc::budget_spent || reason == PlanErrc::too_near ||
+         reason == PlanErrc::unproved;
 }
 
 int least_samples(const PlanOptions& options, int max) {
@@ -31,9 +32,7 @@ Result<void> check_world_options(const WorldOptions& options) {
   if (!(options.margin >= 0 && options.margin <= kMaxMargin)) {
     return fail(Errc::bad_input, text(msg::planning_bad_margin, options.margin, kMaxMargin));
   }
-  const auto fits = [](double b) { return b >= kMinSphereBound && b <= kMaxSphereBound; };
-  if (!options.bounds.empty() && std::ranges::all_of(options.bounds, fits)) return {};
-  return fail(Errc::bad_input, text(msg::planning_bad_bounds, kMinSphereBound, kMaxSphereBound));
+  return {};
 }
 
 /// To all goals at once the first straight way that is free is taken, be it to the farthest. So the
@@ -63,17 +62,14 @@ void try_goals_alone(std::span<const double> q_start, std::span<const JointVec> 
   }
 }
 
-/// One search at one level, for a clearance where one is asked.
+/// One search in one scene, for a clearance where one is asked.
 /// @param ends  what may be nearer.
 Result<PlannedPath, WorldFailure> search(const detail::ClearScene& scene, detail::ClearEnds ends,
                                          std::span<const double> q_start,
                                          std::span<const JointVec> goals,
                                          const PlanOptions& options, PlanTimes* times) {
   const detail::TimeLeft left(options);
-  PlanOptions how = options;
   const bool clear = options.clearance.value_or(0) > 0;
-  if (clear && ends == detail::ClearEnds::also)
-    how.samples = least_samples(options, kCoarseSamples);
   const auto plan = [&](std::span<const JointVec> to, const PlanOptions& with) {
     PlanTimes taken;
     auto path = clear ? detail::plan_clear(scene, q_start, to, with, ends, &taken)
@@ -84,8 +80,8 @@ Result<PlannedPath, WorldFailure> search(const detail::ClearScene& scene, detail
     }
     return path;
   };
-  Result<PlannedPath, PlanFailure> found = plan(goals, how);
-  if (found && goals.size() > 1) try_goals_alone(q_start, goals, how, left, plan, *found);
+  Result<PlannedPath, PlanFailure> found = plan(goals, options);
+  if (found && goals.size() > 1) try_goals_alone(q_start, goals, options, left, plan, *found);
   return std::move(found).map_error(
       [](const PlanFailure& why) { return WorldFailure{.what = {}, .search = why}; });
 }
@@ -96,14 +92,11 @@ WorldFailure bad_clearance(double asked) {
           .search = {.code = PlanErrc::bad_clearance, .limit = asked}};
 }
 
-WorldFailure not_found(PlanFailure search, const PlanOptions& options, const WorldLevel& level,
-                       std::size_t index) {
+WorldFailure not_found(PlanFailure search, const PlanOptions& options, const WorldScene& scene) {
   if (search.code == PlanErrc::out_of_time) search.limit = options.time_limit;
   return {.code = WorldErrc::no_path,
-          .what = describe(search, level.checker.robot(), level.cover.scene),
-          .search = search,
-          .level = index,
-          .bound = is_coarse(search.code) ? level.cover.bound : 0};
+          .what = describe(search, scene.checker.robot(), scene.cover.scene),
+          .search = search};
 }
 
 }  // namespace
@@ -115,76 +108,70 @@ Result<PlanningWorld> PlanningWorld::create(const Robot& robot, WorldOptions opt
   return PlanningWorld(robot, std::move(options));
 }
 
-Result<WorldLevel> PlanningWorld::covered(double bound, const StopCheck& stop) const {
-  const CoverOptions options{.bound = bound,
-                             .qpos = options_.qpos,
-                             .whole_stroke = robot_.arm.gripper && options_.qpos.empty(),
-                             .rules = options_.rules,
-                             .stop = stop};
+Result<WorldScene> PlanningWorld::covered(const StopCheck& stop) const {
+  const CoverOptions options{.qpos = options_.qpos, .rules = options_.rules, .stop = stop};
   Result<ModelCover> cover = cover_model(robot_.model, robot_.arm, options);
   if (!cover) return fail(std::move(cover.error()));
-  for (LinkSpheres& link : cover->spheres.links) {
-    for (Sphere& sphere : link.spheres) sphere.radius += options_.margin;
-  }
-  const Result<FastRobot> fast = FastRobot::create(robot_.arm, cover->spheres);
+  const SphereMargins margins{options_.margin, 2 * options_.margin};
+  const Result<FastRobot> fast = FastRobot::create(robot_.arm, cover->spheres, margins);
   if (!fast) return fail(fast.error());
   Result<FastChecker> checker = FastChecker::create(*fast, cover->scene);
   if (!checker) return fail(std::move(checker.error()));
-  return WorldLevel{bound, std::move(*cover), std::move(*checker)};
+  FastChecker closer = checker->looking_closer(cover->solids);
+  return WorldScene{std::move(*cover), std::move(closer)};
 }
 
-Result<const WorldLevel*> PlanningWorld::level(std::size_t index, const StopCheck& stop) {
-  if (index >= options_.bounds.size()) {
-    return fail(Errc::bad_input, text(msg::planning_no_level, index, options_.bounds.size()));
-  }
-  while (levels_.size() <= index) {
-    Result<WorldLevel> made = covered(options_.bounds[levels_.size()], stop);
+Result<const WorldScene*> PlanningWorld::scene(const StopCheck& stop) {
+  if (!scene_) {
+    Result<WorldScene> made = covered(stop);
     if (!made) return fail(std::move(made.error()));
-    levels_.push_back(std::move(*made));
-    wide_.emplace_back();
+    scene_ = std::make_shared<const WorldScene>(std::move(*made));
   }
-  return &levels_[index];
+  return scene_.get();
 }
 
-/// One level after the other, until there is a path or finer spheres are no help.
+/// Among spheres alone, and looking closer where they may be what is in the way.
 /// @param attempt  gets a scene, what may be nearer than a clearance and the options; gives a path
-/// or a failure whose words and level are filled in here, where it is one of a search.
+/// or a failure whose words are filled in here, where it is one of a search.
 template <class Attempt>
-Result<WorldPath, WorldFailure> PlanningWorld::climb(const PlanOptions& options,
-                                                     detail::TimeLeft& left, Ask ask,
-                                                     const Attempt& attempt) {
-  WorldFailure why;
-  for (std::size_t i = 0; i < options_.bounds.size(); ++i) {
-    const Stopwatch covering;
-    const Result<const WorldLevel*> here = level(i, options.stop);
-    left.add(covering.us());
-    if (!here && is_stopped(options.stop)) {
-      return tl::unexpected(WorldFailure{
-          .what = here.error().what, .search = {.code = PlanErrc::stopped}, .level = i});
-    }
-    if (!here) return tl::unexpected(WorldFailure{WorldErrc::bad_model, here.error().what});
-    // Start and goal that coarse spheres call too near may keep what is asked all the same.
-    const bool strict = ask == Ask::required && i + 1 < options_.bounds.size();
-    const auto ends = strict ? detail::ClearEnds::also : detail::ClearEnds::own;
-    Result<PlannedPath, WorldFailure> found =
-        attempt(detail::ClearScene{(*here)->checker, (*here)->cover.scene, &wide_[i]}, ends,
-                left.in(options));
-    if (found) return WorldPath{std::move(*found), i};
-    if (found.error().code != WorldErrc::no_path) return tl::unexpected(std::move(found.error()));
-    why = not_found(found.error().search, options, **here, i);
-    if (why.bound == 0) break;
+Result<PlannedPath, WorldFailure> PlanningWorld::spheres_then_solids(const PlanOptions& options,
+                                                                     detail::TimeLeft& left,
+                                                                     const Attempt& attempt) {
+  const Stopwatch covering;
+  const Result<const WorldScene*> here = scene(options.stop);
+  left.add(covering.us());
+  if (!here && is_stopped(options.stop)) {
+    return tl::unexpected(
+        WorldFailure{.what = here.error().what, .search = {.code = PlanErrc::stopped}});
   }
-  return tl::unexpected(std::move(why));
+  if (!here) return tl::unexpected(WorldFailure{WorldErrc::bad_model, here.error().what});
+  const FastChecker& closer = (*here)->checker;
+  const FastChecker spheres = closer.looking_closer(nullptr);
+  PlanOptions quick = options;
+  quick.samples = least_samples(options, kSphereSamples);
+  // Start and goal that spheres call too near may keep what is asked all the same.
+  Result<PlannedPath, WorldFailure> found =
+      attempt(detail::ClearScene{spheres, (*here)->cover.scene, &wide_spheres_},
+              detail::ClearEnds::also, left.in(quick));
+  if (found) detail::measure_edges(closer, *found);
+  const auto is_of_search = [&] { return !found && found.error().code == WorldErrc::no_path; };
+  if (is_of_search() && may_be_spheres(found.error().search.code)) {
+    found = attempt(detail::ClearScene{closer, (*here)->cover.scene, &wide_},
+                    detail::ClearEnds::own, left.in(options));
+  }
+  if (is_of_search()) found = tl::unexpected(not_found(found.error().search, options, **here));
+  return found;
 }
 
-/// climb() with the clearance that is asked, or with the one that is preferred and without.
+/// spheres_then_solids() with the clearance that is asked, or with the one that is preferred and
+/// without.
 template <class Attempt>
-Result<WorldPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions& options,
-                                                              const Attempt& attempt) {
+Result<PlannedPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions& options,
+                                                                const Attempt& attempt) {
   detail::TimeLeft left(options);
   PlanOptions bare = options;
   bare.clearance = 0;
-  if (options.clearance == 0) return climb(bare, left, Ask::preferred, attempt);
+  if (options.clearance == 0) return spheres_then_solids(bare, left, attempt);
   if (!detail::is_sound_clearance(options.clearance)) {
     return tl::unexpected(bad_clearance(*options.clearance));
   }
@@ -192,11 +179,11 @@ Result<WorldPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions&
   if (!options.clearance) {
     clear.clearance = kPreferredClearance;
     clear.samples = least_samples(options, kPreferSamples);
-    Result<WorldPath, WorldFailure> found = climb(clear, left, Ask::preferred, attempt);
+    Result<PlannedPath, WorldFailure> found = spheres_then_solids(clear, left, attempt);
     const bool decided = found || is_stopped(options.stop);
-    return decided ? std::move(found) : climb(bare, left, Ask::preferred, attempt);
+    return decided ? std::move(found) : spheres_then_solids(bare, left, attempt);
   }
-  Result<WorldPath, WorldFailure> found = climb(clear, left, Ask::required, attempt);
+  Result<PlannedPath, WorldFailure> found = spheres_then_solids(clear, left, attempt);
   if (found || found.error().code != WorldErrc::no_path ||
       !detail::is_for_clearance(found.error().search)) {
     return found;
@@ -204,55 +191,51 @@ Result<WorldPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOptions&
   PlanOptions quick = bare;
   quick.rounds = 0;
   quick.time_budget = 0;
-  if (auto any = climb(quick, left, Ask::required, attempt); !any) return any;
+  if (auto any = spheres_then_solids(quick, left, attempt); !any) return any;
   const double possible = detail::largest_clearance(clear, [&](const PlanOptions& less) {
-    return climb(less, left, Ask::required, attempt).has_value();
+    return spheres_then_solids(less, left, attempt).has_value();
   });
   if (is_stopped(options.stop)) return found;
-  const std::size_t at = found.error().level;
   return tl::unexpected(
-      not_found(detail::too_near(*options.clearance, possible), options, levels_[at], at));
+      not_found(detail::too_near(*options.clearance, possible), options, *scene_));
 }
 
-Result<WayProver> PlanningWorld::prover(std::span<const WorldPath> paths, const StopCheck& stop) {
+Result<WayProver> PlanningWorld::prover(std::span<const PlannedPath> paths, const StopCheck& stop) {
   constexpr double kBeside = 1.2;  // of the length of an edge, as a way need not be on it
-  std::size_t finest = 0;
   double clearance = kMaxClearanceAsked;
-  for (const WorldPath& path : paths) {
-    finest = std::max(finest, path.level);
-    clearance = std::min(clearance, path.clearance);
-  }
-  const Result<const WorldLevel*> here = level(finest, stop);
+  for (const PlannedPath& path : paths) clearance = std::min(clearance, path.clearance);
+  const Result<const WorldScene*> here = scene(stop);
   if (!here) return fail(here.error());
-  const detail::ClearScene scene{(*here)->checker, (*here)->cover.scene, &wide_[finest]};
+  const detail::ClearScene within{(*here)->checker, (*here)->cover.scene, &wide_};
+  const FastChecker wide = detail::checker_with(within, std::max(clearance, WayProver::kSpare));
   std::vector<WayProver::NearEnd> ends;
-  for (const WorldPath& path : paths) {
+  for (const PlannedPath& path : paths) {
     const std::size_t last = path.q.size() - 1;
     for (const auto& [end, next, edge] :
          {std::array<std::size_t, 3>{0, 1, 0}, {last, last - 1, last - 1}}) {
       if (path.kept.empty() || !(path.kept[edge] < clearance)) continue;
       const double kept = std::max(path.kept[edge], WayProver::kSpare);
       ends.push_back({path.q[end], kBeside * (path.q[next] - path.q[end]).norm(),
-                      detail::checker_with(scene, kept)});
+                      detail::checker_within(within, wide, kept)});
     }
   }
-  return WayProver(detail::checker_with(scene, std::max(clearance, WayProver::kSpare)),
-                   std::move(ends));
+  return WayProver(wide, std::move(ends));
 }
 
-Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
-                                                    std::span<const JointVec> goals,
-                                                    const PlanOptions& options, PlanTimes* times) {
+Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
+                                                      std::span<const JointVec> goals,
+                                                      const PlanOptions& options,
+                                                      PlanTimes* times) {
   return keep_clearance(options, [&](const detail::ClearScene& scene, detail::ClearEnds ends,
                                      const PlanOptions& how) {
     return search(scene, ends, q_start, goals, how, times);
   });
 }
 
-Result<WorldPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
-                                                    const GoalRegion& region,
-                                                    const PlanOptions& options, IkTask task,
-                                                    PlanTimes* times) {
+Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
+                                                      const GoalRegion& region,
+                                                      const PlanOptions& options, IkTask task,
+                                                      PlanTimes* times) {
   return keep_clearance(options,
                         [&](const detail::ClearScene& scene, detail::ClearEnds ends,
                             const PlanOptions& how) -> Result<PlannedPath, WorldFailure> {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -23,8 +23,6 @@ namespace detail {
 class TimeLeft;
 }
 
-/// [m] what WorldOptions::bounds may be.
-inline constexpr double kMinSphereBound = 1e-4, kMaxSphereBound = 0.1;
 /// [m] the widest WorldOptions::margin.
 inline constexpr double kMaxMargin = 0.5;
 
@@ -38,23 +36,14 @@ struct WorldOptions {
   /// PlanOptions::clearance is what a path keeps beyond that.
   double margin = 0;
   /// (nq,) [rad or m] where joints off the arm stand, those of its gripper as well; empty: keyframe
-  /// `home`, else initial values, and all that a gripper can do counts.
+  /// `home`, else initial values.
   std::vector<double> qpos = {};
-  /// [m] kMinSphereBound to kMaxSphereBound: by how much spheres may stick out of the links; each
-  /// is tried where the one before may have been what was in the way.
-  std::vector<double> bounds = {0.012, 0.003};
 };
 
-/// A robot and its scene as the planner takes them, at one bound.
-struct WorldLevel {
-  double bound = 0;     ///< [m] of WorldOptions::bounds
-  ModelCover cover;     ///< its spheres grown by the margin
-  FastChecker checker;  ///< of the cover
-};
-
-/// A path, and the level that it is proved at.
-struct WorldPath : PlannedPath {
-  std::size_t level = 0;
+/// A robot and its scene as the planner takes them.
+struct WorldScene {
+  ModelCover cover;
+  FastChecker checker;  ///< of the cover, with the margin; it looks closer
 };
 
 enum class WorldErrc {
@@ -68,20 +57,16 @@ struct WorldFailure {
   WorldErrc code = WorldErrc::no_path;
   std::string what;         ///< one line for people, in their language
   PlanFailure search = {};  ///< no_path
-  std::size_t level = 0;    ///< no_path: where it was searched last
-  /// [m] no_path: by how much spheres stick out there, where that may be what is in the way; 0:
-  /// finer ones would be no help.
-  double bound = 0;
 };
 
 /// Plans paths of one robot in its scene. The model is covered with spheres when a path is asked
-/// for first, and again with finer ones when coarse ones may be what is in the way; what was made
-/// is kept. The same input gives the same path. Copy it to use it from another
-/// thread.
+/// for first; what was made is kept. Paths are searched among spheres alone, and where these may be
+/// what is in the way with the exact geometry of what they cannot call free. The same input gives
+/// the same path. Copy it to use it from another thread.
 class PlanningWorld {
  public:
   /// Covers nothing yet.
-  /// @return bad_input: check_contact_rules()'s error, or one line about the margin or the bounds.
+  /// @return bad_input: check_contact_rules()'s error, or one line about the margin.
   [[nodiscard]] static Result<PlanningWorld> create(const Robot& robot, WorldOptions options = {});
 
   /// From `q_start` to one of the goals, by plan_path(): the shortest path of one to all of them
@@ -91,58 +76,58 @@ class PlanningWorld {
   /// @param q_start  shape (dof,) [rad or m].
   /// @param goals    shape (n,), n >= 1, each (dof,).
   /// @param times    where given, the times of all searches are added to it.
-  [[nodiscard]] Result<WorldPath, WorldFailure> plan(std::span<const double> q_start,
-                                                     std::span<const JointVec> goals,
-                                                     const PlanOptions& options = {},
-                                                     PlanTimes* times = nullptr);
+  [[nodiscard]] Result<PlannedPath, WorldFailure> plan(std::span<const double> q_start,
+                                                       std::span<const JointVec> goals,
+                                                       const PlanOptions& options = {},
+                                                       PlanTimes* times = nullptr);
 
   /// The same to anywhere in a region of the tool, by goals_in() with the seed and the tilt of
-  /// `options`. WorldPath::goal counts the configurations that were found, nearest first.
+  /// `options`. PlannedPath::goal counts the configurations that were found, nearest first.
   /// @param task  what of the pose has to be met.
-  [[nodiscard]] Result<WorldPath, WorldFailure> plan(std::span<const double> q_start,
-                                                     const GoalRegion& region,
-                                                     const PlanOptions& options = {},
-                                                     IkTask task = IkTask::pose,
-                                                     PlanTimes* times = nullptr);
+  [[nodiscard]] Result<PlannedPath, WorldFailure> plan(std::span<const double> q_start,
+                                                       const GoalRegion& region,
+                                                       const PlanOptions& options = {},
+                                                       IkTask task = IkTask::pose,
+                                                       PlanTimes* times = nullptr);
 
   /// The same to one pose of the tool in the world.
-  [[nodiscard]] Result<WorldPath, WorldFailure> plan(std::span<const double> q_start,
-                                                     const Pose& X_WT,
-                                                     const PlanOptions& options = {},
-                                                     IkTask task = IkTask::pose) {
+  [[nodiscard]] Result<PlannedPath, WorldFailure> plan(std::span<const double> q_start,
+                                                       const Pose& X_WT,
+                                                       const PlanOptions& options = {},
+                                                       IkTask task = IkTask::pose) {
     return plan(q_start, GoalRegion{.X_WR = X_WT}, options, task);
   }
 
-  /// That of what paths of this world keep together, by the spheres of the finest of their levels.
-  /// A way that is to be proved must keep WayProver::kSpare at least.
+  /// That of what paths of this world keep together. A way that is to be proved must keep
+  /// WayProver::kSpare at least.
   /// @param paths  at least one.
-  [[nodiscard]] Result<WayProver> prover(std::span<const WorldPath> paths,
+  [[nodiscard]] Result<WayProver> prover(std::span<const PlannedPath> paths,
                                          const StopCheck& stop = {});
 
-  /// What paths are searched in; stays in place as long as the world does.
-  /// @param index  of WorldOptions::bounds. Levels are made in order, when they are asked for.
+  /// What paths are searched in; stays in place as long as the world does. Made when it is asked
+  /// for first.
   /// @param stop   ends the work.
-  /// @return cover_model()'s error; bad_input where there is no such level.
-  [[nodiscard]] Result<const WorldLevel*> level(std::size_t index, const StopCheck& stop = {});
+  /// @return cover_model()'s error.
+  [[nodiscard]] Result<const WorldScene*> scene(const StopCheck& stop = {});
 
  private:
   PlanningWorld(const Robot& robot, WorldOptions options)
       : robot_(robot), options_(std::move(options)) {}
 
-  [[nodiscard]] Result<WorldLevel> covered(double bound, const StopCheck& stop) const;
-  enum class Ask { preferred, required };
+  [[nodiscard]] Result<WorldScene> covered(const StopCheck& stop) const;
   template <class Attempt>
-  [[nodiscard]] Result<WorldPath, WorldFailure> climb(const PlanOptions& options,
-                                                      detail::TimeLeft& left, Ask ask,
-                                                      const Attempt& attempt);
+  [[nodiscard]] Result<PlannedPath, WorldFailure> spheres_then_solids(const PlanOptions& options,
+                                                                      detail::TimeLeft& left,
+                                                                      const Attempt& attempt);
   template <class Attempt>
-  [[nodiscard]] Result<WorldPath, WorldFailure> keep_clearance(const PlanOptions& options,
-                                                               const Attempt& attempt);
+  [[nodiscard]] Result<PlannedPath, WorldFailure> keep_clearance(const PlanOptions& options,
+                                                                 const Attempt& attempt);
 
   Robot robot_;
   WorldOptions options_;
-  std::deque<WorldLevel> levels_;                   // as they were needed, coarse ones first
-  std::deque<std::map<double, FastChecker>> wide_;  // of each level, by the clearance they keep
+  std::shared_ptr<const WorldScene> scene_;
+  /// Checkers that keep a clearance, by that: spheres alone, and looking closer.
+  std::map<double, FastChecker> wide_spheres_, wide_;
 };
 
 }  // namespace mjarm

@@ -78,7 +78,6 @@ TEST(PlanningWorld, PlansToJointsAPoseAndARegion) {
   PlanningWorld world = world_of(walled_ur5e());
   const auto joints = world.plan(kBefore, behind());
   ASSERT_TRUE(joints) << joints.error().what;
-  EXPECT_EQ(joints->level, 0U);
   EXPECT_GT(joints->q.size(), 2U);
   EXPECT_EQ(joints->q.front(), joint_vec(kBefore));
   EXPECT_EQ(joints->q.back(), behind().front());
@@ -110,44 +109,41 @@ TEST(PlanningWorld, PlansToJointsAPoseAndARegion) {
 
 TEST(PlanningWorld, CoversOnceAndKeepsWhatItMade) {
   PlanningWorld world = world_of(walled_ur5e());
-  const WorldLevel* const coarse = world.level(0).value();
-  const WorldLevel* const fine = world.level(1).value();
-  EXPECT_EQ(coarse->bound, 0.012);
-  EXPECT_EQ(fine->bound, 0.003);
-  EXPECT_GT(fine->cover.spheres.size(), coarse->cover.spheres.size());
+  const WorldScene* const scene = world.scene().value();
   ASSERT_TRUE(world.plan(kBefore, behind()));
-  EXPECT_EQ(world.level(0).value(), coarse);
-  EXPECT_EQ(world.level(1).value(), fine);
-  const auto none = world.level(2);
-  ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().code, Errc::bad_input);
+  EXPECT_EQ(world.scene().value(), scene);
 }
 
-/// The beam begins 5 mm beside the post: spheres that stick out by 12 mm overlap it.
-TEST(PlanningWorld, FinerSpheresAreTriedWhereCoarseOnesAreInTheWay) {
+/// The beam begins beside the post, nearer than its spheres stick out, and ends as near to it.
+TEST(PlanningWorld, SpheresAreNotInTheWayOfWhatIsFree) {
   const LanguageScope english(Language::english);
-  const Robot robot = beam(0.005);
-  const std::vector<double> start{0, 0};
-  const auto goals = goals_at({{-1, 0.5}});
-  PlanningWorld coarse = world_of(robot, {.bounds = {0.012}});
-  const auto hit = coarse.plan(start, goals);
-  ASSERT_FALSE(hit);
-  EXPECT_EQ(hit.error().code, WorldErrc::no_path);
-  EXPECT_EQ(hit.error().search.code, PlanErrc::start_hit);
-  EXPECT_EQ(hit.error().bound, coarse.level(0).value()->cover.bound);
-  EXPECT_NE(hit.error().what.find("obstacle \"post\""), std::string::npos) << hit.error().what;
-
-  PlanningWorld both = world_of(robot), fine = world_of(robot, {.bounds = {0.003}});
-  const auto path = both.plan(start, goals), alone = fine.plan(start, goals);
-  ASSERT_TRUE(path) << path.error().what;
-  ASSERT_TRUE(alone);
-  EXPECT_EQ(path->level, 1U);
-  EXPECT_EQ(alone->level, 0U);
-  EXPECT_EQ(path->q, alone->q);
-  EXPECT_GT(exact_clearance(robot, *path, 0.1), 0);
+  for (const double gap : {0.005, 0.001, 1e-4}) {
+    const Robot robot = beam(gap);
+    PlanningWorld world = world_of(robot);
+    const FastChecker spheres = world.scene().value()->checker.looking_closer(nullptr);
+    const std::vector<double> start{0, 0};
+    EXPECT_FALSE(spheres.is_free(start));
+    for (const bool back : {false, true}) {
+      const auto away = goals_at({{-1, 0.5}});
+      const auto path =
+          back ? world.plan(as_span(away.front()), goals_at({{0, 0}})) : world.plan(start, away);
+      ASSERT_TRUE(path) << gap << ": " << path.error().what;
+      EXPECT_GE(exact_clearance(robot, *path, 0.1), gap - 1e-6);
+    }
+  }
+  // What touches, or nearly, is told with what is really left.
+  for (const double gap : {-0.002, 1e-5}) {
+    PlanningWorld world = world_of(beam(gap));
+    const auto hit = world.plan(std::vector<double>{0, 0}, goals_at({{-1, 0.5}}));
+    ASSERT_FALSE(hit) << gap;
+    EXPECT_EQ(hit.error().code, WorldErrc::no_path);
+    EXPECT_EQ(hit.error().search.code, PlanErrc::start_hit);
+    EXPECT_NEAR(hit.error().search.pair.distance, gap, 1e-6);
+    EXPECT_NE(hit.error().what.find("obstacle \"post\""), std::string::npos) << hit.error().what;
+  }
 }
 
-TEST(PlanningWorld, FinerSpheresAreNotTriedWhereTheyAreNoHelp) {
+TEST(PlanningWorld, ReasonsAreTold) {
   const LanguageScope english(Language::english);
   PlanningWorld world = world_of(walled_ur5e());
   std::vector<double> outside = kBefore;
@@ -155,15 +151,10 @@ TEST(PlanningWorld, FinerSpheresAreNotTriedWhereTheyAreNoHelp) {
   const auto path = world.plan(outside, behind());
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().search.code, PlanErrc::start_outside);
-  EXPECT_EQ(path.error().bound, 0);
-  EXPECT_EQ(path.error().level, 0U);
   EXPECT_NE(path.error().what.find("outside of the limits"), std::string::npos);
-  // In the wall no spheres help: both levels are tried, and the last one tells.
   const auto inside = world.plan(kBefore, down_at(0, -0.45, 0.2));
   ASSERT_FALSE(inside);
   EXPECT_EQ(inside.error().search.code, PlanErrc::goals_hit);
-  EXPECT_EQ(inside.error().level, 1U);
-  EXPECT_EQ(inside.error().bound, world.level(1).value()->cover.bound);
   EXPECT_NE(inside.error().what.find("every goal is in collision"), std::string::npos);
 }
 
@@ -189,7 +180,7 @@ TEST(PlanningWorld, WhatCannotBeAskedHasAReason) {
   const auto path = nothing.plan(std::vector<double>{0, 0}, goals_at({{1, 0}}));
   ASSERT_FALSE(path);
   EXPECT_EQ(path.error().code, WorldErrc::bad_model);
-  EXPECT_EQ(path.error().what, nothing.level(0).error().what);
+  EXPECT_EQ(path.error().what, nothing.scene().error().what);
 }
 
 TEST(PlanningWorld, OptionsOutOfRangeAreRefused) {
@@ -201,10 +192,6 @@ TEST(PlanningWorld, OptionsOutOfRangeAreRefused) {
   };
   for (const double margin : {-1e-9, 0.51, nan}) {
     EXPECT_NE(why({.margin = margin}).find("margin"), std::string::npos) << margin;
-  }
-  for (const std::vector<double>& bounds :
-       {std::vector<double>{}, {0.012, 0}, {0.2}, {1e-5, 0.01}, {nan}}) {
-    EXPECT_NE(why({.bounds = bounds}).find("bounds"), std::string::npos);
   }
   EXPECT_NE(why({.rules = {.attached = {{"wall", {}}}}}).find("no free joint"), std::string::npos);
   EXPECT_NE(why({.rules = {.allowed = {{{"wall", "flor"}}}}}).find("\"floor\""), std::string::npos);
@@ -225,7 +212,7 @@ TEST(PlanningWorld, PathsKeepTheMargin) {
   const Robot robot = beam(0.03);
   const std::vector<double> start{-1, 0};
   const auto goals = goals_at({{0, 0}});
-  PlanningWorld bare = world_of(robot, {.bounds = {0.003}});
+  PlanningWorld bare = world_of(robot);
   const auto beside = bare.plan(start, goals);
   ASSERT_TRUE(beside);
   EXPECT_NEAR(exact_clearance(robot, *beside, 0.1), 0.03, 1e-6);

@@ -6,14 +6,11 @@
 #include <span>
 #include <utility>
 
-#include "mjarm/collision/exact.hpp"
-#include "mjarm/collision/first_contact.hpp"
-#include "mjarm/collision/sphere_model.hpp"
 #include "mjarm/collision/verify_edge.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
-#include "mjarm/planning/verify_kept_internal.hpp"
+#include "mjarm/planning/verify_scene_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -22,7 +19,8 @@ constexpr double kEndSlack = 1e-4;        // [rad or m] of start, goal and limit
 constexpr double kAnywhere = 1e9;         // slack with which limits and overlaps do not matter
 constexpr double kCostSlack = 1e-6;       // relative
 constexpr double kTiltSlack = 1e-6;       // [rad]
-constexpr double kClearanceAbove = 1e-6;  // [m] by which a stated clearance may be too large
+constexpr double kClearanceAbove = 1e-5;  // [m] by which a stated clearance may be too large
+constexpr double kKeptSlack = 1e-6;       // [m] and what is said to be kept
 constexpr double kClearanceBelow = 1e-3;  // [m] and too small: it is a lower bound
 
 using Row = std::span<const double>;
@@ -42,14 +40,10 @@ double length_of(Row a, Row b) {
 
 class PathJudge {
  public:
-  PathJudge(const ProblemFile& file, const PlanProblem& problem, const GivenPath& path,
-            const VerifyRules& rules, const std::optional<ExactChecker>& exact)
-      : arm_(file.arm),
-        set_(file.spheres),
-        problem_(problem),
-        path_(path),
-        rules_(rules),
-        exact_(exact) {}
+  /// @param ends  null: the path ends where it ends.
+  PathJudge(detail::VerifyScene& scene, const PlanProblem* ends, const GivenPath& path,
+            const VerifyRules& rules)
+      : scene_(scene), arm_(scene.arm()), ends_(ends), path_(path), rules_(rules) {}
 
   Result<PathVerdict> run() {
     if (!(rules_.step >= kLeastVerifyStep)) {
@@ -85,22 +79,14 @@ class PathJudge {
   }
 
   void check_ends() {
-    const double off = farthest(path_.rows.front(), problem_.start);
+    if (ends_ == nullptr) return;
+    const double off = farthest(path_.rows.front(), ends_->start);
     if (off > kEndSlack) add("start", -1, text(msg::planning_verify_start, off));
     double nearest = std::numeric_limits<double>::infinity();
-    for (const JointVec& goal : problem_.goals) {
+    for (const JointVec& goal : ends_->goals) {
       nearest = std::min(nearest, farthest(path_.rows.back(), as_span(goal)));
     }
     if (nearest > kEndSlack) add("goal", -1, text(msg::planning_verify_goal, nearest));
-  }
-
-  const std::string& name_of(int link) const {
-    return set_.links[static_cast<std::size_t>(link)].name;
-  }
-  std::string other_of(const VerifyResult& found) const {
-    if (found.obstacle < 0) return name_of(found.other_link);
-    const std::string& name = obstacle_name(problem_.obstacles, found.obstacle);
-    return name.empty() ? std::to_string(found.obstacle) : name;
   }
 
   void add_edge_fault(int edge, const VerifyResult& found) {
@@ -110,14 +96,14 @@ class PathJudge {
       add("limits", edge,
           text(msg::planning_verify_limits, at, arm_.joints[joint].name, row(at)[joint],
                arm_.limits.lower[found.joint], arm_.limits.upper[found.joint]));
-    } else if (found.verdict == EdgeVerdict::hit) {
-      add("hit", edge,
-          text(msg::planning_verify_hit, edge, found.t, name_of(found.link), other_of(found),
-               -found.distance));
+      return;
+    }
+    const auto [link, other] = scene_.names(found);
+    if (found.verdict == EdgeVerdict::hit) {
+      add("hit", edge, text(msg::planning_verify_hit, edge, found.t, link, other, -found.distance));
     } else {
       add("undecided", edge,
-          text(msg::planning_verify_undecided, edge, found.t, name_of(found.link), other_of(found),
-               found.distance));
+          text(msg::planning_verify_undecided, edge, found.t, link, other, found.distance));
     }
   }
 
@@ -163,8 +149,7 @@ class PathJudge {
       if (is_stopped(rules_.stop)) return fail(stopped());
       const std::vector<double> q = on_edge(edge, k / std::max(pieces, 1.0));
       const Result<VerifyResult> found =
-          verify_edge(arm_, set_, problem_.obstacles, q, q,
-                      {.allow_depth = kAnywhere, .limit_slack = kAnywhere});
+          scene_.edge(q, q, {.allow_depth = kAnywhere, .limit_slack = kAnywhere});
       if (!found) return fail(found.error());
       out_.clearance = std::min(out_.clearance, found->distance);
     }
@@ -179,8 +164,7 @@ class PathJudge {
       if (told_length_ && !is_walkable(edge) && is_inside(row(edge)) && is_inside(row(edge + 1))) {
         continue;
       }
-      const Result<VerifyResult> found =
-          verify_edge(arm_, set_, problem_.obstacles, row(edge), row(edge + 1), options);
+      const Result<VerifyResult> found = scene_.edge(row(edge), row(edge + 1), options);
       if (!found) return fail(found.error());
       if (found->verdict != EdgeVerdict::outside) {
         out_.clearance = std::min(out_.clearance, found->distance);
@@ -196,25 +180,15 @@ class PathJudge {
   }
 
   Result<void> walk_edges() {
-    if (exact_) return walk_edges(*exact_, [](const std::string& geom) { return geom; });
-    const Result<SphereModel> made = sphere_model(arm_, set_, problem_.obstacles);
-    if (!made) return fail(made.error());
-    const ExactOptions options{.margin = 0, .allow_depth = rules_.allow_depth};
-    return walk_edges(ExactChecker(made->model, made->arm, options),
-                      [&](const std::string& geom) { return made->parts.at(geom); });
-  }
-
-  template <typename NameOf>
-  Result<void> walk_edges(ExactChecker checker, const NameOf& name_of) {
     for (int edge = 0; edge < edges(); ++edge) {
       if (!is_walkable(edge)) continue;
-      const auto found = first_contact(checker, row(edge), row(edge + 1), rules_.step, rules_.stop);
+      const auto found = scene_.contact(row(edge), row(edge + 1), rules_);
       if (!found) return fail(found.error());
       if (!found->has_value()) continue;
       const ContactPoint& contact = (*found)->contact;
       add("contact", edge,
-          text(msg::planning_verify_contact, edge, (*found)->t, name_of(contact.pair.geom1),
-               name_of(contact.pair.geom2), contact.depth));
+          text(msg::planning_verify_contact, edge, (*found)->t, contact.pair.geom1,
+               contact.pair.geom2, contact.depth));
       return {};
     }
     return {};
@@ -247,55 +221,6 @@ class PathJudge {
     }
   }
 
-  /// What is left of the problem where only a link and an obstacle, or two links, of these names
-  /// count. A link may be in several pieces.
-  std::pair<SphereSet, Obstacles> pieces_named(const std::string& link,
-                                               const std::string& other) const {
-    std::pair<SphereSet, Obstacles> out;
-    auto& [links, solids] = out;
-    std::vector<int> new_link(set_.links.size(), -1);
-    std::vector<int> new_solid(problem_.obstacles.solids.size(), -1);
-    for (std::size_t i = 0; i < set_.links.size(); ++i) {
-      if (set_.links[i].name != link && set_.links[i].name != other) continue;
-      new_link[i] = static_cast<int>(links.links.size());
-      links.links.push_back(set_.links[i]);
-    }
-    for (std::size_t i = 0; i < problem_.obstacles.solids.size(); ++i) {
-      if (problem_.obstacles.solids[i].name != other) continue;
-      new_solid[i] = static_cast<int>(solids.solids.size());
-      solids.solids.push_back(problem_.obstacles.solids[i]);
-    }
-    for (const auto& [a, b] : set_.pairs) {
-      const int first = new_link[static_cast<std::size_t>(a)];
-      const int second = new_link[static_cast<std::size_t>(b)];
-      if (first < 0 || second < 0) continue;
-      if (links.links[static_cast<std::size_t>(first)].name ==
-          links.links[static_cast<std::size_t>(second)].name) {
-        continue;
-      }
-      links.pairs.push_back({first, second});
-    }
-    for (const IgnoredPair& pair : problem_.obstacles.ignored) {
-      const int first = new_link[static_cast<std::size_t>(pair.link)];
-      const auto solid = static_cast<std::size_t>(pair.obstacle);
-      const int second = solid < new_solid.size() ? new_solid[solid] : -1;
-      if (first >= 0 && second >= 0) solids.ignored.push_back({first, second});
-    }
-    return out;
-  }
-
-  /// Clearance of the pair that a certificate names, at its place; none where no such pair is.
-  Result<std::optional<double>> clearance_of(const GivenCertificate& given, int edge) const {
-    const auto [links, solids] = pieces_named(given.pair[0], given.pair[1]);
-    const auto count = links.links.size() * solids.solids.size();
-    if (count <= solids.ignored.size() && links.pairs.empty()) return std::nullopt;
-    const std::vector<double> q = on_edge(edge, given.t);
-    const Result<VerifyResult> found =
-        verify_edge(arm_, links, solids, q, q, {.limit_slack = kAnywhere});
-    if (!found) return fail(found.error());
-    return found->distance;
-  }
-
   /// What is wrong with a certificate; empty where nothing is.
   Result<std::string> fault_of(const GivenCertificate& given, int edge) const {
     const double length = length_of(row(edge), row(edge + 1));
@@ -304,7 +229,8 @@ class PathJudge {
     }
     if (!(given.t >= 0 && given.t <= 1)) return text(msg::planning_verify_certificate_t, given.t);
     if (given.pair.empty()) return std::string();
-    const Result<std::optional<double>> found = clearance_of(given, edge);
+    const Result<std::optional<double>> found =
+        scene_.distance(given.pair[0], given.pair[1], on_edge(edge, given.t));
     if (!found) return fail(found.error());
     if (!*found) return text(msg::planning_verify_certificate_pair, given.pair[0], given.pair[1]);
     const double off = given.clearance - **found;
@@ -355,8 +281,8 @@ class PathJudge {
         return text(msg::planning_verify_kept_less, edge, *kept, *path_.clearance, kFarthestExit);
       }
     }
-    const Result<VerifyResult> found =
-        verify_kept({arm_, set_, problem_.obstacles}, row(edge), row(edge + 1), *kept, rules_.stop);
+    const VerifyOptions options{.keep = std::max(*kept - kKeptSlack, 0.0), .stop = rules_.stop};
+    const Result<VerifyResult> found = scene_.edge(row(edge), row(edge + 1), options);
     if (!found) return fail(found.error());
     if (found->verdict == EdgeVerdict::free) return std::string();
     return text(msg::planning_verify_kept, edge, *kept, found->t);
@@ -367,20 +293,18 @@ class PathJudge {
     if (length_of(row(edge), row(edge + 1)) > kFarthestExit + kEndSlack) return false;
     for (const auto& [here, end] : {std::pair{edge == 0, 0}, {edge + 1 == edges(), edges()}}) {
       if (!here) continue;
-      const Result<VerifyResult> own =
-          verify_edge(arm_, set_, problem_.obstacles, row(end), row(end), {});
+      const Result<VerifyResult> own = scene_.edge(row(end), row(end), {});
       if (!own) return fail(own.error());
       if (kept > own->distance - kClearanceBelow) return true;
     }
     return false;
   }
 
+  detail::VerifyScene& scene_;
   const Arm& arm_;
-  const SphereSet& set_;
-  const PlanProblem& problem_;
+  const PlanProblem* ends_;
   const GivenPath& path_;
   const VerifyRules& rules_;
-  const std::optional<ExactChecker>& exact_;
   std::vector<char> walkable_;  // edges
   bool told_length_ = false;
   PathVerdict out_;
@@ -389,9 +313,19 @@ class PathJudge {
 }  // namespace
 
 Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
-                                const GivenPath& path, const VerifyRules& rules,
-                                const std::optional<ExactChecker>& exact) {
-  return PathJudge(file, problem, path, rules, exact).run();
+                                const GivenPath& path, const VerifyRules& rules) {
+  detail::SphereVerifyScene scene(file, problem);
+  return PathJudge(scene, &problem, path, rules).run();
+}
+
+Result<PathVerdict> verify_path(const Robot& robot, const ContactRules& contact,
+                                const GivenPath& path, const VerifyRules& rules) {
+  Result<ModelMarch> march = ModelMarch::create(robot.model, robot.arm, contact, rules.stop);
+  if (!march) return fail(std::move(march.error()));
+  const ExactOptions exact{.margin = 0, .allow_depth = rules.allow_depth, .rules = contact};
+  detail::ModelVerifyScene scene(std::move(*march), ExactChecker(robot.model, robot.arm, exact),
+                                 robot.arm);
+  return PathJudge(scene, nullptr, path, rules).run();
 }
 
 }  // namespace mjarm

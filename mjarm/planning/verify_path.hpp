@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "mjarm/collision/exact.hpp"
+#include "mjarm/collision/contact_rules.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/stop.hpp"
+#include "mjarm/model/robot.hpp"
 #include "mjarm/planning/plan_file.hpp"
 #include "mjarm/planning/problem_file.hpp"
 
@@ -41,13 +42,19 @@ struct PathVerdict {
 };
 
 /// Judges a path with at least one row: its ends, its limits and edges by verify_edge(), MuJoCo's
-/// own collision detection, and what the file says of it. Of the edges the first that is faulty
-/// counts. Edges that leave the limits, or are too long to be sampled, are looked at no further.
-/// @param exact  whose geometry MuJoCo looks at; none: that of the spheres.
+/// own collision detection on a model of the spheres, and what the file says of it. Of the edges
+/// the first that is faulty counts. Edges that leave the limits, or are too long to be sampled, are
+/// looked at no further.
 /// @return an error where MuJoCo cannot make a model of the problem; stopped() where
 /// VerifyRules::stop ended the work.
 [[nodiscard]] Result<PathVerdict> verify_path(const ProblemFile& file, const PlanProblem& problem,
-                                              const GivenPath& path, const VerifyRules& rules,
-                                              const std::optional<ExactChecker>& exact = {});
+                                              const GivenPath& path, const VerifyRules& rules);
+
+/// The same of a path of a robot, from its first to its last row: edges by ModelMarch, and MuJoCo's
+/// collision detection on the model as it is.
+/// @param contact  what hangs on the tool, what may touch.
+/// @return also check_contact_rules()'s error.
+[[nodiscard]] Result<PathVerdict> verify_path(const Robot& robot, const ContactRules& contact,
+                                              const GivenPath& path, const VerifyRules& rules);
 
 }  // namespace mjarm

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "mjarm/core/language_scope.hpp"
-#include "mjarm/planning/covered_arm_test.hpp"
 #include "mjarm/planning/crane_problems_test.hpp"
 #include "mjarm/planning/goals_test.hpp"
+#include "mjarm/planning/planning_world.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {
@@ -149,24 +149,22 @@ TEST_F(VerifyPathTest, ATiltThatIsLargerThanStatedIsFound) {
 /// What the planner proves is verified, by separate code and by MuJoCo's own geometry; the same
 /// path bent into the wall is not.
 TEST_F(VerifyPathTest, PlannedPathsAreValidAndBentOnesAreNot) {
-  const testing::CoveredArm& arm = testing::walled_arm();
+  const Robot robot = load_robot("universal_robots_ur5e/wall.xml").value();
   const std::vector<double> start{-4.375, -1.2456, 1.9905, -2.3157, -1.5708, 0};
   const auto goals = testing::goals_at({{-5.551, -1.2456, 1.9905, -2.3157, -1.5708, 0}});
-  const PlannedPath path = plan_path(arm.checker, start, goals).value();
-  const PlanProblem problem{"wall", "", start, goals, arm.cover.scene};
-  const ProblemFile file{arm.robot.arm, arm.cover.spheres, {}};
+  PlanningWorld world = PlanningWorld::create(robot).value();
+  const PlannedPath path = world.plan(start, goals).value();
   GivenPath given;
   for (const JointVec& q : path.q) given.rows.emplace_back(q.begin(), q.end());
   given.cost = path.cost;
-  const ExactChecker exact(arm.robot.model, arm.robot.arm, {.margin = 0});
-  const PathVerdict sound = verify_path(file, problem, given, {}, exact).value();
+  const PathVerdict sound = verify_path(robot, {}, given, {}).value();
   EXPECT_TRUE(sound.faults.empty()) << sound.faults[0].what;
   EXPECT_GT(sound.clearance, 0);
   EXPECT_NEAR(sound.cost, path.cost, 1e-9);
 
   given.rows = {given.rows.front(), given.rows.back()};
   Kinds kinds;
-  const PathVerdict bent = verify_path(file, problem, given, {}, exact).value();
+  const PathVerdict bent = verify_path(robot, {}, given, {}).value();
   for (const PathFault& fault : bent.faults) {
     kinds.push_back(fault.kind);
   }

@@ -18,7 +18,7 @@ JointVec at(double x, double z) { return joint_vec(std::vector{x, z}); }
 
 class WayProverTest : public ::testing::Test {
  protected:
-  WorldPath planned(const JointVec& from, const JointVec& to, double clearance) {
+  PlannedPath planned(const JointVec& from, const JointVec& to, double clearance) {
     return world_.plan(as_span(from), std::vector{to}, {.clearance = clearance}).value();
   }
   /// [m] by MuJoCo's own geometry, every half millimetre.
@@ -34,12 +34,12 @@ class WayProverTest : public ::testing::Test {
   }
 
   Robot robot_ = testing::slider(0.3);
-  PlanningWorld world_ = PlanningWorld::create(robot_, {.bounds = {0.0005}}).value();
+  PlanningWorld world_ = PlanningWorld::create(robot_).value();
   ExactChecker checker_{robot_.model, robot_.arm, {.margin = 1}};
 };
 
 TEST_F(WayProverTest, NamesThePieceThatLeadsIntoTheFence) {
-  const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), 0.01);
+  const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), 0.01);
   const WayProver prover = world_.prover(std::vector{path}).value();
   EXPECT_TRUE(prover.is_proved(path.q));
   const std::vector<JointVec> way{at(-0.4, 0.1), at(-0.4, 0.3), at(-0.2, 0.3), at(0.2, 0.05),
@@ -54,8 +54,8 @@ TEST_F(WayProverTest, NamesThePieceThatLeadsIntoTheFence) {
 
 /// What is proved keeps the clearance, and what keeps a little more than it is proved.
 TEST_F(WayProverTest, ProvesWhatKeepsTheClearanceAndNothingElse) {
-  constexpr double kClearance = 0.02, kSpheres = 0.002;
-  const WorldPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), kClearance);
+  constexpr double kClearance = 0.02, kNearly = 1e-3;
+  const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), kClearance);
   const WayProver prover = world_.prover(std::vector{path}).value();
   Rng rng(1, 1);
   int proved = 0, refused = 0;
@@ -67,7 +67,7 @@ TEST_F(WayProverTest, ProvesWhatKeepsTheClearanceAndNothingElse) {
       EXPECT_GE(exact, kClearance - 1e-6);
       ++proved;
     } else {
-      EXPECT_LT(exact, kClearance + kSpheres);
+      EXPECT_LT(exact, kClearance + kNearly);
       ++refused;
     }
   }
@@ -78,7 +78,7 @@ TEST_F(WayProverTest, ProvesWhatKeepsTheClearanceAndNothingElse) {
 /// The ball begins 4 mm above the table: near there, and only there, as little will do.
 TEST_F(WayProverTest, LessWillDoNearAnEndThatHasLess) {
   const JointVec low = at(-0.4, 0.024);
-  const WorldPath path = planned(low, at(0.4, 0.15), 0.03);
+  const PlannedPath path = planned(low, at(0.4, 0.15), 0.03);
   const WayProver prover = world_.prover(std::vector{path}).value();
   const auto is_proved = [&](const JointVec& from, const JointVec& way) {
     return prover.is_proved(std::vector<JointVec>{from, from + way});

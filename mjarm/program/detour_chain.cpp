@@ -12,7 +12,7 @@ void put(DetourMotion motion, PlannedMove& move) {
   move.passed = std::move(motion.passed);
 }
 
-void DetourChain::add(std::size_t i, const Step& step, WorldPath path, DetourPlanner& planner,
+void DetourChain::add(std::size_t i, const Step& step, PlannedPath path, DetourPlanner& planner,
                       std::vector<PlannedMove>& moves, std::vector<PlannedMove>& added) {
   constexpr std::size_t kMaxJoined = 8;
   const bool follows = !paths_.empty() && next_ == i && tool_ == step.tool &&

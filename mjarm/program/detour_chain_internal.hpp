@@ -19,7 +19,7 @@ class DetourChain {
   /// Takes the detour of step `i`, the first of the moves `added`. Where it follows the last of
   /// `moves`, and one motion of both is faster, that becomes this motion and the first added move
   /// is gone.
-  void add(std::size_t i, const Step& step, WorldPath path, DetourPlanner& planner,
+  void add(std::size_t i, const Step& step, PlannedPath path, DetourPlanner& planner,
            std::vector<PlannedMove>& moves, std::vector<PlannedMove>& added);
 
   /// The motion that was added last passes into a move that begins in that state, where it can.
@@ -31,7 +31,7 @@ class DetourChain {
   std::size_t next_ = 0;  // the step that may go on with it
   std::size_t tool_ = 0;
   double share_ = 1;
-  std::vector<WorldPath> paths_;
+  std::vector<PlannedPath> paths_;
 };
 
 }  // namespace mjarm::program::detail

@@ -64,10 +64,10 @@ struct Corners {
   std::vector<std::size_t> passed;
 };
 
-Corners corners_of(std::span<const WorldPath> paths) {
+Corners corners_of(std::span<const PlannedPath> paths) {
   constexpr double kSame = 1e-9;
   Corners out;
-  for (const WorldPath& path : paths) {
+  for (const PlannedPath& path : paths) {
     if (!out.q.empty()) out.passed.push_back(out.q.size() - 1);
     for (const JointVec& q : path.q) {
       if (out.q.empty() || (q - out.q.back()).norm() >= kSame) out.q.push_back(q);
@@ -136,8 +136,8 @@ JointLimits DetourPlanner::limits_at(double share) const {
   return limits;
 }
 
-bool DetourPlanner::lead_into(const JointState& end, std::span<const WorldPath> paths, double share,
-                              Trajectory& motion, MoveMeasures& measures) {
+bool DetourPlanner::lead_into(const JointState& end, std::span<const PlannedPath> paths,
+                              double share, Trajectory& motion, MoveMeasures& measures) {
   const JointLimits limits = limits_at(share);
   const Result<WayProver> prover = world_->prover(paths, stop_);
   if (!prover) return false;
@@ -150,7 +150,8 @@ bool DetourPlanner::lead_into(const JointState& end, std::span<const WorldPath> 
   return true;
 }
 
-Result<DetourMotion, DetourFault> DetourPlanner::timed(std::vector<WorldPath> paths, double share) {
+Result<DetourMotion, DetourFault> DetourPlanner::timed(std::vector<PlannedPath> paths,
+                                                       double share) {
   const JointLimits limits = limits_at(share);
   const Result<WayProver> prover = world_->prover(paths, stop_);
   if (!prover) return no_detour("bad_input", prover.error().what);
@@ -185,12 +186,11 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
   PlanOptions search = kSearch;
   search.stop = stop_;
   search.clearance = clearance;
-  Result<WorldPath, WorldFailure> path = world_->plan(as_span(q), goals, search);
+  Result<PlannedPath, WorldFailure> path = world_->plan(as_span(q), goals, search);
   if (!path) {
     const WorldFailure& why = path.error();
     const char* reason = why.code == WorldErrc::no_path ? name_of(why.search.code) : "bad_input";
-    return no_detour(reason,
-                     why.what + (why.bound > 0 ? text(msg::program_spheres, 1e3 * why.bound) : ""));
+    return no_detour(reason, why.what);
   }
   return timed({std::move(*path)}, share);
 }

@@ -23,7 +23,7 @@ struct DetourMotion {
   std::vector<std::size_t> passed = {};  ///< corners where a path ends and the next begins
   PathMotion motion;                     ///< along them
   MoveMeasures measures;  ///< of the motion, every 5e-3 rad or m of the joint that moves most
-  std::vector<WorldPath> paths = {};  ///< one after another; the last ends at the goal reached
+  std::vector<PlannedPath> paths = {};  ///< one after another; the last ends at the goal reached
 
   [[nodiscard]] std::size_t goal() const { return static_cast<std::size_t>(paths.back().goal); }
 };
@@ -65,11 +65,12 @@ class DetourPlanner {
                                                        double share,
                                                        const std::optional<double>& clearance = {});
   /// One motion along paths of plan() that follow each other, at least one.
-  [[nodiscard]] Result<DetourMotion, DetourFault> timed(std::vector<WorldPath> paths, double share);
+  [[nodiscard]] Result<DetourMotion, DetourFault> timed(std::vector<PlannedPath> paths,
+                                                        double share);
 
   /// A motion of timed(), led over into a state that moves instead of to rest.
   /// @return false where that is not free or no faster; then nothing changes.
-  [[nodiscard]] bool lead_into(const JointState& end, std::span<const WorldPath> paths,
+  [[nodiscard]] bool lead_into(const JointState& end, std::span<const PlannedPath> paths,
                                double share, Trajectory& motion, MoveMeasures& measures);
 
   /// [m] that is kept where it can be.

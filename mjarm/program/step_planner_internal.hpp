@@ -50,7 +50,7 @@ struct Attempt {
   std::size_t next = 0;  ///< the first step that is not done
   Stand at;              ///< where the arm is then
   std::optional<PlanFault> fault;
-  std::optional<WorldPath> detour = {};  ///< of the first move, where it is one
+  std::optional<PlannedPath> detour = {};  ///< of the first move, where it is one
   std::deque<PendingMotion> pending = {};
 };
 

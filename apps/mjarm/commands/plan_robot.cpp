@@ -75,16 +75,6 @@ Result<ToolGoal> read_tool_goal(const RobotRequest& request) {
   return out;
 }
 
-Result<std::vector<double>> read_bounds(const std::string& value) {
-  if (value.empty()) return WorldOptions{}.bounds;
-  const Result<double> bound = parse_quantity(value, Quantity::length);
-  if (!bound) return fail(in_option("--spheres", bound.error()));
-  if (!(*bound >= kMinSphereBound && *bound <= kMaxSphereBound)) {
-    return fail(Errc::usage, text(msg::plan_bad_spheres, value));
-  }
-  return std::vector<double>{*bound};
-}
-
 /// What only makes sense with `--pos`.
 Result<void> no_tool_options(const RobotRequest& request) {
   const std::pair<const char*, const std::string*> options[] = {
@@ -123,9 +113,6 @@ Result<Way> read_way(const RobotRequest& request, const Robot& robot) {
     if (!tool) return fail(tool.error());
     out.tool = *tool;
   }
-  Result<std::vector<double>> bounds = read_bounds(request.spheres);
-  if (!bounds) return fail(std::move(bounds.error()));
-  out.world.bounds = std::move(*bounds);
   return out;
 }
 
@@ -146,8 +133,8 @@ Result<void> read_upright(const RobotRequest& request, const Arm& arm, const Way
   return fail(Errc::usage, text(msg::plan_bad_upright, request.upright));
 }
 
-Result<WorldPath, WorldFailure> find_way(PlanningWorld& world, const Way& way,
-                                         const PlanOptions& options, PlanTimes& times) {
+Result<PlannedPath, WorldFailure> find_way(PlanningWorld& world, const Way& way,
+                                           const PlanOptions& options, PlanTimes& times) {
   if (way.tool) {
     return world.plan(way.start, way.tool->region, options, way.tool->task, &times);
   }
@@ -155,21 +142,19 @@ Result<WorldPath, WorldFailure> find_way(PlanningWorld& world, const Way& way,
 }
 
 /// Appends the answer as a JSON object.
-/// @param level  that it was found at, or searched last.
-void write_found(std::string& out, const Result<WorldPath, WorldFailure>& found, const Way& way,
-                 const PlanOptions& options, const PlanTimes& times, const WorldLevel& level,
+void write_found(std::string& out, const Result<PlannedPath, WorldFailure>& found, const Way& way,
+                 const PlanOptions& options, const PlanTimes& times, const WorldScene& scene,
                  bool timing) {
   PlanAnswer answer{.path = {}, .us = times.search_us, .simplify_us = times.finish_us};
   if (options.time_budget > 0) answer = {.path = {}, .us = times.search_us + times.finish_us};
   answer.tilt = options.tilt;
   answer.rules = way.words;
-  answer.spheres = level.bound;
   if (found) {
     answer.path = *found;
   } else {
     answer.path = tl::unexpected(found.error().search);
   }
-  append_answer(out, answer, level.checker.robot(), level.cover.scene, timing);
+  append_answer(out, answer, scene.checker.robot(), scene.cover.scene, timing);
 }
 
 }  // namespace
@@ -187,14 +172,13 @@ void add_robot_request(CLI::App& app, RobotRequest& request) {
   add_option(app, "--turn", request.turn, msg::plan_option_turn, "ANGLE");
   add_option(app, "--keep-upright", request.upright, msg::plan_option_upright, "ANGLE");
   add_rule_options(app, request.rules);
-  add_option(app, "--spheres", request.spheres, msg::plan_option_spheres, "M");
 }
 
 bool is_given(const RobotRequest& request) {
-  const std::string* const words[] = {
-      &request.robot.robot, &request.robot.tip, &request.start,  &request.goal,   &request.pos,
-      &request.euler,       &request.quat,      &request.task,   &request.within, &request.lean,
-      &request.turn,        &request.upright,   &request.spheres};
+  const std::string* const words[] = {&request.robot.robot, &request.robot.tip, &request.start,
+                                      &request.goal,        &request.pos,       &request.euler,
+                                      &request.quat,        &request.task,      &request.within,
+                                      &request.lean,        &request.turn,      &request.upright};
   return request.rules.any() ||
          std::ranges::any_of(words, [](const std::string* word) { return !word->empty(); });
 }
@@ -213,12 +197,12 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   Result<PlanningWorld> world = PlanningWorld::create(*robot, way->world);
   if (!world) return fail(std::move(world.error()));
   PlanTimes times;
-  const Result<WorldPath, WorldFailure> found = find_way(*world, *way, how, times);
+  const Result<PlannedPath, WorldFailure> found = find_way(*world, *way, how, times);
   if (interrupted()) return fail(stopped());
   const WorldErrc code = found ? WorldErrc::no_path : found.error().code;
   if (code == WorldErrc::bad_model) return fail(Errc::bad_input, found.error().what);
-  const Result<const WorldLevel*> level = world->level(found ? found->level : found.error().level);
-  if (!level) return fail(level.error());
+  const Result<const WorldScene*> scene = world->scene();
+  if (!scene) return fail(scene.error());
   const std::string& name = robot->arm.name;
   std::string line;
   JsonWriter json(line);
@@ -226,7 +210,7 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   if (code == WorldErrc::no_answer) {
     json.object().member("ok", false).member("reason", found.error().what).end_object();
   } else {
-    write_found(line, found, *way, how, times, **level, timing);
+    write_found(line, found, *way, how, times, **scene, timing);
   }
   json.end_object();
   const std::optional<std::string> why =
@@ -234,7 +218,7 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   const Result<int> exit_code = finish_one(output, line, why, msg::plan_no_path);
   if (!exit_code || !show || !found) return exit_code;
   const auto shown =
-      session::show_plan(*show, {robot->model, robot->arm, (*level)->checker, (*level)->cover.scene,
+      session::show_plan(*show, {robot->model, robot->arm, (*scene)->checker, (*scene)->cover.scene,
                                  *found, name, way->world.rules.attached});
   if (!shown) return fail(shown.error());
   return exit_code;

@@ -22,7 +22,6 @@ struct RobotRequest {
   std::string within, lean, turn;  ///< how far off the pose will do
   std::string upright;             ///< angle by which the tool may lean on its way
   RuleWords rules;
-  std::string spheres;  ///< bound of the cover
 };
 
 /// Adds `--robot` and all that belongs to it.

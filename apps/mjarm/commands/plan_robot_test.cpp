@@ -39,7 +39,6 @@ TEST_F(PlanRobot, GoesRoundTheWallAndIsVerifiedWithExactGeometry) {
   ASSERT_EQ(planned.exit_code, 0) << planned.err;
   const json path = answer();
   EXPECT_GT(path.at("path").size(), 2u);
-  EXPECT_EQ(path.at("spheres"), 0.012);
   EXPECT_FALSE(path.contains("tilt"));
   const auto verified = verify();
   EXPECT_EQ(verified.exit_code, 0) << verified.err;
@@ -117,8 +116,8 @@ TEST_F(PlanRobot, KeepsTheToolUprightAndSaysByHowMuch) {
   // What cannot be is no input.
   const std::pair<const char*, json> wrong[] = {
       {"/tilt/tool", {0, 0, 0}}, {"/tilt/world", {0, 0, 2}}, {"/tilt/largest", 0.2},
-      {"/tilt/limit", 2},        {"/tilt/limit", nullptr},   {"/spheres", 1e-9},
-      {"/spheres", -1},          {"/hold", "rod"},           {"/allow", {1, 2}}};
+      {"/tilt/limit", 2},        {"/tilt/limit", nullptr},   {"/hold", "rod"},
+      {"/allow", {1, 2}}};
   for (const auto& [place, value] : wrong) {
     file = sound;
     file.front()[json::json_pointer(place)] = value;
@@ -217,7 +216,6 @@ TEST_F(PlanRobot, WrongWordsGetOneLine) {
       {{"--pos", "1,2,3", "--task", "position", "--lean", "181deg"}, "--lean"},
       {{"--goal", "0,0,0,0,0,0", "--keep-upright", "90deg"}, "--keep-upright"},
       {{"--goal", "0,0,0,0,0,0", "--keep-upright", "0"}, "--keep-upright"},
-      {{"--goal", "0,0,0,0,0,0", "--spheres", "0"}, "--spheres"},
       {{"--goal", "0,0,0,0,0,nan"}, "--goal"},
       {{"--goal", "0,0,0,0,0,0", "--problem", "x"}, "--robot and --problem"},
       {{"--goal", "0,0,0,0,0,0", "--hold", "wall"}, "--hold: the body \"wall\" has no free joint"},
@@ -234,8 +232,8 @@ TEST_F(PlanRobot, WrongWordsGetOneLine) {
   EXPECT_EQ(both.exit_code, 2);
   EXPECT_NE(only_line(both).find("--in and --robot"), std::string::npos);
   // Nothing that was asked for is left out without a word.
-  for (const Words& more : {Words{"--hold", "cup"}, Words{"--allow", "a,b"},
-                            Words{"--within", "1,1,1"}, Words{"--spheres", "1mm"}}) {
+  for (const Words& more :
+       {Words{"--hold", "cup"}, Words{"--allow", "a,b"}, Words{"--within", "1,1,1"}}) {
     Words words{"plan", "--in", "x.json"};
     words.insert(words.end(), more.begin(), more.end());
     const auto result = mjarm(words);

@@ -27,7 +27,6 @@
 #include "mjarm/core/threads.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/core/utf8.hpp"
-#include "mjarm/planning/planning_world.hpp"
 #include "mjarm/planning/verify_path.hpp"
 
 namespace mjarm::app {
@@ -44,11 +43,12 @@ struct Options {
 
 /// A problem and the path that is given for it.
 struct Job {
-  std::shared_ptr<const ProblemFile> file;
+  std::string id{}, scene{};
+  std::shared_ptr<const ProblemFile> file{};  ///< null: the way of a robot
   const PlanProblem* problem = nullptr;
-  GivenPath given;
-  std::optional<ExactChecker> exact;  ///< of a robot's own geometry
-  Result<PathVerdict> verdict;
+  GivenPath given{};
+  ContactRules contact = {};  ///< of a robot
+  Result<PathVerdict> verdict = PathVerdict{};
 
   [[nodiscard]] bool is_given() const { return !given.rows.empty(); }
   [[nodiscard]] bool is_valid() const { return is_given() && verdict && verdict->faults.empty(); }
@@ -97,7 +97,7 @@ Result<std::vector<Job>> match(const std::shared_ptr<const ProblemFile>& file,
   std::vector<std::string> ids;
   for (const PlanProblem& problem : file->problems) {
     ids.push_back(problem.id);
-    Job job{file, &problem, {}, {}, PathVerdict{}};
+    Job job{.id = problem.id, .scene = problem.scene, .file = file, .problem = &problem};
     const auto found = by_id.find(problem.id);
     if (found != by_id.end()) {
       job.given = std::move(*found->second);
@@ -120,64 +120,44 @@ Result<std::vector<Job>> file_jobs(const Options& options, Cylinders cylinders) 
   return match(std::make_shared<const ProblemFile>(std::move(*file)), std::move(*paths), options);
 }
 
-/// The way from the first to the last row of a path as a file of one problem.
-ProblemFile as_problem(const Robot& robot, const ModelCover& cover, const GivenPath& path) {
-  PlanProblem problem;
-  problem.id = path.id;
-  problem.obstacles = cover.scene;
-  if (!path.rows.empty()) {
-    problem.start = path.rows.front();
-    problem.goals = {joint_vec(path.rows.back())};
-  }
-  return {robot.arm, cover.spheres, {std::move(problem)}};
-}
-
-/// The way of a robot from the first to the last row of a path, among the spheres that it names.
-Result<Job> robot_job(const Options& options, const Robot& robot, const VerifyRules& how,
-                      GivenPath path) {
+/// The way of a robot from the first to the last row of a path.
+Result<Job> robot_job(const Options& options, const Robot& robot, GivenPath path) {
   const std::vector<double> none(robot.arm.home.begin(), robot.arm.home.end());
   const std::vector<double>& start = path.rows.empty() ? none : path.rows.front();
   RuleWords words = options.rules;
   words.hold.insert(words.hold.end(), path.rules.hold.begin(), path.rules.hold.end());
   words.allow.insert(words.allow.end(), path.rules.allow.begin(), path.rules.allow.end());
-  const Result<ContactRules> rules = rules_of(words, robot, start);
-  if (!rules) return fail(rules.error());
-  const double bound = path.spheres.value_or(WorldOptions{}.bounds.back());
-  Result<PlanningWorld> world = PlanningWorld::create(robot, {.rules = *rules, .bounds = {bound}});
-  if (!world) return fail(std::move(world.error()));
-  const Result<const WorldLevel*> level = world->level(0, interrupted);
-  if (!level) return fail(level.error());
-  auto file = std::make_shared<const ProblemFile>(as_problem(robot, (*level)->cover, path));
-  const ExactOptions exact{.margin = 0, .allow_depth = how.allow_depth, .rules = *rules};
-  const PlanProblem* problem = &file->problems.front();
-  return Job{std::move(file), problem, std::move(path), ExactChecker(robot.model, robot.arm, exact),
-             PathVerdict{}};
+  Result<ContactRules> rules = rules_of(words, robot, start);
+  if (!rules) return fail(std::move(rules.error()));
+  return Job{.id = path.id, .given = std::move(path), .contact = std::move(*rules)};
 }
 
-Result<std::vector<Job>> robot_jobs(const Options& options, const VerifyRules& rules) {
-  const Result<Robot> robot = load_robot(options.robot);
-  if (!robot) return fail(robot.error());
+Result<std::vector<Job>> robot_jobs(const Options& options, const Robot& robot) {
   Result<std::vector<GivenPath>> paths =
-      read_plan_file(options.paths, static_cast<std::size_t>(robot->arm.dof()));
+      read_plan_file(options.paths, static_cast<std::size_t>(robot.arm.dof()));
   if (!paths) return fail(std::move(paths.error()));
   std::vector<Job> jobs;
   for (GivenPath& path : *paths) {
     if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
-    Result<Job> job = robot_job(options, *robot, rules, std::move(path));
+    Result<Job> job = robot_job(options, robot, std::move(path));
     if (!job) return fail(std::move(job.error()));
     jobs.push_back(std::move(*job));
   }
   return jobs;
 }
 
-Result<void> judge_all(std::vector<Job>& jobs, const VerifyRules& rules, int threads) {
+/// @param robot  null: the jobs are of problems.
+Result<void> judge_all(std::vector<Job>& jobs, const Robot* robot, const VerifyRules& rules,
+                       int threads) {
   Progress progress(text(msg::verify_progress), jobs.size());
   std::atomic<std::size_t> next = 0;
   run_in_threads(threads, [&](int) {
     for (std::size_t i = next++; i < jobs.size() && !interrupted(); i = next++) {
       Job& job = jobs[i];
-      if (job.is_given())
-        job.verdict = verify_path(*job.file, *job.problem, job.given, rules, job.exact);
+      if (job.is_given()) {
+        job.verdict = robot != nullptr ? verify_path(*robot, job.contact, job.given, rules)
+                                       : verify_path(*job.file, *job.problem, job.given, rules);
+      }
       progress.advance();
     }
   });
@@ -197,7 +177,7 @@ std::vector<SceneRow> count_scenes(const std::vector<Job>& jobs) {
   std::vector<SceneRow> rows;
   SceneRow all{text(msg::verify_all)};
   for (const Job& job : jobs) {
-    const std::string& scene = job.problem->scene;
+    const std::string& scene = job.scene;
     auto row = std::find_if(rows.begin(), rows.end(),
                             [&](const SceneRow& known) { return known.name == scene; });
     if (row == rows.end()) row = rows.insert(rows.end(), SceneRow{scene});
@@ -212,7 +192,7 @@ std::string report_text(const std::vector<Job>& jobs) {
   std::string out;
   for (const Job& job : jobs) {
     for (const PathFault& fault : job.verdict->faults) {
-      out += printable(job.problem->id + ": " + fault.what) + '\n';
+      out += printable(job.id + ": " + fault.what) + '\n';
     }
   }
   std::vector<std::vector<std::string>> table{
@@ -237,10 +217,10 @@ std::string report_json(const std::vector<Job>& jobs) {
       if (fault.edge >= 0) entry.set("edge", fault.edge);
       faults.push_back(std::move(entry));
     }
-    paths.set(job.problem->id.c_str(), JsonDoc{{"ok", job.is_valid()},
-                                               {"cost", job.verdict->cost},
-                                               {"clearance", job.verdict->clearance},
-                                               {"faults", std::move(faults)}});
+    paths.set(job.id.c_str(), JsonDoc{{"ok", job.is_valid()},
+                                      {"cost", job.verdict->cost},
+                                      {"clearance", job.verdict->clearance},
+                                      {"faults", std::move(faults)}});
   }
   std::vector<JsonDoc> scenes;
   std::vector<SceneRow> rows = count_scenes(jobs);
@@ -277,7 +257,7 @@ int exit_code_of(const std::vector<Job>& jobs, const Options& options) {
     log_error(text(msg::verify_none, options.paths, whose));
   }
   if (first != nullptr) {
-    log_error(text(msg::verify_some_faulty, options.paths, faulty, given, first->problem->id,
+    log_error(text(msg::verify_some_faulty, options.paths, faulty, given, first->id,
                    first->verdict->faults.front().what));
   }
   return given > 0 && faulty == 0 ? 0 : 1;
@@ -299,10 +279,17 @@ Result<int> run(const Options& options) {
   const Result<int> threads = parse_threads(options.threads);
   if (!threads) return fail(threads.error());
   catch_interrupts();
+  std::optional<Robot> robot;
+  if (options.in.empty()) {
+    Result<Robot> loaded = load_robot(options.robot);
+    if (!loaded) return fail(std::move(loaded.error()));
+    robot = std::move(*loaded);
+  }
   Result<std::vector<Job>> jobs =
-      options.in.empty() ? robot_jobs(options, *rules) : file_jobs(options, *cylinders);
+      robot ? robot_jobs(options, *robot) : file_jobs(options, *cylinders);
   if (!jobs) return fail(jobs.error());
-  if (Result<void> done = judge_all(*jobs, *rules, *threads); !done) {
+  const Result<void> done = judge_all(*jobs, robot ? &*robot : nullptr, *rules, *threads);
+  if (!done) {
     return fail(done.error());
   }
   const std::string out = options.json ? report_json(*jobs) : report_text(*jobs);

@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <limits>
+
+#include "mjarm/collision/fast_robot_internal.hpp"
+#include "mjarm/collision/solid_geoms_internal.hpp"
+
+namespace mjarm::detail {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A box along the axes of the world round one along those of O.
+void add_box(const Pose& X_WO, const Vector3d& low, const Vector3d& high, StandingSolid& out) {
+  const Vector3d half = X_WO.R.cwiseAbs() * (0.5 * (high - low));
+  const Vector3d middle = X_WO * Vector3d(0.5 * (low + high));
+  out.low = middle - half;
+  out.high = middle + half;
+}
+
+}  // namespace
+
+std::vector<LinkSolid> link_solids(const mjModel& m, const Arm& arm,
+                                   std::span<const GeomGroup> links) {
+  std::vector<LinkSolid> out;
+  SphereSet skeletons;
+  for (std::size_t l = 0; l < links.size(); ++l) {
+    for (const PlacedGeom& placed : links[l].geoms) {
+      const CoverSolid solid = solid_of_geom(m, placed);
+      out.push_back({Convex(solid), static_cast<int>(l), links[l].joint, {}});
+      skeletons.links.push_back({links[l].name, links[l].joint, {}});
+      for (const Vector3d& p : solid.skeleton()) {
+        skeletons.links.back().spheres.push_back({p, 0.001});
+      }
+    }
+  }
+  const LinkChain chain{Chain(arm)};
+  const auto points = spheres_in_bodies(skeletons, arm, chain);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].levers = group_bounds(arm, chain, out[k].joint + 1, points[k]).levers;
+  }
+  return out;
+}
+
+StandingSolid standing_solid(const mjModel& m, const PlacedGeom& placed) {
+  StandingSolid out;
+  out.X_WO = placed.X_LG;
+  const int type = m.geom_type[placed.geom];
+  if (type == mjGEOM_PLANE) {
+    out.kind = StandingSolid::Kind::half_space;
+    out.high = Vector3d::Constant(std::numeric_limits<double>::infinity());
+    out.low = -out.high;
+    return out;
+  }
+  if (type == mjGEOM_HFIELD) {
+    out.kind = StandingSolid::Kind::ground;
+    out.ground = std::get<HeightFieldShape>(obstacle_of_geom(m, placed).obstacle.shape);
+    const auto& heights = out.ground.heights;
+    const Vector3d high(out.ground.half.x(), out.ground.half.y(),
+                        *std::max_element(heights.begin(), heights.end()));
+    add_box(placed.X_LG, {-high.x(), -high.y(), out.ground.bottom}, high, out);
+    return out;
+  }
+  const CoverSolid solid = solid_of_geom(m, placed);
+  const CoverBounds box = bounds_of({&solid, 1});
+  out.low = box.low;
+  out.high = box.high;
+  out.convex.emplace(solid);
+  return out;
+}
+
+}  // namespace mjarm::detail
