@@ -126,10 +126,35 @@ class Simplex {
   int size_ = 0;
 };
 
-Vector3d corner(const Vector3d& n, const Vector3d& half) {
-  return {n.x() < 0 ? -half.x() : half.x(), n.y() < 0 ? -half.y() : half.y(),
-          n.z() < 0 ? -half.z() : half.z()};
+/// R p and its inverse; Eigen's own are called, not inlined, as often as this is needed.
+Vector3d turn(const Eigen::Matrix3d& R, const Vector3d& p) {
+  return {R(0, 0) * p.x() + R(0, 1) * p.y() + R(0, 2) * p.z(),
+          R(1, 0) * p.x() + R(1, 1) * p.y() + R(1, 2) * p.z(),
+          R(2, 0) * p.x() + R(2, 1) * p.y() + R(2, 2) * p.z()};
 }
+Vector3d turn_back(const Eigen::Matrix3d& R, const Vector3d& p) {
+  return {R(0, 0) * p.x() + R(1, 0) * p.y() + R(2, 0) * p.z(),
+          R(0, 1) * p.x() + R(1, 1) * p.y() + R(2, 1) * p.z(),
+          R(0, 2) * p.x() + R(1, 2) * p.y() + R(2, 2) * p.z()};
+}
+
+/// A core in the world.
+class Placed {
+ public:
+  Placed(const Convex& convex, const Pose& X_WL)
+      : convex_(convex),
+        R_(X_WL.R * convex.frame().R),
+        p_(turn(X_WL.R, convex.frame().p) + X_WL.p) {}
+  Vector3d farthest(const Vector3d& n) {
+    return turn(R_, convex_.farthest(turn_back(R_, n), hint_)) + p_;
+  }
+
+ private:
+  const Convex& convex_;
+  Eigen::Matrix3d R_;
+  Vector3d p_;
+  int hint_ = 0;
+};
 
 }  // namespace
 
@@ -166,6 +191,7 @@ Convex::Convex(const CoverSolid& solid) : kind_(solid.kind), X_LS_(solid.X_LS), 
         normals_.emplace_back(X_LS_.R * solid.facets[k].normal);
       }
       if (points_.size() > kFewPoints) join(solid.triangles);
+      X_LS_ = Pose();
       break;
     }
   }
@@ -213,50 +239,46 @@ int Convex::climb(const Vector3d& n, int from) const noexcept {
 }
 
 Vector3d Convex::farthest(const Vector3d& n, int& hint) const noexcept {
-  if (kind_ == SolidKind::hull) {
-    if (!first_.empty()) {
-      hint = climb(n, hint);
-      return points_[static_cast<std::size_t>(hint)];
-    }
-    std::size_t best = 0;
-    double high = n.dot(points_[0]);
-    for (std::size_t k = 1; k < points_.size(); ++k) {
-      const double height = n.dot(points_[k]);
-      if (height > high) high = height, best = k;
-    }
-    return points_[best];
-  }
-  if (kind_ == SolidKind::ball) return X_LS_.p;
-  const Vector3d u = X_LS_.R.transpose() * n;
   switch (kind_) {
+    case SolidKind::ball:
+      return Vector3d::Zero();
     case SolidKind::capsule:
-      return X_LS_ * Vector3d(0, 0, u.z() < 0 ? -size_.y() : size_.y());
+      return {0, 0, n.z() < 0 ? -size_.y() : size_.y()};
     case SolidKind::cylinder: {
-      const double side = std::hypot(u.x(), u.y());
+      const double side = std::sqrt(n.x() * n.x() + n.y() * n.y());
       const double share = side > 0 ? size_.x() / side : 0;
-      return X_LS_ * Vector3d(share * u.x(), share * u.y(), u.z() < 0 ? -size_.y() : size_.y());
+      return {share * n.x(), share * n.y(), n.z() < 0 ? -size_.y() : size_.y()};
     }
     case SolidKind::ellipsoid: {
-      const Vector3d scaled = size_.cwiseProduct(u);
-      return X_LS_ * Vector3d(size_.cwiseProduct(scaled) / scaled.norm());
+      const Vector3d scaled = size_.cwiseProduct(n);
+      return size_.cwiseProduct(scaled) / scaled.norm();
     }
-    default:
-      return X_LS_ * corner(u, size_);
+    case SolidKind::box:
+      return {n.x() < 0 ? -size_.x() : size_.x(), n.y() < 0 ? -size_.y() : size_.y(),
+              n.z() < 0 ? -size_.z() : size_.z()};
+    case SolidKind::hull:
+      break;
   }
+  if (!first_.empty()) {
+    hint = climb(n, hint);
+    return points_[static_cast<std::size_t>(hint)];
+  }
+  const auto height = [&](const Vector3d& p) { return n.dot(p); };
+  return *std::ranges::max_element(points_, {}, height);
 }
 
 Separation separate(const Convex& a, const Pose& X_WA, const Convex& b, const Pose& X_WB,
                     const SeparateLimits& limits) noexcept {
   Separation out;
+  Vector3d v = turn(X_WA.R, a.center()) + X_WA.p - turn(X_WB.R, b.center()) - X_WB.p;
+  const double centers = v.norm(), balls = centers - a.reach() - b.reach();
+  if (balls > limits.enough) return {balls, v / centers, out.distance};
+  if (centers == 0) v = Vector3d::UnitX();
+  Placed placed_a(a, X_WA), placed_b(b, X_WB);
   Simplex simplex;
-  int hint_a = 0, hint_b = 0;
-  Vector3d v = X_WA * a.center() - X_WB * b.center();
-  if (v.squaredNorm() == 0) v = Vector3d::UnitX();
   for (int step = 0; step < kMaxSteps; ++step) {
-    const double length = v.norm();
-    const Vector3d n = v / length;
-    const Vector3d w = X_WA * a.farthest(-(X_WA.R.transpose() * n), hint_a) -
-                       X_WB * b.farthest(X_WB.R.transpose() * n, hint_b);
+    const Vector3d n = v / v.norm();
+    const Vector3d w = placed_a.farthest(-n) - placed_b.farthest(n);
     const double gap = n.dot(w);
     if (gap > out.gap) out.gap = gap, out.normal = n;
     if (out.gap > limits.enough) return out;
@@ -275,11 +297,9 @@ Separation separate(const Convex& a, const Pose& X_WA, const Convex& b, const Po
 double depth_of_overlap(const Convex& a, const Pose& X_WA, const Convex& b,
                         const Pose& X_WB) noexcept {
   double least = std::numeric_limits<double>::infinity();
-  int hint_a = 0, hint_b = 0;
+  Placed placed_a(a, X_WA), placed_b(b, X_WB);
   const auto look = [&](const Vector3d& n) {
-    const Vector3d near_a = X_WA * a.farthest(-(X_WA.R.transpose() * n), hint_a);
-    const Vector3d far_b = X_WB * b.farthest(X_WB.R.transpose() * n, hint_b);
-    least = std::min(least, n.dot(far_b - near_a));
+    least = std::min(least, n.dot(placed_b.farthest(n) - placed_a.farthest(-n)));
   };
   for (const auto& [X, solid] : {std::pair{&X_WA, &a}, {&X_WB, &b}}) {
     for (const Vector3d& normal : solid->normals()) {

@@ -23,7 +23,9 @@ class Convex {
   [[nodiscard]] const Eigen::Vector3d& center() const noexcept { return center_; }  ///< in L
   [[nodiscard]] double reach() const noexcept { return reach_; }                    ///< [m]
 
-  /// The point of the core that is farthest along `n`; both in L.
+  /// Where its own frame S is; that of a hull is L.
+  [[nodiscard]] const Pose& frame() const noexcept { return X_LS_; }
+  /// The point of the core that is farthest along `n`; both in S.
   /// @param hint  of a call before, or 0; makes the search short.
   [[nodiscard]] Eigen::Vector3d farthest(const Eigen::Vector3d& n, int& hint) const noexcept;
   /// Directions in L that faces look to: along one of them the solid is thin.

@@ -34,11 +34,12 @@ CoverSolid any_convex(Rng& rng) {
 double slow_distance(const Convex& a, const Pose& X_WA, const Convex& b, const Pose& X_WB) {
   // Frank and Wolfe's steps with line search: slow, and simple enough to be trusted.
   int hint_a = 0, hint_b = 0;
+  const Pose X_WS = X_WA * a.frame(), X_WT = X_WB * b.frame();
   Vector3d v = X_WA * a.center() - X_WB * b.center();
   for (int step = 0; step < 20'000; ++step) {
     const Vector3d n = v.normalized();
-    const Vector3d w = X_WA * a.farthest(-(X_WA.R.transpose() * n), hint_a) -
-                       X_WB * b.farthest(X_WB.R.transpose() * n, hint_b);
+    const Vector3d w = X_WS * a.farthest(-(X_WS.R.transpose() * n), hint_a) -
+                       X_WT * b.farthest(X_WT.R.transpose() * n, hint_b);
     const Vector3d way = w - v;
     if (way.squaredNorm() == 0) break;
     const double t = std::clamp(-v.dot(way) / way.squaredNorm(), 0.0, 1.0);

@@ -6,41 +6,32 @@
 #include "mjarm/collision/cover_fit_internal.hpp"
 #include "mjarm/collision/cover_geoms_internal.hpp"
 #include "mjarm/collision/cover_pairs_internal.hpp"
-#include "mjarm/collision/solid_geoms_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
 
 namespace mjarm {
 namespace {
 
-using detail::CoverSolid;
 using detail::GeomGroup;
 using detail::GeomGroups;
+using detail::GeomSolids;
 using detail::StandingSolid;
 
 constexpr double kWider = 1.4;  // a bound that takes too many spheres grows by this
 constexpr int kMaxWider = 20;
 
-std::vector<CoverSolid> solids_of(const mjModel& m, const GeomGroup& group) {
-  std::vector<CoverSolid> out;
-  for (const detail::PlacedGeom& placed : group.geoms) {
-    out.push_back(detail::solid_of_geom(m, placed));
-  }
-  return out;
-}
-
 /// The links as spheres, with the smallest bound that takes no more than there may be.
-bool add_spheres(const mjModel& m, const std::vector<GeomGroup>& links, double bound,
+bool add_spheres(const std::vector<GeomGroup>& links, const GeomSolids& solids, double bound,
                  const StopCheck& stop, ModelCover& out) {
   for (int round = 0; round < kMaxWider && !is_stopped(stop); ++round, bound *= kWider) {
     out.spheres.links.clear();
     out.bound = 0;
     std::size_t left = kMaxSpheres;
-    for (const GeomGroup& link : links) {
-      const auto fit = detail::fit_cover(solids_of(m, link), bound, left, stop);
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      const auto fit = detail::fit_cover(solids.covers[l], bound, left, stop);
       if (!fit) break;
       left -= fit->spheres.size();
       out.bound = std::max(out.bound, fit->bound);
-      out.spheres.links.push_back({link.name, link.joint, fit->spheres});
+      out.spheres.links.push_back({links[l].name, links[l].joint, fit->spheres});
     }
     if (out.spheres.links.size() == links.size()) return true;
   }
@@ -49,7 +40,8 @@ bool add_spheres(const mjModel& m, const std::vector<GeomGroup>& links, double b
 
 /// The obstacles that some link can meet.
 std::vector<StandingSolid> add_scene(const mjModel& m, const GeomGroups& groups,
-                                     const detail::Meetings& meetings, ModelCover& out) {
+                                     const GeomSolids& solids, const detail::Meetings& meetings,
+                                     ModelCover& out) {
   std::vector<StandingSolid> standing;
   for (const detail::Meetings::Standing& meeting : meetings.standing) {
     const detail::PlacedGeom& placed = groups.obstacles[meeting.obstacle].geoms.front();
@@ -58,7 +50,7 @@ std::vector<StandingSolid> add_scene(const mjModel& m, const GeomGroups& groups,
     out.scene.solids.push_back(std::move(solid.obstacle));
     if (solid.is_larger) out.larger.push_back(index);
     if (m.body_rootid[m.geom_bodyid[placed.geom]] == groups.root) out.standing.push_back(index);
-    standing.push_back(detail::standing_solid(m, placed));
+    standing.push_back(solids.standing[meeting.obstacle]);
     standing.back().ignored.resize(groups.links.size());
     for (const int link : meeting.ignored) {
       out.scene.ignored.push_back({link, index});
@@ -73,21 +65,22 @@ std::vector<StandingSolid> add_scene(const mjModel& m, const GeomGroups& groups,
 Result<ModelCover> cover_model(const Model& model, const Arm& arm, const CoverOptions& options) {
   const Result<GeomGroups> groups = detail::group_geoms(model, arm, options);
   if (!groups) return fail(groups.error());
+  const mjModel& m = *model.raw();
+  GeomSolids solids = solids_of_groups(m, arm, *groups);
   ModelCover out;
-  if (!add_spheres(*model.raw(), groups->links, options.bound, options.stop, out)) {
+  if (!add_spheres(groups->links, solids, options.bound, options.stop, out)) {
     if (is_stopped(options.stop)) return fail(stopped());
     return fail(Errc::bad_input,
                 text(msg::collision_cover_spheres, arm.name, kMaxSpheres, kMaxSphereLinks));
   }
-  detail::MeetingProof proof(model, arm, *groups, options.rules);
+  const detail::MeetingProof proof(m, arm, *groups, solids, options.rules);
   detail::Meetings meetings = find_meetings(proof, *groups, options.stop);
   if (is_stopped(options.stop)) return fail(stopped());
   out.pairs_apart = meetings.apart;
   out.spheres.pairs = std::move(meetings.pairs);
-  auto standing = add_scene(*model.raw(), *groups, meetings, out);
-  out.solids = std::make_shared<const detail::SolidScene>(
-      arm, detail::link_solids(*model.raw(), arm, groups->links), std::move(standing),
-      out.spheres.pairs);
+  auto standing = add_scene(m, *groups, solids, meetings, out);
+  out.solids = std::make_shared<const detail::SolidScene>(arm, std::move(solids.links),
+                                                          std::move(standing), out.spheres.pairs);
   if (const Result<void> fine = check_sphere_set(out.spheres, arm); !fine)
     return fail(fine.error());
   return out;

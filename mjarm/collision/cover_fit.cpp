@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSpare = 0.08;      // share of the bound that is left for the seal
+constexpr double kSpare = 0.15;      // share of the bound that is left for the seal
 constexpr double kMaxPoints = 6000;  // of a grid
-constexpr int kRounds = 400;         // of the set cover, the first time
-constexpr int kMoreRounds = 100;     // after points were added
+constexpr int kRounds = 100;         // of the set cover, the first time
+constexpr int kMoreRounds = 50;      // after points were added
 constexpr int kSearches = 10;        // from then on spheres are only added
 constexpr int kMaxSeals = 60;
 

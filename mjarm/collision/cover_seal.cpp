@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastCell = 1.0 / 48;     // half width of the least cell, as share of the bound
+constexpr double kLeastCell = 1.0 / 24;     // half width of the least cell, as share of the bound
 constexpr double kApart = 0.25;             // of gaps, as share of the bound
 constexpr std::size_t kMaxGaps = 200;       // more are not gathered
 constexpr std::size_t kMaxCells = 4000000;  // more are given up, as gaps

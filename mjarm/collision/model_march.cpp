@@ -132,7 +132,8 @@ Result<ModelMarch> ModelMarch::create(const Model& model, const Arm& arm, const 
                                       const StopCheck& stop) {
   Result<detail::GeomGroups> groups = detail::group_geoms(model, arm, {.rules = rules});
   if (!groups) return fail(std::move(groups.error()));
-  detail::MeetingProof proof(model, arm, *groups, rules);
+  const detail::GeomSolids solids = solids_of_groups(*model.raw(), arm, *groups);
+  const detail::MeetingProof proof(*model.raw(), arm, *groups, solids, rules);
   detail::Meetings meetings = find_meetings(proof, *groups, stop);
   if (is_stopped(stop)) return fail(stopped());
   return ModelMarch(std::make_unique<Impl>(model, arm, std::move(*groups), std::move(meetings)));

@@ -6,12 +6,17 @@ NeverMeet::NeverMeet(const Model& model, const Arm& arm, const ContactRules& rul
                      const std::vector<double>& qpos)
     : groups_(group_geoms(model, arm, {.qpos = qpos, .rules = rules})) {
   if (!groups_) return;
-  proof_ = std::make_unique<MeetingProof>(model, arm, *groups_, rules);
-  for (const std::vector<GeomGroup>* groups : {&groups_->links, &groups_->obstacles}) {
-    for (std::size_t k = 0; k < groups->size(); ++k) {
-      const GeomGroup& group = (*groups)[k];
-      for (const PlacedGeom& one : group.geoms) places_[one.geom] = {group.joint, k, one};
+  const mjModel& m = *model.raw();
+  solids_ = solids_of_groups(m, arm, *groups_);
+  proof_ = std::make_unique<MeetingProof>(m, arm, *groups_, solids_, rules);
+  for (std::size_t k = 0; k < groups_->links.size(); ++k) {
+    const GeomGroup& link = groups_->links[k];
+    for (std::size_t i = 0; i < link.geoms.size(); ++i) {
+      places_[link.geoms[i].geom] = {link.joint, {true, k, i}};
     }
+  }
+  for (std::size_t k = 0; k < groups_->obstacles.size(); ++k) {
+    places_[groups_->obstacles[k].geoms.front().geom] = {-1, {false, k}};
   }
 }
 
@@ -24,8 +29,7 @@ bool NeverMeet::operator()(GeomIds ids) {
   const Place& near = swapped ? second->second : first->second;
   const Place& far = swapped ? first->second : second->second;
   if (near.joint == far.joint) return false;
-  entry->second =
-      proof_->never_meet({{}, near.joint, {near.placed}}, {{}, far.joint, {far.placed}}, far.group);
+  entry->second = proof_->never_meet(near.part, far.part);
   return entry->second;
 }
 

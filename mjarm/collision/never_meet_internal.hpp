@@ -17,6 +17,8 @@ class NeverMeet {
   /// @param rules, qpos  as for the cover of the model.
   NeverMeet(const Model& model, const Arm& arm, const ContactRules& rules,
             const std::vector<double>& qpos);
+  NeverMeet(const NeverMeet&) = delete;  // the proof looks at its members
+  NeverMeet& operator=(const NeverMeet&) = delete;
 
   [[nodiscard]] bool operator()(GeomIds ids);
   /// Those of MeetingProof; empty where the model cannot be sorted.
@@ -28,10 +30,10 @@ class NeverMeet {
   /// Where a geom is in the groups.
   struct Place {
     int joint = -1;
-    std::size_t group = 0;
-    PlacedGeom placed;
+    MeetingPart part;
   };
   Result<GeomGroups> groups_;
+  GeomSolids solids_;
   std::map<int, Place> places_;
   std::unique_ptr<MeetingProof> proof_;  ///< none where the model cannot be sorted
   std::map<GeomIds, bool> known_;

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "mjarm/collision/cover_pairs_internal.hpp"
 #include "mjarm/collision/fast_robot_internal.hpp"
-#include "mjarm/collision/solid_geoms_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
@@ -15,30 +15,6 @@ void add_box(const Pose& X_WO, const Vector3d& low, const Vector3d& high, Standi
   const Vector3d middle = X_WO * Vector3d(0.5 * (low + high));
   out.low = middle - half;
   out.high = middle + half;
-}
-
-}  // namespace
-
-std::vector<LinkSolid> link_solids(const mjModel& m, const Arm& arm,
-                                   std::span<const GeomGroup> links) {
-  std::vector<LinkSolid> out;
-  SphereSet skeletons;
-  for (std::size_t l = 0; l < links.size(); ++l) {
-    for (const PlacedGeom& placed : links[l].geoms) {
-      const CoverSolid solid = solid_of_geom(m, placed);
-      out.push_back({Convex(solid), static_cast<int>(l), links[l].joint, {}});
-      skeletons.links.push_back({links[l].name, links[l].joint, {}});
-      for (const Vector3d& p : solid.skeleton()) {
-        skeletons.links.back().spheres.push_back({p, 0.001});
-      }
-    }
-  }
-  const LinkChain chain{Chain(arm)};
-  const auto points = spheres_in_bodies(skeletons, arm, chain);
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k].levers = group_bounds(arm, chain, out[k].joint + 1, points[k]).levers;
-  }
-  return out;
 }
 
 StandingSolid standing_solid(const mjModel& m, const PlacedGeom& placed) {
@@ -65,6 +41,34 @@ StandingSolid standing_solid(const mjModel& m, const PlacedGeom& placed) {
   out.low = box.low;
   out.high = box.high;
   out.convex.emplace(solid);
+  return out;
+}
+
+}  // namespace
+
+GeomSolids solids_of_groups(const mjModel& m, const Arm& arm, const GeomGroups& groups) {
+  GeomSolids out;
+  SphereSet skeletons;
+  for (const GeomGroup& link : groups.links) {
+    std::vector<CoverSolid>& covers = out.covers.emplace_back();
+    for (const PlacedGeom& placed : link.geoms) {
+      const CoverSolid& solid = covers.emplace_back(solid_of_geom(m, placed));
+      const int index = static_cast<int>(out.covers.size()) - 1;
+      out.links.push_back({Convex(solid), index, link.joint, {}});
+      skeletons.links.push_back({link.name, link.joint, {}});
+      for (const Vector3d& p : solid.skeleton()) {
+        skeletons.links.back().spheres.push_back({p, 0.001});
+      }
+    }
+  }
+  const LinkChain chain{Chain(arm)};
+  const auto points = spheres_in_bodies(skeletons, arm, chain);
+  for (std::size_t k = 0; k < out.links.size(); ++k) {
+    out.links[k].levers = group_bounds(arm, chain, out.links[k].joint + 1, points[k]).levers;
+  }
+  for (const GeomGroup& obstacle : groups.obstacles) {
+    out.standing.push_back(standing_solid(m, obstacle.geoms.front()));
+  }
   return out;
 }
 

@@ -35,12 +35,21 @@ struct SolidMotion {
   }
 };
 
-/// A core against a half-space z <= 0 of X_WO.
-Separation over_plane(const Convex& a, const Pose& X_WA, const Pose& X_WO) {
+/// What a solid is held against: another, or a half-space z <= 0.
+struct Part {
+  const Convex* convex = nullptr;  // null: a half-space
+  Pose X_WP;
+  double radius() const { return convex != nullptr ? convex->radius() : 0; }
+};
+
+Separation separate(const Convex& a, const Pose& X_WA, const Part& b,
+                    const SeparateLimits& limits) {
+  if (b.convex != nullptr) return separate(a, X_WA, *b.convex, b.X_WP, limits);
   int hint = 0;
-  const Vector3d n = X_WO.R.col(2);
-  const Vector3d lowest = X_WA * a.farthest(-(X_WA.R.transpose() * n), hint);
-  const double gap = n.dot(lowest - X_WO.p);
+  const Vector3d n = b.X_WP.R.col(2);
+  const Pose X_WS = X_WA * a.frame();
+  const Vector3d lowest = X_WS * a.farthest(-(X_WS.R.transpose() * n), hint);
+  const double gap = n.dot(lowest - b.X_WP.p);
   return {gap, n, std::max(gap, 0.0)};
 }
 
@@ -75,7 +84,37 @@ void each_prism(const StandingSolid& field, const Vector3d& center_W, double rea
   }
 }
 
+/// Calls `look(part)` for the convex parts of what stands that may be nearer than `within` to the
+/// centre of a solid, until it says no.
+template <class Look>
+void each_part(const StandingSolid& standing, const Vector3d& center_W, double within,
+               const Look& look) {
+  switch (standing.kind) {
+    case StandingSolid::Kind::half_space:
+      look(Part{nullptr, standing.X_WO});
+      return;
+    case StandingSolid::Kind::convex:
+      look(Part{&*standing.convex, Pose()});
+      return;
+    case StandingSolid::Kind::ground:
+      each_prism(standing, center_W, within,
+                 [&](const Convex& prism) { return look(Part{&prism, standing.X_WO}); });
+  }
+}
+
 }  // namespace
+
+double gap_to_standing(const Convex& convex, const Pose& X_WC, const StandingSolid& standing,
+                       double enough) noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  const double within = convex.reach() + convex.radius() + enough;
+  each_part(standing, X_WC * convex.center(), within, [&](const Part& part) {
+    const double radii = convex.radius() + part.radius();
+    least = std::min(least, separate(convex, X_WC, part, {.enough = radii + enough}).gap - radii);
+    return true;
+  });
+  return least;
+}
 
 /// A configuration, and how it moves along a way.
 class SolidScene::Moment {
@@ -229,28 +268,18 @@ double SolidScene::free_half(std::span<const double> q, std::span<const double> 
       return margin + kSolidSpare + motion.way(proved);
     };
   };
-  moment.each_standing(near(margins.obstacles), [&](const LinkSolid& solid,
-                                                    const SolidMotion& motion, double within,
-                                                    const StandingSolid& standing) {
-    const Convex& convex = solid.convex;
-    const Pose& X_WL = moment.place(solid.joint);
-    const double need = convex.radius() + margins.obstacles + kSolidSpare;
-    if (standing.kind == StandingSolid::Kind::half_space) {
-      return keep(motion, need,
-                  [&](const SeparateLimits&) { return over_plane(convex, X_WL, standing.X_WO); });
-    }
-    if (standing.kind == StandingSolid::Kind::convex) {
-      return keep(motion, need + standing.convex->radius(), [&](const SeparateLimits& limits) {
-        return separate(convex, X_WL, *standing.convex, Pose(), limits);
+  moment.each_standing(
+      near(margins.obstacles), [&](const LinkSolid& solid, const SolidMotion& motion, double within,
+                                   const StandingSolid& standing) {
+        const Pose& X_WL = moment.place(solid.joint);
+        const double need = solid.convex.radius() + margins.obstacles + kSolidSpare;
+        each_part(standing, X_WL * solid.convex.center(), within, [&](const Part& part) {
+          return keep(motion, need + part.radius(), [&](const SeparateLimits& limits) {
+            return separate(solid.convex, X_WL, part, limits);
+          });
+        });
+        return proved >= 0;
       });
-    }
-    each_prism(standing, X_WL * solid.convex.center(), within, [&](const Convex& prism) {
-      return keep(motion, need, [&](const SeparateLimits& limits) {
-        return separate(convex, X_WL, prism, standing.X_WO, limits);
-      });
-    });
-    return proved >= 0;
-  });
   if (proved < 0) return proved;
   moment.each_pair(near(margins.links), [&](const LinkSolid& solid, const SolidMotion& motion,
                                             const LinkSolid& other) {
@@ -279,36 +308,28 @@ SolidScene::Clearance SolidScene::clearance(std::span<const double> q, double ma
     return [&, margin](const SolidMotion&) { return margin + std::max(out.distance, 0.0); };
   };
   // Of two cores and what is kept round them.
-  const auto between = [&](const Convex& a, const Pose& X_WA, const Convex& b, const Pose& X_WB,
-                           double margin) {
+  const auto between = [&](const Convex& a, const Pose& X_WA, const Part& b, double margin) {
     const double need = a.radius() + b.radius() + margin;
     const double enough = need + std::max(out.distance, 0.0);
-    const Separation apart = separate(a, X_WA, b, X_WB, {.enough = enough});
-    if (apart.gap > 0) return apart.gap - need;
-    return -depth_of_overlap(a, X_WA, b, X_WB) - margin;
+    const Separation apart = separate(a, X_WA, b, {.enough = enough});
+    if (apart.gap > 0 || b.convex == nullptr) return apart.gap - need;
+    return -depth_of_overlap(a, X_WA, *b.convex, b.X_WP) - margin;
   };
   moment.each_standing(near(margins.obstacles), [&](const LinkSolid& solid, const SolidMotion&,
                                                     double within, const StandingSolid& standing) {
     const Pose& X_WL = moment.place(solid.joint);
     const Pair pair{solid.link, static_cast<int>(&standing - standing_.data()), -1};
-    if (standing.kind == StandingSolid::Kind::half_space) {
-      const double gap = over_plane(solid.convex, X_WL, standing.X_WO).gap;
-      return note(gap - solid.convex.radius() - margins.obstacles, pair);
-    }
-    if (standing.kind == StandingSolid::Kind::convex) {
-      return note(between(solid.convex, X_WL, *standing.convex, Pose(), margins.obstacles), pair);
-    }
-    each_prism(standing, X_WL * solid.convex.center(), within, [&](const Convex& prism) {
-      return note(between(solid.convex, X_WL, prism, standing.X_WO, margins.obstacles), pair);
+    each_part(standing, X_WL * solid.convex.center(), within, [&](const Part& part) {
+      return note(between(solid.convex, X_WL, part, margins.obstacles), pair);
     });
     return true;
   });
-  moment.each_pair(near(margins.links),
-                   [&](const LinkSolid& solid, const SolidMotion&, const LinkSolid& other) {
-                     return note(between(other.convex, moment.place(other.joint), solid.convex,
-                                         moment.place(solid.joint), margins.links),
-                                 {other.link, -1, solid.link});
-                   });
+  moment.each_pair(
+      near(margins.links), [&](const LinkSolid& solid, const SolidMotion&, const LinkSolid& other) {
+        const Part part{&solid.convex, moment.place(solid.joint)};
+        return note(between(other.convex, moment.place(other.joint), part, margins.links),
+                    {other.link, -1, solid.link});
+      });
   return out;
 }
 

@@ -36,6 +36,10 @@ struct StandingSolid {
   std::vector<std::uint8_t> ignored;  ///< per link: not held against it
 };
 
+/// [m] No more than the distance of a convex solid from one that stands: exact up to `enough`.
+[[nodiscard]] double gap_to_standing(const Convex& convex, const Pose& X_WC,
+                                     const StandingSolid& standing, double enough) noexcept;
+
 /// Distances that are kept beyond contact.
 struct SolidMargins {
   double obstacles = 0, links = 0;  ///< [m] >= 0

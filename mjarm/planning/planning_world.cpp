@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kPreferSamples = 3000;  // of each search with a clearance that nobody asked for
 constexpr int kAloneSamples = 2000;   // of a search to one goal, once there is a path to another
+// [m] Coarse: what it costs to make finer ones is more than a plan takes that looks closer.
+constexpr double kSphereBound = 0.02;
 constexpr int kSphereSamples = 2000;  // of a search among spheres alone
 
 /// Whether there may be a path all the same where one looks closer than spheres do.
@@ -109,7 +111,8 @@ Result<PlanningWorld> PlanningWorld::create(const Robot& robot, WorldOptions opt
 }
 
 Result<WorldScene> PlanningWorld::covered(const StopCheck& stop) const {
-  const CoverOptions options{.qpos = options_.qpos, .rules = options_.rules, .stop = stop};
+  const CoverOptions options{
+      .bound = kSphereBound, .qpos = options_.qpos, .rules = options_.rules, .stop = stop};
   Result<ModelCover> cover = cover_model(robot_.model, robot_.arm, options);
   if (!cover) return fail(std::move(cover.error()));
   const SphereMargins margins{options_.margin, 2 * options_.margin};
