@@ -155,6 +155,7 @@ class Compiler {
     // More memory than any machine has is a slip of the pen; asking for it could end the process.
     if (spec_->memory > kMaxMemory) return fail(refusal("Could not allocate memory"));
     if (source_.prepare) source_.prepare(spec_.get());
+    if (!source_.looks) spec_->compiler.discardvisual = 1;
     const std::vector<KeySizes> keys = key_sizes(spec_.get());
     if (auto done = compile(); !done) return fail(done.error());
     const mjModel* model = loaded_.model.get();

@@ -42,6 +42,7 @@ struct SpecSource {
   const std::string* text = nullptr;  ///< what to parse instead of the file; null = the file itself
   bool trusted = false;               ///< compile in this process
   std::function<void(mjSpec*)> prepare = {};  ///< changes the description before it is compiled
+  bool looks = true;                          ///< as LoadOptions::looks
 
   [[nodiscard]] const std::string& name() const { return files.documents().front()->name; }
 };

@@ -44,21 +44,24 @@ XMLElement& set_compiler(tinyxml2::XMLDocument& document, XMLElement& robot) {
   return *compiler;
 }
 
-Result<LoadedModel> compile_document(const XmlSources& files, bool trusted,
+Result<LoadedModel> compile_document(const XmlSources& files, const LoadOptions& options,
                                      const tinyxml2::XMLDocument& document,
                                      const BodyPairs& apart) {
   tinyxml2::XMLPrinter printer(nullptr, true);
   document.Print(&printer);
   const std::string xml = printer.CStr();
   const auto finish = [&](mjSpec* spec) { finish_urdf(spec, apart); };
-  Result<LoadedModel> loaded =
-      compile_spec({.files = files, .text = &xml, .trusted = trusted, .prepare = finish});
+  Result<LoadedModel> loaded = compile_spec({.files = files,
+                                             .text = &xml,
+                                             .trusted = options.trusted,
+                                             .prepare = finish,
+                                             .looks = options.looks});
   if (loaded) loaded->urdf_text = xml;
   return loaded;
 }
 
 /// Compiles once more where links touch that do so in every posture, with a line in `warnings`.
-Result<LoadedModel> without_constant_contacts(const XmlSources& files, bool trusted,
+Result<LoadedModel> without_constant_contacts(const XmlSources& files, const LoadOptions& options,
                                               const tinyxml2::XMLDocument& document,
                                               LoadedModel loaded,
                                               std::vector<std::string>& warnings) {
@@ -68,7 +71,7 @@ Result<LoadedModel> without_constant_contacts(const XmlSources& files, bool trus
   for (const auto& [a, b] : apart) words += (words.empty() ? "" : ", ") + a + " - " + b;
   const std::string& file = files.documents().front()->name;
   warnings.push_back(text(msg::model_always_touching, file, words));
-  return compile_document(files, trusted, document, apart);
+  return compile_document(files, options, document, apart);
 }
 
 double limit_of(const XMLElement& joint, const char* attribute) {
@@ -93,16 +96,15 @@ Result<LoadedModel> load_urdf(const XmlSources& files, const LoadOptions& option
   give_mass(file, robot, warnings);
   XMLElement& compiler = set_compiler(document, robot);
 
-  Result<LoadedModel> loaded = compile_document(files, options.trusted, document, {});
+  Result<LoadedModel> loaded = compile_document(files, options, document, {});
   if (!loaded && loaded.error().what.find(text(msg::model_mj_inertia)) != std::string::npos) {
     // Inertias that no body can have are common in URDF files and matter to dynamics alone.
     warnings.push_back(text(msg::model_balanced_inertia, loaded.error().what));
     compiler.SetAttribute("balanceinertia", "true");
-    loaded = compile_document(files, options.trusted, document, {});
+    loaded = compile_document(files, options, document, {});
   }
   if (!loaded) return loaded;
-  loaded =
-      without_constant_contacts(files, options.trusted, document, std::move(*loaded), warnings);
+  loaded = without_constant_contacts(files, options, document, std::move(*loaded), warnings);
   if (!loaded) return loaded;
   loaded->warnings.insert(loaded->warnings.begin(), warnings.begin(), warnings.end());
   for (const XMLElement* joint : children(std::as_const(robot), "joint")) {

@@ -79,9 +79,10 @@ Result<Model> Model::load_guarded(const fs::path& file, LoadOptions options) {
     const Result<ModelFormat> format = format_of(files);
     if (!format) return fail(format.error());
     if (auto done = preflight(files, options); !done) return fail(done.error());
-    Result<LoadedModel> loaded = *format == ModelFormat::urdf
-                                     ? load_urdf(files, options)
-                                     : compile_spec({.files = files, .trusted = options.trusted});
+    Result<LoadedModel> loaded =
+        *format == ModelFormat::urdf
+            ? load_urdf(files, options)
+            : compile_spec({.files = files, .trusted = options.trusted, .looks = options.looks});
     if (!loaded) return fail(std::move(loaded.error()));
     return Model(std::make_shared<const Impl>(Impl{file, *format, std::move(*loaded)}));
   } catch (const std::exception& problem) {

@@ -23,6 +23,9 @@ struct LoadOptions {
   /// Compile in this process. Files of others are compiled in a copy of it (fork) with bounds on
   /// time and memory, since MuJoCo may crash or hang on them; shipped models are trusted anyway.
   bool trusted = false;
+  /// Keep what is only seen: geoms that collide with nothing, their meshes, materials and textures.
+  /// A big file loads in a fraction of the time without; masses and all else stay.
+  bool looks = true;
 };
 
 /// Format of the file a model came from.

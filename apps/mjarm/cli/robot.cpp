@@ -10,7 +10,8 @@ namespace mjarm::app {
 
 LoadOptions load_options(const RobotChoice& choice) {
   return {.package_paths = {choice.package_paths.begin(), choice.package_paths.end()},
-          .allow_outside = choice.allow_outside};
+          .allow_outside = choice.allow_outside,
+          .looks = choice.looks};
 }
 
 void add_outside_option(CLI::App& app, bool& allowed) {

@@ -11,10 +11,11 @@ namespace mjarm::app {
 
 /// Which robot, and which frame of it is the tool.
 struct RobotChoice {
-  std::string robot;                            ///< name of a shipped model, or path
+  std::string robot = {};                       ///< name of a shipped model, or path
   std::string tip = {};                         ///< empty = the robot's own
   std::vector<std::string> package_paths = {};  ///< where `package://NAME` is looked for first
   bool allow_outside = false;                   ///< as in LoadOptions
+  bool looks = true;                            ///< as in LoadOptions
 };
 
 /// Adds `--package-path DIR`, which may be given several times, bound to `folders`.

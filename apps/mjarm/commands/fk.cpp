@@ -18,7 +18,7 @@ namespace mjarm::app {
 namespace {
 
 struct FkOptions {
-  RobotChoice robot;
+  RobotChoice robot{.looks = false};
   BatchOptions batch;
   std::string q;
 };

@@ -20,7 +20,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  RobotChoice robot;
+  RobotChoice robot{.looks = false};
   BatchOptions batch;
   std::string pos, euler, quat, seed_q, task = "pose", prefer, branch, seed = "1", threads = "1";
   bool all = false, windings = false, collisions = false, no_collisions = false, no_timing = false;

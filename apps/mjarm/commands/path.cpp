@@ -27,7 +27,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  RobotChoice robot;
+  RobotChoice robot{.looks = false};
   BatchOptions batch;
   std::string from, via, to, euler, quat, request, start, max_step, tilt;
   bool keep_start = false, collisions = false, partial = false, no_timing = false;

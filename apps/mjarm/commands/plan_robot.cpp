@@ -186,7 +186,9 @@ bool is_given(const RobotRequest& request) {
 Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& options,
                            const std::optional<session::PlanShow>& show, AnswerOutput& output,
                            bool timing) {
-  const Result<Robot> robot = load_robot(request.robot);
+  RobotChoice choice = request.robot;
+  choice.looks = show.has_value();
+  const Result<Robot> robot = load_robot(choice);
   if (!robot) return fail(robot.error());
   const Result<Way> way = read_way(request, *robot);
   if (!way) return fail(way.error());

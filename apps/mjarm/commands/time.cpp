@@ -30,7 +30,7 @@ constexpr double kTorqueRounding = 1e-3;   // the same for torques
 constexpr std::size_t kLargest = 1 << 28;  // [bytes] of a file
 
 struct Options {
-  RobotChoice robot{.robot = "ur5e", .tip = {}};
+  RobotChoice robot{.robot = "ur5e", .looks = false};
   BatchOptions batch;
   std::string problem, points, dt, torque;
   bool check = false, no_timing = false;

@@ -35,7 +35,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Options {
-  RobotChoice robot;
+  RobotChoice robot{.looks = false};
   RuleWords rules;
   std::string paths, in, step = "0.005", tol = "0", cylinders = "replaced", threads = "1";
   bool json = false;

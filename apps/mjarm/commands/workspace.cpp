@@ -24,7 +24,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  RobotChoice robot;
+  RobotChoice robot{.looks = false};
   std::string slice = "z=0.4", step = "20mm", euler, quat, out, threads = "1";
   Replace replace;
   bool tool_down = false, position_only = false, json = false;
