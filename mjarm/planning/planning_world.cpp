@@ -1,11 +1,14 @@
 #include "mjarm/planning/planning_world.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <numeric>
 #include <utility>
 
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/kinematics/chain.hpp"
 #include "mjarm/planning/clear_path_internal.hpp"
 #include "mjarm/planning/search_internal.hpp"
 
@@ -37,6 +40,18 @@ Result<void> check_world_options(const WorldOptions& options) {
   return {};
 }
 
+/// The goals that are tried alone: those nearest to the start.
+std::vector<std::size_t> nearest_goals(std::span<const double> q_start,
+                                       std::span<const JointVec> goals) {
+  constexpr std::size_t kMaxAlone = 8;
+  const JointVec start = joint_vec(q_start);
+  std::vector<std::size_t> order(goals.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t g) { return (goals[g] - start).norm(); });
+  order.resize(std::min(order.size(), kMaxAlone));
+  return order;
+}
+
 /// To all goals at once the first straight way that is free is taken, be it to the farthest. So the
 /// nearest ones are tried alone, and the shortest path is kept.
 /// @param left  of PlanOptions::time_limit.
@@ -45,23 +60,27 @@ template <class Plan>
 void try_goals_alone(std::span<const double> q_start, std::span<const JointVec> goals,
                      const PlanOptions& options, const detail::TimeLeft& left, const Plan& plan,
                      PlannedPath& path) {
-  constexpr std::size_t kMaxAlone = 8;
   PlanOptions search = options;
   search.samples = least_samples(options, kAloneSamples);
   search.time_budget = 0;
-  const JointVec start = joint_vec(q_start);
-  std::vector<std::size_t> order(goals.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto far = [&](std::size_t g) { return (goals[g] - start).norm(); };
-  std::ranges::stable_sort(order, {}, far);
-  for (std::size_t k = 0; k < std::min(order.size(), kMaxAlone); ++k) {
-    const std::size_t g = order[k];
-    if (far(g) >= path.cost || left.none() || is_stopped(options.stop)) return;
+  for (const std::size_t g : nearest_goals(q_start, goals)) {
+    const double far = (goals[g] - joint_vec(q_start)).norm();
+    if (far >= path.cost || left.none() || is_stopped(options.stop)) return;
     Result<PlannedPath, PlanFailure> other = plan(goals.subspan(g, 1), left.in(search));
     if (!other || other->cost >= path.cost) continue;
     path = std::move(*other);
     path.goal = static_cast<int>(g);
   }
+}
+
+/// Whether spheres leave out none of the goals that a short path may lead to.
+bool are_free(const FastChecker& spheres, std::span<const double> q_start,
+              std::span<const JointVec> goals) {
+  const auto sizes_fit = [&](const JointVec& q) { return as_span(q).size() == q_start.size(); };
+  if (!std::ranges::all_of(goals, sizes_fit)) return true;  // the search says what is wrong
+  return std::ranges::all_of(nearest_goals(q_start, goals), [&](std::size_t g) {
+    return spheres.is_free(as_span(goals[g]));
+  });
 }
 
 /// One search in one scene, for a clearance where one is asked.
@@ -70,6 +89,10 @@ Result<PlannedPath, WorldFailure> search(const detail::ClearScene& scene, detail
                                          std::span<const double> q_start,
                                          std::span<const JointVec> goals,
                                          const PlanOptions& options, PlanTimes* times) {
+  const bool is_sphere_scene = !scene.checker.solids();
+  if (goals.size() > 1 && is_sphere_scene && !are_free(scene.checker, q_start, goals)) {
+    return tl::unexpected(WorldFailure{.what = {}, .search = {.code = PlanErrc::goals_hit}});
+  }
   const detail::TimeLeft left(options);
   const bool clear = options.clearance.value_or(0) > 0;
   const auto plan = [&](std::span<const JointVec> to, const PlanOptions& with) {
@@ -225,32 +248,61 @@ Result<WayProver> PlanningWorld::prover(std::span<const PlannedPath> paths, cons
   return WayProver(wide, std::move(ends));
 }
 
+/// A joint goal may be in a winding to which no way leads, while one leads to the same posture.
+void PlanningWorld::tell_winding(std::span<const double> q_start, const JointVec& goal,
+                                 const PlanOptions& options, WorldFailure& why) {
+  const Chain chain(robot_.arm);
+  JointVec same = goal;
+  for (int i = 0; i < chain.dof; ++i) {
+    same[i] = nearest_winding(chain, i, goal[i], q_start[static_cast<std::size_t>(i)]);
+  }
+  if ((same - goal).norm() < 1) return;
+  PlanOptions quick = options;
+  quick.samples = least_samples(options, kSphereSamples);
+  quick.rounds = 0;
+  quick.time_budget = 0;
+  const std::vector<JointVec> goals{same};
+  if (!plan(q_start, goals, quick)) return;
+  why.same_posture = same;
+  why.what += text(msg::planning_same_posture, fmt::format("{:.6g}", fmt::join(as_span(same), ",")));
+}
+
 Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
                                                       std::span<const JointVec> goals,
                                                       const PlanOptions& options,
                                                       PlanTimes* times) {
-  return keep_clearance(options, [&](const detail::ClearScene& scene, detail::ClearEnds ends,
-                                     const PlanOptions& how) {
-    return search(scene, ends, q_start, goals, how, times);
-  });
+  Result<PlannedPath, WorldFailure> found =
+      keep_clearance(options, [&](const detail::ClearScene& scene, detail::ClearEnds ends,
+                                  const PlanOptions& how) {
+        return search(scene, ends, q_start, goals, how, times);
+      });
+  const auto is_for_winding = [](PlanErrc code) {
+    return code == PlanErrc::budget_spent || code == PlanErrc::out_of_time;
+  };
+  if (!found && goals.size() == 1 && is_for_winding(found.error().search.code)) {
+    tell_winding(q_start, goals.front(), options, found.error());
+  }
+  return found;
 }
 
 Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
                                                       const GoalRegion& region,
                                                       const PlanOptions& options, IkTask task,
                                                       PlanTimes* times) {
+  std::optional<Result<std::vector<JointVec>, IkFailure>> goals;
   return keep_clearance(options,
                         [&](const detail::ClearScene& scene, detail::ClearEnds ends,
                             const PlanOptions& how) -> Result<PlannedPath, WorldFailure> {
-                          const IkSolver ik(robot_.arm, {.seed = how.seed, .task = task});
-                          const auto goals =
-                              goals_in(scene.checker, ik, region, q_start,
-                                       {.seed = how.seed, .tilt = how.tilt, .stop = how.stop});
                           if (!goals) {
-                            return tl::unexpected(WorldFailure{
-                                WorldErrc::no_answer, describe(goals.error(), robot_.arm)});
+                            const IkSolver ik(robot_.arm, {.seed = how.seed, .task = task});
+                            goals = goals_in(scene_->checker, ik, region, q_start,
+                                             {.seed = how.seed, .tilt = how.tilt, .stop = how.stop});
                           }
-                          return search(scene, ends, q_start, *goals, how, times);
+                          if (!*goals) {
+                            return tl::unexpected(WorldFailure{
+                                WorldErrc::no_answer, describe(goals->error(), robot_.arm)});
+                          }
+                          return search(scene, ends, q_start, **goals, how, times);
                         });
 }
 

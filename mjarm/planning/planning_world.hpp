@@ -57,6 +57,8 @@ struct WorldFailure {
   WorldErrc code = WorldErrc::no_path;
   std::string what;         ///< one line for people, in their language
   PlanFailure search = {};  ///< no_path
+  /// No path to joint values: the same posture in other windings, to which there is one; else empty.
+  JointVec same_posture = {};
 };
 
 /// Plans paths of one robot in its scene. The model is covered with spheres when a path is asked
@@ -111,6 +113,8 @@ class PlanningWorld {
   [[nodiscard]] Result<const WorldScene*> scene(const StopCheck& stop = {});
 
  private:
+  void tell_winding(std::span<const double> q_start, const JointVec& goal,
+                    const PlanOptions& options, WorldFailure& why);
   PlanningWorld(const Robot& robot, WorldOptions options)
       : robot_(robot), options_(std::move(options)) {}
 

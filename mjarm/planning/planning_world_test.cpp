@@ -158,6 +158,38 @@ TEST(PlanningWorld, ReasonsAreTold) {
   EXPECT_NE(inside.error().what.find("every goal is in collision"), std::string::npos);
 }
 
+/// The turn of the base beyond the wall cannot be undone: the same posture stands a revolution away.
+TEST(PlanningWorld, AWindingThatCannotBeReachedHasOneThatCan) {
+  const LanguageScope english(Language::english);
+  const Robot robot = load_robot("ur5e").value();
+  PlanningWorld world = world_of(robot);
+  const std::vector<double> start{-1.5708, -1.5708, 1.5708, -1.5708, -1.5708, 0};
+  JointVec goal = joint_vec(start);
+  goal[1] = -1.2;
+  const JointVec near = goal;
+  goal[1] += 2 * kPi;  // the upper arm would have to pass through the floor
+  const auto none = world.plan(start, std::vector{goal}, {.samples = 2000});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().search.code, PlanErrc::budget_spent);
+  ASSERT_EQ(none.error().same_posture.size(), 6);
+  EXPECT_LT((none.error().same_posture - near).norm(), 1e-9);
+  EXPECT_NE(none.error().what.find("same posture"), std::string::npos) << none.error().what;
+  EXPECT_NE(none.error().what.find("-1.2,"), std::string::npos) << none.error().what;
+  EXPECT_TRUE(world.plan(start, std::vector{none.error().same_posture}));
+}
+
+/// Of two goals the nearer one is beside the post, nearer than spheres stick out.
+TEST(PlanningWorld, SpheresDoNotHideTheNearestGoal) {
+  const Robot robot = beam(0.002);
+  PlanningWorld world = world_of(robot);
+  const std::vector<double> start{-0.8, 0.3};
+  const auto goals = goals_at({{-2.9, 0}, {0, 0}});
+  EXPECT_FALSE(world.scene().value()->checker.looking_closer(nullptr).is_free(as_span(goals[1])));
+  const auto path = world.plan(start, goals);
+  ASSERT_TRUE(path) << path.error().what;
+  EXPECT_EQ(path->goal, 1);
+}
+
 TEST(PlanningWorld, WhatCannotBeAskedHasAReason) {
   const LanguageScope english(Language::english);
   PlanningWorld world = world_of(walled_ur5e());
