@@ -78,9 +78,8 @@ bool are_free(const FastChecker& spheres, std::span<const double> q_start,
               std::span<const JointVec> goals) {
   const auto sizes_fit = [&](const JointVec& q) { return as_span(q).size() == q_start.size(); };
   if (!std::ranges::all_of(goals, sizes_fit)) return true;  // the search says what is wrong
-  return std::ranges::all_of(nearest_goals(q_start, goals), [&](std::size_t g) {
-    return spheres.is_free(as_span(goals[g]));
-  });
+  return std::ranges::all_of(nearest_goals(q_start, goals),
+                             [&](std::size_t g) { return spheres.is_free(as_span(goals[g])); });
 }
 
 /// One search in one scene, for a clearance where one is asked.
@@ -264,16 +263,17 @@ void PlanningWorld::tell_winding(std::span<const double> q_start, const JointVec
   const std::vector<JointVec> goals{same};
   if (!plan(q_start, goals, quick)) return;
   why.same_posture = same;
-  why.what += text(msg::planning_same_posture, fmt::format("{:.6g}", fmt::join(as_span(same), ",")));
+  why.what +=
+      text(msg::planning_same_posture, fmt::format("{:.6g}", fmt::join(as_span(same), ",")));
 }
 
 Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
                                                       std::span<const JointVec> goals,
                                                       const PlanOptions& options,
                                                       PlanTimes* times) {
-  Result<PlannedPath, WorldFailure> found =
-      keep_clearance(options, [&](const detail::ClearScene& scene, detail::ClearEnds ends,
-                                  const PlanOptions& how) {
+  Result<PlannedPath, WorldFailure> found = keep_clearance(
+      options,
+      [&](const detail::ClearScene& scene, detail::ClearEnds ends, const PlanOptions& how) {
         return search(scene, ends, q_start, goals, how, times);
       });
   const auto is_for_winding = [](PlanErrc code) {
@@ -295,8 +295,9 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_
                             const PlanOptions& how) -> Result<PlannedPath, WorldFailure> {
                           if (!goals) {
                             const IkSolver ik(robot_.arm, {.seed = how.seed, .task = task});
-                            goals = goals_in(scene_->checker, ik, region, q_start,
-                                             {.seed = how.seed, .tilt = how.tilt, .stop = how.stop});
+                            goals =
+                                goals_in(scene_->checker, ik, region, q_start,
+                                         {.seed = how.seed, .tilt = how.tilt, .stop = how.stop});
                           }
                           if (!*goals) {
                             return tl::unexpected(WorldFailure{

@@ -57,7 +57,8 @@ struct WorldFailure {
   WorldErrc code = WorldErrc::no_path;
   std::string what;         ///< one line for people, in their language
   PlanFailure search = {};  ///< no_path
-  /// No path to joint values: the same posture in other windings, to which there is one; else empty.
+  /// No path to joint values: the same posture in other windings, to which there is one; else
+  /// empty.
   JointVec same_posture = {};
 };
 

@@ -158,7 +158,8 @@ TEST(PlanningWorld, ReasonsAreTold) {
   EXPECT_NE(inside.error().what.find("every goal is in collision"), std::string::npos);
 }
 
-/// The turn of the base beyond the wall cannot be undone: the same posture stands a revolution away.
+/// The turn of the base beyond the wall cannot be undone: the same posture stands a revolution
+/// away.
 TEST(PlanningWorld, AWindingThatCannotBeReachedHasOneThatCan) {
   const LanguageScope english(Language::english);
   const Robot robot = load_robot("ur5e").value();
