@@ -46,9 +46,7 @@ std::vector<StandingSolid> add_scene(const mjModel& m, const GeomGroups& groups,
   for (const detail::Meetings::Standing& meeting : meetings.standing) {
     const detail::PlacedGeom& placed = groups.obstacles[meeting.obstacle].geoms.front();
     const int index = static_cast<int>(out.scene.solids.size());
-    detail::SceneSolid solid = detail::obstacle_of_geom(m, placed);
-    out.scene.solids.push_back(std::move(solid.obstacle));
-    if (solid.is_larger) out.larger.push_back(index);
+    out.scene.solids.push_back(detail::obstacle_of_geom(m, placed));
     if (m.body_rootid[m.geom_bodyid[placed.geom]] == groups.root) out.standing.push_back(index);
     standing.push_back(solids.standing[meeting.obstacle]);
     standing.back().ignored.resize(groups.links.size());

@@ -40,7 +40,6 @@ struct ModelCover {
   /// exact; a mesh is a polytope round its hull, a height field its columns, an ellipsoid its box.
   Obstacles scene;
   std::vector<int> standing;  ///< obstacles (by index) that belong to the robot itself: its foot
-  std::vector<int> larger;    ///< obstacles that are a simpler solid round the geom
   /// The same links and obstacles as MuJoCo collides them, for FastChecker to look at what spheres
   /// cannot call free.
   std::shared_ptr<const detail::SolidScene> solids;

@@ -39,11 +39,8 @@ struct GeomGroups {
 /// convex hull, and for a plane or height field, which an arm does not carry: its box.
 [[nodiscard]] CoverSolid solid_of_geom(const mjModel& m, const PlacedGeom& placed);
 
-/// The geom as an obstacle; `is_larger`: a simpler solid round it.
-struct SceneSolid {
-  Obstacle obstacle;
-  bool is_larger = false;
-};
-[[nodiscard]] SceneSolid obstacle_of_geom(const mjModel& m, const PlacedGeom& placed);
+/// The geom as an obstacle: exact, but for a mesh, a height field and an ellipsoid, where it is a
+/// simpler solid round it.
+[[nodiscard]] Obstacle obstacle_of_geom(const mjModel& m, const PlacedGeom& placed);
 
 }  // namespace mjarm::detail

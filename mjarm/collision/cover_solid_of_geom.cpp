@@ -112,11 +112,11 @@ CoverSolid solid_of_geom(const mjModel& m, const PlacedGeom& placed) {
   return box;
 }
 
-SceneSolid obstacle_of_geom(const mjModel& m, const PlacedGeom& placed) {
+Obstacle obstacle_of_geom(const mjModel& m, const PlacedGeom& placed) {
   const int geom = placed.geom;
   const mjtNum* const size = m.geom_size + 3 * geom;
-  SceneSolid out{{geom_name(m, geom), placed.X_LG, HalfSpaceShape{}}, false};
-  ObstacleShape& shape = out.obstacle.shape;
+  Obstacle out{geom_name(m, geom), placed.X_LG, HalfSpaceShape{}};
+  ObstacleShape& shape = out.shape;
   switch (m.geom_type[geom]) {
     case mjGEOM_PLANE:
       return out;
@@ -135,7 +135,6 @@ SceneSolid obstacle_of_geom(const mjModel& m, const PlacedGeom& placed) {
     default:
       break;
   }
-  out.is_larger = true;
   if (m.geom_type[geom] == mjGEOM_HFIELD) {
     shape = height_field(m, m.geom_dataid[geom]);
     return out;
@@ -148,7 +147,7 @@ SceneSolid obstacle_of_geom(const mjModel& m, const PlacedGeom& placed) {
       return out;
     }
   }
-  out.obstacle.X_WO = box_frame(m, placed);
+  out.X_WO = box_frame(m, placed);
   shape = BoxShape{box_half(m, geom)};
   return out;
 }

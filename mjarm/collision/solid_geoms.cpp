@@ -29,7 +29,7 @@ StandingSolid standing_solid(const mjModel& m, const PlacedGeom& placed) {
   }
   if (type == mjGEOM_HFIELD) {
     out.kind = StandingSolid::Kind::ground;
-    out.ground = std::get<HeightFieldShape>(obstacle_of_geom(m, placed).obstacle.shape);
+    out.ground = std::get<HeightFieldShape>(obstacle_of_geom(m, placed).shape);
     const auto& heights = out.ground.heights;
     const Vector3d high(out.ground.half.x(), out.ground.half.y(),
                         *std::max_element(heights.begin(), heights.end()));
