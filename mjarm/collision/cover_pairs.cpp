@@ -101,7 +101,7 @@ struct MeetingProof::Search {
 
 MeetingProof::MeetingProof(const Model& model, const Arm& arm, const GeomGroups& groups,
                            const ContactRules& rules)
-    : m_(*model.raw()), arm_(arm), filter_(m_, rules), d_(mj_makeData(&m_)) {
+    : m_(*model.raw()), arm_(arm), filter_(m_, arm, rules), d_(mj_makeData(&m_)) {
   SphereSet skeletons;
   for (const GeomGroup& link : groups.links) skeletons.links.push_back(skeleton_of(m_, link));
   const LinkChain chain{Chain(arm)};
