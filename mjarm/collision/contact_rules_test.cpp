@@ -179,7 +179,7 @@ TEST(ContactRules, WhatOverlapsByDesignDoesNotCount) {
           .value()
           .looking_closer(cover.solids);
   Rng rng(8);
-  int free = 0, on_foot = 0;
+  int free = 0, proved = 0, on_foot = 0;
   for (int k = 0; k < 2000; ++k) {
     const JointVec q = draw(crane.arm, rng);
     const bool is_free = exact.is_free(as_span(q));
@@ -187,7 +187,8 @@ TEST(ContactRules, WhatOverlapsByDesignDoesNotCount) {
     ASSERT_FALSE(strict.is_free(as_span(q)));
     ASSERT_TRUE(is_free || !fast.is_free(as_span(q)));
     const auto edge = march.verify_edge(as_span(q), as_span(q)).value();
-    ASSERT_EQ(edge.verdict == EdgeVerdict::free, is_free);
+    ASSERT_TRUE(is_free ? edge.verdict != EdgeVerdict::hit : edge.verdict != EdgeVerdict::free);
+    proved += edge.verdict == EdgeVerdict::free;
     free += is_free && fast.is_free(as_span(q));
     const auto report = exact.check(as_span(q)).value();
     on_foot += std::ranges::any_of(report.contacts, [](const ContactPoint& contact) {
@@ -195,7 +196,8 @@ TEST(ContactRules, WhatOverlapsByDesignDoesNotCount) {
     });
   }
   EXPECT_GT(free, 500);
-  EXPECT_GT(on_foot, 5) << "other links are still held against the foot";
+  EXPECT_GT(proved, free);
+  EXPECT_GT(on_foot, 2) << "other links are still held against the foot";
 }
 
 TEST(ContactRules, HeldWhereItIsItStaysThere) {
