@@ -109,17 +109,27 @@ Result<AttachedBody> attach_in_place(const Model& model, const Arm& arm, const s
 
 namespace detail {
 
-ContactFilter::ContactFilter(const mjModel& m, const ContactRules& rules) {
-  const auto geoms_of = [&](const std::string& name) {
+ContactFilter::ContactFilter(const mjModel& m, const Arm& arm, const ContactRules& rules) {
+  const auto geoms_where = [&](const auto& belongs) {
     std::vector<bool> out(static_cast<std::size_t>(m.ngeom));
-    for (int g = 0; g < static_cast<int>(m.ngeom); ++g) {
-      out[static_cast<std::size_t>(g)] =
-          geom_name(m, g) == name || body_name(m, m.geom_bodyid[g]) == name;
-    }
+    for (int g = 0; g < static_cast<int>(m.ngeom); ++g)
+      out[static_cast<std::size_t>(g)] = belongs(g);
     return out;
   };
+  const auto called = [&](const std::string& name) {
+    return geoms_where(
+        [&](int g) { return geom_name(m, g) == name || body_name(m, m.geom_bodyid[g]) == name; });
+  };
   for (const auto& [first, second] : rules.allowed) {
-    pairs_.push_back({geoms_of(first), geoms_of(second)});
+    pairs_.push_back({called(first), called(second)});
+  }
+  const auto of_body = [&](int body) {
+    return geoms_where([&](int g) { return m.geom_bodyid[g] == body; });
+  };
+  for (const DesignOverlap& pair : arm.overlapping) {
+    pairs_.push_back({of_body(pair.link), pair.stands
+                                              ? geoms_where([&](int g) { return g == pair.other; })
+                                              : of_body(pair.other)});
   }
 }
 

@@ -8,6 +8,7 @@
 #include "mjarm/collision/cover.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/collision/fast_check.hpp"
+#include "mjarm/collision/verify_edge.hpp"
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -159,6 +160,44 @@ TEST(ContactRules, PairsThatMayTouchDoNotCount) {
   EXPECT_TRUE(fast_free());
   rules.allowed = {{"fore", "bar"}};  // in either order
   EXPECT_TRUE(names().empty());
+}
+
+/// A foot that the first link is sunk in, as if the user had said that the two may touch.
+TEST(ContactRules, WhatOverlapsByDesignDoesNotCount) {
+  const Crane crane = load(::mjarm::crane(
+      "", R"(<geom name="foot" type="cylinder" size="0.15 0.02" pos="0 0 -0.04"/>)"));
+  ASSERT_EQ(crane.arm.overlapping.size(), 1U);
+  Arm bare = crane.arm;
+  bare.overlapping.clear();
+  const ContactRules said{.allowed = {{{"upper", "foot"}}}};
+  ExactChecker exact(crane.model, crane.arm), allowed(crane.model, bare, {.rules = said});
+  ExactChecker strict(crane.model, bare);
+  ModelMarch march = ModelMarch::create(crane.model, crane.arm).value();
+  const ModelCover cover = cover_model(crane.model, crane.arm).value();
+  const FastChecker fast =
+      FastChecker::create(FastRobot::create(crane.arm, cover.spheres).value(), cover.scene)
+          .value()
+          .looking_closer(cover.solids);
+  Rng rng(8);
+  int free = 0, proved = 0, on_foot = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const JointVec q = draw(crane.arm, rng);
+    const bool is_free = exact.is_free(as_span(q));
+    ASSERT_EQ(is_free, allowed.is_free(as_span(q)));
+    ASSERT_FALSE(strict.is_free(as_span(q)));
+    ASSERT_TRUE(is_free || !fast.is_free(as_span(q)));
+    const auto edge = march.verify_edge(as_span(q), as_span(q)).value();
+    ASSERT_TRUE(is_free ? edge.verdict != EdgeVerdict::hit : edge.verdict != EdgeVerdict::free);
+    proved += edge.verdict == EdgeVerdict::free;
+    free += is_free && fast.is_free(as_span(q));
+    const auto report = exact.check(as_span(q)).value();
+    on_foot += std::ranges::any_of(report.contacts, [](const ContactPoint& contact) {
+      return contact.pair.geom1 == "foot" || contact.pair.geom2 == "foot";
+    });
+  }
+  EXPECT_GT(free, 500);
+  EXPECT_GT(proved, free);
+  EXPECT_GT(on_foot, 2) << "other links are still held against the foot";
 }
 
 TEST(ContactRules, HeldWhereItIsItStaysThere) {

@@ -38,6 +38,15 @@ bool add_spheres(const std::vector<GeomGroup>& links, const GeomSolids& solids, 
   return false;
 }
 
+/// The body with a free joint that a geom hangs on; empty for the arm's own and where there is
+/// none.
+std::string movable_of(const mjModel& m, int geom, int arm_root) {
+  const int root = m.body_rootid[m.geom_bodyid[geom]];
+  const int joint = m.body_jntadr[root];
+  const bool free = joint >= 0 && m.jnt_type[joint] == mjJNT_FREE;
+  return free && root != arm_root ? detail::body_name(m, root) : std::string();
+}
+
 /// The obstacles that some link can meet.
 std::vector<StandingSolid> add_scene(const mjModel& m, const GeomGroups& groups,
                                      const GeomSolids& solids, const detail::Meetings& meetings,
@@ -47,6 +56,7 @@ std::vector<StandingSolid> add_scene(const mjModel& m, const GeomGroups& groups,
     const detail::PlacedGeom& placed = groups.obstacles[meeting.obstacle].geoms.front();
     const int index = static_cast<int>(out.scene.solids.size());
     out.scene.solids.push_back(detail::obstacle_of_geom(m, placed));
+    out.scene.solids.back().movable = movable_of(m, placed.geom, groups.root);
     if (m.body_rootid[m.geom_bodyid[placed.geom]] == groups.root) out.standing.push_back(index);
     standing.push_back(solids.standing[meeting.obstacle]);
     standing.back().ignored.resize(groups.links.size());

@@ -27,7 +27,7 @@ class GeomSorter {
         arm_(arm),
         options_(options),
         bodies_(m_, arm, options.rules.attached),
-        filter_(m_, options.rules) {}
+        filter_(m_, arm, options.rules) {}
 
   Result<GeomGroups> run() {
     if (const Result<void> fine = check(); !fine) return fail(fine.error());

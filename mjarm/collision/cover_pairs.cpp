@@ -86,7 +86,7 @@ struct MeetingProof::Search {
 
 MeetingProof::MeetingProof(const mjModel& m, const Arm& arm, const GeomGroups& groups,
                            const GeomSolids& solids, const ContactRules& rules)
-    : m_(m), arm_(arm), groups_(groups), solids_(solids), filter_(m, rules), first_{0} {
+    : m_(m), arm_(arm), groups_(groups), solids_(solids), filter_(m, arm, rules), first_{0} {
   for (const GeomGroup& link : groups.links) first_.push_back(first_.back() + link.geoms.size());
 }
 

@@ -44,7 +44,7 @@ struct ExactChecker::Impl {
         m_wide(*model.raw()),
         sound(check_contact_rules(model, arm, options.rules)),
         bodies(m, arm, sound ? options.rules.attached : std::vector<AttachedBody>()),
-        filter(m, options.rules) {
+        filter(m, arm, options.rules) {
     // The arrays are those of the shared model; only the options of these two heads differ.
     for (mjModel* head : {&m, &m_wide}) {
       head->opt.disableflags &= ~(mjDSBL_CONTACT | mjDSBL_CONSTRAINT | mjDSBL_NATIVECCD);

@@ -32,10 +32,10 @@ struct ArmBodies {
   bool matches = true;        ///< the arm is one of this model
 };
 
-/// Pairs of geoms that ContactRules let touch.
+/// Pairs of geoms that ContactRules let touch, and those that overlap by design.
 class ContactFilter {
  public:
-  ContactFilter(const mjModel& m, const ContactRules& rules);
+  ContactFilter(const mjModel& m, const Arm& arm, const ContactRules& rules);
   [[nodiscard]] bool may_touch(int geom1, int geom2) const;
 
  private:

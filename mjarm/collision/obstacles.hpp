@@ -62,6 +62,8 @@ struct Obstacle {
   std::string name;  ///< for messages; may be empty
   Pose X_WO;
   ObstacleShape shape;
+  std::string movable = {};  ///< body of a free joint that it is a part of, which could be carried
+                             ///< away; mostly empty
 };
 
 /// Points that a camera saw, say: each stands for a ball.

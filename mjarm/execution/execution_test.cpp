@@ -198,6 +198,15 @@ TEST(Execution, TellsTheFirstContactOfTheArmOnly) {
   EXPECT_LT(outcome->first_contact->time, 1.0);
 }
 
+TEST(Execution, WhatOverlapsByDesignIsNoContact) {
+  World world(load_text(small_world("integrator=\"implicitfast\"", "400",
+                                    R"(<geom name="knob" type="sphere" size="0.1" pos="0 0 0.6"
+                                       friction="0 0 0"/>)")));
+  const auto outcome = world.run(there_and_half_back(world.robot.arm), {});
+  ASSERT_TRUE(outcome);
+  EXPECT_FALSE(outcome->first_contact) << outcome->first_contact->contact.second;
+}
+
 TEST(Execution, TheGripperKeepsWhatItWasToldUntilItIsToldAnew) {
   World world(load_shipped("panda"));
   const Gripper gripper = world.robot.arm.gripper.value();

@@ -111,13 +111,15 @@ void ObjectWatch::compare(const Sim& sim, std::size_t move, std::size_t object) 
   if (!seen.at && (off > max_off || turned > max_turn)) seen.at = sim.time();
 }
 
-/// Contacts of the hand with itself and with what it carries at some time, and all that the arm has
-/// no part in. Of what is carried the end tells, when it is known what it was put on.
+/// Contacts of the hand with itself and with what it carries at some time, what overlaps by design,
+/// and all that the arm has no part in. Of what is carried the end tells, when it is known what it
+/// was put on.
 bool ObjectWatch::is_planned(const Contact& contact) const {
   const auto role = [&](int body) { return bodies_.role[static_cast<std::size_t>(body)]; };
   const auto is_arm = [](BodyRole r) { return r == BodyRole::link || r == BodyRole::hand; };
   const BodyRole a = role(contact.body1), b = role(contact.body2);
   if (!is_arm(a) && !is_arm(b)) return true;
+  if (is_by_design(plan_->arms.front(), contact)) return true;
   if (a == BodyRole::hand && b == BodyRole::hand) return true;
   const auto carried = [&](int body) {
     const int object = bodies_.object_of[static_cast<std::size_t>(body)];

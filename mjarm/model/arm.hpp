@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -80,6 +81,27 @@ struct Gripper {
   std::vector<std::string> joints;  ///< names of the joints it moves
 };
 
+/// A geom of a model and its body, by their numbers.
+struct ModelGeom {
+  int geom = -1;
+  int body = -1;
+};
+
+/// Two parts of a model that overlap in every posture: neighbours whose shapes reach into each
+/// other, a link that turns in its foot or in the floor. Whoever wrote the file meant it so.
+struct DesignOverlap {
+  int link = -1;                          ///< number of a body that the arm moves
+  int other = -1;                         ///< of another such body, or of a geom that stands
+  bool stands = false;                    ///< `other` is a geom
+  std::array<std::string, 2> names = {};  ///< of both; of its body where a geom has none
+
+  /// Whether it is between these two.
+  [[nodiscard]] bool is_of(ModelGeom a, ModelGeom b) const {
+    const auto is_other = [this](ModelGeom one) { return other == (stands ? one.geom : one.body); };
+    return (a.body == link && is_other(b)) || (b.body == link && is_other(a));
+  }
+};
+
 /// The arm in a model: joints from base to tip and the fixed tool frame T. A plain value; needs no
 /// MuJoCo. Poses are in the world frame W of the loaded file (for a URDF: its root link).
 struct Arm {
@@ -90,8 +112,15 @@ struct Arm {
   Pose X_JT;        ///< tool frame in the frame of the last joint
   JointVec home;    ///< [rad or m] keyframe `home`, else the middle of the limits
   std::optional<Gripper> gripper;
+  /// What overlaps by design, which is no contact to planning, checks and runs. A simulation pushes
+  /// such parts apart all the same, as the file has it.
+  std::vector<DesignOverlap> overlapping = {};
 
   [[nodiscard]] int dof() const { return static_cast<int>(joints.size()); }
+  [[nodiscard]] bool overlap_by_design(ModelGeom a, ModelGeom b) const {
+    return std::ranges::any_of(overlapping,
+                               [&](const DesignOverlap& pair) { return pair.is_of(a, b); });
+  }
 };
 
 }  // namespace mjarm

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Names of the codes in the order of the enum.
-constexpr std::array<std::string_view, 48> kNames = {"not_loadable",
+constexpr std::array<std::string_view, 49> kNames = {"not_loadable",
                                                      "name_doubled",
                                                      "inertia_triangle",
                                                      "inertia_not_positive",
@@ -60,8 +60,10 @@ constexpr std::array<std::string_view, 48> kNames = {"not_loadable",
                                                      "servo_unstable",
                                                      "servo_undamped",
                                                      "timestep_large",
-                                                     "gravity_odd"};
-static_assert(kNames[static_cast<std::size_t>(CheckCode::gravity_odd)] == "gravity_odd");
+                                                     "gravity_odd",
+                                                     "overlap_by_design"};
+static_assert(kNames[static_cast<std::size_t>(CheckCode::overlap_by_design)] ==
+              "overlap_by_design");
 
 /// `FILE: what` or `FILE:LINE: <element>: what` taken apart.
 Finding finding_of(const Error& error, const fs::path& file) {

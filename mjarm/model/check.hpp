@@ -69,6 +69,7 @@ enum class CheckCode {
   servo_undamped,          ///< a servo without any damping
   timestep_large,          ///< a time step above 10 ms
   gravity_odd,             ///< gravity that is not about 9.8 m/s^2 along -z
+  overlap_by_design,       ///< parts of the arm that overlap, or are sunk in what stands, always
 };
 /// The code as a word, such as `inertia_triangle`.
 [[nodiscard]] std::string_view name(CheckCode code) noexcept;

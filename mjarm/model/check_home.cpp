@@ -88,6 +88,10 @@ void report_contacts(const CheckContext& context, const mjData* d, const std::ve
     if (contact.dist > -kTouch || contact.geom[0] < 0 || contact.geom[1] < 0) continue;
     int bodies[2] = {m->geom_bodyid[contact.geom[0]], m->geom_bodyid[contact.geom[1]]};
     if (!moved[bodies[0]] && !moved[bodies[1]]) continue;
+    if (context.arm->overlap_by_design({contact.geom[0], bodies[0]},
+                                       {contact.geom[1], bodies[1]})) {
+      continue;
+    }
     if (!told.insert(std::minmax(bodies[0], bodies[1])).second) continue;
     // The outer one touches the inner one; nothing that stands still touches the arm.
     if (!moved[bodies[0]] || (moved[bodies[1]] && bodies[1] > bodies[0])) {
@@ -100,6 +104,14 @@ void report_contacts(const CheckContext& context, const mjData* d, const std::ve
                 context.description.body(object_name(m, mjOBJ_BODY, bodies[0])),
                 text(self ? msg::check_self_contact : msg::check_contact,
                      object_name(m, mjOBJ_BODY, bodies[1]), -1000 * contact.dist));
+  }
+}
+
+void report_design(const CheckContext& context) {
+  for (const DesignOverlap& pair : context.arm->overlapping) {
+    context.add(CheckCode::overlap_by_design, Grade::warning,
+                context.description.body(pair.names[0]),
+                text(msg::check_overlap_by_design, pair.names[1]));
   }
 }
 
@@ -127,6 +139,7 @@ void check_home(const CheckContext& context) {
   const int first = m->jnt_bodyid[joint];
   const std::vector<char> moved = moved_bodies(m, first);
   check_collision_shapes(context, moved);
+  report_design(context);
   const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(m), mj_deleteData);
   const std::vector<double> qpos = home_qpos(context);
   std::copy(qpos.begin(), qpos.end(), data->qpos);

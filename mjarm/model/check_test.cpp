@@ -22,7 +22,7 @@ const Finding* find(const CheckReport& report, CheckCode code) {
 
 TEST(CheckModel, NamesOfCodesAreWordsAndDiffer) {
   std::set<std::string_view> names;
-  for (int i = 0; i <= static_cast<int>(CheckCode::gravity_odd); ++i) {
+  for (int i = 0; i <= static_cast<int>(CheckCode::overlap_by_design); ++i) {
     const std::string_view word = name(static_cast<CheckCode>(i));
     EXPECT_FALSE(word.empty());
     EXPECT_TRUE(names.insert(word).second) << word;

@@ -8,6 +8,7 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/design_overlaps_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -153,6 +154,7 @@ Result<Arm> find_arm(const Model& model, const ArmOptions& options) {
   fill_limits(model, joints, arm);
   arm.home = home_of(m, arm);
   arm.gripper = find_gripper(m, joints);
+  arm.overlapping = design_overlaps(m, joints);
   return arm;
 }
 

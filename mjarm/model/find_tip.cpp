@@ -3,6 +3,7 @@
 #include <set>
 
 #include "mjarm/core/messages/model.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 
@@ -190,12 +191,6 @@ std::vector<std::string> tips_of(const mjModel* m, int body) {
   return last;
 }
 
-std::string join(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all;
-}
-
 }  // namespace
 
 Result<TipFrame> find_tip(const Model& model) {
@@ -209,9 +204,9 @@ Result<TipFrame> find_tip(const Model& model) {
     tips.insert(tips.end(), some.begin(), some.end());
   }
   if (arms.size() > 1) {
-    return fail(Errc::usage, text(msg::model_many_arms, file, arms.size(), join(tips)));
+    return fail(Errc::usage, text(msg::model_many_arms, file, arms.size(), listed(tips)));
   }
-  if (tips.size() > 1) return fail(Errc::usage, text(msg::model_many_tips, file, join(tips)));
+  if (tips.size() > 1) return fail(Errc::usage, text(msg::model_many_tips, file, listed(tips)));
   return find_frame(model, tips.front());
 }
 

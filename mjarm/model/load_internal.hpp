@@ -59,11 +59,6 @@ using BodyPairs = std::vector<std::pair<std::string, std::string>>;
 /// @param apart  bodies that shall not collide.
 void finish_urdf(mjSpec* spec, const BodyPairs& apart);
 
-/// Neighbouring shapes of a URDF overlap where they are joined, and convex hulls of meshes more so.
-/// These are the pairs that touch in the initial posture and in each of many drawn within the
-/// limits.
-[[nodiscard]] BodyPairs always_touching(const mjModel* model);
-
 /// Parses, compiles and simulates one step; MuJoCo's complaint becomes one line
 /// `FILE:LINE: <element>: what`. What is not trusted is compiled in a process of its own.
 [[nodiscard]] Result<LoadedModel> compile_spec(const SpecSource& source);

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/model.hpp"
+#include "mjarm/model/design_overlaps_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 

@@ -36,6 +36,17 @@ std::string overlap(const Msg& message, const SphereClearance& pair, const FastR
               other_name(pair, robot, obstacles), -1e3 * pair.distance);
 }
 
+/// What blocks the start; where that could be carried away, what to do about it.
+std::string start_hit(const SphereClearance& pair, const FastRobot& robot,
+                      const Obstacles& obstacles) {
+  const std::string what = overlap(msg::planning_start_hit, pair, robot, obstacles);
+  const auto solid = static_cast<std::size_t>(pair.obstacle);
+  if (pair.obstacle < 0 || solid >= obstacles.solids.size()) return what;
+  const std::string& body = obstacles.solids[solid].movable;
+  if (body.empty()) return what;
+  return text(msg::planning_start_movable, what, body, link_name(robot, pair.link));
+}
+
 }  // namespace
 
 std::string describe(const PlanFailure& failure, const FastRobot& robot,
@@ -51,7 +62,7 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
     case PlanErrc::goals_outside:
       return outside(msg::planning_goals_outside, failure, robot.arm());
     case PlanErrc::start_hit:
-      return overlap(msg::planning_start_hit, failure.pair, robot, obstacles);
+      return start_hit(failure.pair, robot, obstacles);
     case PlanErrc::goals_hit:
       return overlap(msg::planning_goals_hit, failure.pair, robot, obstacles);
     case PlanErrc::bad_tilt:

@@ -49,6 +49,8 @@ std::vector<Part> parts_of(const mjModel& m, const Arm& arm) {
 /// What `count_contacts` reads and writes. Other threads begin with `take` and end with `give`:
 /// MuJoCo's own locks order the same, but a thread sanitizer does not see into its library.
 struct ContactCount {
+  const mjModel& m;
+  const Arm& arm;
   const std::vector<Part>& part_of_geom;
   std::vector<int>& contacts;
   std::atomic<int> handed_over = 0;
@@ -57,17 +59,21 @@ struct ContactCount {
   void take() const noexcept { (void)handed_over.load(std::memory_order_acquire); }
 };
 
-int contacts_that_count(const mjData& d, const std::vector<Part>& part_of_geom) {
+int contacts_that_count(const mjData& d, const ContactCount& rules) {
   int count = 0;
   for (int i = 0; i < d.ncon; ++i) {
     const mjContact& contact = d.contact[i];
     if (contact.exclude != 0 || contact.dist > contact.includemargin) continue;
     const auto part = [&](int side) {
-      return contact.geom[side] >= 0 ? part_of_geom[contact.geom[side]] : Part::surroundings;
+      return contact.geom[side] >= 0 ? rules.part_of_geom[contact.geom[side]] : Part::surroundings;
+    };
+    const auto geom = [&](int side) {
+      const int id = contact.geom[side];
+      return ModelGeom{id, id >= 0 ? rules.m.geom_bodyid[id] : -1};
     };
     const bool fingers = part(0) == Part::finger && part(1) == Part::finger;
     const bool arm = part(0) != Part::surroundings || part(1) != Part::surroundings;
-    if (arm && !fingers) ++count;
+    if (arm && !fingers && !rules.arm.overlap_by_design(geom(0), geom(1))) ++count;
   }
   return count;
 }
@@ -75,9 +81,10 @@ int contacts_that_count(const mjData& d, const std::vector<Part>& part_of_geom) 
 }  // namespace
 
 struct BatchSim::Impl {
-  explicit Impl(const Model& source) : model(source) {}
+  Impl(const Model& source, const Arm& whose) : model(source), arm(whose) {}
 
   Model model;
+  Arm arm;
   int count = 0;
   int nstate = 0;
   std::unique_ptr<mjBatch, DeleteBatch> batch;
@@ -104,8 +111,8 @@ struct BatchSim::Impl {
   [[nodiscard]] const mjModel& m() const { return *model.raw(); }
   /// Where the row of a world begins.
   [[nodiscard]] std::ptrdiff_t at(int world) const { return std::ptrdiff_t{world} * nstate; }
-  [[nodiscard]] Result<void> make(const Arm& arm, int worlds, int threads);
-  [[nodiscard]] Result<void> bind(const Arm& arm);
+  [[nodiscard]] Result<void> make(int worlds, int threads);
+  [[nodiscard]] Result<void> bind();
   int call(int (*work)(mjBatch*, const int*, int, int), std::span<const int> worlds, int argument);
   void count_contacts(std::span<const int> worlds);
   [[nodiscard]] std::string failure(int world) const;
@@ -114,7 +121,7 @@ struct BatchSim::Impl {
   void find_live();
 };
 
-Result<void> BatchSim::Impl::make(const Arm& arm, int worlds, int threads) {
+Result<void> BatchSim::Impl::make(int worlds, int threads) {
   if (worlds < 1 || worlds > kMaxWorlds) {
     return fail(Errc::usage, text(msg::sim_batch_count, worlds, kMaxWorlds));
   }
@@ -136,10 +143,10 @@ Result<void> BatchSim::Impl::make(const Arm& arm, int worlds, int threads) {
     return fail(Errc::impossible, text(msg::sim_batch_refused, model.file().string(),
                                        said.failed ? said.error : std::string(why.data())));
   }
-  return bind(arm);
+  return bind();
 }
 
-Result<void> BatchSim::Impl::bind(const Arm& arm) {
+Result<void> BatchSim::Impl::bind() {
   part_of_geom = parts_of(m(), arm);
   contacts.assign(count, 0);
   failed.assign(count, 0);
@@ -198,14 +205,14 @@ void BatchSim::Impl::count_contacts(std::span<const int> worlds) {
     if (ncon[world] > 0) touched.push_back(world);
   }
   if (touched.empty()) return;
-  ContactCount job{part_of_geom, contacts};
+  ContactCount job{m(), arm, part_of_geom, contacts};
   job.give();
   mjb_apply(
       batch.get(), touched.data(), static_cast<int>(touched.size()),
       [](const mjModel*, mjData* d, int world, void* context) {
         auto& counting = *static_cast<ContactCount*>(context);
         counting.take();
-        counting.contacts[world] = contacts_that_count(*d, counting.part_of_geom);
+        counting.contacts[world] = contacts_that_count(*d, counting);
         counting.give();
       },
       &job, 0);
@@ -261,8 +268,8 @@ BatchSim::BatchSim(BatchSim&&) noexcept = default;
 BatchSim& BatchSim::operator=(BatchSim&&) noexcept = default;
 
 Result<BatchSim> BatchSim::create(const Model& model, const Arm& arm, int count, int threads) {
-  auto impl = std::make_unique<Impl>(model);
-  if (auto made = impl->make(arm, count, threads); !made) return fail(std::move(made.error()));
+  auto impl = std::make_unique<Impl>(model, arm);
+  if (auto made = impl->make(count, threads); !made) return fail(std::move(made.error()));
   return BatchSim(std::move(impl));
 }
 

@@ -59,7 +59,7 @@ class BatchSim {
   [[nodiscard]] std::span<const double> bias(int world) const noexcept;
   [[nodiscard]] Pose tool(int world) const noexcept;  ///< X_WT of the arm's tool frame
   /// Contacts of what the arm moves, with the world or with itself; fingers of the gripper that
-  /// touch each other do not count.
+  /// touch each other do not count, nor does what overlaps by design.
   [[nodiscard]] int contacts(int world) const noexcept;
   [[nodiscard]] bool failed(int world) const noexcept;
   /// Why it failed, naming time and joint; empty for a world that did not.

@@ -99,7 +99,8 @@ struct Sim::Impl {
       if (!counts(contact.geom[0]) && !counts(contact.geom[1])) continue;
       const auto body = [&](int geom) { return geom >= 0 ? m().geom_bodyid[geom] : -1; };
       add_contact(all, {raw::geom_name(m(), contact.geom[0]), raw::geom_name(m(), contact.geom[1]),
-                        -contact.dist, body(contact.geom[0]), body(contact.geom[1])});
+                        -contact.dist, body(contact.geom[0]), body(contact.geom[1]),
+                        contact.geom[0], contact.geom[1]});
     }
     return all;
   }
@@ -275,10 +276,16 @@ Pose Sim::body_pose(int body) const {
   return {Eigen::Vector3d(d.xpos + 3 * body), Eigen::Map<const Rows>(d.xmat + 9 * body)};
 }
 
+bool is_by_design(const Arm& arm, const Contact& contact) {
+  return arm.overlap_by_design({contact.geom1, contact.body1}, {contact.geom2, contact.body2});
+}
+
 std::vector<Contact> Sim::contacts() const { return impl_->contacts(0); }
 
 std::vector<Contact> Sim::contacts(const Arm& arm) const {
-  return impl_->contacts(impl_->m().dof_bodyid[arm.joints.front().dof]);
+  std::vector<Contact> out = impl_->contacts(impl_->m().dof_bodyid[arm.joints.front().dof]);
+  std::erase_if(out, [&](const Contact& contact) { return is_by_design(arm, contact); });
+  return out;
 }
 
 Snapshot Sim::snapshot() const {

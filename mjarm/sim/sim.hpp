@@ -21,7 +21,12 @@ struct Contact {
   double depth = 0;  ///< [m] > 0 where they overlap, of the deepest point
   int body1 = -1;    ///< the body of `first` in the model; -1 where it is no geom
   int body2 = -1;    ///< that of `second`
+  int geom1 = -1;    ///< `first` itself in the model; -1 where it is no geom
+  int geom2 = -1;    ///< `second`
 };
+
+/// Whether it is between parts that overlap in every posture: Arm::overlapping.
+[[nodiscard]] bool is_by_design(const Arm& arm, const Contact& contact);
 
 /// A copy of the full state, for drawing and for going back; holds no MuJoCo types.
 struct Snapshot {
@@ -83,7 +88,8 @@ class Sim {
   [[nodiscard]] Pose tool(const Arm& arm) const;             ///< X_WT as simulated
   [[nodiscard]] Pose body_pose(int body) const;              ///< X_WB of a body, by its number
   [[nodiscard]] std::vector<Contact> contacts() const;
-  /// Contacts of what the arm moves (links, gripper), with the world or with itself.
+  /// Contacts of what the arm moves (links, gripper), with the world or with itself, but for what
+  /// overlaps by design.
   [[nodiscard]] std::vector<Contact> contacts(const Arm& arm) const;
   [[nodiscard]] Snapshot snapshot() const;
 

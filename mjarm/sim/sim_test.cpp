@@ -259,6 +259,24 @@ TEST(Sim, NamesContactsAndTellsTheArmsFromOthers) {
   EXPECT_GT(touching[0].depth, 0.01);
 }
 
+TEST(Sim, WhatOverlapsByDesignIsNoContactOfTheArm) {
+  const Loaded robot =
+      load_text(small_world("integrator=\"implicitfast\"", "400",
+                            R"(<geom name="knob" type="sphere" size="0.1" pos="0 0 0.6"/>)"));
+  Sim sim(robot.model);
+  sim.place(robot.arm, std::vector<double>{-0.5, 1});
+  const auto all = sim.contacts();
+  EXPECT_TRUE(std::ranges::any_of(all, [&](const Contact& contact) {
+    return contact.first == "knob" && contact.second == "upper" && is_by_design(robot.arm, contact);
+  })) << "the simulation has it";
+  EXPECT_TRUE(sim.contacts(robot.arm).empty());
+  sim.place(robot.arm, std::vector<double>{-0.5, 3});
+  const auto folded = sim.contacts(robot.arm);
+  EXPECT_TRUE(std::ranges::any_of(folded, [](const Contact& contact) {
+    return contact.first == "knob" && contact.second == "lower";
+  })) << "what meets it in some postures still counts";
+}
+
 /// A light joint under a servo far too stiff for the time step.
 std::string exploding_world(const std::string& flag) {
   return R"(<mujoco><option timestep="0.05" integrator="Euler"><flag )" + flag + R"(/></option>
