@@ -1,5 +1,6 @@
 #include "apps/bench/plan.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "apps/bench/scratch_folder.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/units.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -22,6 +24,7 @@ struct Options : ReportOptions {
 };
 
 const std::vector<std::string> kArms = {"panda", "ur5"};
+constexpr const char* kCrowdedArm = "panda";
 
 /// What is asked for, read from the options.
 struct Job {
@@ -32,6 +35,26 @@ struct Job {
   PlanPeers peers = {};
   bool timing = true;
 };
+
+/// @param set  of `--set`.
+Result<void> add_set(const std::string& set, Job& job) {
+  const std::vector<std::string> names = {kArms[0], kArms[1], "anytime", "scaling", "near"};
+  const Result<std::size_t> asked = parse_choice("--set", set, names);
+  if (!asked) return fail(asked.error());
+  if (set == "anytime" && !job.timing) {
+    return fail(Errc::usage, text(msg::app_exclusive_options, "--set anytime", "--no-timing"));
+  }
+  bool* const flag = set == "anytime"   ? &job.anytime
+                     : set == "scaling" ? &job.scaling
+                     : set == "near"    ? &job.near
+                                        : nullptr;
+  if (flag != nullptr) {
+    *flag = true;
+  } else if (std::ranges::count(job.arms, set) == 0) {
+    job.arms.push_back(set);
+  }
+  return {};
+}
 
 Result<Job> job_of(const Options& options) {
   constexpr int kMaxEvery = 1000, kMaxGoals = 10'000;
@@ -48,17 +71,13 @@ Result<Job> job_of(const Options& options) {
   job.peers = {.environment = options.peers, .every = *every};
   job.anytime = job.timing;  // what it finds depends on the clock
   if (options.set.empty()) return job;
-  const std::vector<std::string> names = {kArms[0], kArms[1], "anytime", "scaling", "near"};
-  const Result<std::size_t> asked = parse_choice("--set", options.set, names);
-  if (!asked) return fail(asked.error());
-  job.anytime = options.set == "anytime";
-  job.scaling = options.set == "scaling";
-  job.near = options.set == "near";
-  if (job.anytime && !job.timing) {
-    return fail(Errc::usage, text(msg::app_exclusive_options, "--set anytime", "--no-timing"));
-  }
   job.arms.clear();
-  if (!job.anytime && !job.scaling && !job.near) job.arms = {options.set};
+  job.anytime = job.scaling = job.near = false;
+  std::vector<std::string_view> sets = split_list(options.set);
+  if (sets.empty()) sets.emplace_back(options.set);  // blanks are no set
+  for (const std::string_view set : sets) {
+    if (auto added = add_set(std::string(set), job); !added) return fail(std::move(added.error()));
+  }
   return job;
 }
 
@@ -83,12 +102,16 @@ Result<void> prepare_near(const Options& options, const Job& job, Measured& all)
   return {};
 }
 
+bool is_solved(const Job& job, const PlanSet& set) {
+  return std::ranges::count(job.arms, set.name) > 0;
+}
+
 /// Reads everything before anything is measured.
 Result<Measured> prepare(const Options& options, const Job& job) {
   Measured all;
   std::vector<std::string> arms = job.arms;
-  if (job.anytime) arms = kArms;
-  if (job.scaling) arms.push_back(kArms.front());
+  if (job.anytime) arms.insert(arms.end(), kArms.begin(), kArms.end());
+  if (job.scaling) arms.push_back(kCrowdedArm);
   for (const std::string& arm : arms) {
     if (std::ranges::count(all.sets, arm, &PlanSet::name) > 0) continue;
     Result<PlanSet> set = load_plan_set(options.data, arm);
@@ -99,7 +122,8 @@ Result<Measured> prepare(const Options& options, const Job& job) {
     if (auto drawn = prepare_near(options, job, all); !drawn) return fail(std::move(drawn.error()));
   }
   if (!job.scaling) return all;
-  auto crowds = make_crowded_sets(all.sets.front(), job.seed);
+  auto crowds =
+      make_crowded_sets(*std::ranges::find(all.sets, kCrowdedArm, &PlanSet::name), job.seed);
   if (!crowds) return fail(std::move(crowds.error()));
   all.crowds = std::move(*crowds);
   return all;
@@ -109,13 +133,13 @@ Result<void> measure(const Job& job, Measured& all) {
   constexpr std::uint64_t kBudgets = 3;
   std::uint64_t steps = all.crowds.size();
   for (const PlanSet& set : all.sets) {
-    steps += job.arms.empty() ? 0 : scenes_of(set).size();
+    steps += is_solved(job, set) ? scenes_of(set).size() : 0;
     steps += job.anytime ? kBudgets : 0;
   }
   for (const NearSet& set : all.near) steps += set.scenes.size();
   Progress progress(text(msg::bench_plan_progress), steps);
   for (const PlanSet& set : all.sets) {
-    if (!job.arms.empty()) {
+    if (is_solved(job, set)) {
       (void)wants_peers(job.peers.environment.string(), set.name);
       auto table = run_plan_set(set, job.seed, job.peers, progress);
       if (!table) return fail(std::move(table.error()));
@@ -148,7 +172,7 @@ std::vector<BenchResult> results_of(const Measured& all, bool timing) {
     results.push_back(plan_result(name, table, timing));
   }
   if (!all.crowds.empty()) {
-    const std::string name = text(msg::bench_plan_scaling, all.sets.front().name);
+    const std::string name = text(msg::bench_plan_scaling, kCrowdedArm);
     results.push_back(plan_result(name, all.crowded, timing));
   }
   return results;

@@ -50,7 +50,6 @@ struct NearProblem {
   std::size_t scene = 0;          ///< index into NearSet::scenes
   JointVec start, goal;           ///< (dof,); a pose is met at `goal`
   std::optional<Pose> X_WT = {};  ///< the pose that is asked for
-  double distance = 0;            ///< [m] of the nearest thing at `goal`
 };
 
 /// A robot amid things.

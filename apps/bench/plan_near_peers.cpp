@@ -1,4 +1,4 @@
-#include <map>
+#include <algorithm>
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
@@ -62,7 +62,7 @@ std::vector<SolvedProblem> near_answers_in(const NearSet& set, const BenchEntry&
   if (entry.us.size() != ids.size()) broken("us");
   std::vector<double> world;
   if (line.contains("world")) world = numbers_in(line, "world");
-  if (!world.empty() && world.size() != ids.size()) broken("world");
+  if (line.contains("world") && world.size() != ids.size()) broken("world");
   std::vector<SolvedProblem> answers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const auto problem = std::ranges::find_if(set.problems, [&](const NearProblem& known) {

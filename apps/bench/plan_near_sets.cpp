@@ -92,9 +92,8 @@ Result<NearProblem> draw_goal(const DrawnScene& drawn, ExactChecker& checker, st
     if (!is_above(arm, q, drawn.level)) continue;
     const auto report = checker.check(as_span(q));
     if (!report) return fail(report.error());
-    const std::optional<double> distance = distance_of_thing(*report);
-    if (!report->free || !distance || *distance < kNearest || *distance > kFarthest) continue;
-    return NearProblem{.id = std::move(id), .start = arm.home, .goal = q, .distance = *distance};
+    if (!report->free || distance_of_thing(*report).value_or(0) < kNearest) continue;
+    return NearProblem{.id = std::move(id), .start = arm.home, .goal = q};
   }
   return fail(Errc::impossible, text(msg::bench_plan_near_no_room, arm.name, id));
 }
@@ -125,7 +124,9 @@ Result<void> draw_problems(const NearRobot& robot, std::size_t index, std::size_
 Result<std::vector<NearSet>> draw_near_sets(const std::vector<NearRobot>& robots, int goals,
                                             std::uint64_t seed) {
   const auto all = static_cast<std::size_t>(goals);
-  const auto before = [&](std::size_t scene) { return all * scene / (kAllRobots * kScenes); };
+  // Those of the first scenes, rounded up: the first goals are there whatever robots are left out.
+  constexpr std::size_t kAll = kAllRobots * kScenes;
+  const auto before = [&](std::size_t scene) { return (all * scene + kAll - 1) / kAll; };
   std::vector<NearSet> sets;
   for (std::size_t robot = 0; robot < robots.size(); ++robot) {
     NearSet set{robots[robot], {}, {}};

@@ -42,15 +42,15 @@ def last_body(model, joints):
     return model.body(int(model.jnt_bodyid[model.joint(joints[-1]).id])).name
 
 
-def sscbirrt(job):
-    """On its own copy of MuJoCo's geometry, with its defaults; a pose is a region without room, solved by ssik."""
+def sscbirrt(job, **settings):
+    """On its own copy of MuJoCo's geometry, else with its defaults; a pose is a region without room, solved by ssik."""
     import numpy
     import sscbirrt.mujoco as library
     from sscbirrt import CBiRRTConfig
     from sscbirrt.backends.native_mujoco import NativeScene
     from tsr import TSR
 
-    config = CBiRRTConfig(timeout=job["limit"])
+    config = CBiRRTConfig(timeout=job["limit"], **settings)
 
     def open_world(file):
         model, data = load(file)
@@ -135,6 +135,7 @@ def ompl(job, spacing=None):
 
 PEERS = {
     "sscbirrt": (sscbirrt, "sscbirrt"),
+    "sscbirrt, 0.01 rad": (lambda job: sscbirrt(job, edge_resolution=0.01), "sscbirrt"),
     "OMPL + MuJoCo": (ompl, "ompl"),
     "OMPL + MuJoCo, 0.01 rad": (lambda job: ompl(job, 0.01), "ompl"),
 }
@@ -163,15 +164,15 @@ def run_peer(job, name, maker, row):
     open_world, plan = maker(job)
     cases = {"joints": Answers(), "pose": Answers(), "first": Answers()}
     errors = {}
-    asked = 0
+    met = {"joints": 0, "pose": 0}  # problems, tried or not
 
     def timed(case, opened_world, problem, start, **clocks):
         try:
             path = plan(opened_world, problem)
             cases[case].add(problem, microseconds_since(start), path, **clocks)
-        except Exception as error:  # what a peer cannot plan has no path; why is told once a case
+        except Exception as error:  # no path; why is told once a case
             cases[case].add(problem, microseconds_since(start), None, **clocks)
-            errors.setdefault(case, str(error).splitlines()[0] if str(error) else type(error).__name__)
+            errors.setdefault(case, (str(error).splitlines() or [type(error).__name__])[0])
 
     open_world(job["scenes"][0]["file"])  # lazy imports
     for scene in job["scenes"]:
@@ -180,10 +181,10 @@ def run_peer(job, name, maker, row):
         opened = microseconds_since(start)
         timed("first", world, scene["problems"][0], start, world=opened)
         for problem in scene["problems"]:
-            wanted = name not in SAMPLED or asked % job["every"] == 0
-            asked += 1
-            if wanted:
-                timed("joints" if "goal" in problem else "pose", world, problem, time.perf_counter_ns())
+            case = "joints" if "goal" in problem else "pose"
+            if name not in SAMPLED or met[case] % job["every"] == 0:
+                timed(case, world, problem, time.perf_counter_ns())
+            met[case] += 1
     rows = [row | {"set": case} | answers.row for case, answers in cases.items() if answers.row["problems"]]
     return rows + [row | {"set": case, "error": error[:80]} for case, error in errors.items()]
 
