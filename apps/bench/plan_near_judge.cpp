@@ -46,6 +46,33 @@ Result<PathFault> fault_at_corners(const NearSet& set, const NearProblem& proble
   return inside ? PathFault::none : PathFault::limits;
 }
 
+/// Where a path first touches something; nothing where it does not.
+Result<std::optional<ContactPoint>> first_touch(ExactChecker& exact,
+                                                std::span<const std::vector<double>> path) {
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const auto touched = first_contact(exact, path[i - 1], path[i], kContactSpacing);
+    if (!touched) return fail(touched.error());
+    if (*touched) return (*touched)->contact;
+  }
+  return std::optional<ContactPoint>();
+}
+
+/// [m] of the deepest contact on a path.
+Result<double> greatest_depth(ExactChecker& exact, std::span<const std::vector<double>> path) {
+  double depth = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const JointVec from = joint_vec(path[i - 1]), way = joint_vec(path[i]) - from;
+    const int steps = std::max(1, static_cast<int>(std::ceil(way.norm() / kContactSpacing)));
+    for (int k = 0; k <= steps; ++k) {
+      const auto report =
+          exact.check(as_span(JointVec(from + way * (static_cast<double>(k) / steps))));
+      if (!report) return fail(report.error());
+      if (!report->free) depth = std::max(depth, report->contacts.front().depth);
+    }
+  }
+  return depth;
+}
+
 }  // namespace
 
 Result<PathVerdict> judge_near_path(const NearSet& set, const NearProblem& problem,
@@ -58,16 +85,18 @@ Result<PathVerdict> judge_near_path(const NearSet& set, const NearProblem& probl
   if (verdict.fault == PathFault::shape) return verdict;
   for (std::size_t i = 1; i < path.size(); ++i) {
     verdict.cost += (joint_vec(path[i]) - joint_vec(path[i - 1])).norm();
-    if (verdict.depth > 0) continue;
-    const auto touched = first_contact(exact, path[i - 1], path[i], kContactSpacing);
-    if (!touched) return fail(touched.error());
-    if (!*touched) continue;
-    const ContactPoint& contact = (*touched)->contact;
-    verdict.depth = contact.depth;
-    if (verdict.fault != PathFault::none) continue;
-    const bool world = contact.pair.body1 == "world" || contact.pair.body2 == "world";
+  }
+  const auto touched = first_touch(exact, path);
+  if (!touched) return fail(touched.error());
+  if (!*touched) return verdict;
+  if (verdict.fault == PathFault::none) {
+    const GeomPair& pair = (*touched)->pair;
+    const bool world = pair.body1 == "world" || pair.body2 == "world";
     verdict.fault = world ? PathFault::obstacle : PathFault::self;
   }
+  const Result<double> depth = greatest_depth(exact, path);
+  if (!depth) return fail(depth.error());
+  verdict.depth = *depth;
   return verdict;
 }
 
