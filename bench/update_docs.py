@@ -1,10 +1,11 @@
 """Brings the tables of docs/benchmarks.md up to date.
 
-Usage: update_docs.py [ik|path|plan|time|control|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
+Usage: update_docs.py [ik|path|plan|near|time|control|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
 update_docs.py ik build/release/bin/mjarm --data cases --peers .venv
 update_docs.py plan build/release/bin/mjarm --data motionbenchmaker --peers .venv
+update_docs.py near build/release/bin/mjarm --data FOLDER --peers .venv-near
 update_docs.py rl build/release/bin/mjarm --peers .venv-rl
-Without a suite all but plan and rl run with the same arguments, where --data SUITE=DIR names a folder for one suite.
+Without a suite all but plan, near and rl run with the same arguments, where --data SUITE=DIR names a folder for one suite.
 """
 
 import pathlib
@@ -14,7 +15,8 @@ import sys
 import tempfile
 
 SUITES = ("ik", "path", "time", "control")
-PICTURES = {"plan": "bench_plan", "rl": "curves"}  # drawn by suites that run by themselves only
+PICTURES = {"plan": "bench_plan", "near": "bench_plan", "rl": "curves"}  # drawn by suites that run by themselves only
+SUITE_OF = {"plan": ("plan", "--set", "panda,ur5,anytime,scaling"), "near": ("plan", "--set", "near")}
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 
 
@@ -36,7 +38,7 @@ def update(suite, program, arguments):
     begin, end = f"<!-- {suite}: begin -->\n", f"<!-- {suite}: end -->\n"
     page = DOCS / "benchmarks.md"
     own = [] if suite == "control" else arguments_of(suite, arguments)  # it takes neither cases nor peers
-    command = [program, "--lang", "en", "bench", suite, *own]
+    command = [program, "--lang", "en", "bench", *SUITE_OF.get(suite, (suite,)), *own]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(done.returncode)

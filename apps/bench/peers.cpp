@@ -5,8 +5,8 @@
 
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robots.hpp"
+#include "apps/bench/scratch_folder.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/share.hpp"
@@ -15,25 +15,6 @@ namespace mjarm::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder of its own that goes with this object.
-class ScratchFolder {
- public:
-  ScratchFolder() : path_(temp_directory() / ("mjarm_bench_" + std::to_string(process_id()))) {
-    std::error_code ignored;
-    fs::create_directories(path_, ignored);
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 fs::path python_of(const fs::path& environment) { return environment / "bin" / "python"; }
 
@@ -147,7 +128,7 @@ Result<void> run_peers(const fs::path& environment, const std::string& suite, Js
                        const TakeAnswer& take) {
   const Result<fs::path> script = find_script(suite);
   if (!script) return fail(script.error());
-  const ScratchFolder folder;
+  const ScratchFolder folder("bench");
   const fs::path job_file = folder.path() / "job.json";
   const fs::path answer_file = folder.path() / "answer.jsonl";
   job.set("folder", folder.path().string());

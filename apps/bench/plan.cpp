@@ -1,5 +1,6 @@
 #include "apps/bench/plan.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -7,50 +8,76 @@
 
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
+#include "apps/bench/plan_near.hpp"
+#include "apps/bench/scratch_folder.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/units.hpp"
 
 namespace mjarm::app {
 namespace {
 
 struct Options : ReportOptions {
-  std::string set, data, peers, peer_every = "10", seed = "1", out = "mjarm-out/bench-plan";
+  std::string set, data, peers, peer_every = "10", goals = "200", seed = "1",
+                                out = "mjarm-out/bench-plan";
   Replace replace;
 };
 
 const std::vector<std::string> kArms = {"panda", "ur5"};
+constexpr const char* kCrowdedArm = "panda";
 
 /// What is asked for, read from the options.
 struct Job {
   std::vector<std::string> arms = kArms;  ///< whose problems are solved
-  bool anytime = true, scaling = true;
+  bool anytime = true, scaling = true, near = true;
+  int goals = 200;  ///< of near
   std::uint64_t seed = 1;
   PlanPeers peers = {};
   bool timing = true;
 };
 
+/// @param set  of `--set`.
+Result<void> add_set(const std::string& set, Job& job) {
+  const std::vector<std::string> names = {kArms[0], kArms[1], "anytime", "scaling", "near"};
+  const Result<std::size_t> asked = parse_choice("--set", set, names);
+  if (!asked) return fail(asked.error());
+  if (set == "anytime" && !job.timing) {
+    return fail(Errc::usage, text(msg::app_exclusive_options, "--set anytime", "--no-timing"));
+  }
+  bool* const flag = set == "anytime"   ? &job.anytime
+                     : set == "scaling" ? &job.scaling
+                     : set == "near"    ? &job.near
+                                        : nullptr;
+  if (flag != nullptr) {
+    *flag = true;
+  } else if (std::ranges::count(job.arms, set) == 0) {
+    job.arms.push_back(set);
+  }
+  return {};
+}
+
 Result<Job> job_of(const Options& options) {
-  constexpr int kMaxEvery = 1000;
+  constexpr int kMaxEvery = 1000, kMaxGoals = 10'000;
   Job job{.timing = !options.no_timing};
   const auto seed = parse_whole("--seed", options.seed);
   if (!seed) return fail(seed.error());
   const Result<int> every = parse_count("--peer-every", options.peer_every, kMaxEvery);
   if (!every) return fail(every.error());
+  const Result<int> goals = parse_count("--goals", options.goals, kMaxGoals);
+  if (!goals) return fail(goals.error());
   if (Result<void> there = check_peers(options.peers); !there) return fail(there.error());
   job.seed = *seed;
+  job.goals = *goals;
   job.peers = {.environment = options.peers, .every = *every};
   job.anytime = job.timing;  // what it finds depends on the clock
   if (options.set.empty()) return job;
-  const std::vector<std::string> names = {kArms[0], kArms[1], "anytime", "scaling"};
-  const Result<std::size_t> asked = parse_choice("--set", options.set, names);
-  if (!asked) return fail(asked.error());
-  job.anytime = options.set == "anytime";
-  job.scaling = options.set == "scaling";
-  if (job.anytime && !job.timing) {
-    return fail(Errc::usage, text(msg::app_exclusive_options, "--set anytime", "--no-timing"));
-  }
   job.arms.clear();
-  if (!job.anytime && !job.scaling) job.arms = {options.set};
+  job.anytime = job.scaling = job.near = false;
+  std::vector<std::string_view> sets = split_list(options.set);
+  if (sets.empty()) sets.emplace_back(options.set);  // blanks are no set
+  for (const std::string_view set : sets) {
+    if (auto added = add_set(std::string(set), job); !added) return fail(std::move(added.error()));
+  }
   return job;
 }
 
@@ -58,24 +85,45 @@ Result<Job> job_of(const Options& options) {
 struct Measured {
   std::deque<PlanSet> sets;
   std::vector<CrowdedSet> crowds;
+  std::unique_ptr<ScratchFolder> models = {};  ///< of near
+  std::vector<NearSet> near = {};
   std::vector<PlanTable> solved, anytime;
   PlanTable crowded;
 };
+
+/// The scenes of `near` and their problems.
+Result<void> prepare_near(const Options& options, const Job& job, Measured& all) {
+  all.models = std::make_unique<ScratchFolder>("bench_near");
+  const auto robots = near_robots(options.data, all.models->path());
+  if (!robots) return fail(robots.error());
+  auto sets = draw_near_sets(*robots, job.goals, job.seed);
+  if (!sets) return fail(std::move(sets.error()));
+  all.near = std::move(*sets);
+  return {};
+}
+
+bool is_solved(const Job& job, const PlanSet& set) {
+  return std::ranges::count(job.arms, set.name) > 0;
+}
 
 /// Reads everything before anything is measured.
 Result<Measured> prepare(const Options& options, const Job& job) {
   Measured all;
   std::vector<std::string> arms = job.arms;
-  if (job.anytime) arms = kArms;
-  if (job.scaling) arms.push_back(kArms.front());
+  if (job.anytime) arms.insert(arms.end(), kArms.begin(), kArms.end());
+  if (job.scaling) arms.push_back(kCrowdedArm);
   for (const std::string& arm : arms) {
     if (std::ranges::count(all.sets, arm, &PlanSet::name) > 0) continue;
     Result<PlanSet> set = load_plan_set(options.data, arm);
     if (!set) return fail(std::move(set.error()));
     all.sets.push_back(std::move(*set));
   }
+  if (job.near) {
+    if (auto drawn = prepare_near(options, job, all); !drawn) return fail(std::move(drawn.error()));
+  }
   if (!job.scaling) return all;
-  auto crowds = make_crowded_sets(all.sets.front(), job.seed);
+  auto crowds =
+      make_crowded_sets(*std::ranges::find(all.sets, kCrowdedArm, &PlanSet::name), job.seed);
   if (!crowds) return fail(std::move(crowds.error()));
   all.crowds = std::move(*crowds);
   return all;
@@ -85,12 +133,13 @@ Result<void> measure(const Job& job, Measured& all) {
   constexpr std::uint64_t kBudgets = 3;
   std::uint64_t steps = all.crowds.size();
   for (const PlanSet& set : all.sets) {
-    steps += job.arms.empty() ? 0 : scenes_of(set).size();
+    steps += is_solved(job, set) ? scenes_of(set).size() : 0;
     steps += job.anytime ? kBudgets : 0;
   }
+  for (const NearSet& set : all.near) steps += set.scenes.size();
   Progress progress(text(msg::bench_plan_progress), steps);
   for (const PlanSet& set : all.sets) {
-    if (!job.arms.empty()) {
+    if (is_solved(job, set)) {
       (void)wants_peers(job.peers.environment.string(), set.name);
       auto table = run_plan_set(set, job.seed, job.peers, progress);
       if (!table) return fail(std::move(table.error()));
@@ -102,6 +151,11 @@ Result<void> measure(const Job& job, Measured& all) {
       all.anytime.push_back(std::move(*table));
     }
   }
+  for (const NearSet& set : all.near) {
+    auto table = run_near_set(set, job.seed, job.peers, progress);
+    if (!table) return fail(std::move(table.error()));
+    all.solved.push_back(std::move(*table));
+  }
   auto crowded = run_crowds(all.crowds, job.seed, progress);
   if (!crowded) return fail(std::move(crowded.error()));
   all.crowded = std::move(*crowded);
@@ -111,14 +165,14 @@ Result<void> measure(const Job& job, Measured& all) {
 std::vector<BenchResult> results_of(const Measured& all, bool timing) {
   std::vector<BenchResult> results;
   for (const PlanTable& table : all.solved) {
-    results.push_back(plan_result(table.set->name, table, timing));
+    results.push_back(plan_result(table.name, table, timing));
   }
   for (const PlanTable& table : all.anytime) {
-    const std::string name = text(msg::bench_plan_anytime, table.set->name);
+    const std::string name = text(msg::bench_plan_anytime, table.name);
     results.push_back(plan_result(name, table, timing));
   }
   if (!all.crowds.empty()) {
-    const std::string name = text(msg::bench_plan_scaling, all.sets.front().name);
+    const std::string name = text(msg::bench_plan_scaling, kCrowdedArm);
     results.push_back(plan_result(name, all.crowded, timing));
   }
   return results;
@@ -155,6 +209,7 @@ Command plan_suite() {
             add_option(app, "--data", options->data, msg::bench_plan_option_data, "DIR");
             add_option(app, "--peers", options->peers, msg::bench_option_peers, "VENV");
             add_option(app, "--peer-every", options->peer_every, msg::bench_plan_option_every, "N");
+            add_option(app, "--goals", options->goals, msg::bench_plan_option_goals, "N");
             add_option(app, "--seed", options->seed, msg::bench_plan_option_seed, "N");
             add_option(app, "--out", options->out, msg::bench_plan_option_out, "DIR");
             add_overwrite_option(app, options->replace);

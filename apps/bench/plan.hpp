@@ -116,9 +116,13 @@ struct CheckTimes {
 
 /// All that is shown of one set in one table.
 struct PlanTable {
-  const PlanSet* set = nullptr;
-  std::vector<PlanRun> runs = {};  ///< ours of a case (`BenchEntry::set`) before those of peers
-  bool sum = false;                ///< adds what each contestant did on all cases together
+  std::string name = {};              ///< of the set
+  std::string file = {};              ///< name of the file it comes from, without its folder
+  std::vector<std::string> ids = {};  ///< of its problems; empty: they are counted
+  std::vector<PlanRun> runs = {};     ///< ours of a case (`BenchEntry::set`) before those of peers
+  bool sum = false;                   ///< adds what each contestant did on all cases together
+  std::vector<PlanRun> more = {};     ///< shown after that sum, of which they are no part
+  bool complete = false;              ///< it is wrong of mjarm to find no path, too
   /// State checks, one a case, in order; of one only: shown where `sum` is.
   std::vector<CheckTimes> checks = {};
 };
@@ -137,10 +141,13 @@ struct PlanTable {
 [[nodiscard]] Result<PlanTable> run_crowds(const std::vector<CrowdedSet>& crowds,
                                            std::uint64_t seed, Progress& progress);
 
+/// The table of a set, in which nothing was done yet.
+[[nodiscard]] PlanTable table_of(const PlanSet& set);
+
 /// Headings of `BenchEntry::cells`.
 [[nodiscard]] std::vector<Msg> plan_columns(bool timing);
 
-/// The entries of a table and, in `wrong`, how many paths of mjarm are not what was asked for. A
+/// The entries of a table and, in `wrong`, how many answers of mjarm are not what was asked for. A
 /// peer that fails in the same way on every case is one entry.
 [[nodiscard]] BenchResult plan_result(const std::string& name, const PlanTable& table, bool timing);
 

@@ -71,6 +71,7 @@ void add_times(BenchEntry& entry, const PlanRun& run, const CheckTimes* checks) 
                                              checks->together_ns, checks->along_ns)
                                : "-");
   entry.details.set("p95_us", p95);
+  entry.details.set("max_us", entry.us.empty() ? 0.0 : std::ranges::max(entry.us));
   entry.details.set("world_us", world);
   if (checks == nullptr) return;
   entry.details.set("check_ns", {{"random", checks->random_ns},
@@ -78,12 +79,14 @@ void add_times(BenchEntry& entry, const PlanRun& run, const CheckTimes* checks) 
                                  {"along", checks->along_ns}});
 }
 
-std::vector<JsonDoc> wrong_json(const PlanSet* set, const Verdicts& all) {
+std::string id_of(const PlanTable& table, const SolvedProblem& answer) {
+  return table.ids.empty() ? std::to_string(answer.problem) : table.ids[answer.problem];
+}
+
+std::vector<JsonDoc> wrong_json(const PlanTable& table, const Verdicts& all) {
   std::vector<JsonDoc> wrong;
   for (const SolvedProblem* answer : all.wrong) {
-    const std::string id =
-        set == nullptr ? std::to_string(answer->problem) : set->cases[answer->problem].id;
-    wrong.push_back({{"problem", id},
+    wrong.push_back({{"problem", id_of(table, *answer)},
                      {"fault", name_of(answer->verdict.fault)},
                      {"depth", answer->verdict.depth}});
   }
@@ -105,7 +108,7 @@ BenchEntry entry_of(const PlanTable& table, const PlanRun& run, const PlanRun* o
                    {"solved", all.solved},
                    {"valid", all.valid},
                    {"cost", all.cost},
-                   {"wrong", wrong_json(table.set, all)}};
+                   {"wrong", wrong_json(table, all)}};
   if (timing) add_times(entry, run, checks);
   return entry;
 }
@@ -160,7 +163,7 @@ render::PlotLine share_over_time(const render::PlotLine& style, std::vector<doub
 }
 
 render::PlotPanel panel_of(const PlanTable& table) {
-  render::PlotPanel panel{.title = table.set->name,
+  render::PlotPanel panel{.title = table.name,
                           .x_label = text(msg::bench_plan_time_axis),
                           .y_label = text(msg::bench_plan_share_axis)};
   panel.y_range = render::PlotRange{0, 100};
@@ -209,17 +212,37 @@ std::vector<BenchEntry> entries_of(const PlanTable& table, bool timing) {
     const CheckTimes* checks = checked ? &table.checks[at++] : nullptr;
     entries.push_back(entry_of(table, run, ours_beside(table.runs, run.set), checks, timing));
   }
-  if (!table.sum) return entries;
-  const std::vector<PlanRun> sums = sums_of(table.runs);
+  const std::vector<PlanRun> sums = table.sum ? sums_of(table.runs) : std::vector<PlanRun>();
   for (const PlanRun& sum : sums) {
     const bool checked = sum.version.empty() && !table.checks.empty();
     entries.push_back(entry_of(table, sum, ours_beside(sums, sum.set),
                                checked ? &table.checks.front() : nullptr, timing));
   }
+  for (const PlanRun& run : table.more) {
+    entries.push_back(entry_of(table, run, ours_beside(table.more, run.set), nullptr, timing));
+  }
   return entries;
 }
 
+/// How many answers of mjarm are wrong.
+std::size_t count_wrong(const PlanTable& table, const std::vector<PlanRun>& runs) {
+  std::size_t count = 0;
+  for (const PlanRun& run : runs) {
+    if (!run.version.empty()) continue;
+    const Verdicts all = verdicts_of(run);
+    const auto solved = static_cast<std::size_t>(all.solved);
+    count += all.wrong.size() + (table.complete ? run.answers.size() - solved : 0);
+  }
+  return count;
+}
+
 }  // namespace
+
+PlanTable table_of(const PlanSet& set) {
+  PlanTable table{.name = set.name, .file = set.file.filename().string()};
+  for (const PlanProblem& problem : set.cases) table.ids.push_back(problem.id);
+  return table;
+}
 
 std::vector<Msg> plan_columns(bool timing) {
   std::vector<Msg> columns{msg::bench_plan_solved, msg::bench_plan_valid, msg::bench_plan_cost};
@@ -230,12 +253,8 @@ std::vector<Msg> plan_columns(bool timing) {
 }
 
 BenchResult plan_result(const std::string& name, const PlanTable& table, bool timing) {
-  const std::string file = table.set == nullptr ? "" : table.set->file.filename().string();
-  BenchResult result{name, file, entries_of(table, timing)};
-  std::size_t wrong = 0;
-  for (const PlanRun& run : table.runs) {
-    if (run.version.empty()) wrong += verdicts_of(run).wrong.size();
-  }
+  BenchResult result{name, table.file, entries_of(table, timing)};
+  const std::size_t wrong = count_wrong(table, table.runs) + count_wrong(table, table.more);
   if (wrong > 0) result.wrong = text(msg::bench_plan_wrong, name, wrong);
   return result;
 }
@@ -247,9 +266,9 @@ Result<void> write_paths(const PlanTable& table, bool timing, const std::filesys
       if (answer.path.empty()) continue;
       JsonDoc path{{"path", answer.path}};
       if (timing) path.set("us", answer.us);
-      paths.set(table.set->cases[answer.problem].id.c_str(), std::move(path));
+      paths.set(id_of(table, answer).c_str(), std::move(path));
     }
-    const std::string name = "paths_" + file_name(table.set->name + " " + sum.who) + ".json";
+    const std::string name = "paths_" + file_name(table.name + " " + sum.who) + ".json";
     if (auto written = write_file(folder / name, paths.line() + "\n"); !written) {
       return fail(std::move(written.error()));
     }

@@ -155,7 +155,8 @@ Result<void> advance(Progress& progress) {
 
 Result<PlanTable> run_plan_set(const PlanSet& set, std::uint64_t seed, const PlanPeers& peers,
                                Progress& progress) {
-  PlanTable table{.set = &set, .sum = true};
+  PlanTable table = table_of(set);
+  table.sum = true;
   const PlanOptions options{.seed = seed};
   warm_up(set, options);
   Result<void> done;
@@ -171,7 +172,7 @@ Result<PlanTable> run_plan_set(const PlanSet& set, std::uint64_t seed, const Pla
 }
 
 Result<PlanTable> run_anytime(const PlanSet& set, std::uint64_t seed, Progress& progress) {
-  PlanTable table{.set = &set};
+  PlanTable table = table_of(set);
   PlanOptions options{.seed = seed};
   warm_up(set, options);
   for (const int milliseconds : {0, 2, 10}) {

@@ -171,6 +171,14 @@ TEST(BenchPlan, MoreTimeAndMoreObstacles) {
   EXPECT_TRUE(folder.exists("out/bench_plan.svg"));
 }
 
+TEST(BenchPlan, SeveralSetsAreAskedForWithCommas) {
+  const support::TempFolder folder;
+  const json bench = bench_json(plan(folder, {"--set", "ur5,anytime"}));
+  std::vector<std::string> names;
+  for (const json& robot : bench.at("robots")) names.push_back(robot.at("robot"));
+  EXPECT_THAT(names, ::testing::ElementsAre("ur5", "ur5, anytime", "panda, anytime"));
+}
+
 TEST(BenchPlan, MissingDataAndWrongOptionsAreOneLine) {
   const support::TempFolder folder;
   const auto missing = mjarm({"bench", "plan", "--data", folder.path().string()});

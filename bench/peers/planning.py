@@ -17,49 +17,56 @@ import planning_world
 # call(*arguments) -> (path or None, extra), which is timed; `extra` holds the peer's own clocks [us].
 
 
-def ompl(job, robot, spacing=None):
-    """RRT-Connect and the library's own simplification; MuJoCo says which states are free.
+def rrt_connect(limits, is_free, start, goals, limit, spacing=None):
+    """A path by OMPL's RRT-Connect and its own simplification, each in `limit` [s]; None where there is none.
 
+    limits: (lower, upper) of the joints; is_free: joint values -> whether nothing touches.
     spacing: [rad, L2] at which motions are looked at; None: the library's own, 1 % of the space's extent.
     """
     from ompl import base, geometric, util
 
     util.setLogLevel(util.LOG_NONE)
-    dof = len(robot["joint_names"])
+    dof = len(start)
+    space = base.RealVectorStateSpace(dof)
+    bounds = base.RealVectorBounds(dof)
+    for i, (lower, upper) in enumerate(zip(*limits)):
+        bounds.setLow(i, lower)
+        bounds.setHigh(i, upper)
+    space.setBounds(bounds)
+    setup = geometric.SimpleSetup(space)
+    information = setup.getSpaceInformation()
+    setup.setStateValidityChecker(lambda state: is_free(state[0:dof]))
+    if spacing:
+        information.setStateValidityCheckingResolution(spacing / space.getMaximumExtent())
+
+    def state_of(q):
+        state = space.allocState()
+        state[0:dof] = q
+        return state
+
+    setup.setStartState(state_of(start))
+    states = base.GoalStates(information)
+    for goal in goals:
+        states.addState(state_of(goal))
+    setup.setGoal(states)
+    setup.setPlanner(geometric.RRTConnect(information))
+    setup.solve(limit)
+    if not setup.haveExactSolutionPath():
+        return None
+    setup.simplifySolution(limit)
+    return [state[0:dof] for state in setup.getSolutionPath().getStates()]
+
+
+def ompl(job, robot, spacing=None):
+    """RRT-Connect and the library's own simplification; MuJoCo says which states are free."""
 
     def call(problem):
         clock = time.perf_counter_ns()
         is_free = planning_world.checker(robot, problem["obstacles"])
         us = (time.perf_counter_ns() - clock) / 1000
-        space = base.RealVectorStateSpace(dof)
-        bounds = base.RealVectorBounds(dof)
-        for i, (lower, upper) in enumerate(zip(robot["lower"], robot["upper"])):
-            bounds.setLow(i, lower)
-            bounds.setHigh(i, upper)
-        space.setBounds(bounds)
-        setup = geometric.SimpleSetup(space)
-        information = setup.getSpaceInformation()
-        setup.setStateValidityChecker(lambda state: is_free(state[0:dof]))
-        if spacing:
-            information.setStateValidityCheckingResolution(spacing / space.getMaximumExtent())
-
-        def state_of(q):
-            state = space.allocState()
-            state[0:dof] = q
-            return state
-
-        setup.setStartState(state_of(problem["start"]))
-        goals = base.GoalStates(information)
-        for goal in problem["goals"]:
-            goals.addState(state_of(goal))
-        setup.setGoal(goals)
-        setup.setPlanner(geometric.RRTConnect(information))
-        setup.solve(job["limit"])
-        if not setup.haveExactSolutionPath():
-            return None, {"world": us}
-        setup.simplifySolution(job["limit"])
-        states = setup.getSolutionPath().getStates()
-        return [state[0:dof] for state in states], {"world": us}
+        limits = robot["lower"], robot["upper"]
+        path = rrt_connect(limits, is_free, problem["start"], problem["goals"], job["limit"], spacing)
+        return path, {"world": us}
 
     return lambda problem: (problem,), call
 
