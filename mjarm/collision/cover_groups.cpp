@@ -5,7 +5,7 @@
 #include <set>
 
 #include "mjarm/collision/cover_geoms_internal.hpp"
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/kinematics/fk.hpp"
 

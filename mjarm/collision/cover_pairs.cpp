@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "mjarm/collision/cover_pairs_internal.hpp"
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/core/rotation.hpp"
 
 namespace mjarm::detail {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/collision/exact_memory_internal.hpp"
 #include "mjarm/collision/never_meet_internal.hpp"
 #include "mjarm/core/finite.hpp"
@@ -55,8 +55,8 @@ struct ExactChecker::Impl {
     q_rest = options.qpos.empty() ? detail::rest_configuration(m) : options.qpos;
     std::vector<bool> moves;
     for (const int joints : bodies.pieces) moves.push_back(joints > 0);
-    capsule_boxes = detail::capsule_box_pairs(m, moves);
-    std::erase_if(capsule_boxes, [&](GeomIds ids) { return is_left_out(ids.geom1, ids.geom2); });
+    measured_here = detail::pairs_measured_here(m, moves);
+    std::erase_if(measured_here, [&](GeomIds ids) { return is_left_out(ids.geom1, ids.geom2); });
     make_data();
   }
   Impl(const Impl& other)
@@ -69,7 +69,7 @@ struct ExactChecker::Impl {
         bodies(other.bodies),
         filter(other.filter),
         q_rest(other.q_rest),
-        capsule_boxes(other.capsule_boxes),
+        measured_here(other.measured_here),
         constant_pairs(other.constant_pairs) {
     make_data();
   }
@@ -131,11 +131,11 @@ struct ExactChecker::Impl {
   }
 
   /// True for a contact between two geoms that the arm moves against each other and no rule lets
-  /// touch, but for those that are measured by capsule_box_gap().
+  /// touch, but for those that are measured by gap_measured_here().
   bool counts(const mjContact& contact) const {
     const int geom1 = contact.geom[0];
     const int geom2 = contact.geom[1];
-    if (geom1 < 0 || geom2 < 0 || detail::is_capsule_box(m, geom1, geom2)) return false;
+    if (geom1 < 0 || geom2 < 0 || detail::is_measured_here(m, geom1, geom2)) return false;
     return !is_left_out(geom1, geom2);
   }
 
@@ -173,8 +173,8 @@ struct ExactChecker::Impl {
                          return contact.dist < max && counts(contact) &&
                                 gap_of({contact.geom[0], contact.geom[1]}, contact.dist) < max;
                        }) ||
-           std::any_of(capsule_boxes.begin(), capsule_boxes.end(), [&](GeomIds ids) {
-             const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
+           std::any_of(measured_here.begin(), measured_here.end(), [&](GeomIds ids) {
+             const std::optional<GeomGap> gap = detail::gap_measured_here(m, d.get(), ids, 0);
              return gap && gap_of(ids, gap->distance) < max;
            });
   }
@@ -196,8 +196,8 @@ struct ExactChecker::Impl {
       const auto [entry, fresh] = deepest.try_emplace(ids, gap);
       if (!fresh && gap.distance < entry->second.distance) entry->second = gap;
     }
-    for (const GeomIds ids : capsule_boxes) {
-      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, 0);
+    for (const GeomIds ids : measured_here) {
+      const std::optional<GeomGap> gap = detail::gap_measured_here(m, d.get(), ids, 0);
       if (gap && gap_of(ids, gap->distance) < 0) deepest.emplace(ids, *gap);
     }
     std::vector<ContactPoint> out;
@@ -236,7 +236,7 @@ struct ExactChecker::Impl {
       place(q);
       if (k == 0) {
         std::set<GeomIds> pairs = candidates();
-        pairs.insert(capsule_boxes.begin(), capsule_boxes.end());
+        pairs.insert(measured_here.begin(), measured_here.end());
         for (const GeomIds ids : pairs) same.emplace(ids, distance(ids));
         std::erase_if(same, [&](const auto& entry) { return !(entry.second < options.margin); });
       } else {
@@ -282,8 +282,8 @@ struct ExactChecker::Impl {
       if (distance >= range()) continue;
       out.push_back({ids, {{}, distance, vector(segment.data()), vector(segment.data() + 3)}});
     }
-    for (const GeomIds ids : capsule_boxes) {
-      const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d.get(), ids, range());
+    for (const GeomIds ids : measured_here) {
+      const std::optional<GeomGap> gap = detail::gap_measured_here(m, d.get(), ids, range());
       if (!gap || gap->distance >= range()) continue;
       const Eigen::Vector3d half = 0.5 * gap->distance * gap->normal_W;
       out.push_back(
@@ -344,7 +344,7 @@ struct ExactChecker::Impl {
   detail::ArmBodies bodies;
   detail::ContactFilter filter;
   std::vector<double> q_rest;
-  std::vector<GeomIds> capsule_boxes;
+  std::vector<GeomIds> measured_here;
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
   std::optional<detail::NeverMeet> never_meet;      // once it was asked for; each copy its own
   detail::ClearanceMemory memory;

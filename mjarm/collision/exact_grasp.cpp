@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/collision/exact_gripper_way_internal.hpp"
 #include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
@@ -46,10 +46,10 @@ struct Candidate {
 /// Distance of two geoms, at most kLook, and the direction from the first to the second.
 Side measure(const mjModel& m, mjData* d, GeomIds ids) {
   Side out;
-  const bool swapped = detail::is_capsule_box(m, ids.geom2, ids.geom1);
-  if (swapped || detail::is_capsule_box(m, ids.geom1, ids.geom2)) {
+  const bool swapped = detail::is_measured_here(m, ids.geom2, ids.geom1);
+  if (swapped || detail::is_measured_here(m, ids.geom1, ids.geom2)) {
     const GeomIds pair = swapped ? GeomIds{ids.geom2, ids.geom1} : ids;
-    const std::optional<GeomGap> gap = detail::capsule_box_gap(m, d, pair, kLook);
+    const std::optional<GeomGap> gap = detail::gap_measured_here(m, d, pair, kLook);
     if (gap) out = {gap->distance, swapped ? Vector3d(-gap->normal_W) : gap->normal_W};
     return out;
   }

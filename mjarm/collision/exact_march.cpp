@@ -8,7 +8,7 @@
 #include "mjarm/collision/cover_geoms_internal.hpp"
 #include "mjarm/collision/cover_pairs_internal.hpp"
 #include "mjarm/collision/edge_march_internal.hpp"
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "mjarm/collision/exact.hpp"
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/find_arm.hpp"
 
@@ -72,7 +72,7 @@ void compare_with_forward(const Shipped& robot, std::uint64_t seed) {
     for (int i = 0; i < robot.d->ncon; ++i) {
       const mjContact& contact = robot.d->contact[i];
       if (!robot.moves(contact.geom[0]) && !robot.moves(contact.geom[1])) continue;
-      if (contact.dist >= 0 || detail::is_capsule_box(m, contact.geom[0], contact.geom[1]))
+      if (contact.dist >= 0 || detail::is_measured_here(m, contact.geom[0], contact.geom[1]))
         continue;
       expected += pairs.insert({contact.geom[0], contact.geom[1]}).second ? 1 : 0;
       deepest = std::max(deepest, -contact.dist);
@@ -167,8 +167,8 @@ std::map<std::pair<int, int>, double> all_distances(const Shipped& robot) {
       if (i == j || m.geom_type[i] > m.geom_type[j]) continue;
       if (!robot.moves(i) && !robot.moves(j)) continue;
       if (!detail::may_collide(m, i, j)) continue;
-      if (detail::is_capsule_box(m, i, j)) {
-        const auto gap = detail::capsule_box_gap(m, robot.d.get(), {i, j}, kMargin);
+      if (detail::is_measured_here(m, i, j)) {
+        const auto gap = detail::gap_measured_here(m, robot.d.get(), {i, j}, kMargin);
         out[{i, j}] = gap ? gap->distance : kMargin;
       } else {
         out[{i, j}] = mj_geomDistance(&m, robot.d.get(), i, j, kMargin, nullptr);
@@ -342,6 +342,22 @@ TEST(ExactChecker, AnElbowNearTheFloorIsSeen) {
   ASSERT_TRUE(report.nearest);
   EXPECT_EQ(report.nearest->pair.geom1, "floor") << describe(report);
   EXPECT_LT(report.nearest->distance, 0.1);
+}
+
+/// MuJoCo's collider has the flange, upright to the last bit 20 mm above the floor, 19 mm inside
+/// it.
+TEST(ExactChecker, AnUprightCylinderAboveTheFloorIsFree) {
+  const std::vector<double> q{-2.6775374155879006, -0.9478876410168369, 2.378939050985549,
+                              -3.001847736763609,  -1.5707963267948966, -1.106741088793004};
+  const std::filesystem::path file = find_model_file("ur5e").value();
+  for (const bool looks : {true, false}) {
+    const Model model = Model::load(file, {.looks = looks}).value();
+    ExactChecker checker(model, find_arm(model).value());
+    const CollisionReport report = checker.check(q).value();
+    EXPECT_TRUE(report.free) << describe(report);
+    ASSERT_TRUE(report.nearest.has_value());
+    EXPECT_NEAR(report.nearest->distance, 0.02, 2e-4);
+  }
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/kinematics/fk.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mjarm/collision/cover_pairs_internal.hpp"
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm::detail {

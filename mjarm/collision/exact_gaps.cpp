@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 
-#include "mjarm/collision/exact_capsule_box_internal.hpp"
+#include "mjarm/collision/exact_gaps_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
@@ -28,10 +29,29 @@ bool is_explicit_pair(const mjModel& m, int geom1, int geom2) {
   return false;
 }
 
+/// From its lowest point over the plane.
+std::optional<GeomGap> plane_cylinder_gap(const mjModel& m, mjData* d, GeomIds ids, double margin) {
+  using Rows = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  const Eigen::Vector3d normal = Rows(d->geom_xmat + 9 * ids.geom1).col(2);
+  const Eigen::Vector3d axis = Rows(d->geom_xmat + 9 * ids.geom2).col(2);
+  const Eigen::Map<const Eigen::Vector3d> plane(d->geom_xpos + 3 * ids.geom1);
+  const Eigen::Map<const Eigen::Vector3d> center(d->geom_xpos + 3 * ids.geom2);
+  const double radius = m.geom_size[3 * ids.geom2], half = m.geom_size[3 * ids.geom2 + 1];
+  const double along = normal.dot(axis);
+  const Eigen::Vector3d side = normal - along * axis;
+  const Eigen::Vector3d lowest =
+      center - (along < 0 ? -half : half) * axis - radius / std::max(side.norm(), 1e-12) * side;
+  const double distance = normal.dot(lowest - plane);
+  if (distance >= margin) return std::nullopt;
+  return GeomGap{distance, lowest - 0.5 * distance * normal, normal};
+}
+
 }  // namespace
 
-bool is_capsule_box(const mjModel& m, int geom1, int geom2) {
-  return m.geom_type[geom1] == mjGEOM_CAPSULE && m.geom_type[geom2] == mjGEOM_BOX;
+bool is_measured_here(const mjModel& m, int geom1, int geom2) {
+  const int type1 = m.geom_type[geom1], type2 = m.geom_type[geom2];
+  return (type1 == mjGEOM_CAPSULE && type2 == mjGEOM_BOX) ||
+         (type1 == mjGEOM_PLANE && type2 == mjGEOM_CYLINDER);
 }
 
 bool may_collide(const mjModel& m, int geom1, int geom2) {
@@ -50,22 +70,23 @@ bool may_collide(const mjModel& m, int geom1, int geom2) {
   return !(filters_parents && weld1 != 0 && weld2 != 0 && family);
 }
 
-std::vector<GeomIds> capsule_box_pairs(const mjModel& m, const std::vector<bool>& moves) {
+std::vector<GeomIds> pairs_measured_here(const mjModel& m, const std::vector<bool>& moves) {
   std::vector<GeomIds> out;
   const auto moving = [&](int geom) {
     return moves[static_cast<std::size_t>(m.geom_bodyid[geom])];
   };
   for (int i = 0; i < static_cast<int>(m.ngeom); ++i) {
-    if (m.geom_type[i] != mjGEOM_CAPSULE) continue;
+    if (m.geom_type[i] != mjGEOM_CAPSULE && m.geom_type[i] != mjGEOM_PLANE) continue;
     for (int j = 0; j < static_cast<int>(m.ngeom); ++j) {
-      const bool wanted = is_capsule_box(m, i, j) && (moving(i) || moving(j));
+      const bool wanted = is_measured_here(m, i, j) && (moving(i) || moving(j));
       if (wanted && may_collide(m, i, j)) out.push_back({i, j});
     }
   }
   return out;
 }
 
-std::optional<GeomGap> capsule_box_gap(const mjModel& m, mjData* d, GeomIds ids, double margin) {
+std::optional<GeomGap> gap_measured_here(const mjModel& m, mjData* d, GeomIds ids, double margin) {
+  if (m.geom_type[ids.geom1] == mjGEOM_PLANE) return plane_cylinder_gap(m, d, ids, margin);
   const Eigen::Map<const Eigen::Vector3d> p1(d->geom_xpos + 3 * ids.geom1);
   const Eigen::Map<const Eigen::Vector3d> p2(d->geom_xpos + 3 * ids.geom2);
   if ((p1 - p2).norm() > m.geom_rbound[ids.geom1] + m.geom_rbound[ids.geom2] + margin) {
@@ -92,10 +113,10 @@ std::optional<GeomGap> capsule_box_gap(const mjModel& m, mjData* d, GeomIds ids,
 }
 
 double geom_distance(const mjModel& m, mjData* d, GeomIds ids, double max) {
-  if (!is_capsule_box(m, ids.geom1, ids.geom2)) {
+  if (!is_measured_here(m, ids.geom1, ids.geom2)) {
     return mj_geomDistance(&m, d, ids.geom1, ids.geom2, max, nullptr);
   }
-  const std::optional<GeomGap> gap = capsule_box_gap(m, d, ids, max);
+  const std::optional<GeomGap> gap = gap_measured_here(m, d, ids, max);
   return gap ? gap->distance : max;
 }
 
