@@ -123,9 +123,8 @@ class EdgeSearch {
     std::array<double, kMaxDof> q;
     const auto dof = static_cast<std::size_t>(data_.tables.dof);
     for (std::size_t i = 0; i < dof; ++i) q[i] = start_[i] + t * way_[i];
-    const SphereMargins& margins = FastAccess::closer_margins(checker_);
     double proved = solids_->free_half({q.data(), dof}, {way_.data(), dof}, half,
-                                       {margins.obstacles, margins.links});
+                                       FastAccess::closer_margins(checker_));
     ++result_.stations;
     if (proved < 0) return end(EdgeVerdict::hit, t);
     if (proved < half) proved = std::floor(proved / kGrain) * kGrain;

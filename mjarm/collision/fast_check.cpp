@@ -126,8 +126,8 @@ std::uint32_t FastChecker::look_closer(std::span<const double> rows, std::uint32
   for (std::uint32_t left = hit; left != 0; left &= left - 1) {
     const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
     const std::span<const double> q = rows.subspan(lane * dof, dof);
-    const bool free = within_limits(robot_.arm(), q, -detail::kLimitSlack) &&
-                      solids_->is_free(q, {closer_.obstacles, closer_.links});
+    const bool free =
+        within_limits(robot_.arm(), q, -detail::kLimitSlack) && solids_->is_free(q, closer_);
     if (free) continue;
     out |= std::uint32_t{1} << lane;
     if (any) break;
@@ -167,7 +167,7 @@ SphereClearance FastChecker::clearance_of(const detail::FastNearest& from) const
 
 SphereClearance FastChecker::closer_clearance(std::span<const double> q,
                                               double max) const noexcept {
-  const auto found = solids_->clearance(q, max, {closer_.obstacles, closer_.links});
+  const auto found = solids_->clearance(q, max, closer_);
   return {found.distance, found.pair.link, found.pair.obstacle, found.pair.other_link};
 }
 

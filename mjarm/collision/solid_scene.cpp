@@ -246,7 +246,7 @@ SolidScene::SolidScene(Arm arm, std::vector<LinkSolid> solids, std::vector<Stand
 }
 
 double SolidScene::free_half(std::span<const double> q, std::span<const double> way, double half,
-                             const SolidMargins& margins) const noexcept {
+                             const SphereMargins& margins) const noexcept {
   const Moment moment(*this, q, way);
   double proved = half;
   // Narrows `proved` to what two cores allow; false where they are too near.
@@ -292,12 +292,12 @@ double SolidScene::free_half(std::span<const double> q, std::span<const double> 
   return proved;
 }
 
-bool SolidScene::is_free(std::span<const double> q, const SolidMargins& margins) const noexcept {
+bool SolidScene::is_free(std::span<const double> q, const SphereMargins& margins) const noexcept {
   return free_half(q, {}, 0, margins) >= 0;
 }
 
 SolidScene::Clearance SolidScene::clearance(std::span<const double> q, double max,
-                                            const SolidMargins& margins) const noexcept {
+                                            const SphereMargins& margins) const noexcept {
   const Moment moment(*this, q, {});
   Clearance out{max, {}};
   const auto note = [&](double distance, const Pair& pair) {

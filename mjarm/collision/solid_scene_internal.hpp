@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mjarm/collision/convex_internal.hpp"
+#include "mjarm/collision/fast_robot.hpp"
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/model/arm.hpp"
@@ -40,11 +41,6 @@ struct StandingSolid {
 [[nodiscard]] double gap_to_standing(const Convex& convex, const Pose& X_WC,
                                      const StandingSolid& standing, double enough) noexcept;
 
-/// Distances that are kept beyond contact.
-struct SolidMargins {
-  double obstacles = 0, links = 0;  ///< [m] >= 0
-};
-
 /// An arm and its scene as the solids that MuJoCo collides: convex ones, exactly. What spheres
 /// cannot call free is looked at here. Immutable; may be used from many threads at once.
 class SolidScene {
@@ -68,14 +64,15 @@ class SolidScene {
   /// less than kSolidSpare at most.
   /// @param q, way  shape (dof,) [rad or m].
   [[nodiscard]] double free_half(std::span<const double> q, std::span<const double> way,
-                                 double half, const SolidMargins& margins) const noexcept;
+                                 double half, const SphereMargins& margins) const noexcept;
 
   /// Whether a configuration keeps the margins.
-  [[nodiscard]] bool is_free(std::span<const double> q, const SolidMargins& margins) const noexcept;
+  [[nodiscard]] bool is_free(std::span<const double> q,
+                             const SphereMargins& margins) const noexcept;
 
   /// What is nearest; margins are taken off. Nothing within `max` [m]: that, and no pair.
   [[nodiscard]] Clearance clearance(std::span<const double> q, double max,
-                                    const SolidMargins& margins) const noexcept;
+                                    const SphereMargins& margins) const noexcept;
 
  private:
   class Moment;
