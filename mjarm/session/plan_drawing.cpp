@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <utility>
-#include <variant>
 
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
@@ -27,7 +25,6 @@ constexpr double kDrawnPathStep = 0.02;  // [rad or m, L2] between places of the
 constexpr double kPathPieces = 300;      // at most
 constexpr double kTreeStep = 0.15;       // [rad or m, L2] between places of an edge of a tree
 constexpr double kTreePieces = 12'000;   // of all edges, about
-constexpr double kMaxWork = 2e6;         // distances that are computed for one look
 constexpr double kPairRed = 0.01;        // [m]
 
 render::Rgba with_alpha(render::Rgba color, float alpha) {
@@ -35,56 +32,17 @@ render::Rgba with_alpha(render::Rgba color, float alpha) {
   return color;
 }
 
-/// Distances that obstacle_neighbours() computes.
-double work_of(const SphereSet& set, const Obstacles& obstacles) {
-  double parts = 0;
-  for (const Obstacle& solid : obstacles.solids) {
-    const auto* mesh = std::get_if<MeshShape>(&solid.shape);
-    const auto* field = std::get_if<HeightFieldShape>(&solid.shape);
-    parts += 1;
-    if (mesh != nullptr) parts += static_cast<double>(mesh->faces.size());
-    if (field != nullptr) parts += static_cast<double>(field->heights.size());
-  }
-  for (const PointCloud& cloud : obstacles.clouds) {
-    parts += static_cast<double>(cloud.points_W.size());
-  }
-  return parts * static_cast<double>(set.size());
-}
-
-bool has_obstacles(const Obstacles& obstacles) {
-  return !obstacles.solids.empty() || !obstacles.clouds.empty();
-}
-
-/// The checker of a path without the pairs of links: some of these are near to each other in every
-/// posture, and would give the whole path one colour.
-FastChecker against_obstacles(const PlanSubject& subject) {
-  const FastRobot& robot = subject.checker.robot();
-  SphereSet set = robot.spheres();
-  if (has_obstacles(subject.obstacles)) set.pairs.clear();
-  Result<FastRobot> alone = FastRobot::create(robot.arm(), set);
-  if (!alone) return subject.checker;  // cannot be: it was made from them
-  Result<FastChecker> checker = FastChecker::create(std::move(*alone), subject.obstacles);
-  return checker ? std::move(*checker) : subject.checker;
-}
-
 }  // namespace
 
 void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q) {
   sim.place(subject.arm, as_span(q));
   const Pose X_WT = fk(subject.arm, as_span(q));
-  for (const AttachedBody& one : subject.attached) sim.place_free(one.body, X_WT * one.X_TB);
+  for (const AttachedBody& one : subject.rules.attached) sim.place_free(one.body, X_WT * one.X_TB);
 }
 
 PathWay::PathWay(const PlannedPath& path) : q_(path.q), ends_{0} {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < q_.size(); ++i) {
-    const double length = (q_[i] - q_[i - 1]).norm();
-    if (i <= path.proof.size() && path.proof[i - 1].nearest.distance < least) {
-      least = path.proof[i - 1].nearest.distance;
-      tightest_ = ends_.back() + path.proof[i - 1].nearest_t * length;
-    }
-    ends_.push_back(ends_.back() + length);
-  }
+  for (std::size_t i = 1; i < q_.size(); ++i)
+    ends_.push_back(ends_.back() + (q_[i] - q_[i - 1]).norm());
 }
 
 std::size_t PathWay::edge_at(double s) const {
@@ -144,14 +102,30 @@ render::Rgba clearance_color(double clearance) {
   return kStops.back().color;
 }
 
-PlanDrawing::PlanDrawing(const PlanSubject& subject) : subject_(&subject), way_(subject.path) {
+PlanDrawing::PlanDrawing(const PlanSubject& subject)
+    : subject_(&subject), way_(subject.path), looker_(subject) {
   draw_path();
   draw_trees();
   draw_postures();
 }
 
+/// Where the certificates saw the least clearance.
+void PlanDrawing::find_tightest() {
+  const PlannedPath& path = subject_->path;
+  double least = std::numeric_limits<double>::infinity(), end = 0;
+  for (std::size_t i = 1; i < path.q.size(); ++i) {
+    const double length = (path.q[i] - path.q[i - 1]).norm();
+    if (i <= path.proof.size() && path.proof[i - 1].nearest.distance < least) {
+      least = path.proof[i - 1].nearest.distance;
+      tightest_ = end + path.proof[i - 1].nearest_t * length;
+    }
+    end += length;
+  }
+}
+
 void PlanDrawing::draw_path() {
-  const FastChecker obstacles = against_obstacles(*subject_);
+  find_tightest();
+  double least = std::numeric_limits<double>::infinity();
   const double step = std::max(kDrawnPathStep, way_.length() / kPathPieces);
   const int pieces = std::max(1, static_cast<int>(std::ceil(way_.length() / step)));
   constexpr double kShades = 24;
@@ -159,8 +133,13 @@ void PlanDrawing::draw_path() {
   for (int i = 0; i <= pieces; ++i) {
     tool_way_.push_back(fk(subject_->arm, as_span(way_.at(way_.length() * i / pieces))).p);
     if (i == 0) continue;
-    const JointVec middle = way_.at(way_.length() * (i - 0.5) / pieces);
-    const double clearance = obstacles.clearance(as_span(middle)).distance;
+    const double middle = way_.length() * (i - 0.5) / pieces;
+    const double clearance = looker_.clearance(as_span(way_.at(middle)));
+    // The certificates of a model are of its spheres where these tell that it is free.
+    if (!looker_.has_spheres() && clearance < least) {
+      least = clearance;
+      tightest_ = middle;
+    }
     const double shade = std::round(kShades * std::sqrt(std::clamp(clearance, 0.0, 0.3) / 0.3));
     render::OverlaySegments& segments = shades[static_cast<int>(shade)];
     segments.width = 0.012;
@@ -233,40 +212,7 @@ void PlanDrawing::draw_postures() {
   }
 }
 
-PlanDrawing::Look PlanDrawing::look(const JointVec& q) const {
-  const FastRobot& robot = subject_->checker.robot();
-  Look out;
-  out.placed = place_spheres(robot, as_span(q));
-  const bool all = work_of(robot.spheres(), subject_->obstacles) <= kMaxWork;
-  SphereClearance nearest;
-  if (!all) nearest = subject_->checker.clearance(as_span(q));
-  out.neighbours = obstacle_neighbours(robot.spheres(), subject_->obstacles, out.placed,
-                                       all ? nullptr : &nearest);
-  SphereNeighbours links = link_neighbours(robot.spheres(), out.placed);
-  out.pair = closest_pair(subject_->obstacles, out.placed, out.neighbours, links);
-  if (out.pair && out.pair->to.obstacle < 0) {
-    out.obstacle_pair = closest_pair(subject_->obstacles, out.placed, out.neighbours, {});
-  }
-  if (!has_obstacles(subject_->obstacles)) out.neighbours = std::move(links);
-  return out;
-}
-
-std::string PlanDrawing::pair_line(const Look& look, const ClosestPair& pair) const {
-  const SphereSet& set = subject_->checker.robot().spheres();
-  const auto link_of = [&](int sphere) {
-    const int link = look.placed[static_cast<std::size_t>(sphere)].link;
-    return set.links[static_cast<std::size_t>(link)].name;
-  };
-  const int obstacle = pair.to.obstacle;
-  std::string other =
-      obstacle < 0 ? link_of(pair.to.sphere) : obstacle_name(subject_->obstacles, obstacle);
-  if (other.empty()) other = std::to_string(obstacle);
-  char distance[40];
-  std::snprintf(distance, sizeof(distance), ": %.1f mm", 1e3 * pair.to.distance);
-  return link_of(pair.sphere) + " - " + other + distance;
-}
-
-void PlanDrawing::add_spheres(render::Overlay& overlay, const Look& look) const {
+void PlanDrawing::add_spheres(render::Overlay& overlay, const PlanLook& look) const {
   for (std::size_t i = 0; i < look.placed.size(); ++i) {
     const auto& neighbour = look.neighbours[i];
     const render::Rgba color = neighbour ? clearance_color(neighbour->distance) : kUnknownColor;
@@ -276,18 +222,17 @@ void PlanDrawing::add_spheres(render::Overlay& overlay, const Look& look) const 
   }
 }
 
-void PlanDrawing::add_pair(render::Overlay& overlay, const Look& look,
-                           const ClosestPair& pair) const {
-  const render::Rgba color = with_alpha(clearance_color(pair.to.distance), kPairSphere);
-  for (const int sphere : {pair.sphere, pair.to.sphere}) {
-    if (sphere < 0) continue;
+void PlanDrawing::add_pair(render::Overlay& overlay, const PlanLook& look,
+                           const NearPair& pair) const {
+  const render::Rgba color = with_alpha(clearance_color(pair.distance), kPairSphere);
+  for (const int sphere : pair.spheres) {
     const PlacedSphere& placed = look.placed[static_cast<std::size_t>(sphere)];
     overlay.spheres.push_back({.p_W = placed.p_W, .radius = 1.01 * placed.radius, .color = color});
   }
-  render::add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.to.distance, kPairRed);
+  render::add_closest_pair(overlay, pair.p1_W, pair.p2_W, pair.distance, kPairRed);
 }
 
-render::Overlay PlanDrawing::overlay(const PlanLayers& layers, const Look& look) const {
+render::Overlay PlanDrawing::overlay(const PlanLayers& layers, const PlanLook& look) const {
   render::Overlay out;
   if (layers.tree) append(out, tree_);
   if (layers.path) append(out, path_);

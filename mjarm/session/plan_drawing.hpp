@@ -1,31 +1,15 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "mjarm/collision/contact_rules.hpp"
-#include "mjarm/collision/fast_check.hpp"
-#include "mjarm/collision/obstacles.hpp"
 #include "mjarm/model/arm.hpp"
-#include "mjarm/model/model.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/render/overlay.hpp"
-#include "mjarm/session/near_spheres.hpp"
+#include "mjarm/session/plan_look.hpp"
 #include "mjarm/sim/sim.hpp"
 
 namespace mjarm::session {
-
-/// A planned path and all that it was planned for. What it refers to outlives it.
-struct PlanSubject {
-  const Model& model;                       ///< that is drawn
-  const Arm& arm;                           ///< of `model`, with its tool
-  const FastChecker& checker;               ///< with the spheres; of an arm of the same joints
-  const Obstacles& obstacles;               ///< of `checker`
-  const PlannedPath& path;                  ///< with its trees
-  std::string title;                        ///< of the problem
-  std::vector<AttachedBody> attached = {};  ///< to the tool
-};
 
 /// Puts the arm at `q`, shape (dof,), and what is attached to it.
 void place_subject(Sim& sim, const PlanSubject& subject, const JointVec& q);
@@ -39,18 +23,15 @@ class PathWay {
   [[nodiscard]] JointVec at(double s) const;
   /// The edge there, from 0.
   [[nodiscard]] std::size_t edge_at(double s) const;
-  /// Where the certificates saw the least clearance.
-  [[nodiscard]] double tightest() const { return tightest_; }
 
  private:
   std::vector<JointVec> q_;
   std::vector<double> ends_;  // of the corners
-  double tightest_ = 0;
 };
 
 /// What of it is drawn.
 struct PlanLayers {
-  bool spheres = true;  ///< of the arm, coloured by their clearance from obstacles
+  bool spheres = true;  ///< of an arm of spheres, coloured by their clearance from obstacles
   bool pair = true;     ///< the closest pair
   bool path = true;     ///< way of the tool, coloured by the arm's clearance there; corners
   bool tree = true;     ///< ways of the tool along the edges of the trees
@@ -74,35 +55,28 @@ class PlanDrawing {
  public:
   explicit PlanDrawing(const PlanSubject& subject);
 
-  /// The arm's spheres at `q` and what they keep clear of.
-  struct Look {
-    std::vector<PlacedSphere> placed;
-    /// By which the spheres have their colours: obstacles, or links where there are none.
-    SphereNeighbours neighbours;
-    std::optional<ClosestPair> pair;
-    /// The closest with an obstacle, where `pair` is of two links: these may be as near everywhere.
-    std::optional<ClosestPair> obstacle_pair;
-  };
-  /// @param q  shape (dof,).
-  [[nodiscard]] Look look(const JointVec& q) const;
+  [[nodiscard]] PlanLook look(const JointVec& q) { return looker_.look(as_span(q)); }
+  [[nodiscard]] bool has_spheres() const noexcept { return looker_.has_spheres(); }
   /// @param look  where the arm stands.
-  [[nodiscard]] render::Overlay overlay(const PlanLayers& layers, const Look& look) const;
-  /// "link - obstacle: 12.3 mm", for people.
-  [[nodiscard]] std::string pair_line(const Look& look, const ClosestPair& pair) const;
-
+  [[nodiscard]] render::Overlay overlay(const PlanLayers& layers, const PlanLook& look) const;
   [[nodiscard]] const PathWay& way() const { return way_; }
+  /// Where on the way the least clearance was seen.
+  [[nodiscard]] double tightest() const { return tightest_; }
   /// [m] the tool along the path, at even steps, in the world.
   [[nodiscard]] const std::vector<Eigen::Vector3d>& tool_way() const { return tool_way_; }
 
  private:
+  void find_tightest();
   void draw_path();
   void draw_trees();
   void draw_postures();
-  void add_spheres(render::Overlay& overlay, const Look& look) const;
-  void add_pair(render::Overlay& overlay, const Look& look, const ClosestPair& pair) const;
+  void add_spheres(render::Overlay& overlay, const PlanLook& look) const;
+  void add_pair(render::Overlay& overlay, const PlanLook& look, const NearPair& pair) const;
 
   const PlanSubject* subject_;
   PathWay way_;
+  PlanLooker looker_;
+  double tightest_ = 0;
   std::vector<Eigen::Vector3d> tool_way_;
   render::Overlay path_, tree_, ends_, corners_;
 };

@@ -51,13 +51,11 @@ class WallPlan : public ::testing::Test {
                                   world().cover.scene, world().path, "wall"};
     return made;
   }
-  static const PlanDrawing& drawing() {
-    static const PlanDrawing made(subject());
+  static PlanDrawing& drawing() {
+    static PlanDrawing made(subject());
     return made;
   }
-  static PlanDrawing::Look tightest() {
-    return drawing().look(drawing().way().at(drawing().way().tightest()));
-  }
+  static PlanLook tightest() { return drawing().look(drawing().way().at(drawing().tightest())); }
 };
 
 TEST_F(WallPlan, TheWayIsThePathByItsLength) {
@@ -76,7 +74,7 @@ TEST_F(WallPlan, TheWayIsThePathByItsLength) {
     s += length;
   }
   // Nowhere on the path is the checker's clearance much below that of the tightest place.
-  const double least = world().checker.clearance(as_span(way.at(way.tightest()))).distance;
+  const double least = world().checker.clearance(as_span(way.at(drawing().tightest()))).distance;
   for (int k = 0; k <= 300; ++k) {
     EXPECT_GT(world().checker.clearance(as_span(way.at(way.length() * k / 300))).distance,
               least - 0.02);
@@ -84,7 +82,7 @@ TEST_F(WallPlan, TheWayIsThePathByItsLength) {
 }
 
 TEST_F(WallPlan, EveryLayerAddsWhatItSays) {
-  const PlanDrawing::Look look = tightest();
+  const PlanLook look = tightest();
   const PlanLayers none{false, false, false, false, false, false};
   const render::Overlay empty = drawing().overlay(none, look);
   EXPECT_EQ(shapes_of(empty), 0U);
@@ -120,15 +118,35 @@ TEST_F(WallPlan, EveryLayerAddsWhatItSays) {
 }
 
 TEST_F(WallPlan, TheTightestPlaceIsToldByName) {
-  const PlanDrawing::Look look = tightest();
+  const PlanLook look = tightest();
   ASSERT_TRUE(look.pair);
-  EXPECT_GT(look.pair->to.distance, 0);
-  const std::string line = drawing().pair_line(look, *look.pair);
+  EXPECT_GT(look.pair->distance, 0);
+  const std::string line = pair_line(*look.pair);
   EXPECT_NE(line.find(" - "), std::string::npos) << line;
   EXPECT_NE(line.find(" mm"), std::string::npos) << line;
   if (look.obstacle_pair) {
-    EXPECT_GE(look.obstacle_pair->to.distance, look.pair->to.distance);
+    EXPECT_GE(look.obstacle_pair->distance, look.pair->distance);
   }
+}
+
+/// Spheres that stick out are not what is told of a model: at the tightest place they overlap.
+TEST_F(WallPlan, OfAModelItsOwnDistancesAreTold) {
+  const FastChecker closer = world().checker.looking_closer(world().cover.solids);
+  const PlanSubject model{world().model,       world().arm,  closer,
+                          world().cover.scene, world().path, ""};
+  PlanDrawing drawn(model);
+  const PlanLook look = drawn.look(drawn.way().at(drawn.tightest()));
+  EXPECT_TRUE(look.placed.empty());
+  ASSERT_TRUE(look.pair);
+  const double spheres = tightest().pair->distance;
+  EXPECT_GT(look.pair->distance, spheres);
+  EXPECT_LT(look.pair->distance, spheres + 0.06);  // twice what spheres stick out by, and more
+  for (int k = 0; k <= 100; ++k) {
+    const PlanLook other = drawn.look(drawn.way().at(drawn.way().length() * k / 100));
+    ASSERT_TRUE(other.pair) << k;
+    EXPECT_GT(other.pair->distance, look.pair->distance - 0.005) << k;
+  }
+  EXPECT_NE(pair_line(*look.pair).find("wall: "), std::string::npos) << pair_line(*look.pair);
 }
 
 TEST(PlanColors, GoFromRedToBlue) {
@@ -198,7 +216,7 @@ class WallPicture : public WallPlan {
     renderer_.emplace(std::move(*opened));
     from_ = plan_view(subject(), drawing(), static_cast<double>(kWidth) / kHeight);
     Sim sim(world().model);
-    sim.place(world().arm, as_span(drawing().way().at(drawing().way().tightest())));
+    sim.place(world().arm, as_span(drawing().way().at(drawing().tightest())));
     standing_ = sim.snapshot();
   }
   render::Image draw(const PlanLayers& layers) {
@@ -321,7 +339,7 @@ TEST_F(PlanWindow, TheUserGoesToAPlace) {
   player_.handle(view::StepEvent{-5});
   EXPECT_NEAR(player_.place(), 1 - 5 * world().model.timestep(), 1e-12);
   player_.handle(view::PanelEvent{kPlanTightest, 1});
-  EXPECT_EQ(player_.place(), drawing().way().tightest());
+  EXPECT_EQ(player_.place(), drawing().tightest());
   EXPECT_NE(frame().status.find(" mm"), std::string::npos);
   player_.handle(view::PanelEvent{kPlanTime, 1e9});
   EXPECT_EQ(player_.place(), drawing().way().length());

@@ -28,7 +28,7 @@ view::PanelItem plan_line(Msg name, std::string value) {
 
 }  // namespace
 
-PlanPlayer::PlanPlayer(const PlanSubject& subject, const PlanDrawing& drawing)
+PlanPlayer::PlanPlayer(const PlanSubject& subject, PlanDrawing& drawing)
     : subject_(&subject),
       drawing_(&drawing),
       sim_(subject.model),
@@ -60,7 +60,7 @@ void PlanPlayer::press(const view::PanelEvent& event) {
       place_ = std::clamp(event.value * kPlanSpeed, 0.0, drawing_->way().length());
       return;
     case kPlanTightest:
-      place_ = drawing_->way().tightest();
+      place_ = drawing_->tightest();
       return;
     case kPlanSpheres:
       layers_.spheres = on;
@@ -99,7 +99,7 @@ void PlanPlayer::handle(const view::ViewEvent& event) {
   }
 }
 
-std::vector<view::PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look) const {
+std::vector<view::PanelSection> PlanPlayer::panels(const PlanLook& look) const {
   const PathWay& way = drawing_->way();
   const PlannedPath& path = subject_->path;
   const std::size_t edge = way.edge_at(place_), edges = path.q.size() - 1;
@@ -112,26 +112,36 @@ std::vector<view::PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look
        plan_line(msg::panel_way, plan_words("%.2f / %.2f", place_, way.length()))}};
   if (edge < path.proof.size()) {
     const EdgeCertificate& proof = path.proof[edge];
-    place.items.push_back(
-        plan_line(msg::panel_proved, text(msg::panel_mm, 1e3 * proof.nearest.distance)));
+    // Of a model the certificate tells of spheres where these were enough.
+    if (drawing_->has_spheres()) {
+      place.items.push_back(
+          plan_line(msg::panel_proved, text(msg::panel_mm, 1e3 * proof.nearest.distance)));
+    } else if (edge < path.kept.size()) {
+      place.items.push_back(
+          plan_line(msg::panel_proved, text(msg::panel_mm, 1e3 * path.kept[edge])));
+    }
     place.items.push_back(plan_line(msg::panel_intervals, plan_words("%.2g", proof.step)));
   }
   if (look.pair) {
     place.items.push_back(
-        plan_line(msg::panel_closest_now, text(msg::panel_mm, 1e3 * look.pair->to.distance)));
+        plan_line(msg::panel_closest_now, text(msg::panel_mm, 1e3 * look.pair->distance)));
   }
   if (look.obstacle_pair) {
     place.items.push_back(plan_line(msg::panel_to_obstacles,
-                                    text(msg::panel_mm, 1e3 * look.obstacle_pair->to.distance)));
+                                    text(msg::panel_mm, 1e3 * look.obstacle_pair->distance)));
+  }
+  view::PanelSection layers{text(msg::panel_show),
+                            {plan_checkbox(kPlanPair, msg::panel_closest_pair, layers_.pair),
+                             plan_checkbox(kPlanPath, msg::panel_path, layers_.path),
+                             plan_checkbox(kPlanTree, msg::panel_tree, layers_.tree),
+                             plan_checkbox(kPlanEnds, msg::panel_ends, layers_.ends),
+                             plan_checkbox(kPlanCorners, msg::panel_corners, layers_.corners)}};
+  if (drawing_->has_spheres()) {
+    layers.items.insert(layers.items.begin(),
+                        plan_checkbox(kPlanSpheres, msg::panel_spheres, layers_.spheres));
   }
   return {std::move(place),
-          {text(msg::panel_show),
-           {plan_checkbox(kPlanSpheres, msg::panel_spheres, layers_.spheres),
-            plan_checkbox(kPlanPair, msg::panel_closest_pair, layers_.pair),
-            plan_checkbox(kPlanPath, msg::panel_path, layers_.path),
-            plan_checkbox(kPlanTree, msg::panel_tree, layers_.tree),
-            plan_checkbox(kPlanEnds, msg::panel_ends, layers_.ends),
-            plan_checkbox(kPlanCorners, msg::panel_corners, layers_.corners)}},
+          std::move(layers),
           {text(msg::panel_search),
            {plan_line(msg::panel_samples, std::to_string(path.counts.samples)),
             plan_line(msg::panel_nodes, std::to_string(path.counts.nodes)),
@@ -143,13 +153,13 @@ std::vector<view::PanelSection> PlanPlayer::panels(const PlanDrawing::Look& look
 void PlanPlayer::fill(view::ViewFrame& frame) {
   const JointVec q = drawing_->way().at(place_);
   place_subject(sim_, *subject_, q);
-  const PlanDrawing::Look look = drawing_->look(q);
+  const PlanLook look = drawing_->look(q);
   frame.snapshot = sim_.snapshot();
   frame.snapshot.time = place_ / kPlanSpeed;
   frame.overlay = drawing_->overlay(layers_, look);
   frame.panels = panels(look);
-  frame.status = look.pair ? drawing_->pair_line(look, *look.pair) : std::string();
-  if (look.obstacle_pair) frame.status += "; " + drawing_->pair_line(look, *look.obstacle_pair);
+  frame.status = look.pair ? pair_line(*look.pair) : std::string();
+  if (look.obstacle_pair) frame.status += "; " + pair_line(*look.obstacle_pair);
 }
 
 }  // namespace mjarm::session

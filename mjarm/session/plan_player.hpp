@@ -28,7 +28,7 @@ enum PlanItem {
 class PlanPlayer {
  public:
   /// @param subject, drawing  of the same path; outlive this.
-  PlanPlayer(const PlanSubject& subject, const PlanDrawing& drawing);
+  PlanPlayer(const PlanSubject& subject, PlanDrawing& drawing);
 
   /// Does what the user asked for.
   void handle(const view::ViewEvent& event);
@@ -45,10 +45,10 @@ class PlanPlayer {
  private:
   void press(const view::PanelEvent& event);
   void go(double ways);
-  [[nodiscard]] std::vector<view::PanelSection> panels(const PlanDrawing::Look& look) const;
+  [[nodiscard]] std::vector<view::PanelSection> panels(const PlanLook& look) const;
 
   const PlanSubject* subject_;
-  const PlanDrawing* drawing_;
+  PlanDrawing* drawing_;
   Sim sim_;
   view::Playback playback_;
   PlanLayers layers_;

@@ -45,13 +45,13 @@ PlanLayers picture_layers() {
 }
 
 /// What the colours of these layers mean.
-std::vector<render::LegendEntry> legend_of(bool film) {
+std::vector<render::LegendEntry> legend_of(bool film, bool spheres) {
   const LanguageScope drawn(render::picture_language());
   std::vector<render::Rgba> scale;
   for (const double clearance : {0.0, 0.01, 0.03, 0.1, 0.3}) {
     scale.push_back(clearance_color(clearance));
   }
-  return {{scale, text(msg::show_plan_legend_scale)},
+  return {{scale, text(spheres ? msg::show_plan_legend_scale : msg::show_plan_legend_way)},
           {{kPlanStartColor}, text(msg::show_plan_legend_start)},
           {{kPlanGoalColor}, text(msg::show_plan_legend_goal)},
           {{}, text(film ? msg::show_plan_legend_now : msg::show_plan_legend_tightest)}};
@@ -64,18 +64,18 @@ Snapshot standing(const PlanSubject& subject, const JointVec& q) {
 }
 
 Result<std::string> draw_picture(const PictureOptions& options, const PlanSubject& subject,
-                                 const PlanDrawing& drawing, const render::Camera& camera) {
+                                 PlanDrawing& drawing, const render::Camera& camera) {
   Result<render::OffscreenRenderer> renderer =
       render::OffscreenRenderer::create(subject.model, offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
-  const JointVec q = drawing.way().at(drawing.way().tightest());
+  const JointVec q = drawing.way().at(drawing.tightest());
   return write_picture(*renderer, options, standing(subject, q), camera,
                        drawing.overlay(picture_layers(), drawing.look(q)));
 }
 
 /// The arm goes from start to goal.
 Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& subject,
-                              const PlanDrawing& drawing, const render::Camera& camera) {
+                              PlanDrawing& drawing, const render::Camera& camera) {
   Result<VideoOfRun> video = VideoOfRun::open(subject.model, options, camera);
   if (!video) return fail(std::move(video.error()));
   const PlanLayers layers = picture_layers();
@@ -93,10 +93,9 @@ Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& 
   return video->summary();
 }
 
-Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject,
-                          const PlanDrawing& drawing) {
+Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject, PlanDrawing& drawing) {
   PictureOptions options = *show.picture;
-  options.legend = legend_of(options.video);
+  options.legend = legend_of(options.video, drawing.has_spheres());
   const Result<render::Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
   const Result<std::string> line = options.video ? draw_film(options, subject, drawing, *camera)
@@ -107,7 +106,7 @@ Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject,
 }
 
 Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
-                              const PlanDrawing& drawing) {
+                              PlanDrawing& drawing) {
   Result<render::Camera> camera = camera_of(show, subject, drawing);
   if (!camera) return fail(camera.error());
   PlanPlayer player(subject, drawing);
@@ -132,10 +131,10 @@ Result<void> show_plan(const PlanShow& show, const PlanSubject& subject) {
   if (!show.picture && !has_display()) {
     return fail(Errc::impossible, text(msg::show_plan_no_display));
   }
-  const PlanDrawing drawing(subject);
-  const PlanDrawing::Look look = drawing.look(drawing.way().at(drawing.way().tightest()));
+  PlanDrawing drawing(subject);
+  const PlanLook look = drawing.look(drawing.way().at(drawing.tightest()));
   if (look.pair) {
-    const std::string place = drawing.pair_line(look, *look.pair);
+    const std::string place = pair_line(*look.pair);
     const std::size_t edges = subject.path.q.size() - 1;
     log_info(edges == 1 ? text(msg::show_plan_straight, place)
                         : text(msg::show_plan_tightest, edges, place));

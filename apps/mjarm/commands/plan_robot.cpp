@@ -221,7 +221,7 @@ Result<int> plan_for_robot(const RobotRequest& request, const PlanOptions& optio
   if (!exit_code || !show || !found) return exit_code;
   const auto shown =
       session::show_plan(*show, {robot->model, robot->arm, (*scene)->checker, (*scene)->cover.scene,
-                                 *found, name, way->world.rules.attached});
+                                 *found, name, way->world.rules});
   if (!shown) return fail(shown.error());
   return exit_code;
 }
