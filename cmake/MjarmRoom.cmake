@@ -69,7 +69,7 @@ function(mjarm_tests target)
     target_precompile_headers(${target} REUSE_FROM mjarm_precompiled_tests)
   endif()
   gtest_discover_tests(${target} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
-                       DISCOVERY_TIMEOUT 60)
+                       DISCOVERY_TIMEOUT 60 PROPERTIES ENVIRONMENT MJARM_CACHE=off)
 endfunction()
 
 # Adds to a test program that of every list of messages in the folder.

@@ -220,6 +220,10 @@ void Convex::join(const std::vector<std::array<int, 3>>& triangles) {
   }
 }
 
+void Convex::append_to(ByteKey& key) const {
+  key.add(kind_, X_LS_, size_, radius_, center_, reach_, points_);
+}
+
 /// Over the surface from point to point, as long as it goes up.
 int Convex::climb(const Vector3d& n, int from) const noexcept {
   double high = n.dot(points_[static_cast<std::size_t>(from)]);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "mjarm/collision/byte_key_internal.hpp"
 #include "mjarm/collision/cover_solid_internal.hpp"
 #include "mjarm/core/pose.hpp"
 
@@ -30,6 +31,8 @@ class Convex {
   [[nodiscard]] Eigen::Vector3d farthest(const Eigen::Vector3d& n, int& hint) const noexcept;
   /// Directions in L that faces look to: along one of them the solid is thin.
   [[nodiscard]] const std::vector<Eigen::Vector3d>& normals() const noexcept { return normals_; }
+  /// All that decides about distances from it.
+  void append_to(ByteKey& key) const;
 
  private:
   [[nodiscard]] int climb(const Eigen::Vector3d& n, int from) const noexcept;

@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "mjarm/collision/cover_cache_internal.hpp"
 #include "mjarm/collision/cover_fit_internal.hpp"
 #include "mjarm/collision/cover_geoms_internal.hpp"
 #include "mjarm/collision/cover_pairs_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
+#include "mjarm/core/user_cache.hpp"
 
 namespace mjarm {
 namespace {
 
+using detail::FittedCover;
 using detail::GeomGroup;
 using detail::GeomGroups;
 using detail::GeomSolids;
@@ -19,23 +26,37 @@ using detail::StandingSolid;
 constexpr double kWider = 1.4;  // a bound that takes too many spheres grows by this
 constexpr int kMaxWider = 20;
 
-/// The links as spheres, with the smallest bound that takes no more than there may be.
-bool add_spheres(const std::vector<GeomGroup>& links, const GeomSolids& solids, double bound,
-                 const StopCheck& stop, ModelCover& out) {
+/// Spheres for each link, with the smallest bound that takes no more than there may be.
+std::optional<std::vector<FittedCover>> fit_links(
+    const std::vector<std::vector<detail::CoverSolid>>& covers, double bound,
+    const StopCheck& stop) {
   for (int round = 0; round < kMaxWider && !is_stopped(stop); ++round, bound *= kWider) {
-    out.spheres.links.clear();
-    out.bound = 0;
+    std::vector<FittedCover> out;
     std::size_t left = kMaxSpheres;
-    for (std::size_t l = 0; l < links.size(); ++l) {
-      const auto fit = detail::fit_cover(solids.covers[l], bound, left, stop);
+    for (const std::vector<detail::CoverSolid>& solids : covers) {
+      auto fit = detail::fit_cover(solids, bound, left, stop);
       if (!fit) break;
       left -= fit->spheres.size();
-      out.bound = std::max(out.bound, fit->bound);
-      out.spheres.links.push_back({links[l].name, links[l].joint, fit->spheres});
+      out.push_back(std::move(*fit));
     }
-    if (out.spheres.links.size() == links.size()) return true;
+    if (out.size() == covers.size()) return out;
   }
-  return false;
+  return {};
+}
+
+/// What `make()` gives, from the cache of the user where it is there.
+/// @param read  of bytes; none where they are of something else.
+template <class Make, class Read>
+auto cached(const std::optional<UserCache>& cache, const std::string& key, const Read& read,
+            const Make& make) -> decltype(make()) {
+  if (cache) {
+    if (const auto bytes = cache->find(key)) {
+      if (auto known = read(*bytes)) return known;
+    }
+  }
+  auto made = make();
+  if (cache && made) cache->keep(key, detail::bytes_of(*made));
+  return made;
 }
 
 /// The body with a free joint that a geom hangs on; empty for the arm's own and where there is
@@ -75,18 +96,31 @@ Result<ModelCover> cover_model(const Model& model, const Arm& arm, const CoverOp
   if (!groups) return fail(groups.error());
   const mjModel& m = *model.raw();
   GeomSolids solids = solids_of_groups(m, arm, *groups);
+  const std::optional<UserCache> cache = UserCache::of_user();
   ModelCover out;
-  if (!add_spheres(groups->links, solids, options.bound, options.stop, out)) {
+  const auto fits = cached(
+      cache, detail::key_of_covers(solids.covers, options.bound),
+      [&](const std::string& bytes) { return detail::covers_of(bytes, solids.covers.size()); },
+      [&] { return fit_links(solids.covers, options.bound, options.stop); });
+  if (!fits) {
     if (is_stopped(options.stop)) return fail(stopped());
     return fail(Errc::bad_input,
                 text(msg::collision_cover_spheres, arm.name, kMaxSpheres, kMaxSphereLinks));
   }
+  for (std::size_t l = 0; l < fits->size(); ++l) {
+    const GeomGroup& link = groups->links[l];
+    out.bound = std::max(out.bound, (*fits)[l].bound);
+    out.spheres.links.push_back({link.name, link.joint, (*fits)[l].spheres});
+  }
   const detail::MeetingProof proof(m, arm, *groups, solids, options.rules);
-  detail::Meetings meetings = find_meetings(proof, *groups, options.stop);
-  if (is_stopped(options.stop)) return fail(stopped());
-  out.pairs_apart = meetings.apart;
-  out.spheres.pairs = std::move(meetings.pairs);
-  auto standing = add_scene(m, *groups, solids, meetings, out);
+  auto meetings = cached(
+      cache, proof.key(),
+      [&](const std::string& bytes) { return detail::meetings_of(bytes, *groups); },
+      [&] { return find_meetings(proof, *groups, options.stop); });
+  if (!meetings) return fail(stopped());
+  out.pairs_apart = meetings->apart;
+  out.spheres.pairs = std::move(meetings->pairs);
+  auto standing = add_scene(m, *groups, solids, *meetings, out);
   out.solids = std::make_shared<const detail::SolidScene>(arm, std::move(solids.links),
                                                           std::move(standing), out.spheres.pairs);
   if (const Result<void> fine = check_sphere_set(out.spheres, arm); !fine)

@@ -13,6 +13,9 @@ constexpr int kJointsProved = 3;     // between the two; for more the search is 
 constexpr int kMaxTried = 3000;      // boxes of one search
 constexpr double kKeptApart = 2e-5;  // [m] at least
 
+/// To be raised when find_meetings() gives something else for the same.
+constexpr const char* kMeetings = "mjarm meetings 1\n";
+
 using Box = std::array<double, kJointsProved>;
 
 }  // namespace
@@ -109,6 +112,32 @@ std::span<const LinkSolid> MeetingProof::solids_of(const MeetingPart& part) cons
   return part.geom ? all.subspan(*part.geom, 1) : all;
 }
 
+std::string MeetingProof::key() const {
+  ByteKey out(kMeetings);
+  out.add(arm_.joints.size());
+  for (int k = 0; k < arm_.dof(); ++k) {
+    const ArmJoint& joint = arm_.joints[static_cast<std::size_t>(k)];
+    const FastLimits limits = fast_limits(arm_, k);
+    out.add(joint.type, joint.X_PJ, joint.axis, limits.lower, limits.upper);
+  }
+  for (const LinkSolid& solid : solids_.links) {
+    out.add(solid.link, solid.joint, solid.levers);
+    solid.convex.append_to(out);
+  }
+  out.add(groups_.links.size(), groups_.obstacles.size());
+  for (const StandingSolid& solid : solids_.standing) {
+    out.add(solid.kind, solid.X_WO, solid.ground.half, solid.ground.rows, solid.ground.cols,
+            solid.ground.heights, solid.ground.bottom);
+    if (solid.convex) solid.convex->append_to(out);
+  }
+  for (const std::vector<GeomGroup>* groups : {&groups_.links, &groups_.obstacles}) {
+    for (const GeomGroup& group : *groups) {
+      for (const GeomGroup& link : groups_.links) out.add(is_allowed(group, link));
+    }
+  }
+  return out.bytes();
+}
+
 bool MeetingProof::never_meet(const MeetingPart& a, const MeetingPart& b) const {
   const int base = a.moves ? groups_.links[a.group].joint : -1;
   const int joints = groups_.links[b.group].joint - base;
@@ -135,7 +164,8 @@ bool MeetingProof::never_meet(const MeetingPart& a, const MeetingPart& b) const 
   return search.is_clear(middle, half);
 }
 
-Meetings find_meetings(const MeetingProof& proof, const GeomGroups& groups, const StopCheck& stop) {
+std::optional<Meetings> find_meetings(const MeetingProof& proof, const GeomGroups& groups,
+                                      const StopCheck& stop) {
   Meetings out;
   const std::size_t count = groups.links.size();
   for (std::size_t a = 0; a < count && !is_stopped(stop); ++a) {
@@ -161,6 +191,7 @@ Meetings find_meetings(const MeetingProof& proof, const GeomGroups& groups, cons
     }
     if (ignored.size() < count) out.standing.push_back({k, std::move(ignored)});
   }
+  if (is_stopped(stop)) return {};
   return out;
 }
 

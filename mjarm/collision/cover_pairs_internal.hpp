@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mjarm/collision/cover_geoms_internal.hpp"
@@ -42,6 +43,8 @@ class MeetingProof {
   /// True where it is proved that the two never meet; `b` is a link, on the joint farther from the
   /// base.
   [[nodiscard]] bool never_meet(const MeetingPart& a, const MeetingPart& b) const;
+  /// All that decides what can meet what: joints and their limits, solids, rules.
+  [[nodiscard]] std::string key() const;
   /// [m a radian or metre] (dof,) By how much each joint moves any point of a link at most, within
   /// the limits of all.
   [[nodiscard]] std::vector<double> longest_levers() const;
@@ -70,8 +73,9 @@ struct Meetings {
   int apart = 0;  ///< pairs of links (links and obstacles) that were proved never to meet
 };
 
-/// @param stop  ends the search: what was found so far comes back.
-[[nodiscard]] Meetings find_meetings(const MeetingProof& proof, const GeomGroups& groups,
-                                     const StopCheck& stop);
+/// @return none where `stop` ended the search.
+[[nodiscard]] std::optional<Meetings> find_meetings(const MeetingProof& proof,
+                                                    const GeomGroups& groups,
+                                                    const StopCheck& stop);
 
 }  // namespace mjarm::detail

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kLanes = 4;  // facets of a block
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 double from_box(const Vector3d& half, const Vector3d& p) {
   const Vector3d beyond = p.cwiseAbs() - half;
@@ -111,7 +111,7 @@ void Facets::add(const Facet& facet) {
   // Lanes without a facet have one that is farther from everything than any other.
   if (lane == 0) {
     rows_.resize(rows_.size() + 3 * kLanes, 0);
-    rows_.resize(rows_.size() + kLanes, kInfinity);
+    rows_.resize(rows_.size() + kLanes, kNoBound);
   }
   double* const block = rows_.data() + rows_.size() - 4 * kLanes;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -133,7 +133,7 @@ double Facets::farthest(const Vector3d& p) const {
     return out;
   };
   const Two x = Two{} + p.x(), y = Two{} + p.y(), z = Two{} + p.z();
-  std::array<Two, 2> max{Two{} - kInfinity, Two{} - kInfinity};
+  std::array<Two, 2> max{Two{} - kNoBound, Two{} - kNoBound};
   const double* const end = rows_.data() + rows_.size();
   for (const double* at = rows_.data(); at != end; at += 4 * kLanes) {
     for (std::size_t k = 0; k < 2; ++k) {
@@ -164,7 +164,7 @@ double CoverSolid::signed_distance(const Vector3d& p_L) const {
     case SolidKind::hull:
       return facets.farthest(p);
   }
-  return kInfinity;
+  return kNoBound;
 }
 
 Vector3d CoverSolid::outwards(const Vector3d& p_L) const {
@@ -227,7 +227,7 @@ std::vector<Vector3d> CoverSolid::sharp_points(double spacing) const {
 }
 
 CoverBounds bounds_of(std::span<const CoverSolid> solids) {
-  CoverBounds out{Vector3d::Constant(kInfinity), Vector3d::Constant(-kInfinity)};
+  CoverBounds out{Vector3d::Constant(kNoBound), Vector3d::Constant(-kNoBound)};
   for (const CoverSolid& solid : solids) {
     const bool is_round = solid.kind == SolidKind::ball || solid.kind == SolidKind::capsule;
     const double round = is_round ? solid.size.x() : 0;
@@ -240,7 +240,7 @@ CoverBounds bounds_of(std::span<const CoverSolid> solids) {
 }
 
 double depth_in(std::span<const CoverSolid> solids, const Vector3d& p_L) {
-  double depth = -kInfinity;
+  double depth = -kNoBound;
   for (const CoverSolid& solid : solids) depth = std::max(depth, -solid.signed_distance(p_L));
   return depth;
 }

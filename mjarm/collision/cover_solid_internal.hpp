@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "mjarm/collision/byte_key_internal.hpp"
 #include "mjarm/core/pose.hpp"
 
 namespace mjarm::detail {
@@ -54,6 +55,8 @@ struct CoverSolid {
   /// Points and a radius such that the solid lies in the hull of the balls with that radius round
   /// them; in L.
   [[nodiscard]] std::vector<Eigen::Vector3d> skeleton() const;
+  /// All that decides about it.
+  void append_to(ByteKey& key) const { key.add(kind, X_LS, size, points, triangles); }
   /// Corners and points of edges, in L: what a cover must not miss; none of what is round.
   [[nodiscard]] std::vector<Eigen::Vector3d> sharp_points(double spacing) const;
 };

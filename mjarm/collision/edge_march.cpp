@@ -9,7 +9,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kTurnError = 1e-5;  // an obstacle's rotation may be off by 1e-6
 constexpr double kShare = 0.999;     // of a step that is taken, for the rounding of the step
 
@@ -21,8 +21,8 @@ struct LaterWatch {
 double safe_step(double d, double slope, double bend) {
   if (d <= 0) return 0;
   const double root = std::sqrt(slope * slope + 2 * bend * d);
-  if (slope <= 0) return root > slope ? 2 * d / (root - slope) : kInfinity;
-  return bend > 0 ? (slope + root) / bend : kInfinity;
+  if (slope <= 0) return root > slope ? 2 * d / (root - slope) : kNever;
+  return bend > 0 ? (slope + root) / bend : kNever;
 }
 
 constexpr long kLooksUnasked = 64;  // between two questions whether to stop
@@ -47,7 +47,7 @@ class EdgeMarch {
 
   Result<VerifyResult> run() {
     VerifyResult nearest;
-    nearest.distance = kInfinity;
+    nearest.distance = kNever;
     watch_all();
     for (long looks = 0; !watches_.empty(); ++looks) {
       Watch watch = watches_.top();

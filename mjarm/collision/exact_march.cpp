@@ -134,9 +134,10 @@ Result<ModelMarch> ModelMarch::create(const Model& model, const Arm& arm, const 
   if (!groups) return fail(std::move(groups.error()));
   const detail::GeomSolids solids = solids_of_groups(*model.raw(), arm, *groups);
   const detail::MeetingProof proof(*model.raw(), arm, *groups, solids, rules);
-  detail::Meetings meetings = find_meetings(proof, *groups, stop);
-  if (is_stopped(stop)) return fail(stopped());
-  return ModelMarch(std::make_unique<Impl>(model, arm, std::move(*groups), std::move(meetings)));
+  // Never from UserCache: what is verified is proved anew.
+  auto meetings = find_meetings(proof, *groups, stop);
+  if (!meetings) return fail(stopped());
+  return ModelMarch(std::make_unique<Impl>(model, arm, std::move(*groups), std::move(*meetings)));
 }
 
 ModelMarch::ModelMarch(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

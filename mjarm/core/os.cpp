@@ -77,6 +77,15 @@ bool has_display() {
   return false;
 }
 
+std::optional<std::filesystem::path> user_folder(const std::string& variable,
+                                                 const std::string& below_home) {
+  const std::filesystem::path named = environment(variable).value_or("");
+  if (named.is_absolute()) return named;  // the XDG rules: a relative path is to be ignored
+  const std::filesystem::path home = environment("HOME").value_or("");
+  if (home.is_absolute()) return home / below_home;
+  return {};
+}
+
 std::filesystem::path temp_directory() {
   std::error_code error;
   std::filesystem::path path = std::filesystem::temp_directory_path(error);

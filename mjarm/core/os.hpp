@@ -32,6 +32,11 @@ namespace mjarm {
 /// True where a graphical display is announced (X11 or Wayland); it may still refuse to open.
 [[nodiscard]] bool has_display();
 
+/// Folder of this user for files of a kind, by the XDG rules: what the environment variable names
+/// (an absolute path), else `below_home`, such as ".cache", in the home; none where there is none.
+[[nodiscard]] std::optional<std::filesystem::path> user_folder(const std::string& variable,
+                                                               const std::string& below_home);
+
 /// Folder for temporary files (TMPDIR, else the system's).
 [[nodiscard]] std::filesystem::path temp_directory();
 

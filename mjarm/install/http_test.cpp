@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mjarm/core/sha256.hpp"
 #include "mjarm/install/mesh_package_test.hpp"
-#include "mjarm/install/sha256_internal.hpp"
 #include "tests/support/http_server.hpp"
 #include "tests/support/temp_folder.hpp"
 

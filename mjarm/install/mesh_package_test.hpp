@@ -6,8 +6,8 @@
 #include <string>
 
 #include "mjarm/core/rng.hpp"
+#include "mjarm/core/sha256.hpp"
 #include "mjarm/install/mesh_sets.hpp"
-#include "mjarm/install/sha256_internal.hpp"
 
 namespace mjarm::install {
 

@@ -5,9 +5,9 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/rng.hpp"
+#include "mjarm/core/sha256.hpp"
 #include "mjarm/install/mesh_scene_internal.hpp"
 #include "mjarm/install/mesh_sets.hpp"
-#include "mjarm/install/sha256_internal.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/model.hpp"
 #include "tests/support/run_program.hpp"

@@ -6,18 +6,14 @@
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
-#include "mjarm/install/sha256_internal.hpp"
+#include "mjarm/core/sha256.hpp"
 
 namespace mjarm::install {
 
 namespace fs = std::filesystem;
 
 Result<fs::path> data_folder() {
-  // The XDG rules: a relative path is to be ignored.
-  const fs::path data = environment("XDG_DATA_HOME").value_or("");
-  if (data.is_absolute()) return data / "mjarm";
-  const fs::path home = environment("HOME").value_or("");
-  if (home.is_absolute()) return home / ".local/share/mjarm";
+  if (const auto data = user_folder("XDG_DATA_HOME", ".local/share")) return *data / "mjarm";
   return fail(Errc::system, text(msg::install_no_home));
 }
 

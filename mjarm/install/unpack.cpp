@@ -2,7 +2,7 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/install.hpp"
-#include "mjarm/install/sha256_internal.hpp"
+#include "mjarm/core/sha256.hpp"
 #include "mjarm/install/unpack_internal.hpp"
 
 namespace mjarm::install {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
@@ -16,6 +18,7 @@
 #include "mjarm/core/os_child_input.hpp"
 #include "mjarm/core/os_system.hpp"
 #include "mjarm/core/text_width.hpp"
+#include "mjarm/core/user_cache.hpp"
 #include "mjarm/install/installed.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/model/mujoco_library.hpp"
@@ -107,6 +110,16 @@ void look_at_ompl(Findings& findings) {
   add(findings, "ompl", "OMPL", version, version.empty() ? text(msg::app_doctor_no_ompl) : version);
 }
 
+/// What is kept from run to run; safe to delete.
+void look_at_cache(Findings& findings) {
+  constexpr double kMega = 1e6;
+  const std::optional<UserCache> cache = UserCache::of_user();
+  const std::string folder = cache ? cache->folder().string() : std::string();
+  add(findings, "cache", text(msg::app_doctor_cache), folder,
+      cache ? text(msg::app_doctor_cache_size, folder, static_cast<double>(cache->size()) / kMega)
+            : text(msg::app_doctor_no_cache));
+}
+
 void look_at_models(Findings& findings) {
   std::vector<JsonDoc> found;
   std::string names;
@@ -152,6 +165,7 @@ Result<int> run(bool json) {
   look_at_fonts(findings);
   look_at_ffmpeg(findings);
   look_at_ompl(findings);
+  look_at_cache(findings);
   look_at_models(findings);
   look_at_meshes(findings);
   const bool fine = findings.problems.empty();

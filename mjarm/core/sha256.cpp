@@ -1,9 +1,10 @@
+#include "mjarm/core/sha256.hpp"
+
 #include <openssl/evp.h>
 
 #include "mjarm/core/file.hpp"
-#include "mjarm/install/sha256_internal.hpp"
 
-namespace mjarm::install {
+namespace mjarm {
 
 std::string sha256(std::string_view content) {
   constexpr char kDigits[] = "0123456789abcdef";
@@ -20,4 +21,4 @@ Result<std::string> sha256_of_file(const std::filesystem::path& file) {
   return read_file(file).map([](const std::string& content) { return sha256(content); });
 }
 
-}  // namespace mjarm::install
+}  // namespace mjarm

@@ -6,7 +6,7 @@
 
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::install {
+namespace mjarm {
 
 /// SHA-256 of `content`, as 64 lower-case hexadecimal digits.
 [[nodiscard]] std::string sha256(std::string_view content);
@@ -14,4 +14,4 @@ namespace mjarm::install {
 /// SHA-256 of a file. @return an error that names the file.
 [[nodiscard]] Result<std::string> sha256_of_file(const std::filesystem::path& file);
 
-}  // namespace mjarm::install
+}  // namespace mjarm
