@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/plan_near.hpp"
 #include "apps/bench/robots.hpp"
 #include "mjarm/core/file.hpp"
+#include "mjarm/kinematics/chain.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm::app {
@@ -29,17 +29,6 @@ std::optional<double> distance_of_thing(const CollisionReport& report) {
   const GeomPair& pair = report.nearest->pair;
   if (!pair.geom1.starts_with("thing_") && !pair.geom2.starts_with("thing_")) return std::nullopt;
   return report.nearest->distance;
-}
-
-/// Each hinge in the turn that is nearest to the start.
-JointVec nearest_turns(const Arm& arm, JointVec q, const JointVec& start) {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  for (int i = 0; i < arm.dof(); ++i) {
-    if (arm.joints[static_cast<std::size_t>(i)].type != JointType::hinge) continue;
-    const double turned = q[i] - kTurn * std::round((q[i] - start[i]) / kTurn);
-    if (turned >= arm.limits.lower[i] && turned <= arm.limits.upper[i]) q[i] = turned;
-  }
-  return q;
 }
 
 /// True where the links from the third on and the tool are above that height.
@@ -88,7 +77,7 @@ Result<NearProblem> draw_goal(const DrawnScene& drawn, ExactChecker& checker, st
                               Rng& rng) {
   const Arm& arm = drawn.scene.robot.arm;
   for (int tries = 0; tries < kMaxGoals; ++tries) {
-    const JointVec q = nearest_turns(arm, random_q(arm, rng), arm.home);
+    const JointVec q = unwind(Chain(arm), random_q(arm, rng), arm.home);
     if (!is_above(arm, q, drawn.level)) continue;
     const auto report = checker.check(as_span(q));
     if (!report) return fail(report.error());

@@ -74,4 +74,10 @@ double nearest_winding(const Chain& chain, int i, double q, double q_near) noexc
   return std::min(std::max(q, chain.lower[i]), chain.upper[i]);
 }
 
+JointVec unwind(const Chain& chain, const JointVec& q, const JointVec& q_near) noexcept {
+  JointVec out(chain.dof);
+  for (int i = 0; i < chain.dof; ++i) out[i] = nearest_winding(chain, i, q[i], q_near[i]);
+  return out;
+}
+
 }  // namespace mjarm

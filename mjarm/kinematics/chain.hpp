@@ -32,4 +32,8 @@ struct Chain {
 /// itself for a slide or a hinge of less than a revolution.
 [[nodiscard]] double nearest_winding(const Chain& chain, int i, double q, double q_near) noexcept;
 
+/// The same for every joint; shapes (dof,) [rad or m].
+[[nodiscard]] JointVec unwind(const Chain& chain, const JointVec& q,
+                              const JointVec& q_near) noexcept;
+
 }  // namespace mjarm

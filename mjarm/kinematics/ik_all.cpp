@@ -55,7 +55,7 @@ void add_samples(const IkSolver& ik, const IkGoal& goal, int starts, Answers& an
     const JointVec q_start = detail::random_start(ik.chain(), goal.seed, rng);
     const auto descent = detail::descend(ik.chain(), goal.X_WT, q_start, descent_options);
     if (!descent.converged) continue;
-    const JointVec q = detail::unwind(ik.chain(), descent.q, goal.seed);
+    const JointVec q = unwind(ik.chain(), descent.q, goal.seed);
     if (answers.knows(q) || distance(q, goal.seed) > options.max_step) continue;
     if (options.valid && !options.valid(as_span(q))) continue;
     answers.add({q, descent.pos_err, descent.rot_err, descent.iterations, start});

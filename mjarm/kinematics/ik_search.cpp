@@ -65,12 +65,6 @@ JointVec random_start_at_stops(const Chain& chain, const JointVec& seed, Rng& rn
   return q;
 }
 
-JointVec unwind(const Chain& chain, const JointVec& q, const JointVec& q_near) noexcept {
-  JointVec out(chain.dof);
-  for (int i = 0; i < chain.dof; ++i) out[i] = nearest_winding(chain, i, q[i], q_near[i]);
-  return out;
-}
-
 DescentOptions descent_options(const IkOptions& options, double length) noexcept {
   DescentOptions out;
   out.pos_tol = options.pos_tol;

@@ -29,10 +29,6 @@ struct IkGoal {
 [[nodiscard]] JointVec random_start_at_stops(const Chain& chain, const JointVec& seed,
                                              Rng& rng) noexcept;
 
-/// The configuration of a descent with every joint in its winding nearest to `q_near`.
-[[nodiscard]] JointVec unwind(const Chain& chain, const JointVec& q,
-                              const JointVec& q_near) noexcept;
-
 /// How a descent for these options is run.
 [[nodiscard]] DescentOptions descent_options(const IkOptions& options, double length) noexcept;
 

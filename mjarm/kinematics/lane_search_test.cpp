@@ -130,7 +130,7 @@ TEST(LaneSearch, SolvesEveryPoseOfUr5eAndPanda) {
       const JointVec seed = testing::random_q(arm, rng);
       const auto end = first_answer(chain, X_goal, seed, 51);
       ASSERT_TRUE(end.has_value()) << arm.name << i;
-      const JointVec q = detail::unwind(chain, end->descent.q, seed);
+      const JointVec q = unwind(chain, end->descent.q, seed);
       EXPECT_TRUE(within_limits(arm, as_span(q)));
       EXPECT_LT((fk(arm, as_span(q)).p - X_goal.p).norm(), 1.01e-7);
       const auto again = first_answer(chain, X_goal, seed, 51);
