@@ -83,7 +83,12 @@ const Eigen::VectorXd& Dynamics::passive(std::span<const double> qpos,
                                          std::span<const double> qvel) {
   impl_->set_position(qpos);
   impl_->set_velocity(qvel);
-  std::copy_n(impl_->data->qfrc_passive, impl_->model.nv(), impl_->force.data());
+  const mjModel& m = *impl_->model.raw();
+  std::copy_n(impl_->data->qfrc_passive, m.nv, impl_->force.data());
+  // Where a file has the actuators compensate gravity, MuJoCo adds that to what they are commanded.
+  for (int i = 0; i < m.nv; ++i) {
+    if (m.jnt_actgravcomp[m.dof_jntid[i]]) impl_->force[i] += impl_->data->qfrc_gravcomp[i];
+  }
   return impl_->force;
 }
 

@@ -24,7 +24,8 @@ class Dynamics {
   const Eigen::VectorXd& gravity(std::span<const double> qpos);
   /// Gravity + Coriolis + centrifugal torque, (nv,) [N m].
   const Eigen::VectorXd& bias(std::span<const double> qpos, std::span<const double> qvel);
-  /// Passive forces the model adds by itself (damping, springs, gravity compensation), (nv,) [N m].
+  /// Forces the model adds by itself (damping, springs, gravity compensation, that of actuators
+  /// included), (nv,) [N m].
   const Eigen::VectorXd& passive(std::span<const double> qpos, std::span<const double> qvel);
   /// M qacc + bias, (nv,) [N m]; no damping, friction, contact.
   const Eigen::VectorXd& inverse(std::span<const double> qpos, std::span<const double> qvel,

@@ -49,6 +49,19 @@ TEST_P(ShippedDynamics, InverseUndoesMujocosForward) {
   mj_deleteModel(free_model);
 }
 
+// The file may have the actuators compensate gravity instead; what they are asked for is the same.
+TEST(Dynamics, CountsCompensationByActuators) {
+  const auto passive = [](const char* by_actuators) {
+    const auto model = Model::from_mjcf(std::string(R"(<mujoco><worldbody>
+        <body gravcomp="0.7"><joint axis="0 1 0" actuatorgravcomp=")") +
+                                        by_actuators + R"("/>
+        <geom size="0.1" pos="0.5 0 0"/></body></worldbody></mujoco>)");
+    return Dynamics(model.value()).passive(std::vector{0.2}, std::vector{0.0})[0];
+  };
+  EXPECT_GT(std::abs(passive("false")), 1);
+  EXPECT_EQ(passive("true"), passive("false"));
+}
+
 TEST_P(ShippedDynamics, MassMatrixIsSymmetricAndPositive) {
   const Model model = testing::shipped(GetParam());
   Dynamics dynamics(model);
