@@ -92,7 +92,7 @@ std::span<const Demo> demos() {
       {"flip", msg::demo_about_flip, run_flip, kDriven, "  mjarm demo flip --headless"},
       {"avoid", msg::demo_about_avoid, run_avoid, kUseRobot | kUseSeconds | kUseControl,
        "  mjarm demo avoid --tip ee_link"},
-      {"square", msg::demo_about_square, run_square, kDriven,
+      {"square", msg::demo_about_square, run_square, kDriven | kUseAllow,
        "  mjarm demo square --robot my_arm.urdf"},
       {"reach", msg::train_about_reach, run_reach, 0, "  mjarm demo reach --headless"},
   };

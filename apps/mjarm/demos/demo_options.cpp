@@ -11,6 +11,7 @@
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/messages/demo_values.hpp"
 #include "apps/mjarm/messages/models.hpp"
+#include "apps/mjarm/messages/plan.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/units.hpp"
 
@@ -39,6 +40,7 @@ std::span<const DemoOption> demo_options() {
       {"--tip", kUseRobot, &A::tip, msg::app_option_tip, "FRAME"},
       {"--package-path", kUseFiles, &A::package_paths, msg::app_option_package_path, "DIR"},
       {"--allow-outside", kUseFiles, &A::allow_outside, msg::app_option_outside, ""},
+      {"--allow", kUseAllow, &A::allow, msg::plan_option_allow, "A,B"},
       {"--meshes", kUseMeshes, &A::meshes, msg::models_option_meshes, ""},
       {"--seconds", kUseSeconds, &A::seconds, msg::demo_option_seconds, "S"},
       {"--control", kUseControl, &A::control, msg::demo_option_control, "MODE"},
@@ -206,6 +208,7 @@ Result<DemoOptions> read_demo_options(const Demo& demo, const DemoArguments& arg
   options.video = arguments.video;
   options.timing = !arguments.no_timing;
   options.replace = arguments.replace;
+  options.allow = arguments.allow;
   Result<DemoValues> values = read_values(arguments);
   if (!values) return fail(std::move(values.error()));
   options.values = std::move(*values);

@@ -13,7 +13,7 @@ struct DemoArguments {
   std::string out, seconds, text, control, robot, tip;
   std::string pos, to, from, euler, quat, seed_q, joints, ctrl, start;
   std::string center, normal, a, b, radius, height;
-  std::vector<std::string> package_paths;
+  std::vector<std::string> package_paths, allow;
   bool headless = false, meshes = false, guide = false, video = false, no_timing = false,
        allow_outside = false;
   Replace replace;

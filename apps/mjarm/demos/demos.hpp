@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/mjarm/cli/robot.hpp"
 #include "mjarm/core/messages.hpp"
@@ -34,9 +35,10 @@ struct DemoValues {
 
 /// What the user chose for a demo.
 struct DemoOptions : session::StageOptions {
-  RobotChoice robot;    ///< which arm, and which frame of it is the tool
-  bool meshes = false;  ///< the robot's real meshes, which must be installed
-  bool guide = false;   ///< do it the tutorial's way
+  RobotChoice robot;               ///< which arm, and which frame of it is the tool
+  bool meshes = false;             ///< the robot's real meshes, which must be installed
+  bool guide = false;              ///< do it the tutorial's way
+  std::vector<std::string> allow;  ///< `A,B`: bodies or geoms that may touch
   DemoValues values;
 };
 
@@ -59,6 +61,7 @@ enum DemoUse : unsigned {
   kUseCtrl = 8192,        ///< --ctrl, --start
   kUsePlane = 16384,      ///< --center, --normal
   kUseAxes = 32768,       ///< --a, --b, --radius
+  kUseAllow = 65536,      ///< --allow
 };
 
 /// One demo. `run` makes the motion and writes its files; a report with `ok` false is a demo that

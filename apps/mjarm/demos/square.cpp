@@ -1,9 +1,11 @@
 #include <array>
 #include <string_view>
 
+#include "apps/mjarm/commands/rule_options.hpp"
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/collision/exact.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -70,6 +72,22 @@ Result<Choice, MotionFailure> choose(const IkSolver& ik,
   return fail(std::move(nearest));
 }
 
+/// What may touch besides what the file allows.
+Result<ExactChecker> checker_of(const Robot& robot, const std::vector<std::string>& allow) {
+  return rules_of({.hold = {}, .allow = allow}, robot, as_span(robot.arm.home))
+      .and_then([&](const ContactRules& rules) {
+        return ExactChecker::create(robot.model, robot.arm, {.rules = rules});
+      });
+}
+
+/// Why there is no posture to start from, and what may end it.
+std::string no_start(ExactChecker& checker, const Arm& arm) {
+  const Result<CollisionReport> at_home = checker.check(as_span(arm.home));
+  if (!at_home || at_home->contacts.empty()) return text(msg::demo_no_start);
+  const GeomPair& pair = at_home->contacts.front().pair;
+  return text(msg::demo_no_start) + text(msg::demo_home_touches, pair.body1, pair.body2);
+}
+
 void tell(const session::Stage& stage, const Choice& choice) {
   const Pose X_WT = fk(stage.arm(), as_span(choice.start.q));
   std::string q;
@@ -82,14 +100,18 @@ void tell(const session::Stage& stage, const Choice& choice) {
 }  // namespace
 
 Result<Report> run_square(const DemoOptions& options) {
-  Result<std::unique_ptr<session::Stage>> opened = open_stage("square", options);
+  const Result<Robot> robot = load_demo_robot("square", options);
+  if (!robot) return fail(robot.error());
+  Result<ExactChecker> checker = checker_of(*robot, options.allow);
+  if (!checker) return fail(std::move(checker.error()));
+  Result<std::unique_ptr<session::Stage>> opened = session::Stage::open("square", options, *robot);
   if (!opened) return fail(std::move(opened.error()));
   session::Stage& stage = **opened;
-  const IkSolver ik = free_solver(stage.robot());
+  const IkSolver ik(stage.arm(), {.task = task_for(stage.arm()), .valid = checker->predicate()});
   Rng rng(1);
   const std::vector<program::StartPosture> starts =
       program::start_postures(stage.arm(), ik.options().valid, rng);
-  if (starts.empty()) return stage.refuse("collision", text(msg::demo_no_start));
+  if (starts.empty()) return stage.refuse("collision", no_start(*checker, stage.arm()));
   const Result<Choice, MotionFailure> choice = choose(ik, starts);
   if (!choice) return stage.refuse(choice.error());
   tell(stage, *choice);
