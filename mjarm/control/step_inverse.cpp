@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mjarm/control/actuation.hpp"
+#include "mjarm/control/implicit_part.hpp"
 #include "mjarm/core/linear_algebra.hpp"
 
 namespace mjarm {
@@ -14,22 +14,12 @@ StepInverse::StepInverse(const Model& model, const Arm& arm)
       stiffness_(JointVec::Zero(arm.dof())),
       full_(model.nv(), 0.0),
       rest_(model.nv(), 0.0) {
-  const double h = rule_.timestep;
-  const bool discrete = rule_.integrator == Integrator::discrete;
-  const bool implicit_actuators = rule_.integrator == Integrator::implicit ||
-                                  rule_.integrator == Integrator::implicitfast || discrete;
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[i];
     dof_.push_back(joint.dof);
-    double damping = rule_.implicit_damping ? joint.damping : 0;
-    if (implicit_actuators && joint.actuator) damping += servo_damping(*joint.actuator);
-    if (discrete) {
-      // Only what stabilises enters there.
-      damping = std::max(damping, 0.0);
-      stiffness_[i] = rule_.stiffness[joint.dof];
-      if (joint.actuator) stiffness_[i] += std::max(servo_stiffness(*joint.actuator), 0.0);
-    }
-    mass_[i] = h * damping + h * h * stiffness_[i];
+    const ImplicitPart part = implicit_part(rule_, joint.dof, joint.damping, joint.actuator);
+    mass_[i] = part.mass;
+    stiffness_[i] = part.stiffness;
   }
 }
 

@@ -26,6 +26,7 @@ Pose tool_in_tool(const MotionPlan& plan, std::size_t i) {
 MotionRun::MotionRun(const Model& model, const Arm& arm)
     : model_(model), arm_(arm), sim_(model), recorder_(model, arm) {
   sim_.reset_home();
+  sim_.hold_others(arm_);
   q_command_ = sim_.arm_state(arm).q;
 }
 
@@ -184,6 +185,7 @@ Report MotionRun::report(std::span<const MeasuredRun> runs, double tolerance, Re
     out.path_error = error;
     out.done = error->coverage;
   }
+  out.held = sim_.held();
   out.ok = !ended_early();
   out.reason = end_reason_;
   out.detail = end_detail_;

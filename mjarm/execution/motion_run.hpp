@@ -24,7 +24,8 @@ namespace mjarm {
 ///   Report report = run.report(plan, run.measured_runs(), 5e-4);
 class MotionRun {
  public:
-  /// All stands as at keyframe `home`, else where the model begins.
+  /// All stands as at keyframe `home`, else where the model begins; Sim::hold_others() keeps the
+  /// joints there that are not the arm's.
   MotionRun(const Model& model, const Arm& arm);
 
   /// Called after every step. Returns false to end the run.

@@ -61,6 +61,14 @@ JsonDoc to_json(const ObservedObject& object) {
   return out;
 }
 
+JsonDoc to_json(const HeldState& held) {
+  JsonDoc out{{"joint", held.joint.name}};
+  out.set("by", held.joint.actuator ? "actuator" : "lock");
+  if (held.joint.actuator) out.set("actuator", held.joint.actuator->name);
+  out.set("moved", held.moved);
+  return out;
+}
+
 JsonDoc to_json(const std::map<std::string, double>& figures) {
   JsonDoc out{std::initializer_list<JsonDoc::Member>{}};
   for (const auto& [name, value] : figures) out.set(name.c_str(), value);
@@ -150,6 +158,7 @@ std::string to_json(const Report& report) {
   for (const Fact& fact : report.facts) put_fact(fact, out);
   put_list("moves", report.moves, [](const auto& move) { return to_json(move); }, out);
   put_list("objects", report.objects, [](const auto& one) { return to_json(one); }, out);
+  put_list("held", report.held, [](const auto& one) { return to_json(one); }, out);
   if (report.rtf) out.set("rtf", *report.rtf);
   return out.document();
 }

@@ -12,6 +12,7 @@
 #include "mjarm/execution/metrics.hpp"
 #include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/execution/object_watch.hpp"
+#include "mjarm/sim/sim.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm {
@@ -73,6 +74,7 @@ struct Report {
   std::optional<Eigen::Vector3d> shift;      ///< [m] shift of the path that was verified to mend it
   std::vector<ReportedMove> moves;           ///< of a plan, in order
   std::vector<ObservedObject> objects;  ///< of the scene, that were carried or are not in place
+  std::vector<HeldState> held;          ///< joints that are not the arm's, in the model's order
   std::vector<Fact> facts;              ///< what this run alone has to tell
   std::optional<double> rtf;  ///< simulated seconds a wall-clock second, without rendering
 };

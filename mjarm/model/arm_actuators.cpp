@@ -49,21 +49,30 @@ ArmActuator describe_actuator(const mjModel* m, int a) {
 
 }  // namespace
 
+std::optional<ArmActuator> sole_actuator(const mjModel* m, int joint) {
+  std::optional<ArmActuator> sole;
+  int drives = 0;
+  for (int a = 0; a < m->nactuator; ++a) {
+    if (!has_joint_transmission(m, a) || m->actuator_trnid[2 * a] != joint) continue;
+    ++drives;
+    if (is_plain(m, a)) sole = describe_actuator(m, a);
+  }
+  // Two drives on one joint are nothing that a single command could stand for.
+  if (drives > 1) sole.reset();
+  return sole;
+}
+
 void fill_actuators(const mjModel* m, const std::vector<int>& joints, Arm& arm) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     ArmJoint& joint = arm.joints[i];
-    int drives = 0;
+    joint.actuator = sole_actuator(m, joints[i]);
     for (int a = 0; a < m->nactuator; ++a) {
       if (!has_joint_transmission(m, a) || m->actuator_trnid[2 * a] != joints[i]) continue;
-      ++drives;
       // Inertia and friction of a motor, seen through its gear.
       const double gear = m->actuator_gear[6 * m->actuator_outadr[a]];
       joint.armature += gear * gear * m->actuator_armature[a];
       joint.damping += gear * gear * m->actuator_damping[a];
-      if (is_plain(m, a)) joint.actuator = describe_actuator(m, a);
     }
-    // Two drives on one joint are nothing that a single command could stand for.
-    if (drives > 1) joint.actuator.reset();
   }
 }
 

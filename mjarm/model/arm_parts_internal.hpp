@@ -54,6 +54,10 @@ struct TipFrame {
 [[nodiscard]] Result<void> fill_chain(const Model& model, const TipFrame& tip, const double* qpos,
                                       Arm& arm);
 
+/// What drives a hinge or slide alone, as a plain servo or motor; none where nothing, several
+/// actuators or one of another kind do.
+[[nodiscard]] std::optional<ArmActuator> sole_actuator(const mjModel* m, int joint);
+
 /// Fills `arm.joints[i].actuator`.
 void fill_actuators(const mjModel* m, const std::vector<int>& joints, Arm& arm);
 

@@ -23,6 +23,7 @@ FreeSim::FreeSim(const Model& model, std::optional<Arm> arm, std::optional<Contr
       playback_(model.timestep()),
       history_(max_moments(sim_, kMaxMoments)),
       ctrl_(static_cast<std::size_t>(model.nu()), 0.0) {
+  if (controller_) sim_.hold_others(*arm_);
   reset();
 }
 

@@ -17,8 +17,9 @@ namespace mjarm::session {
 /// that he does in a window acts on it. Knows no window and no clock of its own.
 class FreeSim {
  public:
-  /// @param arm      is held against gravity; none = all actuators stay at 0.
-  /// @param passive  the arm is not held.
+  /// @param arm      is held against gravity, and what Sim::hold_others() keeps with it; none = all
+  ///                 actuators stay at 0.
+  /// @param passive  nothing is held.
   /// @return not_available where the arm's actuators cannot hold it; `passive` never fails.
   [[nodiscard]] static Result<FreeSim> create(const Model& model, const std::optional<Arm>& arm,
                                               bool passive);

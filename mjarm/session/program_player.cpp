@@ -23,6 +23,7 @@ ProgramPlayer::ProgramPlayer(const program::LoadedProgram& loaded, Execution exe
       record_(max_moments(sim_, kMaxRecorded)),
       scene_(loaded, kProgramFigure),
       lines_(program_lines(loaded.plan)) {
+  sim_.hold_others(loaded.robot.arm);
   restart();
 }
 

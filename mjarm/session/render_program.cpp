@@ -21,6 +21,7 @@ class ProgramRun {
   explicit ProgramRun(const program::LoadedProgram& loaded)
       : loaded_(loaded), sim_(loaded.robot.model) {
     sim_.reset_home();
+    sim_.hold_others(loaded.robot.arm);
     sim_.place(loaded.robot.arm, as_span(loaded.plan.q_start));
     add_planned_paths(planned_, loaded.plan);
   }

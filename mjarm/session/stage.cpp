@@ -1,5 +1,6 @@
 #include "mjarm/session/stage.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mjarm/core/file.hpp"
@@ -14,6 +15,27 @@
 #include "mjarm/session/run_output.hpp"
 
 namespace mjarm::session {
+namespace {
+
+/// What stands still beside the arm.
+void tell_held(const Sim& sim) {
+  const std::vector<HeldState> held = sim.held();
+  if (held.empty()) return;
+  const auto driven = std::ranges::count_if(
+      held, [](const HeldState& one) { return one.joint.actuator.has_value(); });
+  const auto all = static_cast<std::ptrdiff_t>(held.size());
+  log_info(text(msg::show_held, all, driven, all - driven));
+}
+
+/// What did not.
+void tell_moved(const std::vector<HeldState>& held) {
+  constexpr double kStill = 1e-3;  // [rad or m]
+  for (const HeldState& one : held) {
+    if (one.moved > kStill) log_warning(text(msg::show_held_moved, one.joint.name, one.moved));
+  }
+}
+
+}  // namespace
 
 Stage::Stage(std::string name, const StageOptions& options, const Robot& robot, RunShow show)
     : name_(std::move(name)),
@@ -41,6 +63,7 @@ Result<std::unique_ptr<Stage>> Stage::open(const std::string& name, const StageO
   if (!show) return fail(std::move(show.error()));
   std::unique_ptr<Stage> stage(new Stage(name, options, robot, std::move(*show)));
   stage->folder_ = std::move(*folder);
+  tell_held(stage->run_.sim());
   return stage;
 }
 
@@ -114,6 +137,7 @@ Result<Report> Stage::finish(Report report, double tolerance, std::span<const Me
 
 Result<Report> Stage::write(Report report, render::Plot plot) {
   report.name = name_;
+  tell_moved(report.held);
   if (report.control.empty()) report.control = control_;
   if (options_.timing && !show_.has_window() && !show_.is_filming() && wall_seconds_ > 0) {
     report.rtf = run_.outcome().duration / wall_seconds_;

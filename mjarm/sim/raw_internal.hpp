@@ -16,6 +16,11 @@ struct DeleteData {
 };
 using Data = std::unique_ptr<mjData, DeleteData>;
 
+struct DeleteModel {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+using OwnModel = std::unique_ptr<mjModel, DeleteModel>;
+
 /// Pose of the arm's tool frame in the world, from kinematics that are up to date.
 [[nodiscard]] Pose tool_pose(const mjModel& m, const mjData& d, const Arm& arm);
 

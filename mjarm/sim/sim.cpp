@@ -13,6 +13,7 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/sim/holding_internal.hpp"
 #include "mjarm/sim/raw_internal.hpp"
 
 namespace mjarm {
@@ -55,10 +56,12 @@ struct Sim::Impl {
   Model model;
   raw::Data data;
 
-  std::optional<Error> fatal;  ///< MuJoCo refused to go on; no step is possible until a reset
+  raw::OwnModel clamped;           ///< what is simulated in place of `model` while joints are held
+  std::optional<Holding> holding;  ///< of joints that are not the arm's
+  std::optional<Error> fatal;      ///< MuJoCo refused to go on; no step is possible until a reset
 
   explicit Impl(const Model& source) : model(source), data(mj_makeData(source.raw())) { refresh(); }
-  [[nodiscard]] const mjModel& m() const { return *model.raw(); }
+  [[nodiscard]] const mjModel& m() const { return clamped ? *clamped : *model.raw(); }
   [[nodiscard]] mjData& d() const { return *data; }
 
   [[nodiscard]] bool unstable() const { return raw::unstable(d().warning); }
@@ -75,10 +78,15 @@ struct Sim::Impl {
   void refresh() {
     guarded([this] { mj_forward(&m(), &d()); });
   }
+  /// The world was put somewhere.
+  void stand() {
+    if (holding) holding->stand({d().qpos, static_cast<std::size_t>(m().nq)});
+    refresh();
+  }
   void reset() {
     fatal.reset();
     mj_resetData(&m(), &d());
-    refresh();
+    stand();
   }
 
   /// What went wrong at `time`, and back to the initial state, whether or not MuJoCo went there.
@@ -125,7 +133,7 @@ Result<void> Sim::reset(std::string_view keyframe) {
     }
     impl_->fatal.reset();
     mj_resetDataKeyframe(&m, &impl_->d(), key);
-    impl_->refresh();
+    impl_->stand();
   }
   return {};
 }
@@ -145,7 +153,7 @@ void Sim::place(const Arm& arm, std::span<const double> q) {
       d.ctrl[joint.actuator->id] = ctrl_for_torque(*joint.actuator, 0, q[i], 0);
     }
   }
-  impl_->refresh();
+  impl_->stand();
 }
 
 void Sim::place_free(std::string_view body, const Pose& X_WB) {
@@ -159,7 +167,7 @@ void Sim::place_free(std::string_view body, const Pose& X_WB) {
                            turn.x(),   turn.y(),   turn.z()};
   std::copy(std::begin(values), std::end(values), d.qpos + m.jnt_qposadr[joint]);
   std::fill_n(d.qvel + m.jnt_dofadr[joint], 6, 0.0);
-  impl_->refresh();
+  impl_->stand();
 }
 
 void Sim::set_state(std::span<const double> qpos, std::span<const double> qvel) {
@@ -167,7 +175,7 @@ void Sim::set_state(std::span<const double> qpos, std::span<const double> qvel) 
   assert(static_cast<int>(qvel.size()) == model().nv());
   std::copy(qpos.begin(), qpos.end(), impl_->d().qpos);
   std::copy(qvel.begin(), qvel.end(), impl_->d().qvel);
-  impl_->refresh();
+  impl_->stand();
 }
 
 Result<void> Sim::restore(const Snapshot& snapshot) {
@@ -177,7 +185,8 @@ Result<void> Sim::restore(const Snapshot& snapshot) {
     return fail(Errc::bad_input, text(msg::sim_other_snapshot, snapshot.state.size(), size));
   }
   mj_setState(&m, &impl_->d(), snapshot.state.data(), mjSTATE_INTEGRATION);
-  impl_->refresh();
+  impl_->stand();
+  if (impl_->holding && !snapshot.place.empty()) impl_->holding->stand(snapshot.place);
   return {};
 }
 
@@ -199,6 +208,25 @@ void Sim::clear_external_forces() {
   std::fill_n(impl_->d().xfrc_applied, 6 * impl_->m().nbody, 0.0);
 }
 
+void Sim::hold_others(const Arm& arm) {
+  Holding holding(impl_->model, arm);
+  if (holding.joints().empty()) return;
+  impl_->clamped.reset(mj_copyModel(nullptr, impl_->model.raw()));
+  holding.clamp(*impl_->clamped);
+  impl_->holding = std::move(holding);
+  impl_->stand();
+}
+
+std::vector<HeldState> Sim::held() const {
+  std::vector<HeldState> held;
+  if (!impl_->holding) return held;
+  const Holding& holding = *impl_->holding;
+  for (std::size_t i = 0; i < holding.joints().size(); ++i) {
+    held.push_back({holding.joints()[i], holding.moved()[i]});
+  }
+  return held;
+}
+
 Result<void> Sim::step(std::span<const double> ctrl) {
   const mjModel& m = impl_->m();
   mjData& d = impl_->d();
@@ -218,6 +246,7 @@ Result<void> Sim::step(std::span<const double> ctrl) {
   const double time = d.time;
   if (impl_->fatal) return fail(*impl_->fatal);
   impl_->guarded([this, &m, &d] {
+    if (impl_->holding) impl_->holding->hold(m, d);
     if (m.opt.integrator == mjINT_RK4) {
       mj_step(&m, &d);
     } else {
@@ -227,6 +256,7 @@ Result<void> Sim::step(std::span<const double> ctrl) {
   });
   if (impl_->fatal) return fail(*impl_->fatal);
   if (impl_->unstable()) return fail(impl_->instability(time));
+  if (impl_->holding) impl_->holding->measure(m, d);
   return {};
 }
 
@@ -294,6 +324,10 @@ Snapshot Sim::snapshot() const {
   snapshot.time = impl_->d().time;
   snapshot.state.resize(static_cast<std::size_t>(mj_stateSize(&m, mjSTATE_INTEGRATION)));
   mj_getState(&m, &impl_->d(), snapshot.state.data(), mjSTATE_INTEGRATION);
+  if (impl_->holding) {
+    const auto place = impl_->holding->place();
+    snapshot.place.assign(place.begin(), place.end());
+  }
   return snapshot;
 }
 

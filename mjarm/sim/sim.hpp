@@ -10,6 +10,7 @@
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
+#include "mjarm/model/held_joints.hpp"
 #include "mjarm/model/model.hpp"
 
 namespace mjarm {
@@ -30,8 +31,15 @@ struct Contact {
 
 /// A copy of the full state, for drawing and for going back; holds no MuJoCo types.
 struct Snapshot {
-  double time = 0;            ///< [s]
-  std::vector<double> state;  ///< MuJoCo's integration state, in its own order
+  double time = 0;                 ///< [s]
+  std::vector<double> state;       ///< MuJoCo's integration state, in its own order
+  std::vector<double> place = {};  ///< (nq,) where joints are held; empty where none are
+};
+
+/// A joint that is kept where it stands, and how well that went.
+struct HeldState {
+  HeldJoint joint;
+  double moved = 0;  ///< [rad or m] farthest from its place since the world was put somewhere
 };
 
 /// One simulated world. Every read after a write is up to date: positions, velocities, contacts and
@@ -70,6 +78,13 @@ class Sim {
                           const Eigen::Vector3d& torque_W);
   /// Ends all pushes.
   void clear_external_forces();
+  /// Keeps the joints that are not of `arm` (held_joints()) where they stand, in every step that
+  /// comes: by their own actuators with gravity and the arm's motion compensated, whatever their
+  /// ctrl is told otherwise; locked where they have none. Where the world is put somewhere they
+  /// stay there from then on.
+  void hold_others(const Arm& arm);
+  /// The joints that are held, in the order of the model.
+  [[nodiscard]] std::vector<HeldState> held() const;
   /// One time step with these actuator commands (nu,).
   /// @return an error that names time and joint when the simulation became unstable (NaN, huge
   ///         values); the world is then back in its initial state. A ctrl that is not a number is

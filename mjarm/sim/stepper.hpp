@@ -38,7 +38,7 @@ struct FollowOutcome {
 };
 
 /// The one way to make a step under control: command, step, record, measure. Actuators that are not
-/// the arm's keep the ctrl they have (Sim::set_ctrl).
+/// the arm's keep the ctrl they have (Sim::set_ctrl) or hold their joint (Sim::hold_others).
 class Stepper {
  public:
   /// A motion begins: what is measured counts from here.
