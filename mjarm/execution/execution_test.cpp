@@ -207,6 +207,22 @@ TEST(Execution, WhatOverlapsByDesignIsNoContact) {
   EXPECT_FALSE(outcome->first_contact) << outcome->first_contact->contact.second;
 }
 
+TEST(Execution, WhatTheArmDoesNotMoveAgainstEachOtherIsNoContact) {
+  // Two balls on a link that slide into each other, as the fingers of another hand do.
+  const auto ball = [](const char* name, const char* y) {
+    return std::string("<body name=\"") + name + "\" pos=\"0.2 " + y +
+           R"( 0"><joint type="slide" axis="0 1 0" range="-0.5 0.5"/><geom size="0.05"/></body>)";
+  };
+  std::string text = small_world();
+  text.insert(text.find("<body name=\"lower\""), ball("one", "0.2") + ball("two", "0.29"));
+  text.insert(text.find("1\" ctrl="), "0 0 ");  // of the keyframe
+  World world(load_text(text));
+  ASSERT_EQ(world.sim.contacts(world.robot.arm).size(), 1U);
+  const auto outcome = world.run(there_and_half_back(world.robot.arm), {});
+  ASSERT_TRUE(outcome);
+  EXPECT_FALSE(outcome->first_contact) << outcome->first_contact->contact.second;
+}
+
 TEST(Execution, TheGripperKeepsWhatItWasToldUntilItIsToldAnew) {
   World world(load_shipped("panda"));
   const Gripper gripper = world.robot.arm.gripper.value();

@@ -111,16 +111,17 @@ void ObjectWatch::compare(const Sim& sim, std::size_t move, std::size_t object) 
   if (!seen.at && (off > max_off || turned > max_turn)) seen.at = sim.time();
 }
 
-/// Contacts of the hand with itself and with what it carries at some time, what overlaps by design,
-/// and all that the arm has no part in. Of what is carried the end tells, when it is known what it
-/// was put on.
+/// Contacts of the hand with itself and with what it carries at some time, of links that the arm
+/// does not move against each other, what overlaps by design, and all that the arm has no part in.
+/// Of what is carried the end tells, when it is known what it was put on.
 bool ObjectWatch::is_planned(const Contact& contact) const {
   const auto role = [&](int body) { return bodies_.role[static_cast<std::size_t>(body)]; };
   const auto is_arm = [](BodyRole r) { return r == BodyRole::link || r == BodyRole::hand; };
   const BodyRole a = role(contact.body1), b = role(contact.body2);
   if (!is_arm(a) && !is_arm(b)) return true;
   if (is_by_design(plan_->arms.front(), contact)) return true;
-  if (a == BodyRole::hand && b == BodyRole::hand) return true;
+  const auto moved_by = [&](int body) { return bodies_.moved_by[static_cast<std::size_t>(body)]; };
+  if (a == b && moved_by(contact.body1) == moved_by(contact.body2)) return true;
   const auto carried = [&](int body) {
     const int object = bodies_.object_of[static_cast<std::size_t>(body)];
     return object >= 0 && tracks_[static_cast<std::size_t>(object)].seen.carried;

@@ -26,6 +26,9 @@ struct SceneObject {
 struct SceneBodies {
   std::vector<BodyRole> role;
   std::vector<int> object_of;  ///< index in `objects`, -1 for what is no object
+  /// Number of the arm's joints that move it: two bodies of the arm with the same number never move
+  /// against each other by the arm (two fingers; two parts of another arm on the same torso).
+  std::vector<int> moved_by;
   std::vector<SceneObject> objects;
 };
 [[nodiscard]] SceneBodies scene_bodies(const Model& model, const Arm& arm);
