@@ -147,12 +147,31 @@ run_coverage() {
 }
 
 # Public robots as users bring them; what is fetched lies in .deps and is no part of mjarm.
+# run_arms [ROBOT...]: with names, those of Menagerie alone.
 run_arms() {
   "$root/tools/fetch_arms.sh" "$deps/arms" || exit
   check "build" build_counted dev whole_test
-  ((failed)) || check "arms" env MJARM_ARMS_DATA="$deps/arms/robots" \
-    "$root/build/dev/bin/whole_test" --gtest_filter='*TwelveArms*'
+  if ((failed == 0 && $# == 0)); then
+    check "arms" env MJARM_ARMS_DATA="$deps/arms/robots" \
+      "$root/build/dev/bin/whole_test" --gtest_filter='*TwelveArms*'
+  fi
+  ((failed)) || run_menagerie "$@"
   finish
+}
+
+# run_menagerie [ROBOT...]: every serial arm of Menagerie, or those; adds to the counts.
+run_menagerie() {
+  local counts
+  say "check: arms of Menagerie ..."
+  counts=$(MENAGERIE_CACHE_DIR=${MENAGERIE_CACHE_DIR:-$deps/arms/menagerie} \
+    python3 -B "$root/tools/menagerie_arms.py" --program "$root/build/dev/bin/mjarm" \
+    --package "$deps/arms/robots/menagerie" "$@") || {
+    check "arms of Menagerie" false
+    return
+  }
+  sed '$d' <<<"$counts"
+  read -r p f s <<<"$(tail -n 1 <<<"$counts")"
+  passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
 }
 
 run_benches() {
