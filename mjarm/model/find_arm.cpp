@@ -172,4 +172,12 @@ Result<Pose> frame_pose(const Model& model, std::string_view frame, std::span<co
   return pose_of(data->xpos + 3 * b, data->xquat + 4 * b) * found->X_BT;
 }
 
+Result<Pose> frame_pose(const Model& model, std::string_view frame) {
+  const mjModel* m = model.raw();
+  const int key = mj_name2id(m, mjOBJ_KEY, "home");
+  const auto nq = static_cast<std::size_t>(m->nq);
+  const double* const qpos = key >= 0 ? m->key_qpos + static_cast<std::size_t>(key) * nq : m->qpos0;
+  return frame_pose(model, frame, {qpos, nq});
+}
+
 }  // namespace mjarm

@@ -35,5 +35,7 @@ struct ArmOptions {
 /// @return an error with the nearest name.
 [[nodiscard]] Result<Pose> frame_pose(const Model& model, std::string_view frame,
                                       std::span<const double> qpos);
+/// The same as the model stands: in its keyframe `home`, else at the initial values.
+[[nodiscard]] Result<Pose> frame_pose(const Model& model, std::string_view frame);
 
 }  // namespace mjarm

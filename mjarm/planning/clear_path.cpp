@@ -80,17 +80,6 @@ bool join_ends(const FastChecker& wide, const ExitSearch& search, const PlanOpti
          add_exit(last, goal, options.resolution, false, path);
 }
 
-/// The largest tilt on all edges; false where one is not proved to keep the limit.
-bool measure_tilt(const TiltKeeper* tilt, PlannedPath& path) {
-  path.tilt = 0;
-  for (std::size_t i = 1; tilt != nullptr && i < path.q.size(); ++i) {
-    const TiltKeeper::EdgeTilt edge = tilt->look(as_span(path.q[i - 1]), as_span(path.q[i]));
-    if (!edge.kept) return false;
-    path.tilt = std::max(path.tilt, edge.largest);
-  }
-  return true;
-}
-
 }  // namespace
 
 void measure_edges(const FastChecker& checker, PlannedPath& path) {
@@ -119,8 +108,8 @@ Result<PlannedPath, PlanFailure> plan_clear(const ClearScene& scene, std::span<c
   const auto problem = validate_problem(scene.checker, start, goals, options);
   if (!problem) return tl::unexpected(problem.error());
   const FastChecker wide = checker_with(scene, *options.clearance);
-  const TiltKeeper* const tilt = problem->tilt ? &*problem->tilt : nullptr;
-  const ExitSearch search(scene, wide, tilt, options);
+  const PathKeeper* const keeper = problem->keeper ? &*problem->keeper : nullptr;
+  const ExitSearch search(scene, wide, keeper, options);
   const auto blocked = [&] { return tl::unexpected(too_near(*options.clearance, 0)); };
   const JointVec q_start = joint_vec(start);
   std::optional<Exit> first;
@@ -141,7 +130,7 @@ Result<PlannedPath, PlanFailure> plan_clear(const ClearScene& scene, std::span<c
   path->clearance = *options.clearance;
   const JointVec& goal = goals[static_cast<std::size_t>(path->goal)];
   if (!join_ends(wide, search, options, q_start, goal, *first, ways.exits[reached], *path) ||
-      !measure_tilt(tilt, *path)) {
+      !prove_kept(keeper, options, *path)) {
     return tl::unexpected(PlanFailure{.code = PlanErrc::unproved});
   }
   measure_edges(scene.checker, *path);

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "mjarm/planning/path_keeper_internal.hpp"
 #include "mjarm/planning/plan_path.hpp"
-#include "mjarm/planning/tilt_keeper_internal.hpp"
 
 namespace mjarm::detail {
 
@@ -76,10 +76,10 @@ struct Exit {
 class ExitSearch {
  public:
   /// @param wide  of the scene, with the clearance as its margins.
-  /// @param tilt  may be null.
-  ExitSearch(const ClearScene& scene, const FastChecker& wide, const TiltKeeper* tilt,
+  /// @param keeper  may be null.
+  ExitSearch(const ClearScene& scene, const FastChecker& wide, const PathKeeper* keeper,
              const PlanOptions& options)
-      : scene_(scene), wide_(wide), tilt_(tilt), options_(options) {}
+      : scene_(scene), wide_(wide), keeper_(keeper), options_(options) {}
 
   /// The nearest place that is found.
   /// @param q  free.
@@ -98,7 +98,7 @@ class ExitSearch {
 
   const ClearScene& scene_;
   const FastChecker& wide_;
-  const TiltKeeper* tilt_;
+  const PathKeeper* keeper_;
   const PlanOptions& options_;
 };
 

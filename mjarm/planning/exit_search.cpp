@@ -53,7 +53,7 @@ bool ExitSearch::is_way_out(const JointVec& from, const JointVec& to,
   PlanCounts counts;
   if (outside_joint(scene_.checker.robot().arm(), as_span(to)) >= 0) return false;
   if (!wide_.is_free(as_span(to))) return false;
-  return EdgeProver(narrow, tilt_, options_, counts).is_free(as_span(from), as_span(to));
+  return EdgeProver(narrow, keeper_, options_, counts).is_free(as_span(from), as_span(to));
 }
 
 /// The direction in which the clearance grows fastest, of length 1; 0 where it does not.
@@ -86,7 +86,7 @@ std::optional<JointVec> ExitSearch::climb(const JointVec& q, const FastChecker& 
     const JointVec up = uphill(at);
     if (up.isZero(0)) return std::nullopt;
     at += kClimb * up;
-    if (tilt_ != nullptr && !tilt_->project({at.data(), static_cast<std::size_t>(at.size())})) {
+    if (keeper_ != nullptr && !keeper_->project({at.data(), static_cast<std::size_t>(at.size())})) {
       return std::nullopt;
     }
     if ((at - q).norm() > kFarthestExit) return std::nullopt;
@@ -105,7 +105,7 @@ std::optional<JointVec> ExitSearch::draw(const JointVec& q, double farthest,
       for (double& x : to) x = rng.normal();
       to = q + to * (radius / std::max(to.norm(), 1e-9));
       const std::span<double> row(to.data(), static_cast<std::size_t>(to.size()));
-      if (tilt_ != nullptr && !tilt_->project(row)) continue;
+      if (keeper_ != nullptr && !keeper_->project(row)) continue;
       if (is_way_out(q, to, narrow) && (to - q).norm() <= kFarthestExit) return to;
     }
     if (is_stopped(options_.stop)) break;
@@ -132,7 +132,7 @@ void ExitSearch::straighten(const JointVec& q, const JointVec& next, Exit& exit)
   const double farthest =
       std::min({kStraightShare * taken + kStraightMore, 0.9 * length, kFarthestExit});
   PlanCounts counts;
-  EdgeProver prover(wide_, tilt_, options_, counts);
+  EdgeProver prover(wide_, keeper_, options_, counts);
   for (double at = 0.5 * taken; at < farthest; at *= 1.2) {
     const JointVec to = q + way * (at / length);
     if (!is_way_out(q, to, *exit.narrow)) continue;

@@ -26,9 +26,9 @@ class Settler {
   void settle(std::uint64_t seed, double cost, RawPath& path) {
     options_.seed = seed;
     repeat(kCutTurns, kCutPays, cost, path,
-           [&] { detail::shorten(problem_.checker, tilt(), options_, kCuts, path); });
+           [&] { detail::shorten(problem_.checker, keeper(), options_, kCuts, path); });
     repeat(kSlideTurns, kSlidePays, cost, path,
-           [&] { detail::slide_corners(problem_.checker, tilt(), options_, kSlides, path); });
+           [&] { detail::slide_corners(problem_.checker, keeper(), options_, kSlides, path); });
   }
 
  private:
@@ -44,7 +44,7 @@ class Settler {
     }
   }
 
-  const detail::TiltKeeper* tilt() const { return problem_.tilt ? &*problem_.tilt : nullptr; }
+  const detail::PathKeeper* keeper() const { return problem_.keeper ? &*problem_.keeper : nullptr; }
 
   const detail::SearchProblem& problem_;
   PlanOptions options_;

@@ -217,7 +217,7 @@ class OmplSearch {
 Result<RawPath, PlanFailure> ompl_search(const SearchProblem& problem, const PlanOptions& options) {
   const auto* const offer = std::ranges::find(kOffers, options.ompl_planner, &Offer::name);
   if (offer == std::end(kOffers)) return failed(PlanErrc::not_available);
-  if (options.tilt) return failed(PlanErrc::tilt_with_ompl);
+  if (options.tilt || options.within) return failed(PlanErrc::tilt_with_ompl);
   static std::once_flag quiet;
   std::call_once(quiet, [] { ompl::msg::noOutputHandler(); });
   try {

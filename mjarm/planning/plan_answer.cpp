@@ -6,6 +6,7 @@
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/planning/clear_path_internal.hpp"
+#include "mjarm/planning/region_json_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -73,7 +74,7 @@ Result<PlannedPath, PlanFailure> plan_clear(const FastChecker& checker, const Pl
 
 PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
                           const PlanOptions& options) {
-  PlanAnswer out{.path = {}, .tilt = options.tilt};
+  PlanAnswer out{.path = {}, .tilt = options.tilt, .within = options.within};
   const Stopwatch watch;
   const Result<FastChecker> checker = FastChecker::create(robot, problem.obstacles);
   assert(checker);  // the obstacles were checked when they were read
@@ -107,10 +108,17 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
     json.end_list();
     if (!kept.empty()) json.member("clearance", answer.path->clearance);
     if (answer.tilt) append_tilt(json, *answer.tilt, answer.path->tilt);
+    if (answer.within) {
+      detail::append_kept_region(json.key("within"), *answer.within, answer.path->room);
+    }
+    if (answer.path->start_region >= 0) json.member("start_region", answer.path->start_region);
+    if (answer.path->goal_region >= 0) json.member("goal_region", answer.path->goal_region);
     append_words(json, "hold", answer.rules.hold);
     append_words(json, "allow", answer.rules.allow);
   } else {
-    json.member("reason", describe(answer.path.error(), robot, obstacles));
+    json.member("reason", answer.reason.empty() ? describe(answer.path.error(), robot, obstacles)
+                                                : answer.reason);
+    if (answer.same_posture.size() > 0) json.member("same_posture", answer.same_posture);
     if (answer.path.error().code == PlanErrc::too_near) {
       json.member("possible_clearance", answer.path.error().possible);
     }

@@ -12,10 +12,13 @@ namespace mjarm {
 /// What came of one problem, and how long it took.
 struct PlanAnswer {
   Result<PlannedPath, PlanFailure> path;
-  double us = 0;                       ///< [us] the world made ready and a path found
-  double simplify_us = 0;              ///< [us] the path shortened and proved
-  std::optional<TiltLimit> tilt = {};  ///< that the path keeps
-  RuleWords rules = {};                ///< likewise
+  double us = 0;                          ///< [us] the world made ready and a path found
+  double simplify_us = 0;                 ///< [us] the path shortened and proved
+  std::optional<TiltLimit> tilt = {};     ///< that the path keeps
+  std::optional<TaskRegion> within = {};  ///< likewise
+  RuleWords rules = {};                   ///< likewise
+  std::string reason = {};     ///< why there is no path, in words; empty: describe() of the failure
+  JointVec same_posture = {};  ///< of WorldFailure
 };
 
 /// Solves one problem. Both times together cover everything, allocation included; with a time

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/stop.hpp"
@@ -36,6 +38,10 @@ std::string overlap(const Msg& message, const SphereClearance& pair, const FastR
               other_name(pair, robot, obstacles), -1e3 * pair.distance);
 }
 
+std::string off_region(const Msg& message, const RegionRoom& room) {
+  return text(message, 1e3 * std::max(0.0, -room.place), std::max(0.0, -room.turn));
+}
+
 /// What blocks the start; where that could be carried away, what to do about it.
 std::string start_hit(const SphereClearance& pair, const FastRobot& robot,
                       const Obstacles& obstacles) {
@@ -71,6 +77,12 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return text(msg::planning_start_tilted, failure.value, failure.limit);
     case PlanErrc::goals_tilted:
       return text(msg::planning_goals_tilted, failure.value, failure.limit);
+    case PlanErrc::bad_region:
+      return text(msg::planning_bad_region, 1e3 * kLeastPlaceRange, kLeastTurnRange);
+    case PlanErrc::start_off:
+      return off_region(msg::planning_start_off, failure.room);
+    case PlanErrc::goals_off:
+      return off_region(msg::planning_goals_off, failure.room);
     case PlanErrc::budget_spent:
       return text(msg::planning_budget, failure.samples, failure.nearest);
     case PlanErrc::out_of_time:

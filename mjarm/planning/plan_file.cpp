@@ -10,6 +10,7 @@
 #include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/planning/planning_world.hpp"
+#include "mjarm/planning/region_json_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -130,9 +131,14 @@ Result<void> read_words(const JsonValue& entry, const char* key, std::vector<std
 Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out) {
   if (entry.is_list()) return read_rows(entry, dof, out);
   if (!entry.is_object()) return fail(Errc::bad_input, text(msg::planning_verify_no_rows));
-  constexpr std::string_view kKnown[] = {"ok",   "path",        "us",        "simplify_us",
-                                         "cost", "reason",      "hold",      "allow",
-                                         "tilt", "certificate", "clearance", "possible_clearance"};
+  constexpr std::string_view kKnown[] = {"ok",           "path",
+                                         "us",           "simplify_us",
+                                         "cost",         "reason",
+                                         "hold",         "allow",
+                                         "tilt",         "certificate",
+                                         "clearance",    "goal_region",
+                                         "within",       "possible_clearance",
+                                         "start_region", "same_posture"};
   if (Result<void> fine = check_keys(entry, kKnown); !fine) return fail(std::move(fine.error()));
   const JsonValue* const ok = entry.find("ok");
   if (ok != nullptr && !ok->is_boolean()) {
@@ -156,6 +162,11 @@ Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out)
   if (Result<void> read = read_words(entry, "allow", out.rules.allow); !read) return read;
   if (const JsonValue* const tilt = entry.find("tilt"); tilt != nullptr) {
     if (Result<void> read = read_tilt(*tilt, out); !read) return read;
+  }
+  if (const JsonValue* const within = entry.find("within"); within != nullptr) {
+    Result<GivenRegion> region = detail::read_kept_region(*within);
+    if (!region) return fail(region.error().code, "within: " + region.error().what);
+    out.within = std::move(*region);
   }
   const JsonValue* const certificate = entry.find("certificate");
   return certificate == nullptr ? Result<void>() : read_certificates(*certificate, out);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/planning/task_region.hpp"
 
 namespace mjarm {
 
@@ -32,6 +33,12 @@ struct GivenTilt {
   std::vector<double> tool, world;  ///< (3,) directions of the tool and of the world
 };
 
+/// What a file says of the region that the tool keeps within.
+struct GivenRegion {
+  TaskRegion region;
+  RegionRoom room = {};  ///< all along the path
+};
+
 /// One path of a file.
 struct GivenPath {
   std::string id;
@@ -39,6 +46,7 @@ struct GivenPath {
   std::optional<double> cost;             ///< [rad or m]
   std::optional<std::vector<GivenCertificate>> certificate;
   std::optional<GivenTilt> tilt;
+  std::optional<GivenRegion> within;
   std::optional<double> clearance;  ///< [m] kept by all edges but, maybe, the first and the last
   RuleWords rules;
 };

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mjarm/core/language_scope.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/planning/plan_answer.hpp"
 #include "mjarm/planning/two_problems_test.hpp"
 #include "mjarm/planning/verify_path.hpp"
@@ -57,6 +58,12 @@ TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   answer.rules = {{"cup \"2\""}, {"cup,table", "a,b"}};
   answer.tilt = TiltLimit{.max = 0.1};
   answer.path->tilt = 0.05;
+  TaskRegion region =
+      region_about({{1, 2, 3}, rotation_exp({0.1, 0.2, 0.3})}, {kFreePlace, 0.1, 0.2}, 0.3, 1);
+  region.X_FT = {{0, 0, 0.5}, rotation_exp({1, 0, 0})};
+  answer.within = region;
+  answer.path->room = {kFreePlace, 0.125};
+  answer.path->goal_region = 2;
   std::string text = "{\"round\":";
   append_answer(text, answer, robot, problem.obstacles, true);
   text += '}';
@@ -79,6 +86,18 @@ TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   }
   EXPECT_EQ(given.rules.hold, answer.rules.hold);
   EXPECT_EQ(given.rules.allow, answer.rules.allow);
+  ASSERT_TRUE(given.within);
+  EXPECT_EQ(given.within->room.place, kFreePlace);
+  EXPECT_EQ(given.within->room.turn, 0.125);
+  const TaskRegion& read = given.within->region;
+  EXPECT_EQ(read.place_min, region.place_min);
+  EXPECT_EQ(read.place_max, region.place_max);
+  EXPECT_EQ(read.turn_min, region.turn_min);
+  EXPECT_EQ(read.turn_max, region.turn_max);
+  EXPECT_EQ(read.lean, region.lean);
+  const Pose X_WT{{1.2, 2.05, 3}, Eigen::Matrix3d::Identity()};
+  EXPECT_NEAR(room_in(read, X_WT).place, room_in(region, X_WT).place, 1e-12);
+  EXPECT_NEAR(room_in(read, X_WT).turn, room_in(region, X_WT).turn, 1e-12);
   ASSERT_TRUE(given.tilt);
   EXPECT_EQ(given.tilt->limit, 0.1);
   EXPECT_EQ(given.tilt->largest, 0.05);
@@ -86,6 +105,7 @@ TEST_F(PlanFileTest, AnswersAreReadAsTheyWereWritten) {
   // And the verifier agrees with all that was stated.
   GivenPath plain = given;
   plain.tilt.reset();
+  plain.within.reset();
   EXPECT_TRUE(verify_path(file, problem, plain, {}).value().faults.empty());
 }
 

@@ -21,17 +21,6 @@ bool prove(const FastChecker& checker, std::span<const JointVec> q, double resol
   return true;
 }
 
-/// The largest tilt on all edges; false where one is not proved to keep the limit.
-bool prove(const detail::TiltKeeper& tilt, std::span<const JointVec> q, double& largest) {
-  largest = 0;
-  for (std::size_t i = 1; i < q.size(); ++i) {
-    const auto edge = tilt.look(as_span(q[i - 1]), as_span(q[i]));
-    if (!edge.kept) return false;
-    largest = std::max(largest, edge.largest);
-  }
-  return true;
-}
-
 }  // namespace
 
 double path_length(std::span<const JointVec> q) noexcept {
@@ -63,8 +52,9 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
   PlannedPath out;
   out.goal = path.goal;
   std::vector<JointVec> found = path.q;
-  const auto tilt = detail::TiltKeeper::create(options.tilt, checker.robot().arm());
-  detail::shorten(checker, tilt ? &*tilt : nullptr, options, options.shortcuts, path);
+  const auto keeper = detail::PathKeeper::create(options, checker.robot().arm());
+  const detail::PathKeeper* const kept = keeper ? &*keeper : nullptr;
+  detail::shorten(checker, kept, options, options.shortcuts, path);
   // Parts of proved edges are free, but the proof of a part is another one and may need more.
   for (std::vector<JointVec>* q : {&path.q, &found}) {
     for (const double share : {1.0, 0x1p-3, 0x1p-6}) {
@@ -72,8 +62,8 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
         return tl::unexpected(PlanFailure{.code = PlanErrc::stopped});
       }
       if (!prove(checker, *q, share * options.resolution, out.proof)) continue;
-      if (tilt && !prove(*tilt, *q, out.tilt)) break;  // no resolution helps
-      out.q = std::move(*q);
+      out.q = *q;
+      if (!detail::prove_kept(kept, options, out)) break;  // no resolution helps
       out.cost = path_length(out.q);
       out.counts = path.counts;
       out.trees = std::move(path.trees);

@@ -12,6 +12,7 @@
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/stop.hpp"
+#include "mjarm/planning/task_region.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
 namespace mjarm {
@@ -50,6 +51,9 @@ struct PlanOptions {
   /// Keeps the tool within a cone, proved for every edge to 1e-8 of the limit. Edges are grown by
   /// 0.3 at most then, and paths have many corners.
   std::optional<TiltLimit> tilt = {};
+  /// Keeps the tool within a region (can_be_kept()), proved for every edge to 1e-9 m and rad; steps
+  /// as above, shorter where there is little room.
+  std::optional<TaskRegion> within = {};
   /// For Planner::ompl: one of ompl_planner_names(); must outlive the options. `samples` count as
   /// above, but planners that go on after their first path draw 10,000 at most until they have it,
   /// and then go on for `time_budget` where one is given. No search takes longer than that, so
@@ -68,6 +72,7 @@ struct PlanOptions {
 enum class PlanErrc {
   bad_input,       ///< no goal, a wrong size, a number that is not finite
   bad_tilt,        ///< PlanOptions::tilt is out of range
+  bad_region,      ///< PlanOptions::within cannot be kept
   bad_clearance,   ///< PlanOptions::clearance is out of range
   base_hit,        ///< a link at rest overlaps an obstacle
   start_outside,   ///< the start is outside of the joint limits
@@ -76,13 +81,15 @@ enum class PlanErrc {
   goals_hit,       ///< no goal within the limits is free of collisions
   start_tilted,    ///< the tool leans too far at the start
   goals_tilted,    ///< the tool leans too far at every goal that is free of collisions
+  start_off,       ///< the tool is outside of PlanOptions::within at the start
+  goals_off,       ///< the tool is outside of it at every goal that is free of collisions
   budget_spent,    ///< PlanOptions::samples did not do
   out_of_time,     ///< PlanOptions::time_limit did not do
   stopped,         ///< PlanOptions::stop ended the work
   too_near,        ///< no path keeps PlanOptions::clearance, but one with less was found
   unproved,        ///< a path was found, but an edge of it could not be proved (never seen)
   not_available,   ///< OMPL is not built in, or it is and has no PlanOptions::ompl_planner
-  tilt_with_ompl,  ///< PlanOptions::tilt is for our own planners
+  tilt_with_ompl,  ///< PlanOptions::tilt and within are for our own planners
   back_end,        ///< OMPL stopped with an error
 };
 
@@ -96,9 +103,10 @@ struct PlanFailure {
   /// [rad] start_tilted, goals_tilted: the largest that is allowed; [m] too_near, bad_clearance:
   /// what was asked; [s] out_of_time: PlanOptions::time_limit.
   double limit = 0;
-  double possible = 0;  ///< [m] too_near: the largest clearance for which a path was found
-  double nearest = 0;   ///< [rad or m, L2] budget_spent, out_of_time: how near the trees came
-  int samples = 0;      ///< drawn
+  double possible = 0;   ///< [m] too_near: the largest clearance for which a path was found
+  double nearest = 0;    ///< [rad or m, L2] budget_spent, out_of_time: how near the trees came
+  int samples = 0;       ///< drawn
+  RegionRoom room = {};  ///< start_off, goals_off: how far outside
 };
 
 /// What a search did.
@@ -126,11 +134,14 @@ struct RawPath {
 
 /// A path whose every edge is proved to be free.
 struct PlannedPath {
-  std::vector<JointVec> q;             ///< corners, start and goal included, at least two
-  int goal = 0;                        ///< index of the goal reached
+  std::vector<JointVec> q;  ///< corners, start and goal included, at least two
+  int goal = 0;             ///< index of the goal reached
+  /// Index of the regions that its ends stand for; -1: their configurations were given.
+  int start_region = -1, goal_region = -1;
   double cost = 0;                     ///< [rad or m] sum of the L2 lengths of the edges
   std::vector<EdgeCertificate> proof;  ///< one an edge
   double tilt = 0;                     ///< [rad] with a limit: the tool leans by no more anywhere
+  RegionRoom room = {};                ///< in PlanOptions::within: no less anywhere
   /// [m] PlanOptions::clearance as it is kept; 0: none was, or none was asked.
   double clearance = 0;
   /// [m] with a clearance: what every configuration of each edge is proved to keep. Less than

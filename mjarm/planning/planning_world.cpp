@@ -11,6 +11,7 @@
 #include "mjarm/kinematics/chain.hpp"
 #include "mjarm/planning/clear_path_internal.hpp"
 #include "mjarm/planning/search_internal.hpp"
+#include "mjarm/planning/world_search_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -24,9 +25,9 @@ constexpr int kSphereSamples = 2000;  // of a search among spheres alone
 /// Whether there may be a path all the same where one looks closer than spheres do.
 bool may_be_spheres(PlanErrc reason) {
   return reason == PlanErrc::start_hit || reason == PlanErrc::goals_hit ||
-         reason == PlanErrc::goals_tilted || reason == PlanErrc::base_hit ||
-         reason == PlanErrc::budget_spent || reason == PlanErrc::too_near ||
-         reason == PlanErrc::unproved;
+         reason == PlanErrc::goals_tilted || reason == PlanErrc::goals_off ||
+         reason == PlanErrc::base_hit || reason == PlanErrc::budget_spent ||
+         reason == PlanErrc::too_near || reason == PlanErrc::unproved;
 }
 
 int least_samples(const PlanOptions& options, int max) {
@@ -82,34 +83,6 @@ bool are_free(const FastChecker& spheres, std::span<const double> q_start,
                              [&](std::size_t g) { return spheres.is_free(as_span(goals[g])); });
 }
 
-/// One search in one scene, for a clearance where one is asked.
-/// @param ends  what may be nearer.
-Result<PlannedPath, WorldFailure> search(const detail::ClearScene& scene, detail::ClearEnds ends,
-                                         std::span<const double> q_start,
-                                         std::span<const JointVec> goals,
-                                         const PlanOptions& options, PlanTimes* times) {
-  const bool is_sphere_scene = !scene.checker.solids();
-  if (goals.size() > 1 && is_sphere_scene && !are_free(scene.checker, q_start, goals)) {
-    return tl::unexpected(WorldFailure{.what = {}, .search = {.code = PlanErrc::goals_hit}});
-  }
-  const detail::TimeLeft left(options);
-  const bool clear = options.clearance.value_or(0) > 0;
-  const auto plan = [&](std::span<const JointVec> to, const PlanOptions& with) {
-    PlanTimes taken;
-    auto path = clear ? detail::plan_clear(scene, q_start, to, with, ends, &taken)
-                      : plan_path(scene.checker, q_start, to, with, &taken);
-    if (times != nullptr) {
-      times->search_us += taken.search_us;
-      times->finish_us += taken.finish_us;
-    }
-    return path;
-  };
-  Result<PlannedPath, PlanFailure> found = plan(goals, options);
-  if (found && goals.size() > 1) try_goals_alone(q_start, goals, options, left, plan, *found);
-  return std::move(found).map_error(
-      [](const PlanFailure& why) { return WorldFailure{.what = {}, .search = why}; });
-}
-
 WorldFailure bad_clearance(double asked) {
   return {.code = WorldErrc::no_path,
           .what = text(msg::planning_bad_clearance, asked, kMaxClearanceAsked),
@@ -124,6 +97,36 @@ WorldFailure not_found(PlanFailure search, const PlanOptions& options, const Wor
 }
 
 }  // namespace
+
+namespace detail {
+
+Result<PlannedPath, WorldFailure> search_scene(const ClearScene& scene, ClearEnds ends,
+                                               std::span<const double> q_start,
+                                               std::span<const JointVec> goals,
+                                               const PlanOptions& options, PlanTimes* times) {
+  const bool is_sphere_scene = !scene.checker.solids();
+  if (goals.size() > 1 && is_sphere_scene && !are_free(scene.checker, q_start, goals)) {
+    return tl::unexpected(WorldFailure{.what = {}, .search = {.code = PlanErrc::goals_hit}});
+  }
+  const TimeLeft left(options);
+  const bool clear = options.clearance.value_or(0) > 0;
+  const auto plan = [&](std::span<const JointVec> to, const PlanOptions& with) {
+    PlanTimes taken;
+    auto path = clear ? plan_clear(scene, q_start, to, with, ends, &taken)
+                      : plan_path(scene.checker, q_start, to, with, &taken);
+    if (times != nullptr) {
+      times->search_us += taken.search_us;
+      times->finish_us += taken.finish_us;
+    }
+    return path;
+  };
+  Result<PlannedPath, PlanFailure> found = plan(goals, options);
+  if (found && goals.size() > 1) try_goals_alone(q_start, goals, options, left, plan, *found);
+  return std::move(found).map_error(
+      [](const PlanFailure& why) { return WorldFailure{.what = {}, .search = why}; });
+}
+
+}  // namespace detail
 
 Result<PlanningWorld> PlanningWorld::create(const Robot& robot, WorldOptions options) {
   if (Result<void> fine = check_world_options(options); !fine) return fail(fine.error());
@@ -274,7 +277,7 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_
   Result<PlannedPath, WorldFailure> found = keep_clearance(
       options,
       [&](const detail::ClearScene& scene, detail::ClearEnds ends, const PlanOptions& how) {
-        return search(scene, ends, q_start, goals, how, times);
+        return detail::search_scene(scene, ends, q_start, goals, how, times);
       });
   const auto is_for_winding = [](PlanErrc code) {
     return code == PlanErrc::budget_spent || code == PlanErrc::out_of_time;
@@ -285,26 +288,38 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_
   return found;
 }
 
-Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_start,
-                                                      const GoalRegion& region,
-                                                      const PlanOptions& options, IkTask task,
+Result<detail::EndConfigurations, WorldFailure> PlanningWorld::configurations(
+    const PathEnd& end, std::span<const double> q_near, const PlanOptions& options) const {
+  if (end.regions.empty()) return detail::EndConfigurations(end.q);
+  const IkSolver ik(robot_.arm, {.seed = options.seed, .task = end.task});
+  auto found = RegionGoals::create(
+      scene_->checker, ik, end.regions, q_near,
+      {.seed = options.seed, .tilt = options.tilt, .within = options.within, .stop = options.stop});
+  if (found) return detail::EndConfigurations(std::move(*found));
+  return tl::unexpected(WorldFailure{WorldErrc::no_answer, describe(found.error(), robot_.arm)});
+}
+
+Result<PlannedPath, WorldFailure> PlanningWorld::plan(const PathEnd& start, const PathEnd& goal,
+                                                      const PlanOptions& options,
                                                       PlanTimes* times) {
-  std::optional<Result<std::vector<JointVec>, IkFailure>> goals;
-  return keep_clearance(options,
-                        [&](const detail::ClearScene& scene, detail::ClearEnds ends,
-                            const PlanOptions& how) -> Result<PlannedPath, WorldFailure> {
-                          if (!goals) {
-                            const IkSolver ik(robot_.arm, {.seed = how.seed, .task = task});
-                            goals =
-                                goals_in(scene_->checker, ik, region, q_start,
-                                         {.seed = how.seed, .tilt = how.tilt, .stop = how.stop});
-                          }
-                          if (!*goals) {
-                            return tl::unexpected(WorldFailure{
-                                WorldErrc::no_answer, describe(goals->error(), robot_.arm)});
-                          }
-                          return search(scene, ends, q_start, **goals, how, times);
-                        });
+  using Ends = Result<detail::EndConfigurations, WorldFailure>;
+  std::optional<Ends> starts, goals;  // once there is a scene
+  const auto attempt = [&](const detail::ClearScene& scene, detail::ClearEnds ends,
+                           const PlanOptions& how) -> Result<PlannedPath, WorldFailure> {
+    if (!starts) {
+      starts = configurations(start, as_span(robot_.arm.home), how);
+      if (*starts && (*starts)->q().empty()) *starts = detail::EndConfigurations({JointVec()});
+      if (*starts) goals = configurations(goal, as_span((*starts)->q().front()), how);
+    }
+    if (!*starts) {
+      WorldFailure why = starts->error();
+      why.what = text(msg::planning_start_region, why.what);
+      return tl::unexpected(std::move(why));
+    }
+    if (!*goals) return tl::unexpected(goals->error());
+    return detail::search_between(scene, ends, **starts, **goals, how, times);
+  };
+  return keep_clearance(options, attempt);
 }
 
 }  // namespace mjarm

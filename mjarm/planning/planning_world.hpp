@@ -14,14 +14,15 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/robot.hpp"
-#include "mjarm/planning/goal_region.hpp"
 #include "mjarm/planning/plan_path.hpp"
+#include "mjarm/planning/task_region.hpp"
 #include "mjarm/planning/way_prover.hpp"
 
 namespace mjarm {
 namespace detail {
+class EndConfigurations;
 class TimeLeft;
-}
+}  // namespace detail
 
 /// [m] the widest WorldOptions::margin.
 inline constexpr double kMaxMargin = 0.5;
@@ -62,6 +63,14 @@ struct WorldFailure {
   JointVec same_posture = {};
 };
 
+/// Where a path may begin, or end: at any of some configurations or, where there are regions,
+/// anywhere in any of these.
+struct PathEnd {
+  std::vector<JointVec> q = {};  ///< each (dof,) [rad or m]
+  std::vector<TaskRegion> regions = {};
+  IkTask task = IkTask::pose;  ///< what of the poses in the regions has to be met
+};
+
 /// Plans paths of one robot in its scene. The model is covered with spheres when a path is asked
 /// for first; what was made is kept. Paths are searched among spheres alone, and where these may be
 /// what is in the way with the exact geometry of what they cannot call free. The same input gives
@@ -84,13 +93,13 @@ class PlanningWorld {
                                                        const PlanOptions& options = {},
                                                        PlanTimes* times = nullptr);
 
-  /// The same to anywhere in a region of the tool, by goals_in() with the seed and the tilt of
-  /// `options`. PlannedPath::goal counts the configurations that were found, nearest first.
-  /// @param task  what of the pose has to be met.
-  [[nodiscard]] Result<PlannedPath, WorldFailure> plan(std::span<const double> q_start,
-                                                       const GoalRegion& region,
+  /// The same between two ends, of which each may be regions of the tool: RegionGoals with the seed
+  /// and the limits of `options`, starts near Arm::home and goals near the first start. As long as
+  /// there is no path, searches have twice the samples of the one before, and more is drawn from
+  /// the regions, until PlanOptions::samples are spent. PlannedPath::goal counts the goals that
+  /// were drawn, nearest first.
+  [[nodiscard]] Result<PlannedPath, WorldFailure> plan(const PathEnd& start, const PathEnd& goal,
                                                        const PlanOptions& options = {},
-                                                       IkTask task = IkTask::pose,
                                                        PlanTimes* times = nullptr);
 
   /// The same to one pose of the tool in the world.
@@ -98,7 +107,9 @@ class PlanningWorld {
                                                        const Pose& X_WT,
                                                        const PlanOptions& options = {},
                                                        IkTask task = IkTask::pose) {
-    return plan(q_start, GoalRegion{.X_WR = X_WT}, options, task);
+    const bool fits = q_start.size() <= static_cast<std::size_t>(kMaxDof);
+    return plan({.q = {fits ? joint_vec(q_start) : JointVec()}},
+                {.regions = {region_about(X_WT)}, .task = task}, options);
   }
 
   /// That of what paths of this world keep together. A way that is to be proved must keep
@@ -119,6 +130,8 @@ class PlanningWorld {
   PlanningWorld(const Robot& robot, WorldOptions options)
       : robot_(robot), options_(std::move(options)) {}
 
+  [[nodiscard]] Result<detail::EndConfigurations, WorldFailure> configurations(
+      const PathEnd& end, std::span<const double> q_near, const PlanOptions& options) const;
   [[nodiscard]] Result<WorldScene> covered(const StopCheck& stop) const;
   template <class Attempt>
   [[nodiscard]] Result<PlannedPath, WorldFailure> spheres_then_solids(const PlanOptions& options,

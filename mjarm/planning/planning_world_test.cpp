@@ -94,8 +94,8 @@ TEST(PlanningWorld, PlansToJointsAPoseAndARegion) {
   // Out of reach by itself, but not all of the box round it.
   const Pose far = down_at(-0.95, -0.3, 0.2);
   EXPECT_FALSE(world.plan(kBefore, far));
-  const auto region =
-      world.plan(kBefore, GoalRegion{.X_WR = far, .half = {0.4, 0, 0}, .turn = kPi});
+  const auto region = world.plan({.q = {joint_vec(kBefore)}},
+                                 {.regions = {region_about(far, {0.4, 0, 0}, 0, kPi)}});
   ASSERT_TRUE(region) << region.error().what;
   const Eigen::Vector3d p_W = fk(walled_ur5e().arm, as_span(region->q.back())).p;
   EXPECT_NEAR(p_W.y(), -0.3, 1e-4);

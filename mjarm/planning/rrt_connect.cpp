@@ -32,9 +32,9 @@ class Connector {
       : problem_(problem),
         options_(options),
         dof_(problem.start.size()),
-        tilt_(problem.tilt ? &*problem.tilt : nullptr),
-        range_(tilt_ != nullptr ? std::min(options.range, kTiltRange) : options.range),
-        prover_(problem.checker, tilt_, options, path_.counts),
+        keeper_(problem.keeper ? &*problem.keeper : nullptr),
+        range_(detail::range_of(keeper_, options)),
+        prover_(problem.checker, keeper_, options, path_.counts),
         rng_(options.seed),
         box_(problem, rng_),
         from_start_(dof_),
@@ -82,8 +82,8 @@ class Connector {
       box_.next(q);
       near = tree.nearest(q);
     }
-    if (tilt_ != nullptr) {
-      if (!tilt_->project(q)) return -1;
+    if (keeper_ != nullptr) {
+      if (!keeper_->project(q)) return -1;
       near.distance = distance(tree.q(near.node), q);
     }
     if (near.distance < kSamePlace) return -1;
@@ -91,7 +91,7 @@ class Connector {
     return advance(tree, near, q);
   }
 
-  /// Goes towards `q`, as far as PlanOptions::range: in one step, within a limit of the tilt in
+  /// Goes towards `q`, as far as PlanOptions::range: in one step, within regions of the tool in
   /// several. The last new node, or -1.
   int advance(Tree& tree, Tree::Near near, std::span<const double> q) {
     int last = -1;
@@ -129,8 +129,8 @@ class Connector {
     Row row;
     const std::span<double> end(row.data(), dof_);
     std::copy(to.begin(), to.end(), end.begin());  // to the last bit: the trees meet there
-    if (!arrives && tilt_ != nullptr) {
-      const auto made = tilt_->step(tree.q(near.node), to, range_, end);
+    if (!arrives && keeper_ != nullptr) {
+      const auto made = keeper_->step(tree.q(near.node), to, range_, end);
       if (!made) return {};
       length = *made;
     } else if (!arrives) {
@@ -140,7 +140,7 @@ class Connector {
     if (found.verdict == EdgeVerdict::free)
       return {tree.add(end, near.node, length), true, arrives};
     tree.push_away(near.node, push);
-    if (tilt_ != nullptr) return {};  // steps are short already
+    if (keeper_ != nullptr) return {};  // steps are short already
     const double part = kFreePart * found.t;
     if (part * length < (path_.counts.samples < kCoarse ? kLeastPartFirst : kLeastPart)) return {};
     between(tree.q(near.node), to, part * length / near.distance, end);
@@ -166,8 +166,8 @@ class Connector {
   const PlanOptions& options_;
   std::size_t dof_;
   RawPath path_;
-  const TiltKeeper* tilt_;  // null: no limit
-  double range_;            // [rad or m, L2] of one edge
+  const PathKeeper* keeper_;  // null: no limit
+  double range_;              // [rad or m, L2] of one edge
   EdgeProver prover_;
   Rng rng_;
   WideningBox box_;

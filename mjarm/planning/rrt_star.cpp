@@ -25,8 +25,9 @@ class Rewirer {
         options_(options),
         dof_(problem.start.size()),
         path_(std::move(path)),
-        range_(problem.tilt ? std::min(options.range, kTiltRange) : options.range),
-        prover_(problem.checker, problem.tilt ? &*problem.tilt : nullptr, options, path_.counts),
+        range_(detail::range_of(problem.keeper ? &*problem.keeper : nullptr, options)),
+        prover_(problem.checker, problem.keeper ? &*problem.keeper : nullptr, options,
+                path_.counts),
         rng_(options.seed, 2),
         box_(problem, rng_),
         tree_(dof_) {
@@ -79,7 +80,7 @@ class Rewirer {
       between(tree_.q(nearest.node), {to.data(), dof_}, range_ / nearest.distance, q);
     }
     const bool is_goal = to_goal && whole;  // which keeps the limit as it is
-    if (problem_.tilt && !is_goal && !problem_.tilt->project(q)) return;
+    if (problem_.keeper && !is_goal && !problem_.keeper->project(q)) return;
     if (least_cost_through(problem_, q) >= problem_.max_cost) return;
     find_near(q);
     const int node = attach(q);

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mjarm/core/stopwatch.hpp"
+#include "mjarm/planning/path_keeper_internal.hpp"
 #include "mjarm/planning/plan_path.hpp"
-#include "mjarm/planning/tilt_keeper_internal.hpp"
 
 namespace mjarm::detail {
 
@@ -53,7 +53,7 @@ struct SearchProblem {
   std::span<const double> start;
   std::vector<std::span<const double>> goals;  ///< free ones, nearest first
   std::vector<int> goal_index;                 ///< of each in what the user gave
-  std::optional<TiltKeeper> tilt = {};         ///< of PlanOptions::tilt
+  std::optional<PathKeeper> keeper = {};       ///< of PlanOptions::tilt and within
   /// [rad or m] only shorter paths count.
   double max_cost = std::numeric_limits<double>::infinity();
   Deadline deadline{};
@@ -66,18 +66,18 @@ struct SearchProblem {
 /// its rounding; here the limits count as they do for start and goals.
 class EdgeProver {
  public:
-  /// @param tilt  may be null.
-  EdgeProver(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+  /// @param keeper  may be null.
+  EdgeProver(const FastChecker& checker, const PathKeeper* keeper, const PlanOptions& options,
              PlanCounts& counts)
-      : checker_(checker), tilt_(tilt), edge_{options.resolution}, counts_(counts) {}
+      : checker_(checker), keeper_(keeper), edge_{options.resolution}, counts_(counts) {}
 
   EdgeResult look(std::span<const double> a, std::span<const double> b) {
     ++counts_.edges;
     const Arm& arm = checker_.robot().arm();
     if (outside_joint(arm, a) >= 0) return {EdgeVerdict::outside, 0};
     if (outside_joint(arm, b) >= 0) return {EdgeVerdict::outside, 1};
-    if (tilt_ != nullptr) {
-      const TiltKeeper::EdgeTilt found = tilt_->look(a, b);
+    if (keeper_ != nullptr) {
+      const PathKeeper::Edge found = keeper_->look(a, b);
       if (!found.kept) return {EdgeVerdict::undecided, found.t};
     }
     return check_edge(checker_, a, b, edge_);
@@ -88,7 +88,7 @@ class EdgeProver {
 
  private:
   const FastChecker& checker_;
-  const TiltKeeper* tilt_;
+  const PathKeeper* keeper_;
   EdgeOptions edge_;
   PlanCounts& counts_;
 };
@@ -117,13 +117,13 @@ inline void between(std::span<const double> a, std::span<const double> b, double
                                                        const PlanOptions& options);
 
 /// Shortens `path` in place by so many attempts to cut corners; its edges stay proved.
-/// @param tilt  may be null.
-void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+/// @param keeper  may be null.
+void shorten(const FastChecker& checker, const PathKeeper* keeper, const PlanOptions& options,
              int attempts, RawPath& path);
 
 /// Shortens `path` in place by so many attempts to move one of its corners a little.
-/// @param tilt  may be null.
-void slide_corners(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+/// @param keeper  may be null.
+void slide_corners(const FastChecker& checker, const PathKeeper* keeper, const PlanOptions& options,
                    int attempts, RawPath& path);
 
 /// Checks the options, the start and every goal.

@@ -17,26 +17,26 @@ constexpr double kFirstStep = 0.2;    // [rad or m, L2] that a corner is moved b
 constexpr double kLeastStep = 1e-3;   // and at least;
 constexpr double kLeastSaved = 0.02;  // of a step: less does not count
 constexpr double kLonger = 1.5, kShorter = 0.85;  // the next step after one that worked or failed
-constexpr int kTiltCuts = 8;                      // times as many attempts, and
-constexpr int kTiltPulls = 12;  // so many rounds, where a limit of the tilt needs many corners
+constexpr int kKeptCuts = 8;                      // times as many attempts, and
+constexpr int kKeptPulls = 12;  // so many rounds, where keeping to regions needs many corners
 
 class Shortener {
  public:
-  Shortener(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+  Shortener(const FastChecker& checker, const PathKeeper* keeper, const PlanOptions& options,
             RawPath& path)
       : q_(path.q),
-        tilt_(tilt),
-        prover_(checker, tilt, options, path.counts),
+        keeper_(keeper),
+        prover_(checker, keeper, options, path.counts),
         rng_(options.seed, 1) {}
 
   void run(int attempts) {
     skip_corners();
     int failed = 0;
-    if (tilt_ != nullptr) attempts *= kTiltCuts;
+    if (keeper_ != nullptr) attempts *= kKeptCuts;
     for (int k = 0; k < attempts && q_.size() > 2 && failed < kMaxFailed; ++k) {
       failed = cut() ? 0 : failed + 1;
     }
-    const int pulls = tilt_ != nullptr ? kTiltPulls : kPulls;
+    const int pulls = keeper_ != nullptr ? kKeptPulls : kPulls;
     for (int round = 0; round < pulls && pull_corners(); ++round) continue;
   }
 
@@ -86,17 +86,18 @@ class Shortener {
     return true;
   }
 
-  /// Within a limit of the tilt: fills in short steps between both ends of `way`, which may become
+  /// Within regions of the tool: fills in short steps between both ends of `way`, which may become
   /// as long as `max`.
   bool walk(double max, std::vector<JointVec>& way) {
-    if (tilt_ == nullptr) return false;
+    if (keeper_ == nullptr) return false;
     const JointVec to = way.back();
     way.pop_back();
+    const double range = keeper_->range();
     double left = (to - way.back()).norm();
-    for (; left > kTiltRange; left = (to - way.back()).norm()) {
+    for (; left > range; left = (to - way.back()).norm()) {
       JointVec next(to.size());
       const std::span<double> out(next.data(), static_cast<std::size_t>(next.size()));
-      const auto length = tilt_->step(as_span(way.back()), as_span(to), kTiltRange, out);
+      const auto length = keeper_->step(as_span(way.back()), as_span(to), range, out);
       if (!length || *length + (to - next).norm() > max) return false;
       max -= *length;
       if (!prover_.is_free(as_span(way.back()), as_span(next))) return false;
@@ -120,7 +121,7 @@ class Shortener {
     const JointVec straight = a + to_a / (to_a + to_b) * (b - a);
     for (double share = 1; share > kLeastPull; share *= 0.5) {
       JointVec moved = q_[i] + share * (straight - q_[i]);
-      if (tilt_ != nullptr && !put_back(a, b, to_a + to_b, moved)) continue;
+      if (keeper_ != nullptr && !put_back(a, b, to_a + to_b, moved)) continue;
       if (!prover_.is_free(as_span(a), as_span(moved)) ||
           !prover_.is_free(as_span(moved), as_span(b))) {
         continue;
@@ -139,7 +140,7 @@ class Shortener {
     for (double& x : way) x = rng_.normal();
     way *= (way.dot(shorter) < 0 ? -step : step) / std::max(way.norm(), 1e-9);
     JointVec moved = q_[i] + way;
-    if (tilt_ != nullptr && !put_back(a, b, length, moved)) return false;
+    if (keeper_ != nullptr && !put_back(a, b, length, moved)) return false;
     if ((moved - a).norm() + (moved - b).norm() > length - kLeastSaved * step) return false;
     if (!prover_.is_free(as_span(a), as_span(moved)) ||
         !prover_.is_free(as_span(moved), as_span(b))) {
@@ -149,9 +150,9 @@ class Shortener {
     return true;
   }
 
-  /// Puts a corner back within the limit of the tilt, if the way over it is still shorter.
+  /// Puts a corner back within the regions of the tool, if the way over it is still shorter.
   bool put_back(const JointVec& a, const JointVec& b, double length, JointVec& corner) const {
-    if (!tilt_->project({corner.data(), static_cast<std::size_t>(corner.size())})) return false;
+    if (!keeper_->project({corner.data(), static_cast<std::size_t>(corner.size())})) return false;
     return (corner - a).norm() + (corner - b).norm() < (1 - kLeastGain) * length;
   }
 
@@ -168,21 +169,21 @@ class Shortener {
   }
 
   std::vector<JointVec>& q_;
-  const TiltKeeper* tilt_;
+  const PathKeeper* keeper_;
   EdgeProver prover_;
   Rng rng_;
 };
 
 }  // namespace
 
-void shorten(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+void shorten(const FastChecker& checker, const PathKeeper* keeper, const PlanOptions& options,
              int attempts, RawPath& path) {
-  if (path.q.size() > 2) Shortener(checker, tilt, options, path).run(attempts);
+  if (path.q.size() > 2) Shortener(checker, keeper, options, path).run(attempts);
 }
 
-void slide_corners(const FastChecker& checker, const TiltKeeper* tilt, const PlanOptions& options,
+void slide_corners(const FastChecker& checker, const PathKeeper* keeper, const PlanOptions& options,
                    int attempts, RawPath& path) {
-  if (path.q.size() > 2) Shortener(checker, tilt, options, path).slide(attempts);
+  if (path.q.size() > 2) Shortener(checker, keeper, options, path).slide(attempts);
 }
 
 }  // namespace mjarm::detail

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "mjarm/model/arm.hpp"
+#include "mjarm/planning/task_region.hpp"
 
 namespace mjarm {
 
@@ -23,8 +24,11 @@ inline constexpr double kLeastTilt = 1e-3;
 
 /// What points up at `q` shall point up all the way.
 /// @param q     shape (dof,) [rad or m], finite.
-/// @param most  [rad] as in TiltLimit.
+/// @param max   [rad] as in TiltLimit.
 [[nodiscard]] TiltLimit keep_upright(const Arm& arm, std::span<const double> q, double max);
+
+/// The same as a region: all places and turns are free, F has its z axis along `axis_T`.
+[[nodiscard]] TaskRegion as_region(const TiltLimit& limit);
 
 /// [rad] by how much the tool leans at `q`, shape (dof,), 0 to pi.
 [[nodiscard]] double tilt(const TiltLimit& limit, const Arm& arm, std::span<const double> q);

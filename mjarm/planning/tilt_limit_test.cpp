@@ -8,16 +8,14 @@
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
+#include "mjarm/kinematics/fk.hpp"
 #include "mjarm/planning/covered_arm_test.hpp"
-#include "mjarm/planning/goal_region.hpp"
 #include "mjarm/planning/goals_test.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
-#include "mjarm/planning/tilt_keeper_internal.hpp"
+#include "mjarm/planning/region_goals.hpp"
 
 namespace mjarm {
 namespace {
-
-using detail::TiltKeeper;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -27,7 +25,10 @@ Pose tool_down(const Eigen::Vector3d& p, double turn = 0) {
 
 /// The first answer that is free, with the tool pointing down.
 JointVec nearest_answer(const testing::CoveredArm& arm, const Pose& X_WT, const JointVec& q) {
-  return goals_in(arm.checker, IkSolver(arm.robot.arm), {.X_WR = X_WT}, as_span(q)).value().front();
+  const std::vector<TaskRegion> regions{region_about(X_WT)};
+  return RegionGoals::create(arm.checker, IkSolver(arm.robot.arm), regions, as_span(q))
+      ->q()
+      .front();
 }
 
 JointVec free_answer(const testing::CoveredArm& arm, const Pose& X_WT) {
@@ -51,73 +52,18 @@ TEST(TiltLimit, KeepsUpWhatIsUp) {
   }
 }
 
-TEST(TiltKeeper, EdgesThatAreKeptAreSoAtEveryPlaceAndOthersAreNotAtTheirs) {
-  Rng rng(5);
-  int kept = 0, left = 0;
-  for (int k = 0; k < 1500; ++k) {
-    const Arm arm = testing::random_arm(2 + static_cast<int>(rng.below(6)), rng);
-    JointVec q0(arm.dof()), q1(arm.dof());
-    const double way = rng.uniform(0.05, 1.5);
-    for (int i = 0; i < arm.dof(); ++i) {
-      q0[i] = rng.uniform(-2, 2);
-      q1[i] = q0[i] + rng.uniform(-way, way);
-    }
-    TiltLimit limit = keep_upright(arm, as_span(q0), rng.uniform(0.02, 1.5));
-    if (rng.uniform() < 0.5) {  // some other directions, near to each other
-      const Eigen::Vector3d axis = Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal());
-      limit.axis_T = (limit.axis_T + 0.3 * limit.max * axis).normalized();
-    }
-    const TiltKeeper keeper(limit, arm);
-    const TiltKeeper::EdgeTilt edge = keeper.look(as_span(q0), as_span(q1));
-    double largest = 0;
-    for (int i = 0; i <= 200; ++i) {
-      const JointVec q = q0 + (q1 - q0) * i / 200.0;
-      largest = std::max(largest, tilt(limit, arm, as_span(q)));
-    }
-    if (edge.kept) {
-      ++kept;
-      EXPECT_LE(largest, limit.max * (1 + 1e-7));
-      EXPECT_LE(largest, edge.largest + 1e-9);
-    } else {
-      ++left;
-      // Within 1e-4 rad of where it was given up the limit is met or crossed.
-      const JointVec q = q0 + (q1 - q0) * edge.t;
-      EXPECT_GT(tilt(limit, arm, as_span(q)), limit.max - 1e-3);
-    }
-  }
-  EXPECT_GT(kept, 300);
-  EXPECT_GT(left, 300);
-}
-
-TEST(TiltKeeper, EdgesWithoutEndAreGivenUp) {
+TEST(TiltLimit, IsARegionWhoseLeanAloneIsBounded) {
   const Arm arm = testing::ur5e();
-  const JointVec q0 = JointVec::Zero(6);
-  const TiltKeeper keeper(keep_upright(arm, as_span(q0), 0.1), arm);
-  JointVec q1 = q0;
-  q1[3] = 1e12;
-  EXPECT_FALSE(keeper.look(as_span(q0), as_span(q1)).kept);
-  q1 = q0;
-  q1[0] = 1e17;  // about the vertical: nothing to look at
-  EXPECT_TRUE(keeper.look(as_span(q0), as_span(q1)).kept);
-}
-
-TEST(TiltKeeper, PutsBackWithinTheLimitOrSaysThatItCannot) {
-  const Arm arm = testing::ur5e();
-  Rng rng(7);
-  const TiltLimit limit{.max = 0.1};
-  const TiltKeeper keeper(limit, arm);
-  int done = 0;
-  for (int k = 0; k < 300; ++k) {
+  Rng rng(4);
+  for (int k = 0; k < 50; ++k) {
     JointVec q(arm.dof());
     for (double& x : q) x = rng.uniform(-3, 3);
-    const JointVec before = q;
-    if (!keeper.project({q.data(), 6})) continue;
-    ++done;
-    EXPECT_LE(tilt(limit, arm, as_span(q)), 0.031);
-    EXPECT_TRUE(keeper.keeps(as_span(q)));
-    EXPECT_EQ(tilt(limit, arm, as_span(before)) <= 0.03, before == q);
+    const Eigen::Vector3d axis_T(rng.normal(), rng.normal(), rng.normal());
+    const TiltLimit limit{.max = 0.3, .axis_T = axis_T.normalized()};
+    const RegionRoom room = room_in(as_region(limit), fk(arm, as_span(q)));
+    EXPECT_NEAR(room.turn, 0.3 - tilt(limit, arm, as_span(q)), 1e-7);
+    EXPECT_EQ(room.place, kFreePlace);
   }
-  EXPECT_GT(done, 250);
 }
 
 TEST(TiltPlan, CarriesTheToolUprightRoundTheWall) {

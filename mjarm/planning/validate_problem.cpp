@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "mjarm/core/finite.hpp"
+#include "mjarm/kinematics/fk.hpp"
 #include "mjarm/planning/search_internal.hpp"
 
 namespace mjarm::detail {
@@ -41,12 +42,17 @@ tl::unexpected<PlanFailure> all_hit(const FastChecker& checker, std::span<const 
   return tl::unexpected(failure);
 }
 
-tl::unexpected<PlanFailure> tilted(PlanErrc reason, const TiltLimit& limit, const Arm& arm,
-                                   std::span<const double> q) {
+/// Which of both is not kept at `q`.
+tl::unexpected<PlanFailure> not_kept(PlanErrc tilted, PlanErrc off, const PlanOptions& options,
+                                     const Arm& arm, std::span<const double> q) {
   PlanFailure failure;
-  failure.code = reason;
-  failure.value = tilt(limit, arm, q);
-  failure.limit = limit.max;
+  if (options.within) failure.room = room_in(*options.within, fk(arm, q));
+  failure.code = off;
+  if (options.tilt) failure.value = tilt(*options.tilt, arm, q);
+  if (options.tilt && (!options.within || failure.value > options.tilt->max)) {
+    failure.code = tilted;
+    failure.limit = options.tilt->max;
+  }
   return tl::unexpected(failure);
 }
 
@@ -74,6 +80,7 @@ Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
     return no_path(PlanErrc::bad_input);
   }
   if (options.tilt && !is_sound(*options.tilt)) return no_path(PlanErrc::bad_tilt);
+  if (options.within && !can_be_kept(*options.within)) return no_path(PlanErrc::bad_region);
   if (checker.fixed_overlap()) {
     PlanFailure failure;
     failure.code = PlanErrc::base_hit;
@@ -84,9 +91,9 @@ Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
     return outside(PlanErrc::start_outside, start, k);
   }
   if (!checker.is_free(start)) return start_hit(checker, start);
-  SearchProblem out{checker, start, {}, {}, TiltKeeper::create(options.tilt, arm)};
-  if (out.tilt && !out.tilt->keeps(start)) {
-    return tilted(PlanErrc::start_tilted, *options.tilt, arm, start);
+  SearchProblem out{checker, start, {}, {}, PathKeeper::create(options, arm)};
+  if (out.keeper && !out.keeper->keeps(start)) {
+    return not_kept(PlanErrc::start_tilted, PlanErrc::start_off, options, arm, start);
   }
   const auto goal_of = [&](int g) { return as_span(goals[static_cast<std::size_t>(g)]); };
   bool any_inside = false;
@@ -96,14 +103,14 @@ Result<SearchProblem, PlanFailure> validate_problem(const FastChecker& checker,
     any_inside = true;
     if (!checker.is_free(goal_of(g))) continue;
     if (first_free < 0) first_free = g;
-    if (!out.tilt || out.tilt->keeps(goal_of(g))) out.goal_index.push_back(g);
+    if (!out.keeper || out.keeper->keeps(goal_of(g))) out.goal_index.push_back(g);
   }
   if (!any_inside) {
     return outside(PlanErrc::goals_outside, goal_of(0), outside_joint(arm, goal_of(0)));
   }
   if (first_free < 0) return all_hit(checker, goals);
   if (out.goal_index.empty()) {
-    return tilted(PlanErrc::goals_tilted, *options.tilt, arm, goal_of(first_free));
+    return not_kept(PlanErrc::goals_tilted, PlanErrc::goals_off, options, arm, goal_of(first_free));
   }
   std::ranges::stable_sort(out.goal_index, {}, [&](int g) { return distance(start, goal_of(g)); });
   for (const int g : out.goal_index) out.goals.push_back(goal_of(g));

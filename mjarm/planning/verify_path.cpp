@@ -8,6 +8,7 @@
 
 #include "mjarm/collision/verify_edge.hpp"
 #include "mjarm/core/messages/planning.hpp"
+#include "mjarm/kinematics/fk.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 #include "mjarm/planning/verify_scene_internal.hpp"
@@ -19,6 +20,7 @@ constexpr double kEndSlack = 1e-4;        // [rad or m] of start, goal and limit
 constexpr double kAnywhere = 1e9;         // slack with which limits and overlaps do not matter
 constexpr double kCostSlack = 1e-6;       // relative
 constexpr double kTiltSlack = 1e-6;       // [rad]
+constexpr double kRoomSlack = 1e-6;       // [m or rad]
 constexpr double kClearanceAbove = 1e-5;  // [m] by which a stated clearance may be too large
 constexpr double kKeptSlack = 1e-6;       // [m] and what is said to be kept
 constexpr double kClearanceBelow = 1e-3;  // [m] and too small: it is a lower bound
@@ -54,6 +56,7 @@ class PathJudge {
     if (Result<void> done = prove_edges(); !done) return fail(std::move(done.error()));
     if (Result<void> done = walk_edges(); !done) return fail(std::move(done.error()));
     check_tilt();
+    check_region();
     if (is_stopped(rules_.stop)) return fail(stopped());
     check_cost();
     if (Result<void> done = check_certificates(); !done) return fail(std::move(done.error()));
@@ -207,6 +210,30 @@ class PathJudge {
         const double t = k / std::max(pieces, 1.0), leans = tilt(stated, arm_, on_edge(edge, t));
         if (leans <= stated.max + kTiltSlack) continue;
         add("tilt", edge, text(msg::planning_verify_tilt, edge, t, leans, stated.max));
+        return;
+      }
+    }
+  }
+
+  /// At samples: the tool has the room that is stated, in a region as wide as a path can keep.
+  void check_region() {
+    if (!path_.within) return;
+    const RegionRoom& stated = path_.within->room;
+    if (!stated.within(kRoomSlack)) {
+      add("region", -1, text(msg::planning_verify_no_room, stated.place, stated.turn));
+      return;
+    }
+    for (int edge = 0; edge < edges(); ++edge) {
+      if (!is_walkable(edge)) continue;
+      const double pieces = pieces_of(edge);
+      for (double k = 0; k <= pieces && !is_stopped(rules_.stop); ++k) {
+        const double t = k / std::max(pieces, 1.0);
+        const RegionRoom room = room_in(path_.within->region, fk(arm_, on_edge(edge, t)));
+        if (room.place >= stated.place - kRoomSlack && room.turn >= stated.turn - kRoomSlack)
+          continue;
+        add("region", edge,
+            text(msg::planning_verify_room, edge, t, room.place, room.turn, stated.place,
+                 stated.turn));
         return;
       }
     }

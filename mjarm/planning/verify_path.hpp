@@ -27,7 +27,7 @@ struct VerifyRules {
 
 /// What is wrong with a path.
 struct PathFault {
-  const char* kind;  ///< start, goal, limits, hit, undecided, length, contact, tilt, cost,
+  const char* kind;  ///< start, goal, limits, hit, undecided, length, contact, tilt, region, cost,
                      ///< certificate or clearance
   int edge = -1;     ///< from 0; -1: none in particular
   std::string what;  ///< one line

@@ -34,9 +34,12 @@ const char* name_of(PlanErrc reason) {
       return "no_path";
     case PlanErrc::start_tilted:
     case PlanErrc::goals_tilted:
+    case PlanErrc::start_off:
+    case PlanErrc::goals_off:
       return "tilt";
     case PlanErrc::bad_clearance:
     case PlanErrc::bad_tilt:
+    case PlanErrc::bad_region:
     case PlanErrc::tilt_with_ompl:
     case PlanErrc::bad_input:
       break;

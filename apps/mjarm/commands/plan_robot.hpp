@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/mjarm/cli/batch.hpp"
 #include "apps/mjarm/cli/robot.hpp"
@@ -15,12 +16,14 @@ namespace mjarm::app {
 /// One way to be found for the robot of a file, as the command line has it; empty: not given.
 struct RobotRequest {
   RobotChoice robot;
-  std::string start;               ///< joint values; empty: the home position
-  std::string goal;                ///< joint values, or else a pose:
-  std::string pos, euler, quat;    ///< of the tool
-  std::string task;                ///< pose, position or axis
-  std::string within, lean, turn;  ///< how far off the pose will do
-  std::string upright;             ///< angle by which the tool may lean on its way
+  std::string start;                                     ///< joint values; empty: the home position
+  std::string goal;                                      ///< joint values, or else a pose:
+  std::string pos, euler, quat;                          ///< of the tool
+  std::string task;                                      ///< pose, position or axis
+  std::string around, lean, turn;                        ///< how far off the pose will do
+  std::vector<std::string> goal_regions, start_regions;  ///< of the tool, instead
+  std::string upright;  ///< angle by which the tool may lean on its way
+  std::string within;   ///< region that it stays in
   RuleWords rules;
 };
 

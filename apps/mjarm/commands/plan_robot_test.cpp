@@ -140,6 +140,49 @@ TEST_F(PlanRobot, ARegionIsReachedWhereThePoseIsNot) {
   EXPECT_EQ(verify().exit_code, 0);
 }
 
+TEST_F(PlanRobot, RegionsInWordsAreGoalsStartsAndWhatIsKept) {
+  // A grasp of an upright thing behind the wall from any side, or what is out of reach.
+  const std::string far = "pos=0,0,3", side =
+                                           "frame=wall pos=-0.25,0.05,0 tool-pos=-0.1,0,0 "
+                                           "tool-euler=0,90deg,0 yaw=free z=3cm";
+  ASSERT_EQ(plan({"--start", kBefore, "--goal-region", far, "--goal-region", side}).exit_code, 0);
+  EXPECT_EQ(answer().at("goal_region"), 1);
+  EXPECT_FALSE(answer().contains("start_region"));
+  EXPECT_EQ(verify().exit_code, 0);
+  ASSERT_EQ(plan({"--start-region", side, "--goal", kBefore}).exit_code, 0);
+  EXPECT_EQ(answer().at("start_region"), 0);
+  // A line of the tool, which the file tells and a proof keeps.
+  ASSERT_EQ(plan({"--start", kBefore, "--goal-region", "frame=start x=-15cm..-10cm",
+                  "--keep-within", "frame=start y=1cm z=-1cm..2cm lean=3deg"})
+                .exit_code,
+            0);
+  const json kept = answer().at("within");
+  EXPECT_EQ(kept.at("min")[0], nullptr);
+  EXPECT_EQ(kept.at("min")[1], -0.01);
+  EXPECT_EQ(kept.at("max")[2], 0.02);
+  EXPECT_GE(kept.at("room").at("place"), -1e-9);
+  EXPECT_EQ(verify().exit_code, 0);
+  json file = json::parse(folder_.read("path.json"));
+  file.front()["within"]["max"][1] = 1e-4;
+  file.front()["within"]["min"][1] = -1e-4;
+  folder_.write("path.json", file.dump());
+  const auto wrong = verify();
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_NE(wrong.err.find("within the region"), std::string::npos) << wrong.err;
+}
+
+TEST_F(PlanRobot, TheAnswerAndTheLineTellTheSamePostureThatCanBeReached) {
+  // The upper arm would have to pass through the floor.
+  const auto none = plan({"--start", "-1.5708,-1.5708,1.5708,-1.5708,-1.5708,0", "--goal",
+                          "-1.5708,5.0832,1.5708,-1.5708,-1.5708,0", "--samples", "2000"},
+                         "ur5e");
+  EXPECT_EQ(none.exit_code, 1);
+  const std::string reason = answer().at("reason");
+  EXPECT_NE(reason.find("same posture"), std::string::npos) << reason;
+  EXPECT_NE(only_line(none).find(reason), std::string::npos);
+  EXPECT_NEAR(answer().at("same_posture").at(1), 5.0832 - 2 * std::numbers::pi, 1e-9);
+}
+
 TEST_F(PlanRobot, SevenAxesAndAToolWhoseTurnIsFree) {
   ASSERT_EQ(plan({"--pos", "0.4,-0.3,0.4", "--task", "position"}, "panda").exit_code, 0);
   EXPECT_EQ(verify("panda").exit_code, 0);
@@ -207,7 +250,7 @@ TEST_F(PlanRobot, CarriesWhatItHoldsOverTheWall) {
 
 TEST_F(PlanRobot, WrongWordsGetOneLine) {
   const std::pair<Words, const char*> wrong[] = {
-      {{}, "exactly one of --goal and --pos"},
+      {{}, "exactly one of --goal, --pos and --goal-region"},
       {{"--goal", "1,2"}, "--goal: 6 values"},
       {{"--goal", "0,0,0,0,0,0", "--within", "1,1,1"}, "--goal and --within exclude"},
       {{"--pos", "1,2,3"}, "--euler and --quat"},
@@ -222,6 +265,17 @@ TEST_F(PlanRobot, WrongWordsGetOneLine) {
       {{"--goal", "0,0,0,0,0,0", "--allow", "wall"}, "--allow"},
       {{"--goal", "0,0,0,0,0,0", "--allow", "wall,flor"}, "\"floor\""},
       {{"--pos", "1,2,3", "--task", "position", "--keep-upright", "5deg"}, "--task axis"},
+      {{"--goal-region", "z=1cm yaww=free"},
+       "--goal-region: there is no \"yaww\" (did you mean \"yaw\"?)"},
+      {{"--goal-region", "z=1cm z=2cm"}, "\"z\" needs one value"},
+      {{"--goal-region", "frame=wal"}, "(did you mean \"wall\"?)"},
+      {{"--goal-region", "x=3..1"}, "bounds go from least to largest"},
+      {{"--goal-region", "x=5mn"}, "--goal-region: x: "},
+      {{"--goal-region", "z=0", "--lean", "5deg"}, "--goal-region and --lean exclude"},
+      {{"--start-region", "z=0", "--hold", "wall", "--pos", "1,2,3"}, "--start-region and --hold"},
+      {{"--start-region", "frame=start"}, "frame=start needs one start"},
+      {{"--goal", "0,0,0,0,0,0", "--keep-within", "z=0"},
+       "--keep-within: what the tool shall keep"},
       {{"--goal", "0,0,0,0,0,0", "--in", "x.json"}, "--in and --robot"}};
   for (const auto& [words, says] : wrong) {
     const auto result = plan(words);
