@@ -296,7 +296,9 @@ Result<detail::EndConfigurations, WorldFailure> PlanningWorld::configurations(
       scene_->checker, ik, end.regions, q_near,
       {.seed = options.seed, .tilt = options.tilt, .within = options.within, .stop = options.stop});
   if (found) return detail::EndConfigurations(std::move(*found));
-  return tl::unexpected(WorldFailure{WorldErrc::no_answer, describe(found.error(), robot_.arm)});
+  std::string why = describe(found.error(), robot_.arm);
+  if (end.regions.size() > 1) why = text(msg::planning_no_region, end.regions.size(), why);
+  return tl::unexpected(WorldFailure{WorldErrc::no_answer, std::move(why)});
 }
 
 Result<PlannedPath, WorldFailure> PlanningWorld::plan(const PathEnd& start, const PathEnd& goal,

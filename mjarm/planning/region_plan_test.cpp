@@ -54,9 +54,9 @@ TEST(RegionPlan, GoesToTheRegionThatCanBeReachedAndSaysWhich) {
   EXPECT_TRUE(room_in(goal.regions[2], fk(walled_robot(), as_span(back->q.front()))).within(1e-6));
   // Nowhere.
   const LanguageScope english(Language::english);
-  const auto none = world.plan({.regions = {goal.regions[0]}}, goal);
+  const auto none = world.plan({.regions = {goal.regions[0], goal.regions[0]}}, goal);
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().what.find("the start: "), 0u) << none.error().what;
+  EXPECT_EQ(none.error().what.find("the start: none of 2 regions"), 0u) << none.error().what;
 }
 
 TEST(RegionPlan, DrawsMoreWhereTheFirstPosesAreInTheWay) {

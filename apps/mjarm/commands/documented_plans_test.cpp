@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 
 #include "apps/mjarm/commands/program_test.hpp"
@@ -27,7 +28,7 @@ std::vector<std::vector<std::string>> commands_of(const std::string& page) {
     at += 6;
     std::istringstream words(content.substr(at, content.find_first_of("`#\n", at) - at));
     std::vector<std::string> command;
-    for (std::string word; words >> word;) command.push_back(word);
+    for (std::string word; words >> std::quoted(word);) command.push_back(word);
     const bool shown = command.size() > 2 && (command[0] == "plan" || command[0] == "verify");
     if (shown && command[1] != "--help") out.push_back(std::move(command));
   }
