@@ -16,7 +16,6 @@ using detail::SinCos;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
 
 /// R v, written out so that the compiler keeps it in line.
 Vector3d times(const Eigen::Matrix3d& R, const Vector3d& v) noexcept {
@@ -96,7 +95,7 @@ class SixAxis::Walk {
 
   /// Values of a free joint: that of the seed first, then round the circle.
   double sample(int joint, int i) const noexcept {
-    return form_.sign_[joint] * near_[joint] + i * (2 * kPi / kSamples);
+    return form_.sign_[joint] * near_[joint] + i * (2 * std::numbers::pi / kSamples);
   }
 
   void with_q1(const SinCos& q1, double angle) noexcept {
@@ -190,7 +189,7 @@ class SixAxis::Walk {
     const double first = angle_at(form_.elbow_.upper - form_.elbow_.lower);
     const double last = angle_at(form_.elbow_.upper + form_.elbow_.lower);
     for (const double a : {a_of_q6, a_of_seed}) {
-      const double off = std::remainder(a - middle, 2 * kPi);
+      const double off = std::remainder(a - middle, 2 * std::numbers::pi);
       with(middle + std::copysign(std::min(std::max(std::abs(off), first), last), off));
     }
     for (int i = 0; i < kSamples; ++i) {

@@ -18,11 +18,11 @@ constexpr double kStepAngle = 0.05;    ///< [rad] likewise
 constexpr int kMaxSteps = 64;          ///< at first on one way, so that its time is bounded
 constexpr double kStepJoint = 0.35;    ///< [rad or m] a joint may move from pose to pose
 constexpr int kMaxSolves = 200;        ///< likewise
-constexpr double kShortest = 64;       ///< parts of a step at an edge
+constexpr double kShortestPart = 64;       ///< parts of a step at an edge
 constexpr double kNearLimit = 0.1;     ///< [rad or m]
 constexpr double kSameBranch = 1;      ///< [rad or m] at most, to an answer beyond a gap
 constexpr double kSampleJoint = 0.02;  ///< [rad or m] between samples of a straight joint motion
-constexpr double kSingular = 0.01;     ///< smallest singular value that is not another branch yet
+constexpr double kNearlySingular = 0.01;     ///< smallest singular value that is not another branch yet
 
 /// Contact counts where the arm is free of it at home; else nothing could be reached.
 std::optional<ExactChecker> checker_of(const Model& model, const Arm& arm) {
@@ -102,7 +102,7 @@ bool ToolTarget::lead(const Pose& X_to) {
   double fraction = 0;
   double step = longest;
   // Where a step is too long for the joints, or leads out of reach, shorter ones are tried.
-  for (int i = 0; i < kMaxSolves && fraction < 1 && step > longest / kShortest; ++i) {
+  for (int i = 0; i < kMaxSolves && fraction < 1 && step > longest / kShortestPart; ++i) {
     const double next = fraction + step > 1 - 1e-9 ? 1 : fraction + step;
     if (const auto answer = near_.solve(interpolate(X_from, X_to, next), as_span(goal_))) {
       // A short way for the tool shall be none that swings the arm about.
@@ -125,7 +125,7 @@ bool ToolTarget::is_connected(const JointVec& from, const JointVec& to) {
   const int samples = std::max(1, static_cast<int>(std::ceil(way / kSampleJoint)));
   for (int i = 0; i < samples; ++i) {
     const JointVec q = from + (static_cast<double>(i) / samples) * (to - from);
-    if (smallest_singular_value(fk_jacobian(arm(), as_span(q)).J_W) < kSingular) return false;
+    if (smallest_singular_value(fk_jacobian(arm(), as_span(q)).J_W) < kNearlySingular) return false;
     // What touches already at the beginning may leave.
     if (i > 0 && checker_ && !checker_->is_free(as_span(q))) return false;
   }

@@ -11,7 +11,7 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 void append_pose(JsonWriter& json, const char* key, const Pose& X) {
   const Quat q = to_quat(X.R);
@@ -93,8 +93,8 @@ Result<GivenRegion> read_kept_region(const JsonValue& entry) {
     }
   }
   const Result<double> lean = bound_of(entry.find("lean"), std::numbers::pi);
-  const Result<double> place = bound_of(room->find("place"), kInfinite);
-  const Result<double> turn = bound_of(room->find("turn"), kInfinite);
+  const Result<double> place = bound_of(room->find("place"), kUnbounded);
+  const Result<double> turn = bound_of(room->find("turn"), kUnbounded);
   if (!lean || !place || !turn) return bad_region();
   out.region.lean = *lean;
   out.room = {*place, *turn};

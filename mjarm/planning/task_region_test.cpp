@@ -10,7 +10,6 @@
 namespace mjarm {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 Pose random_pose(Rng& rng) {
   const Eigen::Vector3d w(rng.normal(), rng.normal(), rng.normal());
@@ -29,7 +28,7 @@ TaskRegion random_region(Rng& rng) {
     out.turn_min[k] = is_free ? -farthest : least;
     out.turn_max[k] = is_free ? farthest : rng.uniform(least, farthest);
   }
-  if (rng.uniform() < 0.5) out.lean = rng.uniform(0.1, kPi);
+  if (rng.uniform() < 0.5) out.lean = rng.uniform(0.1, std::numbers::pi);
   return out;
 }
 
@@ -54,7 +53,7 @@ TEST(TaskRegion, WhatIsDrawnIsWithinAndFillsTheRegion) {
 
 TEST(TaskRegion, RoomIsWhatThePoseMayStillMove) {
   TaskRegion region =
-      region_about({{1, 2, 3}, from_euler({0, 0, kPi / 2})}, {0.1, 0.2, 0.3}, 0.4, 0.5);
+      region_about({{1, 2, 3}, from_euler({0, 0, std::numbers::pi / 2})}, {0.1, 0.2, 0.3}, 0.4, 0.5);
   const auto moved = [&](const Pose& by) { return room_in(region, region.X_WR * by); };
   EXPECT_NEAR(moved({}).place, 0.1, 1e-12);
   EXPECT_NEAR(moved({}).turn, 0.4, 1e-12);
@@ -68,14 +67,14 @@ TEST(TaskRegion, RoomIsWhatThePoseMayStillMove) {
   EXPECT_NEAR(room_in(region, region.X_WR * turned * region.X_FT).place, 0.1, 1e-12);
   EXPECT_NEAR(room_in(region, region.X_WR * turned * region.X_FT).turn, 0.3, 1e-12);
   // A yaw from 170 to 190 degrees, met from both sides.
-  region.turn_min[2] = 170 * kPi / 180;
-  region.turn_max[2] = 190 * kPi / 180;
+  region.turn_min[2] = 170 * std::numbers::pi / 180;
+  region.turn_max[2] = 190 * std::numbers::pi / 180;
   for (const double yaw : {178.0, -178.0}) {
-    const Pose X_RF{{0, 0, 0}, from_euler({0, 0, yaw * kPi / 180})};
-    EXPECT_NEAR(room_in(region, region.X_WR * X_RF * region.X_FT).turn, 8 * kPi / 180, 1e-12);
+    const Pose X_RF{{0, 0, 0}, from_euler({0, 0, yaw * std::numbers::pi / 180})};
+    EXPECT_NEAR(room_in(region, region.X_WR * X_RF * region.X_FT).turn, 8 * std::numbers::pi / 180, 1e-12);
   }
   const RegionRoom all =
-      room_in(region_about({}, Eigen::Vector3d::Constant(kFreePlace), kPi, kPi), {});
+      room_in(region_about({}, Eigen::Vector3d::Constant(kFreePlace), std::numbers::pi, std::numbers::pi), {});
   EXPECT_EQ(all.place, kFreePlace);
   EXPECT_EQ(all.turn, std::numeric_limits<double>::infinity());
 }

@@ -13,12 +13,12 @@ namespace {
 
 using testing::task_model;
 
-struct Drawn {
+struct DrawnEpisode {
   Model model;
   Arm arm;
   ReachEpisodes episodes;
 };
-Drawn episodes_of(const ReachOptions& options) {
+DrawnEpisode episodes_of(const ReachOptions& options) {
   Model model = task_model(options);
   Arm arm = find_arm(model).value();
   ReachDrive drive = ReachDrive::create(arm, options, 0.04).value();
@@ -28,7 +28,7 @@ Drawn episodes_of(const ReachOptions& options) {
 
 TEST(ReachEpisodes, GoalsAreThoseOfTheTutorial) {
   const ReachOptions options;
-  Drawn drawn = episodes_of(options);
+  DrawnEpisode drawn = episodes_of(options);
   const Eigen::Vector3d start = fk(drawn.arm, options.start).p;
   const IkSolver solver(drawn.arm, {.pos_tol = 1e-4, .task = IkTask::position});
   Eigen::Vector3d lowest = Eigen::Vector3d::Constant(9), highest = -lowest;
@@ -58,7 +58,7 @@ TEST(ReachEpisodes, GoalsAreThoseOfTheTutorial) {
 
 TEST(ReachEpisodes, WideGoalsAreAllReachableAndNothingTouchesThere) {
   const ReachOptions options{.region = ReachRegion::wide};
-  Drawn drawn = episodes_of(options);
+  DrawnEpisode drawn = episodes_of(options);
   // Another solver, and a Sim with the names of what touches, as judges.
   Sim sim(drawn.model);
   std::vector<double> qpos(drawn.model.nq()), ctrl(drawn.model.nu());
@@ -89,7 +89,7 @@ TEST(ReachEpisodes, WideGoalsAreAllReachableAndNothingTouchesThere) {
 
 TEST(ReachEpisodes, StartsSpreadWithinTheirBoundsAndTouchNothing) {
   const ReachOptions options{.start_spread = 0.4};
-  Drawn drawn = episodes_of(options);
+  DrawnEpisode drawn = episodes_of(options);
   const JointVec middle = joint_vec(options.start);
   Sim sim(drawn.model);
   std::vector<double> qpos(drawn.model.nq()), ctrl(drawn.model.nu());
@@ -109,12 +109,12 @@ TEST(ReachEpisodes, StartsSpreadWithinTheirBoundsAndTouchNothing) {
 
 TEST(ReachEpisodes, TheGripperStandsAsItIsToldTo) {
   std::vector<double> qpos(9), ctrl(8);
-  Drawn open = episodes_of({});
+  DrawnEpisode open = episodes_of({});
   open.episodes.write(open.episodes.draw(1, 0, 0), qpos, ctrl);
   EXPECT_NEAR(qpos[7], 0.04, 1e-4);
   EXPECT_NEAR(qpos[8], 0.04, 1e-4);
   EXPECT_EQ(ctrl[7], 255);
-  Drawn closed = episodes_of({.gripper = ReachGripper::as_model});
+  DrawnEpisode closed = episodes_of({.gripper = ReachGripper::as_model});
   closed.episodes.write(closed.episodes.draw(1, 0, 0), qpos, ctrl);
   EXPECT_EQ(qpos[7], 0);
   EXPECT_EQ(ctrl[7], 0);

@@ -7,7 +7,7 @@ namespace mjarm::detail {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // What comes out of a calculation, such as a state on the way of another motion, is that far from
 // where it should be, relative to the largest numbers in it.
 constexpr double kRounding = 1e-12;
@@ -156,7 +156,7 @@ double FarthestMotions::first_far_enough(double from, double until) const noexce
       if (t + step > std::min(bend, until)) break;
       t += step;
       value = at(t);
-      if (step <= 2 * kEps * t || value.way >= joint_.way) return t;
+      if (step <= 2 * kEpsilon * t || value.way >= joint_.way) return t;
     }
     if (far_enough(t, value.way)) return t;  // it but touches
     if (bend > until) return far_enough(until, at(until).way) ? until : kInf;
@@ -188,8 +188,8 @@ double FarthestMotions::first_on_convex(double from, double until, Value value) 
     value = at(t);
     (value.way < joint_.way ? low : high) = t;
     const double next = t + (joint_.way - value.way) / value.speed;
-    if (std::abs(next - t) <= 2 * kEps * t) return next;
-    if (low >= high * (1 - 2 * kEps)) return high;
+    if (std::abs(next - t) <= 2 * kEpsilon * t) return next;
+    if (low >= high * (1 - 2 * kEpsilon)) return high;
     t = next;
   }
   return t;

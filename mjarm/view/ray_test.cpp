@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kWide = 640;
-constexpr int kHigh = 360;
+constexpr int kRayWide = 640;
+constexpr int kRayHigh = 360;
 
 constexpr const char* kRoom = R"(
 <mujoco model="room">
@@ -69,23 +69,23 @@ TEST_P(Rays, AgreeWithMujocosSelection) {
     ASSERT_TRUE(scene_->set_camera(camera));
     scene_->update({});
     const Eye eye = eye_of(*scene_);
-    const double x = rng.uniform(0, kWide);
-    const double y = rng.uniform(0, kHigh);
+    const double x = rng.uniform(0, kRayWide);
+    const double y = rng.uniform(0, kRayHigh);
     mjtNum at[3];
     int geom = -1;
     int flex = -1;
     int skin = -1;
-    const int body = mjv_select(&m, d.get(), &option, static_cast<mjtNum>(kWide) / kHigh, x / kWide,
-                                1 - y / kHigh, &scene_->raw(), at, &geom, &flex, &skin);
+    const int body = mjv_select(&m, d.get(), &option, static_cast<mjtNum>(kRayWide) / kRayHigh, x / kRayWide,
+                                1 - y / kRayHigh, &scene_->raw(), at, &geom, &flex, &skin);
     if (body < 0) continue;
     ++found;
     const Vector3d p(at[0], at[1], at[2]);
-    const Ray ray = ray_of_pixel(eye, kWide, kHigh, x, y);
+    const Ray ray = ray_of_pixel(eye, kRayWide, kRayHigh, x, y);
     EXPECT_NEAR(ray.direction_W.norm(), 1, 1e-12);
     const Vector3d off = p - ray.origin_W;
     const double miss = (off - off.dot(ray.direction_W) * ray.direction_W).norm();
     EXPECT_LT(miss, 1e-5 * off.norm()) << i;
-    const std::optional<Vector2d> back = pixel_of_point(eye, kWide, kHigh, p);
+    const std::optional<Vector2d> back = pixel_of_point(eye, kRayWide, kRayHigh, p);
     ASSERT_TRUE(back);
     EXPECT_LT((*back - Vector2d(x, y)).norm(), 0.02);
   }
@@ -113,7 +113,7 @@ TEST_P(Rays, TheFreeCameraIsWhereMujocoPutsIt) {
 /// A ball of the overlay is seen at the pixel that `pixel_of_point` tells.
 TEST_P(Rays, PointsAreSeenWhereTheyAreSaidToBe) {
   Result<render::OffscreenRenderer> made = render::OffscreenRenderer::create(
-      *model_, {.width = kWide, .height = kHigh, .quality = render::RenderQuality::low});
+      *model_, {.width = kRayWide, .height = kRayHigh, .quality = render::RenderQuality::low});
   if (!made) GTEST_SKIP() << made.error().what;
   Rng rng(9);
   for (int i = 0; i < 10; ++i) {
@@ -125,8 +125,8 @@ TEST_P(Rays, PointsAreSeenWhereTheyAreSaidToBe) {
     ASSERT_TRUE(image) << image.error().what;
     Vector2d sum = Vector2d::Zero();
     int count = 0;
-    for (int y = 0; y < kHigh; ++y) {
-      for (int x = 0; x < kWide; ++x) {
+    for (int y = 0; y < kRayHigh; ++y) {
+      for (int x = 0; x < kRayWide; ++x) {
         const auto [r, g, b] = image->pixel(x, y);
         if (g < 120 || r > 60 || b > 60) continue;
         sum += Vector2d(x + 0.5, y + 0.5);
@@ -135,10 +135,10 @@ TEST_P(Rays, PointsAreSeenWhereTheyAreSaidToBe) {
     }
     ASSERT_TRUE(scene_->set_camera(camera));
     scene_->update({});
-    const std::optional<Vector2d> at = pixel_of_point(eye_of(*scene_), kWide, kHigh, p);
+    const std::optional<Vector2d> at = pixel_of_point(eye_of(*scene_), kRayWide, kRayHigh, p);
     ASSERT_TRUE(at);
     if (count < 20) continue;  // outside of the picture
-    const bool whole = at->x() > 20 && at->x() < kWide - 20 && at->y() > 20 && at->y() < kHigh - 20;
+    const bool whole = at->x() > 20 && at->x() < kRayWide - 20 && at->y() > 20 && at->y() < kRayHigh - 20;
     if (whole) {
       EXPECT_LT((sum / count - *at).norm(), 0.6);
     }
@@ -152,11 +152,11 @@ INSTANTIATE_TEST_SUITE_P(Projections, Rays, ::testing::Bool(), projection);
 
 TEST(RaysAlone, NothingBehindTheEyeHasAPixel) {
   const Eye eye = eye_of({.distance = 2}, 0.8);
-  EXPECT_FALSE(pixel_of_point(eye, kWide, kHigh, {-5, 0, 0}));
+  EXPECT_FALSE(pixel_of_point(eye, kRayWide, kRayHigh, {-5, 0, 0}));
   EXPECT_LE(eye.height_at({-5, 0, 0}), 0);
-  const std::optional<Vector2d> middle = pixel_of_point(eye, kWide, kHigh, {0, 0, 0});
+  const std::optional<Vector2d> middle = pixel_of_point(eye, kRayWide, kRayHigh, {0, 0, 0});
   ASSERT_TRUE(middle);
-  EXPECT_LT((*middle - Vector2d(kWide / 2.0, kHigh / 2.0)).norm(), 1e-9);
+  EXPECT_LT((*middle - Vector2d(kRayWide / 2.0, kRayHigh / 2.0)).norm(), 1e-9);
 }
 
 }  // namespace
