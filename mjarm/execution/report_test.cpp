@@ -32,6 +32,20 @@ TEST(Report, HoldsWhatTheFileFormatPromises) {
   EXPECT_TRUE(json["first_contact"].is_null());
 }
 
+TEST(Report, TellsWhatWasHeldAndHow) {
+  Report report = full_report();
+  EXPECT_FALSE(nlohmann::json::parse(to_json(report)).contains("held"));
+  report.held.resize(2);
+  report.held[0].joint.name = "base";
+  report.held[0].moved = 1e-9;
+  report.held[1].joint.name = "neck";
+  report.held[1].joint.actuator = ArmActuator{.name = "pan"};
+  report.held[1].moved = 0.25;
+  EXPECT_EQ(nlohmann::json::parse(to_json(report))["held"],
+            nlohmann::json::parse(R"([{"joint": "base", "by": "lock", "moved": 1e-9},
+                {"joint": "neck", "by": "actuator", "actuator": "pan", "moved": 0.25}])"));
+}
+
 TEST(Report, TellsWhereTheToolIsSlowerThanAsked) {
   Report report = full_report();
   EXPECT_FALSE(nlohmann::json::parse(to_json(report)).contains("speed_dips"));

@@ -107,6 +107,10 @@ double seen_share(const Standing& scene, std::span<const Vector3d> marks_W, cons
   int seen = 0;
   for (const Vector3d& p_W : marks_W) {
     const Vector3d way = p_W - eye_W;
+    if (way.norm() < kTouching) {  // MuJoCo stops at a ray without a direction
+      ++seen;
+      continue;
+    }
     const double hit = mj_ray(&scene.model(), &scene.data(), eye_W.data(), way.data(), kShownGroups,
                               1, -1, nullptr, nullptr);
     if (hit < 0 || hit * way.norm() > way.norm() - kTouching) ++seen;

@@ -75,6 +75,16 @@ TEST(ClearView, PartsAreThoseThatMoveAndWhatIsInTheirReach) {
 
 /// Something was written behind a wide shield, as it looks from the model's own heading: the view
 /// goes round the shield, faces the plane that was written on, and holds all of it.
+TEST(ClearView, AModelWithoutLooksIsSeenFromSomewhere) {
+  // Nothing but one point to be seen: the camera stands on it, and no ray leads from there to it.
+  const Model model = Model::from_mjcf(R"(<mujoco><worldbody><body><joint/>
+      <geom size="0.1" group="4"/></body></worldbody></mujoco>)")
+                          .value();
+  const Eigen::Vector3d point(0.2, 0, 0.1);
+  const CameraView view = clear_view(model, {{{point, 0}}, {point}, {Snapshot{}}}, 1.5);
+  EXPECT_GT(view.distance, 0);
+}
+
 TEST(ClearView, GoesRoundWhatHides) {
   constexpr const char* kShield = R"(<mujoco>
     <visual><global azimuth="90"/></visual><statistic center="0 0 0" extent="1"/>

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "apps/mjarm/commands/log_columns_test.hpp"
 #include "apps/mjarm/commands/program_test.hpp"
+#include "mjarm/sim/others_test.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -65,6 +67,25 @@ TEST_F(DemoValuesTest, JointsGoWhereTheyAreSent) {
   EXPECT_NEAR(joint(jumped, "shoulder_pan_joint", 0), 0, 1e-9);
   EXPECT_NEAR(joint(jumped, "shoulder_pan_joint", last(jumped)), -0.5, 0.01);
   EXPECT_NEAR(joint(jumped, "elbow_joint", last(jumped)), M_PI / 3, 0.01);
+}
+
+TEST_F(DemoValuesTest, ASquareIsDrawnWhileTheOthersAreHeld) {
+  folder_.write("others.xml", testing::robot_with_others());
+  const auto done =
+      demo({"square", "--robot", "others.xml", "--tip", "tool", "--allow", "lower,block"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.err,
+              HasSubstr("5 joints are not the arm's and are held where they stand: 3 by their "
+                        "actuators, 2 locked"));
+  EXPECT_EQ(nlohmann::json::parse(folder_.read("out/report.json"))["held"].size(), 5U);
+}
+
+TEST_F(DemoValuesTest, PairsThatMayTouchAreNamesOfTheModel) {
+  for (const char* pair : {"floor", "floor,wrist_3_lnk"}) {
+    const auto refused = demo({"square", "--allow", pair});
+    EXPECT_EQ(refused.exit_code, 2) << pair;
+    EXPECT_THAT(refused.err, HasSubstr("--allow")) << pair;
+  }
 }
 
 TEST_F(DemoValuesTest, ALineGoesFromItsBeginningToItsEnd) {
