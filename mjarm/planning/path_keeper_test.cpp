@@ -113,7 +113,7 @@ Looked look_somewhere(Rng& rng) {
 TEST(PathKeeper, EdgesThatAreKeptAreSoAtEveryPlaceAndOthersAreNotAtTheirs) {
   Rng rng(5);
   int kept = 0, left = 0;
-  const int cases = testing::rounds(1500, 150'000);
+  const int cases = testing::rounds(700, 70'000);
   for (int k = 0; k < cases; ++k) {
     const Looked looked = look_somewhere(rng);
     if (looked.edge.kept) {

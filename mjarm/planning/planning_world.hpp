@@ -97,7 +97,8 @@ class PlanningWorld {
   /// and the limits of `options`, starts near Arm::home and goals near the first start. As long as
   /// there is no path, searches have twice the samples of the one before, and more is drawn from
   /// the regions, until PlanOptions::samples are spent. PlannedPath::goal counts the goals that
-  /// were drawn, nearest first.
+  /// were drawn, nearest first; then the ends are moved within their regions as long as that makes
+  /// the path shorter.
   [[nodiscard]] Result<PlannedPath, WorldFailure> plan(const PathEnd& start, const PathEnd& goal,
                                                        const PlanOptions& options = {},
                                                        PlanTimes* times = nullptr);

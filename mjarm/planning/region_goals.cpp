@@ -12,8 +12,11 @@
 namespace mjarm {
 namespace {
 
-constexpr int kMaxDrawn = 512;         // poses of each region
-constexpr int kMaxDrawnToReach = 64;   // as long as none can be reached
+constexpr int kMaxDrawn = 512;                         // poses of each region
+constexpr int kMaxDrawnToReach = 64;                   // as long as none can be reached
+constexpr double kFirstPull = 0.5, kLeastPull = 0.02;  // shares of the way
+constexpr int kMaxPulls = 30;
+constexpr double kPullPays = 1e-3;     // share of it that a step has to gain
 constexpr double kSamePosture = 1e-6;  // [rad or m]
 
 bool is_point(const TaskRegion& region) {
@@ -116,6 +119,27 @@ std::optional<IkFailure> RegionGoals::add(int region, const Pose& X_WT) {
     found_[seen->second].push_back({answer.q, region, (answer.q - near_).norm()});
   }
   return std::nullopt;
+}
+
+JointVec RegionGoals::pulled(const JointVec& q, int region, const JointVec& to) const {
+  const TaskRegion& within = regions_[static_cast<std::size_t>(region)];
+  const Worth least = worth(q);
+  JointVec out = q;
+  if (is_point(within)) return out;
+  double share = kFirstPull;
+  for (int k = 0; k < kMaxPulls && share > kLeastPull; ++k) {
+    const JointVec tried = out + share * (to - out);
+    const Pose X_WT = nearest_in(within, fk(ik_.arm(), as_span(tried)));
+    const auto answer = ik_.solve(X_WT, as_span(tried));
+    const double before = (out - to).norm();
+    const bool nearer = answer && (answer->q - to).norm() < before * (1 - kPullPays);
+    if (nearer && worth(answer->q) <= least) {
+      out = answer->q;
+    } else {
+      share *= 0.5;
+    }
+  }
+  return out;
 }
 
 void RegionGoals::choose() {

@@ -55,6 +55,11 @@ class RegionGoals {
 
   /// Nearest to `q_near` first; at least one.
   [[nodiscard]] const std::vector<JointVec>& q() const noexcept { return q_; }
+  /// Another configuration that stands for the same region, nearer to `to`, and as good: `q` moved
+  /// there in steps, of which each ends at the pose of the region that is nearest; `q` itself where
+  /// there is none.
+  [[nodiscard]] JointVec pulled(const JointVec& q, int region, const JointVec& to) const;
+
   /// Index of the region that a configuration stands for.
   [[nodiscard]] int region_of(int goal) const { return region_of_[static_cast<std::size_t>(goal)]; }
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kWholeTurn = 2 * kPi * (1 - 1e-12);
+constexpr int kHalvings = 40;
 constexpr int kDraws = 200;  // of directions, until one does not lean too far
 
 bool is_pose(const Pose& X) {
@@ -125,6 +126,28 @@ RegionRoom room_in(const TaskRegion& region, const Pose& X_WT) noexcept {
     out.turn = std::min(out.turn, region.lean - std::atan2(std::hypot(z[0], z[1]), z[2]));
   }
   return out;
+}
+
+Pose nearest_in(const TaskRegion& region, const Pose& X_WT) {
+  const Pose X_RF = region.X_WR.inverse() * X_WT * region.X_FT.inverse();
+  const Eigen::Vector3d p = X_RF.p.cwiseMax(region.place_min).cwiseMin(region.place_max);
+  Eigen::Vector3d rpy = to_euler(X_RF.R);
+  for (int k = 0; k < 3; ++k) {
+    const TurnBounds bounds = turn_bounds(region, k);
+    if (!bounds.any()) continue;
+    const double angle = k == 1 ? rpy[k] : nearest_winding_to(rpy[k], bounds);
+    rpy[k] = std::clamp(angle, bounds.min, bounds.max);
+  }
+  const Eigen::Vector2d given = rpy.head<2>(), best = most_upright(region);
+  double good = 0, bad = 1;  // shares of the way there: the lean grows along it
+  if (lean_of(given[0], given[1]) <= region.lean) good = 1;
+  for (int k = 0; k < kHalvings && good < 1; ++k) {
+    const double share = 0.5 * (good + bad);
+    const Eigen::Vector2d there = best + share * (given - best);
+    (lean_of(there[0], there[1]) <= region.lean ? good : bad) = share;
+  }
+  rpy.head<2>() = best + good * (given - best);
+  return tool_at(region, p, rpy);
 }
 
 Pose middle_of(const TaskRegion& region) {

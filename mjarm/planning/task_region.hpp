@@ -75,6 +75,10 @@ struct RegionRoom {
 };
 [[nodiscard]] RegionRoom room_in(const TaskRegion& region, const Pose& X_WT) noexcept;
 
+/// A pose of the tool in the region near to `X_WT`: place, roll, pitch and yaw within their bounds,
+/// then roll and pitch brought back until the lean is.
+[[nodiscard]] Pose nearest_in(const TaskRegion& region, const Pose& X_WT);
+
 /// The tool in the middle of the region; what is free is as in R, or as near to it as may be.
 [[nodiscard]] Pose middle_of(const TaskRegion& region);
 

@@ -47,6 +47,11 @@ TEST(TaskRegion, WhatIsDrawnIsWithinAndFillsTheRegion) {
       nearest = std::min({nearest, room.place, room.turn});
     }
     EXPECT_LT(nearest, 0.35);
+    // What is outside has a place inside, what is inside stays.
+    const Pose anywhere = random_pose(rng), inside = draw_from(region, {0, 0, 0}, 1, rng);
+    EXPECT_TRUE(room_in(region, nearest_in(region, anywhere)).within(1e-9));
+    EXPECT_LT(angle_between(nearest_in(region, inside).R, inside.R), 1e-7);
+    EXPECT_LT((nearest_in(region, inside).p - inside.p).norm(), 1e-9);
   }
   EXPECT_GT(sound, 200);
 }

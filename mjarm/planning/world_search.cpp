@@ -10,10 +10,12 @@ namespace {
 
 using Found = Result<PlannedPath, WorldFailure>;
 
-constexpr int kFirstRound = 2000;      // samples before more goals are drawn
-constexpr int kAllSamples = 100'000;   // where nothing else is said
-constexpr int kClearSamples = 30'000;  // the same with a clearance
-constexpr std::size_t kMaxStarts = 8;  // that are tried, those nearest to a goal
+constexpr int kFirstRound = 2000;       // samples before more goals are drawn
+constexpr int kAllSamples = 100'000;    // where nothing else is said
+constexpr int kClearSamples = 30'000;   // the same with a clearance
+constexpr int kPulls = 3;               // of the ends of a path,
+constexpr double kPullPaysPath = 0.01;  // each as long as it saves this share
+constexpr std::size_t kMaxStarts = 8;   // that are tried, those nearest to a goal
 
 /// Whether there may be a path between others that stand for the same regions.
 bool may_be_others(PlanErrc reason) {
@@ -32,6 +34,32 @@ double least_distance(const JointVec& start, const std::vector<JointVec>& goals)
   double least = std::numeric_limits<double>::infinity();
   for (const JointVec& goal : goals) least = std::min(least, (goal - start).norm());
   return least;
+}
+
+/// Moves ends that stand for regions nearer to the corners beside them, as long as the path becomes
+/// shorter by it and its ends keep as much as before.
+void pull_ends(const ClearScene& scene, ClearEnds ends, const EndConfigurations& starts, int start,
+               const EndConfigurations& goals, const PlanOptions& options, PlanTimes* times,
+               PlannedPath& path) {
+  PlanOptions quick = options;
+  quick.samples = std::min(all_samples(options), kFirstRound);
+  quick.rounds = 0;
+  quick.time_budget = 0;
+  const auto least_kept = [](const PlannedPath& of) {
+    return of.kept.empty() ? 0 : *std::ranges::min_element(of.kept);
+  };
+  for (int k = 0; k < kPulls && !is_stopped(options.stop); ++k) {
+    const JointVec& beside = path.q[path.q.size() - 2];
+    const std::vector<JointVec> to{goals.pulled(path.goal, path.q.back(), beside)};
+    const JointVec from =
+        starts.pulled(start, path.q.front(), path.q.size() > 2 ? path.q[1] : to.front());
+    if (to.front() == path.q.back() && from == path.q.front()) return;
+    Found other = search_scene(scene, ends, as_span(from), to, quick, times);
+    if (!other || other->cost > path.cost * (1 - kPullPaysPath)) return;
+    if (least_kept(*other) < least_kept(path)) return;
+    other->goal = path.goal;
+    path = std::move(*other);
+  }
 }
 
 /// From each of the starts that are nearest to a goal, which share the samples; the shortest.
@@ -57,6 +85,7 @@ Found search_from_each(const ClearScene& scene, ClearEnds ends, const EndConfigu
     if (found) share.samples = std::min(share.samples, kFirstRound);
     Found path = search_scene(scene, ends, as_span(from[s]), goals.q(), left.in(share), times);
     if (path) {
+      pull_ends(scene, ends, starts, static_cast<int>(s), goals, left.in(share), times, *path);
       path->start_region = starts.region_of(static_cast<int>(s));
       path->goal_region = goals.region_of(path->goal);
     }

@@ -29,6 +29,10 @@ class EndConfigurations {
   [[nodiscard]] const std::vector<JointVec>& q() const { return goals_ ? goals_->q() : q_; }
   /// Of one of them; -1: it was given.
   [[nodiscard]] int region_of(int index) const { return goals_ ? goals_->region_of(index) : -1; }
+  /// One of them, where it stands for a region nearer to `to` if that can be.
+  [[nodiscard]] JointVec pulled(int index, const JointVec& q, const JointVec& to) const {
+    return goals_ ? goals_->pulled(q, goals_->region_of(index), to) : q;
+  }
   [[nodiscard]] bool may_draw() const { return goals_ && goals_->may_draw(); }
   bool draw_more() { return goals_ && goals_->draw_more(); }
 
