@@ -271,6 +271,46 @@ Vector3d Convex::farthest(const Vector3d& n, int& hint) const noexcept {
   return *std::ranges::max_element(points_, {}, height);
 }
 
+Sphere Convex::inscribed_ball() const {
+  switch (kind_) {
+    case SolidKind::ball:
+    case SolidKind::capsule:
+      return {center_, radius_};
+    case SolidKind::cylinder:
+      return {center_, std::min(size_.x(), size_.y())};
+    case SolidKind::box:
+    case SolidKind::ellipsoid:
+      return {center_, size_.minCoeff()};
+    case SolidKind::hull:
+      break;
+  }
+  return normals_.empty() ? Sphere{center_, 0} : ball_between_faces();
+}
+
+/// Steps away from the nearest face that get shorter and shorter.
+Sphere Convex::ball_between_faces() const {
+  constexpr int kSteps = 300;
+  std::vector<double> offsets;
+  for (const Vector3d& n : normals_) {
+    const auto height = [&](const Vector3d& p) { return n.dot(p); };
+    offsets.push_back(height(*std::ranges::max_element(points_, {}, height)));
+  }
+  Sphere best{center_, 0};
+  Vector3d p = Vector3d::Zero();
+  for (const Vector3d& point : points_) p += point / static_cast<double>(points_.size());
+  for (int step = 1; step <= kSteps; ++step) {
+    double depth = std::numeric_limits<double>::infinity();
+    std::size_t nearest = 0;
+    for (std::size_t k = 0; k < normals_.size(); ++k) {
+      const double to_face = offsets[k] - normals_[k].dot(p);
+      if (to_face < depth) depth = to_face, nearest = k;
+    }
+    if (depth > best.radius) best = {p, depth};
+    p -= normals_[nearest] * (0.5 * reach_ / step);
+  }
+  return best;
+}
+
 Separation separate(const Convex& a, const Pose& X_WA, const Convex& b, const Pose& X_WB,
                     const SeparateLimits& limits) noexcept {
   Separation out;

@@ -7,6 +7,7 @@
 
 #include "mjarm/collision/byte_key_internal.hpp"
 #include "mjarm/collision/cover_solid_internal.hpp"
+#include "mjarm/collision/sphere_set.hpp"
 #include "mjarm/core/pose.hpp"
 
 namespace mjarm::detail {
@@ -33,10 +34,14 @@ class Convex {
   [[nodiscard]] const std::vector<Eigen::Vector3d>& normals() const noexcept { return normals_; }
   /// All that decides about distances from it.
   void append_to(ByteKey& key) const;
+  /// A ball in the solid, in L: the largest, but in a hull, where it may be a few percent less. Of
+  /// a few points it has no radius.
+  [[nodiscard]] Sphere inscribed_ball() const;
 
  private:
   [[nodiscard]] int climb(const Eigen::Vector3d& n, int from) const noexcept;
   void join(const std::vector<std::array<int, 3>>& triangles);
+  [[nodiscard]] Sphere ball_between_faces() const;
 
   SolidKind kind_ = SolidKind::hull;
   Pose X_LS_;

@@ -116,6 +116,20 @@ double gap_to_standing(const Convex& convex, const Pose& X_WC, const StandingSol
   return least;
 }
 
+double distance_to_standing(const Vector3d& p_W, const StandingSolid& standing,
+                            double enough) noexcept {
+  const Convex point{CoverSolid()};  // a ball without radius
+  const Pose X_WP{p_W, Eigen::Matrix3d::Identity()};
+  double least = std::numeric_limits<double>::infinity();
+  each_part(standing, p_W, enough, [&](const Part& part) {
+    const Separation apart =
+        separate(point, X_WP, part, {.enough = part.radius() + std::min(enough, least)});
+    least = std::min(least, std::max(apart.distance - part.radius(), 0.0));
+    return true;
+  });
+  return least <= enough ? least : std::numeric_limits<double>::infinity();
+}
+
 /// A configuration, and how it moves along a way.
 class SolidScene::Moment {
  public:

@@ -41,6 +41,11 @@ struct StandingSolid {
 [[nodiscard]] double gap_to_standing(const Convex& convex, const Pose& X_WC,
                                      const StandingSolid& standing, double enough) noexcept;
 
+/// [m] A point of what stands is no farther than this from a place; infinite where that is more
+/// than `enough`.
+[[nodiscard]] double distance_to_standing(const Eigen::Vector3d& p_W, const StandingSolid& standing,
+                                          double enough) noexcept;
+
 /// An arm and its scene as the solids that MuJoCo collides: convex ones, exactly. What spheres
 /// cannot call free is looked at here. Immutable; may be used from many threads at once.
 class SolidScene {
@@ -49,6 +54,9 @@ class SolidScene {
   struct Pair {
     int link = -1, obstacle = -1, other_link = -1;
   };
+  [[nodiscard]] std::span<const LinkSolid> solids() const noexcept { return solids_; }
+  [[nodiscard]] std::span<const StandingSolid> standing() const noexcept { return standing_; }
+
   struct Clearance {
     double distance = 0;  ///< [m] negative: depth of the overlap
     Pair pair;

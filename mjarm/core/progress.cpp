@@ -53,20 +53,26 @@ Progress::~Progress() {
 
 void Progress::advance(std::uint64_t steps) noexcept {
   done_.fetch_add(steps, std::memory_order_relaxed);
-  if (!visible_) return;
-  const Clock::time_point now = Clock::now();
-  if ((now - start_).count() >= next_draw_ns_.load(std::memory_order_relaxed)) draw(now);
+  draw_if_due([&](double seconds) {
+    return progress_line(label_, done_, total_, seconds, terminal_width());
+  });
 }
 
-void Progress::draw(Clock::time_point now) noexcept {
+void Progress::show(const std::function<std::string()>& line) noexcept {
+  draw_if_due([&](double) { return line(); });
+}
+
+template <class Line>
+void Progress::draw_if_due(const Line& line) noexcept {
+  if (!visible_) return;
+  const std::chrono::nanoseconds elapsed = Clock::now() - start_;
+  if (elapsed.count() < next_draw_ns_.load(std::memory_order_relaxed)) return;
   const std::unique_lock<std::mutex> lock(drawing_, std::try_to_lock);
   if (!lock.owns_lock()) return;  // another thread is at it
-  const std::chrono::nanoseconds elapsed = now - start_;
   if (elapsed.count() < next_draw_ns_) return;
   next_draw_ns_ = elapsed.count() + kBetweenDrawsNs;
   try {
-    const double seconds = std::chrono::duration<double>(elapsed).count();
-    show_status(progress_line(label_, done_, total_, seconds, terminal_width()));
+    show_status(line(std::chrono::duration<double>(elapsed).count()));
   } catch (...) {  // a bar that cannot be drawn is no reason to stop the job
   }
 }

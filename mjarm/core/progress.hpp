@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 
@@ -29,10 +30,16 @@ class Progress {
 
   /// `steps` more are done.
   void advance(std::uint64_t steps = 1) noexcept;
+  /// Shows a line of the caller's own, where it is time for one; only then it is made.
+  void show(const std::function<std::string()>& line) noexcept;
+  /// Whether anything is shown at all.
+  [[nodiscard]] bool is_visible() const noexcept { return visible_; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  void draw(Clock::time_point now) noexcept;
+  /// @param line  line(seconds): what is shown.
+  template <class Line>
+  void draw_if_due(const Line& line) noexcept;
 
   std::string label_;
   std::uint64_t total_;

@@ -62,6 +62,8 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
   if (timed) problem->deadline = detail::Deadline(options.stop, kProofShare * left_us);
   PlanOptions round = options;
   round.samples = kSamplesOfRound;
+  round.enclosure = nullptr;  // there is a path
+  round.progress = {};
   Settler settler(*problem, round);
   settler.settle(round.seed, path_length(best.q), best);
   double cost = path_length(best.q);

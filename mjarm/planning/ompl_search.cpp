@@ -131,12 +131,9 @@ class OmplSearch {
     const ob::PlannerStatus status =
         planner->solve(ob::PlannerTerminationCondition([this] { return budget_.spent(); }));
     if (status == ob::PlannerStatus::EXACT_SOLUTION) return take_path(prover);
-    PlanFailure failure;
-    failure.code = PlanErrc::budget_spent;
-    failure.samples = budget_.counts().samples;
     const double difference = definition_->getSolutionDifference();  // < 0: not known
-    failure.nearest = difference >= 0 ? difference : distance(problem_.start, nearest);
-    return tl::unexpected(failure);
+    return tl::unexpected(
+        budget_.why(difference >= 0 ? difference : distance(problem_.start, nearest)));
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -181,7 +182,8 @@ OmplBudget::OmplBudget(const PlanOptions& options, bool improves)
       max_(options.samples > 0 ? options.samples
            : improves          ? kMaxWhereImproved
                                : kMaxDraws),
-      more_(options.samples > 0 ? options.samples : kMoreDraws) {}
+      more_(options.samples > 0 ? options.samples : kMoreDraws),
+      watch_(options, max_) {}
 
 void OmplBudget::found() {
   if (std::exchange(found_, true)) return;
@@ -192,6 +194,8 @@ void OmplBudget::found() {
 bool OmplBudget::spent() {
   ++steps_;
   if (deadline_.passed() || (!found_ && limit_.passed())) return true;
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  if (!found_ && watch_.is_hopeless(counts_.samples, kUnknown)) return true;
   if (found_ && timed_) return false;
   const int draws = found_ ? more_ : max_;
   return counts_.samples >= draws || steps_ >= kStepsOfDraw * draws;

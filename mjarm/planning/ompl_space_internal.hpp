@@ -9,6 +9,7 @@
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/planning/search_internal.hpp"
+#include "mjarm/planning/search_watch_internal.hpp"
 
 namespace mjarm::detail {
 
@@ -27,6 +28,9 @@ class OmplBudget {
   void found();
   /// Whether to end; planners ask again and again, and asking counts as a step.
   bool spent();
+  /// Why there is no path, where none was found.
+  /// @param nearest  [rad or m, L2] how near the search came.
+  [[nodiscard]] PlanFailure why(double nearest) { return watch_.why(counts_.samples, nearest); }
 
   PlanCounts& counts() { return counts_; }
   /// Configurations that may be drawn until there is a path.
@@ -37,7 +41,8 @@ class OmplBudget {
   Deadline deadline_;
   Deadline limit_;  // until there is a path
   bool timed_;
-  int max_, more_;          // draws until there is a path, and after that
+  int max_, more_;  // draws until there is a path, and after that
+  SearchWatch watch_;
   std::int64_t steps_ = 0;  // for planners that go on and on without drawing
   bool found_ = false;
 };

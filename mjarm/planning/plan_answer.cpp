@@ -47,6 +47,17 @@ void append_tilt(JsonWriter& json, const TiltLimit& limit, double largest) {
       .end_object();
 }
 
+void append_pocket(JsonWriter& json, const Pocket& pocket, const FastRobot& robot) {
+  json.key("enclosed")
+      .object()
+      .member("link", robot.spheres().links[static_cast<std::size_t>(pocket.link)].name)
+      .member("radius", pocket.radius)
+      .member("at", pocket.at_goal ? "goal" : "start")
+      .member("volume", pocket.volume)
+      .member("cell", pocket.cell)
+      .end_object();
+}
+
 /// A list of strings; nothing for an empty one.
 void append_words(JsonWriter& json, const char* key, const std::vector<std::string>& words) {
   if (!words.empty()) json.member(key, words);
@@ -79,13 +90,16 @@ PlanAnswer answer_problem(const FastRobot& robot, const PlanProblem& problem,
   const Result<FastChecker> checker = FastChecker::create(robot, problem.obstacles);
   assert(checker);  // the obstacles were checked when they were read
   PlanTimes times;
+  EnclosureTest enclosure(*checker, problem.obstacles, problem.start, problem.goals);
+  PlanOptions how = options;
+  how.enclosure = &enclosure;
   if (!detail::is_sound_clearance(options.clearance)) {
     out.path =
         tl::unexpected(PlanFailure{.code = PlanErrc::bad_clearance, .limit = *options.clearance});
   } else if (options.clearance.value_or(0) > 0) {
-    out.path = plan_clear(*checker, problem, options, times);
+    out.path = plan_clear(*checker, problem, how, times);
   } else {
-    out.path = plan_path(*checker, problem.start, problem.goals, options, &times);
+    out.path = plan_path(*checker, problem.start, problem.goals, how, &times);
   }
   out.us = watch.us();
   if (options.time_budget > 0) return out;
@@ -119,6 +133,9 @@ void append_answer(std::string& out, const PlanAnswer& answer, const FastRobot& 
     json.member("reason", answer.reason.empty() ? describe(answer.path.error(), robot, obstacles)
                                                 : answer.reason);
     if (answer.same_posture.size() > 0) json.member("same_posture", answer.same_posture);
+    if (answer.path.error().code == PlanErrc::enclosed) {
+      append_pocket(json, answer.path.error().pocket, robot);
+    }
     if (answer.path.error().code == PlanErrc::too_near) {
       json.member("possible_clearance", answer.path.error().possible);
     }

@@ -53,6 +53,14 @@ std::string start_hit(const SphereClearance& pair, const FastRobot& robot,
   return text(msg::planning_start_movable, what, body, link_name(robot, pair.link));
 }
 
+std::string enclosed(const Pocket& pocket, const FastRobot& robot) {
+  const Msg& how = pocket.at_goal ? msg::planning_enclosed_goal : msg::planning_enclosed_start;
+  return text(pocket.goals > 1 ? msg::planning_enclosed_goals : msg::planning_enclosed,
+              pocket.goals,
+              text(how, 1e3 * pocket.radius, link_name(robot, pocket.link), 1e3 * pocket.volume),
+              1e3 * pocket.cell);
+}
+
 }  // namespace
 
 std::string describe(const PlanFailure& failure, const FastRobot& robot,
@@ -83,6 +91,8 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return off_region(msg::planning_start_off, failure.room);
     case PlanErrc::goals_off:
       return off_region(msg::planning_goals_off, failure.room);
+    case PlanErrc::enclosed:
+      return enclosed(failure.pocket, robot);
     case PlanErrc::budget_spent:
       return text(msg::planning_budget, failure.samples, failure.nearest);
     case PlanErrc::out_of_time:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/stop.hpp"
+#include "mjarm/planning/enclosure.hpp"
 #include "mjarm/planning/task_region.hpp"
 #include "mjarm/planning/tilt_limit.hpp"
 
@@ -30,6 +32,13 @@ inline constexpr double kMaxClearanceAsked = 0.5;
 inline constexpr double kPreferredClearance = 0.005;
 /// [rad or m, L2] ends of a path where less than PlanOptions::clearance will do are no longer.
 inline constexpr double kFarthestExit = 1;
+
+/// How far a search for a first path is.
+struct SearchProgress {
+  int samples = 0;  ///< configurations drawn
+  /// [rad or m, L2] how near start and goals came to each other; infinite where that is not known.
+  double nearest = 0;
+};
 
 /// How a path is searched. Every default is usable as is.
 struct PlanOptions {
@@ -65,6 +74,12 @@ struct PlanOptions {
   /// where none is 0, and of PlanningWorld, where none is kPreferredClearance as long as a path is
   /// soon found with it, else 0. plan_path() keeps what its checker was made for.
   std::optional<double> clearance = {};
+  /// Asked once, after 2,000 samples without a path (or at the end of fewer), whether there is one
+  /// at all; null: is not. Must outlive the search. answer_problem() and PlanningWorld have one of
+  /// their own.
+  EnclosureTest* enclosure = nullptr;
+  /// Called after every sample until there is a path, so it must be quick.
+  std::function<void(const SearchProgress&)> progress = {};
   bool keep_trees = false;  ///< hand over what was searched, to be drawn, say
   StopCheck stop = {};      ///< ends the work with PlanErrc::stopped
 };
@@ -83,6 +98,7 @@ enum class PlanErrc {
   goals_tilted,    ///< the tool leans too far at every goal that is free of collisions
   start_off,       ///< the tool is outside of PlanOptions::within at the start
   goals_off,       ///< the tool is outside of it at every goal that is free of collisions
+  enclosed,        ///< PlanOptions::enclosure proved that there is no path
   budget_spent,    ///< PlanOptions::samples did not do
   out_of_time,     ///< PlanOptions::time_limit did not do
   stopped,         ///< PlanOptions::stop ended the work
@@ -107,6 +123,7 @@ struct PlanFailure {
   double nearest = 0;    ///< [rad or m, L2] budget_spent, out_of_time: how near the trees came
   int samples = 0;       ///< drawn
   RegionRoom room = {};  ///< start_off, goals_off: how far outside
+  Pocket pocket = {};    ///< enclosed: what proves it
 };
 
 /// What a search did.

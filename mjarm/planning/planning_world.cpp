@@ -64,6 +64,7 @@ void try_goals_alone(std::span<const double> q_start, std::span<const JointVec> 
   PlanOptions search = options;
   search.samples = least_samples(options, kAloneSamples);
   search.time_budget = 0;
+  search.enclosure = nullptr;
   for (const std::size_t g : nearest_goals(q_start, goals)) {
     const double far = (goals[g] - joint_vec(q_start)).norm();
     if (far >= path.cost || left.none() || is_stopped(options.stop)) return;
@@ -208,7 +209,8 @@ Result<PlannedPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOption
     clear.clearance = kPreferredClearance;
     clear.samples = least_samples(options, kPreferSamples);
     Result<PlannedPath, WorldFailure> found = spheres_then_solids(clear, left, attempt);
-    const bool decided = found || is_stopped(options.stop);
+    const bool decided =
+        found || is_stopped(options.stop) || found.error().search.code == PlanErrc::enclosed;
     return decided ? std::move(found) : spheres_then_solids(bare, left, attempt);
   }
   Result<PlannedPath, WorldFailure> found = spheres_then_solids(clear, left, attempt);
@@ -250,14 +252,22 @@ Result<WayProver> PlanningWorld::prover(std::span<const PlannedPath> paths, cons
   return WayProver(wide, std::move(ends));
 }
 
+/// `options` with a test of all goals, in exact geometry, whatever is searched in.
+/// @param test  of the request, made when it is asked for first.
+PlanOptions PlanningWorld::testing(std::optional<EnclosureTest>& test,
+                                   std::span<const double> q_start, std::span<const JointVec> goals,
+                                   const PlanOptions& options) const {
+  if (!test) test.emplace(scene_->checker, scene_->cover.scene, q_start, goals);
+  PlanOptions out = options;
+  out.enclosure = &*test;
+  return out;
+}
+
 /// A joint goal may be in a winding to which no way leads, while one leads to the same posture.
 void PlanningWorld::tell_winding(std::span<const double> q_start, const JointVec& goal,
                                  const PlanOptions& options, WorldFailure& why) {
   const Chain chain(robot_.arm);
-  JointVec same = goal;
-  for (int i = 0; i < chain.dof; ++i) {
-    same[i] = nearest_winding(chain, i, goal[i], q_start[static_cast<std::size_t>(i)]);
-  }
+  const JointVec same = unwind(chain, goal, joint_vec(q_start));
   if ((same - goal).norm() < 1) return;
   PlanOptions quick = options;
   quick.samples = least_samples(options, kSphereSamples);
@@ -274,10 +284,12 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_
                                                       std::span<const JointVec> goals,
                                                       const PlanOptions& options,
                                                       PlanTimes* times) {
+  std::optional<EnclosureTest> enclosure;
   Result<PlannedPath, WorldFailure> found = keep_clearance(
       options,
       [&](const detail::ClearScene& scene, detail::ClearEnds ends, const PlanOptions& how) {
-        return detail::search_scene(scene, ends, q_start, goals, how, times);
+        return detail::search_scene(scene, ends, q_start, goals,
+                                    testing(enclosure, q_start, goals, how), times);
       });
   const auto is_for_winding = [](PlanErrc code) {
     return code == PlanErrc::budget_spent || code == PlanErrc::out_of_time;
@@ -306,6 +318,7 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(const PathEnd& start, cons
                                                       PlanTimes* times) {
   using Ends = Result<detail::EndConfigurations, WorldFailure>;
   std::optional<Ends> starts, goals;  // once there is a scene
+  std::optional<EnclosureTest> enclosure;
   const auto attempt = [&](const detail::ClearScene& scene, detail::ClearEnds ends,
                            const PlanOptions& how) -> Result<PlannedPath, WorldFailure> {
     if (!starts) {
@@ -319,7 +332,11 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(const PathEnd& start, cons
       return tl::unexpected(std::move(why));
     }
     if (!*goals) return tl::unexpected(goals->error());
-    return detail::search_between(scene, ends, **starts, **goals, how, times);
+    // Of all that a path may lead to, which is not known as long as more may be drawn.
+    const bool is_all = (*starts)->q().size() == 1 && !(*starts)->may_draw() && !(*goals)->may_draw();
+    const PlanOptions tested =
+        is_all ? testing(enclosure, as_span((*starts)->q().front()), (*goals)->q(), how) : how;
+    return detail::search_between(scene, ends, **starts, **goals, tested, times);
   };
   return keep_clearance(options, attempt);
 }

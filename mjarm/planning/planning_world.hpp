@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -128,6 +129,10 @@ class PlanningWorld {
  private:
   void tell_winding(std::span<const double> q_start, const JointVec& goal,
                     const PlanOptions& options, WorldFailure& why);
+  [[nodiscard]] PlanOptions testing(std::optional<EnclosureTest>& test,
+                                    std::span<const double> q_start,
+                                    std::span<const JointVec> goals,
+                                    const PlanOptions& options) const;
   PlanningWorld(const Robot& robot, WorldOptions options)
       : robot_(robot), options_(std::move(options)) {}
 

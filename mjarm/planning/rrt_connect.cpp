@@ -6,6 +6,7 @@
 
 #include "mjarm/planning/sampler_internal.hpp"
 #include "mjarm/planning/search_internal.hpp"
+#include "mjarm/planning/search_watch_internal.hpp"
 #include "mjarm/planning/tree_internal.hpp"
 
 namespace mjarm::detail {
@@ -50,7 +51,9 @@ class Connector {
     Tree* grown = &from_start_;
     Tree* other = &from_goals_;
     const int max = options_.samples > 0 ? options_.samples : kMaxSamples;
-    while (path_.counts.samples < max && !problem_.deadline.passed()) {
+    SearchWatch watch(options_, max);
+    while (!watch.is_hopeless(path_.counts.samples, nearest_) && path_.counts.samples < max &&
+           !problem_.deadline.passed()) {
       const int node = grow(*grown);
       if (node >= 0) {
         const int met = connect(*other, grown->q(node));
@@ -59,11 +62,7 @@ class Connector {
       }
       if (other->size() < grown->size() || node < 0) std::swap(grown, other);
     }
-    PlanFailure failure;
-    failure.code = PlanErrc::budget_spent;
-    failure.nearest = nearest_;
-    failure.samples = path_.counts.samples;
-    return tl::unexpected(failure);
+    return tl::unexpected(watch.why(path_.counts.samples, nearest_));
   }
 
  private:

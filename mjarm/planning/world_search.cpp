@@ -45,6 +45,7 @@ void pull_ends(const ClearScene& scene, ClearEnds ends, const EndConfigurations&
   quick.samples = std::min(all_samples(options), kFirstRound);
   quick.rounds = 0;
   quick.time_budget = 0;
+  quick.enclosure = nullptr;  // there is a path
   const auto least_kept = [](const PlannedPath& of) {
     return of.kept.empty() ? 0 : *std::ranges::min_element(of.kept);
   };

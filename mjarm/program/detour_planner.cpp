@@ -26,6 +26,7 @@ const char* name_of(PlanErrc reason) {
       return "stopped";
     case PlanErrc::too_near:
       return "clearance";
+    case PlanErrc::enclosed:
     case PlanErrc::budget_spent:
     case PlanErrc::out_of_time:
     case PlanErrc::unproved:

@@ -12,6 +12,7 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/plan_progress.hpp"
 #include "apps/mjarm/commands/plan_robot.hpp"
 #include "apps/mjarm/commands/plan_show.hpp"
 #include "apps/mjarm/messages/app.hpp"
@@ -121,14 +122,18 @@ Result<int> answer_all(const ProblemFile& file, const FastRobot& robot, const Pl
                        const std::optional<session::PlanShow>& show) {
   const std::size_t count = file.problems.size();
   std::vector<PlanAnswer> answers(count);
+  PlanOptions told = plan;
+  std::optional<PlanProgress> search;
+  if (count == 1) search.emplace(told);
   Progress progress(text(msg::plan_progress), count);
   std::atomic<std::size_t> next = 0;
   run_in_threads(std::min(threads, static_cast<int>(std::max<std::size_t>(count, 1))), [&](int) {
     for (std::size_t i = next++; i < count && !interrupted(); i = next++) {
-      answers[i] = answer_problem(robot, file.problems[i], plan);
+      answers[i] = answer_problem(robot, file.problems[i], told);
       progress.advance();
     }
   });
+  search.reset();
   if (interrupted()) return fail(Errc::system, text(msg::app_interrupted));
   std::string out = "{";
   std::size_t failed = 0;

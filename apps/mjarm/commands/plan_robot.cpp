@@ -9,6 +9,7 @@
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/orientation.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/plan_progress.hpp"
 #include "apps/mjarm/commands/region_option.hpp"
 #include "apps/mjarm/commands/rule_options.hpp"
 #include "apps/mjarm/messages/app.hpp"
@@ -204,10 +205,12 @@ Result<void> read_limits(const RobotRequest& request, const Robot& robot, const 
 
 Result<PlannedPath, WorldFailure> find_way(PlanningWorld& world, const Way& way,
                                            const PlanOptions& options, PlanTimes& times) {
+  PlanOptions told = options;
+  const PlanProgress progress(told);
   if (way.start.regions.empty() && way.goal.regions.empty()) {
-    return world.plan(as_span(way.start.q.front()), way.goal.q, options, &times);
+    return world.plan(as_span(way.start.q.front()), way.goal.q, told, &times);
   }
-  return world.plan(way.start, way.goal, options, &times);
+  return world.plan(way.start, way.goal, told, &times);
 }
 
 /// Appends the answer as a JSON object.
