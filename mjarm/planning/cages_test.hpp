@@ -120,7 +120,7 @@ inline Obstacles cage(const Pose& X_WC, double inner, double hole, Rng& rng) {
 
 /// [m] half the width of a hole that a ball fits through, or not.
 inline double hole_for(double radius, bool open, Rng& rng) {
-  return open ? radius + rng.uniform(0.002, 0.006) : radius * rng.uniform(0.02, 0.75);
+  return open ? radius + rng.uniform(0.002, 0.006) : radius * rng.uniform(0.02, 0.7);
 }
 
 /// Half of the ways lead out of the cage, half into it.
@@ -146,7 +146,7 @@ inline Caged flying_robot(bool open, Rng& rng) {
   out.set.links.push_back(
       {"hand", 3, {{0.4 * out.widest * y, 0.5 * out.widest}, {none, out.widest}}});
   Pose X_WC{random_vector(rng, 0.5), from_euler(random_vector(rng, 3))};
-  const double inner = out.widest + rng.uniform(0.05, 0.2);
+  const double inner = out.widest + rng.uniform(0.03, 0.1);
   out.world = cage(X_WC, inner, hole_for(out.widest, open, rng), rng);
   for (const double at : {0.0, inner + 0.3}) {
     JointVec q = JointVec::Zero(4);
@@ -175,8 +175,7 @@ inline Caged reaching_robot(bool open, Rng& rng) {
   for (double at = 0; at < kBoom; at += 0.01) boom.spheres.push_back({at * x, 0.006});
   out.set.links = {boom, {"hand", 3, {{kBoom * x, out.widest}, {kBoom * x, 0.02}}}};
   const double inner = out.widest + rng.uniform(0.03, 0.1);
-  const double hole =
-      open ? hole_for(out.widest, true, rng) : rng.uniform(0.008, 0.75 * out.widest);
+  const double hole = open ? hole_for(out.widest, true, rng) : rng.uniform(0.008, 0.7 * out.widest);
   const double turn = rng.uniform(-2, 2), lean = rng.uniform(-0.8, 0.8);
   const Eigen::Matrix3d R = from_euler({0, 0, turn}) * from_euler({0, lean, 0});
   const double far = kBoom + 0.6;
