@@ -24,7 +24,7 @@ FastChecker closer_checker(const CoveredRobot& robot, double bound) {
       .looking_closer(cover.solids);
 }
 
-struct Tally {
+struct SolidTally {
   int free = 0, hit = 0, narrow = 0;  // narrow: free in MuJoCo, but by less than is asked
 };
 
@@ -34,7 +34,7 @@ std::string place_of(const JointVec& q) {
   return out;
 }
 
-void compare_states(const CoveredRobot& robot, double bound, int states, Rng& rng, Tally& tally) {
+void compare_states(const CoveredRobot& robot, double bound, int states, Rng& rng, SolidTally& tally) {
   const FastChecker checker = closer_checker(robot, bound);
   ExactChecker exact(robot.model, robot.arm, {.margin = kSolidClearance});
   for (int k = 0; k < states; ++k) {
@@ -55,7 +55,7 @@ void compare_states(const CoveredRobot& robot, double bound, int states, Rng& rn
   }
 }
 
-void compare_edges(const CoveredRobot& robot, double bound, int edges, Rng& rng, Tally& tally) {
+void compare_edges(const CoveredRobot& robot, double bound, int edges, Rng& rng, SolidTally& tally) {
   constexpr double kStep = 0.02;  // [rad or m]
   const FastChecker checker = closer_checker(robot, bound);
   ExactChecker exact(robot.model, robot.arm, {.margin = kSolidClearance});
@@ -81,7 +81,7 @@ void compare_edges(const CoveredRobot& robot, double bound, int edges, Rng& rng,
   }
 }
 
-void expect_both(const Tally& tally) {
+void expect_both(const SolidTally& tally) {
   std::printf("%d free, %d in collision, %d nearly\n", tally.free, tally.hit, tally.narrow);
   EXPECT_GT(tally.free, (tally.free + tally.hit) / 50);
   EXPECT_GT(tally.hit, (tally.free + tally.hit) / 50);
@@ -89,7 +89,7 @@ void expect_both(const Tally& tally) {
 
 void compare_robot(const CoveredRobot& robot, std::uint64_t seed) {
   Rng rng(seed);
-  Tally states, edges;
+  SolidTally states, edges;
   compare_states(robot, 0.03, testing::rounds(5'000, 1'000'000), rng, states);
   ASSERT_FALSE(::testing::Test::HasFatalFailure());
   compare_edges(robot, 0.03, testing::rounds(200, 100'000), rng, edges);
@@ -103,7 +103,7 @@ TEST(SolidScene, PandaAsMujocoSeesIt) { compare_robot(testing::covered_robot("pa
 TEST(SolidScene, RandomTreesAsMujocoSeesThem) {
   const support::TempFolder folder;
   Rng rng(403);
-  Tally states, edges;
+  SolidTally states, edges;
   for (int round = 0; round < testing::rounds(25, 400); ++round) {
     const CoveredRobot robot =
         testing::covered_file(folder.write("tree.xml", testing::random_tree(rng)), "tip");
@@ -120,7 +120,7 @@ TEST(SolidScene, RandomTreesAsMujocoSeesThem) {
 TEST(SolidScene, HillsAsMujocoSeesThem) {
   const support::TempFolder folder;
   Rng rng(404);
-  Tally states;
+  SolidTally states;
   for (int round = 0; round < 10; ++round) {
     const CoveredRobot robot = testing::covered_file(
         folder.write(

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxSteps = 16;       // of Newton's method
 constexpr double kDamping = 1e-6;   // of its normal equations
 constexpr int kMaxParts = 4096;     // of an edge that are looked at
-constexpr double kFinest = 1e-4;    // [rad or m, L2] narrower parts of an edge are not cut again
+constexpr double kFinestStep = 1e-4;    // [rad or m, L2] narrower parts of an edge are not cut again
 constexpr double kLeastWay = 0.1;   // share of a step by which the end must come nearer
 constexpr double kMaxWay = 2;       // a step that is put back may be so many times as long
 constexpr double kRounding = 1e-9;  // [m or rad] that may be lacking
@@ -117,7 +117,7 @@ PathKeeper::Edge PathKeeper::look(std::span<const double> q0, std::span<const do
       done = end;
       from = to;
       part *= 2;
-    } else if (whole * (end - done) > kFinest && parts < kMaxParts) {
+    } else if (whole * (end - done) > kFinestStep && parts < kMaxParts) {
       part = 0.5 * (end - done);
     } else {
       out.t = done;

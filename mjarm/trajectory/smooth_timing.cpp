@@ -35,11 +35,11 @@ void append(std::vector<double>& all, const RowVec& rows) {
 }
 
 /// Rows of jerks (x''', x'' and x') or of accelerations (x'' and x'), all over one bound.
-struct Rows {
+struct TimingRows {
   RowVec lead, next, last;
 
   /// Takes over the rows of `other` with a larger lead, or by sign -1 a smaller one.
-  void take(const Rows& other, double sign) {
+  void take(const TimingRows& other, double sign) {
     for (Eigen::Index r = 0; r < lead.size(); ++r) {
       if (sign * other.lead[r] <= sign * lead[r]) continue;
       lead[r] = other.lead[r];
@@ -74,7 +74,7 @@ class ProblemWriter {
   }
 
  private:
-  [[nodiscard]] Rows jerks(std::size_t i, std::size_t piece) const {
+  [[nodiscard]] TimingRows jerks(std::size_t i, std::size_t piece) const {
     const PathState& x = reference_.states[i];
     const Derivatives d = derivatives(spline_.at(x.s, piece), x);
     return {over(d.j, bounds_.j, x.j, path_.jerk), over(d.a, bounds_.j, x.a, path_.jerk),
@@ -83,23 +83,23 @@ class ProblemWriter {
 
   /// Rows of jerks at both ends of the cell between two samples.
   void add_jerks(std::size_t from, std::size_t to) {
-    const Rows first = jerks(from, reference_.piece[from]);
+    const TimingRows first = jerks(from, reference_.piece[from]);
     if (!spans_) {
       append_jerks(first);
       append_jerks(jerks(to, reference_.piece[from]));
       return;
     }
-    Rows high = first, low = first;
+    TimingRows high = first, low = first;
     for (std::size_t i = from; i < to; ++i) {
       for (const std::size_t end : {i, i + 1}) {
-        const Rows rows = jerks(end, reference_.piece[i]);
+        const TimingRows rows = jerks(end, reference_.piece[i]);
         high.take(rows, 1);
         low.take(rows, -1);
       }
     }
-    for (const Rows* rows : {&high, &low, &high, &low}) append_jerks(*rows);
+    for (const TimingRows* rows : {&high, &low, &high, &low}) append_jerks(*rows);
   }
-  void append_jerks(const Rows& rows) {
+  void append_jerks(const TimingRows& rows) {
     append(problem_.j_j, rows.lead);
     append(problem_.a_j, rows.next);
     append(problem_.v_j, rows.last);
@@ -107,13 +107,13 @@ class ProblemWriter {
 
   /// What else holds at the samples [from, to], as rows of the first.
   void add_knot(std::size_t from, std::size_t to) {
-    Rows high, low;
+    TimingRows high, low;
     double u_max = 0;
     for (std::size_t i = from; i <= to; ++i) {
       const PathState& x = reference_.states[i];
       const SplinePoint p = spline_.at(x.s, reference_.piece[i]);
       const Derivatives d = derivatives(p, x);
-      const Rows rows{over(d.a, bounds_.a, x.a, path_.acceleration),
+      const TimingRows rows{over(d.a, bounds_.a, x.a, path_.acceleration),
                       over(d.v, bounds_.a, x.v, path_.acceleration),
                       {}};
       const double use =
