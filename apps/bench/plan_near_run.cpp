@@ -48,8 +48,8 @@ Result<void> solve_near_scene(const NearSet& set, std::size_t& first, const Plan
                               OurNearRuns& ours) {
   const std::size_t index = set.problems[first].scene;
   const Stopwatch watch;
-  const Result<Robot> robot = mjarm::load_robot(
-      set.scenes[index].file.string(), {.tip = set.robot.tip, .load = {.looks = false}});
+  const Result<Robot> robot = mjarm::load_robot(set.scenes[index].file.string(),
+                                                {.tip = set.robot.tip, .load = {.looks = false}});
   if (!robot) return fail(robot.error());
   Result<PlanningWorld> world = PlanningWorld::create(*robot);
   if (!world) return fail(std::move(world.error()));

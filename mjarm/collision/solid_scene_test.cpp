@@ -34,7 +34,8 @@ std::string place_of(const JointVec& q) {
   return out;
 }
 
-void compare_states(const CoveredRobot& robot, double bound, int states, Rng& rng, SolidTally& tally) {
+void compare_states(const CoveredRobot& robot, double bound, int states, Rng& rng,
+                    SolidTally& tally) {
   const FastChecker checker = closer_checker(robot, bound);
   ExactChecker exact(robot.model, robot.arm, {.margin = kSolidClearance});
   for (int k = 0; k < states; ++k) {
@@ -55,7 +56,8 @@ void compare_states(const CoveredRobot& robot, double bound, int states, Rng& rn
   }
 }
 
-void compare_edges(const CoveredRobot& robot, double bound, int edges, Rng& rng, SolidTally& tally) {
+void compare_edges(const CoveredRobot& robot, double bound, int edges, Rng& rng,
+                   SolidTally& tally) {
   constexpr double kStep = 0.02;  // [rad or m]
   const FastChecker checker = closer_checker(robot, bound);
   ExactChecker exact(robot.model, robot.arm, {.margin = kSolidClearance});

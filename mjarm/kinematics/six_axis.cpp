@@ -16,7 +16,6 @@ using detail::SinCos;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-
 /// R v, written out so that the compiler keeps it in line.
 Vector3d times(const Eigen::Matrix3d& R, const Vector3d& v) noexcept {
   return {R(0, 0) * v.x() + R(0, 1) * v.y() + R(0, 2) * v.z(),

@@ -18,11 +18,12 @@ constexpr double kStepAngle = 0.05;    ///< [rad] likewise
 constexpr int kMaxSteps = 64;          ///< at first on one way, so that its time is bounded
 constexpr double kStepJoint = 0.35;    ///< [rad or m] a joint may move from pose to pose
 constexpr int kMaxSolves = 200;        ///< likewise
-constexpr double kShortestPart = 64;       ///< parts of a step at an edge
+constexpr double kShortestPart = 64;   ///< parts of a step at an edge
 constexpr double kNearLimit = 0.1;     ///< [rad or m]
 constexpr double kSameBranch = 1;      ///< [rad or m] at most, to an answer beyond a gap
 constexpr double kSampleJoint = 0.02;  ///< [rad or m] between samples of a straight joint motion
-constexpr double kNearlySingular = 0.01;     ///< smallest singular value that is not another branch yet
+constexpr double kNearlySingular =
+    0.01;  ///< smallest singular value that is not another branch yet
 
 /// Contact counts where the arm is free of it at home; else nothing could be reached.
 std::optional<ExactChecker> checker_of(const Model& model, const Arm& arm) {

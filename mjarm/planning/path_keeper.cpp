@@ -8,14 +8,14 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMaxSteps = 16;       // of Newton's method
-constexpr double kDamping = 1e-6;   // of its normal equations
-constexpr int kMaxParts = 4096;     // of an edge that are looked at
-constexpr double kFinestStep = 1e-4;    // [rad or m, L2] narrower parts of an edge are not cut again
-constexpr double kLeastWay = 0.1;   // share of a step by which the end must come nearer
-constexpr double kMaxWay = 2;       // a step that is put back may be so many times as long
-constexpr double kRounding = 1e-9;  // [m or rad] that may be lacking
-constexpr int kMaxRows = 16;        // of both regions, eight each
+constexpr int kMaxSteps = 16;         // of Newton's method
+constexpr double kDamping = 1e-6;     // of its normal equations
+constexpr int kMaxParts = 4096;       // of an edge that are looked at
+constexpr double kFinestStep = 1e-4;  // [rad or m, L2] narrower parts of an edge are not cut again
+constexpr double kLeastWay = 0.1;     // share of a step by which the end must come nearer
+constexpr double kMaxWay = 2;         // a step that is put back may be so many times as long
+constexpr double kRounding = 1e-9;    // [m or rad] that may be lacking
+constexpr int kMaxRows = 16;          // of both regions, eight each
 
 RegionRoom smaller(const RegionRoom& a, const RegionRoom& b) {
   return {std::min(a.place, b.place), std::min(a.turn, b.turn)};

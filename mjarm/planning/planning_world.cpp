@@ -333,7 +333,8 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(const PathEnd& start, cons
     }
     if (!*goals) return tl::unexpected(goals->error());
     // Of all that a path may lead to, which is not known as long as more may be drawn.
-    const bool is_all = (*starts)->q().size() == 1 && !(*starts)->may_draw() && !(*goals)->may_draw();
+    const bool is_all =
+        (*starts)->q().size() == 1 && !(*starts)->may_draw() && !(*goals)->may_draw();
     const PlanOptions tested =
         is_all ? testing(enclosure, as_span((*starts)->q().front()), (*goals)->q(), how) : how;
     return detail::search_between(scene, ends, **starts, **goals, tested, times);

@@ -10,7 +10,6 @@
 namespace mjarm {
 namespace {
 
-
 Pose random_pose(Rng& rng) {
   const Eigen::Vector3d w(rng.normal(), rng.normal(), rng.normal());
   return {Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()), rotation_exp(w)};
@@ -57,8 +56,8 @@ TEST(TaskRegion, WhatIsDrawnIsWithinAndFillsTheRegion) {
 }
 
 TEST(TaskRegion, RoomIsWhatThePoseMayStillMove) {
-  TaskRegion region =
-      region_about({{1, 2, 3}, from_euler({0, 0, std::numbers::pi / 2})}, {0.1, 0.2, 0.3}, 0.4, 0.5);
+  TaskRegion region = region_about({{1, 2, 3}, from_euler({0, 0, std::numbers::pi / 2})},
+                                   {0.1, 0.2, 0.3}, 0.4, 0.5);
   const auto moved = [&](const Pose& by) { return room_in(region, region.X_WR * by); };
   EXPECT_NEAR(moved({}).place, 0.1, 1e-12);
   EXPECT_NEAR(moved({}).turn, 0.4, 1e-12);
@@ -76,10 +75,12 @@ TEST(TaskRegion, RoomIsWhatThePoseMayStillMove) {
   region.turn_max[2] = 190 * std::numbers::pi / 180;
   for (const double yaw : {178.0, -178.0}) {
     const Pose X_RF{{0, 0, 0}, from_euler({0, 0, yaw * std::numbers::pi / 180})};
-    EXPECT_NEAR(room_in(region, region.X_WR * X_RF * region.X_FT).turn, 8 * std::numbers::pi / 180, 1e-12);
+    EXPECT_NEAR(room_in(region, region.X_WR * X_RF * region.X_FT).turn, 8 * std::numbers::pi / 180,
+                1e-12);
   }
-  const RegionRoom all =
-      room_in(region_about({}, Eigen::Vector3d::Constant(kFreePlace), std::numbers::pi, std::numbers::pi), {});
+  const RegionRoom all = room_in(
+      region_about({}, Eigen::Vector3d::Constant(kFreePlace), std::numbers::pi, std::numbers::pi),
+      {});
   EXPECT_EQ(all.place, kFreePlace);
   EXPECT_EQ(all.turn, std::numeric_limits<double>::infinity());
 }

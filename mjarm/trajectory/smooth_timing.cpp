@@ -114,8 +114,8 @@ class ProblemWriter {
       const SplinePoint p = spline_.at(x.s, reference_.piece[i]);
       const Derivatives d = derivatives(p, x);
       const TimingRows rows{over(d.a, bounds_.a, x.a, path_.acceleration),
-                      over(d.v, bounds_.a, x.v, path_.acceleration),
-                      {}};
+                            over(d.v, bounds_.a, x.v, path_.acceleration),
+                            {}};
       const double use =
           std::max(d.v.cwiseAbs().cwiseQuotient(bounds_.v).maxCoeff(), x.v / path_.speed_at(x.s));
       const double u = 1 / (use * use);

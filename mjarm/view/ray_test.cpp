@@ -75,8 +75,9 @@ TEST_P(Rays, AgreeWithMujocosSelection) {
     int geom = -1;
     int flex = -1;
     int skin = -1;
-    const int body = mjv_select(&m, d.get(), &option, static_cast<mjtNum>(kRayWide) / kRayHigh, x / kRayWide,
-                                1 - y / kRayHigh, &scene_->raw(), at, &geom, &flex, &skin);
+    const int body =
+        mjv_select(&m, d.get(), &option, static_cast<mjtNum>(kRayWide) / kRayHigh, x / kRayWide,
+                   1 - y / kRayHigh, &scene_->raw(), at, &geom, &flex, &skin);
     if (body < 0) continue;
     ++found;
     const Vector3d p(at[0], at[1], at[2]);
@@ -138,7 +139,8 @@ TEST_P(Rays, PointsAreSeenWhereTheyAreSaidToBe) {
     const std::optional<Vector2d> at = pixel_of_point(eye_of(*scene_), kRayWide, kRayHigh, p);
     ASSERT_TRUE(at);
     if (count < 20) continue;  // outside of the picture
-    const bool whole = at->x() > 20 && at->x() < kRayWide - 20 && at->y() > 20 && at->y() < kRayHigh - 20;
+    const bool whole =
+        at->x() > 20 && at->x() < kRayWide - 20 && at->y() > 20 && at->y() < kRayHigh - 20;
     if (whole) {
       EXPECT_LT((sum / count - *at).norm(), 0.6);
     }
