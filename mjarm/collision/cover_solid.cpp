@@ -226,6 +226,12 @@ std::vector<Vector3d> CoverSolid::sharp_points(double spacing) const {
   return into_link(X_LS, std::move(out));
 }
 
+CoverBounds bounds_in_world(const Pose& X_WO, const CoverBounds& box_O) {
+  const Vector3d half = X_WO.R.cwiseAbs() * (0.5 * (box_O.high - box_O.low));
+  const Vector3d middle = X_WO * Vector3d(0.5 * (box_O.low + box_O.high));
+  return {middle - half, middle + half};
+}
+
 CoverBounds bounds_of(std::span<const CoverSolid> solids) {
   CoverBounds out{Vector3d::Constant(kNoBound), Vector3d::Constant(-kNoBound)};
   for (const CoverSolid& solid : solids) {

@@ -66,6 +66,8 @@ struct CoverBounds {
   Eigen::Vector3d low, high;
 };
 [[nodiscard]] CoverBounds bounds_of(std::span<const CoverSolid> solids);
+/// A box along the axes of the world round one along those of O.
+[[nodiscard]] CoverBounds bounds_in_world(const Pose& X_WO, const CoverBounds& box_O);
 
 /// Depth of a point in the solid it is deepest in; negative outside of all.
 [[nodiscard]] double depth_in(std::span<const CoverSolid> solids, const Eigen::Vector3d& p_L);

@@ -44,17 +44,6 @@ std::vector<LinkBall> choose(std::span<const LinkBall> all) {
   return out;
 }
 
-/// A box along the axes of the world round one along those of O.
-struct WorldBox {
-  Vector3d low, high;
-  WorldBox(const Pose& X_WO, const Vector3d& low_O, const Vector3d& high_O) {
-    const Vector3d half = X_WO.R.cwiseAbs() * (0.5 * (high_O - low_O));
-    const Vector3d middle = X_WO * Vector3d(0.5 * (low_O + high_O));
-    low = middle - half;
-    high = middle + half;
-  }
-};
-
 Vector3d corner(const MeshShape& mesh, int index) {
   return mesh.vertices[static_cast<std::size_t>(index)];
 }
@@ -81,7 +70,7 @@ class PieceMaker {
   /// distance() of a polytope is too small beyond its edges; where the way to the farthest plane
   /// ends on the solid it is right.
   void operator()(const PolytopeShape& polytope) const {
-    const WorldBox box(obstacle_.X_WO, polytope.low, polytope.high);
+    const auto box = detail::bounds_in_world(obstacle_.X_WO, {polytope.low, polytope.high});
     const auto to = [this_ = &obstacle_](const Vector3d& p_W, double) {
       const auto& solid = std::get<PolytopeShape>(this_->shape);
       const Vector3d p = this_->X_WO.R.transpose() * (p_W - this_->X_WO.p);
@@ -118,7 +107,7 @@ class PieceMaker {
   }
   void operator()(const HeightFieldShape& field) const {
     detail::for_each_column(field, [&](const Vector3d& low, const Vector3d& high) {
-      const WorldBox box(obstacle_.X_WO, low, high);
+      const auto box = detail::bounds_in_world(obstacle_.X_WO, {low, high});
       add({box.low, box.high, index_, [this_ = &obstacle_, low, high](const Vector3d& p_W, double) {
              const Vector3d p = this_->X_WO.R.transpose() * (p_W - this_->X_WO.p);
              return (p - p.cwiseMax(low).cwiseMin(high)).norm();
@@ -128,7 +117,7 @@ class PieceMaker {
 
  private:
   void whole(const Vector3d& half) const {
-    const WorldBox box(obstacle_.X_WO, -half, half);
+    const auto box = detail::bounds_in_world(obstacle_.X_WO, {-half, half});
     add({box.low, box.high, index_,
          [this_ = &obstacle_](const Vector3d& p, double) { return distance(*this_, p); }});
   }

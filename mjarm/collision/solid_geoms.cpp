@@ -9,14 +9,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A box along the axes of the world round one along those of O.
-void add_box(const Pose& X_WO, const Vector3d& low, const Vector3d& high, StandingSolid& out) {
-  const Vector3d half = X_WO.R.cwiseAbs() * (0.5 * (high - low));
-  const Vector3d middle = X_WO * Vector3d(0.5 * (low + high));
-  out.low = middle - half;
-  out.high = middle + half;
-}
-
 StandingSolid standing_solid(const mjModel& m, const PlacedGeom& placed) {
   StandingSolid out;
   out.X_WO = placed.X_LG;
@@ -33,7 +25,10 @@ StandingSolid standing_solid(const mjModel& m, const PlacedGeom& placed) {
     const auto& heights = out.ground.heights;
     const Vector3d high(out.ground.half.x(), out.ground.half.y(),
                         *std::max_element(heights.begin(), heights.end()));
-    add_box(placed.X_LG, {-high.x(), -high.y(), out.ground.bottom}, high, out);
+    const CoverBounds box =
+        bounds_in_world(placed.X_LG, {{-high.x(), -high.y(), out.ground.bottom}, high});
+    out.low = box.low;
+    out.high = box.high;
     return out;
   }
   const CoverSolid solid = solid_of_geom(m, placed);

@@ -8,7 +8,6 @@ namespace mjarm::detail {
 namespace {
 
 constexpr std::size_t kMaxGoalExits = 8;  // goals nearer to something than the clearance
-constexpr int kMaxSamples = 30'000;       // where nothing else is said: there may be no path
 
 /// What a search within the clearance ends at.
 struct ClearGoals {
@@ -122,7 +121,7 @@ Result<PlannedPath, PlanFailure> plan_clear(const ClearScene& scene, std::span<c
   ClearGoals ways = clear_goals(*problem, wide, search, ends, *options.clearance);
   if (ways.q.empty()) return blocked();
   PlanOptions within = options;
-  if (within.samples == 0) within.samples = kMaxSamples;
+  if (within.samples == 0) within.samples = kClearSamples;
   Result<PlannedPath, PlanFailure> path = plan_path(wide, as_span(first->q), ways.q, within, times);
   if (!path) return path;
   const auto reached = static_cast<std::size_t>(path->goal);

@@ -30,10 +30,6 @@ bool may_be_spheres(PlanErrc reason) {
          reason == PlanErrc::too_near || reason == PlanErrc::unproved;
 }
 
-int least_samples(const PlanOptions& options, int max) {
-  return options.samples > 0 ? std::min(options.samples, max) : max;
-}
-
 Result<void> check_world_options(const WorldOptions& options) {
   if (!(options.margin >= 0 && options.margin <= kMaxMargin)) {
     return fail(Errc::bad_input, text(msg::planning_bad_margin, options.margin, kMaxMargin));
@@ -62,7 +58,7 @@ void try_goals_alone(std::span<const double> q_start, std::span<const JointVec> 
                      const PlanOptions& options, const detail::TimeLeft& left, const Plan& plan,
                      PlannedPath& path) {
   PlanOptions search = options;
-  search.samples = least_samples(options, kAloneSamples);
+  search.samples = detail::least_samples(options, kAloneSamples);
   search.time_budget = 0;
   search.enclosure = nullptr;
   for (const std::size_t g : nearest_goals(q_start, goals)) {
@@ -177,7 +173,7 @@ Result<PlannedPath, WorldFailure> PlanningWorld::spheres_then_solids(const PlanO
   const FastChecker& closer = (*here)->checker;
   const FastChecker spheres = closer.looking_closer(nullptr);
   PlanOptions quick = options;
-  quick.samples = least_samples(options, kSphereSamples);
+  quick.samples = detail::least_samples(options, kSphereSamples);
   // Start and goal that spheres call too near may keep what is asked all the same.
   Result<PlannedPath, WorldFailure> found =
       attempt(detail::ClearScene{spheres, (*here)->cover.scene, &wide_spheres_},
@@ -207,7 +203,7 @@ Result<PlannedPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOption
   PlanOptions clear = options;
   if (!options.clearance) {
     clear.clearance = kPreferredClearance;
-    clear.samples = least_samples(options, kPreferSamples);
+    clear.samples = detail::least_samples(options, kPreferSamples);
     Result<PlannedPath, WorldFailure> found = spheres_then_solids(clear, left, attempt);
     const bool decided =
         found || is_stopped(options.stop) || found.error().search.code == PlanErrc::enclosed;
@@ -270,7 +266,7 @@ void PlanningWorld::tell_winding(std::span<const double> q_start, const JointVec
   const JointVec same = unwind(chain, goal, joint_vec(q_start));
   if ((same - goal).norm() < 1) return;
   PlanOptions quick = options;
-  quick.samples = least_samples(options, kSphereSamples);
+  quick.samples = detail::least_samples(options, kSphereSamples);
   quick.rounds = 0;
   quick.time_budget = 0;
   const std::vector<JointVec> goals{same};

@@ -12,13 +12,12 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr int kMaxSamples = 100'000;  // where nothing else is said
-constexpr double kBeside = 0.5;       // share of samples that are drawn beside a node
-constexpr int kEvenOnly = 8;          // samples before that begins
-constexpr double kBlocked = 1.2;      // a node looks so much farther (squared) after a blocked way,
-constexpr double kUnmet = 1.1;        // and after one towards the other tree
-constexpr double kFreePart = 0.5;     // of what lies before a hit is tried once more
-constexpr double kLeastPart = 0.3;    // [rad or m, L2] if it is as long as this,
+constexpr double kBeside = 0.5;     // share of samples that are drawn beside a node
+constexpr int kEvenOnly = 8;        // samples before that begins
+constexpr double kBlocked = 1.2;    // a node looks so much farther (squared) after a blocked way,
+constexpr double kUnmet = 1.1;      // and after one towards the other tree
+constexpr double kFreePart = 0.5;   // of what lies before a hit is tried once more
+constexpr double kLeastPart = 0.3;  // [rad or m, L2] if it is as long as this,
 constexpr double kLeastPartFirst = 0.6;  // or as this at first: easy ways need no short parts,
 constexpr int kCoarse = 60;              // for so many samples
 constexpr double kSamePlace = 1e-9;      // [rad or m, L2]
@@ -50,7 +49,7 @@ class Connector {
     }
     Tree* grown = &from_start_;
     Tree* other = &from_goals_;
-    const int max = options_.samples > 0 ? options_.samples : kMaxSamples;
+    const int max = options_.samples > 0 ? options_.samples : detail::kAllSamples;
     SearchWatch watch(options_, max);
     while (!watch.is_hopeless(path_.counts.samples, nearest_) && path_.counts.samples < max &&
            !problem_.deadline.passed()) {

@@ -47,6 +47,13 @@ class TimeLeft {
   double limit_;  // [s]; 0: none
 };
 
+/// What PlanOptions::samples of 0 stands for: without and with a clearance.
+inline constexpr int kAllSamples = 100'000, kClearSamples = 30'000;
+/// PlanOptions::samples, but no more than `max`.
+[[nodiscard]] inline int least_samples(const PlanOptions& options, int max) {
+  return options.samples > 0 ? std::min(options.samples, max) : max;
+}
+
 /// A problem whose start and goals were checked. Its spans are those of the user.
 struct SearchProblem {
   const FastChecker& checker;

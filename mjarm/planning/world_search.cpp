@@ -11,8 +11,6 @@ namespace {
 using Found = Result<PlannedPath, WorldFailure>;
 
 constexpr int kFirstRound = 2000;       // samples before more goals are drawn
-constexpr int kAllSamples = 100'000;    // where nothing else is said
-constexpr int kClearSamples = 30'000;   // the same with a clearance
 constexpr int kPulls = 3;               // of the ends of a path,
 constexpr double kPullPaysPath = 0.01;  // each as long as it saves this share
 constexpr std::size_t kMaxStarts = 8;   // that are tried, those nearest to a goal
@@ -42,7 +40,7 @@ void pull_ends(const ClearScene& scene, ClearEnds ends, const EndConfigurations&
                const EndConfigurations& goals, const PlanOptions& options, PlanTimes* times,
                PlannedPath& path) {
   PlanOptions quick = options;
-  quick.samples = std::min(all_samples(options), kFirstRound);
+  quick.samples = least_samples(options, kFirstRound);
   quick.rounds = 0;
   quick.time_budget = 0;
   quick.enclosure = nullptr;  // there is a path
