@@ -21,9 +21,7 @@ if(MJARM_TESTS)
   target_include_directories(mjarm_precompiled_tests PRIVATE "${PROJECT_SOURCE_DIR}")
   target_link_libraries(mjarm_precompiled_tests PRIVATE Eigen3::Eigen tl::expected GTest::gmock
                                                         mjarm_options)
-  if(MJARM_SANITIZE)
-    target_compile_options(mjarm_precompiled_tests PRIVATE -O0)  # as mjarm_tests() does
-  endif()
+  target_compile_options(mjarm_precompiled_tests PRIVATE ${MJARM_TEST_FLAGS})
   target_precompile_headers(mjarm_precompiled_tests PRIVATE ${MJARM_PRECOMPILED} <gmock/gmock.h>
                             <gtest/gtest.h>)
 endif()

@@ -61,8 +61,8 @@ function(mjarm_tests target)
   add_executable(${target} ${arg_SOURCES})
   if(MJARM_SANITIZE)
     target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/keep_libraries.cpp")
-    target_compile_options(${target} PRIVATE -O0)  # what is tested is optimised, its tests need not be
   endif()
+  target_compile_options(${target} PRIVATE ${MJARM_TEST_FLAGS})
   target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing MuJoCo::mujoco
                                           GTest::gtest_main GTest::gmock)
   if(MJARM_PRECOMPILE)
