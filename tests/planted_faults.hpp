@@ -11,6 +11,7 @@
 #include "mjarm/model/check.hpp"
 #include "tests/robots.hpp"
 #include "tests/support/temp_folder.hpp"
+#include "tests/support/test_data.hpp"
 
 /// One fault at a time is planted into a good model; `check_model` must name it: right code, grade,
 /// element, file and line.
@@ -92,9 +93,10 @@ inline std::size_t edit_start(const std::string& text, std::size_t at) {
   return text.rfind('<', at);
 }
 
-/// The models folder in a place where it may be changed.
+/// The models folder in a place where it may be changed, the UR5e in one file.
 inline void copy_models(const support::TempFolder& folder) {
   fs::copy(testing::models_folder(), folder.path(), fs::copy_options::recursive);
+  folder.write(kUr5e, support::read_mjcf(testing::models_folder() / kUr5e));
   folder.write("small.xml", kSmallArm);
 }
 

@@ -16,21 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kArchive = "franka_emika_panda.tar.xz";
 
-/// On the flange of the UR5e, in the place of its `attachment_site`.
-constexpr const char* kGripper = R"(<body name="palm" pos="0 0.1 0" quat="-1 1 0 0">
-  <geom name="palm" type="box" pos="0 0 0.03" size="0.03 0.06 0.03" mass="0.6"/>
-  <site name="grasp" pos="0 0 0.13"/>
-  <body name="left_finger" pos="0 0 0.06">
-    <joint name="left_finger" type="slide" axis="0 1 0" range="0 0.04"/>
-    <geom name="left_finger" type="box" pos="0 0.01 0.04" size="0.01 0.01 0.04" mass="0.05"/>
-  </body>
-  <body name="right_finger" pos="0 0 0.06">
-    <joint name="right_finger" type="slide" axis="0 -1 0" range="0 0.04"/>
-    <geom name="right_finger" type="box" pos="0 -0.01 0.04" size="0.01 0.01 0.04" mass="0.05"/>
-  </body>
-</body>
-)";
-
 /// Copies the folder of a shipped model; gives the copy.
 Result<fs::path> copy_shipped(const std::string& robot, const fs::path& folder) {
   const Result<fs::path> scene = find_model_file(robot);
@@ -52,18 +37,10 @@ bool insert(std::string& text, const std::string& after, const std::string& befo
   return true;
 }
 
-Result<NearRobot> ur5e_with_gripper(const fs::path& folder) {
+Result<NearRobot> shipped_ur5e(const fs::path& folder) {
   const Result<fs::path> copy = copy_shipped("ur5e", folder);
   if (!copy) return fail(copy.error());
-  const fs::path file = *copy / "ur5e.xml";
-  Result<std::string> content = read_file(file);
-  if (!content) return fail(std::move(content.error()));
-  if (!insert(*content, R"(<site name="attachment_site")", "<site", kGripper) ||
-      !insert(*content, R"(<key name="home" qpos=")", "\"", " 0.03 0.03")) {
-    return fail(Errc::bad_input, text(msg::bench_plan_near_no_flange, file.string()));
-  }
-  if (auto written = write_file(file, *content); !written) return fail(std::move(written.error()));
-  return NearRobot{"ur5e, gripper", file, "grasp"};
+  return NearRobot{"ur5e, gripper", *copy / "ur5e_gripper.xml", "gripper_tcp"};
 }
 
 Result<NearRobot> shipped_panda(const fs::path& folder) {
@@ -106,7 +83,7 @@ Result<NearRobot> menagerie_panda(const fs::path& archive, const fs::path& folde
 Result<std::vector<NearRobot>> near_robots(const fs::path& data, const fs::path& folder) {
   std::vector<NearRobot> robots;
   for (Result<NearRobot> robot :
-       {ur5e_with_gripper(folder / "ur5e"), shipped_panda(folder / "panda")}) {
+       {shipped_ur5e(folder / "ur5e"), shipped_panda(folder / "panda")}) {
     if (!robot) return fail(std::move(robot.error()));
     robots.push_back(std::move(*robot));
   }

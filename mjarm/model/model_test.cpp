@@ -380,7 +380,7 @@ TEST(Model, LoadsAlthoughAnotherThreadHoldsTheProgramLoadersLock) {
 }
 
 TEST(ShippedModels, AreFoundByNameAndByEnvironment) {
-  for (const char* name : {"car", "hello", "panda", "ur5e"}) {
+  for (const char* name : {"car", "hello", "panda", "ur5e", "ur5e_gripper"}) {
     const auto file = find_model_file(name);
     ASSERT_TRUE(file) << file.error().what;
     EXPECT_TRUE(file->is_absolute());
@@ -388,7 +388,7 @@ TEST(ShippedModels, AreFoundByNameAndByEnvironment) {
   }
   std::vector<std::string> names;
   for (const ShippedModel& model : shipped_models()) names.push_back(model.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"car", "hello", "panda", "ur5e"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"car", "hello", "panda", "ur5e", "ur5e_gripper"}));
   const support::TempFolder folder;
   folder.write("car.xml", "<mujoco model=\"my car\"/>");
   const Environment models("MJARM_MODELS", folder.path().string());
@@ -421,7 +421,7 @@ TEST(ShippedModels, MissNamesTheNearestAndTheChoices) {
   ASSERT_FALSE(miss);
   EXPECT_EQ(miss.error().code, Errc::bad_input);
   EXPECT_THAT(miss.error().what, HasSubstr("did you mean \"ur5e\""));
-  EXPECT_THAT(miss.error().what, HasSubstr("car, hello, panda, ur5e"));
+  EXPECT_THAT(miss.error().what, HasSubstr("car, hello, panda, ur5e, ur5e_gripper"));
   EXPECT_FALSE(find_model_file(""));
   EXPECT_FALSE(find_model_file("no/such/file.xml"));
   const support::TempFolder folder;

@@ -19,11 +19,12 @@ struct Entry {
   std::string_view name;
   std::string_view file;
 };
-constexpr std::array<Entry, 4> kShipped = {{
+constexpr std::array<Entry, 5> kShipped = {{
     {"car", "car.xml"},
     {"hello", "hello.xml"},
     {"panda", "franka_emika_panda/scene.xml"},
     {"ur5e", "universal_robots_ur5e/scene.xml"},
+    {"ur5e_gripper", "universal_robots_ur5e/scene_gripper.xml"},
 }};
 
 /// Folders in which shipped models may lie, in the order of search.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/collision/exact_grasp.hpp"
 #include "mjarm/core/stop.hpp"
 #include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/model/arm.hpp"
@@ -65,6 +66,7 @@ struct ProgramPlan : MotionPlan {
 struct ProgramPlanOptions {
   bool collision = true;     ///< look at contact, and measure clearance
   double tool_speed = 0.25;  ///< [m/s] where the program says none, > 0
+  SceneState scene = {};     ///< how things stand at first; empty: as in the model
   /// Called after every step with how many of how many are done. May be empty.
   std::function<void(std::size_t done, std::size_t total)> after_step = {};
   StopCheck stop = {};  ///< ends the work; the plan then has a fault `stopped`

@@ -44,9 +44,15 @@ struct Tool {
 class Workplaces {
  public:
   /// @param arms       the arm with each tool, at least one; outlive this.
+  /// @param first      how things stand at first.
   /// @param collision  look at contact.
-  Workplaces(const Model& model, const std::vector<Arm>& arms, bool collision, StopCheck stop)
-      : model_(model), arms_(arms), collision_(collision), stop_(std::move(stop)), scenes_(1) {}
+  Workplaces(const Model& model, const std::vector<Arm>& arms, SceneState first, bool collision,
+             StopCheck stop)
+      : model_(model),
+        arms_(arms),
+        collision_(collision),
+        stop_(std::move(stop)),
+        scenes_{std::move(first)} {}
 
   /// Stays what it is as long as somebody has it.
   [[nodiscard]] std::shared_ptr<Tool> tool(std::size_t scene, std::size_t tool);
@@ -65,7 +71,7 @@ class Workplaces {
   const std::vector<Arm>& arms_;
   bool collision_;
   StopCheck stop_;
-  std::vector<SceneState> scenes_;            ///< the first is how the model stands
+  std::vector<SceneState> scenes_;            ///< the first is how things stand at first
   std::map<std::string, std::size_t> known_;  ///< indices of `scenes_` by all that is in them
   std::deque<std::pair<std::pair<std::size_t, std::size_t>, std::shared_ptr<Tool>>> tools_;
 };

@@ -29,6 +29,25 @@ std::string read_data(const std::filesystem::path& file) {
   return content;
 }
 
+std::string read_mjcf(const std::filesystem::path& file) {
+  const std::string include = "<include file=\"", open = "<mujocoinclude>", close = "</mujocoinclude>";
+  std::string text = read_data(file);
+  for (std::size_t at = 0; (at = text.find(include, at)) != std::string::npos;) {
+    const std::size_t name = at + include.size();
+    const std::size_t end = text.find("/>", at) + 2;
+    const std::string part =
+        read_mjcf(file.parent_path() / text.substr(name, text.find('"', name) - name));
+    const std::size_t begin = part.find(open);
+    if (begin == std::string::npos) {
+      at = end;
+      continue;
+    }
+    text.replace(at, end - at,
+                 part.substr(begin + open.size(), part.find(close) - begin - open.size()));
+  }
+  return text;
+}
+
 nlohmann::json load_json(const std::filesystem::path& file) {
   return nlohmann::json::parse(read_data(file));
 }

@@ -19,6 +19,10 @@ namespace mjarm::support {
 /// @throws std::runtime_error that names the file (a test fails by it).
 [[nodiscard]] std::string read_data(const std::filesystem::path& file);
 
+/// The text of an MJCF file with its parts (`<mujocoinclude>`) in the place of their `<include>`.
+/// @throws std::runtime_error that names the file
+[[nodiscard]] std::string read_mjcf(const std::filesystem::path& file);
+
 /// A JSON file, plain or gzipped. @throws std::exception
 [[nodiscard]] nlohmann::json load_json(const std::filesystem::path& file);
 

@@ -8,7 +8,7 @@ using nlohmann::json;
 /// The UR5e with one text replaced, in a folder of its own.
 std::string edited(const support::TempFolder& folder, const std::string& from,
                    const std::string& to) {
-  std::string text = support::read_data(model_file("universal_robots_ur5e/ur5e.xml"));
+  std::string text = support::read_mjcf(model_file("universal_robots_ur5e/ur5e.xml"));
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
