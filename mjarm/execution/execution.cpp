@@ -37,6 +37,7 @@ void Execution::restart() {
   stepper_.reset();
   motions_.clear();
   watch_.restart();
+  grip_.reset();
 }
 
 void Execution::begin_motion(Sim& sim, std::size_t move, double from) {
@@ -65,9 +66,24 @@ MotionClock::Step Execution::next(Sim& sim) {
   MotionClock::Step step = clock_.next();
   if (step.close) {
     const Gripper& gripper = *plan_->arms.front().gripper;
-    sim.set_ctrl(gripper.id, *step.close ? gripper.ctrl_closed : gripper.ctrl_open);
+    const PlannedMove* move =
+        step.motion < plan_->moves.size() ? &plan_->moves[step.motion] : nullptr;
+    // One that takes no time is passed already.
+    const double seconds = move != nullptr && move->close ? move->trajectory.duration() : 0;
+    grip_ = {.from = sim.ctrl()[static_cast<std::size_t>(gripper.id)],
+             .to = *step.close ? gripper.ctrl_closed : gripper.ctrl_open,
+             .steps = static_cast<int>(kGripShare * seconds / sim.model().timestep())};
   }
+  if (grip_) move_gripper(sim);
   return step;
+}
+
+void Execution::move_gripper(Sim& sim) {
+  const double share = grip_->done < grip_->steps ? (grip_->done + 1.0) / grip_->steps : 1.0;
+  sim.set_ctrl(plan_->arms.front().gripper->id,
+               share == 1 ? grip_->to : grip_->from + share * (grip_->to - grip_->from));
+  ++grip_->done;
+  if (share == 1) grip_.reset();
 }
 
 Result<void> Execution::step(Sim& sim) { return make_step(sim, next(sim)); }

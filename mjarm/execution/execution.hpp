@@ -23,6 +23,9 @@ struct ExecutionOptions {
   Recorder* recorder = nullptr;  ///< gets every step; outlives the execution; null = nobody records
 };
 
+/// Of the motion in which the gripper closes or opens, the part in which its command changes.
+inline constexpr double kGripShare = 0.6;
+
 /// A motion that was begun, and what it did.
 struct ExecutedMotion {
   std::size_t move = 0;  ///< index in the plan
@@ -32,8 +35,9 @@ struct ExecutedMotion {
 };
 
 /// Moves an arm in a simulation along the motions of a plan: the one driver of all faces. Either
-/// step by step, to be stopped and taken up again as a user likes, or all in one call. The gripper
-/// is told at the beginning of a motion what it has to do meanwhile. The arm goes on from where it
+/// step by step, to be stopped and taken up again as a user likes, or all in one call. What the
+/// gripper is told to do is told over the first kGripShare of that motion, at a steady rate: fingers
+/// that are thrown shut throw what they hold. The arm goes on from where it
 /// stands; Sim::place() puts it at the plan's start.
 class Execution {
  public:
@@ -81,9 +85,16 @@ class Execution {
   /// What the next step is; the gripper is told what it has to do from then on.
   [[nodiscard]] MotionClock::Step next(Sim& sim);
   [[nodiscard]] Result<void> make_step(Sim& sim, const MotionClock::Step& step);
+  void move_gripper(Sim& sim);
   void begin_motion(Sim& sim, std::size_t move, double from);
   void end_motion(const Sim& sim);
   void take_measures(const Sim& sim);
+
+  /// The command of the gripper on its way.
+  struct GripWay {
+    double from = 0, to = 0;
+    int steps = 0, done = 0;
+  };
 
   const MotionPlan* plan_;
   Controller controller_;
@@ -92,6 +103,7 @@ class Execution {
   std::optional<Stepper> stepper_;
   std::vector<ExecutedMotion> motions_;
   ObjectWatch watch_;
+  std::optional<GripWay> grip_;
 };
 
 }  // namespace mjarm

@@ -9,7 +9,8 @@ namespace mjarm {
 SceneBodies scene_bodies(const Model& model, const Arm& arm) {
   const mjModel& m = *model.raw();
   const auto count = static_cast<std::size_t>(m.nbody);
-  SceneBodies out{.role = std::vector<BodyRole>(count, BodyRole::scene),
+  SceneBodies out{.name = std::vector<std::string>(count),
+                  .role = std::vector<BodyRole>(count, BodyRole::scene),
                   .object_of = std::vector<int>(count, -1),
                   .moved_by = std::vector<int>(count, 0),
                   .objects = {}};
@@ -20,6 +21,9 @@ SceneBodies scene_bodies(const Model& model, const Arm& arm) {
     ++out.moved_by[body];
   }
   const int root = m.body_rootid[last];
+  for (int b = 0; b < static_cast<int>(m.nbody); ++b) {
+    out.name[static_cast<std::size_t>(b)] = object_name(&m, mjOBJ_BODY, b);
+  }
   for (int b = 1; b < static_cast<int>(m.nbody); ++b) {  // parents come before their children
     const auto i = static_cast<std::size_t>(b);
     const auto parent = static_cast<std::size_t>(m.body_parentid[b]);

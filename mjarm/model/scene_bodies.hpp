@@ -24,6 +24,7 @@ struct SceneObject {
 
 /// The bodies of a model by what they are to an arm; all vectors are per body.
 struct SceneBodies {
+  std::vector<std::string> name;  ///< `#7`, its number, where it has none
   std::vector<BodyRole> role;
   std::vector<int> object_of;  ///< index in `objects`, -1 for what is no object
   /// Number of the arm's joints that move it: two bodies of the arm with the same number never move

@@ -137,7 +137,7 @@ TEST(HeldPart, PlanBeginsAndEndsWhereThePartStandsOnTheFloor) {
 
 /// Nobody sees friction in a plan: the run does.
 TEST(HeldPart, WhatSlipsOutOfTheFingersIsSaid) {
-  const LoadedProgram loaded = planned({.friction = 0.01}, lifted());
+  const LoadedProgram loaded = planned({.friction = 0.001}, lifted());
   ASSERT_TRUE(loaded.plan.ok()) << faults_of(loaded);
   const Executed done(loaded);
   EXPECT_FALSE(done.report.ok);

@@ -227,6 +227,26 @@ Instruction::What read_grip(const YamlNode& node, const NamedThings&) {
   return Grip{word_of(node, "grip", {"open", "close"}) == "close"};
 }
 
+/// `pick: can`, or with fields.
+Instruction::What read_pick(const YamlNode& node, const NamedThings& named) {
+  if (node.kind == YamlNode::Kind::scalar) return Pick{text_of(node, "pick"), node.place};
+  const Fields fields(node, "pick", {"object"}, named.faults);
+  const YamlNode& object = fields.need("object");
+  return Pick{fields.take("object", std::string(), text_of), object.place};
+}
+
+/// Without an orientation it may be turned as the arm likes, upright as its body is.
+Instruction::What read_place(const YamlNode& node, const NamedThings& named) {
+  if (node.kind == YamlNode::Kind::scalar) return Place{pose_of(node, "place", named)};
+  const Fields fields(node, "place", {MJARM_POSE_KEYS}, named.faults);
+  for (const char* key : {"euler", "quat", "matrix", "pose"}) {
+    if (fields.find(key) != nullptr) return Place{pose_of(fields, named)};
+  }
+  const ProgramPose goal{{fields.vector("pos", Quantity::length), Eigen::Matrix3d::Identity()},
+                         fields.frame()};
+  return Place{.goal = goal, .any_turn = true};
+}
+
 Instruction::What read_repeat(const YamlNode& node, const NamedThings& named) {
   const Fields fields(node, "repeat", {"times", "program"}, named.faults);
   Repeat out;
@@ -248,7 +268,7 @@ struct Word {
   const char* word;
   Instruction::What (*read)(const YamlNode& node, const NamedThings& named);
 };
-constexpr std::array<Word, 12> kWords{{{"movej", read_movej},
+constexpr std::array<Word, 14> kWords{{{"movej", read_movej},
                                        {"movel", read_movel},
                                        {"movec", read_movec},
                                        {"ellipse", read_ellipse},
@@ -259,7 +279,9 @@ constexpr std::array<Word, 12> kWords{{{"movej", read_movej},
                                        {"set", read_set},
                                        {"repeat", read_repeat},
                                        {"plan", read_plan},
-                                       {"grip", read_grip}}};
+                                       {"grip", read_grip},
+                                       {"pick", read_pick},
+                                       {"place", read_place}}};
 
 }  // namespace
 

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "mjarm/collision/exact.hpp"
@@ -29,10 +33,11 @@ constexpr double kAside = 0.03;
 
 /// A grasp that can be had, and where.
 struct GoodGrasp {
-  Grasp grasp;
-  Pose X_WT;        ///< the tool when the fingers close
-  Pose X_WT_place;  ///< the tool when they open
-  Pose X_WB_place;
+  Grasp grasp = {};
+  Pose X_WT = {};        ///< the tool when the fingers close
+  Pose X_TB = {};        ///< the object then
+  Pose X_WT_place = {};  ///< the tool when they open
+  Pose X_WB_place = {};
   double cost = 0;  ///< [m] see kAside
 };
 
@@ -47,19 +52,42 @@ Pose moved(const Pose& X_WT, const Vector3d& way_W) { return {X_WT.p + way_W, X_
 class PickPlanner {
  public:
   PickPlanner(const Robot& robot, const SceneState& scene, std::span<const double> q,
-              const PickTask& task, const PickOptions& options)
-      : robot_(robot), scene_(scene), q_(q), task_(task), options_(options) {}
+              PickTask task, const PickOptions& options)
+      : robot_(robot),
+        scene_(scene),
+        q_(q),
+        task_(std::move(task)),
+        options_(options),
+        reach_(robot.arm, {.task = task_for(robot.arm)}) {
+    if (scene_.qpos.empty()) scene_.qpos = first_scene(robot.model).qpos;
+  }
 
   Result<PickPlan, PickFailure> plan() {
     if (auto ready = look(); !ready) return tl::unexpected(std::move(ready.error()));
-    const std::vector<GoodGrasp> good = choose();
-    for (const GoodGrasp& one : good) {
+    for (const GoodGrasp& one : choose()) {
       if (is_stopped(options_.stop)) break;
-      ProgramPlan plan = plan_program(robot_.model, robot_.arm, program(one), plan_options());
-      if (plan.ok()) return PickPlan{std::move(plan), one.grasp, one.X_WB_place, dropped_};
-      drop(one.grasp, {PickErrc::no_way, plan.faults.front().what});
+      std::vector<Instruction> list = to_grasp(one);
+      if (task_.place) std::ranges::move(to_place(one), std::back_inserter(list));
+      if (auto plan = planned(one, std::move(list))) return std::move(*plan);
     }
-    if (is_stopped(options_.stop)) return failure(PickErrc::stopped, stopped().what);
+    return none();
+  }
+
+  Result<PickPlan, PickFailure> plan_from_hand() {
+    if (scene_.attached.size() != 1) {
+      return failure(PickErrc::hand_full, text(msg::pick_holds_nothing));
+    }
+    task_.object = scene_.attached.front().body;
+    find_approach();
+    sort_bodies(scene_bodies(robot_.model, robot_.arm));
+    GoodGrasp one;
+    one.X_TB = scene_.attached.front().X_TB;
+    q_grasp_ = joint_vec(q_);
+    if (auto fine = look_at_place(one, scene_); !fine) {
+      drop({}, std::move(fine.error()));
+    } else if (auto plan = planned(one, to_place(one))) {
+      return std::move(*plan);
+    }
     return none();
   }
 
@@ -83,6 +111,7 @@ class PickPlanner {
                      text(msg::pick_no_object, task_.object,
                           names.empty() ? "" : text(msg::pick_objects, names)));
     }
+    sort_bodies(bodies);
     if (!scene_.attached.empty()) {
       return failure(PickErrc::hand_full,
                      text(msg::pick_hand_full, scene_.attached.front().body));
@@ -90,6 +119,7 @@ class PickPlanner {
     Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm);
     if (!jaws) return failure(PickErrc::no_gripper, jaws.error().what);
     jaws_ = *jaws;
+    approach_T_ = jaws_.approach_T;
     Result<SceneState> open = open_gripper(robot_.model, robot_.arm, q_, scene_);
     if (!open) return failure(PickErrc::no_gripper, open.error().what);
     open_ = std::move(*open);
@@ -101,6 +131,26 @@ class PickPlanner {
     return failure(PickErrc::too_wide,
                    text(msg::pick_too_wide, task_.object, 1000 * grasps_.narrowest,
                         1000 * jaws_.opening));
+  }
+
+  /// The names of the links and of what moves with the tool.
+  void sort_bodies(const SceneBodies& bodies) {
+    for (std::size_t b = 1; b < bodies.role.size(); ++b) {
+      const BodyRole role = bodies.role[b];
+      const int object = bodies.object_of[b];
+      if (role == BodyRole::link) links_.insert(bodies.name[b]);
+      if (role == BodyRole::hand) hand_.insert(bodies.name[b]);
+      if (object >= 0 && bodies.objects[static_cast<std::size_t>(object)].name == task_.object) {
+        object_.insert(bodies.name[b]);
+      }
+    }
+  }
+
+  /// Where the fingers point, as far as that can be told.
+  void find_approach() {
+    if (const Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm)) {
+      approach_T_ = jaws->approach_T;
+    }
   }
 
   /// Gives answers that `checker` calls free.
@@ -116,7 +166,7 @@ class PickPlanner {
     if (!X_WB) return {};
     std::vector<GoodGrasp> all;
     for (const Grasp& grasp : grasps_.all) {
-      GoodGrasp one{.grasp = grasp, .X_WT = *X_WB * grasp.X_BT, .X_WT_place = {}, .X_WB_place = {}};
+      GoodGrasp one{.grasp = grasp, .X_WT = *X_WB * grasp.X_BT};
       const double down = -(one.X_WT.R * jaws_.approach_T).z();
       one.cost = grasp.off_center + kAside * (1 - down);
       all.push_back(std::move(one));
@@ -137,25 +187,40 @@ class PickPlanner {
     return good;
   }
 
-  /// An answer without contact to a pose.
+  /// An answer without contact to a pose. Where the hand, or what it holds, is in contact with what
+  /// stands, no answer is without: that is seen at any of them.
   Result<JointVec, Drop> posture(const IkSolver& ik, const Pose& X_WT, ExactChecker& checker,
-                                 PickErrc far, PickErrc blocked) const {
+                                 bool holds) const {
+    const PickErrc far = holds ? PickErrc::place_out_of_reach : PickErrc::grasp_out_of_reach;
+    const PickErrc blocked = holds ? PickErrc::place_blocked : PickErrc::grasp_blocked;
+    const auto any = reach_.solve(X_WT, q_);
+    if (!any) return tl::unexpected(Drop{far, describe(any.error(), robot_.arm)});
+    const auto report = checker.check(as_span(any->q));
+    if (report && report->free) return any->q;
+    for (const ContactPoint& contact : report ? report->contacts : std::vector<ContactPoint>()) {
+      if (!is_of_hand(contact.pair, holds)) continue;
+      return tl::unexpected(Drop{blocked, describe(CollisionReport{false, {contact}, {}})});
+    }
     const auto answer = ik.solve(X_WT, q_);
     if (answer) return answer->q;
-    if (answer.error().code != IkErrc::collision) {
-      return tl::unexpected(Drop{far, describe(answer.error(), robot_.arm)});
-    }
-    const auto report = checker.check(as_span(answer.error().best.q));
-    return tl::unexpected(
-        Drop{blocked, report && !report->free ? describe(*report)
-                                              : describe(answer.error(), robot_.arm)});
+    return tl::unexpected(Drop{blocked, report ? describe(*report) : report.error().what});
+  }
+
+  /// Between what moves with the tool and what the arm does not move.
+  [[nodiscard]] bool is_of_hand(const GeomPair& pair, bool holds) const {
+    const auto moves = [&](const std::string& body) {
+      return hand_.contains(body) || (holds && object_.contains(body));
+    };
+    const auto stands = [&](const std::string& body) {
+      return !moves(body) && !links_.contains(body);
+    };
+    return (moves(pair.body1) && stands(pair.body2)) || (moves(pair.body2) && stands(pair.body1));
   }
 
   /// Fills in what is known of a grasp that can be had and put down with.
   Result<void, Drop> look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker) {
-    const Vector3d back = -options_.approach * (one.X_WT.R * jaws_.approach_T);
-    for (const Pose& X_WT : {moved(one.X_WT, back), one.X_WT}) {
-      auto q = posture(ik, X_WT, checker, PickErrc::grasp_out_of_reach, PickErrc::grasp_blocked);
+    for (const Pose& X_WT : {back_from(one.X_WT), one.X_WT}) {
+      auto q = posture(ik, X_WT, checker, false);
       if (!q) return tl::unexpected(std::move(q.error()));
       q_grasp_ = *q;
     }
@@ -169,24 +234,25 @@ class PickPlanner {
                                  holds ? text(msg::pick_holds_other, held->attached.front().body)
                                        : text(msg::pick_holds_nothing)});
     }
-    return look_at_place(one, *held);
+    one.X_TB = held->attached.front().X_TB;
+    return task_.place ? look_at_place(one, *held) : Result<void, Drop>{};
   }
 
   Result<void, Drop> look_at_place(GoodGrasp& one, const SceneState& held) const {
-    const Pose X_BT = held.attached.front().X_TB.inverse();
+    const Pose X_BT = one.X_TB.inverse();
+    const PlaceGoal& place = *task_.place;
     ExactChecker checker(robot_.model, robot_.arm,
                          {.rules = {.attached = held.attached}, .qpos = held.qpos,
                           .rest_depth = kRest});
     const IkSolver ik = solver(checker);
     std::optional<Drop> why;
     double nearest = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < (task_.place.any_turn ? kTurns : 1); ++k) {
+    for (int k = 0; k < (place.any_turn ? kTurns : 1); ++k) {
       const Eigen::AngleAxisd turn(2 * std::numbers::pi * k / kTurns, Vector3d::UnitZ());
-      const Pose X_WB{task_.place.X_WB.p, turn.toRotationMatrix() * task_.place.X_WB.R};
+      const Pose X_WB{place.X_WB.p, turn.toRotationMatrix() * place.X_WB.R};
       const Pose X_WT = moved(X_WB * X_BT, options_.drop * Vector3d::UnitZ());
-      auto q = posture(ik, X_WT, checker, PickErrc::place_out_of_reach, PickErrc::place_blocked);
-      if (q) q = posture(ik, moved(X_WT, options_.lift * Vector3d::UnitZ()), checker,
-                         PickErrc::place_out_of_reach, PickErrc::place_blocked);
+      auto q = posture(ik, X_WT, checker, true);
+      if (q) q = posture(ik, above(X_WT), checker, true);
       if (!q) {
         if (!why || why->code < q.error().code) why = std::move(q.error());
         continue;
@@ -201,29 +267,54 @@ class PickPlanner {
     return tl::unexpected(std::move(*why));
   }
 
-  [[nodiscard]] Program program(const GoodGrasp& one) const {
-    const Vector3d back = -options_.approach * (one.X_WT.R * jaws_.approach_T);
-    const Vector3d back_place = -options_.approach * (one.X_WT_place.R * jaws_.approach_T);
-    const Vector3d up = options_.lift * Vector3d::UnitZ();
-    const auto pose = [](const Pose& X_WT) { return ProgramPose{.X_FT = X_WT}; };
-    const auto plan = [&](const Pose& X_WT) { return Instruction{PlanMove{.goal = pose(X_WT)}}; };
-    const auto line = [&](const Pose& X_WT) { return Instruction{MoveL{.goal = pose(X_WT)}}; };
-    Program out;
-    out.name = "pick " + task_.object;
-    out.start.values.assign(q_.begin(), q_.end());
-    if (!stand_open()) out.instructions.push_back({Grip{.close = false}});
-    for (Instruction& next : std::vector<Instruction>{
-             plan(moved(one.X_WT, back)), line(one.X_WT), {Grip{.close = true}},
-             line(moved(one.X_WT, up)), plan(moved(one.X_WT_place, up)), line(one.X_WT_place),
-             {Grip{.close = false}}, line(moved(one.X_WT_place, back_place))}) {
-      out.instructions.push_back(std::move(next));
+  static Instruction plan_to(const Pose& X_WT) {
+    return {PlanMove{.goal = ProgramPose{.X_FT = X_WT}}};
+  }
+  static Instruction line_to(const Pose& X_WT) {
+    return {MoveL{.goal = ProgramPose{.X_FT = X_WT}}};
+  }
+  [[nodiscard]] Pose back_from(const Pose& X_WT) const {
+    return moved(X_WT, -options_.approach * (X_WT.R * approach_T_));
+  }
+  [[nodiscard]] Pose above(const Pose& X_WT) const {
+    return moved(X_WT, options_.lift * Vector3d::UnitZ());
+  }
+
+  [[nodiscard]] std::vector<Instruction> to_grasp(const GoodGrasp& one) const {
+    std::vector<Instruction> out;
+    if (!stand_open()) out.push_back({Grip{.close = false}});
+    out.push_back(plan_to(back_from(one.X_WT)));
+    out.push_back(line_to(one.X_WT));
+    out.push_back({Grip{.close = true}});
+    out.push_back(line_to(above(one.X_WT)));
+    return out;
+  }
+
+  [[nodiscard]] std::vector<Instruction> to_place(const GoodGrasp& one) const {
+    return {plan_to(above(one.X_WT_place)),
+            line_to(one.X_WT_place),
+            {Grip{.close = false}},
+            line_to(back_from(one.X_WT_place))};
+  }
+
+  /// The whole of it, planned and proved; where that fails the grasp is dropped.
+  std::optional<PickPlan> planned(const GoodGrasp& one, std::vector<Instruction> instructions) {
+    Program program;
+    program.name = "pick " + task_.object;
+    program.start.values.assign(q_.begin(), q_.end());
+    program.instructions = std::move(instructions);
+    ProgramPlan plan = plan_program(robot_.model, robot_.arm, program, plan_options());
+    if (!plan.ok()) {
+      drop(one.grasp, {PickErrc::no_way, plan.faults.front().what});
+      return std::nullopt;
     }
+    PickPlan out{.plan = std::move(plan), .X_TB = one.X_TB, .X_WB_place = {}, .dropped = dropped_};
+    if (task_.place) out.X_WB_place = one.X_WB_place;
     return out;
   }
 
   /// The fingers are open already.
   [[nodiscard]] bool stand_open() const {
-    if (scene_.qpos.empty()) return false;
     double most = 0;
     for (std::size_t k = 0; k < open_.qpos.size(); ++k) {
       most = std::max(most, std::abs(open_.qpos[k] - scene_.qpos[k]));
@@ -240,6 +331,7 @@ class PickPlanner {
 
   /// Why none of the grasps will do: how many fail for which reason.
   Result<PickPlan, PickFailure> none() {
+    if (is_stopped(options_.stop)) return failure(PickErrc::stopped, stopped().what);
     std::map<PickErrc, std::size_t> counts;
     const DroppedGrasp* farthest = nullptr;
     for (const DroppedGrasp& one : dropped_) {
@@ -258,11 +350,14 @@ class PickPlanner {
   }
 
   const Robot& robot_;
-  const SceneState& scene_;
+  SceneState scene_;
   std::span<const double> q_;
-  const PickTask& task_;
+  PickTask task_;
   const PickOptions& options_;
+  IkSolver reach_;  ///< geometry alone
+  std::set<std::string> links_, hand_, object_;  ///< names of bodies
   Jaws jaws_;
+  Vector3d approach_T_ = Vector3d::UnitZ();
   Grasps grasps_;
   SceneState open_;  ///< with open fingers
   JointVec q_grasp_;
@@ -303,6 +398,12 @@ Result<PickPlan, PickFailure> plan_pick(const Robot& robot, const SceneState& sc
                                         std::span<const double> q, const PickTask& task,
                                         const PickOptions& options) {
   return PickPlanner(robot, scene, q, task, options).plan();
+}
+
+Result<PickPlan, PickFailure> plan_place(const Robot& robot, const SceneState& scene,
+                                         std::span<const double> q, const PlaceGoal& place,
+                                         const PickOptions& options) {
+  return PickPlanner(robot, scene, q, {.object = {}, .place = place}, options).plan_from_hand();
 }
 
 }  // namespace mjarm::program

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,8 +24,8 @@ struct PlaceGoal {
 
 /// One object, from where it stands to where it is to be.
 struct PickTask {
-  std::string object;  ///< a body with a free joint
-  PlaceGoal place;
+  std::string object;                    ///< a body with a free joint
+  std::optional<PlaceGoal> place = {};   ///< none: it is only lifted
 };
 
 /// How a pick is planned. Every default is usable as is.
@@ -42,7 +43,7 @@ struct PickOptions {
 enum class PickErrc {
   no_object,            ///< no body of that name, or one that cannot be carried
   no_gripper,           ///< the arm has none, or the tool frame is not between its fingers
-  hand_full,            ///< something is held already
+  hand_full,            ///< something is held already; of plan_place(): nothing is
   too_wide,             ///< no two opposite sides are as near together as the gripper opens
   grasp_out_of_reach,   ///< the tool cannot be had there
   grasp_blocked,        ///< it can, but not without contact
@@ -64,9 +65,9 @@ struct DroppedGrasp {
 
 /// What was decided, before anything moves.
 struct PickPlan {
-  ProgramPlan plan;  ///< from where the arm stands until it has let go and drawn back
-  Grasp grasp;
-  Pose X_WB_place;  ///< where the object will be
+  ProgramPlan plan;  ///< from where the arm stands until it has let go and drawn back, or lifted it
+  Pose X_TB;         ///< the object in the frame of the tool that holds it
+  std::optional<Pose> X_WB_place;  ///< where the object will be
   std::vector<DroppedGrasp> dropped;
 };
 
@@ -90,5 +91,11 @@ struct PickFailure {
                                                       std::span<const double> q,
                                                       const PickTask& task,
                                                       const PickOptions& options = {});
+
+/// Puts down the one thing that `scene` has attached: what follows plan_pick() without a place.
+[[nodiscard]] Result<PickPlan, PickFailure> plan_place(const Robot& robot, const SceneState& scene,
+                                                       std::span<const double> q,
+                                                       const PlaceGoal& place,
+                                                       const PickOptions& options = {});
 
 }  // namespace mjarm::program

@@ -113,6 +113,18 @@ struct Grip {
   bool close = true;
 };
 
+/// An object is picked up. Where `place` is the next instruction the grasp is one that suits it.
+struct Pick {
+  std::string object;      ///< a body with a free joint
+  FilePlace place = {};
+};
+
+/// What the gripper holds is put down.
+struct Place {
+  ProgramPose goal;       ///< of the object's body
+  bool any_turn = false;  ///< it may be turned about the world's vertical
+};
+
 struct Instruction;
 
 struct Repeat {
@@ -123,7 +135,7 @@ struct Repeat {
 /// One sentence of a program.
 struct Instruction {
   using What = std::variant<MoveJ, MoveL, MoveC, DrawEllipse, DrawPolyline, DrawText, Wait, Set,
-                            PlanMove, Grip, Repeat>;
+                            PlanMove, Grip, Pick, Place, Repeat>;
   What what;
   FilePlace place = {};
 };

@@ -7,6 +7,7 @@
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/program/detour_chain_internal.hpp"
+#include "mjarm/program/pick_place.hpp"
 #include "mjarm/program/step_motion_internal.hpp"
 #include "mjarm/program/step_planner_internal.hpp"
 
@@ -22,7 +23,8 @@ class ProgramPlanner {
  public:
   ProgramPlanner(const Model& model, detail::Steps steps, FilePlace start_place,
                  const ProgramPlanOptions& options)
-      : steps_(std::move(steps.steps)),
+      : model_(model),
+        steps_(std::move(steps.steps)),
         start_place_(start_place),
         options_(options),
         plan_(begun(steps)),
@@ -38,6 +40,10 @@ class ProgramPlanner {
       if (is_stopped(options_.stop)) break;
       if (!known && !(known = stands_somewhere(steps_[i], at))) {
         ++i;
+        continue;
+      }
+      if (steps_[i].kind == Step::Kind::pick || steps_[i].kind == Step::Kind::place) {
+        known = carry(i, at);
         continue;
       }
       Attempt attempt = planner_.from(i, at);
@@ -59,6 +65,7 @@ class ProgramPlanner {
       i = attempt.fault->step + 1;
     }
     if (is_stopped(options_.stop)) end_early();
+    plan_.scene_end = places_.state(at.scene);
     std::ranges::stable_sort(plan_.faults, {}, &ProgramFault::place);
     return std::move(plan_);
   }
@@ -71,6 +78,44 @@ class ProgramPlanner {
     plan.faults = std::move(steps.faults);
     plan.q_start = std::move(steps.q_start);
     return plan;
+  }
+
+  /// Picks up, puts down, or both where one follows the other; goes on behind them. False where the
+  /// arm's posture is not known then.
+  bool carry(std::size_t& i, Stand& at) {
+    const Step& step = steps_[i];
+    const bool picks = step.kind == Step::Kind::pick;
+    const Step* const place = !picks ? &step : i + 1 < steps_.size() ? &steps_[i + 1] : nullptr;
+    std::optional<PlaceGoal> goal;
+    if (place != nullptr && place->kind == Step::Kind::place) {
+      goal = PlaceGoal{place->X_WT, place->any_turn};
+    }
+    const PickOptions how{.tool_speed = step.speed > 0 ? step.speed : PickOptions().tool_speed,
+                          .stop = options_.stop};
+    const Robot robot{model_, plan_.arms[step.tool]};
+    const SceneState& scene = places_.state(at.scene);
+    auto planned = picks ? plan_pick(robot, scene, as_span(at.q), {step.object, goal}, how)
+                         : plan_place(robot, scene, as_span(at.q), *goal, how);
+    i += picks && goal ? 2 : 1;
+    if (!planned) {
+      const bool named = planned.error().code == PickErrc::no_object;
+      detail::add_fault(plan_.faults,
+                        {.place = step.place,
+                         .word = std::string(step.word),
+                         .reason = std::string(name(planned.error().code)),
+                         .what = planned.error().what,
+                         .code = named ? Errc::bad_input : Errc::impossible});
+      return false;
+    }
+    for (PlannedMove& move : planned->plan.moves) {
+      move.place = step.place;
+      move.tool = step.tool;
+      move.dips.clear();  // nobody asked for a speed
+      plan_.moves.push_back(std::move(move));
+    }
+    at = {plan_.moves.back().trajectory.at(plan_.moves.back().trajectory.duration()).q,
+          places_.enter(std::move(planned->plan.scene_end))};
+    return true;
   }
 
   /// Where the program begins is within the limits, else it is a fault and taken to be home.
@@ -172,11 +217,13 @@ class ProgramPlanner {
   /// Whether a step can be begun by an arm that may stand anywhere; then it stands at home.
   bool stands_somewhere(const Step& step, Stand& at) const {
     const bool free = step.kind == Step::Kind::joints || step.kind == Step::Kind::pose ||
-                      step.kind == Step::Kind::curve || step.kind == Step::Kind::plan;
+                      step.kind == Step::Kind::curve || step.kind == Step::Kind::plan ||
+                      step.kind == Step::Kind::pick;
     if (free) at.q = plan_.q_start;
     return free;
   }
 
+  const Model& model_;
   std::vector<Step> steps_;
   FilePlace start_place_;
   const ProgramPlanOptions& options_;

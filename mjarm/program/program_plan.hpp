@@ -48,6 +48,7 @@ struct ProgramFault {
 /// are faults. It begins at the program's `start`, else at the arm's home.
 struct ProgramPlan : MotionPlan {
   std::vector<ProgramFault> faults;  ///< in the order of the program; it may run where empty
+  SceneState scene_end = {};         ///< how things will stand then; empty: as in the model
 
   [[nodiscard]] bool ok() const noexcept { return faults.empty(); }
 };

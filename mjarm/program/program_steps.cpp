@@ -300,6 +300,20 @@ class StepWriter {
     push(std::move(step));
   }
 
+  void add(const Pick& what, const Instruction& instruction) {
+    Step step = begun(Step::Kind::pick, instruction);
+    step.object = what.object;
+    step.place = what.place;
+    push(std::move(step));
+  }
+
+  void add(const Place& what, const Instruction& instruction) {
+    Step step = begun(Step::Kind::place, instruction);
+    step.X_WT = world(what.goal);
+    step.any_turn = what.any_turn;
+    push(std::move(step));
+  }
+
   void add(const Repeat& what, const Instruction&) {
     if (what.body.empty()) return;
     const std::size_t before = noted_;

@@ -14,7 +14,7 @@ namespace mjarm::program::detail {
 
 /// One thing to be done, with all that holds at that moment; repeats are unrolled.
 struct Step {
-  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan };
+  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan, pick, place };
 
   Kind kind = Kind::wait;
   std::string_view word;
@@ -36,6 +36,8 @@ struct Step {
   double seconds = 0;                    ///< wait
   std::optional<double> clearance = {};  ///< [m] plan: what is asked
   bool close = false;                    ///< grip
+  std::string object = {};               ///< pick
+  bool any_turn = false;                 ///< place; its X_WT is that of the object's body
 };
 
 struct Steps {

@@ -86,12 +86,16 @@ Result<std::size_t> Workplaces::gripped(const Stand& at, bool close) {
   Result<SceneState> after = close ? close_gripper(model_, arm, as_span(at.q), before)
                                    : open_gripper(model_, arm, as_span(at.q), before);
   if (!after) return fail(std::move(after.error()));
+  return enter(std::move(*after));
+}
+
+std::size_t Workplaces::enter(SceneState scene) {
   // Where the arm itself stands makes no other scene.
-  for (const ArmJoint& joint : arm.joints) {
-    after->qpos[static_cast<std::size_t>(joint.qpos)] = 0;
+  for (const ArmJoint& joint : arms_.front().joints) {
+    if (!scene.qpos.empty()) scene.qpos[static_cast<std::size_t>(joint.qpos)] = 0;
   }
-  const auto [entry, fresh] = known_.try_emplace(key_of(*after), scenes_.size());
-  if (fresh) scenes_.push_back(std::move(*after));
+  const auto [entry, fresh] = known_.try_emplace(key_of(scene), scenes_.size());
+  if (fresh) scenes_.push_back(std::move(scene));
   return entry->second;
 }
 

@@ -59,6 +59,9 @@ class Workplaces {
   /// The scene after the gripper has closed or opened where the arm stands.
   /// @return an error where the arm has no gripper.
   [[nodiscard]] Result<std::size_t> gripped(const Stand& at, bool close);
+  /// The scene in which things stand like that.
+  [[nodiscard]] std::size_t enter(SceneState scene);
+  [[nodiscard]] const SceneState& state(std::size_t scene) const { return scenes_[scene]; }
   /// What the arm carries, in the frame of the first tool.
   [[nodiscard]] const std::vector<AttachedBody>& attached(std::size_t scene) const {
     return scenes_[scene].attached;
