@@ -64,7 +64,8 @@ TEST_P(EveryDemo, EndsWellAndLeavesWholeFiles) {
 
 INSTANTIATE_TEST_SUITE_P(Demos, EveryDemo,
                          ::testing::Values("car", "ur5e", "ur5e_vision", "point", "movej", "movel",
-                                           "ellipse", "letters", "singularity", "flip", "avoid"),
+                                           "ellipse", "letters", "singularity", "flip", "avoid",
+                                           "pick_place"),
                          [](const auto& demo) { return std::string(demo.param); });
 
 TEST(DemoEllipse, WholeCurveWithinHalfAMillimetre) {
@@ -291,6 +292,22 @@ TEST(Demo, RunsFromAnyFolderAndWritesOnlyItsOwn) {
       run_demo(folder, {"car"}, {.folder = elsewhere.path(), .input = {}, .environment = {}});
   EXPECT_EQ(run.result.exit_code, 0) << run.result.err;
   EXPECT_TRUE(std::filesystem::is_empty(elsewhere.path()));
+}
+
+TEST(DemoPickPlace, PutsAllThreeIntoTheTray) {
+  for (const char* robot : {"ur5e", "panda"}) {
+    SCOPED_TRACE(robot);
+    const TempFolder folder;
+    const DemoRun run = run_demo(folder, {"pick_place", "--robot", robot});
+    ASSERT_EQ(run.result.exit_code, 0) << run.result.err;
+    ASSERT_EQ(run.report["objects"].size(), 3u);
+    for (const nlohmann::json& object : run.report["objects"]) {
+      EXPECT_TRUE(object["ok"].get<bool>() && object["carried"].get<bool>()) << object;
+      EXPECT_GT(object["moved"].get<double>(), 0.25) << object;
+      EXPECT_LT(object["off_plan"].get<double>(), 0.01) << object;
+    }
+    EXPECT_TRUE(run.report["first_contact"].is_null());
+  }
 }
 
 }  // namespace

@@ -1,17 +1,19 @@
 #include "mjarm/execution/execution.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
+#include "mjarm/model/object_shape.hpp"
 
 namespace mjarm {
 
 Execution::Execution(const Model& model, const MotionPlan& plan, Controller controller,
                      const ExecutionOptions& options)
     : plan_(&plan),
+      options_(options),
       controller_(std::move(controller)),
       clock_(plan, model.timestep(), options.rest),
-      recorder_(options.recorder),
       watch_(model, plan) {}
 
 Result<Execution> Execution::create(const Model& model, const MotionPlan& plan,
@@ -78,6 +80,25 @@ MotionClock::Step Execution::next(Sim& sim) {
   return step;
 }
 
+void Execution::take_load(const Model& model, std::size_t move) {
+  double load = 0;
+  if (move > 0) {
+    const SceneBodies bodies = scene_bodies(model, plan_->arms.front());
+    for (const AttachedBody& one : plan_->moves[move - 1].attached) {
+      const auto object = std::ranges::find(bodies.objects, one.body, &SceneObject::name);
+      if (object != bodies.objects.end()) load += object_shape(model, object->body).mass;
+    }
+  }
+  if (load == load_) return;
+  load_ = load;
+  loaded_.reset();
+  if (load == 0) return;
+  const Arm& arm = plan_->arms.front();
+  const Result<Model> heavier = model.with_point_mass(arm.tip, load);
+  if (!heavier) return;
+  if (auto made = Controller::create(*heavier, arm, options_.control)) loaded_ = std::move(*made);
+}
+
 void Execution::move_gripper(Sim& sim) {
   const double share = grip_->done < grip_->steps ? (grip_->done + 1.0) / grip_->steps : 1.0;
   sim.set_ctrl(plan_->arms.front().gripper->id,
@@ -95,11 +116,16 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
     end_motion(sim);
   } else if (step.begins) {
     controller_.restart();
+    if (loaded_) loaded_->restart();
   }
-  if (step.begins) begin_motion(sim, step.motion, sim.time() + passed);
+  if (step.begins) {
+    take_load(sim.model(), step.motion);
+    begin_motion(sim, step.motion, sim.time() + passed);
+  }
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
   if (step.begins && motions_.size() == 1) watch_.look(sim, step.motion);
-  if (auto stepped = stepper_->step(sim, controller_, step.reference, recorder_); !stepped) {
+  Controller& controller = loaded_ ? *loaded_ : controller_;
+  if (auto stepped = stepper_->step(sim, controller, step.reference, options_.recorder); !stepped) {
     return stepped;
   }
   watch_.look(sim, step.motion);

@@ -37,7 +37,8 @@ struct ExecutedMotion {
 /// Moves an arm in a simulation along the motions of a plan: the one driver of all faces. Either
 /// step by step, to be stopped and taken up again as a user likes, or all in one call. What the
 /// gripper is told to do is told over the first kGripShare of that motion, at a steady rate: fingers
-/// that are thrown shut throw what they hold. The arm goes on from where it
+/// that are thrown shut throw what they hold. The controller knows the mass of what the plan has in
+/// the gripper, as if it hung at the tool frame. The arm goes on from where it
 /// stands; Sim::place() puts it at the plan's start.
 class Execution {
  public:
@@ -86,6 +87,7 @@ class Execution {
   [[nodiscard]] MotionClock::Step next(Sim& sim);
   [[nodiscard]] Result<void> make_step(Sim& sim, const MotionClock::Step& step);
   void move_gripper(Sim& sim);
+  void take_load(const Model& model, std::size_t move);
   void begin_motion(Sim& sim, std::size_t move, double from);
   void end_motion(const Sim& sim);
   void take_measures(const Sim& sim);
@@ -97,9 +99,11 @@ class Execution {
   };
 
   const MotionPlan* plan_;
-  Controller controller_;
+  ExecutionOptions options_;
+  Controller controller_;             ///< of the empty hand
+  std::optional<Controller> loaded_;  ///< of what is carried now, as far as that is known
+  double load_ = 0;                   ///< [kg] of that
   MotionClock clock_;
-  Recorder* recorder_;
   std::optional<Stepper> stepper_;
   std::vector<ExecutedMotion> motions_;
   ObjectWatch watch_;

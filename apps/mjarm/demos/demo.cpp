@@ -92,6 +92,10 @@ std::span<const Demo> demos() {
       {"flip", msg::demo_about_flip, run_flip, kDriven, "  mjarm demo flip --headless"},
       {"avoid", msg::demo_about_avoid, run_avoid, kUseRobot | kUseSeconds | kUseControl,
        "  mjarm demo avoid --tip ee_link"},
+      {"pick_place", msg::demo_about_pick_place, run_pick_place,
+       kUseRobot | kUseSeconds | kUseControl,
+       "  mjarm demo pick_place --headless --video\n"
+       "  mjarm demo pick_place --robot panda"},
       {"square", msg::demo_about_square, run_square, kDriven | kUseAllow,
        "  mjarm demo square --robot my_arm.urdf"},
       {"reach", msg::train_about_reach, run_reach, 0, "  mjarm demo reach --headless"},

@@ -88,6 +88,7 @@ Result<Report> run_letters(const DemoOptions& options);
 Result<Report> run_singularity(const DemoOptions& options);
 Result<Report> run_flip(const DemoOptions& options);
 Result<Report> run_avoid(const DemoOptions& options);
+Result<Report> run_pick_place(const DemoOptions& options);
 Result<Report> run_square(const DemoOptions& options);
 Result<Report> run_reach(const DemoOptions& options);
 
