@@ -162,18 +162,19 @@ Result<void> measure(const Job& job, Measured& all) {
   return {};
 }
 
-std::vector<BenchResult> results_of(const Measured& all, bool timing) {
+std::vector<BenchResult> results_of(const Measured& all, const Job& job) {
   std::vector<BenchResult> results;
+  const auto add = [&](const std::string& name, const PlanTable& table) {
+    results.push_back(plan_result(name, table, job.timing, job.near));
+  };
   for (const PlanTable& table : all.solved) {
-    results.push_back(plan_result(table.name, table, timing));
+    add(table.name, table);
   }
   for (const PlanTable& table : all.anytime) {
-    const std::string name = text(msg::bench_plan_anytime, table.name);
-    results.push_back(plan_result(name, table, timing));
+    add(text(msg::bench_plan_anytime, table.name), table);
   }
   if (!all.crowds.empty()) {
-    const std::string name = text(msg::bench_plan_scaling, kCrowdedArm);
-    results.push_back(plan_result(name, all.crowded, timing));
+    add(text(msg::bench_plan_scaling, kCrowdedArm), all.crowded);
   }
   return results;
 }
@@ -196,7 +197,7 @@ Result<int> run_plans(const Options& options) {
   if (!folder) return fail(folder.error());
   if (auto done = measure(*job, *all); !done) return fail(std::move(done.error()));
   return report_in_folder(
-      options, results_of(*all, job->timing), plan_columns(job->timing), *folder,
+      options, results_of(*all, *job), plan_columns(job->timing, job->near), *folder,
       [&] { return write_more(*job, *all, options.out); }, msg::bench_plan_folder);
 }
 

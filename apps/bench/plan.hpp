@@ -78,6 +78,9 @@ struct SolvedProblem {
   double us = 0;                               ///< [us] from the obstacles to the finished path
   double world_us = 0;                         ///< [us] of it, to take in the obstacles
   PathVerdict verdict = {};
+  /// [s] of the motion beside the path within limits of velocity and acceleration, and of that
+  /// within limits of the jerk as well; 0: none was made.
+  double motion_s = 0, jerk_limited_s = 0;
 
   [[nodiscard]] bool valid() const { return !path.empty() && verdict.fault == PathFault::none; }
 };
@@ -123,6 +126,7 @@ struct PlanTable {
   bool sum = false;                   ///< adds what each contestant did on all cases together
   std::vector<PlanRun> more = {};     ///< shown after that sum, of which they are no part
   bool complete = false;              ///< it is wrong of mjarm to find no path, too
+  bool motions = false;               ///< paths were timed as well
   /// State checks, one a case, in order; of one only: shown where `sum` is.
   std::vector<CheckTimes> checks = {};
 };
@@ -145,11 +149,19 @@ struct PlanTable {
 [[nodiscard]] PlanTable table_of(const PlanSet& set);
 
 /// Headings of `BenchEntry::cells`.
-[[nodiscard]] std::vector<Msg> plan_columns(bool timing);
+/// @param motions  whether any table has them.
+[[nodiscard]] std::vector<Msg> plan_columns(bool timing, bool motions);
+
+/// Adds the two cells of motions: how long they take on the mean; and, of a peer, ours over theirs
+/// on the problems where both have a valid path and a motion, the mean and the worst, without and
+/// with limits of the jerk.
+/// @param ours  null: none.
+void add_motions(const PlanRun& run, const PlanRun* ours, BenchEntry& entry);
 
 /// The entries of a table and, in `wrong`, how many answers of mjarm are not what was asked for. A
 /// peer that fails in the same way on every case is one entry.
-[[nodiscard]] BenchResult plan_result(const std::string& name, const PlanTable& table, bool timing);
+[[nodiscard]] BenchResult plan_result(const std::string& name, const PlanTable& table, bool timing,
+                                      bool motions);
 
 /// Writes `paths_NAME_WHO.json`, one a contestant, with every path and its time, so that others can
 /// judge them: `{"id":{"path":[[q],...],"us":t},...}`.

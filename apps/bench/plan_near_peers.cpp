@@ -47,10 +47,12 @@ JsonDoc near_job(const NearSet& set, const PlanPeers& peers) {
           {"joints", joints},
           {"lower", arm.limits.lower},
           {"upper", arm.limits.upper},
+          {"velocity", arm.limits.velocity},
+          {"acceleration", arm.limits.acceleration},
           {"scenes", scenes_json(set)},
           {"every", peers.every},
           {"limit", peers.limit},
-          {"seconds", kReady + 2 * peers.limit * count}};
+          {"seconds", kReady + 3 * peers.limit * count}};
 }
 
 /// The answers of one peer in one case, judged; throws `BrokenAnswer`.
@@ -63,6 +65,9 @@ std::vector<SolvedProblem> near_answers_in(const NearSet& set, const BenchEntry&
   std::vector<double> world;
   if (line.contains("world")) world = numbers_in(line, "world");
   if (line.contains("world") && world.size() != ids.size()) broken("world");
+  std::vector<double> motions;
+  if (line.contains("motions")) motions = numbers_in(line, "motions");
+  if (line.contains("motions") && motions.size() != ids.size()) broken("motions");
   std::vector<SolvedProblem> answers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const auto problem = std::ranges::find_if(set.problems, [&](const NearProblem& known) {
@@ -72,7 +77,8 @@ std::vector<SolvedProblem> near_answers_in(const NearSet& set, const BenchEntry&
     answers.push_back({.problem = static_cast<std::size_t>(problem - set.problems.begin()),
                        .path = std::move(paths[i]),
                        .us = entry.us[i],
-                       .world_us = world.empty() ? 0 : world[i]});
+                       .world_us = world.empty() ? 0 : world[i],
+                       .motion_s = motions.empty() ? 0 : motions[i]});
   }
   return answers;
 }

@@ -5,6 +5,7 @@
 #include "apps/bench/plan_near.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/stopwatch.hpp"
+#include "mjarm/execution/path_motion.hpp"
 #include "mjarm/planning/planning_world.hpp"
 
 namespace mjarm::app {
@@ -24,21 +25,40 @@ Result<PlannedPath, WorldFailure> plan_near(PlanningWorld& world, const NearProb
   return world.plan(start, std::span(&problem.goal, 1), options);
 }
 
-/// @param tell  says why where there is no path.
+/// How long the motion beside a path takes.
+/// @return 0: an error.
+double motion_time(const PlannedPath& path, const WayProver& prover, const JointLimits& limits) {
+  const Result<PathMotion> motion = time_path(path.q, limits, prover);
+  if (!motion) log_warning(motion.error().what);
+  return motion ? motion->trajectory.duration() : 0;
+}
+
+void time_motions(PlanningWorld& world, const Arm& arm, const PlannedPath& path,
+                  SolvedProblem& solved) {
+  constexpr double kRamp = 1e-3;  // [s] in which accelerations may change where no jerk is limited
+  const Result<WayProver> prover = world.prover({&path, 1});
+  if (!prover) return log_warning(prover.error().what);
+  solved.jerk_limited_s = motion_time(path, *prover, arm.limits);
+  JointLimits limits = arm.limits;
+  limits.jerk = limits.acceleration / kRamp;
+  solved.motion_s = motion_time(path, *prover, limits);
+}
+
+/// @param with_motion  times motions as well, after the clock.
 SolvedProblem solve_near(PlanningWorld& world, const NearSet& set, std::size_t index,
-                         const PlanOptions& options, bool tell) {
+                         const PlanOptions& options, bool with_motion) {
   const NearProblem& problem = set.problems[index];
   SolvedProblem solved{.problem = index};
   const Stopwatch watch;
   const auto path = plan_near(world, problem, options);
   solved.us = watch.us();
   if (!path) {
-    if (tell) {
-      log_warning(set.robot.name + ", " + problem.id + ": " + path.error().what);
-    }
+    // The first plan of a scene is made twice: once it is told.
+    if (with_motion) log_warning(set.robot.name + ", " + problem.id + ": " + path.error().what);
     return solved;
   }
   for (const JointVec& q : path->q) solved.path.emplace_back(q.data(), q.data() + q.size());
+  if (with_motion) time_motions(world, set.scenes[problem.scene].robot.arm, *path, solved);
   return solved;
 }
 
@@ -80,8 +100,10 @@ Result<void> add_near_peers(const NearSet& set, const PlanPeers& peers, PlanTabl
 
 Result<PlanTable> run_near_set(const NearSet& set, std::uint64_t seed, const PlanPeers& peers,
                                Progress& progress) {
-  PlanTable table{
-      .name = text(msg::bench_plan_near_name, set.robot.name), .sum = true, .complete = true};
+  PlanTable table{.name = text(msg::bench_plan_near_name, set.robot.name),
+                  .sum = true,
+                  .complete = true,
+                  .motions = true};
   for (const NearProblem& problem : set.problems) table.ids.push_back(problem.id);
   OurNearRuns ours;
   for (std::size_t first = 0; first < set.problems.size();) {

@@ -50,6 +50,8 @@ TEST(BenchPlanNear, EveryGoalIsReachedByAPathWithoutContact) {
       EXPECT_EQ(run.at("problems"), count);
       EXPECT_EQ(run.at("valid"), count);
       EXPECT_GT(run.at("cost"), 0.1);
+      EXPECT_GT(run.at("motion_s"), 0.1);
+      EXPECT_GT(run.at("jerk_limited_motion_s"), run.at("motion_s").get<double>() - 0.02);
       EXPECT_FALSE(run.contains("us"));
     }
     EXPECT_EQ(near_run(robot, "mjarm", "first plan").at("valid"), 3);
@@ -101,9 +103,10 @@ TEST(BenchPlanNear, MenageriesPandaIsReadFromItsArchive) {
 json judged(const support::TempFolder& folder, const json& path) {
   const json answer = {{"who", "peer"},     {"version", "1"}, {"set", "joints"},
                        {"timed", "python"}, {"us", {1e6}},    {"problems", {"table 1, 1"}},
-                       {"paths", {path}}};
+                       {"paths", {path}},   {"motions", {10}}};
   const std::string peers = write_peers(folder, "\n" + answer.dump() + "\n",
                                         "grep -qF ur5e.xml \"$2\" || exit 3\n"
+                                        "grep -qF '\"acceleration\":[5' \"$2\" || exit 5\n"
                                         "grep -qF '\"every\":7' \"$2\" || exit 4");
   const json bench = near_json(folder, "1", {"--peers", peers, "--peer-every", "7"});
   return near_run(bench.at("robots").at(0), "peer", "joints");
@@ -111,9 +114,19 @@ json judged(const support::TempFolder& folder, const json& path) {
 
 TEST(BenchPlanNear, TheJudgeNamesEveryFault) {
   const support::TempFolder folder;
-  (void)near_json(folder, "1", {"--no-timing"});
+  const json ours =
+      near_run(near_json(folder, "1", {"--no-timing"}).at("robots").at(0), "mjarm", "joints");
   const json path = our_paths(folder).at("table 1, 1").at("path");
-  EXPECT_EQ(judged(folder, path).at("valid"), 1);
+  const json same = judged(folder, path);
+  EXPECT_EQ(same.at("valid"), 1);
+  EXPECT_EQ(same.at("motion_s"), 10);
+  const auto expect_ratio = [&](const char* ratio, const char* seconds) {
+    EXPECT_EQ(same.at(ratio).at("problems"), 1);
+    EXPECT_NEAR(same.at(ratio).at("max"), ours.at(seconds).get<double>() / 10, 1e-9);
+    EXPECT_EQ(same.at(ratio).at("mean"), same.at(ratio).at("max"));
+  };
+  expect_ratio("motion_ratio", "motion_s");
+  expect_ratio("jerk_limited_motion_ratio", "jerk_limited_motion_s");
   const auto via = [&](std::size_t joint, double value) {
     json bent = path, q = path.front();
     q[joint] = value;
@@ -132,6 +145,7 @@ TEST(BenchPlanNear, TheJudgeNamesEveryFault) {
                                     {shorter, "shape"}}) {
     const json run = judged(folder, bent);
     EXPECT_EQ(run.at("valid"), 0) << fault;
+    EXPECT_FALSE(run.contains("motion_ratio")) << "beside a path that is no path";
     ASSERT_EQ(run.at("wrong").size(), 1U) << fault;
     EXPECT_EQ(run.at("wrong")[0].at("fault"), fault);
     const bool touches = fault == "obstacle" || fault == "self";
@@ -157,7 +171,8 @@ TEST(BenchPlanNear, BrokenAnswersAreOneLine) {
         {R"("set":"pose","us":[1],"problems":["none"])", "problems"},
         {R"("set":"pose","us":[1],"problems":[7])", "problems"},
         {R"("set":"pose","us":[1,2],"problems":["table 1, 1"])", "us"},
-        {R"("set":"pose","us":[1],"problems":["table 1, 1"],"world":[])", "world"}}) {
+        {R"("set":"pose","us":[1],"problems":["table 1, 1"],"world":[])", "world"},
+        {R"("set":"pose","us":[1],"problems":["table 1, 1"],"motions":[1,2])", "motions"}}) {
     const support::TempFolder folder;
     const std::string peers =
         write_peers(folder, "\n{\"who\":\"peer\",\"version\":\"1\",\"timed\":\"python\"," + broken +

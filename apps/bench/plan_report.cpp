@@ -93,8 +93,13 @@ std::vector<JsonDoc> wrong_json(const PlanTable& table, const Verdicts& all) {
   return wrong;
 }
 
+/// What is shown of a table besides its answers.
+struct Shown {
+  bool timing = false, motions = false;
+};
+
 BenchEntry entry_of(const PlanTable& table, const PlanRun& run, const PlanRun* ours,
-                    const CheckTimes* checks, bool timing) {
+                    const CheckTimes* checks, const Shown& shown) {
   BenchEntry entry = run;
   entry.us = times_in(run, &SolvedProblem::us);
   entry.ratio = ratio_to(run, ours);
@@ -109,7 +114,9 @@ BenchEntry entry_of(const PlanTable& table, const PlanRun& run, const PlanRun* o
                    {"valid", all.valid},
                    {"cost", all.cost},
                    {"wrong", wrong_json(table, all)}};
-  if (timing) add_times(entry, run, checks);
+  if (shown.motions && table.motions) add_motions(run, ours, entry);
+  if (shown.motions && !table.motions) entry.cells.insert(entry.cells.end(), 2, "-");
+  if (shown.timing) add_times(entry, run, checks);
   return entry;
 }
 
@@ -200,7 +207,7 @@ render::PlotPanel panel_over_crowds(const std::vector<CrowdedSet>& crowds, Msg t
   return panel;
 }
 
-std::vector<BenchEntry> entries_of(const PlanTable& table, bool timing) {
+std::vector<BenchEntry> entries_of(const PlanTable& table, const Shown& shown) {
   std::vector<BenchEntry> entries;
   std::size_t at = 0;  // of the checks
   for (const PlanRun& run : table.runs) {
@@ -210,16 +217,16 @@ std::vector<BenchEntry> entries_of(const PlanTable& table, bool timing) {
     }
     const bool checked = !table.sum && run.version.empty() && at < table.checks.size();
     const CheckTimes* checks = checked ? &table.checks[at++] : nullptr;
-    entries.push_back(entry_of(table, run, ours_beside(table.runs, run.set), checks, timing));
+    entries.push_back(entry_of(table, run, ours_beside(table.runs, run.set), checks, shown));
   }
   const std::vector<PlanRun> sums = table.sum ? sums_of(table.runs) : std::vector<PlanRun>();
   for (const PlanRun& sum : sums) {
     const bool checked = sum.version.empty() && !table.checks.empty();
     entries.push_back(entry_of(table, sum, ours_beside(sums, sum.set),
-                               checked ? &table.checks.front() : nullptr, timing));
+                               checked ? &table.checks.front() : nullptr, shown));
   }
   for (const PlanRun& run : table.more) {
-    entries.push_back(entry_of(table, run, ours_beside(table.more, run.set), nullptr, timing));
+    entries.push_back(entry_of(table, run, ours_beside(table.more, run.set), nullptr, shown));
   }
   return entries;
 }
@@ -244,16 +251,20 @@ PlanTable table_of(const PlanSet& set) {
   return table;
 }
 
-std::vector<Msg> plan_columns(bool timing) {
+std::vector<Msg> plan_columns(bool timing, bool motions) {
   std::vector<Msg> columns{msg::bench_plan_solved, msg::bench_plan_valid, msg::bench_plan_cost};
+  if (motions) {
+    columns.insert(columns.end(), {msg::bench_plan_motion, msg::bench_plan_motion_ratio});
+  }
   if (!timing) return columns;
   columns.insert(columns.end(),
                  {msg::bench_plan_p95, msg::bench_plan_world, msg::bench_plan_check});
   return columns;
 }
 
-BenchResult plan_result(const std::string& name, const PlanTable& table, bool timing) {
-  BenchResult result{name, table.file, entries_of(table, timing)};
+BenchResult plan_result(const std::string& name, const PlanTable& table, bool timing,
+                        bool motions) {
+  BenchResult result{name, table.file, entries_of(table, {timing, motions})};
   const std::size_t wrong = count_wrong(table, table.runs) + count_wrong(table, table.more);
   if (wrong > 0) result.wrong = text(msg::bench_plan_wrong, name, wrong);
   return result;

@@ -11,7 +11,9 @@ import time
 import driver
 import planning
 
-# Each maker takes the job and gives two functions: open_world(file) -> world, and plan(world, problem) -> path or None.
+# Each maker takes the job and gives three functions: open_world(file) -> world, plan(world, problem) -> path or None,
+# and move(world, problem) -> seconds of its own motion beside that path within the job's limits of velocity and
+# acceleration, or None; null where the peer has no motions.
 
 
 def pose_matrix(pose):
@@ -43,14 +45,18 @@ def last_body(model, joints):
 
 
 def sscbirrt(job, **settings):
-    """On its own copy of MuJoCo's geometry, else with its defaults; a pose is a region without room, solved by ssik."""
+    """On its own copy of MuJoCo's geometry, else with its defaults; a pose is a region without room, solved by ssik.
+
+    Its motions are its paths smoothed by shortcuts in time, with its defaults: the same search once more, as its seed is.
+    """
     import numpy
     import sscbirrt.mujoco as library
-    from sscbirrt import CBiRRTConfig
+    from sscbirrt import CBiRRTConfig, TrajectoryOptions
     from sscbirrt.backends.native_mujoco import NativeScene
     from tsr import TSR
 
     config = CBiRRTConfig(timeout=job["limit"], **settings)
+    limits = TrajectoryOptions(velocity_limits=job["velocity"], acceleration_limits=job["acceleration"])
 
     def open_world(file):
         model, data = load(file)
@@ -58,18 +64,25 @@ def sscbirrt(job, **settings):
         NativeScene.from_model(model, job["joints"], ())  # kept for the plans
         return model, data, arm
 
-    def plan(world, problem):
+    def solve(world, problem, **more):
         model, data, arm = world
         if "goal" in problem:
             goal = numpy.array(problem["goal"])
         else:
             goal = TSR(T0_w=pose_matrix(problem["pose"]), Bw=numpy.zeros((6, 2)))
-        found = library.plan(
-            model, data, arm, goal=goal, start=numpy.array(problem["start"]), config=config, seed=1
-        )
-        return found.path if found.success else None
+        start = numpy.array(problem["start"])
+        found = library.plan(model, data, arm, goal=goal, start=start, config=config, seed=1, **more)
+        return found if found.success else None
 
-    return open_world, plan
+    def plan(world, problem):
+        found = solve(world, problem)
+        return found and found.path
+
+    def move(world, problem):
+        found = solve(world, problem, trajectory=limits)
+        return found and found.trajectory.duration
+
+    return open_world, plan, move
 
 
 def turned_near(q, start, lower, upper):
@@ -130,7 +143,7 @@ def ompl(job, spacing=None):
             return None
         return planning.rrt_connect(limits, is_free, problem["start"], goals, job["limit"], spacing)
 
-    return open_world, plan
+    return open_world, plan, None
 
 
 PEERS = {
@@ -148,12 +161,12 @@ class Answers:
     def __init__(self):
         self.row = {"problems": [], "us": [], "paths": []}
 
-    def add(self, problem, us, path, **clocks):
+    def add(self, problem, us, path, **more):
         self.row["problems"].append(problem["id"])
         self.row["us"].append(us)
         self.row["paths"].append(planning.rows_of(path))
-        for clock, value in clocks.items():
-            self.row.setdefault(clock, []).append(value)
+        for key, value in more.items():
+            self.row.setdefault(key, []).append(value)
 
 
 def microseconds_since(start):
@@ -161,18 +174,21 @@ def microseconds_since(start):
 
 
 def run_peer(job, name, maker, row):
-    open_world, plan = maker(job)
+    open_world, plan, move = maker(job)
     cases = {"joints": Answers(), "pose": Answers(), "first": Answers()}
     errors = {}
     met = {"joints": 0, "pose": 0}  # problems, tried or not
 
-    def timed(case, opened_world, problem, start, **clocks):
+    def timed(case, opened_world, problem, start, **more):
+        path = None
         try:
             path = plan(opened_world, problem)
-            cases[case].add(problem, microseconds_since(start), path, **clocks)
         except Exception as error:  # no path; why is told once a case
-            cases[case].add(problem, microseconds_since(start), None, **clocks)
             errors.setdefault(case, (str(error).splitlines() or [type(error).__name__])[0])
+        us = microseconds_since(start)
+        if move and case != "first":
+            more["motions"] = move(opened_world, problem) if path is not None else None
+        cases[case].add(problem, us, path, **more)
 
     open_world(job["scenes"][0]["file"])  # lazy imports
     for scene in job["scenes"]:

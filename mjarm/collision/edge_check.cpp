@@ -20,6 +20,7 @@ constexpr std::size_t kMaxLeft = 512;    // intervals that wait to be looked at 
 constexpr int kMaxStations = 20'000;     // of an edge that is looked at closer
 constexpr int kSphereRounds = 3;         // of a checker that looks closer, before it does
 constexpr double kGrain = 0x1p-40;       // of places on an edge: sums of them are exact
+constexpr float kUp = 1.0001F;           // more than rounding
 constexpr double kCloserShare = 0x1p-6;  // of the resolution: exact distances leave no other room
 
 /// So many floats fill whole registers.
@@ -51,7 +52,8 @@ class EdgeSearch {
       : checker_(checker),
         data_(FastAccess::data(checker.robot())),
         solids_(FastAccess::solids(checker)),
-        width_(checker.width()) {
+        width_(checker.width()),
+        closer_margins_(FastAccess::closer_margins(checker)) {
     double length = 0;
     for (std::size_t i = 0; i < q0.size(); ++i) {
       start_[i] = q0[i];
@@ -59,7 +61,8 @@ class EdgeSearch {
       dq_[i] = static_cast<float>(way_[i]);
       length += way_[i] * way_[i];
       const detail::FastJoint& joint = data_.tables.joints[i];
-      const auto fits = [&](double q) { return q > joint.lower && q < joint.upper; };
+      const double off = options.beside.empty() ? 0 : options.beside[i];
+      const auto fits = [&](double q) { return q - off > joint.lower && q + off < joint.upper; };
       if (!fits(q0[i])) outside_ = 0;
       if (fits(q0[i]) && !fits(q1[i])) outside_ = std::min(outside_, 1.0);
     }
@@ -67,6 +70,7 @@ class EdgeSearch {
     least_half_ = static_cast<float>(
         std::clamp(0.5 * options.resolution / std::max(length_, 1e-12), 0x1p-16, 1.0));
     bound_motion();
+    if (!options.beside.empty()) bound_beside(options.beside);
   }
 
   EdgeResult run(std::vector<EdgeInterval>* proof) {
@@ -87,6 +91,7 @@ class EdgeSearch {
     split({0.5F, 0.5F}, width_, *now);
     for (int round = 1; now->size > 0 && is_open_; ++round) {
       next->size = 0;
+      if (is_wide_) widen(now->open[0].half);
       for (std::size_t first = 0; first < now->size && is_open_; first += width_) {
         look(*now, first, *next);
       }
@@ -123,8 +128,7 @@ class EdgeSearch {
     std::array<double, kMaxDof> q;
     const auto dof = static_cast<std::size_t>(data_.tables.dof);
     for (std::size_t i = 0; i < dof; ++i) q[i] = start_[i] + t * way_[i];
-    double proved = solids_->free_half({q.data(), dof}, {way_.data(), dof}, half,
-                                       FastAccess::closer_margins(checker_));
+    double proved = solids_->free_half({q.data(), dof}, {way_.data(), dof}, half, closer_margins_);
     ++result_.stations;
     if (proved < 0) return end(EdgeVerdict::hit, t);
     if (proved < half) proved = std::floor(proved / kGrain) * kGrain;
@@ -153,6 +157,36 @@ class EdgeSearch {
     const auto bound = FastAccess::kernels(checker_).bound_motion;
     bound(rates, data_.group_levers.tables(), rate_.data(), bend_.data());
     bound(rates, data_.pair_levers.tables(), pair_rate_.data(), pair_bend_.data());
+  }
+
+  /// How far groups, pairs and solids get when every joint goes as far beside the edge as is asked.
+  void bound_beside(std::span<const double> beside) {
+    std::array<float, kMaxDof> rate, turn;
+    std::array<float, kMaxDof + 1> before{};  // what bends does not matter
+    for (std::size_t k = 0; k < beside.size(); ++k) rate[k] = static_cast<float>(beside[k]) * kUp;
+    turn.fill(0);
+    const detail::FastRates rates{data_.tables.dof, rate.data(), turn.data(), before.data()};
+    const auto bound = FastAccess::kernels(checker_).bound_motion;
+    bound(rates, data_.group_levers.tables(), wide_.data(), wide_bend_.data());
+    bound(rates, data_.pair_levers.tables(), pair_wide_.data(), pair_wide_bend_.data());
+    bare_bend_ = bend_;
+    bare_pair_rate_ = pair_rate_;
+    bare_pair_bend_ = pair_bend_;
+    is_wide_ = true;
+    if (solids_ == nullptr) return;
+    const double most = solids_->farthest(beside);
+    closer_margins_.obstacles += most;
+    closer_margins_.links += most;
+  }
+
+  /// Intervals of a round are equally wide, and what lies beside them is part of how far they bend.
+  void widen(float half) {
+    const float share = kUp / (half * half), pair_share = kUp / half;
+    for (std::size_t i = 0; i < wide_.size(); ++i) bend_[i] = bare_bend_[i] + share * wide_[i];
+    for (std::size_t i = 0; i < pair_wide_.size(); ++i) {
+      pair_rate_[i] = bare_pair_rate_[i] + pair_share * pair_wide_[i];
+      pair_bend_[i] = bare_pair_bend_[i] + share * pair_wide_[i];
+    }
   }
 
   bool split(OpenInterval whole, std::size_t parts, IntervalQueue& to) {
@@ -231,6 +265,12 @@ class EdgeSearch {
   std::array<float, kMaxDof> dq_;
   std::array<float, kWhole(detail::kFastGroups)> rate_, bend_;
   std::array<float, kWhole(detail::kFastPairs)> pair_rate_, pair_bend_;
+  /// What lies beside the edge, and what rate_ and so on are without it.
+  std::array<float, kWhole(detail::kFastGroups)> wide_, wide_bend_, bare_bend_;
+  std::array<float, kWhole(detail::kFastPairs)> pair_wide_, pair_wide_bend_, bare_pair_rate_,
+      bare_pair_bend_;
+  bool is_wide_ = false;
+  SphereMargins closer_margins_;
   double length_ = 0;
   double outside_ = 2;  // where the edge is outside of the limits; 2: nowhere
   float least_half_ = 0;

@@ -12,6 +12,9 @@ namespace mjarm {
 /// How an edge is checked. Every default is usable as is.
 struct EdgeOptions {
   double resolution = 1e-3;  ///< [rad or m, L2] narrowest interval that is tried, > 0
+  /// [rad or m] shape (dof,), >= 0: what is within this of the edge, in every joint, is proved as
+  /// well, limits included; `hit` is then as good as `undecided`. Empty: the edge alone.
+  std::span<const double> beside = {};
 };
 
 /// What check_edge() found. `hit` is also what is as near to a collision as the padding;
@@ -26,7 +29,9 @@ struct EdgeResult {
 /// is cut into intervals. In the middle of each, every radius grows by what its sphere can move
 /// within the interval: its speed there, and a bound of the second derivative from the largest
 /// distances to the joints' axes. Where nothing overlaps the whole interval is free; else it is cut
-/// in two. Wide intervals come first, so that most collisions show early. Never allocates.
+/// in two. Wide intervals come first, so that most collisions show early. What lies beside the edge
+/// makes every radius grow by the sum over the joints of how far they are off times their largest
+/// distance. Never allocates.
 /// @param q0, q1  shape (dof,) [rad or m].
 [[nodiscard]] EdgeResult check_edge(const FastChecker& checker, std::span<const double> q0,
                                     std::span<const double> q1,

@@ -71,6 +71,47 @@ TEST(CheckEdge, NoFalseCertificateAmongPlatesAndWires) {
   EXPECT_LT(tally.undecided, worlds);
 }
 
+/// What is called free with room beside an edge is so for whatever leaves it by no more.
+TEST(CheckEdge, WhatLiesBesideIsProvedAsWell) {
+  Rng rng(24);
+  int proved = 0, narrow = 0;
+  const int worlds = testing::rounds(60, 2000, 25);
+  for (int round = 0; round < worlds; ++round) {
+    const Arm arm = testing::random_arm(2 + round % 6, rng);
+    SphereSet set = testing::random_spheres(arm, rng);
+    for (LinkSpheres& link : set.links) {
+      for (Sphere& sphere : link.spheres) sphere.radius *= 0.3;
+    }
+    const Obstacles world = testing::random_world(rng, 5, true);
+    const auto robot = FastRobot::create(arm, set).value();
+    const auto checker = FastChecker::create(robot, world, kEdgeLevels[round % 3]).value();
+    if (checker.fixed_overlap()) continue;
+    for (int k = 0; k < 30; ++k) {
+      const JointVec q0 = testing::random_q(arm, rng);
+      const JointVec q1 = q0 + rng.uniform(0, 0.3) * (testing::random_q(arm, rng) - q0);
+      JointVec beside = q0;
+      for (double& off : beside) off = rng.uniform(0, 0.02);
+      const EdgeOptions wide{.beside = as_span(beside)};
+      if (check_edge(checker, as_span(q0), as_span(q1), wide).verdict != EdgeVerdict::free) {
+        narrow += check_edge(checker, as_span(q0), as_span(q1)).verdict == EdgeVerdict::free;
+        continue;
+      }
+      ++proved;
+      for (int i = 0; i < 20; ++i) {
+        JointVec q = q0 + rng.uniform() * (q1 - q0);
+        for (Eigen::Index j = 0; j < q.size(); ++j) {
+          q[j] += beside[j] * (rng.uniform() < 0.5 ? -1 : 1);
+          ASSERT_GE(q[j], arm.limits.lower[j]);
+          ASSERT_LE(q[j], arm.limits.upper[j]);
+        }
+        ASSERT_GT(testing::true_clearance(arm, set, world, as_span(q)), 0) << "false certificate";
+      }
+    }
+  }
+  EXPECT_GT(proved, 8 * worlds);
+  EXPECT_GT(narrow, worlds / 2);
+}
+
 TEST(CheckEdge, CertificatesCoverTheEdge) {
   Rng rng(22);
   const Arm arm = testing::panda();

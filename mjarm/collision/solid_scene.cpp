@@ -306,6 +306,16 @@ double SolidScene::free_half(std::span<const double> q, std::span<const double> 
   return proved;
 }
 
+double SolidScene::farthest(std::span<const double> off) const noexcept {
+  double most = 0;
+  for (const LinkGroup& link : links_) {
+    double sum = 0;
+    for (std::size_t k = 0; k < off.size(); ++k) sum += link.levers[k] * off[k];
+    most = std::max(most, sum * kRoundUp);
+  }
+  return most;
+}
+
 bool SolidScene::is_free(std::span<const double> q, const SphereMargins& margins) const noexcept {
   return free_half(q, {}, 0, margins) >= 0;
 }

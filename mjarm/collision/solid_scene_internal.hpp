@@ -78,6 +78,10 @@ class SolidScene {
   [[nodiscard]] bool is_free(std::span<const double> q,
                              const SphereMargins& margins) const noexcept;
 
+  /// [m] No solid gets farther, nor as seen from another, where each joint moves by no more.
+  /// @param off  shape (dof,) [rad or m] >= 0.
+  [[nodiscard]] double farthest(std::span<const double> off) const noexcept;
+
   /// What is nearest; margins are taken off. Nothing within `max` [m]: that, and no pair.
   [[nodiscard]] Clearance clearance(std::span<const double> q, double max,
                                     const SphereMargins& margins) const noexcept;

@@ -83,6 +83,34 @@ void compare_edges(const CoveredRobot& robot, double bound, int edges, Rng& rng,
   }
 }
 
+/// Short edges with room beside them, and configurations in that room.
+void compare_beside(const CoveredRobot& robot, double bound, int edges, Rng& rng,
+                    SolidTally& tally) {
+  constexpr int kPlaces = 8;
+  const FastChecker checker = closer_checker(robot, bound);
+  ExactChecker exact(robot.model, robot.arm);
+  for (int k = 0; k < edges; ++k) {
+    const JointVec from = testing::random_q(robot.arm, rng);
+    const JointVec way = 0.03 * (testing::random_q(robot.arm, rng) - from);
+    JointVec beside = from;
+    for (double& off : beside) off = rng.uniform(0, 0.02);
+    const EdgeOptions options{.resolution = 0.25 * way.norm(), .beside = as_span(beside)};
+    if (check_edge(checker, as_span(from), as_span(from + way), options).verdict !=
+        EdgeVerdict::free) {
+      ++tally.hit;
+      continue;
+    }
+    for (int i = 0; i < kPlaces; ++i) {
+      JointVec q = from + rng.uniform() * way;
+      for (Eigen::Index j = 0; j < q.size(); ++j)
+        q[j] += rng.uniform() < 0.5 ? beside[j] : -beside[j];
+      const CollisionReport truth = exact.check(as_span(q)).value();
+      ASSERT_TRUE(truth.free) << place_of(q) << ": " << describe(truth);
+    }
+    ++tally.free;
+  }
+}
+
 void expect_both(const SolidTally& tally) {
   std::printf("%d free, %d in collision, %d nearly\n", tally.free, tally.hit, tally.narrow);
   EXPECT_GT(tally.free, (tally.free + tally.hit) / 50);
@@ -91,12 +119,15 @@ void expect_both(const SolidTally& tally) {
 
 void compare_robot(const CoveredRobot& robot, std::uint64_t seed) {
   Rng rng(seed);
-  SolidTally states, edges;
+  SolidTally states, edges, beside;
   compare_states(robot, 0.03, testing::rounds(5'000, 1'000'000), rng, states);
   ASSERT_FALSE(::testing::Test::HasFatalFailure());
   compare_edges(robot, 0.03, testing::rounds(200, 100'000), rng, edges);
+  ASSERT_FALSE(::testing::Test::HasFatalFailure());
+  compare_beside(robot, 0.03, testing::rounds(300, 100'000), rng, beside);
   expect_both(states);
   expect_both(edges);
+  expect_both(beside);
 }
 
 TEST(SolidScene, Ur5eAsMujocoSeesIt) { compare_robot(testing::covered_robot("ur5e"), 401); }

@@ -23,13 +23,16 @@ struct PathMotion {
 /// How hard to try. Every default is usable as is.
 struct PathMotionOptions {
   std::vector<std::size_t> passed = {};  ///< corners that are met exactly, by index, ascending
-  int changes = 100;                     ///< attempts to get faster by moving points, >= 0
-  StopCheck stop = {};                   ///< ends the attempts; what was found so far counts
+  /// To make parts of the motion faster, >= 0, in each of three runs, which mostly end after some
+  /// hundreds, when that does not pay any more.
+  int attempts = 20'000;
+  StopCheck stop = {};  ///< ends the attempts; what was found so far counts
 };
 
-/// The fastest motion that is found along a path of straight edges in joint space, within velocity,
-/// acceleration and jerk limits: corners are cut or swung round, each as far as the whole motion is
-/// proved free; it stops only where nothing else is. Same input, same bytes.
+/// The fastest motion that is found beside a path of straight edges in joint space, within
+/// velocity, acceleration and jerk limits: it begins as one that stops at every corner, of which
+/// parts are replaced by faster ones as long as the whole motion is proved free. Same input, same
+/// bytes.
 /// @param corners  [rad or m] at least 1, each (dof,), neighbours apart; their edges are proved.
 /// @param prover   of the paths that they are of.
 /// @return an error for sizes, numbers or limits that make no sense.

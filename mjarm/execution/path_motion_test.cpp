@@ -5,8 +5,11 @@
 #include <algorithm>
 
 #include "mjarm/collision/exact.hpp"
+#include "mjarm/core/rng.hpp"
+#include "mjarm/execution/motion_proof_internal.hpp"
 #include "mjarm/planning/planning_world.hpp"
 #include "mjarm/planning/slider_test.hpp"
+#include "mjarm/trajectory/point_to_point.hpp"
 
 namespace mjarm {
 namespace {
@@ -73,6 +76,49 @@ TEST_F(PathMotionTest, GoesRoundWithoutAStopAndKeepsTheClearance) {
     EXPECT_LT((motion.trajectory.at(0).q - path.q.front()).norm(), 1e-9);
     EXPECT_LT((motion.trajectory.at(motion.trajectory.duration()).q - path.q.back()).norm(), 1e-9);
   }
+}
+
+/// Nothing is in the way: as soon as the slowest joint can be there.
+TEST_F(PathMotionTest, AnEdgeTakesNoLongerThanItsSlowestJoint) {
+  limits_.acceleration = at(4, 1);
+  limits_.velocity = at(0.4, 1);
+  limits_.jerk = at(40, 5);
+  const PlannedPath path = planned(at(-0.4, 0.3), at(0.4, 0.5), 0.01);
+  ASSERT_EQ(path.q.size(), 2U);
+  const PathMotion motion = timed(path.q, {&path, 1});
+  const auto fastest =
+      point_to_point(JointState::at_rest(path.q[0]), JointState::at_rest(path.q[1]), limits_);
+  EXPECT_NEAR(motion.trajectory.duration(), fastest->duration(), 1e-9);
+  EXPECT_LT(motion.trajectory.duration(), motion.stopping);
+  const PathMotion first = timed(path.q, {&path, 1}, {.attempts = 0});
+  EXPECT_EQ(first.trajectory.duration(), motion.trajectory.duration());
+}
+
+/// Motions between moving states beside the fence, against MuJoCo at every millisecond.
+TEST_F(PathMotionTest, ProofsOfMotionsHoldAndMissLittle) {
+  constexpr double kClearance = 0.02, kNearly = 1e-3;
+  const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), kClearance);
+  const WayProver prover = world_.prover({&path, 1}).value();
+  Rng rng(1, 2);
+  const auto random_state = [&](double x) {
+    return JointState{at(x, rng.uniform(0.1, 0.3)), at(rng.uniform(-1, 1), rng.uniform(-1, 1)),
+                      at(rng.uniform(-3, 3), rng.uniform(-3, 3))};
+  };
+  int proved = 0, refused = 0;
+  for (int k = 0; k < 120; ++k) {
+    const auto motion = point_to_point(random_state(rng.uniform(-0.3, -0.06)),
+                                       random_state(rng.uniform(-0.3, 0.3)), limits_);
+    if (!motion) continue;
+    if (detail::is_proved(*motion, prover)) {
+      EXPECT_GE(least_clearance(*motion), kClearance - 1e-5);
+      ++proved;
+    } else {
+      EXPECT_LT(least_clearance(*motion), kClearance + kNearly);
+      ++refused;
+    }
+  }
+  EXPECT_GT(proved, 20);
+  EXPECT_GT(refused, 20);
 }
 
 /// Two edges up and down again beside the fence: whatever leaves them to the right touches it.

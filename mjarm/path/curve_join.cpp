@@ -24,8 +24,8 @@ struct BendEnd {
 
 /// The quintic from `radius` of way before the corner to `radius` behind it, seen from its first
 /// point, that has position, direction and curvature of the legs there (Hermite interpolation).
-/// Its velocity is 2 radius at the ends, for which it is the quartic of corner_bend() between two
-/// straight legs.
+/// Its velocity is 2 radius at the ends, for which it is between two straight legs the quartic
+/// Bezier curve with control points at the corner and at 1 and 1/2 radius on both.
 std::optional<CurvePolynomial> bend_between(const BendEnd& from, const BendEnd& to, double radius) {
   const Eigen::Vector3d a0 = 4 * radius * radius * from.k, a1 = 4 * radius * radius * to.k;
   const Eigen::Vector3d change = to.t - from.t, bow = from.bow + to.bow;
@@ -157,12 +157,6 @@ bool is_leg(const std::vector<CurvePiece>& pieces) {
 }
 
 }  // namespace
-
-std::optional<CurvePolynomial> detail::corner_bend(const Eigen::Vector3d& t0,
-                                                   const Eigen::Vector3d& t1, double radius) {
-  if (turns_back(t0, t1)) return std::nullopt;
-  return bend_between({.t = t0}, {.t = t1}, radius);
-}
 
 std::optional<Error> detail::blends_error(std::span<const double> blends,
                                           std::size_t inner_points) {

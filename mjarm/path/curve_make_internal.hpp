@@ -25,15 +25,6 @@ inline constexpr double kFarthest = 1e6;    // [m]
 /// True where the tool passes from one piece to the next without a jump in its velocity.
 [[nodiscard]] bool smooth_joint(const CurvePiece& before, const CurvePiece& after);
 
-/// The bend of a corner between the unit directions `t0` and `t1` of two straight lines, from
-/// `radius` before the corner to `radius` behind it: corner + t0 f(u) + t1 g(u), f = -radius
-/// (1 - u)^3 (1 + u), g(u) = -f(1 - u), seen from its first point. At either end it has the
-/// direction of the line and no curvature, as the quartic Bezier curve with control points at the
-/// corner and at 1 and 1/2 radius on both lines. None where the corner turns back by over 179
-/// degrees.
-[[nodiscard]] std::optional<CurvePolynomial> corner_bend(const Eigen::Vector3d& t0,
-                                                         const Eigen::Vector3d& t1, double radius);
-
 /// A part of a curve without corners of its own: a straight piece, a turn on the spot, or the
 /// pieces of an arc of a circle.
 using CurveLeg = std::vector<CurvePiece>;

@@ -2,29 +2,36 @@
 
 #include <algorithm>
 
-#include "mjarm/collision/edge_check.hpp"
-
 namespace mjarm {
-namespace {
 
-constexpr EdgeOptions kFine{1e-5};
-
-}  // namespace
-
-bool WayProver::is_proved(const JointVec& from, const JointVec& to) const {
-  if (check_edge(wide_, as_span(from), as_span(to), kFine).verdict == EdgeVerdict::free) {
-    return true;
-  }
+/// Whether the clearance is kept; or, where all places are near an end, what is kept there.
+template <class Keeps>
+bool WayProver::any_keeps(std::initializer_list<const JointVec*> places, const Keeps& keeps) const {
+  if (keeps(wide_)) return true;
   return std::ranges::any_of(ends_, [&](const NearEnd& end) {
-    return (from - end.q).norm() <= end.radius && (to - end.q).norm() <= end.radius &&
-           check_edge(end.narrow, as_span(from), as_span(to), kFine).verdict == EdgeVerdict::free;
+    const auto is_near = [&](const JointVec* q) { return (*q - end.q).norm() <= end.radius; };
+    return std::ranges::all_of(places, is_near) && keeps(end.narrow);
   });
 }
 
-std::size_t WayProver::first_unproved(std::span<const JointVec> way) const {
-  std::size_t piece = 0;
-  while (piece + 1 < way.size() && is_proved(way[piece], way[piece + 1])) ++piece;
-  return piece;
+bool WayProver::is_free(const JointVec& q) const {
+  return any_keeps({&q}, [&](const FastChecker& checker) { return checker.is_free(as_span(q)); });
+}
+
+bool WayProver::is_edge_free(const JointVec& from, const JointVec& to,
+                             const EdgeOptions& options) const {
+  return any_keeps({&from, &to}, [&](const FastChecker& checker) {
+    return check_edge(checker, as_span(from), as_span(to), options).verdict == EdgeVerdict::free;
+  });
+}
+
+bool WayProver::is_proved(const JointVec& from, const JointVec& to) const {
+  return is_edge_free(from, to, {1e-5});
+}
+
+bool WayProver::is_proved(const JointVec& from, const JointVec& to, const JointVec& beside) const {
+  constexpr double kParts = 4;
+  return is_edge_free(from, to, {(to - from).norm() / kParts, as_span(beside)});
 }
 
 }  // namespace mjarm

@@ -1,20 +1,20 @@
 #pragma once
 
-#include <cstddef>
-#include <span>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
+#include "mjarm/collision/edge_check.hpp"
 #include "mjarm/collision/fast_check.hpp"
 #include "mjarm/core/joint_vec.hpp"
 
 namespace mjarm {
 
-/// Proves that a way beside planned paths keeps what they keep: their clearance, and near starts
-/// and goals with less than that what the paths keep there. Made by PlanningWorld::prover().
+/// Proves that what lies beside planned paths keeps what they keep: their clearance, and near
+/// starts and goals with less than that what the paths keep there. Made by PlanningWorld::prover().
 class WayProver {
  public:
-  /// [m] that is proved at least, for what lies between the samples of a way.
+  /// [m] that is proved at least, so that a way may be off by as much.
   static constexpr double kSpare = 1e-5;
 
   /// An end of a path that has less than the clearance itself.
@@ -28,16 +28,22 @@ class WayProver {
   WayProver(FastChecker wide, std::vector<NearEnd> ends)
       : wide_(std::move(wide)), ends_(std::move(ends)) {}
 
-  /// The first of the straight pieces between neighbours that is not proved; their number where
-  /// all are.
-  /// @param way  shape (n,), n >= 1, each (dof,).
-  [[nodiscard]] std::size_t first_unproved(std::span<const JointVec> way) const;
-  [[nodiscard]] bool is_proved(std::span<const JointVec> way) const {
-    return first_unproved(way) + 1 == way.size();
-  }
+  /// Whether one configuration keeps it.
+  [[nodiscard]] bool is_free(const JointVec& q) const;
+  /// Whether the straight way is proved.
+  [[nodiscard]] bool is_proved(const JointVec& from, const JointVec& to) const;
+  /// Whether all is proved that lies within `beside` of the straight way in every joint. Does not
+  /// try hard: where it fails a curve is better cut in two, whose ways it leaves by a quarter.
+  /// @param beside  shape (dof,) [rad or m] >= 0.
+  [[nodiscard]] bool is_proved(const JointVec& from, const JointVec& to,
+                               const JointVec& beside) const;
 
  private:
-  [[nodiscard]] bool is_proved(const JointVec& from, const JointVec& to) const;
+  template <class Keeps>
+  [[nodiscard]] bool any_keeps(std::initializer_list<const JointVec*> places,
+                               const Keeps& keeps) const;
+  [[nodiscard]] bool is_edge_free(const JointVec& from, const JointVec& to,
+                                  const EdgeOptions& options) const;
 
   FastChecker wide_;
   std::vector<NearEnd> ends_;

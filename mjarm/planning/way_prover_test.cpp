@@ -38,18 +38,30 @@ class WayProverTest : public ::testing::Test {
   ExactChecker checker_{robot_.model, robot_.arm, {.margin = 1}};
 };
 
-TEST_F(WayProverTest, NamesThePieceThatLeadsIntoTheFence) {
+TEST_F(WayProverTest, RefusesWhatLeadsIntoTheFenceOrBeyondALimit) {
   const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), 0.01);
   const WayProver prover = world_.prover(std::vector{path}).value();
-  EXPECT_TRUE(prover.is_proved(path.q));
-  const std::vector<JointVec> way{at(-0.4, 0.1), at(-0.4, 0.3), at(-0.2, 0.3), at(0.2, 0.05),
-                                  at(0.4, 0.1)};
-  EXPECT_FALSE(prover.is_proved(way));
-  EXPECT_EQ(prover.first_unproved(way), 2U);
-  EXPECT_EQ(prover.first_unproved(std::span(way).first(3)), 2U) << "all two pieces";
-  EXPECT_TRUE(prover.is_proved(std::span(way).first(1))) << "a place alone has no piece";
-  const std::vector<JointVec> outside{at(-0.4, 0.1), at(-0.7, 0.1)};
-  EXPECT_EQ(prover.first_unproved(outside), 0U) << "beyond the limit of the slide";
+  for (std::size_t i = 1; i < path.q.size(); ++i) {
+    EXPECT_TRUE(prover.is_proved(path.q[i - 1], path.q[i])) << i;
+  }
+  EXPECT_FALSE(prover.is_proved(at(-0.2, 0.3), at(0.2, 0.05)));
+  EXPECT_FALSE(prover.is_proved(at(-0.4, 0.1), at(-0.7, 0.1)));
+  EXPECT_TRUE(prover.is_free(at(-0.0401, 0.1)));
+  EXPECT_FALSE(prover.is_free(at(-0.0399, 0.1))) << "9.9 mm from the fence";
+}
+
+/// The ball passes the fence 20 mm beside what it has to keep.
+TEST_F(WayProverTest, ProvesWhatLiesBesideAWay) {
+  const PlannedPath path = planned(at(-0.4, 0.1), at(0.4, 0.1), 0.01);
+  const WayProver prover = world_.prover(std::vector{path}).value();
+  const auto is_proved = [&](double x, double z) {
+    return prover.is_proved(at(-0.06, 0.05), at(-0.06, 0.1), at(x, z));
+  };
+  EXPECT_TRUE(is_proved(0.0195, 0));
+  EXPECT_TRUE(is_proved(0, 0.0195));
+  EXPECT_FALSE(is_proved(0.0205, 0)) << "the fence";
+  EXPECT_FALSE(is_proved(0, 0.0205)) << "the table";
+  EXPECT_FALSE(prover.is_proved(at(-0.59, 0.3), at(-0.5, 0.3), at(0.011, 0))) << "a limit";
 }
 
 /// What is proved keeps the clearance, and what keeps a little more than it is proved.
@@ -63,7 +75,7 @@ TEST_F(WayProverTest, ProvesWhatKeepsTheClearanceAndNothingElse) {
     const JointVec from = at(1.0 * rng.uniform() - 0.5, 0.03 + 0.25 * rng.uniform());
     const JointVec to = from + at(0.2 * rng.uniform() - 0.1, 0.2 * rng.uniform() - 0.1);
     const double exact = exact_clearance(from, to);
-    if (prover.is_proved(std::vector{from, to})) {
+    if (prover.is_proved(from, to)) {
       EXPECT_GE(exact, kClearance - 1e-6);
       ++proved;
     } else {
@@ -81,10 +93,10 @@ TEST_F(WayProverTest, LessWillDoNearAnEndThatHasLess) {
   const PlannedPath path = planned(low, at(0.4, 0.15), 0.03);
   const WayProver prover = world_.prover(std::vector{path}).value();
   const auto is_proved = [&](const JointVec& from, const JointVec& way) {
-    return prover.is_proved(std::vector<JointVec>{from, from + way});
+    return prover.is_proved(from, JointVec(from + way));
   };
-  EXPECT_TRUE(prover.is_proved(path.q));
   EXPECT_TRUE(is_proved(low, at(0.005, 0.002)));
+  EXPECT_TRUE(prover.is_free(low));
   EXPECT_FALSE(is_proved(low, at(0.002, -0.003))) << "nearer than the end";
   EXPECT_FALSE(is_proved(low + at(0.2, 0), at(0.01, 0))) << "elsewhere";
 }
