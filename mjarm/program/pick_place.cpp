@@ -75,7 +75,7 @@ class PickPlanner {
 
   Result<PickPlan, PickFailure> plan_from_hand() {
     if (scene_.attached.size() != 1) {
-      return failure(PickErrc::hand_full, text(msg::pick_holds_nothing));
+      return failure(PickErrc::hand_full, text(msg::pick_hand_empty));
     }
     task_.object = scene_.attached.front().body;
     find_approach();
@@ -105,11 +105,14 @@ class PickPlanner {
     const SceneBodies bodies = scene_bodies(robot_.model, robot_.arm);
     const auto object = std::ranges::find(bodies.objects, task_.object, &SceneObject::name);
     if (object == bodies.objects.end()) {
-      std::string names;
-      for (const SceneObject& one : bodies.objects) names += (names.empty() ? "" : ", ") + one.name;
+      std::vector<std::string> names;
+      for (const SceneObject& one : bodies.objects) names.push_back(one.name);
+      std::string list;
+      for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
       return failure(PickErrc::no_object,
                      text(msg::pick_no_object, task_.object,
-                          names.empty() ? "" : text(msg::pick_objects, names)));
+                          list.empty() ? "" : text(msg::pick_objects, list)) +
+                         did_you_mean(task_.object, names));
     }
     sort_bodies(bodies);
     if (!scene_.attached.empty()) {

@@ -6,6 +6,7 @@
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/robot.hpp"
+#include "mjarm/program/load_program.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -120,6 +121,39 @@ TEST(PlanPick, TellsWhyItCannot) {
   const PickFailure blocked = refused(walled, to({0.5, -0.2, 0.23}));
   EXPECT_EQ(blocked.code, PickErrc::grasp_blocked) << blocked.what;
   EXPECT_FALSE(blocked.dropped.empty());
+}
+
+/// The faults of a program before the shipped table.
+std::vector<ProgramFault> faults_of(const std::string& instructions) {
+  const support::TempFolder folder;
+  const auto file = folder.write("one.yaml", "scene: universal_robots_ur5e/pick.xml\nprogram:\n" +
+                                                 instructions);
+  const auto loaded = load_program(file);
+  return loaded ? loaded->plan.faults : std::vector<ProgramFault>{{.what = loaded.error().what}};
+}
+
+TEST(PickInstruction, FaultsNameTheirPlaceAndWhatIsKnown) {
+  const auto unknown = faults_of("  - pick: cann\n  - place: {pos: [0.5, -0.26, 0.256]}\n");
+  ASSERT_EQ(unknown.size(), 1u);
+  EXPECT_EQ(unknown[0].place.line, 3);
+  EXPECT_EQ(unknown[0].reason, "no_object");
+  EXPECT_THAT(unknown[0].what, HasSubstr("there are: box, can, house (did you mean \"can\"?)"));
+  const auto empty = faults_of("  - place: {pos: [0.5, -0.26, 0.256]}\n");
+  ASSERT_EQ(empty.size(), 1u);
+  EXPECT_EQ(empty[0].reason, "hand_full");
+  EXPECT_EQ(empty[0].what, "the fingers hold nothing");
+}
+
+TEST(PickInstruction, GoesOnFromWhereThingsWerePut) {
+  EXPECT_TRUE(faults_of("  - pick: {object: can}\n  - plan: {joints: home}\n"
+                        "  - place: {pos: [0.5, -0.3, 0.256]}\n  - pick: box\n"
+                        "  - place: {pos: [0.52, 0.2, 0.23], euler: [0, 0, 0]}\n")
+                  .empty());
+  const auto taken = faults_of("  - pick: can\n  - place: {pos: [0.5, -0.3, 0.256]}\n"
+                               "  - pick: box\n  - place: {pos: [0.5, -0.3, 0.236]}\n");
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].reason, "place_blocked") << taken[0].what;
+  EXPECT_EQ(taken[0].place.line, 5);
 }
 
 }  // namespace
