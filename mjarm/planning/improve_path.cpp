@@ -50,6 +50,15 @@ class Settler {
   PlanOptions options_;
 };
 
+/// Leaves out goals that no path shorter than `cost` reaches; the nearest one stays.
+void leave_out_far(detail::SearchProblem& problem, double cost) {
+  while (problem.goals.size() > 1 &&
+         detail::distance(problem.start, problem.goals.back()) >= cost) {
+    problem.goals.pop_back();
+    problem.goal_index.pop_back();
+  }
+}
+
 }  // namespace
 
 RawPath improve_path(const FastChecker& checker, std::span<const double> start,
@@ -74,6 +83,7 @@ RawPath improve_path(const FastChecker& checker, std::span<const double> start,
   for (int k = 0; goes_on(k); ++k) {
     ++round.seed;
     problem->max_cost = kShare * cost;
+    leave_out_far(*problem, cost);
     Result<RawPath, PlanFailure> found = detail::rrt_connect(*problem, round);
     if (!found) continue;
     settler.settle(round.seed, cost, *found);

@@ -16,8 +16,7 @@ typedef float Four __attribute__((vector_size(16)));
 typedef std::int32_t FourInts __attribute__((vector_size(16)));
 
 constexpr std::size_t kFull = 256;  // nodes of a box that is cut in two
-constexpr float kMaxWeight = 1e6F;
-constexpr float kNowhere = 1e9F;  // [rad or m] where lanes without a node are: out of reach
+constexpr float kNowhere = 1e9F;    // [rad or m] where lanes without a node are: out of reach
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr float kRounded = 1e-5F;  // [of a distance, of a place] more than rounding can do
 
@@ -63,9 +62,7 @@ NearNodes::NearNodes(std::size_t dof) : dof_(dof), cells_(1), boxes_(2 * dof), l
   std::fill_n(boxes_.begin(), dof, kInfinite);
   std::fill_n(boxes_.begin() + static_cast<std::ptrdiff_t>(dof), dof, -kInfinite);
   leaves_.front().places.reserve(64 * dof);
-  leaves_.front().weights.reserve(64);
   leaves_.front().nodes.reserve(64);
-  leaf_of_.reserve(64);
 }
 
 void NearNodes::add(std::span<const double> q) {
@@ -73,29 +70,22 @@ void NearNodes::add(std::span<const double> q) {
   int cell = 0;
   grow(cell, place.data());
   while (cells_[static_cast<std::size_t>(cell)].leaf < 0) {
-    Cell& now = cells_[static_cast<std::size_t>(cell)];
-    now.least_weight = 1;
+    const Cell& now = cells_[static_cast<std::size_t>(cell)];
     cell = now.halves[place[now.axis] < now.at ? 0 : 1];
     grow(cell, place.data());
   }
-  Cell& last = cells_[static_cast<std::size_t>(cell)];
-  last.least_weight = 1;
-  Leaf& leaf = leaves_[static_cast<std::size_t>(last.leaf)];
-  leaf_of_.push_back(last.leaf);
-  put(leaf, place.data(), static_cast<int>(leaf_of_.size()) - 1, 1);
+  const int last = cells_[static_cast<std::size_t>(cell)].leaf;
+  Leaf& leaf = leaves_[static_cast<std::size_t>(last)];
+  put(leaf, place.data(), count_++);
   // One that cannot be cut is tried again when it has grown by as much.
   if (leaf.nodes.size() % kFull == 0) cut(cell);
 }
 
 /// Writes a node into the next lane of a leaf.
-void NearNodes::put(Leaf& leaf, const float* q, int node, float weight) {
+void NearNodes::put(Leaf& leaf, const float* q, int node) {
   const std::size_t slot = leaf.nodes.size(), lane = slot % kLanes, first = slot - lane;
-  if (lane == 0) {
-    leaf.places.resize(leaf.places.size() + kLanes * dof_, kNowhere);
-    leaf.weights.resize(leaf.weights.size() + kLanes, 1);
-  }
+  if (lane == 0) leaf.places.resize(leaf.places.size() + kLanes * dof_, kNowhere);
   for (std::size_t k = 0; k < dof_; ++k) leaf.places[first * dof_ + k * kLanes + lane] = q[k];
-  leaf.weights[slot] = weight;
   leaf.nodes.push_back(node);
 }
 
@@ -145,9 +135,7 @@ void NearNodes::cut(int cell) {
   cells_[index].at = at;
   for (const int h : {0, 1}) {
     cells_[index].halves[h] = half + h;
-    const int leaf = h == 0 ? first : second;
-    cells_.push_back({.parent = cell, .leaf = leaf});
-    leaves_[static_cast<std::size_t>(leaf)].cell = half + h;
+    cells_.push_back({.leaf = h == 0 ? first : second});
     boxes_.insert(boxes_.end(), dof_, kInfinite);
     boxes_.insert(boxes_.end(), dof_, -kInfinite);
   }
@@ -157,37 +145,8 @@ void NearNodes::cut(int cell) {
     const int h = q[axis] < at ? 0 : 1;
     const int leaf = h == 0 ? first : second;
     grow(half + h, q.data());
-    put(leaves_[static_cast<std::size_t>(leaf)], q.data(), whole.nodes[slot], whole.weights[slot]);
-    leaf_of_[static_cast<std::size_t>(whole.nodes[slot])] = leaf;
+    put(leaves_[static_cast<std::size_t>(leaf)], q.data(), whole.nodes[slot]);
   }
-  lighten(half);
-  lighten(half + 1);
-}
-
-/// Looks again for the least weight in a leaf's cell, and in all round it.
-void NearNodes::lighten(int cell) {
-  const Leaf& leaf = leaves_[static_cast<std::size_t>(cells_[static_cast<std::size_t>(cell)].leaf)];
-  float least = kMaxWeight;
-  for (std::size_t slot = 0; slot < leaf.nodes.size(); ++slot) {
-    least = std::min(least, leaf.weights[slot]);
-  }
-  while (cells_[static_cast<std::size_t>(cell)].least_weight != least) {
-    cells_[static_cast<std::size_t>(cell)].least_weight = least;
-    cell = cells_[static_cast<std::size_t>(cell)].parent;
-    if (cell < 0) return;
-    for (const int half : cells_[static_cast<std::size_t>(cell)].halves) {
-      least = std::min(least, cells_[static_cast<std::size_t>(half)].least_weight);
-    }
-  }
-}
-
-void NearNodes::push_away(int node, double factor) {
-  Leaf& leaf = leaves_[static_cast<std::size_t>(leaf_of_[static_cast<std::size_t>(node)])];
-  const auto at = std::lower_bound(leaf.nodes.begin(), leaf.nodes.end(), node);
-  float& weight = leaf.weights[static_cast<std::size_t>(at - leaf.nodes.begin())];
-  const float before = weight;
-  weight = std::min(weight * static_cast<float>(factor), kMaxWeight);
-  if (before == cells_[static_cast<std::size_t>(leaf.cell)].least_weight) lighten(leaf.cell);
 }
 
 /// Squared distance from what a cell holds at least; of several cells in the order of what comes
@@ -207,37 +166,31 @@ void NearNodes::compare(const Leaf& leaf, const Wanted& wanted, Best& best) cons
   // The best of every lane, and then the best of these.
   std::array<Four, 2> least{Four{} + kNowhere * kNowhere, Four{} + kNowhere * kNowhere};
   std::array<FourInts, 2> found{};
-  const std::size_t slots = leaf.weights.size();
-  const float* const weights = leaf.weights.data();
   const float* places = leaf.places.data();
-  for (std::size_t first = 0; first < slots; first += kLanes, places += kLanes * dof_) {
-    std::array<Four, 2> looks = squared_distances(places, wanted);
+  for (std::size_t first = 0; first < leaf.nodes.size(); first += kLanes, places += kLanes * dof_) {
+    const std::array<Four, 2> squared = squared_distances(places, wanted);
     for (std::size_t h = 0; h < 2; ++h) {
-      looks[h] *= load(weights + first + 4 * h);
-      const FourInts nearer = looks[h] < least[h];
-      least[h] = nearer ? looks[h] : least[h];
+      const FourInts nearer = squared[h] < least[h];
+      least[h] = nearer ? squared[h] : least[h];
       found[h] = nearer ? FourInts{} + static_cast<int>(first) : found[h];
     }
   }
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    const float look = least[lane / 4][lane % 4];
-    if (look > best.look) continue;
+    const float distance2 = least[lane / 4][lane % 4];
+    if (distance2 > best.distance2) continue;
     const int node = leaf.nodes[static_cast<std::size_t>(found[lane / 4][lane % 4]) + lane];
-    if (look < best.look || node < best.node) best = {look, node};
+    if (distance2 < best.distance2 || node < best.node) best = {distance2, node};
   }
 }
 
 void NearNodes::search(int cell, const Wanted& wanted, Best& best) const {
   const Cell& now = cells_[static_cast<std::size_t>(cell)];
   if (now.leaf >= 0) return compare(leaves_[static_cast<std::size_t>(now.leaf)], wanted, best);
-  std::array<float, 2> looks;
-  for (std::size_t h = 0; h < 2; ++h) {
-    looks[h] = gap2(now.halves[h], wanted.q.data()) *
-               cells_[static_cast<std::size_t>(now.halves[h])].least_weight;
-  }
-  const std::size_t nearer = looks[1] < looks[0] ? 1 : 0;
+  const float* const q = wanted.q.data();
+  const std::array<float, 2> gaps2{gap2(now.halves[0], q), gap2(now.halves[1], q)};
+  const std::size_t nearer = gaps2[1] < gaps2[0] ? 1 : 0;
   for (const std::size_t h : {nearer, 1 - nearer}) {
-    if (looks[h] <= best.look) search(now.halves[h], wanted, best);
+    if (gaps2[h] <= best.distance2) search(now.halves[h], wanted, best);
   }
 }
 

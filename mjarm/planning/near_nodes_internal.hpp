@@ -19,12 +19,8 @@ class NearNodes {
   /// @param q  shape (dof,) [rad or m].
   void add(std::span<const double> q);
 
-  /// Makes the squared distance of a node count `factor` >= 1 times as much as so far, up to a
-  /// million times altogether.
-  void push_away(int node, double factor);
-
-  /// The node with the least squared distance times factors, the first of equals; at least one is
-  /// there. The same as if all were compared.
+  /// The nearest node, the first of equals; at least one is there. The same as if all were
+  /// compared.
   [[nodiscard]] int nearest(std::span<const double> q) const;
 
   /// Writes all nodes within `radius`, and maybe some a little farther away, in any order.
@@ -37,29 +33,24 @@ class NearNodes {
   /// Nodes of a box that is not cut, in the order of their numbers.
   struct Leaf {
     std::vector<int> nodes;
-    std::vector<float> places;   // kLanes nodes joint by joint, ...; empty lanes are out of reach
-    std::vector<float> weights;  // of the squared distances, one a lane
-    int cell = 0;
+    std::vector<float> places;  // kLanes nodes joint by joint, ...; empty lanes are out of reach
   };
   /// A box and what is in it.
   struct Cell {
-    int parent = -1;
     int leaf = -1;             // -1: cut
     std::size_t axis = 0;      // across which it is cut
     float at = 0;              // what is less is in the first half
     int halves[2] = {-1, -1};  // cells
-    float least_weight = 1;    // of all nodes in it
   };
   struct Wanted;
   struct Best {
-    float look;
+    float distance2;
     int node;
   };
 
-  void put(Leaf& leaf, const float* q, int node, float weight);
+  void put(Leaf& leaf, const float* q, int node);
   void grow(int cell, const float* q);
   void cut(int cell);
-  void lighten(int cell);
   std::array<Four, 2> squared_distances(const float* places, const Wanted& wanted) const;
   float gap2(int cell, const float* q) const;
   void compare(const Leaf& leaf, const Wanted& wanted, Best& best) const;
@@ -70,7 +61,7 @@ class NearNodes {
   std::vector<Cell> cells_;   // the first holds all
   std::vector<float> boxes_;  // of every cell low (dof), then high
   std::vector<Leaf> leaves_;
-  std::vector<int> leaf_of_;  // of every node
+  int count_ = 0;  // of nodes
 };
 
 }  // namespace mjarm::detail

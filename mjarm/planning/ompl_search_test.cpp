@@ -95,7 +95,7 @@ TEST_P(OmplPlanner, GoesRoundAPostToTheGoalThatCanBeReached) {
   ASSERT_EQ(check_edge(checker, kHere, kThere).verdict, EdgeVerdict::hit);
   const auto goals =
       goals_at({{0, 0}, {0, 5}, {-0.8, 0}});  // in collision, outside, behind the post
-  const PlanOptions options = ompl_options(GetParam(), 700);
+  const PlanOptions options = ompl_options(GetParam(), 1000);
   const auto raw = find_path(checker, kHere, goals, options);
   ASSERT_TRUE(raw) << describe(raw.error(), checker.robot(), flat.world);
   EXPECT_EQ(raw->q.front(), joint_vec(kHere));

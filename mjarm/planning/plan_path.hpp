@@ -44,7 +44,7 @@ struct SearchProgress {
 struct PlanOptions {
   Planner planner = Planner::rrt_connect;
   std::uint64_t seed = 1;  ///< same problem and seed, same path
-  double range = 1.5;      ///< [rad or m, L2] longest edge that is grown at once, > 0
+  double range = 1;        ///< [rad or m, L2] longest edge that is grown at once, > 0
   /// Budget: configurations that are drawn at most until there is a path, and as many that rrt_star
   /// draws after that; 0: 100,000 (with a clearance 30,000) and 3,000.
   int samples = 0;
@@ -78,7 +78,7 @@ struct PlanOptions {
   /// at all; null: is not. Must outlive the search. answer_problem() and PlanningWorld have one of
   /// their own.
   EnclosureTest* enclosure = nullptr;
-  /// Called after every sample until there is a path, so it must be quick.
+  /// Called after every few samples until there is a path, so it must be quick.
   std::function<void(const SearchProgress&)> progress = {};
   bool keep_trees = false;  ///< hand over what was searched, to be drawn, say
   StopCheck stop = {};      ///< ends the work with PlanErrc::stopped
@@ -130,7 +130,7 @@ struct PlanFailure {
 struct PlanCounts {
   int samples = 0;  ///< configurations drawn
   int nodes = 0;    ///< of all trees; those of OMPL are not counted
-  int edges = 0;    ///< edges that were looked at, those of shortcuts included
+  int edges = 0;    ///< edges that were to be proved, those of shortcuts included
 };
 
 /// A tree of a search: configurations that are joined by proved edges.

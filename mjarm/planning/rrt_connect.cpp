@@ -12,20 +12,20 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kBeside = 0.5;     // share of samples that are drawn beside a node
-constexpr int kEvenOnly = 8;        // samples before that begins
-constexpr double kBlocked = 1.2;    // a node looks so much farther (squared) after a blocked way,
-constexpr double kUnmet = 1.1;      // and after one towards the other tree
-constexpr double kFreePart = 0.5;   // of what lies before a hit is tried once more
-constexpr double kLeastPart = 0.3;  // [rad or m, L2] if it is as long as this,
-constexpr double kLeastPartFirst = 0.6;  // or as this at first: easy ways need no short parts,
-constexpr int kCoarse = 60;              // for so many samples
-constexpr double kSamePlace = 1e-9;      // [rad or m, L2]
+constexpr double kBeside = 0.5;      // share of samples that are drawn beside a node at first,
+constexpr int kBetweenEnds = 80;     // for so many samples; later on all are
+constexpr int kLarger = 16;          // one turn in so many is that of the larger tree
+constexpr std::size_t kSteps = 4;    // looked at together,
+constexpr std::size_t kStates = 4;   // at so many places each, before they are proved
+constexpr double kFreePart = 0.7;    // of what lies before a hit is tried once more
+constexpr double kLeastPart = 0.3;   // [rad or m, L2] if it is as long as this
+constexpr double kSamePlace = 1e-9;  // [rad or m, L2]
 
 /// RRT-Connect (J. J. Kuffner and S. M. LaValle, ICRA 2000), with three changes: every edge is
-/// proved; half of the samples are drawn beside nodes, which gets out of narrow places (as D. Hsu,
-/// J.-C. Latombe and R. Motwani, ICRA 1997, do); nodes whose ways were blocked are chosen less
-/// often, as in the dynamic domain of A. Yershova et al., ICRA 2005.
+/// proved; samples are drawn beside nodes as well, which gets out of narrow places (as D. Hsu,
+/// J.-C. Latombe and R. Motwani, ICRA 1997, do); several steps of a tree are looked at together,
+/// at a few places each, as most of them fail where it is narrow and a look costs far less than a
+/// proof that ends in a collision.
 class Connector {
  public:
   Connector(const SearchProblem& problem, const PlanOptions& options)
@@ -36,7 +36,7 @@ class Connector {
         range_(detail::range_of(keeper_, options)),
         prover_(problem.checker, keeper_, options, path_.counts),
         rng_(options.seed),
-        box_(problem, rng_),
+        sampler_(problem, rng_),
         from_start_(dof_),
         from_goals_(dof_) {}
 
@@ -47,59 +47,107 @@ class Connector {
     for (int g = 0; g < from_goals_.size() && std::isinf(problem_.max_cost); ++g) {
       if (prover_.is_free(problem_.start, from_goals_.q(g))) return join(0, g);
     }
-    Tree* grown = &from_start_;
-    Tree* other = &from_goals_;
     const int max = options_.samples > 0 ? options_.samples : detail::kAllSamples;
     SearchWatch watch(options_, max);
-    while (!watch.is_hopeless(path_.counts.samples, nearest_) && path_.counts.samples < max &&
-           !problem_.deadline.passed()) {
-      const int node = grow(*grown);
-      if (node >= 0) {
-        const int met = connect(*other, grown->q(node));
-        if (met >= 0 && grown->cost(node) + other->cost(met) < problem_.max_cost)
-          return grown == &from_start_ ? join(node, met) : join(met, node);
+    for (int turn = 1; !watch.is_hopeless(path_.counts.samples, nearest_) &&
+                       path_.counts.samples < max && !problem_.deadline.passed();
+         ++turn) {
+      // One that cannot grow must not have all turns.
+      const bool larger = turn % kLarger == 0;
+      const bool start_turn = (from_start_.size() <= from_goals_.size()) != larger;
+      Tree& grown = start_turn ? from_start_ : from_goals_;
+      Tree& other = start_turn ? from_goals_ : from_start_;
+      const int first = grown.size();
+      grow(grown, max - path_.counts.samples);
+      const int last = grown.size() - 1;
+      // Within regions the new nodes are those of one way.
+      for (int node = keeper_ != nullptr ? std::max(first, last) : first; node <= last; ++node) {
+        const int met = connect(other, grown.q(node));
+        if (met >= 0 && grown.cost(node) + other.cost(met) < problem_.max_cost)
+          return start_turn ? join(node, met) : join(met, node);
       }
-      if (other->size() < grown->size() || node < 0) std::swap(grown, other);
     }
     return tl::unexpected(watch.why(path_.counts.samples, nearest_));
   }
 
  private:
   using Row = std::array<double, kMaxDof>;
+  using States = std::array<double, kSteps * kStates * kMaxDof>;
+  /// From a node of a tree.
+  struct Step {
+    int node;
+    double length;  // [rad or m, L2]
+    Row end;
+  };
 
-  /// A new node towards a new sample, or -1.
-  int grow(Tree& tree) {
-    ++path_.counts.samples;
-    Row row;
-    const std::span<double> q(row.data(), dof_);
-    Tree::Near near;
-    if (path_.counts.samples > kEvenOnly && rng_.uniform() < kBeside) {
-      near.node = static_cast<int>(rng_.below(static_cast<std::uint64_t>(tree.size())));
-      near.distance = draw_beside(tree.q(near.node), rng_, q);
-    } else {
-      box_.next(q);
-      near = tree.nearest(q);
+  /// Grows a tree towards some new samples, `max` at most.
+  void grow(Tree& tree, int max) {
+    if (keeper_ != nullptr) return grow_within(tree);
+    std::array<Step, kSteps> steps;
+    States states;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < kSteps && std::cmp_less(k, max); ++k) {
+      count += propose(tree, steps[count], states.data() + count * kStates * dof_) ? 1 : 0;
     }
-    if (keeper_ != nullptr) {
-      if (!keeper_->project(q)) return -1;
-      near.distance = distance(tree.q(near.node), q);
-    }
-    if (near.distance < kSamePlace) return -1;
-    if (least_cost_through(problem_, q) >= problem_.max_cost) return -1;
-    return advance(tree, near, q);
+    std::array<std::uint8_t, kSteps * kStates> free;
+    const std::size_t looks = count * kStates;
+    problem_.checker.check({states.data(), looks * dof_}, {free.data(), looks});
+    for (std::size_t k = 0; k < count; ++k) take(tree, steps[k], free.data() + k * kStates);
   }
 
-  /// Goes towards `q`, as far as PlanOptions::range: in one step, within regions of the tool in
-  /// several. The last new node, or -1.
-  int advance(Tree& tree, Tree::Near near, std::span<const double> q) {
-    int last = -1;
+  /// A step of a tree towards a new sample, and the states on its way; false: it leads nowhere.
+  bool propose(const Tree& tree, Step& step, double* states) {
+    Row row;
+    const std::span<double> q(row.data(), dof_);
+    draw(tree, q);
+    const Tree::Near near = tree.nearest(q);
+    if (!may_lead_on(near, q)) return false;
+    step = {near.node, std::min(near.distance, range_), row};
+    const std::span<double> end(step.end.data(), dof_);
+    between(tree.q(near.node), q, step.length / near.distance, end);
+    for (std::size_t i = 1; i <= kStates; ++i, states += dof_) {
+      between(tree.q(near.node), end, static_cast<double>(i) / kStates, {states, dof_});
+    }
+    return true;
+  }
+
+  /// Proves a step, or what of it seems free, and adds its end.
+  void take(Tree& tree, const Step& step, const std::uint8_t* free) {
+    const auto seen = std::find(free, free + kStates, 0) - free;
+    const bool whole = seen == kStates;
+    const double part = whole ? 1 : kFreePart * static_cast<double>(seen) / kStates;
+    if (!whole && part * step.length < kLeastPart) return;
+    Row row;
+    const std::span<double> end(row.data(), dof_);
+    between(tree.q(step.node), {step.end.data(), dof_}, part, end);
+    if (prover_.is_free(tree.q(step.node), end)) tree.add(end, step.node, part * step.length);
+  }
+
+  void draw(const Tree& tree, std::span<double> q) {
+    const bool beside = path_.counts.samples++ >= kBetweenEnds || rng_.uniform() < kBeside;
+    if (!beside) return sampler_.between_ends(q);
+    const auto node = rng_.below(static_cast<std::uint64_t>(tree.size()));
+    sampler_.beside(tree.q(static_cast<int>(node)), q);
+  }
+
+  bool may_lead_on(const Tree::Near& near, std::span<const double> q) const {
+    return near.distance >= kSamePlace && least_cost_through(problem_, q) < problem_.max_cost;
+  }
+
+  /// The same within regions of the tool, a sample at a time: in short steps, as far as
+  /// PlanOptions::range.
+  void grow_within(Tree& tree) {
+    Row row;
+    const std::span<double> q(row.data(), dof_);
+    draw(tree, q);
+    if (!keeper_->project(q)) return;
+    Tree::Near near = tree.nearest(q);
+    if (!may_lead_on(near, q)) return;
     for (double left = options_.range; left > 0; left -= range_) {
-      const Step made = step(tree, near, q, kBlocked);
-      if (made.node >= 0) last = made.node;
-      if (!made.whole || made.arrived) break;
+      const Made made = step(tree, near, q);
+      if (!made.whole || made.arrived) return;
       near = {made.node, distance(tree.q(made.node), q)};
     }
-    return last;
   }
 
   /// Grows `tree` to `goal`, a node of the other tree; the node there, or -1.
@@ -108,20 +156,20 @@ class Connector {
     for (;;) {
       nearest_ = std::min(nearest_, near.distance);
       if (near.distance < kSamePlace) return near.node;
-      const Step made = step(tree, near, goal, kUnmet);
+      const Made made = step(tree, near, goal);
       if (made.arrived) return made.node;
       if (!made.whole) return -1;
       near = {made.node, distance(tree.q(made.node), goal)};
     }
   }
 
-  struct Step {
+  struct Made {
     int node = -1;         ///< new, -1: none
     bool whole = false;    ///< as far as it was to go
     bool arrived = false;  ///< at its end
   };
   /// Goes from a node towards `to`, at most range_ far; where that is blocked, a part of the way.
-  Step step(Tree& tree, const Tree::Near& near, std::span<const double> to, double push) {
+  Made step(Tree& tree, const Tree::Near& near, std::span<const double> to) {
     const bool arrives = near.distance <= range_;
     double length = std::min(near.distance, range_);
     Row row;
@@ -137,10 +185,9 @@ class Connector {
     const EdgeResult found = prover_.look(tree.q(near.node), end);
     if (found.verdict == EdgeVerdict::free)
       return {tree.add(end, near.node, length), true, arrives};
-    tree.push_away(near.node, push);
     if (keeper_ != nullptr) return {};  // steps are short already
     const double part = kFreePart * found.t;
-    if (part * length < (path_.counts.samples < kCoarse ? kLeastPartFirst : kLeastPart)) return {};
+    if (part * length < kLeastPart) return {};
     between(tree.q(near.node), to, part * length / near.distance, end);
     if (!prover_.is_free(tree.q(near.node), end)) return {};
     return {tree.add(end, near.node, part * length), false, false};
@@ -168,7 +215,7 @@ class Connector {
   double range_;              // [rad or m, L2] of one edge
   EdgeProver prover_;
   Rng rng_;
-  WideningBox box_;
+  Sampler sampler_;
   Tree from_start_, from_goals_;
   double nearest_ = std::numeric_limits<double>::infinity();
 };

@@ -29,7 +29,7 @@ class Rewirer {
         prover_(problem.checker, problem.keeper ? &*problem.keeper : nullptr, options,
                 path_.counts),
         rng_(options.seed, 2),
-        box_(problem, rng_),
+        sampler_(problem, rng_),
         tree_(dof_) {
     problem_.max_cost = path_length(path_.q);
     problem_.deadline = Deadline(options.stop);  // the samples bound what follows
@@ -70,7 +70,7 @@ class Rewirer {
       const auto g = static_cast<std::size_t>(rng_.below(problem_.goals.size()));
       std::copy(problem_.goals[g].begin(), problem_.goals[g].end(), q.begin());
     } else {
-      box_.next(q);
+      sampler_.between_ends(q);
     }
     const Tree::Near nearest = tree_.nearest(q);
     if (nearest.distance == 0) return;
@@ -144,7 +144,7 @@ class Rewirer {
   double range_;
   EdgeProver prover_;
   Rng rng_;
-  WideningBox box_;
+  Sampler sampler_;
   Tree tree_;
   int best_ = 0;
   std::vector<Tree::Near> within_;

@@ -8,14 +8,14 @@ namespace mjarm::detail {
 namespace {
 
 constexpr double kEndless = 4 * std::numbers::pi;  // [rad or m] stands for no limit
-constexpr double kFirstMargin = 0.5;               // [rad or m] of the box at first
-constexpr double kWidening = 0.01;                 // [rad or m] a sample
-constexpr double kNearest = 0.2, kFarthest = 2;    // [rad or m] of what is drawn beside a node
+constexpr double kFirstMargin = 0.5;               // [rad or m] of the box round the ends at first
+constexpr double kFirstBeside = 0.7, kMaxBeside = 2;  // [rad or m] half the box round a node
+constexpr double kWidening = 0.01;                    // [rad or m] of both, a sample
 
 }  // namespace
 
-WideningBox::WideningBox(const SearchProblem& problem, Rng& rng)
-    : halton_(problem.start.size(), rng) {
+Sampler::Sampler(const SearchProblem& problem, Rng& rng)
+    : rng_(rng), halton_(problem.start.size(), rng) {
   const JointLimits& limits = problem.checker.robot().arm().limits;
   for (std::size_t k = 0; k < problem.start.size(); ++k) {
     const auto joint = static_cast<Eigen::Index>(k);
@@ -29,7 +29,7 @@ WideningBox::WideningBox(const SearchProblem& problem, Rng& rng)
   }
 }
 
-void WideningBox::next(std::span<double> q) {
+void Sampler::between_ends(std::span<double> q) {
   std::array<double, kMaxDof> unit;
   halton_.next(unit.data());
   const double margin = kFirstMargin + kWidening * count_++;
@@ -40,16 +40,12 @@ void WideningBox::next(std::span<double> q) {
   }
 }
 
-double draw_beside(std::span<const double> from, Rng& rng, std::span<double> q) {
-  const double length = kNearest * std::pow(kFarthest / kNearest, rng.uniform());
-  double norm2 = 0;
-  for (double& x : q) {
-    x = rng.normal();
-    norm2 += x * x;
+void Sampler::beside(std::span<const double> node, std::span<double> q) {
+  const double widest = std::min(kFirstBeside + kWidening * count_++, kMaxBeside);
+  for (std::size_t k = 0; k < q.size(); ++k) {
+    const double half = std::min(widest, 0.5 * (max_[k] - least_[k]));
+    q[k] = std::clamp(node[k] + rng_.uniform(-half, half), least_[k], max_[k]);
   }
-  const double scale = length / std::sqrt(std::max(norm2, 1e-12));
-  for (std::size_t k = 0; k < q.size(); ++k) q[k] = from[k] + scale * q[k];
-  return length;
 }
 
 }  // namespace mjarm::detail

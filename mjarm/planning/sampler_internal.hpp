@@ -9,24 +9,25 @@
 
 namespace mjarm::detail {
 
-/// Where samples are drawn: an even sequence in a box round start and goals, which widens to all
-/// that the limits allow. Most ways are near to where they lead; the rest is reached a little
-/// later.
-class WideningBox {
+/// Where samples are drawn: in boxes that widen with every sample, so that ways are found first
+/// that are near to where they lead.
+class Sampler {
  public:
-  WideningBox(const SearchProblem& problem, Rng& rng);
+  Sampler(const SearchProblem& problem, Rng& rng);
 
-  /// Writes the next sample, shape (dof,).
-  void next(std::span<double> q);
+  /// Writes the next place of an even sequence in a box round start and goals, which widens to all
+  /// that the limits allow, shape (dof,).
+  void between_ends(std::span<double> q);
+  /// Writes a random place in a box round a node, which widens to 2 rad or m to every side, or half
+  /// of what the limits allow; what is beyond a limit is moved onto it, so that many samples are
+  /// where joints are at their limits.
+  void beside(std::span<const double> node, std::span<double> q);
 
  private:
+  Rng& rng_;
   Halton halton_;
   int count_ = 0;
   std::array<double, kMaxDof> least_{}, max_{}, low_{}, high_{};
 };
-
-/// A place at a random distance (short ones are as likely as long ones) from `from` in a random
-/// direction. Writes it, shape (dof,); returns the distance [rad or m, L2].
-double draw_beside(std::span<const double> from, Rng& rng, std::span<double> q);
 
 }  // namespace mjarm::detail

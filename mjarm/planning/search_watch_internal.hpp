@@ -15,7 +15,7 @@ class SearchWatch {
   SearchWatch(const PlanOptions& options, int samples)
       : options_(options), proof_after_(std::min(samples, kProofSamples)) {}
 
-  /// Whether it is proved that there is no path; to be asked after every sample.
+  /// Whether it is proved that there is no path; to be asked after every few samples.
   /// @param nearest  [rad or m, L2] how near the trees came; infinite where that is not known.
   bool is_hopeless(int samples, double nearest) {
     if (options_.progress) options_.progress({samples, nearest});

@@ -46,18 +46,14 @@ class Tree {
   /// Gives a node another parent, and all below it their new costs.
   void move(int node, int parent, double cost);
 
-  /// Makes a node from which a way was blocked look farther away, so that others have their turn.
-  /// @param factor  >= 1: of its squared distance, a million times at most altogether.
-  void push_away(int node, double factor) { places_.push_away(node, factor); }
-
   struct Near {
     int node = -1;
-    double distance = std::numeric_limits<double>::infinity();  ///< [rad or m, L2] the true one
+    double distance = std::numeric_limits<double>::infinity();  ///< [rad or m, L2]
   };
-  /// The node that looks nearest to `q`, the first of equals.
+  /// The node nearest to `q`, the first of equals.
   Near nearest(std::span<const double> q) const;
   /// Writes the nodes that are no farther from `q` than `radius` [rad or m, L2], in any order, with
-  /// their true distances.
+  /// their distances.
   void within(std::span<const double> q, double radius, std::vector<Near>& out) const;
 
   /// Nodes from `node` to its root.
