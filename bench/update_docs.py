@@ -8,7 +8,6 @@ update_docs.py rl build/release/bin/mjarm --peers .venv-rl
 Without a suite all but plan, near and rl run with the same arguments, where --data SUITE=DIR names a folder for one suite.
 """
 
-import os
 import pathlib
 import shutil
 import subprocess
@@ -40,8 +39,7 @@ def update(suite, program, arguments):
     page = DOCS / "benchmarks.md"
     own = [] if suite == "control" else arguments_of(suite, arguments)  # it takes neither cases nor peers
     command = [program, "--lang", "en", "bench", *SUITE_OF.get(suite, (suite,)), *own]
-    first_run = {**os.environ, "MJARM_CACHE": "off"}  # a first plan is one of a first run
-    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=first_run)
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(done.returncode)
     before, rest = page.read_text(encoding="utf-8").split(begin)

@@ -7,6 +7,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/os_streams.hpp"
+#include "mjarm/core/user_cache.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -36,6 +37,7 @@ Run setup(CLI::App& bench) {
 int main(int argc, char** argv) {
   using namespace mjarm;
   open_standard_streams();
+  UserCache::leave_alone();  // a first plan is to be one
   std::vector<std::string> arguments(argv + (argc > 0), argv + argc);
   const std::size_t word = app::command_word(arguments);
   if (word == arguments.size() || arguments[word] != "bench") {

@@ -51,4 +51,33 @@ class ByteKey {
   std::string bytes_;
 };
 
+/// Reads numbers from bytes; all that follow one that is not there are zero.
+class ByteReader {
+ public:
+  explicit ByteReader(const std::string& bytes) : bytes_(bytes) {}
+  template <class Number>
+  void read(Number& value) {
+    value = {};
+    if (bytes_.size() - at_ < sizeof(value)) {
+      fine_ = false;
+      return;
+    }
+    std::memcpy(&value, bytes_.data() + at_, sizeof(value));
+    at_ += sizeof(value);
+  }
+  /// A length, with room for so many values of at least `each` bytes.
+  std::size_t read_length(std::size_t each) {
+    std::size_t length = 0;
+    read(length);
+    if (length > (bytes_.size() - at_) / each) fine_ = false;
+    return fine_ ? length : 0;
+  }
+  [[nodiscard]] bool is_done() const { return fine_ && at_ == bytes_.size(); }
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+  bool fine_ = true;
+};
+
 }  // namespace mjarm::detail

@@ -33,7 +33,7 @@ struct ContactRules {
 [[nodiscard]] Result<void> check_contact_rules(const Model& model, const Arm& arm,
                                                const ContactRules& rules);
 
-/// A body attached as it stands in the model (keyframe `home`, else initial values) while the arm
+/// A body attached as it stands in the model (home_configuration()) while the arm
 /// is at `q`.
 /// @param q  shape (dof,) [rad or m], finite.
 /// @return check_contact_rules()'s error, or one about `q`.

@@ -203,9 +203,9 @@ Convex::Convex(std::span<const Vector3d> points) : points_(points.begin(), point
 }
 
 /// Notes which points the edges of the surface join.
-void Convex::join(const std::vector<std::array<int, 3>>& triangles) {
+void Convex::join(const std::vector<HullTriangle>& triangles) {
   std::vector<std::vector<int>> beside(points_.size());
-  for (const std::array<int, 3>& corners : triangles) {
+  for (const auto& [corners, reach] : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       beside[static_cast<std::size_t>(corners[k])].push_back(corners[(k + 1) % 3]);
       beside[static_cast<std::size_t>(corners[(k + 1) % 3])].push_back(corners[k]);

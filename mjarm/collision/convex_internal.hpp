@@ -40,7 +40,7 @@ class Convex {
 
  private:
   [[nodiscard]] int climb(const Eigen::Vector3d& n, int from) const noexcept;
-  void join(const std::vector<std::array<int, 3>>& triangles);
+  void join(const std::vector<HullTriangle>& triangles);
   [[nodiscard]] Sphere ball_between_faces() const;
 
   SolidKind kind_ = SolidKind::hull;

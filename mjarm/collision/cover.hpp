@@ -22,7 +22,7 @@ class SolidScene;
 struct CoverOptions {
   double bound = 0.012;  ///< [m] spheres stick out of the geoms of their link by at most this,
                          ///< 1e-5 to 1
-  /// (nq,) [rad or m] where joints off the arm stand; empty: keyframe `home`, else initial values.
+  /// (nq,) [rad or m] where joints off the arm stand; empty: home_configuration().
   std::vector<double> qpos = {};
   ContactRules rules = {};  ///< what hangs on the tool, what may touch
   StopCheck stop = {};

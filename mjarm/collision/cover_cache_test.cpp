@@ -7,15 +7,20 @@
 
 #include "mjarm/collision/cover.hpp"
 #include "mjarm/collision/cover_cache_internal.hpp"
+#include "mjarm/collision/fast_access_internal.hpp"
+#include "mjarm/collision/fast_cache_internal.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/user_cache.hpp"
 #include "mjarm/model/robot.hpp"
+#include "tests/support/sanitized.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kCoarse = support::kSanitized ? 0.1 : 0.03;  // [m] quick to make
 
 class CoverCache : public ::testing::Test {
  protected:
@@ -60,31 +65,66 @@ class CoverCache : public ::testing::Test {
 TEST_F(CoverCache, GivesTheSameAndKeepsSpheresOnceForAllScenes) {
   const char* const wall = "universal_robots_ur5e/wall.xml";
   ::setenv("MJARM_CACHE", "off", 1);
-  const ModelCover without = cover(wall, {.bound = 0.03});
+  const ModelCover without = cover(wall, {.bound = kCoarse});
   EXPECT_EQ(files().size(), 0U);
   ::setenv("MJARM_CACHE", "on", 1);
-  expect_same(cover(wall, {.bound = 0.03}), without);
+  expect_same(cover(wall, {.bound = kCoarse}), without);
   EXPECT_EQ(files().size(), 2U);  // spheres, and what meets what
-  expect_same(cover(wall, {.bound = 0.03}), without);
+  expect_same(cover(wall, {.bound = kCoarse}), without);
   EXPECT_EQ(files().size(), 2U);
-  (void)cover("universal_robots_ur5e/scene.xml", {.bound = 0.03});
+  (void)cover("universal_robots_ur5e/scene.xml", {.bound = kCoarse});
   EXPECT_EQ(files().size(), 3U);
-  (void)cover(wall, {.bound = 0.031});
+  (void)cover(wall, {.bound = 1.01 * kCoarse});
   EXPECT_EQ(files().size(), 4U);
   // Other rules are other meetings: the spheres stay.
-  (void)cover(wall, {.bound = 0.03, .rules = {.allowed = {{{"wall", "forearm_link"}}}}});
+  (void)cover(wall, {.bound = kCoarse, .rules = {.allowed = {{{"wall", "forearm_link"}}}}});
   EXPECT_EQ(files().size(), 5U);
+}
+
+/// Which spheres can meet is kept as well, and read with as much care.
+TEST_F(CoverCache, KeepsTheTablesOfSpheresThatCanMeet) {
+  const Arm arm = load_robot("universal_robots_ur5e/ur5e.xml").value().arm;
+  ::setenv("MJARM_CACHE", "off", 1);
+  const SphereSet set = cover("universal_robots_ur5e/ur5e.xml", {.bound = kCoarse}).spheres;
+  const auto tables = [&](const SphereMargins& margins) {
+    const FastRobot robot = FastRobot::create(arm, set, margins).value();
+    return detail::bytes_of_pairs(detail::FastAccess::data(robot));
+  };
+  const std::string without = tables({}), wide = tables({0.01, 0.02});
+  EXPECT_NE(without, wide);
+  ::setenv("MJARM_CACHE", "on", 1);
+  EXPECT_EQ(tables({}), without);
+  EXPECT_EQ(files().size(), 1U);
+  EXPECT_EQ(tables({}), without);
+  EXPECT_EQ(tables({0.01, 0.02}), wide);  // with margins: not kept
+  EXPECT_EQ(files().size(), 1U);
+
+  const FastRobot robot = FastRobot::create(arm, set).value();
+  const detail::FastRobotData& made = detail::FastAccess::data(robot);
+  detail::FastRobotData data;
+  data.arm = made.arm;
+  data.groups = made.groups, data.parts = made.parts, data.spheres = made.spheres;
+  ASSERT_TRUE(detail::read_pairs(without, data));
+  EXPECT_EQ(detail::bytes_of_pairs(data), without);
+  for (std::size_t size = 0; size < without.size(); size += 7) {
+    EXPECT_FALSE(detail::read_pairs(without.substr(0, size), data)) << size;
+  }
+  data.spheres.pop_back();  // some partner is not there
+  EXPECT_FALSE(detail::read_pairs(without, data));
+  data.spheres = made.spheres;
+  data.groups.pop_back();
+  EXPECT_FALSE(detail::read_pairs(without, data));
 }
 
 /// What lies in the cache is what is taken; where it is of something else, or spoilt, it is made
 /// anew.
 TEST_F(CoverCache, IsReadWithCare) {
   const char* const scene = "universal_robots_ur5e/scene.xml";
-  const ModelCover made = cover(scene, {.bound = 0.03});
+  const ModelCover made = cover(scene, {.bound = kCoarse});
   for (const fs::path& file : files()) {
     std::ofstream(file, std::ios::binary | std::ios::trunc) << "nothing of ours";
   }
-  expect_same(cover(scene, {.bound = 0.03}), made);
+  expect_same(cover(scene, {.bound = kCoarse}), made);
 
   const std::vector<detail::FittedCover> covers{{{{{1, 2, 3}, 0.5}, {{4, 5, 6}, 0.25}}, 0.01},
                                                 {{{{7, 8, 9}, 0.125}}, 0.02}};

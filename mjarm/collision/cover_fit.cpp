@@ -52,16 +52,33 @@ class Thinner {
 
 /// From a point of a solid inwards, as long as the depth grows as fast as the way: a sphere round
 /// where that ends contains the one round the start.
-Vector3d to_middle(const CoverSolid& solid, const Vector3d& p) {
+/// @param depth  of `p`.
+Vector3d to_middle(const CoverSolid& solid, const Vector3d& p, double depth) {
+  constexpr double kRate = 0.97;
   const Vector3d inwards = -solid.outwards(p);
-  const double depth = -solid.signed_distance(p);
-  const double max = solid.size.maxCoeff() + depth;
-  double low = 0, high = solid.kind == SolidKind::hull ? 0.5 : max;
-  for (int i = 0; i < 14; ++i) {
-    const double way = 0.5 * (low + high);
-    const double grown = -solid.signed_distance(p + way * inwards) - depth;
-    (grown >= 0.97 * way ? low : high) = way;
+  const double max = solid.kind == SolidKind::hull ? 0.5 : solid.size.maxCoeff() + depth;
+  const auto grown = [&](double way) { return -solid.signed_distance(p + way * inwards) - depth; };
+  const auto grows = [&](double way) { return grown(way) >= kRate * way; };
+  double low = 0, high = max;
+  const auto bisect = [&](const auto& goes_on) {
+    low = 0, high = max;
+    for (int i = 0; i < 14; ++i) {
+      const double way = 0.5 * (low + high);
+      (goes_on(way) ? low : high) = way;
+    }
+  };
+  if (solid.kind != SolidKind::hull) {
+    bisect(grows);
+    return p + low * inwards;
   }
+  // Of a hull the end is known; where it is so clear that no rounding could have decided in another
+  // way, it stands. The depth is a concave function of the way.
+  const Vector3d way_S = solid.X_LS.R.transpose() * inwards;
+  const double end = solid.facets.falls_along(solid.in_own_frame(p), way_S, -depth, kRate);
+  bisect([&](double way) { return way <= end; });
+  const bool is_clear = (low == 0 || grown(low) > kRate * low + 1e-8) &&
+                        (high == max || grown(high) < kRate * high - 1e-12);
+  if (!is_clear) bisect(grows);
   return p + low * inwards;
 }
 
@@ -126,8 +143,10 @@ class CoverFit {
     Thinner thinner(0.25 * bound_);
     for (const CoverSolid& solid : solids_) {
       over_grid({&solid, 1}, 0.5 * bound_, [&](const Vector3d& p) {
-        if (is_stopped(stop_) || solid.signed_distance(p) >= 0) return;
-        const Vector3d middle = to_middle(solid, p);
+        if (is_stopped(stop_)) return;
+        const double distance = solid.signed_distance(p);
+        if (distance >= 0) return;
+        const Vector3d middle = to_middle(solid, p, -distance);
         if (thinner.is_new(middle)) add_candidate(middle);
       });
     }

@@ -15,9 +15,13 @@ CoverSolid wedge(double size) {
   CoverSolid out;
   out.kind = SolidKind::hull;
   out.points = {{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}};
-  out.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
-  for (int k = 0; k < 3; ++k) out.facets.add({-Vector3d::Unit(k), 0});
-  out.facets.add({Vector3d::Constant(1 / std::numbers::sqrt3), size / std::numbers::sqrt3});
+  for (const std::array<int, 3>& corners : {std::array{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}) {
+    out.triangles.push_back(hull_triangle(out.points, corners));
+  }
+  out.facets = Facets({{-Vector3d::UnitX(), 0},
+                       {-Vector3d::UnitY(), 0},
+                       {-Vector3d::UnitZ(), 0},
+                       {Vector3d::Constant(1 / std::numbers::sqrt3), size / std::numbers::sqrt3}});
   return out;
 }
 

@@ -69,7 +69,7 @@ class CoverSeal {
     List near_solids{near_spheres.end, 0};
     for (std::size_t k = solids.begin; k < solids.end; ++k) {
       const CoverSolid& solid = solids_[static_cast<std::size_t>(lists_[k])];
-      if (solid.signed_distance(cell.center) <= round) lists_.push_back(lists_[k]);
+      if (solid.is_within(cell.center, round)) lists_.push_back(lists_[k]);
     }
     near_solids.end = lists_.size();
     if (near_solids.begin == near_solids.end) return;

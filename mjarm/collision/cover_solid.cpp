@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -12,7 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kLanes = 4;  // facets of a block
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 double from_box(const Vector3d& half, const Vector3d& p) {
@@ -106,48 +104,27 @@ std::vector<Vector3d> into_link(const Pose& X_LS, std::vector<Vector3d> points) 
 
 }  // namespace
 
-void Facets::add(const Facet& facet) {
-  const std::size_t lane = size_++ % kLanes;
-  // Lanes without a facet have one that is farther from everything than any other.
-  if (lane == 0) {
-    rows_.resize(rows_.size() + 3 * kLanes, 0);
-    rows_.resize(rows_.size() + kLanes, kNoBound);
-  }
-  double* const block = rows_.data() + rows_.size() - 4 * kLanes;
-  for (std::size_t k = 0; k < 3; ++k) {
-    block[k * kLanes + lane] = facet.normal[static_cast<Eigen::Index>(k)];
-  }
-  block[3 * kLanes + lane] = facet.offset;
+HullTriangle hull_triangle(std::span<const Vector3d> points, const std::array<int, 3>& corners) {
+  const auto at = [&](std::size_t k) { return points[static_cast<std::size_t>(corners[k])]; };
+  return {corners, std::max((at(1) - at(0)).norm(), (at(2) - at(0)).norm())};
 }
 
-Facet Facets::operator[](std::size_t index) const {
-  const double* const at = rows_.data() + index / kLanes * 4 * kLanes + index % kLanes;
-  return {{at[0], at[kLanes], at[2 * kLanes]}, at[3 * kLanes]};
+void CoverSolid::append_to(ByteKey& key) const {
+  key.add(kind, X_LS, size, points, triangles.size());
+  for (const HullTriangle& triangle : triangles) key.add(triangle.corners);
 }
 
-double Facets::farthest(const Vector3d& p) const {
-  typedef double Two __attribute__((vector_size(16)));
-  const auto load = [](const double* from) {
-    Two out;
-    std::memcpy(&out, from, sizeof out);
-    return out;
-  };
-  const Two x = Two{} + p.x(), y = Two{} + p.y(), z = Two{} + p.z();
-  std::array<Two, 2> max{Two{} - kNoBound, Two{} - kNoBound};
-  const double* const end = rows_.data() + rows_.size();
-  for (const double* at = rows_.data(); at != end; at += 4 * kLanes) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double* const pair = at + 2 * k;
-      const Two beyond = load(pair) * x + load(pair + kLanes) * y + load(pair + 2 * kLanes) * z -
-                         load(pair + 3 * kLanes);
-      max[k] = max[k] < beyond ? beyond : max[k];
-    }
-  }
-  return std::max(std::max(max[0][0], max[0][1]), std::max(max[1][0], max[1][1]));
+Vector3d CoverSolid::in_own_frame(const Vector3d& p_L) const {
+  return X_LS.R.transpose() * (p_L - X_LS.p);
+}
+
+bool CoverSolid::is_within(const Vector3d& p_L, double distance) const {
+  if (kind == SolidKind::hull) return !facets.is_beyond(in_own_frame(p_L), distance);
+  return signed_distance(p_L) <= distance;
 }
 
 double CoverSolid::signed_distance(const Vector3d& p_L) const {
-  const Vector3d p = X_LS.R.transpose() * (p_L - X_LS.p);
+  const Vector3d p = in_own_frame(p_L);
   switch (kind) {
     case SolidKind::ball:
       return p.norm() - size.x();
@@ -169,11 +146,21 @@ double CoverSolid::signed_distance(const Vector3d& p_L) const {
 
 Vector3d CoverSolid::outwards(const Vector3d& p_L) const {
   constexpr double kStep = 1e-6;  // [m]
-  Vector3d gradient;
+  std::array<Vector3d, 6> beside;
   for (int k = 0; k < 3; ++k) {
-    const Vector3d step = kStep * Vector3d::Unit(k);
-    gradient[k] = signed_distance(p_L + step) - signed_distance(p_L - step);
+    const auto i = static_cast<std::size_t>(k);
+    beside[i] = p_L + kStep * Vector3d::Unit(k);
+    beside[i + 3] = p_L - kStep * Vector3d::Unit(k);
   }
+  std::array<double, 6> distances;
+  if (kind == SolidKind::hull) {
+    for (Vector3d& p : beside) p = in_own_frame(p);
+    distances = facets.farthest_beside(in_own_frame(p_L), kStep, beside);
+  } else {
+    for (std::size_t k = 0; k < 6; ++k) distances[k] = signed_distance(beside[k]);
+  }
+  const Vector3d gradient(distances[0] - distances[3], distances[1] - distances[4],
+                          distances[2] - distances[5]);
   const double length = gradient.norm();
   return length > 0.2 * kStep ? Vector3d(gradient / length) : Vector3d(Vector3d::Zero());
 }
@@ -183,11 +170,15 @@ std::optional<Vector3d> CoverSolid::point_within(const Vector3d& p_L, double dis
   if (apart <= 0) return p_L;
   if (apart > distance) return std::nullopt;
   if (kind != SolidKind::hull) return p_L - apart * outwards(p_L);
-  const Vector3d p = X_LS.R.transpose() * (p_L - X_LS.p);
+  const Vector3d p = in_own_frame(p_L);
   Vector3d best = points.front();
-  for (const auto& [i, j, k] : triangles) {
-    const auto vertex = [&](int index) { return points[static_cast<std::size_t>(index)]; };
-    const Vector3d x = nearest_on(p, vertex(i), vertex(j), vertex(k));
+  const auto vertex = [&](int index) { return points[static_cast<std::size_t>(index)]; };
+  for (const auto& [corners, reach] : triangles) {
+    const Vector3d a = vertex(corners[0]);
+    // Most are too far away to be looked at.
+    const double within = reach + distance * (1 + 1e-9) + 1e-12 * (1 + p.norm());
+    if ((p - a).squaredNorm() > within * within) continue;
+    const Vector3d x = nearest_on(p, a, vertex(corners[1]), vertex(corners[2]));
     if ((x - p).squaredNorm() < (best - p).squaredNorm()) best = x;
   }
   if ((best - p).norm() > distance) return std::nullopt;

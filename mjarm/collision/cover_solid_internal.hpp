@@ -8,31 +8,20 @@
 #include <vector>
 
 #include "mjarm/collision/byte_key_internal.hpp"
+#include "mjarm/collision/facets_internal.hpp"
 #include "mjarm/core/pose.hpp"
 
 namespace mjarm::detail {
 
-/// All points p with normal . p <= offset.
-struct Facet {
-  Eigen::Vector3d normal;  ///< unit
-  double offset = 0;       ///< [m]
-};
-
-/// What bounds a convex solid, kept so that several are looked at at once.
-class Facets {
- public:
-  void add(const Facet& facet);
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] Facet operator[](std::size_t index) const;
-  /// [m] The largest normal . p - offset; minus infinity where there are none.
-  [[nodiscard]] double farthest(const Eigen::Vector3d& p) const;
-
- private:
-  std::size_t size_ = 0;
-  std::vector<double> rows_;  ///< four normals along x, along y, along z, four offsets, ...
-};
-
 enum class SolidKind { ball, capsule, box, cylinder, ellipsoid, hull };
+
+/// A triangle of the surface of a hull.
+struct HullTriangle {
+  std::array<int, 3> corners;  ///< among the vertices
+  double reach = 0;            ///< [m] farthest corner from the first
+};
+[[nodiscard]] HullTriangle hull_triangle(std::span<const Eigen::Vector3d> points,
+                                         const std::array<int, 3>& corners);
 
 /// A convex solid of a link, in a frame S of its own, seen from the frame L of the link.
 struct CoverSolid {
@@ -40,13 +29,16 @@ struct CoverSolid {
   Pose X_LS;
   /// [m] radius; radius and half length along z; half extents; or semi-axes.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  Facets facets;                              ///< of a hull, in S
-  std::vector<Eigen::Vector3d> points;        ///< vertices of a hull, in S
-  std::vector<std::array<int, 3>> triangles;  ///< of them, the surface of a hull
+  Facets facets;                        ///< of a hull, in S
+  std::vector<Eigen::Vector3d> points;  ///< vertices of a hull, in S
+  std::vector<HullTriangle> triangles;  ///< of them, the surface of a hull
 
   /// Distance of a point in L to the surface: inside of the solid exact, and negative; outside
   /// exact or (hull) too small.
   [[nodiscard]] double signed_distance(const Eigen::Vector3d& p_L) const;
+  /// Whether that is no more than `distance`.
+  [[nodiscard]] bool is_within(const Eigen::Vector3d& p_L, double distance) const;
+  [[nodiscard]] Eigen::Vector3d in_own_frame(const Eigen::Vector3d& p_L) const;  ///< in S
   /// Its direction of steepest rise, unit or 0.
   [[nodiscard]] Eigen::Vector3d outwards(const Eigen::Vector3d& p_L) const;
   /// A point of the solid no farther from `p_L` than `distance`, if there is one.
@@ -56,7 +48,7 @@ struct CoverSolid {
   /// them; in L.
   [[nodiscard]] std::vector<Eigen::Vector3d> skeleton() const;
   /// All that decides about it.
-  void append_to(ByteKey& key) const { key.add(kind, X_LS, size, points, triangles); }
+  void append_to(ByteKey& key) const;
   /// Corners and points of edges, in L: what a cover must not miss; none of what is round.
   [[nodiscard]] std::vector<Eigen::Vector3d> sharp_points(double spacing) const;
 };

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <vector>
 
 #include "mjarm/collision/cover_geoms_internal.hpp"
 
@@ -16,21 +17,97 @@ Vector3d box_half(const mjModel& m, int geom) {
   return Vector3d(m.geom_aabb + 6 * geom + 3).cwiseMax(1e-6);
 }
 
-/// Appends the plane through three vertices, so far out that all `points` are behind it.
-void add_facet(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& inside,
-               CoverSolid& out) {
-  Vector3d normal = (b - a).cross(c - a);
-  const double area = normal.norm();
-  if (!(area > 1e-12 * std::max((b - a).squaredNorm(), (c - a).squaredNorm()))) return;
-  normal /= area;
-  if (normal.dot(a - inside) < 0) normal = -normal;
-  for (std::size_t k = 0; k < out.facets.size(); ++k) {
-    if (out.facets[k].normal.dot(normal) > 1 - 1e-9) return;
+/// Points in groups of those that are near each other, of which most need not be looked at.
+class PointGroups {
+ public:
+  explicit PointGroups(const std::vector<Vector3d>& points) : points_(points) {
+    split(points_.begin(), points_.end());
   }
-  double offset = normal.dot(a);
-  for (const Vector3d& p : out.points) offset = std::max(offset, normal.dot(p));
-  out.facets.add({normal, offset});
-}
+
+  /// The largest normal . p, or `least` where that is larger; `normal` is unit.
+  [[nodiscard]] double farthest(const Vector3d& normal, double least) const {
+    for (const Group& group : groups_) {
+      if (normal.dot(group.middle) + group.reach < least) continue;
+      for (std::size_t k = group.first; k < group.last; ++k) {
+        least = std::max(least, normal.dot(points_[k]));
+      }
+    }
+    return least;
+  }
+
+ private:
+  struct Group {
+    Vector3d middle;
+    double reach;             // [m] all are nearer to the middle, rounding and all
+    std::size_t first, last;  // of points_
+  };
+  using At = std::vector<Vector3d>::iterator;
+
+  void split(At first, At last) {
+    constexpr std::ptrdiff_t kFewVertices = 16;
+    Vector3d low = *first, high = low;
+    for (At p = first; p != last; ++p) low = low.cwiseMin(*p), high = high.cwiseMax(*p);
+    if (last - first > kFewVertices) {
+      Eigen::Index axis = 0;
+      (high - low).maxCoeff(&axis);
+      const At half = first + (last - first) / 2;
+      std::nth_element(first, half, last,
+                       [&](const Vector3d& a, const Vector3d& b) { return a[axis] < b[axis]; });
+      split(first, half);
+      split(half, last);
+      return;
+    }
+    const Vector3d middle = 0.5 * (low + high);
+    const double reach = 0.5 * (high - low).norm();
+    groups_.push_back({middle, reach + 1e-12 * (1 + middle.norm() + reach),
+                       static_cast<std::size_t>(first - points_.begin()),
+                       static_cast<std::size_t>(last - points_.begin())});
+  }
+
+  std::vector<Vector3d> points_;
+  std::vector<Group> groups_;
+};
+
+/// The planes of a hull's faces, those of faces in one plane once.
+class FacePlanes {
+ public:
+  /// @param points  all vertices, at least one.
+  explicit FacePlanes(const std::vector<Vector3d>& points) : groups_(points) {
+    for (const Vector3d& p : points) inside_ += p / static_cast<double>(points.size());
+  }
+
+  /// The plane through three vertices, so far out that all points are behind it.
+  void add(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    Vector3d normal = (b - a).cross(c - a);
+    const double area = normal.norm();
+    if (!(area > 1e-12 * std::max((b - a).squaredNorm(), (c - a).squaredNorm()))) return;
+    normal /= area;
+    if (normal.dot(a - inside_) < 0) normal = -normal;
+    if (is_known(normal)) return;
+    along_.emplace(normal.dot(kAnyWay), normal);
+    out_.push_back({normal, groups_.farthest(normal, normal.dot(a))});
+  }
+
+  std::vector<Facet> take() { return std::move(out_); }
+
+ private:
+  /// Only normals that are about as long in some direction can be about the same.
+  [[nodiscard]] bool is_known(const Vector3d& normal) const {
+    constexpr double kBeside = 1e-4;  // more than the distance of what counts as the same
+    const double along = normal.dot(kAnyWay);
+    const auto end = along_.upper_bound(along + kBeside);
+    for (auto at = along_.lower_bound(along - kBeside); at != end; ++at) {
+      if (at->second.dot(normal) > 1 - 1e-9) return true;
+    }
+    return false;
+  }
+
+  static inline const Vector3d kAnyWay{0.48, 0.6, 0.64};  // that few normals are at right angles to
+  PointGroups groups_;
+  Vector3d inside_ = Vector3d::Zero();
+  std::vector<Facet> out_;
+  std::multimap<double, Vector3d> along_;
+};
 
 /// The convex hull that MuJoCo keeps of a mesh: numbers of vertices and faces, then per vertex
 /// where its edges start and which vertex of the mesh it is, the edges, and the faces.
@@ -38,24 +115,26 @@ bool add_hull(const mjModel& m, int mesh, CoverSolid& out) {
   if (m.mesh_graphadr[mesh] < 0) return false;
   const int* const graph = m.mesh_graph + m.mesh_graphadr[mesh];
   const int vertices = graph[0], faces = graph[1];
+  if (vertices <= 0) return false;
   const int* const ids = graph + 2 + vertices;
   const int* const corners = graph + 2 + 3 * vertices + 3 * faces;
   const auto vertex = [&](int id) {
     return Vector3d(Eigen::Map<const Eigen::Vector3f>(m.mesh_vert + 3 * (m.mesh_vertadr[mesh] + id))
                         .cast<double>());
   };
-  Vector3d inside = Vector3d::Zero();
-  std::map<int, int> index_of;
+  std::vector<int> index_of(static_cast<std::size_t>(m.mesh_vertnum[mesh]), 0);
   for (int k = 0; k < vertices; ++k) {
-    index_of[ids[k]] = k;
+    index_of[static_cast<std::size_t>(ids[k])] = k;
     out.points.push_back(vertex(ids[k]));
-    inside += out.points.back() / vertices;
   }
+  FacePlanes planes(out.points);
   for (int f = 0; f < faces; ++f) {
     const int* const c = corners + 3 * f;
-    out.triangles.push_back({index_of[c[0]], index_of[c[1]], index_of[c[2]]});
-    add_facet(vertex(c[0]), vertex(c[1]), vertex(c[2]), inside, out);
+    const auto index = [&](int i) { return index_of[static_cast<std::size_t>(c[i])]; };
+    out.triangles.push_back(hull_triangle(out.points, {index(0), index(1), index(2)}));
+    planes.add(vertex(c[0]), vertex(c[1]), vertex(c[2]));
   }
+  out.facets = Facets(planes.take());
   return out.facets.size() >= 4;
 }
 

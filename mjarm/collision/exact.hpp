@@ -20,7 +20,7 @@ struct ExactOptions {
   double margin = 0.1;      ///< [m] up to where check() looks for the nearest pair, >= 0; 0 = never
   double allow_depth = 0;   ///< [m] overlap that still counts as free, >= 0
   ContactRules rules = {};  ///< what hangs on the tool, what may touch
-  /// (nq,) [rad or m] where joints off the arm stand; empty: keyframe `home`, else initial values.
+  /// (nq,) [rad or m] where joints off the arm stand; empty: home_configuration().
   std::vector<double> qpos = {};
   /// [m] by which attached bodies may overlap what the arm does not move, >= 0: they lie on things
   /// when they are picked up and put down. So much of an overlap counts as a distance of 0.
@@ -69,7 +69,7 @@ struct CollisionReport {
 /// configuration of an arm, with MuJoCo's rules about which geoms collide (contype and conaffinity,
 /// parent and child, excludes, explicit pairs). Only pairs count that the arm's joints move
 /// against each other (gripper included); a box that lies on the floor does not, nor do two
-/// fingers. Joints off the arm stand at the keyframe `home`, else at their initial value. Contacts
+/// fingers. Joints off the arm stand as in home_configuration(). Contacts
 /// are checked even where the file switches them off. Owns its scratch memory: copy it to use it
 /// from another thread.
 class ExactChecker {

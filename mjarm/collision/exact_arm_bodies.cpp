@@ -3,6 +3,7 @@
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/model/home.hpp"
 
 namespace mjarm::detail {
 namespace {
@@ -60,9 +61,8 @@ void ArmBodies::place_attached(const Pose& X_WT, mjtNum* qpos) const {
 }
 
 std::vector<double> rest_configuration(const mjModel& m) {
-  const int key = mj_name2id(&m, mjOBJ_KEY, "home");
-  const mjtNum* q = key >= 0 ? m.key_qpos + key * m.nq : m.qpos0;
-  return {q, q + m.nq};
+  const std::span<const double> home = home_configuration(&m);
+  return {home.begin(), home.end()};
 }
 
 std::string geom_name(const mjModel& m, int geom) {

@@ -42,7 +42,7 @@ class ContactFilter {
   std::vector<std::array<std::vector<bool>, 2>> pairs_;  // per geom
 };
 
-/// The keyframe `home`, else the initial configuration; shape (nq,).
+/// home_configuration() to be changed; shape (nq,).
 [[nodiscard]] std::vector<double> rest_configuration(const mjModel& m);
 
 /// Name of a geom; BODY[k], the k-th (from 0) of its body, where it has none.

@@ -14,7 +14,7 @@ namespace mjarm {
 /// What stands where beside an arm, and what the arm carries, at one moment of a plan.
 struct SceneState {
   /// (nq,) [rad or m] where joints off the arm stand, gripper and free bodies included; empty:
-  /// keyframe `home`, else initial values.
+  /// home_configuration().
   std::vector<double> qpos = {};
   std::vector<AttachedBody> attached = {};  ///< to the tool of the arm
 };

@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -18,26 +19,22 @@ constexpr int kLeastPartPairs = 4;       // fewer are looked at as fast
 constexpr int kMaxApartTests = 200'000;  // of spheres, to make a table
 constexpr int kLeastApartBoxes = 300;    // fewer say too little
 constexpr int kApartSide = 64;           // cells along one joint
+constexpr int kApartLevels = 7;          // sizes of boxes, from one cell to all
 constexpr double kApartPlenty = 0.05;    // [m] as far apart is not looked at more closely
 constexpr double kApartUnit = 1e-3;      // [m] of the numbers in the cells
 // Which cell a value is in is decided in single precision: cells reach a little farther, and
 // distances count a little less.
 constexpr double kApartWiden = 1.01, kApartSpare = 2e-5;  // [m]
 
-/// Pose of body `b` seen from body `a`.
-Pose pose_between(const LinkChain& chain, int a, int b, const std::array<double, 2>& q) {
-  Pose X{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()};
-  for (int k = a; k < b; ++k) {
-    const Link& link = chain.links[k];
-    const double value = q[static_cast<std::size_t>(k - a)];
-    Eigen::Matrix3d R_tilt = Eigen::Matrix3d::Identity();
-    R_tilt.bottomRightCorner<2, 2>() << link.tilt_cos, -link.tilt_sin, link.tilt_sin, link.tilt_cos;
-    const double angle = link.offset + (link.slide ? 0 : value);
-    const Eigen::AngleAxisd turn(angle, Eigen::Vector3d::UnitZ());
-    const Eigen::Vector3d way(0, 0, link.slide ? value : 0);
-    X = X * Pose{{link.t[0], link.t[1], link.t[2]}, R_tilt} * Pose{way, turn.toRotationMatrix()};
-  }
-  return X;
+/// A joint on its way from body to body: first where its frame is, then its motion.
+Pose joint_frame(const Link& link) {
+  Eigen::Matrix3d R_tilt = Eigen::Matrix3d::Identity();
+  R_tilt.bottomRightCorner<2, 2>() << link.tilt_cos, -link.tilt_sin, link.tilt_sin, link.tilt_cos;
+  return {{link.t[0], link.t[1], link.t[2]}, R_tilt};
+}
+Pose joint_motion(const Link& link, double q) {
+  const Eigen::AngleAxisd turn(link.offset + (link.slide ? 0 : q), Eigen::Vector3d::UnitZ());
+  return {{0, 0, link.slide ? q : 0}, turn.toRotationMatrix()};
 }
 
 class ApartBuilder {
@@ -54,6 +51,7 @@ class ApartBuilder {
         }
       }
     }
+    std::ranges::stable_sort(partners_, {}, &FastPartners::b);
   }
 
   /// Writes the cells behind the others; no side: a table does not pay.
@@ -68,14 +66,25 @@ class ApartBuilder {
     out.first = static_cast<int>(cells.size());
     for (int k = 0; k < joints; ++k) set_axis(k, out);
     rows_ = joints == 2 ? kApartSide : 1;
+    set_spheres();
     cells.resize(cells.size() + static_cast<std::size_t>(kApartSide * rows_));
     fill(max, &cells[static_cast<std::size_t>(out.first)]);
     return out;
   }
 
  private:
+  /// Values of a joint: the ends and middles of cells, which are the middles of boxes.
+  static constexpr int kStations = 2 * kApartSide + 1;
   struct Axis {
-    double low = 0, width = 0;  // of a cell
+    double low = 0, width = 0;          // of a cell
+    std::array<Pose, kStations> poses;  // after the first joint; of the second its motion alone
+  };
+
+  /// A sphere of group b and those of group a it must not meet.
+  struct FarSphere {
+    Eigen::Vector3d center;                  // in its body
+    std::size_t first = 0, last = 0;         // of the partners
+    std::array<double, kApartLevels> slack;  // [m] by the size of boxes
   };
 
   /// Cells [i, i + size) along the first joint, [j, ...) along the second.
@@ -104,15 +113,35 @@ class ApartBuilder {
   }
 
   int body(int g) const { return data_.groups[static_cast<std::size_t>(g)].body; }
-  double at(std::size_t k, double i) const { return axes_[k].low + i * axes_[k].width; }
-
   void set_axis(int k, FastApart& out) {
     const FastLimits limits = fast_limits(data_.arm, from_ + k);
     Axis& axis = axes_[static_cast<std::size_t>(k)];
-    axis = {limits.lower, (limits.upper - limits.lower) / out.side};
+    axis.low = limits.lower;
+    axis.width = (limits.upper - limits.lower) / out.side;
     out.joint[k] = from_ + k;
     out.low[k] = static_cast<float>(limits.lower);
     out.per_unit[k] = axis.width > 0 ? static_cast<float>(1 / axis.width) : 0;
+    const Link& link = chain_.links[from_ + k];
+    for (int i = 0; i < kStations; ++i) {
+      Pose& X = axis.poses[static_cast<std::size_t>(i)];
+      X = joint_motion(link, axis.low + 0.5 * i * axis.width);
+      if (k == 0) X = joint_frame(link) * X;
+      if (from_ + k + 1 < to_) X = X * joint_frame(chain_.links[from_ + k + 1]);
+    }
+  }
+
+  void set_spheres() {
+    for (std::size_t k = 0; k < partners_.size(); ++k) {
+      const int sphere = partners_[k].b;
+      if (k == 0 || partners_[k - 1].b != sphere) {
+        const FastSphere& b = data_.spheres[static_cast<std::size_t>(sphere)];
+        FarSphere& fresh = spheres_.emplace_back(FarSphere{{b.x, b.y, b.z}, k, k, {}});
+        for (int level = 0; level < kApartLevels; ++level) {
+          fresh.slack[static_cast<std::size_t>(level)] = slack(sphere, 1 << level);
+        }
+      }
+      spheres_.back().last = k + 1;
+    }
   }
 
   /// [m] by how much the distance of a sphere can differ elsewhere in a box of so many cells.
@@ -132,19 +161,26 @@ class ApartBuilder {
     bool overlap;
   };
 
+  /// Group b seen from group a in the middle of a box.
+  [[nodiscard]] Pose middle(const Box& box) const {
+    const Pose& first = axes_[0].poses[static_cast<std::size_t>(2 * box.i + box.size)];
+    if (rows_ == 1) return first;
+    return first * axes_[1].poses[static_cast<std::size_t>(2 * box.j + box.size)];
+  }
+
   Finding look(const Box& box) const {
-    const double half = 0.5 * box.size;
-    const Pose X_AB = pose_between(chain_, from_, to_,
-                                   {at(0, box.i + half), rows_ > 1 ? at(1, box.j + half) : 0});
+    const Pose X_AB = middle(box);
+    const auto level = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(box.size)));
     Finding out{std::numeric_limits<double>::infinity(), false};
-    for (const FastPartners& both : partners_) {
-      const FastSphere& a = data_.spheres[static_cast<std::size_t>(both.a)];
-      const FastSphere& b = data_.spheres[static_cast<std::size_t>(both.b)];
-      const Eigen::Vector3d way = X_AB * Eigen::Vector3d(b.x, b.y, b.z);
-      const double gap = (way - Eigen::Vector3d(a.x, a.y, a.z)).norm() - both.reach;
-      const double spare = slack(both.b, box.size);
-      out.apart = std::min(out.apart, gap - spare);
-      out.overlap = out.overlap || gap + spare < 0;
+    for (const FarSphere& sphere : spheres_) {
+      const Eigen::Vector3d way = X_AB * sphere.center;
+      const double spare = sphere.slack[level];
+      for (std::size_t k = sphere.first; k < sphere.last; ++k) {
+        const FastSphere& a = data_.spheres[static_cast<std::size_t>(partners_[k].a)];
+        const double gap = (way - Eigen::Vector3d(a.x, a.y, a.z)).norm() - partners_[k].reach;
+        if (gap + spare < 0) return {gap - spare, true};
+        out.apart = std::min(out.apart, gap - spare);
+      }
     }
     return out;
   }
@@ -159,8 +195,9 @@ class ApartBuilder {
   const LinkChain& chain_;
   int from_, to_;
   int part_pairs_ = 0;
-  int rows_ = 1;  // of cells: along the second joint
-  std::vector<FastPartners> partners_;
+  int rows_ = 1;                        // of cells: along the second joint
+  std::vector<FastPartners> partners_;  // those of a sphere of group b side by side
+  std::vector<FarSphere> spheres_;
   std::array<Axis, 2> axes_;
 };
 
@@ -174,7 +211,6 @@ void add_apart(FastRobotData& data, const LinkChain& chain) {
     data.apart.push_back(table);
   }
   data.apart_cells.resize(data.apart_cells.size() + 3);  // gather() reads whole words
-  for (FastApart& table : data.apart) table.cells = data.apart_cells.data() + table.first;
 }
 
 }  // namespace mjarm::detail

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "mjarm/collision/fast_robot_internal.hpp"
@@ -17,6 +20,23 @@ constexpr int kFewBoxes = 100;   // where there are margins: such a robot is mad
 constexpr double kSpare = 1e-5;  // [m] by which spheres that never meet keep apart at least
 
 using Joints = std::array<double, kMaxProved>;
+
+/// Sines and cosines, those asked for lately at hand: searches of one pair of bodies cut the same
+/// boxes again and again.
+class Turns {
+ public:
+  struct Turn {
+    double angle = std::numeric_limits<double>::quiet_NaN(), c = 0, s = 0;
+  };
+  const Turn& operator()(double angle) {
+    Turn& turn = kept_[(std::bit_cast<std::uint64_t>(angle) * 0x9E3779B97F4A7C15U) >> 56U];
+    if (turn.angle != angle) turn = {angle, std::cos(angle), std::sin(angle)};
+    return turn;
+  }
+
+ private:
+  std::array<Turn, 256> kept_;
+};
 
 class MeetingSearch {
  public:
@@ -68,12 +88,11 @@ class MeetingSearch {
   }
 
   /// A point of body b, seen from body a.
-  Eigen::Vector3d place(Eigen::Vector3d p, const Joints& q) const {
+  Eigen::Vector3d place(Eigen::Vector3d p, const Joints& q) {
     for (int k = b_ - 1; k >= a_; --k) {
       const Link& link = chain_.links[k];
       const double value = q[static_cast<std::size_t>(k - a_)];
-      const double angle = link.offset + (link.slide ? 0 : value);
-      const double c = std::cos(angle), s = std::sin(angle);
+      const auto [angle, c, s] = turns_(link.offset + (link.slide ? 0 : value));
       const double x = c * p.x() - s * p.y();
       const double y = s * p.x() + c * p.y();
       const double z = p.z() + (link.slide ? value : 0);
@@ -88,6 +107,7 @@ class MeetingSearch {
   Joints middle_{}, half_{}, levers_{};
   int boxes_ = 0;
   int max_boxes_ = kMaxBoxes;
+  Turns turns_;
 };
 
 Eigen::Vector3d center_of(const FastSphere& sphere) { return {sphere.x, sphere.y, sphere.z}; }

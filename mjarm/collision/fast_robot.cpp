@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjarm/collision/fast_robot_internal.hpp"
+#include "mjarm/collision/fast_cache_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
+#include "mjarm/core/user_cache.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
@@ -187,6 +188,21 @@ void add_levers(FastRobotData& data) {
   }
 }
 
+/// From the cache of the user where they are there. Those with margins are made for a few searches
+/// and are not kept.
+void add_pair_tables(FastRobotData& data, const LinkChain& chain) {
+  std::optional<UserCache> cache;
+  if (data.margins.obstacles == 0 && data.margins.links == 0) cache = UserCache::of_user();
+  const std::string key = cache ? detail::key_of_pairs(data, chain) : std::string();
+  const std::optional<std::string> known = cache ? cache->find(key) : std::nullopt;
+  if (!known || !detail::read_pairs(*known, data)) {
+    detail::add_pairs(data, chain);
+    detail::add_apart(data, chain);
+    if (cache) cache->keep(key, detail::bytes_of_pairs(data));
+  }
+  for (detail::FastApart& table : data.apart) table.cells = data.apart_cells.data() + table.first;
+}
+
 }  // namespace
 
 namespace detail {
@@ -228,8 +244,7 @@ Result<FastRobot> FastRobot::create(const Arm& arm, const SphereSet& set,
   for (int i = 0; i < arm.dof(); ++i) data->tables.joints[i] = fast_joint(arm, links, i);
   data->R_WB = link_frame(links, 0).R;
   add_groups(*data, links);
-  detail::add_pairs(*data, links);
-  detail::add_apart(*data, links);
+  add_pair_tables(*data, links);
   add_levers(*data);
   data->tables.group_count = static_cast<int>(data->groups.size());
   data->tables.part_count = static_cast<int>(data->parts.size());

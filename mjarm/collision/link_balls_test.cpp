@@ -7,6 +7,7 @@
 #include "mjarm/collision/cover_robots_test.hpp"
 #include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/long_tests_test.hpp"
 
 namespace mjarm {
 namespace {
@@ -17,8 +18,9 @@ using Eigen::Vector3d;
 TEST(BallScene, DistancesArePointsOfTheObstacles) {
   Rng rng(81);
   const Arm arm = testing::random_arm(3, rng);
+  const int rounds = testing::rounds(8, 80, 1);
   int compared = 0;
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     Obstacles world = testing::random_world(rng, 3);
     for (int k = 0; k < 3; ++k) world.solids.push_back(testing::random_composite(rng));
     const SphereSet set = testing::random_spheres(arm, rng);
@@ -49,7 +51,7 @@ TEST(BallScene, DistancesArePointsOfTheObstacles) {
       }
     }
   }
-  EXPECT_GT(compared, 240);
+  EXPECT_GT(compared, 30 * rounds);
 }
 
 TEST(BallScene, BallsAreInTheSolidsOfLinks) {
@@ -112,10 +114,12 @@ TEST(Convex, InscribedBallOfAHullIsNearlyTheLargest) {
       hull.points.push_back(half.cwiseProduct(
           Vector3d((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1)));
     }
+    std::vector<detail::Facet> facets;
     for (int k = 0; k < 3; ++k) {
-      hull.facets.add({Vector3d::Unit(k), half[k]});
-      hull.facets.add({-Vector3d::Unit(k), half[k]});
+      facets.push_back({Vector3d::Unit(k), half[k]});
+      facets.push_back({-Vector3d::Unit(k), half[k]});
     }
+    hull.facets = detail::Facets(std::move(facets));
     const Sphere ball = detail::Convex(hull).inscribed_ball();
     EXPECT_LE(ball.radius, -hull.signed_distance(ball.center) + 1e-12);
     EXPECT_GE(ball.radius, 0.97 * half.minCoeff());

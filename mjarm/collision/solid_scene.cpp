@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -102,6 +103,15 @@ void each_part(const StandingSolid& standing, const Vector3d& center_W, double w
   }
 }
 
+/// [m^2] From a place to the box round what stands. By hand, as often as this is needed.
+double distance2(const StandingSolid& standing, const Vector3d& p) {
+  const Vector3d &low = standing.low, &high = standing.high;
+  const double x = std::max(std::max(low.x() - p.x(), p.x() - high.x()), 0.0);
+  const double y = std::max(std::max(low.y() - p.y(), p.y() - high.y()), 0.0);
+  const double z = std::max(std::max(low.z() - p.z(), p.z() - high.z()), 0.0);
+  return x * x + y * y + z * z;
+}
+
 }  // namespace
 
 double gap_to_standing(const Convex& convex, const Pose& X_WC, const StandingSolid& standing,
@@ -156,17 +166,22 @@ class SolidScene::Moment {
   /// the ball round a solid (together: `within` [m] from its centre), until it says no.
   template <class Near, class Look>
   void each_standing(const Near& near, const Look& look) const {
-    for (const LinkSolid& solid : scene_.solids_) {
-      const Vector3d c = place(solid.joint) * solid.convex.center();
-      const double ball = solid.convex.reach() + solid.convex.radius();
-      const SolidMotion moves = motion(solid, c, -1);
-      for (const StandingSolid& standing : scene_.standing_) {
-        if (standing.ignored[static_cast<std::size_t>(solid.link)] != 0) continue;
-        const Vector3d outside =
-            (standing.low - c).cwiseMax(c - standing.high).cwiseMax(Vector3d::Zero());
-        const double within = ball + near(moves);
-        if (outside.squaredNorm() > within * within) continue;
-        if (!look(solid, moves, within, standing)) return;
+    for (const LinkGroup& link : scene_.links_) {
+      const NearOnes near_link = near_ones(link, near);
+      if (near_link.next(0) == scene_.standing_.size()) continue;
+      for (std::size_t i = link.first; i < link.end; ++i) {
+        const LinkSolid& solid = scene_.solids_[i];
+        const Vector3d c = place(solid.joint) * solid.convex.center();
+        const double ball = solid.convex.reach() + solid.convex.radius();
+        const SolidMotion moves = motion(solid, c, -1);
+        for (std::size_t k = near_link.next(0); k < scene_.standing_.size();
+             k = near_link.next(k + 1)) {
+          const StandingSolid& standing = scene_.standing_[k];
+          if (standing.ignored[static_cast<std::size_t>(solid.link)] != 0) continue;
+          const double within = ball + near(moves);
+          if (distance2(standing, c) > within * within) continue;
+          if (!look(solid, moves, within, standing)) return;
+        }
       }
     }
   }
@@ -199,6 +214,41 @@ class SolidScene::Moment {
   }
 
  private:
+  /// Of what stands, all that may be near enough to some solid of a link.
+  class NearOnes {
+   public:
+    explicit NearOnes(std::size_t count) : count_(count) {}
+    void set(std::size_t word, std::uint64_t bits) { bits_[word] = bits; }
+    /// The first from `k` on; the count of all where there is none.
+    [[nodiscard]] std::size_t next(std::size_t k) const {
+      while (k < std::min(count_, kMarked)) {
+        const std::size_t bit = k % NearBoxes::kWord;
+        const std::uint64_t left = bits_[k / NearBoxes::kWord] >> bit;
+        if (left != 0) return k + static_cast<std::size_t>(std::countr_zero(left));
+        k += NearBoxes::kWord - bit;
+      }
+      return std::min(k, count_);
+    }
+
+    static constexpr std::size_t kWords = 16;
+
+   private:
+    static constexpr std::size_t kMarked = kWords * NearBoxes::kWord;  // more may all be near
+    std::size_t count_;
+    std::array<std::uint64_t, kWords> bits_{};
+  };
+
+  template <class Near>
+  NearOnes near_ones(const LinkGroup& link, const Near& near) const {
+    NearOnes out(scene_.standing_.size());
+    const Vector3d center = place(link.joint) * link.center;
+    const double within = (link.reach + near(motion(link, center, -1))) * kRoundUp;
+    for (std::size_t k = 0; k < std::min(scene_.boxes_.words(), NearOnes::kWords); ++k) {
+      out.set(k, scene_.boxes_.near(k, center, within));
+    }
+    return out;
+  }
+
   SolidMotion motion(const LinkSolid& solid, const Vector3d& center_W, int base) const {
     return motion(solid.joint, solid.levers, center_W, solid.convex.reach(), base);
   }
@@ -252,6 +302,7 @@ SolidScene::SolidScene(Arm arm, std::vector<LinkSolid> solids, std::vector<Stand
       }
     }
   }
+  for (const StandingSolid& solid : standing_) boxes_.add(solid.low, solid.high);
   for (auto [a, b] : pairs) {
     const auto joint = [&](int link) { return links_[static_cast<std::size_t>(link)].joint; };
     if (joint(a) > joint(b)) std::swap(a, b);

@@ -8,6 +8,7 @@
 
 #include "mjarm/collision/convex_internal.hpp"
 #include "mjarm/collision/fast_robot.hpp"
+#include "mjarm/collision/near_boxes_internal.hpp"
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/model/arm.hpp"
@@ -101,6 +102,7 @@ class SolidScene {
   std::vector<LinkSolid> solids_;
   std::vector<LinkGroup> links_;
   std::vector<StandingSolid> standing_;
+  NearBoxes boxes_;                        // round what stands
   std::vector<std::array<int, 2>> pairs_;  // the link nearer to the base first
 };
 

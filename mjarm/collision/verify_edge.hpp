@@ -65,7 +65,7 @@ struct VerifyResult {
 /// does not measure, is left out. Owns its scratch memory: copy it to use it from another thread.
 class ModelMarch {
  public:
-  /// Joints off the arm stand at the keyframe `home`, else at their initial value.
+  /// Joints off the arm stand as in home_configuration().
   /// @return cover_model()'s errors.
   [[nodiscard]] static Result<ModelMarch> create(const Model& model, const Arm& arm,
                                                  const ContactRules& rules = {},

@@ -1,5 +1,6 @@
 #include "mjarm/core/file.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
@@ -55,6 +56,8 @@ Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
     return fail(Errc::bad_input, text(msg::core_cannot_read, path.string(), system_message(errno)));
   }
   std::string content;
+  const std::uintmax_t size = fs::file_size(path, status_error);
+  if (!status_error) content.reserve(std::min<std::uintmax_t>(size, max_bytes));
   char buffer[65536];
   std::size_t count = 0;
   while (content.size() <= max_bytes && (count = std::fread(buffer, 1, sizeof buffer, file)) > 0) {

@@ -1,6 +1,7 @@
 #include "mjarm/core/os_child.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -33,6 +34,8 @@ constexpr double kSlowness = kSanitized ? 3 : 1;
 /// Once `work` is at its end the child says this; everything before is its answer.
 constexpr char kEnd = '\x04';
 
+/// [bytes] Hardly any answer is longer.
+constexpr std::size_t kUsualAnswer = std::size_t{32} << 20;
 /// [s] Computing time that is no progress.
 constexpr double kWakes = 1e-3;
 /// [ms] How long the listener sleeps before it looks whether the child still computes.
@@ -76,13 +79,21 @@ void become_harmless(const ChildLimits& limits, std::size_t base) {
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CPU, static_cast<std::size_t>(std::ceil(limits.cpu_seconds * kSlowness)), 1);
   if (!kSanitized && base > 0) limit(RLIMIT_AS, base + limits.memory);
+#if defined(__GLIBC__)
+  // It will not live long: what it has freed need not go back to the system.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 25);
+  ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
 }
 
 /// Reads what the child says until it ends, closes its end of the pipe, or runs out of time.
 class Listener {
  public:
   Listener(pid_t child, int pipe, const ChildLimits& limits)
-      : child_(child), pipe_(pipe), limits_(limits) {}
+      : child_(child), pipe_(pipe), limits_(limits) {
+    // A large answer is not moved while it grows; what is not needed costs no memory.
+    result_.said.reserve(std::min(limits.answer, kUsualAnswer));
+  }
 
   ChildResult listen() {
     while (!closed_ && !ended_ && !stuck_ && result_.said.size() <= limits_.answer) hear();

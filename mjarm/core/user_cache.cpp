@@ -1,6 +1,7 @@
 #include "mjarm/core/user_cache.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <system_error>
 #include <vector>
 
@@ -42,10 +43,14 @@ std::size_t size_of(const std::vector<CachedFile>& files) {
   return sum;
 }
 
+std::atomic<bool> left_alone = false;
+
 }  // namespace
 
+void UserCache::leave_alone() noexcept { left_alone = true; }
+
 std::optional<UserCache> UserCache::of_user() {
-  if (environment("MJARM_CACHE") == "off") return {};
+  if (left_alone || environment("MJARM_CACHE") == "off") return {};
   const auto folder = user_folder("XDG_CACHE_HOME", ".cache");
   if (!folder) return {};
   return UserCache(*folder / "mjarm");
@@ -61,21 +66,22 @@ std::optional<std::string> UserCache::find(std::string_view made_from) const {
   if (!fs::is_regular_file(file, failed)) return {};
   Result<std::string> content = read_file(file, max_bytes_);
   if (!content || content->size() < kHash) return {};
-  std::string value = content->substr(kHash);
-  if (content->compare(0, kHash, sha256(value)) != 0) {
+  const std::string_view value(content->data(), content->size() - kHash);
+  if (content->compare(value.size(), kHash, sha256(value)) != 0) {
     fs::remove(file, failed);
     return {};
   }
   fs::last_write_time(file, fs::file_time_type::clock::now(), failed);  // used
-  return value;
+  content->resize(value.size());
+  return std::move(*content);
 }
 
 void UserCache::keep(std::string_view made_from, std::string_view value) const {
   const std::size_t size = kHash + value.size();
   if (size > max_bytes_ || !make_folder(folder_)) return;
   make_room(size);
-  std::string content = sha256(value);
-  content += value;
+  std::string content(value);
+  content += sha256(value);
   (void)write_file(file_of(made_from), content);
 }
 

@@ -15,10 +15,13 @@ namespace mjarm {
 /// cannot be written is not kept.
 class UserCache {
  public:
-  static constexpr std::size_t kMaxBytes = std::size_t{64} << 20;  ///< of all files
+  static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;  ///< of all files
 
-  /// None where the environment variable MJARM_CACHE is `off`, or the user has no folder.
+  /// None where the environment variable MJARM_CACHE is `off`, after leave_alone(), or where the
+  /// user has no folder.
   [[nodiscard]] static std::optional<UserCache> of_user();
+  /// From now on there is none for this process: what it measures is a first run.
+  static void leave_alone() noexcept;
   /// @param max_bytes  of all files together; what was used longest ago goes.
   explicit UserCache(std::filesystem::path folder, std::size_t max_bytes = kMaxBytes)
       : folder_(std::move(folder)), max_bytes_(max_bytes) {}

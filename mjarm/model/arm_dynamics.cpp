@@ -4,18 +4,17 @@
 
 #include <algorithm>
 
-#include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/home.hpp"
 
 namespace mjarm {
 
 ArmDynamics::ArmDynamics(const Model& model, const Arm& arm)
     : dynamics_(model),
       friction_(arm.dof()),
-      position_(model.qpos0().begin(), model.qpos0().end()),
+      position_(home_configuration(model.raw()).begin(), home_configuration(model.raw()).end()),
       velocity_(static_cast<std::size_t>(model.nv()), 0.0),
       acceleration_(velocity_) {
   const mjModel* m = model.raw();
-  if (const double* home = home_keyframe(m)) std::copy_n(home, m->nq, position_.begin());
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
     qpos_.push_back(joint.qpos);

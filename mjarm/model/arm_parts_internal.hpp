@@ -67,7 +67,4 @@ void fill_limits(const Model& model, const std::vector<int>& joints, Arm& arm);
 /// The gripper beyond the last of `joints`, if there is one.
 [[nodiscard]] std::optional<Gripper> find_gripper(const mjModel* m, const std::vector<int>& joints);
 
-/// Configuration in which the model starts (nq,): keyframe `home`, or the only keyframe, else null.
-[[nodiscard]] const double* home_keyframe(const mjModel* m);
-
 }  // namespace mjarm

@@ -7,6 +7,7 @@
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/check_internal.hpp"
 #include "mjarm/model/check_pose_internal.hpp"
+#include "mjarm/model/home.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
@@ -29,14 +30,14 @@ Place keyframe_place(const CheckContext& context) {
 void check_keyframe(const CheckContext& context) {
   const mjModel* m = context.model->raw();
   const Arm& arm = *context.arm;
-  if (home_keyframe(m) == nullptr) {
+  const int key = home_keyframe(m);
+  if (key < 0) {
     if (context.description.is_urdf()) return;  // URDF knows none
     context.add(CheckCode::home_missing, Grade::note, context.description.root(),
                 text(msg::check_home_missing));
     return;
   }
-  const int named = mj_name2id(m, mjOBJ_KEY, "home");
-  const double* ctrl = m->key_ctrl + (named >= 0 ? named : 0) * m->nu;
+  const double* ctrl = m->key_ctrl + key * m->nu;
   const Place place = keyframe_place(context);
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
@@ -59,10 +60,8 @@ void check_keyframe(const CheckContext& context) {
 }  // namespace
 
 std::vector<double> home_qpos(const CheckContext& context) {
-  const mjModel* m = context.model->raw();
-  const double* key = home_keyframe(m);
-  const double* from = key != nullptr ? key : m->qpos0;
-  std::vector<double> qpos(from, from + m->nq);
+  const std::span<const double> home = home_configuration(context.model->raw());
+  std::vector<double> qpos(home.begin(), home.end());
   const Arm& arm = *context.arm;
   for (int i = 0; i < arm.dof(); ++i) {
     qpos[static_cast<std::size_t>(arm.joints[static_cast<std::size_t>(i)].qpos)] = arm.home[i];

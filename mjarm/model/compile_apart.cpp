@@ -8,6 +8,7 @@
 #include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/os_child.hpp"
+#include "mjarm/model/compile_cache_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
@@ -25,11 +26,19 @@ std::shared_mutex& compiler_lock() {
 
 /// What the copy says: a letter a stage, then one of these and what belongs to it.
 constexpr char kError = 'E';  ///< code, text
-constexpr char kModel = 'M';  ///< warnings as count and (length, text), compiled model
+constexpr char kModel = 'M';  ///< warnings and files read, compiled model
 
 void put(std::string& out, std::size_t number) {
   const auto fixed = static_cast<std::uint64_t>(number);
   out.append(reinterpret_cast<const char*>(&fixed), sizeof fixed);
+}
+
+void put(std::string& out, const std::vector<std::string>& lines) {
+  put(out, lines.size());
+  for (const std::string& line : lines) {
+    put(out, line.size());
+    out += line;
+  }
 }
 
 /// Reads what `put` has written; false where there is too little.
@@ -42,17 +51,26 @@ bool take(std::string_view& in, std::size_t& number) {
   return true;
 }
 
+bool take(std::string_view& in, std::vector<std::string>& lines) {
+  std::size_t count = 0;
+  if (!take(in, count)) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t length = 0;
+    if (!take(in, length) || length > in.size()) return false;
+    lines.emplace_back(in.substr(0, length));
+    in.remove_prefix(length);
+  }
+  return true;
+}
+
 void tell_error(const ChildVoice& voice, const Error& error) {
   voice.send(std::string{kError, static_cast<char>(error.code)} + error.what);
 }
 
 void tell_model(const ChildVoice& voice, const LoadedModel& loaded) {
   std::string out(1, kModel);
-  put(out, loaded.warnings.size());
-  for (const std::string& warning : loaded.warnings) {
-    put(out, warning.size());
-    out += warning;
-  }
+  put(out, loaded.warnings);
+  put(out, loaded.read_files);
   voice.send(out);
   const mjtSize size = mj_sizeModel(loaded.model.get());
   const std::unique_ptr<char[]> bytes(new char[static_cast<std::size_t>(size)]);
@@ -66,6 +84,7 @@ void work(const SpecSource& source, const ChildVoice& voice) {
     const char letter = static_cast<char>(stage);
     voice.send({&letter, 1});
   };
+  mj_setCacheCapacity(mj_getCache(), 0);  // the copy reads every mesh once
   try {
     const Result<LoadedModel> loaded = compile_here(source, tell_stage);
     if (!loaded) {
@@ -123,14 +142,7 @@ Error bad_end(const SpecSource& source, const ChildResult& result, Stage stage) 
 /// The model that `tell_model` has sent; none where the answer is broken.
 std::optional<LoadedModel> read_model(std::string_view said) {
   LoadedModel loaded;
-  std::size_t warnings = 0;
-  if (!take(said, warnings)) return std::nullopt;
-  for (std::size_t i = 0; i < warnings; ++i) {
-    std::size_t length = 0;
-    if (!take(said, length) || length > said.size()) return std::nullopt;
-    loaded.warnings.emplace_back(said.substr(0, length));
-    said.remove_prefix(length);
-  }
+  if (!take(said, loaded.warnings) || !take(said, loaded.read_files)) return std::nullopt;
   mjModel* model = nullptr;
   const MujocoOutcome outcome = call_mujoco(
       [&] { model = mj_loadModelBuffer(said.data(), static_cast<mjtSize>(said.size())); });
@@ -146,6 +158,11 @@ Result<ChildResult> compile_in_child(const SpecSource& source) {
 }
 
 Result<LoadedModel> compile_apart(const SpecSource& source) {
+  const std::optional<CompileCache> cache = CompileCache::of(source);
+  if (cache) {
+    const std::shared_lock in_use(compiler_lock());
+    if (std::optional<LoadedModel> known = cache->find(read_model)) return std::move(*known);
+  }
   Result<ChildResult> result = compile_in_child(source);
   // Threads that are not ours may have held a lock when the copy was made; seldom twice.
   if (result && result->end == ChildEnd::stuck) result = compile_in_child(source);
@@ -162,6 +179,7 @@ Result<LoadedModel> compile_apart(const SpecSource& source) {
   const std::shared_lock in_use(compiler_lock());
   std::optional<LoadedModel> loaded = read_model(said);
   if (!loaded) return fail(bad_end(source, {}, stage));
+  if (cache) cache->keep(said, *loaded);
   return std::move(*loaded);
 }
 

@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,38 @@ std::vector<KeySizes> key_sizes(mjSpec* spec) {
   return keys;
 }
 
+std::string file_name(const char* path) { return std::filesystem::path(path).filename().string(); }
+
+/// Files of the meshes that decide about masses or contacts. Of geoms that are only looked at
+/// MuJoCo reads none, where looks are left out and their body has a mass of its own.
+std::vector<std::string> mesh_files(mjSpec* spec) {
+  std::vector<std::string> files;
+  for (mjsElement* b = mjs_firstElement(spec, mjOBJ_BODY); b; b = mjs_nextElement(spec, b)) {
+    const mjsBody* const body = mjs_asBody(b);
+    const bool has_mass =
+        body->explicitinertial != 0 && spec->compiler.inertiafromgeom != mjINERTIAFROMGEOM_TRUE;
+    for (mjsElement* g = mjs_firstChild(body, mjOBJ_GEOM, 0); g; g = mjs_nextChild(body, g, 0)) {
+      const mjsGeom* const geom = mjs_asGeom(g);
+      const bool is_looks = geom->contype == 0 && geom->conaffinity == 0;
+      if (has_mass && is_looks && spec->compiler.discardvisual != 0) continue;
+      mjsElement* const mesh = mjs_findElement(spec, mjOBJ_MESH, mjs_getString(geom->meshname));
+      if (mesh != nullptr) files.push_back(file_name(mjs_getString(mjs_asMesh(mesh)->file)));
+    }
+  }
+  return files;
+}
+
+/// Files of what a compiled model still has.
+void add_kept_files(const mjModel* m, std::vector<std::string>& files) {
+  const auto add = [&](const int* paths, mjtSize count) {
+    for (mjtSize i = 0; i < count; ++i) {
+      if (paths[i] >= 0) files.push_back(file_name(m->paths + paths[i]));
+    }
+  };
+  add(m->mesh_pathadr, m->nmesh);
+  add(m->tex_pathadr, m->ntex);
+}
+
 /// Too many values are an error. Too few are what a scene has that adds bodies to a robot with
 /// keyframes: MuJoCo takes the others from the initial state, and a line in `warnings` says so.
 Result<void> check_keys(const std::string& file, const std::vector<KeySizes>& keys,
@@ -157,8 +190,10 @@ class Compiler {
     if (source_.prepare) source_.prepare(spec_.get());
     if (!source_.looks) spec_->compiler.discardvisual = 1;
     const std::vector<KeySizes> keys = key_sizes(spec_.get());
+    loaded_.read_files = mesh_files(spec_.get());
     if (auto done = compile(); !done) return fail(done.error());
     const mjModel* model = loaded_.model.get();
+    add_kept_files(model, loaded_.read_files);
     if (auto done = check_numbers(source_.name(), model); !done) return fail(done.error());
     if (auto done = check_keys(source_.name(), keys, model, loaded_.warnings); !done) {
       return fail(done.error());

@@ -4,6 +4,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/design_overlaps_internal.hpp"
+#include "mjarm/model/home.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
@@ -123,10 +124,9 @@ BodyPairs always_touching(const mjModel* m) {
 
 std::vector<DesignOverlap> design_overlaps(const mjModel* m, const std::vector<int>& joints) {
   const ArmParts of(m, m->jnt_bodyid[joints.front()]);
-  const double* const key = home_keyframe(m);
   std::vector<DesignOverlap> out;
   // Numbers of links come before those of geoms, so the first of a pair is a link.
-  for (const auto& [a, b] : always_overlapping(m, key != nullptr ? key : m->qpos0, of.parts())) {
+  for (const auto& [a, b] : always_overlapping(m, home_configuration(m).data(), of.parts())) {
     const bool stands = !of.is_link(b);
     out.push_back({a, stands ? of.geom(b) : b, stands, {of.name(a), of.name(b)}});
   }

@@ -9,17 +9,20 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/design_overlaps_internal.hpp"
+#include "mjarm/model/home.hpp"
 
 namespace mjarm {
 namespace {
 
 /// Home of the arm's joints: of the keyframe, else the middle of the limits, else 0.
 JointVec home_of(const mjModel* m, const Arm& arm) {
-  const double* key = home_keyframe(m);
+  const std::span<const double> qpos = home_configuration(m);
+  const bool has_key = home_keyframe(m) >= 0;
   JointVec home(arm.dof());
   for (int i = 0; i < arm.dof(); ++i) {
     const double middle = 0.5 * (arm.limits.lower[i] + arm.limits.upper[i]);
-    home[i] = key != nullptr ? key[arm.joints[i].qpos] : std::isfinite(middle) ? middle : 0.0;
+    const auto at = static_cast<std::size_t>(arm.joints[i].qpos);
+    home[i] = has_key ? qpos[at] : std::isfinite(middle) ? middle : 0.0;
   }
   return home;
 }
@@ -81,12 +84,6 @@ bool hangs_on(const mjModel* m, int descendant, int body) {
   return descendant == body;
 }
 
-const double* home_keyframe(const mjModel* m) {
-  int key = mj_name2id(m, mjOBJ_KEY, "home");
-  if (key < 0 && m->nkey == 1) key = 0;
-  return key < 0 ? nullptr : m->key_qpos + key * m->nq;
-}
-
 Result<void> fill_chain(const Model& model, const TipFrame& tip, const double* qpos, Arm& arm) {
   const mjModel* m = model.raw();
   Pose X_PB;  // the body's frame in the moved frame of the last joint so far (first: the world)
@@ -146,8 +143,7 @@ Result<Arm> find_arm(const Model& model, const ArmOptions& options) {
   Arm arm;
   arm.name = model.name();
   arm.tip = tip->name;
-  const double* key = home_keyframe(m);
-  if (auto done = fill_chain(model, *tip, key != nullptr ? key : m->qpos0, arm); !done) {
+  if (auto done = fill_chain(model, *tip, home_configuration(m).data(), arm); !done) {
     return fail(done.error());
   }
   fill_actuators(m, joints, arm);
@@ -173,11 +169,7 @@ Result<Pose> frame_pose(const Model& model, std::string_view frame, std::span<co
 }
 
 Result<Pose> frame_pose(const Model& model, std::string_view frame) {
-  const mjModel* m = model.raw();
-  const int key = mj_name2id(m, mjOBJ_KEY, "home");
-  const auto nq = static_cast<std::size_t>(m->nq);
-  const double* const qpos = key >= 0 ? m->key_qpos + static_cast<std::size_t>(key) * nq : m->qpos0;
-  return frame_pose(model, frame, {qpos, nq});
+  return frame_pose(model, frame, home_configuration(model.raw()));
 }
 
 }  // namespace mjarm

@@ -35,7 +35,7 @@ struct ArmOptions {
 /// @return an error with the nearest name.
 [[nodiscard]] Result<Pose> frame_pose(const Model& model, std::string_view frame,
                                       std::span<const double> qpos);
-/// The same as the model stands: in its keyframe `home`, else at the initial values.
+/// The same in home_configuration().
 [[nodiscard]] Result<Pose> frame_pose(const Model& model, std::string_view frame);
 
 }  // namespace mjarm

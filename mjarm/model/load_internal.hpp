@@ -33,7 +33,8 @@ struct LoadedModel {
   std::map<std::string, double, std::less<>> velocity_limits;  ///< URDF, by joint [rad/s or m/s]
   std::map<std::string, double, std::less<>> effort_limits;    ///< URDF, by joint [N m or N]
   std::vector<std::string> warnings;
-  std::string urdf_text;  ///< what MuJoCo was given in place of a URDF
+  std::vector<std::string> read_files;  ///< names, without folder, of meshes and textures in use
+  std::string urdf_text;                ///< what MuJoCo was given in place of a URDF
 };
 
 /// A description before it is compiled, which has passed `preflight`.

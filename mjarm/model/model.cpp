@@ -101,8 +101,12 @@ Result<Model> Model::with_point_mass(std::string_view frame, double mass) const 
   impl->file = impl_->file;
   impl->format = impl_->format;
   const LoadedModel& own = impl_->loaded;
-  impl->loaded = {MjModelPtr(mj_copyModel(nullptr, raw())), own.velocity_limits, own.effort_limits,
-                  own.warnings, own.urdf_text};
+  impl->loaded = {MjModelPtr(mj_copyModel(nullptr, raw())),
+                  own.velocity_limits,
+                  own.effort_limits,
+                  own.warnings,
+                  own.read_files,
+                  own.urdf_text};
   detail::add_point_mass(*impl->loaded.model, found->body, found->X_BT.p, mass);
   return Model(std::move(impl));
 }

@@ -35,10 +35,7 @@ class Folders {
     }
   }
 
-  [[nodiscard]] const fs::path& base() const { return base_; }
-
-  /// Where `name` may be looked for. Which of several <compiler> counts need not be known: all must
-  /// be harmless.
+  /// Where `name` may be looked for.
   [[nodiscard]] std::vector<fs::path> places(const FileKind& kind, std::string_view name) const {
     std::vector<fs::path> folders = {base_};
     for (const XMLElement* compiler : compilers_) {
@@ -72,8 +69,9 @@ class Folders {
 
 }  // namespace
 
-Result<void> check_files(const XmlSources& sources, const LoadOptions& options) {
+std::vector<AssetFile> asset_files(const XmlSources& sources) {
   const Folders folders(sources);
+  std::vector<AssetFile> out;
   for (const SourceElement& source : sources.elements()) {
     const auto kind = std::find_if(kKinds.begin(), kKinds.end(), [&](const FileKind& k) {
       return k.element == source.element->Name();
@@ -86,15 +84,23 @@ Result<void> check_files(const XmlSources& sources, const LoadOptions& options) 
       if (!attribute.starts_with("file") || attribute == "filename" || *a->Value() == '\0') {
         continue;
       }
-      for (const fs::path& path : folders.places(*kind, a->Value())) {
-        if (!options.allow_outside && !is_inside(path, {folders.base()})) {
-          return fail(
-              urdf_error(*source.file, *source.element, text(msg::guard_outside, a->Value())));
-        }
-        if (auto fault = asset_fault(path, kind->element, a->Value())) {
-          return fail(urdf_error(*source.file, *source.element, *fault));
-        }
+      for (fs::path& path : folders.places(*kind, a->Value())) {
+        out.push_back({std::move(path), kind->element, a->Value(), source});
       }
+    }
+  }
+  return out;
+}
+
+Result<void> check_files(const XmlSources& sources, const LoadOptions& options) {
+  const fs::path base = fs::path(sources.documents().front()->name).parent_path();
+  for (const AssetFile& file : asset_files(sources)) {
+    const SourceElement& source = file.source;
+    if (!options.allow_outside && !is_inside(file.path, {base})) {
+      return fail(urdf_error(*source.file, *source.element, text(msg::guard_outside, file.name)));
+    }
+    if (auto fault = asset_fault(file.path, file.kind, file.name)) {
+      return fail(urdf_error(*source.file, *source.element, *fault));
     }
   }
   return {};

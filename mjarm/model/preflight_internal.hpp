@@ -33,6 +33,17 @@ namespace mjarm {
 /// Counts and sizes that would eat all memory or time; the time step.
 [[nodiscard]] Result<void> check_amounts(const XmlSources& sources);
 
+/// A place where a file may be that MJCF names.
+struct AssetFile {
+  std::filesystem::path path;
+  std::string_view kind;  ///< of the element that names it: `mesh`, `hfield`, ...
+  std::string_view name;  ///< as it is written
+  SourceElement source;
+};
+/// Of files other than includes. Which of several <compiler> counts need not be known: of each file
+/// all places are told where it may be looked for.
+[[nodiscard]] std::vector<AssetFile> asset_files(const XmlSources& sources);
+
 /// The files that MJCF names: inside the model's folder, regular, of a sensible size, and as long
 /// as they say they are.
 [[nodiscard]] Result<void> check_files(const XmlSources& sources, const LoadOptions& options);

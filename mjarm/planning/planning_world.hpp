@@ -37,8 +37,8 @@ struct WorldOptions {
   /// or by the model, and pairs that are proved never to meet (ModelCover), are not held to it.
   /// PlanOptions::clearance is what a path keeps beyond that.
   double margin = 0;
-  /// (nq,) [rad or m] where joints off the arm stand, those of its gripper as well; empty: keyframe
-  /// `home`, else initial values.
+  /// (nq,) [rad or m] where joints off the arm stand, those of its gripper as well; empty:
+  /// home_configuration().
   std::vector<double> qpos = {};
 };
 

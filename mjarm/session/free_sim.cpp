@@ -37,7 +37,7 @@ Result<FreeSim> FreeSim::create(const Model& model, const std::optional<Arm>& ar
 }
 
 void FreeSim::reset() {
-  if (!sim_.reset("home")) (void)sim_.reset();
+  sim_.reset_home();
   if (arm_) {
     sim_.place(*arm_, as_span(arm_->home));
     q_before_ = q_now_ = q_goal_ = arm_->home;

@@ -22,7 +22,7 @@ Result<void> stand_at(Sim& sim, const std::vector<double>& qpos) {
 }
 
 void stand_at_home(Sim& sim) {
-  if (!sim.reset("home")) (void)sim.reset();
+  sim.reset_home();
   if (const Result<Arm> arm = find_arm(sim.model())) sim.place(*arm, as_span(arm->home));
 }
 

@@ -12,6 +12,7 @@
 #include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/model/home.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/sim/holding_internal.hpp"
 #include "mjarm/sim/raw_internal.hpp"
@@ -89,6 +90,12 @@ struct Sim::Impl {
     stand();
   }
 
+  void reset_to(int keyframe) {
+    fatal.reset();
+    mj_resetDataKeyframe(&m(), &d(), keyframe);
+    stand();
+  }
+
   /// What went wrong at `time`, and back to the initial state, whether or not MuJoCo went there.
   Error instability(double time) {
     std::string what = raw::instability(m(), d().warning, time);
@@ -131,15 +138,14 @@ Result<void> Sim::reset(std::string_view keyframe) {
                   text(msg::sim_no_keyframe, model().file().string(), keyframe, joined(names)) +
                       did_you_mean(keyframe, names));
     }
-    impl_->fatal.reset();
-    mj_resetDataKeyframe(&m, &impl_->d(), key);
-    impl_->stand();
+    impl_->reset_to(key);
   }
   return {};
 }
 
 void Sim::reset_home() {
-  if (mj_name2id(&impl_->m(), mjOBJ_KEY, "home") < 0 || !reset("home")) impl_->reset();
+  const int key = home_keyframe(&impl_->m());
+  key < 0 ? impl_->reset() : impl_->reset_to(key);
 }
 
 void Sim::place(const Arm& arm, std::span<const double> q) {

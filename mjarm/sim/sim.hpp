@@ -57,7 +57,7 @@ class Sim {
   /// Back to keyframe `name`, or to the initial state where `name` is empty.
   /// @return an error with the nearest name.
   [[nodiscard]] Result<void> reset(std::string_view keyframe = {});
-  /// Back to keyframe `home` where there is one, else to the initial state: as plans take a scene.
+  /// Back to home_keyframe() where there is one, else to the initial state: as plans take a scene.
   void reset_home();
   /// Puts the arm's joints at `q` (dof,), at rest, with matching ctrl where its actuators are
   /// servos. All else stays.

@@ -26,6 +26,7 @@
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/threads.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/core/user_cache.hpp"
 #include "mjarm/core/utf8.hpp"
 #include "mjarm/planning/verify_path.hpp"
 
@@ -264,6 +265,7 @@ int exit_code_of(const std::vector<Job>& jobs, const Options& options) {
 }
 
 Result<int> run(const Options& options) {
+  UserCache::leave_alone();  // nothing is believed that was made before
   if (options.paths.empty()) return fail(Errc::usage, text(msg::verify_need_paths));
   if (options.in.empty() == options.robot.robot.empty()) {
     return fail(Errc::usage, text(msg::app_need_one_of, "--in", "--robot"));
