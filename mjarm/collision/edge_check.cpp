@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mjarm/collision/fast_access_internal.hpp"
+#include "mjarm/collision/prove_edge.hpp"
 #include "mjarm/collision/solid_scene_internal.hpp"
 
 namespace mjarm {
@@ -292,28 +293,37 @@ EdgeResult check_edge(const FastChecker& checker, std::span<const double> q0,
   return EdgeSearch(checker, q0, q1, options).run(nullptr);
 }
 
-Result<EdgeCertificate, EdgeResult> certify_edge(const FastChecker& checker,
-                                                 std::span<const double> q0,
-                                                 std::span<const double> q1,
-                                                 const EdgeOptions& options) {
+Result<EdgeCertificate, EdgeResult> prove_edge(const FastChecker& checker,
+                                               std::span<const double> q0,
+                                               std::span<const double> q1,
+                                               const EdgeOptions& options) {
   EdgeCertificate out;
   EdgeSearch search(checker, q0, q1, options);
   const EdgeResult result = search.run(&out.intervals);
   if (result.verdict != EdgeVerdict::free) return tl::unexpected<EdgeResult>(result);
   std::sort(out.intervals.begin(), out.intervals.end(),
             [](const EdgeInterval& a, const EdgeInterval& b) { return a.t < b.t; });
-  std::vector<double> q;
   double half = 1;
-  for (const EdgeInterval& interval : out.intervals) {
-    half = std::min(half, interval.half);
+  for (const EdgeInterval& interval : out.intervals) half = std::min(half, interval.half);
+  out.step = 2 * half * search.length();
+  return out;
+}
+
+Result<EdgeCertificate, EdgeResult> certify_edge(const FastChecker& checker,
+                                                 std::span<const double> q0,
+                                                 std::span<const double> q1,
+                                                 const EdgeOptions& options) {
+  Result<EdgeCertificate, EdgeResult> out = prove_edge(checker, q0, q1, options);
+  if (!out) return out;
+  std::vector<double> q;
+  for (const EdgeInterval& interval : out->intervals) {
     for (std::size_t i = 0; i < q0.size(); ++i) {
       q.push_back(q0[i] + interval.t * (q1[i] - q0[i]));
     }
   }
-  out.step = 2 * half * search.length();
   const FastChecker::LeastClearance least = checker.least_clearance(q);
-  out.nearest = least.nearest;
-  out.nearest_t = out.intervals[least.row].t;
+  out->nearest = least.nearest;
+  out->nearest_t = out->intervals[least.row].t;
   return out;
 }
 

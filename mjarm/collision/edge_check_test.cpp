@@ -7,6 +7,7 @@
 
 #include "mjarm/collision/edge_samples_test.hpp"
 #include "mjarm/collision/problems_test.hpp"
+#include "mjarm/collision/prove_edge.hpp"
 #include "mjarm/collision/random_scene_test.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
 
@@ -135,6 +136,10 @@ TEST(CheckEdge, CertificatesCoverTheEdge) {
       EXPECT_GE(2 * interval.half * (q1 - q0).norm(), proof->step - 1e-12);
     }
     EXPECT_GE(reached, 1);
+    const auto bare = prove_edge(checker, as_span(q0), as_span(q1));  // the same, not measured
+    EXPECT_EQ(bare.value().step, proof->step);
+    EXPECT_EQ(bare->intervals.size(), proof->intervals.size());
+    EXPECT_EQ(bare->nearest.link, -1);
     const auto at = testing::on_edge(as_span(q0), as_span(q1), proof->nearest_t);
     EXPECT_GT(proof->nearest.distance, 0);
     if (proof->nearest.obstacle >= 0) {

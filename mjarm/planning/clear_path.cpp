@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mjarm/collision/prove_edge.hpp"
 #include "mjarm/planning/clear_path_internal.hpp"
 #include "mjarm/planning/search_internal.hpp"
 
@@ -40,7 +41,7 @@ ClearGoals clear_goals(const SearchProblem& problem, const FastChecker& wide,
 std::optional<EdgeCertificate> certificate(const FastChecker& checker, const JointVec& from,
                                            const JointVec& to, double resolution) {
   for (const double share : {1.0, 0x1p-3, 0x1p-6}) {
-    auto proof = certify_edge(checker, as_span(from), as_span(to), {share * resolution});
+    auto proof = prove_edge(checker, as_span(from), as_span(to), {share * resolution});
     if (proof) return std::move(*proof);
   }
   return std::nullopt;
@@ -122,7 +123,9 @@ Result<PlannedPath, PlanFailure> plan_clear(const ClearScene& scene, std::span<c
   if (ways.q.empty()) return blocked();
   PlanOptions within = options;
   if (within.samples == 0) within.samples = kClearSamples;
-  Result<PlannedPath, PlanFailure> path = plan_path(wide, as_span(first->q), ways.q, within, times);
+  // What is nearest is measured once, in the end.
+  Result<PlannedPath, PlanFailure> path =
+      plan_unmeasured(wide, as_span(first->q), ways.q, within, times);
   if (!path) return path;
   const auto reached = static_cast<std::size_t>(path->goal);
   path->goal = ways.index[reached];

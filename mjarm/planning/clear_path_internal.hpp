@@ -31,6 +31,13 @@ enum class ClearEnds {
     const ClearScene& scene, std::span<const double> start, std::span<const JointVec> goals,
     const PlanOptions& options, ClearEnds ends, PlanTimes* times = nullptr);
 
+/// plan_path() without what is nearest to each edge.
+[[nodiscard]] Result<PlannedPath, PlanFailure> plan_unmeasured(const FastChecker& checker,
+                                                               std::span<const double> start,
+                                                               std::span<const JointVec> goals,
+                                                               const PlanOptions& options,
+                                                               PlanTimes* times);
+
 /// Fills in the least clearance of every edge, as a checker without clearance tells it.
 void measure_edges(const FastChecker& checker, PlannedPath& path);
 

@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <utility>
 
+#include "mjarm/collision/prove_edge.hpp"
 #include "mjarm/core/stopwatch.hpp"
+#include "mjarm/planning/clear_path_internal.hpp"
 #include "mjarm/planning/search_internal.hpp"
 
 namespace mjarm {
 namespace {
 
+/// certify_edge() or prove_edge().
+using Certify = Result<EdgeCertificate, EdgeResult>(const FastChecker&, std::span<const double>,
+                                                    std::span<const double>, const EdgeOptions&);
+
 /// Certificates of all edges; false where one is not proved.
 bool prove(const FastChecker& checker, std::span<const JointVec> q, double resolution,
-           std::vector<EdgeCertificate>& out) {
+           Certify& certify, std::vector<EdgeCertificate>& out) {
   out.clear();
   for (std::size_t i = 1; i < q.size(); ++i) {
-    auto proof = certify_edge(checker, as_span(q[i - 1]), as_span(q[i]), {resolution});
+    auto proof = certify(checker, as_span(q[i - 1]), as_span(q[i]), {resolution});
     if (!proof) return false;
     out.push_back(std::move(*proof));
   }
@@ -47,8 +53,10 @@ Result<RawPath, PlanFailure> find_path(const FastChecker& checker, std::span<con
   return found;
 }
 
-Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath path,
-                                             const PlanOptions& options) {
+namespace {
+
+Result<PlannedPath, PlanFailure> finish(const FastChecker& checker, RawPath path,
+                                        const PlanOptions& options, Certify& certify) {
   PlannedPath out;
   out.goal = path.goal;
   std::vector<JointVec> found = path.q;
@@ -61,7 +69,7 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
       if (is_stopped(options.stop)) {
         return tl::unexpected(PlanFailure{.code = PlanErrc::stopped});
       }
-      if (!prove(checker, *q, share * options.resolution, out.proof)) continue;
+      if (!prove(checker, *q, share * options.resolution, certify, out.proof)) continue;
       out.q = *q;
       if (!detail::prove_kept(kept, options, out)) break;  // no resolution helps
       out.cost = path_length(out.q);
@@ -75,7 +83,7 @@ Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath
   return tl::unexpected(failure);
 }
 
-Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
+Result<PlannedPath, PlanFailure> plan_with(Certify& certify, const FastChecker& checker,
                                            std::span<const double> start,
                                            std::span<const JointVec> goals,
                                            const PlanOptions& options, PlanTimes* times) {
@@ -88,9 +96,31 @@ Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
   }
   if (times != nullptr) times->search_us = watch.us();
   if (!raw) return tl::unexpected(raw.error());
-  Result<PlannedPath, PlanFailure> out = finish_path(checker, std::move(*raw), options);
+  Result<PlannedPath, PlanFailure> out = finish(checker, std::move(*raw), options, certify);
   if (times != nullptr) times->finish_us = watch.us() - times->search_us;
   return out;
+}
+
+}  // namespace
+
+Result<PlannedPath, PlanFailure> finish_path(const FastChecker& checker, RawPath path,
+                                             const PlanOptions& options) {
+  return finish(checker, std::move(path), options, certify_edge);
+}
+
+Result<PlannedPath, PlanFailure> plan_path(const FastChecker& checker,
+                                           std::span<const double> start,
+                                           std::span<const JointVec> goals,
+                                           const PlanOptions& options, PlanTimes* times) {
+  return plan_with(certify_edge, checker, start, goals, options, times);
+}
+
+Result<PlannedPath, PlanFailure> detail::plan_unmeasured(const FastChecker& checker,
+                                                         std::span<const double> start,
+                                                         std::span<const JointVec> goals,
+                                                         const PlanOptions& options,
+                                                         PlanTimes* times) {
+  return plan_with(prove_edge, checker, start, goals, options, times);
 }
 
 }  // namespace mjarm

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 constexpr const char* kFalling = R"(<mujoco model="ball">
   <option timestep="0.001" gravity="0 0 -10"/>
   <worldbody><body pos="0 0 5"><freejoint name="ball"/><geom size="0.1"/></body></worldbody>
-  <keyframe><key name="low" qpos="0 0 2 1 0 0 0"/></keyframe>
+  <keyframe><key name="low" qpos="0 0 2 1 0 0 0"/><key name="high" qpos="0 0 9 1 0 0 0"/></keyframe>
 </mujoco>)";
 constexpr auto kGoOn = [](const Sim&, std::span<const double>) { return true; };
 
@@ -39,6 +39,10 @@ TEST_F(RunModel, WhatHasAJointFallsAsNewtonSays) {
 
 TEST_F(RunModel, StartsWhereItIsTold) {
   EXPECT_EQ(start_model(ball_, {.keyframe = "low"})->qpos()[2], 2);
+  EXPECT_EQ(start_model(ball_, {})->qpos()[2], 5);
+  const std::string both = kFalling, one = both.substr(0, both.find("<key name=\"high\"")) +
+                                           "</keyframe></mujoco>";  // is home, whatever its name
+  EXPECT_EQ(start_model(Model::from_mjcf(one).value(), {})->qpos()[2], 2);
   EXPECT_EQ(start_model(ball_, {.qpos = std::vector<double>{0, 0, 3, 1, 0, 0, 0}})->qpos()[2], 3);
   EXPECT_THAT(start_model(ball_, {.keyframe = "lwo"}).error().what, HasSubstr("\"low\""));
   EXPECT_EQ(start_model(ball_, {.qpos = std::vector<double>{1}}).error().what,
