@@ -117,8 +117,8 @@ class Shortcuts {
     }
     const double some = kSpread * rng_.uniform();
     out.v += some * random_way(out.v.size()).cwiseProduct(limits_.velocity);
-    out.v = out.v.cwiseMin(limits_.velocity).cwiseMax(-limits_.velocity);
     out.a = random_acceleration(now.a);
+    keep_limits(out);
     return out;
   }
 
@@ -138,7 +138,20 @@ class Shortcuts {
     JointState out{place.q, now.v, random_acceleration(now.a)};
     speed_up(from, to, out);
     out.v = now.v + rng_.uniform(kLeast, 1) * (out.v - now.v);
+    keep_limits(out);
     return out;
+  }
+
+  /// Slows down joints that would be too fast before their acceleration is gone, or were.
+  void keep_limits(JointState& state) const {
+    for (Eigen::Index i = 0; i < state.v.size(); ++i) {
+      double room = limits_.velocity[i] - state.a[i] * state.a[i] / (2 * limits_.jerk[i]);
+      if (room < 0) {
+        state.a[i] = 0;
+        room = limits_.velocity[i];
+      }
+      state.v[i] = std::clamp(state.v[i], -room, room);
+    }
   }
 
   /// Compass search for the velocity of `over` with which the motion over it is fastest.

@@ -130,6 +130,20 @@ TEST_F(PathMotionTest, StopsWhereNothingElseIsProved) {
   EXPECT_LE(motion.trajectory.duration(), motion.stopping);
 }
 
+/// Also where the velocity is reached before the acceleration, and the jerk limits both.
+TEST_F(PathMotionTest, LimitsOfAllKindsHold) {
+  Rng rng(1, 3);
+  for (int k = 0; k < 12; ++k) {
+    limits_.velocity = at(rng.uniform(0.3, 1), rng.uniform(0.3, 1));
+    limits_.acceleration = at(rng.uniform(0.5, 8), rng.uniform(0.5, 8));
+    limits_.jerk = at(rng.uniform(2, 50), rng.uniform(2, 50));
+    const PlannedPath path = planned(at(-0.4, rng.uniform(0.1, 0.2)), at(0.4, 0.1), 0.02);
+    const PathMotion motion = timed(path.q, {&path, 1}, {.attempts = 2000});
+    EXPECT_LT(motion.trajectory.duration(), motion.stopping);
+    expect_limits(motion.trajectory);
+  }
+}
+
 TEST_F(PathMotionTest, PassesWhatItHasToMeet) {
   const PlannedPath one = planned(at(-0.4, 0.1), at(-0.1, 0.4), 0.01);
   const PlannedPath two = planned(at(-0.1, 0.4), at(0.4, 0.1), 0.01);
