@@ -143,14 +143,16 @@ class Gatherer {
                         scene_.clusters.size() < kMostClusters;
     const auto label = static_cast<std::int16_t>(counts ? static_cast<int>(scene_.clusters.size())
                                                         : int{kNothing});
-    Cluster cluster{static_cast<int>(piece_.size()), width, scene_.lens.height, 0, 0};
+    Cluster cluster{static_cast<int>(piece_.size()), 0, width, scene_.lens.height, 0, 0};
     for (const int at : piece_) {
       scene_.label[static_cast<std::size_t>(at)] = label;
+      cluster.middle += scene_.inverse[static_cast<std::size_t>(at)];
       cluster.x0 = std::min(cluster.x0, at % width);
       cluster.x1 = std::max(cluster.x1, at % width);
       cluster.y0 = std::min(cluster.y0, at / width);
       cluster.y1 = std::max(cluster.y1, at / width);
     }
+    cluster.middle /= cluster.pixels;
     if (counts) scene_.clusters.push_back(cluster);
   }
 

@@ -21,6 +21,7 @@ enum PixelLabel : std::int16_t {
 /// Pixels of one piece of surface above the table.
 struct Cluster {
   int pixels = 0;
+  double middle = 0;                   ///< [1/m] mean of 1/z
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< [px] the box around them, all inside
 };
 

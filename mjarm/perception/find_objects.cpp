@@ -35,11 +35,7 @@ FoundPose found_pose(const DepthScene& scene, const ShapeFit& fit, bool by_tag) 
 }
 
 bool is_sunk(const DepthScene& scene, const ShapeModel& shape, const Pose& X_CO) {
-  if (!scene.table) return false;
-  const Pose X_WO = scene.X_WC * X_CO;
-  return std::any_of(
-      shape.surface.vertices.begin(), shape.surface.vertices.end(),
-      [&](const Eigen::Vector3d& v) { return scene.table->height(X_WO * v) < -kSunk; });
+  return sunk_depth(scene, shape.surface, X_CO) > kSunk;
 }
 
 /// Nothing speaks against it but what may hide it.
@@ -80,9 +76,8 @@ int cluster_under(const DepthScene& scene, const std::vector<float>& drawn) {
 bool may_hold(const DepthScene& scene, int cluster, const ShapeModel& shape) {
   constexpr double kSlack = 6;  // [px]
   const Cluster& box = scene.clusters[static_cast<std::size_t>(cluster)];
-  const double q = view_of(scene, cluster, box, 16).middle;
   const double across = std::max(box.x1 - box.x0, box.y1 - box.y0);
-  return q > 0 && (across - kSlack) / (q * scene.lens.fx) < 2 * shape.radius;
+  return (across - kSlack) / (box.middle * scene.lens.fx) < 2 * shape.radius;
 }
 
 /// An object that a cluster may be, with poses to refine, the best first.

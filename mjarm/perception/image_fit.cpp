@@ -33,7 +33,6 @@ FitView view_of(const DepthScene& scene, int cluster, const Cluster& box, int ma
                .fy = scene.lens.fy / stride,
                .cx = (scene.lens.cx - box.x0) / stride,
                .cy = (scene.lens.cy - box.y0) / stride};
-  double sum = 0;
   for (int y = box.y0; y <= box.y1; y += stride) {
     for (int x = box.x0; x <= box.x1; x += stride) {
       const bool inside = x >= 0 && y >= 0 && x < scene.lens.width && y < scene.lens.height;
@@ -42,12 +41,10 @@ FitView view_of(const DepthScene& scene, int cluster, const Cluster& box, int ma
       view.kind.push_back(kind);
       view.inverse.push_back(inside ? scene.inverse[at] : 0);
       view.table_inverse.push_back(scene.table_at(scene.lens.ray({x, y})));
-      if (kind != FitView::cluster) continue;
-      ++view.cluster_pixels;
-      sum += view.inverse.back();
+      view.cluster_pixels += kind == FitView::cluster ? 1 : 0;
     }
   }
-  view.middle = sum / std::max(1, view.cluster_pixels);
+  view.middle = cluster >= 0 ? scene.clusters[static_cast<std::size_t>(cluster)].middle : 0;
   view.sigma = sigma_near(scene, view.middle);
   return view;
 }
@@ -90,8 +87,9 @@ class Trial {
       : view_(view), draw_(draw), limit_(limit), raster_(raster) {}
   void residuals(const Eigen::VectorXd& x, std::vector<float>& out) {
     raster_.clear(view_.lens);
-    draw_(x, raster_);
+    const float rule = draw_(x, raster_);
     residuals_of(view_, raster_.inverse(), limit_, out);
+    out.push_back(rule);
   }
 
  private:

@@ -40,7 +40,8 @@ void residuals_of(const FitView& view, const std::vector<float>& drawn, float li
 [[nodiscard]] double cost_of(const std::vector<float>& residuals);
 
 /// Draws what is looked for, with the numbers `x`, into a cleared raster.
-using DrawWith = std::function<void(const Eigen::VectorXd& x, Raster& raster)>;
+/// @return one more residual, in sigma: how far it is from what may be; 0 where it may be.
+using DrawWith = std::function<float(const Eigen::VectorXd& x, Raster& raster)>;
 
 /// How an image fit is done.
 struct FitLevel {

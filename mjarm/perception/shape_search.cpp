@@ -55,8 +55,19 @@ Pose turned_about_centre(const ShapeModel& shape, const Pose& X_CO, const Eigen:
   return with_centre(shape, to.R, to.p);
 }
 
+/// Residual of a shape that stands lower than the table: as if each pixel were off by a sigma for
+/// each 3 mm that it is sunk.
+float sunk_residual(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
+                    const Pose& X_CO) {
+  constexpr double kFree = 0.0015;  // [m]
+  constexpr double kSigma = 0.003;  // [m]
+  const double sunk = sunk_depth(scene, shape.coarse, X_CO) - kFree;
+  return sunk > 0 ? static_cast<float>(std::sqrt(view.cluster_pixels) * sunk / kSigma) : 0;
+}
+
 /// All orientations, each so placed that what is seen of it has the cluster's mean.
-std::vector<Start> starts_of(const FitView& view, const ShapeModel& shape, float limit, Raster& raster) {
+std::vector<Start> starts_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
+                             float limit, Raster& raster) {
   const Eigen::Vector3d seen_C = mean_point(
       view, view.inverse, [&](std::size_t i) { return view.kind[i] == FitView::cluster; });
   std::vector<Start> out;
@@ -72,6 +83,7 @@ std::vector<Start> starts_of(const FitView& view, const ShapeModel& shape, float
     raster.clear(view.lens);
     raster.draw(shape.coarse, X_CO);
     residuals_of(view, raster.inverse(), limit, r);
+    r.push_back(sunk_residual(scene, view, shape, X_CO));
     out.push_back({X_CO, cost_of(r)});
   }
   std::stable_sort(out.begin(), out.end(),
@@ -87,11 +99,13 @@ Eigen::VectorXd steps_of(const FitView& view, const ShapeModel& shape, double pi
   return step;
 }
 
-Start refined(const FitView& view, const ShapeModel& shape, const Surface& surface, const Start& start,
+Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& shape, const Surface& surface, const Start& start,
               float limit, int steps, Raster& raster) {
   const Pose X_CO = start.X_CO;
   const auto draw = [&](const Eigen::VectorXd& x, Raster& into) {
-    into.draw(surface, turned_about_centre(shape, X_CO, x));
+    const Pose X = turned_about_centre(shape, X_CO, x);
+    into.draw(surface, X);
+    return sunk_residual(scene, view, shape, X);
   };
   const ImageFit fit = fit_image(view, draw, Eigen::VectorXd::Zero(6),
                                  {.limit = limit, .step = steps_of(view, shape, 1), .steps = steps}, raster);
@@ -99,11 +113,11 @@ Start refined(const FitView& view, const ShapeModel& shape, const Surface& surfa
 }
 
 /// Refines the first ones and keeps, best first, so many that differ by more than symmetry.
-std::vector<Start> best_of(const FitView& view, const ShapeModel& shape, std::vector<Start> starts,
+std::vector<Start> best_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape, std::vector<Start> starts,
                            std::size_t tried, std::size_t kept, float limit, int steps,
                            Raster& raster) {
   starts.resize(std::min(starts.size(), tried));
-  for (Start& start : starts) start = refined(view, shape, shape.coarse, start, limit, steps, raster);
+  for (Start& start : starts) start = refined(scene, view, shape, shape.coarse, start, limit, steps, raster);
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Start& a, const Start& b) { return a.cost < b.cost; });
   std::vector<Start> out;
@@ -121,7 +135,7 @@ std::vector<Start> best_of(const FitView& view, const ShapeModel& shape, std::ve
 /// The cluster with a rim of a share of its size.
 Cluster grown(Cluster box, double share) {
   const int rim = 4 + static_cast<int>(share * std::max(box.x1 - box.x0, box.y1 - box.y0));
-  return {box.pixels, box.x0 - rim, box.y0 - rim, box.x1 + rim, box.y1 + rim};
+  return {box.pixels, box.middle, box.x0 - rim, box.y0 - rim, box.x1 + rim, box.y1 + rim};
 }
 
 /// The cluster and what is about it, with so many pixels a side.
@@ -168,10 +182,20 @@ double uncertainty_of(const ShapeModel& shape, const Pose& X_CO, const Eigen::Ma
 
 }  // namespace
 
+double sunk_depth(const DepthScene& scene, const Surface& surface, const Pose& X_CO) {
+  const double steep = scene.table_a.norm();
+  if (steep == 0) return 0;
+  double most = 0;
+  for (const Eigen::Vector3d& v : surface.vertices) {
+    most = std::max(most, scene.table_a.dot(X_CO * v) - 1);
+  }
+  return most / steep;
+}
+
 ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& shape, const Pose& X_CO,
                      Raster& raster) {
   constexpr int kMaxSide = 110;
-  const Cluster none{0, scene.lens.width, scene.lens.height, 0, 0};
+  const Cluster none{0, 0, scene.lens.width, scene.lens.height, 0, 0};
   const Cluster box = box_round(scene, shape, X_CO,
                                 cluster >= 0 ? scene.clusters[static_cast<std::size_t>(cluster)] : none);
   FitView view = view_of(scene, cluster, box, kMaxSide);
@@ -204,6 +228,7 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
   if (view.middle > 0) {
     const auto draw = [&](const Eigen::VectorXd& x, Raster& into) {
       into.draw(shape.surface, turned_about_centre(shape, X_CO, x));
+      return 0.0F;
     };
     const ImageFit fit = fit_image(view, draw, Eigen::VectorXd::Zero(6),
                                    {.limit = kFineLimit, .step = steps_of(view, shape, 1), .steps = 0}, raster);
@@ -216,13 +241,13 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
 std::vector<Start> rough_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
                                 Raster& raster) {
   const FitView view = rough_view(scene, cluster, 20);
-  return starts_of(view, shape, far_limit(view), raster);
+  return starts_of(scene, view, shape, far_limit(view), raster);
 }
 
 std::vector<Start> coarse_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
                                  std::vector<Start> starts, Raster& raster) {
   const FitView view = rough_view(scene, cluster, 28);
-  return best_of(view, shape, std::move(starts), 8, 4, far_limit(view), 6, raster);
+  return best_of(scene, view, shape, std::move(starts), 8, 4, far_limit(view), 6, raster);
 }
 
 std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
@@ -230,13 +255,13 @@ std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const Sh
   const Cluster& box = scene.clusters[static_cast<std::size_t>(cluster)];
   const FitView middle = rough_view(scene, cluster, 56);
   const float limit = 2 * kFineLimit;
-  starts = best_of(middle, shape, std::move(starts), 4, 2, limit, 6, raster);
+  starts = best_of(scene, middle, shape, std::move(starts), 4, 2, limit, 6, raster);
   std::vector<ShapeFit> out;
   for (const Start& start : starts) {
     // What was far behind stays there.
     if (!out.empty() && start.cost > 2 * starts.front().cost) break;
     const FitView fine = view_of(scene, cluster, box_round(scene, shape, start.X_CO, box), 110);
-    const Start last = refined(fine, shape, shape.surface, start, kFineLimit, 8, raster);
+    const Start last = refined(scene, fine, shape, shape.surface, start, kFineLimit, 8, raster);
     if (!out.empty() && surface_distance(shape, last.X_CO, out.front().X_CO) < kSame) continue;
     out.push_back(check_shape(scene, cluster, shape, last.X_CO, raster));
   }

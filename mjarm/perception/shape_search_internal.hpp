@@ -39,6 +39,9 @@ struct Start {
                                                 const ShapeModel& shape, std::vector<Start> starts,
                                                 Raster& raster);
 
+/// [m] How far the lowest vertex is below the table; 0 where none is.
+[[nodiscard]] double sunk_depth(const DepthScene& scene, const Surface& surface, const Pose& X_CO);
+
 /// How well the scene agrees with a pose of the shape; `cluster` is -1 where nothing has to be
 /// explained.
 [[nodiscard]] ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& shape,

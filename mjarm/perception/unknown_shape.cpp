@@ -78,7 +78,7 @@ ImageFit fit(const DepthScene& scene, int cluster, const DrawWith& draw, Eigen::
              const Eigen::VectorXd& step_of_pixel, Raster& raster) {
   Cluster box = scene.clusters[static_cast<std::size_t>(cluster)];
   const int rim = 8;
-  box = {box.pixels, box.x0 - rim, box.y0 - rim, box.x1 + rim, box.y1 + rim};
+  box = {box.pixels, box.middle, box.x0 - rim, box.y0 - rim, box.x1 + rim, box.y1 + rim};
   ImageFit out;
   for (const int side : {40, 120}) {
     const FitView view = view_of(scene, cluster, box, side);
@@ -105,10 +105,12 @@ std::optional<UnknownObject> measure_unknown(const DepthScene& scene, int cluste
   const auto box = [&](const Eigen::VectorXd& x, Raster& into) {
     const Eigen::Vector3d size(positive(x[3]), positive(x[4]), positive(x[5]));
     into.draw(box_surface(size / 2), upright(X_CF, x[0], x[1], x[2], size.z()));
+    return 0.0F;
   };
   const auto cylinder = [&](const Eigen::VectorXd& x, Raster& into) {
     const double height = positive(x[3]);
     into.draw(cylinder_surface(positive(x[2]), height / 2), upright(X_CF, x[0], x[1], 0, height));
+    return 0.0F;
   };
   Eigen::VectorXd box_step = Eigen::VectorXd::Ones(6);
   box_step[2] = 2 / std::max(first[3], first[4]);  // a pixel at the end of the longer side
