@@ -116,7 +116,9 @@ class Gatherer {
  public:
   Gatherer(DepthScene& scene, double jump)
       : scene_(scene), jump_(jump), todo_(scene.label.size(), 0) {
-    for (std::size_t i = 0; i < todo_.size(); ++i) todo_[i] = scene.label[i] >= 0 ? 1 : 0;
+    for (std::size_t i = 0; i < todo_.size(); ++i) {
+      todo_[i] = scene.label[i] >= 0 || scene.label[i] == kSpeck ? 1 : 0;
+    }
   }
 
   void run() {
@@ -142,7 +144,7 @@ class Gatherer {
     const bool counts = static_cast<int>(piece_.size()) >= kFewestOfCluster &&
                         scene_.clusters.size() < kMostClusters;
     const auto label = static_cast<std::int16_t>(counts ? static_cast<int>(scene_.clusters.size())
-                                                        : int{kNothing});
+                                                        : int{kSpeck});
     Cluster cluster{static_cast<int>(piece_.size()), 0, width, scene_.lens.height, 0, 0};
     for (const int at : piece_) {
       scene_.label[static_cast<std::size_t>(at)] = label;

@@ -13,9 +13,10 @@ namespace mjarm::perception {
 
 /// What a pixel shows; 0 and above is the number of a cluster.
 enum PixelLabel : std::int16_t {
-  kNothing = -1,  ///< no depth, or a speck
+  kNothing = -1,  ///< no depth
   kTable = -2,
-  kBeyond = -3,  ///< below the table, or beside it
+  kBeyond = -3,  ///< below the table, beside it, or taken out
+  kSpeck = -4,   ///< above the table, in too small a piece
 };
 
 /// Pixels of one piece of surface above the table.
@@ -52,7 +53,7 @@ struct DepthScene {
 /// @param drawn  [1/m] (lens.height * lens.width,) 0 where nothing is
 void take_out(DepthScene& scene, const std::vector<float>& drawn);
 
-/// Makes clusters anew of all pixels that are in one.
+/// Makes clusters anew of all pixels that are in one, and of specks.
 /// @param jump  [m] in depth between neighbours that still belong together, beside the noise
 void gather(DepthScene& scene, double jump);
 /// What a smooth surface may fall from one pixel to the next.

@@ -18,8 +18,10 @@ using ObjectPose = Result<FoundPose, FindFailure>;
 
 constexpr double kMostMissing = 0.1;      // share of its pixels through which more is seen
 constexpr double kMostUnexplained = 0.1;  // share of a cluster's pixels that are not it
-constexpr double kLeastSeen = 0.5;
+constexpr double kLeastSeen = 0.9;         // of an object without a tag
 constexpr double kMostUncertain = 0.0006;  // [m]
+constexpr double kTouching = 0.6;          // the same where it may be a part of the cluster
+constexpr double kWhole = 0.95;             // seen of an object that nothing hides
 constexpr double kSunk = 0.005;            // [m] below the table
 constexpr double kPieceJump = 0.1;         // [m] between pieces of one object
 
@@ -112,6 +114,7 @@ struct ObjectFinder::Impl {
   void find_by_shapes(DepthScene& scene, std::vector<ObjectPose>& out);
   std::vector<Rival> rivals(const DepthScene& scene, int cluster);
   std::vector<Match> matches(const DepthScene& scene, std::vector<ObjectPose>& out);
+  void add(std::vector<Match>& found, const Match& match) const;
   void claim(DepthScene& scene, std::size_t i, const Pose& X_WO) {
     take_out(scene, whole_drawing(scene, shapes[i], scene.X_WC.inverse() * X_WO, raster));
   }
@@ -176,10 +179,9 @@ std::vector<Match> ObjectFinder::Impl::matches(const DepthScene& scene, std::vec
     double best = 1e18;
     for (auto& [i, starts] : rivals(scene, c)) {
       const std::vector<ShapeFit> fits = fine_search(scene, c, shapes[i], std::move(starts), raster);
-      if (std::getenv("DBG")) for (auto& f : fits) std::fprintf(stderr, "\n  cluster %d px %d obj %zu cost %.0f seen %.2f missing %.2f unexpl %.2f unc %.2f sunk %d", c, scene.clusters[c].pixels, i, f.cost, f.seen, f.missing, f.unexplained, f.uncertainty*1e3, is_sunk(scene, shapes[i], f.X_CO));
       if (!is_possible(scene, shapes[i], fits[0])) continue;
       if (!is_whole(fits[0])) {
-        if (fits[0].seen >= kLeastSeen) {
+        if (fits[0].seen >= kLeastSeen && fits[0].unexplained < kTouching) {
           out[i] = fail(FindFailure{.code = FindErrc::touching,
                                     .best = found_pose(scene, fits[0], false)});
         }
@@ -191,10 +193,23 @@ std::vector<Match> ObjectFinder::Impl::matches(const DepthScene& scene, std::vec
       best = std::min(best, fits[0].cost);
     }
     for (const Match& match : here) {
-      if (match.fit.cost <= best + margin(best)) found.push_back(match);
+      if (match.fit.cost <= best + margin(best)) add(found, match);
     }
   }
   return found;
+}
+
+/// Two pieces of one object tell of the same pose: it is one match, the more certain one.
+void ObjectFinder::Impl::add(std::vector<Match>& found, const Match& match) const {
+  const auto known = std::find_if(found.begin(), found.end(), [&](const Match& other) {
+    return other.object == match.object &&
+           is_same(shapes[match.object], other.fit.X_CO, match.fit.X_CO);
+  });
+  if (known == found.end()) {
+    found.push_back(match);
+  } else if (match.fit.uncertainty < known->fit.uncertainty) {
+    *known = match;
+  }
 }
 
 void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, std::vector<ObjectPose>& out) {
@@ -210,7 +225,7 @@ void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, std::vector<ObjectPos
     std::optional<FindErrc> fault;
     if (match.twofold || !alone(match)) fault = FindErrc::ambiguous;
     if (match.fit.uncertainty > kMostUncertain || match.fit.seen < kLeastSeen) {
-      fault = match.fit.seen < 0.9 ? FindErrc::occluded : FindErrc::ambiguous;
+      fault = match.fit.seen < kWhole ? FindErrc::occluded : FindErrc::ambiguous;
     }
     if (fault) {
       out[match.object] = fail(FindFailure{.code = *fault, .best = pose});

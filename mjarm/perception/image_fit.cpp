@@ -9,7 +9,7 @@ namespace mjarm::perception {
 namespace {
 
 FitView::Kind kind_of(std::int16_t label, int cluster) {
-  if (label == kNothing) return FitView::none;
+  if (label == kNothing || label == kSpeck) return FitView::none;
   if (label == kTable) return FitView::table;
   return label == cluster ? FitView::cluster : FitView::other;
 }
@@ -37,7 +37,7 @@ FitView view_of(const DepthScene& scene, int cluster, const Cluster& box, int ma
     for (int x = box.x0; x <= box.x1; x += stride) {
       const bool inside = x >= 0 && y >= 0 && x < scene.lens.width && y < scene.lens.height;
       const auto at = inside ? static_cast<std::size_t>(y * scene.lens.width + x) : 0;
-      const FitView::Kind kind = inside ? kind_of(scene.label[at], cluster) : FitView::none;
+      const FitView::Kind kind = inside ? kind_of(scene.label[at], cluster) : FitView::outside;
       view.kind.push_back(kind);
       view.inverse.push_back(inside ? scene.inverse[at] : 0);
       view.table_inverse.push_back(scene.table_at(scene.lens.ray({x, y})));
@@ -60,6 +60,7 @@ void residuals_of(const FitView& view, const std::vector<float>& drawn, float li
     const float off = std::clamp((expected - view.inverse[i]) * weight, -limit, limit);
     const bool shown = drawn[i] > table;
     switch (view.kind[i]) {
+      case FitView::outside:
       case FitView::none:
         out[i] = 0;
         break;

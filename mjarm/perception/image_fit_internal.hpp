@@ -14,7 +14,8 @@ namespace mjarm::perception {
 struct FitView {
   /// What a pixel may be compared with.
   enum Kind : std::uint8_t {
-    none,     ///< nothing: not measured, or outside of the picture
+    outside,  ///< nothing: it is outside of the picture
+    none,     ///< nothing: it was not measured
     table,    ///< the table, or what is so near to it that noise hides which
     cluster,  ///< the cluster
     other,    ///< something else, which may hide what is looked for

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
-#include <fstream>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -105,6 +110,36 @@ inline Pose eye_at(const Eigen::Vector3d& target_W, double distance, double azim
 
 inline Pose standing(double x, double y, double z, double yaw) {
   return {.p = {x, y, z}, .R = from_euler({0, 0, yaw})};
+}
+
+/// [rad] between two orientations of one of the bodies, up to its symmetry where it has no tag: the
+/// box looks the same after half a turn about each axis, the can from either end and turned at will.
+inline double turn_between(std::size_t body, bool with_tag, const Eigen::Matrix3d& A,
+                           const Eigen::Matrix3d& B) {
+  constexpr std::size_t kBox = 0, kCan = 1;
+  if (body == kCan) return std::acos(std::min(1.0, std::abs(A.col(2).dot(B.col(2)))));
+  double least = angle_between(A, B);
+  for (int axis = 0; body == kBox && !with_tag && axis < 3; ++axis) {
+    const Eigen::AngleAxisd half(std::numbers::pi, Eigen::Vector3d::Unit(axis));
+    least = std::min(least, angle_between(A * half.toRotationMatrix(), B));
+  }
+  return least;
+}
+
+/// The three objects beside each other, standing or lying, seen from somewhere 0.5 to 0.8 m away.
+inline Places random_places(Rng& rng) {
+  const auto yaw = [&] { return rng.uniform(-std::numbers::pi, std::numbers::pi); };
+  const auto near = [&](double x) { return x + rng.uniform(-0.02, 0.02); };
+  const Pose on_side{.R = from_euler({std::numbers::pi / 2, 0, 0})};
+  Places out{.eye = eye_at({0, 0, 0.03}, rng.uniform(0.5, 0.8), yaw(), rng.uniform(0.6, 1.48))};
+  out.bodies[0] = standing(near(-0.08), near(0), 0.03, yaw());
+  const bool can_lies = rng.below(3) == 0;
+  out.bodies[1] = standing(near(0.06), near(0.07), can_lies ? 0.033 : 0.05, yaw());
+  if (can_lies) *out.bodies[1] = *out.bodies[1] * on_side;
+  const bool step_lies = rng.below(3) == 0;
+  out.bodies[2] = standing(near(0.07), near(-0.07), step_lies ? 0.025 : 0, yaw());
+  if (step_lies) *out.bodies[2] = *out.bodies[2] * on_side;
+  return out;
 }
 
 /// Box, can and step as objects, the box with its tag where that is asked for.

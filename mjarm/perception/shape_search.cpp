@@ -14,7 +14,7 @@ namespace {
 constexpr float kFineLimit = 4;  // [sigma]
 constexpr int kStarts = 300;
 constexpr double kFar = 0.02;  // [m] as far as anything pulls at first
-constexpr double kSame = 0.0015;  // [m] of surface_distance: the same pose, up to symmetry
+constexpr double kSame = 0.003;   // [m] of surface_distance: the same pose, up to symmetry
 
 /// Evenly spread over all orientations (M. Alexa, Super-Fibonacci spirals, CVPR 2022).
 Eigen::Matrix3d orientation(int i, int n) {
@@ -100,7 +100,8 @@ Eigen::VectorXd steps_of(const FitView& view, const ShapeModel& shape, double pi
 }
 
 Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& shape, const Surface& surface, const Start& start,
-              float limit, int steps, Raster& raster) {
+              float limit, double pixels, Raster& raster) {
+  constexpr int kSteps = 6;
   const Pose X_CO = start.X_CO;
   const auto draw = [&](const Eigen::VectorXd& x, Raster& into) {
     const Pose X = turned_about_centre(shape, X_CO, x);
@@ -108,16 +109,15 @@ Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& sh
     return sunk_residual(scene, view, shape, X);
   };
   const ImageFit fit = fit_image(view, draw, Eigen::VectorXd::Zero(6),
-                                 {.limit = limit, .step = steps_of(view, shape, 1), .steps = steps}, raster);
+                                 {.limit = limit, .step = steps_of(view, shape, pixels), .steps = kSteps}, raster);
   return {turned_about_centre(shape, X_CO, fit.x), fit.cost};
 }
 
 /// Refines the first ones and keeps, best first, so many that differ by more than symmetry.
 std::vector<Start> best_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape, std::vector<Start> starts,
-                           std::size_t tried, std::size_t kept, float limit, int steps,
-                           Raster& raster) {
+                           std::size_t tried, std::size_t kept, float limit, Raster& raster) {
   starts.resize(std::min(starts.size(), tried));
-  for (Start& start : starts) start = refined(scene, view, shape, shape.coarse, start, limit, steps, raster);
+  for (Start& start : starts) start = refined(scene, view, shape, shape.coarse, start, limit, 1, raster);
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Start& a, const Start& b) { return a.cost < b.cost; });
   std::vector<Start> out;
@@ -206,8 +206,9 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
   double squares = 0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (drawn[i] <= view.table_inverse[i]) continue;
-    ++pixels;
     if (view.kind[i] == FitView::none) continue;
+    ++pixels;
+    if (view.kind[i] == FitView::outside) continue;
     const double q = view.inverse[i];
     const double off = drawn[i] - q;  // > 0: something farther is seen
     const double gate = kFineLimit * scene.model.sigma + DepthModel::from_metres(0.002, q);
@@ -238,6 +239,10 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
   return out;
 }
 
+bool is_same(const ShapeModel& shape, const Pose& A, const Pose& B) {
+  return surface_distance(shape, A, B) < kSame;
+}
+
 std::vector<Start> rough_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
                                 Raster& raster) {
   const FitView view = rough_view(scene, cluster, 20);
@@ -247,7 +252,7 @@ std::vector<Start> rough_search(const DepthScene& scene, int cluster, const Shap
 std::vector<Start> coarse_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
                                  std::vector<Start> starts, Raster& raster) {
   const FitView view = rough_view(scene, cluster, 28);
-  return best_of(scene, view, shape, std::move(starts), 8, 4, far_limit(view), 6, raster);
+  return best_of(scene, view, shape, std::move(starts), 8, 4, far_limit(view), raster);
 }
 
 std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
@@ -255,14 +260,17 @@ std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const Sh
   const Cluster& box = scene.clusters[static_cast<std::size_t>(cluster)];
   const FitView middle = rough_view(scene, cluster, 56);
   const float limit = 2 * kFineLimit;
-  starts = best_of(scene, middle, shape, std::move(starts), 4, 2, limit, 6, raster);
+  starts = best_of(scene, middle, shape, std::move(starts), 4, 2, limit, raster);
   std::vector<ShapeFit> out;
   for (const Start& start : starts) {
     // What was far behind stays there.
     if (!out.empty() && start.cost > 2 * starts.front().cost) break;
     const FitView fine = view_of(scene, cluster, box_round(scene, shape, start.X_CO, box), 110);
-    const Start last = refined(scene, fine, shape, shape.surface, start, kFineLimit, 8, raster);
-    if (!out.empty() && surface_distance(shape, last.X_CO, out.front().X_CO) < kSame) continue;
+    Start last = start;
+    for (const double pixels : {3, 1}) {
+      last = refined(scene, fine, shape, shape.surface, last, kFineLimit, pixels, raster);
+    }
+    if (!out.empty() && is_same(shape, last.X_CO, out.front().X_CO)) continue;
     out.push_back(check_shape(scene, cluster, shape, last.X_CO, raster));
   }
   std::stable_sort(out.begin(), out.end(),

@@ -18,6 +18,9 @@ struct ShapeFit {
   double uncertainty = 0;  ///< [m] standard deviation of its surface in the least certain direction
 };
 
+/// Whether two poses are the same, up to the shape's symmetry and a few millimetres.
+[[nodiscard]] bool is_same(const ShapeModel& shape, const Pose& A, const Pose& B);
+
 /// A pose to refine. Costs of one cluster can be compared from shape to shape.
 struct Start {
   Pose X_CO;

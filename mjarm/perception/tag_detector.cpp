@@ -43,6 +43,16 @@ SeenTag seen_tag(const apriltag_detection_t& detection) {
   return out;
 }
 
+/// False where a corner may be cut off: where two edges of the tag end at the picture's, the detector
+/// still tells a corner.
+bool is_inside(const SeenTag& tag, const render::Image& image) {
+  constexpr double kRim = 4;  // [px]
+  return std::all_of(tag.corners.begin(), tag.corners.end(), [&](const Eigen::Vector2d& corner) {
+    return corner.minCoeff() >= kRim && corner.x() <= image.width - 1 - kRim &&
+           corner.y() <= image.height - 1 - kRim;
+  });
+}
+
 /// A white rim, a black square, and the bits in it, the first one the most significant.
 std::vector<std::uint8_t> cells_of(const apriltag_family_t& family, int id) {
   const int width = family.total_width;
@@ -83,7 +93,8 @@ std::vector<SeenTag> TagDetector::find(const render::Image& image) {
   for (int i = 0; i < zarray_size(found); ++i) {
     apriltag_detection_t* detection = nullptr;
     zarray_get(found, i, &detection);
-    out.push_back(seen_tag(*detection));
+    const SeenTag tag = seen_tag(*detection);
+    if (is_inside(tag, image)) out.push_back(tag);
   }
   apriltag_detections_destroy(found);
   std::sort(out.begin(), out.end(), [](const SeenTag& a, const SeenTag& b) {

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kCornerSigma = 0.15;   // [px] of a corner that the detector tells
 constexpr double kSizeTolerance = 0.1;  // of the size
+constexpr double kMostOff = 1.5;        // [px] root mean square of the corners
 constexpr int kFewestPixels = 30;
 
 using Corners = std::array<Eigen::Vector2d, 4>;
@@ -142,7 +143,9 @@ Result<TagPose, FindErrc> tag_pose(const SeenTag& tag, double size, const render
   };
   const PoseFit fit = fit_poses({first}, residuals);
   const double corners = residuals(fit.poses).head<8>().squaredNorm() / 4;
-  return TagPose{.X_CT = fit.poses[0], .residual = kCornerSigma * std::sqrt(corners)};
+  const double residual = kCornerSigma * std::sqrt(corners);
+  if (!(residual < kMostOff)) return fail(FindErrc::disagrees);
+  return TagPose{.X_CT = fit.poses[0], .residual = residual};
 }
 
 }  // namespace mjarm::perception
