@@ -15,7 +15,7 @@
 namespace mjarm {
 namespace {
 
-constexpr int kAround = 64;     // faces about an axis
+constexpr int kAround = 64;      // faces about an axis
 constexpr int kHalfAround = 16;  // rows of faces from the equator to a pole
 constexpr int kLastGroupSeen = 2;
 
@@ -88,7 +88,8 @@ std::optional<Surface> geom_surface(const mjModel& m, int geom) {
       return round_surface(size[0], size[1]);
     case mjGEOM_ELLIPSOID: {
       Surface ball = round_surface(1, 0);
-      for (Eigen::Vector3d& v : ball.vertices) v = v.cwiseProduct(Eigen::Vector3d(size[0], size[1], size[2]));
+      for (Eigen::Vector3d& v : ball.vertices)
+        v = v.cwiseProduct(Eigen::Vector3d(size[0], size[1], size[2]));
       return ball;
     }
     case mjGEOM_MESH:
@@ -126,7 +127,8 @@ Surface box_surface(const Eigen::Vector3d& half) {
 }
 
 Surface cylinder_surface(double radius, double half_height) {
-  return turned({{0, -half_height}, {radius, -half_height}, {radius, half_height}, {0, half_height}});
+  return turned(
+      {{0, -half_height}, {radius, -half_height}, {radius, half_height}, {0, half_height}});
 }
 
 void append(Surface& surface_A, const Surface& surface_B, const Pose& X_AB) {

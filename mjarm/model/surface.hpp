@@ -13,8 +13,8 @@ namespace mjarm {
 
 /// The outside of a solid as triangles.
 struct Surface {
-  std::vector<Eigen::Vector3d> vertices = {};       ///< [m]
-  std::vector<std::array<int, 3>> triangles = {};   ///< indices in `vertices`
+  std::vector<Eigen::Vector3d> vertices = {};      ///< [m]
+  std::vector<std::array<int, 3>> triangles = {};  ///< indices in `vertices`
 };
 
 /// A box about the origin. @param half  [m] half of its edges, > 0.

@@ -13,8 +13,8 @@ Result<void> check_frame(const render::RgbdFrame& frame) {
                              static_cast<std::size_t>(std::max(0, lens.height));
   if (pixels == 0 || color.width != lens.width || color.height != lens.height ||
       color.rgb.size() != 3 * pixels || frame.depth.size() != pixels) {
-    return fail(Errc::bad_input, text(msg::perception_bad_frame, lens.width, lens.height, color.width,
-                                      color.height, frame.depth.size()));
+    return fail(Errc::bad_input, text(msg::perception_bad_frame, lens.width, lens.height,
+                                      color.width, color.height, frame.depth.size()));
   }
   const bool sound = lens.fx > 0 && lens.fy > 0 &&
                      std::isfinite(lens.fx + lens.fy + lens.cx + lens.cy + frame.X_WC.p.sum() +

@@ -46,7 +46,8 @@ Result<void> check_objects(std::span<const KnownObject> objects) {
   for (const KnownObject& object : objects) {
     std::string fault = fault_of(object.surface);
     if (fault.empty() && object.tag) fault = fault_of(*object.tag);
-    if (fault.empty() && !names.insert(object.name).second) fault = text(msg::perception_name_twice);
+    if (fault.empty() && !names.insert(object.name).second)
+      fault = text(msg::perception_name_twice);
     if (fault.empty() && object.tag && !tags.insert(object.tag->id).second) {
       fault = text(msg::perception_tag_of_two, object.tag->id);
     }
@@ -60,8 +61,8 @@ Result<void> check_objects(std::span<const KnownObject> objects) {
 Result<void> check_options(const FindOptions& options) {
   constexpr double kUnit = 1e-6;
   if (!(options.depth_sigma >= 0) || !std::isfinite(options.depth_sigma)) {
-    return fail(Errc::bad_input, text(msg::perception_bad_option, "depth_sigma", options.depth_sigma,
-                                      text(msg::perception_zero_or_more)));
+    return fail(Errc::bad_input, text(msg::perception_bad_option, "depth_sigma",
+                                      options.depth_sigma, text(msg::perception_zero_or_more)));
   }
   if (options.table && (!(std::abs(options.table->normal_W.norm() - 1) < kUnit) ||
                         !std::isfinite(options.table->offset))) {

@@ -48,7 +48,8 @@ std::optional<Eigen::Vector3d> level_plane(const DepthScene& scene, Rng& rng) {
   const std::vector<RayDepth> points = sparse(scene);
   if (points.size() < 10) return {};
   std::optional<Eigen::Vector3d> best;
-  std::ptrdiff_t most = static_cast<std::ptrdiff_t>(kLeastShare * static_cast<double>(points.size()));
+  std::ptrdiff_t most =
+      static_cast<std::ptrdiff_t>(kLeastShare * static_cast<double>(points.size()));
   for (int i = 0; i < kTries; ++i) {
     Eigen::Matrix3d rays;
     Eigen::Vector3d inverses;
@@ -143,8 +144,8 @@ class Gatherer {
     }
     const bool counts = static_cast<int>(piece_.size()) >= kFewestOfCluster &&
                         scene_.clusters.size() < kMostClusters;
-    const auto label = static_cast<std::int16_t>(counts ? static_cast<int>(scene_.clusters.size())
-                                                        : int{kSpeck});
+    const auto label =
+        static_cast<std::int16_t>(counts ? static_cast<int>(scene_.clusters.size()) : int{kSpeck});
     Cluster cluster{static_cast<int>(piece_.size()), 0, width, scene_.lens.height, 0, 0};
     for (const int at : piece_) {
       scene_.label[static_cast<std::size_t>(at)] = label;

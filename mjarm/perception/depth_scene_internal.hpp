@@ -31,8 +31,8 @@ struct DepthScene {
   render::CameraIntrinsics lens;
   Pose X_WC;
   DepthModel model;
-  std::vector<float> inverse;        ///< [1/m] (height * width,), 0: nothing measured
-  std::vector<std::int16_t> label;   ///< (height * width,)
+  std::vector<float> inverse;       ///< [1/m] (height * width,), 0: nothing measured
+  std::vector<std::int16_t> label;  ///< (height * width,)
   std::optional<Plane> table;
   Eigen::Vector3d table_a = Eigen::Vector3d::Zero();  ///< 1/z of the table is table_a . ray
   std::vector<Cluster> clusters;

@@ -16,12 +16,13 @@ namespace {
 
 using ObjectPose = Result<FoundPose, FindFailure>;
 
-constexpr double kMostMissing = 0.1;      // share of its pixels through which more is seen
-constexpr double kMostUnexplained = 0.1;  // share of a cluster's pixels that are not it
-constexpr double kLeastSeen = 0.9;         // of an object without a tag
-constexpr double kMostUncertain = 0.0006;  // [m]
+constexpr double kMostMissing = 0.1;       // share of its pixels through which more is seen
+constexpr double kMostUnexplained = 0.1;   // share of a cluster's pixels that are not it
 constexpr double kTouching = 0.6;          // the same where it may be a part of the cluster
-constexpr double kWhole = 0.95;             // seen of an object that nothing hides
+constexpr double kLeastSeen = 0.8;         // of an object without a tag
+constexpr double kMostOutside = 0.05;      // of it, outside of the picture
+constexpr double kWhole = 0.95;            // of one that nothing hides
+constexpr double kMostUncertain = 0.0006;  // [m]
 constexpr double kSunk = 0.005;            // [m] below the table
 constexpr double kPieceJump = 0.1;         // [m] between pieces of one object
 
@@ -68,9 +69,8 @@ int cluster_under(const DepthScene& scene, const std::vector<float>& drawn) {
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (drawn[i] > 0 && scene.label[i] >= 0) ++votes[scene.label[i]];
   }
-  const auto most = std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
-    return a.second < b.second;
-  });
+  const auto most = std::max_element(
+      votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == votes.end() ? -1 : most->first;
 }
 
@@ -92,9 +92,8 @@ void drop_hopeless(std::vector<Rival>& rivals) {
   constexpr double kFarBetter = 2.5;  // times the cost of the best
   double best = 1e18;
   for (const Rival& rival : rivals) best = std::min(best, rival.starts.front().cost);
-  std::erase_if(rivals, [&](const Rival& rival) {
-    return rival.starts.front().cost > kFarBetter * best;
-  });
+  std::erase_if(rivals,
+                [&](const Rival& rival) { return rival.starts.front().cost > kFarBetter * best; });
 }
 
 }  // namespace
@@ -110,8 +109,9 @@ struct ObjectFinder::Impl {
 
   ObjectPose pose_by_tag(std::size_t i, const std::vector<SeenTag>& seen,
                          const render::RgbdFrame& frame, const DepthScene& scene);
-  void find_by_tags(const render::RgbdFrame& frame, DepthScene& scene, std::vector<ObjectPose>& out);
-  void find_by_shapes(DepthScene& scene, std::vector<ObjectPose>& out);
+  void find_by_tags(const render::RgbdFrame& frame, DepthScene& scene,
+                    std::vector<ObjectPose>& out);
+  void find_by_shapes(DepthScene& scene, bool last, std::vector<ObjectPose>& out);
   std::vector<Rival> rivals(const DepthScene& scene, int cluster);
   std::vector<Match> matches(const DepthScene& scene, std::vector<ObjectPose>& out);
   void add(std::vector<Match>& found, const Match& match) const;
@@ -121,7 +121,8 @@ struct ObjectFinder::Impl {
 };
 
 ObjectPose ObjectFinder::Impl::pose_by_tag(std::size_t i, const std::vector<SeenTag>& seen,
-                                           const render::RgbdFrame& frame, const DepthScene& scene) {
+                                           const render::RgbdFrame& frame,
+                                           const DepthScene& scene) {
   const ObjectTag& tag = *objects[i].tag;
   const auto is_it = [&](const SeenTag& other) { return other.id == tag.id; };
   const auto count = std::count_if(seen.begin(), seen.end(), is_it);
@@ -172,18 +173,21 @@ std::vector<Rival> ObjectFinder::Impl::rivals(const DepthScene& scene, int clust
   return out;
 }
 
-std::vector<Match> ObjectFinder::Impl::matches(const DepthScene& scene, std::vector<ObjectPose>& out) {
+std::vector<Match> ObjectFinder::Impl::matches(const DepthScene& scene,
+                                               std::vector<ObjectPose>& out) {
   std::vector<Match> found;
   for (int c = 0; c < static_cast<int>(scene.clusters.size()); ++c) {
     std::vector<Match> here;
     double best = 1e18;
     for (auto& [i, starts] : rivals(scene, c)) {
-      const std::vector<ShapeFit> fits = fine_search(scene, c, shapes[i], std::move(starts), raster);
+      const std::vector<ShapeFit> fits =
+          fine_search(scene, c, shapes[i], std::move(starts), raster);
       if (!is_possible(scene, shapes[i], fits[0])) continue;
       if (!is_whole(fits[0])) {
-        if (fits[0].seen >= kLeastSeen && fits[0].unexplained < kTouching) {
-          out[i] = fail(FindFailure{.code = FindErrc::touching,
-                                    .best = found_pose(scene, fits[0], false)});
+        const bool unseen = !out[i] && out[i].error().code == FindErrc::not_seen;
+        if (unseen && fits[0].seen >= kLeastSeen && fits[0].unexplained < kTouching) {
+          out[i] = fail(
+              FindFailure{.code = FindErrc::touching, .best = found_pose(scene, fits[0], false)});
         }
         continue;
       }
@@ -212,7 +216,9 @@ void ObjectFinder::Impl::add(std::vector<Match>& found, const Match& match) cons
   }
 }
 
-void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, std::vector<ObjectPose>& out) {
+/// @param last  no later round will look at what is doubtful once more
+void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, bool last,
+                                        std::vector<ObjectPose>& out) {
   const std::vector<Match> found = matches(scene, out);
   const auto alone = [&](const Match& match) {
     return std::none_of(found.begin(), found.end(), [&](const Match& other) {
@@ -224,7 +230,8 @@ void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, std::vector<ObjectPos
     const FoundPose pose = found_pose(scene, match.fit, false);
     std::optional<FindErrc> fault;
     if (match.twofold || !alone(match)) fault = FindErrc::ambiguous;
-    if (match.fit.uncertainty > kMostUncertain || match.fit.seen < kLeastSeen) {
+    if (match.fit.uncertainty > kMostUncertain || match.fit.seen < kLeastSeen ||
+        match.fit.outside > kMostOutside) {
       fault = match.fit.seen < kWhole ? FindErrc::occluded : FindErrc::ambiguous;
     }
     if (fault) {
@@ -232,7 +239,7 @@ void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, std::vector<ObjectPos
     } else {
       out[match.object] = pose;
     }
-    claims.emplace_back(match.object, pose.X_WO);
+    if (!fault || last) claims.emplace_back(match.object, pose.X_WO);
   }
   for (const auto& [object, X_WO] : claims) {
     settled[object] = 1;
@@ -254,8 +261,8 @@ Result<ObjectFinder> ObjectFinder::create(std::vector<KnownObject> objects,
   if (Result<void> checked = check_options(options); !checked) {
     return fail(std::move(checked.error()));
   }
-  auto impl = std::make_unique<Impl>(
-      Impl{.objects = std::move(objects), .options = options, .model = DepthModel(options.depth_sigma)});
+  auto impl = std::make_unique<Impl>(Impl{
+      .objects = std::move(objects), .options = options, .model = DepthModel(options.depth_sigma)});
   for (const KnownObject& object : impl->objects) {
     impl->shapes.emplace_back(object.surface);
     if (!object.tag || impl->tags) continue;
@@ -281,7 +288,7 @@ Result<FoundScene> ObjectFinder::find(const render::RgbdFrame& frame) {
   // hiding how they are joined.
   for (const double jump : {kSmoothJump, kPieceJump}) {
     gather(scene, jump);
-    impl_->find_by_shapes(scene, poses);
+    impl_->find_by_shapes(scene, jump == kPieceJump, poses);
   }
   gather(scene, kSmoothJump);
   FoundScene out{.table = scene.table};

@@ -151,7 +151,8 @@ TEST(FindObjects, WhatIsHiddenInPartHasItsPoseOrAReason) {
     const std::size_t k = rng.below(3);
     places.bodies[k] = standing(0, 0, std::array{0.03, 0.05, 0.0}[k], rng.uniform(-3, 3));
     const Eigen::Vector3d beside(rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06), 0);
-    places.bodies[3] = Pose{.p = 0.25 * places.eye.p + beside, .R = from_euler({rng.uniform(-3, 3), 0, 1})};
+    places.bodies[3] =
+        Pose{.p = 0.25 * places.eye.p + beside, .R = from_euler({rng.uniform(-3, 3), 0, 1})};
     const FoundScene found = *finder.find(look()(places, noise));
     never_wrong(found, places, false, i);
     ++(found.objects[k].pose ? found_ones : refused);
@@ -227,7 +228,8 @@ TEST(FindObjects, FramesWithoutDepthFindNothingAndUnfitOnesAreRefused) {
   }
   // A pixel here and there that has none does no harm.
   render::RgbdFrame holes = frame;
-  for (float& z : holes.depth) z = rng.uniform() < 0.2 ? std::numeric_limits<float>::quiet_NaN() : z;
+  for (float& z : holes.depth)
+    z = rng.uniform() < 0.2 ? std::numeric_limits<float>::quiet_NaN() : z;
   const FoundScene through_holes = *finder.find(holes);
   for (const FoundObject& object : through_holes.objects) EXPECT_TRUE(object.pose) << object.name;
   const auto refused = [&](auto change) {

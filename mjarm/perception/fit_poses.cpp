@@ -25,7 +25,8 @@ Eigen::MatrixXd slopes(const std::vector<Pose>& poses, const Residuals& residual
   Eigen::MatrixXd J(m, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(n, k);
-    J.col(k) = (residuals(all_moved(poses, step)) - residuals(all_moved(poses, -step))) / (2 * kStep);
+    J.col(k) =
+        (residuals(all_moved(poses, step)) - residuals(all_moved(poses, -step))) / (2 * kStep);
   }
   return J;
 }

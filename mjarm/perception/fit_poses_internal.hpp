@@ -22,8 +22,8 @@ struct PoseFit {
 /// @param start  all finite, near enough
 [[nodiscard]] PoseFit fit_poses(std::vector<Pose> start, const Residuals& residuals);
 
-/// A pose moved by (v, w): the origin by v [m], the axes by the rotation vector w [rad] in the frame
-/// in which the pose is told.
+/// A pose moved by (v, w): the origin by v [m], the axes by the rotation vector w [rad] in the
+/// frame in which the pose is told.
 [[nodiscard]] Pose moved(const Pose& X, const Eigen::Ref<const Eigen::Matrix<double, 6, 1>>& by);
 
 }  // namespace mjarm::perception

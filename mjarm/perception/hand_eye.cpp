@@ -32,8 +32,8 @@ std::vector<Motion> motions_of(const std::vector<Sight>& sights) {
   for (std::size_t i = 0; i < sights.size(); ++i) {
     for (std::size_t k = i + 1; k < sights.size(); ++k) {
       // X_PQ X_QB = X_PC X_CB, for both: A = X_PQi X_PQk^-1, B = X_CBi X_CBk^-1.
-      out.push_back({sights[i].X_PQ * sights[k].X_PQ.inverse(),
-                     sights[i].X_CB * sights[k].X_CB.inverse()});
+      out.push_back(
+          {sights[i].X_PQ * sights[k].X_PQ.inverse(), sights[i].X_CB * sights[k].X_CB.inverse()});
     }
   }
   return out;
@@ -41,7 +41,7 @@ std::vector<Motion> motions_of(const std::vector<Sight>& sights) {
 
 /// True where the turns have two axes that differ by more than about 5 degrees.
 bool turn_about_two_axes(const std::vector<Motion>& motions) {
-  constexpr double kLeastTurn = 0.03;  // [rad]
+  constexpr double kLeastTurn = 0.03;     // [rad]
   constexpr double kLeastShare = 0.0075;  // of the squares: sin(5 deg)^2
   Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
   for (const Motion& motion : motions) {
@@ -75,8 +75,8 @@ Pose closed_form(const std::vector<Motion>& motions) {
 }
 
 /// Distances of all corners in all pictures, for X_PC and X_QB.
-Eigen::VectorXd corner_residuals(const std::vector<Sight>& sights, const render::CameraIntrinsics& lens,
-                                 std::span<const Pose> at) {
+Eigen::VectorXd corner_residuals(const std::vector<Sight>& sights,
+                                 const render::CameraIntrinsics& lens, std::span<const Pose> at) {
   std::vector<double> r;
   const Pose X_CP = at[0].inverse();
   for (const Sight& sight : sights) {
@@ -122,9 +122,8 @@ Result<HandEye, HandEyeErrc> calibrate_hand_eye(std::span<const HandEyeView> vie
   if (!turn_about_two_axes(motions)) return fail(HandEyeErrc::one_axis);
   const Pose X_PC = closed_form(motions);
   const Pose X_QB = sights[0].X_PQ.inverse() * X_PC * sights[0].X_CB;
-  const PoseFit fit = fit_poses({X_PC, X_QB}, [&](std::span<const Pose> at) {
-    return corner_residuals(sights, lens, at);
-  });
+  const PoseFit fit = fit_poses(
+      {X_PC, X_QB}, [&](std::span<const Pose> at) { return corner_residuals(sights, lens, at); });
   std::size_t corners = 0;
   for (const Sight& sight : sights) corners += sight.corners->size();
   const HandEye out{.X_PC = fit.poses[0],

@@ -13,8 +13,8 @@ namespace mjarm::perception {
 
 /// What a camera saw of a board, and where the arm had its tool.
 struct HandEyeView {
-  Pose X_WT = {};                          ///< the tool in the world (or the arm's base)
-  std::vector<BoardCorner> corners = {};   ///< as board_corners() gives them; empty: not seen
+  Pose X_WT = {};                         ///< the tool in the world (or the arm's base)
+  std::vector<BoardCorner> corners = {};  ///< as board_corners() gives them; empty: not seen
 };
 
 /// Where the camera is.
@@ -25,19 +25,19 @@ enum class CameraMount {
 
 /// Why a calibration was not done.
 enum class HandEyeErrc {
-  too_few_views,  ///< fewer than three
+  too_few_views,   ///< fewer than three
   board_not_seen,  ///< by fewer than three of them
-  one_axis,       ///< the tool is turned about one axis only, or not at all
-  contradiction,  ///< views and poses of the tool do not fit together
+  one_axis,        ///< the tool is turned about one axis only, or not at all
+  contradiction,   ///< views and poses of the tool do not fit together
 };
 /// One sentence, in the language in use.
 [[nodiscard]] std::string describe(HandEyeErrc code);
 
 /// A camera's place.
 struct HandEye {
-  Pose X_PC = {};       ///< the camera on its carrier P: the tool for `wrist`, the world for `fixed`
-  Pose X_QB = {};       ///< the board on the other one: the world for `wrist`, the tool for `fixed`
-  int views = 0;        ///< that saw the board
+  Pose X_PC = {};  ///< the camera on its carrier P: the tool for `wrist`, the world for `fixed`
+  Pose X_QB = {};  ///< the board on the other one: the world for `wrist`, the tool for `fixed`
+  int views = 0;   ///< that saw the board
   double residual = 0;  ///< [px] root of the mean squared distance of corners over all views
 };
 

@@ -15,7 +15,8 @@ namespace {
 using mjarm::testing::rounds;
 
 constexpr double kOneDegree = std::numbers::pi / 180;
-const render::CameraIntrinsics kLens{.width = 1280, .height = 720, .fx = 938, .fy = 938, .cx = 639.5, .cy = 359.5};
+const render::CameraIntrinsics kLens{
+    .width = 1280, .height = 720, .fx = 938, .fy = 938, .cx = 639.5, .cy = 359.5};
 
 /// Six tags of 50 mm in two rows of three.
 std::vector<BoardTag> board() {
@@ -28,12 +29,14 @@ std::vector<BoardTag> board() {
 
 Pose near(Rng& rng, const Pose& X, double metres, double radians) {
   const auto three = [&](double most) {
-    return Eigen::Vector3d(rng.uniform(-most, most), rng.uniform(-most, most), rng.uniform(-most, most));
+    return Eigen::Vector3d(rng.uniform(-most, most), rng.uniform(-most, most),
+                           rng.uniform(-most, most));
   };
   return {.p = X.p + three(metres), .R = X.R * rotation_exp(three(radians))};
 }
 
-/// A rig: the camera on its carrier P, the board on the other one, Q; views have the board at 0.5 m.
+/// A rig: the camera on its carrier P, the board on the other one, Q; views have the board at 0.5
+/// m.
 struct Rig {
   CameraMount mount;
   Pose X_PC, X_QB;
@@ -90,7 +93,8 @@ TEST_P(HandEyeOf, ExactViewsGiveTheExactPose) {
   EXPECT_LT((found->X_PC.p - rig.X_PC.p).norm(), 1e-7);
   EXPECT_LT(angle_between(found->X_PC.R, rig.X_PC.R), 1e-7);
 }
-INSTANTIATE_TEST_SUITE_P(Mounts, HandEyeOf, ::testing::Values(CameraMount::wrist, CameraMount::fixed));
+INSTANTIATE_TEST_SUITE_P(Mounts, HandEyeOf,
+                         ::testing::Values(CameraMount::wrist, CameraMount::fixed));
 
 HandEyeErrc reason(const std::vector<HandEyeView>& views) {
   const auto found = calibrate_hand_eye(views, CameraMount::wrist, kLens);
@@ -109,8 +113,9 @@ TEST(HandEye, ViewsThatCannotTellItSayWhy) {
   for (const double turn : {0.3, 0.0}) {
     std::vector<HandEyeView> twisted;
     for (int k = 0; k < 10; ++k) {
-      const Pose X_CB{.p = {-0.07 + 0.01 * k, 0.03, 0.5},
-                      .R = from_euler({0, 0, turn * k}) * from_euler({std::numbers::pi - 0.3, 0, 0})};
+      const Pose X_CB{
+          .p = {-0.07 + 0.01 * k, 0.03, 0.5},
+          .R = from_euler({0, 0, turn * k}) * from_euler({std::numbers::pi - 0.3, 0, 0})};
       twisted.push_back(rig.view_of(X_CB, rng, 0.2));
     }
     EXPECT_EQ(reason(twisted), HandEyeErrc::one_axis) << turn;

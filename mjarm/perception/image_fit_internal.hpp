@@ -21,17 +21,19 @@ struct FitView {
     other,    ///< something else, which may hide what is looked for
   };
   render::CameraIntrinsics lens;
-  double scale = 1;              ///< [px] of the picture between two pixels of the view
-  std::vector<float> inverse;    ///< [1/m] measured
+  double scale = 1;            ///< [px] of the picture between two pixels of the view
+  std::vector<float> inverse;  ///< [1/m] measured
   std::vector<float> table_inverse;
   std::vector<Kind> kind;
-  double middle = 0;             ///< [1/m] mean of the cluster
-  double sigma = 0;              ///< [1/m] of a pixel, with what surfaces are off their model
+  double middle = 0;  ///< [1/m] mean of the cluster
+  double sigma = 0;   ///< [1/m] of a pixel, with what surfaces are off their model
   int cluster_pixels = 0;
 };
 
-/// The box x0..x1, y0..y1 [px] (it may reach outside) of a picture, with at most so many pixels a side.
-[[nodiscard]] FitView view_of(const DepthScene& scene, int cluster, const Cluster& box, int max_side);
+/// The box x0..x1, y0..y1 [px] (it may reach outside) of a picture, with at most so many pixels a
+/// side.
+[[nodiscard]] FitView view_of(const DepthScene& scene, int cluster, const Cluster& box,
+                              int max_side);
 
 /// How far a drawing is off at each pixel, in sigma, at most `limit`: the drawing stands on the
 /// table, and things may stand in front of it.
@@ -58,8 +60,8 @@ struct ImageFit {
 };
 
 /// Moves `x` to where the drawing fits best: Gauss and Newton, damped, with slopes by drawing. As
-/// steps are as large as a pixel, outlines pull as well as depth: where a pixel changes hands within
-/// a step, its residual does too.
+/// steps are as large as a pixel, outlines pull as well as depth: where a pixel changes hands
+/// within a step, its residual does too.
 [[nodiscard]] ImageFit fit_image(const FitView& view, const DrawWith& draw, Eigen::VectorXd x,
                                  const FitLevel& level, Raster& raster);
 

@@ -22,8 +22,9 @@
 
 namespace mjarm::perception::testing {
 
-/// A table at z = 0 with a box that has a tag on it, a cylinder, a post of its own shape (a mesh that
-/// is not convex) and a stranger; a camera that can be put anywhere, all at places of their own.
+/// A table at z = 0 with a box that has a tag on it, a cylinder, a post of its own shape (a mesh
+/// that is not convex) and a stranger; a camera that can be put anywhere, all at places of their
+/// own.
 constexpr const char* kTable = R"(
 <mujoco model="table">
   <statistic extent="1.5" center="0 0 0"/>
@@ -60,7 +61,7 @@ inline const std::array<const char*, 5> kBodies{"eye", "box", "can", "step", "st
 
 /// Where bodies stand; those without a place are out of sight.
 struct Places {
-  Pose eye;  ///< X_WC, x right, y down
+  Pose eye;                                        ///< X_WC, x right, y down
   std::array<std::optional<Pose>, 4> bodies = {};  ///< box, can, step, stranger
 };
 
@@ -70,7 +71,8 @@ class Look {
     if (has_tags()) {
       EXPECT_TRUE(render::write_png(*tag_picture(kTag, 24), folder_.path() / "tag.png"));
     } else {
-      EXPECT_TRUE(render::write_png({2, 2, std::vector<std::uint8_t>(12, 255)}, folder_.path() / "tag.png"));
+      EXPECT_TRUE(render::write_png({2, 2, std::vector<std::uint8_t>(12, 255)},
+                                    folder_.path() / "tag.png"));
     }
     model_ = std::make_unique<Model>(*Model::load(folder_.write("table.xml", kTable)));
     sim_ = std::make_unique<Sim>(*model_);
@@ -99,7 +101,8 @@ class Look {
 };
 
 /// A camera so far from a point of the world, at it, from the side `azimuth` and so high.
-inline Pose eye_at(const Eigen::Vector3d& target_W, double distance, double azimuth, double elevation) {
+inline Pose eye_at(const Eigen::Vector3d& target_W, double distance, double azimuth,
+                   double elevation) {
   const Eigen::Vector3d back(std::cos(elevation) * std::cos(azimuth),
                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
   const Eigen::Vector3d x(-std::sin(azimuth), std::cos(azimuth), 0);
@@ -113,7 +116,8 @@ inline Pose standing(double x, double y, double z, double yaw) {
 }
 
 /// [rad] between two orientations of one of the bodies, up to its symmetry where it has no tag: the
-/// box looks the same after half a turn about each axis, the can from either end and turned at will.
+/// box looks the same after half a turn about each axis, the can from either end and turned at
+/// will.
 inline double turn_between(std::size_t body, bool with_tag, const Eigen::Matrix3d& A,
                            const Eigen::Matrix3d& B) {
   constexpr std::size_t kBox = 0, kCan = 1;

@@ -17,9 +17,9 @@ void Raster::draw(const Surface& surface, const Pose& X_CO) {
   for (const Eigen::Vector3d& vertex : surface.vertices) {
     const Eigen::Vector3d p = X_CO * vertex;
     const double q = p.z() > kNearest ? 1 / p.z() : 0;
-    corners_.emplace_back(Eigen::Vector3d(lens_.fx * p.x() * q + lens_.cx,
-                                          lens_.fy * p.y() * q + lens_.cy, q)
-                              .cast<float>());
+    corners_.emplace_back(
+        Eigen::Vector3d(lens_.fx * p.x() * q + lens_.cx, lens_.fy * p.y() * q + lens_.cy, q)
+            .cast<float>());
   }
   for (const auto& [i, j, k] : surface.triangles) {
     const Corner& a = corners_[static_cast<std::size_t>(i)];
@@ -52,7 +52,8 @@ void Raster::draw_triangle(const Corner& p, const Corner& q, const Corner& r) {
   const auto width = static_cast<float>(lens_.width);
   for (float y = first_row; y <= last_row; ++y) {
     const float on_long = a->x() + (y - a->y()) * long_side;
-    const float on_short = y < b->y() ? a->x() + (y - a->y()) * upper : b->x() + (y - b->y()) * lower;
+    const float on_short =
+        y < b->y() ? a->x() + (y - a->y()) * upper : b->x() + (y - b->y()) * lower;
     const float left = std::max(0.0F, std::ceil(std::min(on_long, on_short)));
     const float right = std::min(width - 1, std::floor(std::max(on_long, on_short)));
     if (left > right) continue;

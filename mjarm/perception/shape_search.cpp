@@ -13,8 +13,8 @@ namespace {
 
 constexpr float kFineLimit = 4;  // [sigma]
 constexpr int kStarts = 300;
-constexpr double kFar = 0.02;  // [m] as far as anything pulls at first
-constexpr double kSame = 0.003;   // [m] of surface_distance: the same pose, up to symmetry
+constexpr double kFar = 0.02;    // [m] as far as anything pulls at first
+constexpr double kSame = 0.003;  // [m] of surface_distance: the same pose, up to symmetry
 
 /// Evenly spread over all orientations (M. Alexa, Super-Fibonacci spirals, CVPR 2022).
 Eigen::Matrix3d orientation(int i, int n) {
@@ -30,7 +30,8 @@ Eigen::Matrix3d orientation(int i, int n) {
 
 /// Mean of the points [m] that inverse depth shows in pixels that `counts` picks; zero for none.
 template <class Counts>
-Eigen::Vector3d mean_point(const FitView& view, const std::vector<float>& inverse, Counts&& counts) {
+Eigen::Vector3d mean_point(const FitView& view, const std::vector<float>& inverse,
+                           Counts&& counts) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int n = 0;
   std::size_t i = 0;
@@ -44,7 +45,8 @@ Eigen::Vector3d mean_point(const FitView& view, const std::vector<float>& invers
   return n > 0 ? Eigen::Vector3d(sum / n) : Eigen::Vector3d::Zero();
 }
 
-Pose with_centre(const ShapeModel& shape, const Eigen::Matrix3d& R, const Eigen::Vector3d& centre_C) {
+Pose with_centre(const ShapeModel& shape, const Eigen::Matrix3d& R,
+                 const Eigen::Vector3d& centre_C) {
   return {.p = centre_C - R * shape.centre, .R = R};
 }
 
@@ -73,7 +75,8 @@ std::vector<Start> starts_of(const DepthScene& scene, const FitView& view, const
   std::vector<Start> out;
   std::vector<float> r;
   for (int i = 0; i < kStarts; ++i) {
-    Pose X_CO = with_centre(shape, orientation(i, kStarts), seen_C + 0.5 * shape.radius * seen_C.normalized());
+    Pose X_CO = with_centre(shape, orientation(i, kStarts),
+                            seen_C + 0.5 * shape.radius * seen_C.normalized());
     raster.clear(view.lens);
     raster.draw(shape.coarse, X_CO);
     const std::vector<float>& drawn = raster.inverse();
@@ -95,12 +98,14 @@ std::vector<Start> starts_of(const DepthScene& scene, const FitView& view, const
 Eigen::VectorXd steps_of(const FitView& view, const ShapeModel& shape, double pixels) {
   const double metres = std::max(2e-4, pixels / (view.middle * view.lens.fx));
   Eigen::VectorXd step(6);
-  step << Eigen::Vector3d::Constant(metres), Eigen::Vector3d::Constant(metres / (0.6 * shape.radius));
+  step << Eigen::Vector3d::Constant(metres),
+      Eigen::Vector3d::Constant(metres / (0.6 * shape.radius));
   return step;
 }
 
-Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& shape, const Surface& surface, const Start& start,
-              float limit, double pixels, Raster& raster) {
+Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
+              const Surface& surface, const Start& start, float limit, double pixels,
+              Raster& raster) {
   constexpr int kSteps = 6;
   const Pose X_CO = start.X_CO;
   const auto draw = [&](const Eigen::VectorXd& x, Raster& into) {
@@ -108,16 +113,19 @@ Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& sh
     into.draw(surface, X);
     return sunk_residual(scene, view, shape, X);
   };
-  const ImageFit fit = fit_image(view, draw, Eigen::VectorXd::Zero(6),
-                                 {.limit = limit, .step = steps_of(view, shape, pixels), .steps = kSteps}, raster);
+  const ImageFit fit =
+      fit_image(view, draw, Eigen::VectorXd::Zero(6),
+                {.limit = limit, .step = steps_of(view, shape, pixels), .steps = kSteps}, raster);
   return {turned_about_centre(shape, X_CO, fit.x), fit.cost};
 }
 
 /// Refines the first ones and keeps, best first, so many that differ by more than symmetry.
-std::vector<Start> best_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape, std::vector<Start> starts,
-                           std::size_t tried, std::size_t kept, float limit, Raster& raster) {
+std::vector<Start> best_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
+                           std::vector<Start> starts, std::size_t tried, std::size_t kept,
+                           float limit, Raster& raster) {
   starts.resize(std::min(starts.size(), tried));
-  for (Start& start : starts) start = refined(scene, view, shape, shape.coarse, start, limit, 1, raster);
+  for (Start& start : starts)
+    start = refined(scene, view, shape, shape.coarse, start, limit, 1, raster);
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Start& a, const Start& b) { return a.cost < b.cost; });
   std::vector<Start> out;
@@ -140,7 +148,8 @@ Cluster grown(Cluster box, double share) {
 
 /// The cluster and what is about it, with so many pixels a side.
 FitView rough_view(const DepthScene& scene, int cluster, int side) {
-  return view_of(scene, cluster, grown(scene.clusters[static_cast<std::size_t>(cluster)], 0.3), side);
+  return view_of(scene, cluster, grown(scene.clusters[static_cast<std::size_t>(cluster)], 0.3),
+                 side);
 }
 
 float far_limit(const FitView& view) {
@@ -165,9 +174,10 @@ Cluster box_round(const DepthScene& scene, const ShapeModel& shape, const Pose& 
   return grown(box, 0);
 }
 
-/// [m] Standard deviation of the surface along the motion that changes the picture least, among those
-/// that are no symmetry of the shape.
-double uncertainty_of(const ShapeModel& shape, const Pose& X_CO, const Eigen::MatrixXd& information) {
+/// [m] Standard deviation of the surface along the motion that changes the picture least, among
+/// those that are no symmetry of the shape.
+double uncertainty_of(const ShapeModel& shape, const Pose& X_CO,
+                      const Eigen::MatrixXd& information) {
   const SymmetricEigen motion = symmetric_eigen(normal_motion(shape, X_CO));
   const double tiny = 3e-3 * shape.radius * shape.radius;  // a round side is flat faces here
   Eigen::MatrixXd W(6, 0);
@@ -192,23 +202,26 @@ double sunk_depth(const DepthScene& scene, const Surface& surface, const Pose& X
   return most / steep;
 }
 
-ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& shape, const Pose& X_CO,
-                     Raster& raster) {
+ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& shape,
+                     const Pose& X_CO, Raster& raster) {
   constexpr int kMaxSide = 110;
   const Cluster none{0, 0, scene.lens.width, scene.lens.height, 0, 0};
-  const Cluster box = box_round(scene, shape, X_CO,
-                                cluster >= 0 ? scene.clusters[static_cast<std::size_t>(cluster)] : none);
+  const Cluster box = box_round(
+      scene, shape, X_CO, cluster >= 0 ? scene.clusters[static_cast<std::size_t>(cluster)] : none);
   FitView view = view_of(scene, cluster, box, kMaxSide);
   raster.clear(view.lens);
   raster.draw(shape.surface, X_CO);
   const std::vector<float> drawn = raster.inverse();
-  int pixels = 0, seen = 0, missing = 0, explained = 0;
+  int pixels = 0, seen = 0, outside = 0, missing = 0, explained = 0;
   double squares = 0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (drawn[i] <= view.table_inverse[i]) continue;
     if (view.kind[i] == FitView::none) continue;
     ++pixels;
-    if (view.kind[i] == FitView::outside) continue;
+    if (view.kind[i] == FitView::outside) {
+      ++outside;
+      continue;
+    }
     const double q = view.inverse[i];
     const double off = drawn[i] - q;  // > 0: something farther is seen
     const double gate = kFineLimit * scene.model.sigma + DepthModel::from_metres(0.002, q);
@@ -223,6 +236,7 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
   const auto share = [](int a, int b) { return b > 0 ? static_cast<double>(a) / b : 0; };
   ShapeFit out{.X_CO = X_CO};
   out.seen = share(seen, pixels);
+  out.outside = share(outside, pixels);
   out.missing = share(missing, pixels);
   out.unexplained = 1 - share(explained, view.cluster_pixels);
   out.residual = seen > 0 ? std::sqrt(squares / seen) : 0;
@@ -231,8 +245,9 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
       into.draw(shape.surface, turned_about_centre(shape, X_CO, x));
       return 0.0F;
     };
-    const ImageFit fit = fit_image(view, draw, Eigen::VectorXd::Zero(6),
-                                   {.limit = kFineLimit, .step = steps_of(view, shape, 1), .steps = 0}, raster);
+    const ImageFit fit =
+        fit_image(view, draw, Eigen::VectorXd::Zero(6),
+                  {.limit = kFineLimit, .step = steps_of(view, shape, 1), .steps = 0}, raster);
     out.cost = fit.cost;
     out.uncertainty = uncertainty_of(shape, X_CO, fit.information);
   }

@@ -12,6 +12,7 @@ struct ShapeFit {
   Pose X_CO;
   double cost = 0;         ///< half the sum of squared residuals in sigma, cut off at 4
   double seen = 0;         ///< share of its pixels that are seen where they should be
+  double outside = 0;      ///< share of its pixels outside of the picture
   double missing = 0;      ///< share of its pixels through which something farther is seen
   double unexplained = 0;  ///< share of the cluster's pixels that it does not explain
   double residual = 0;     ///< [m] root mean square of depth over the pixels seen

@@ -90,12 +90,10 @@ Result<BoardPose, FindErrc> board_pose(std::span<const BoardCorner> corners,
     }
     return r;
   };
-  const Eigen::Vector3d normal_B = (corners[1].p_B - corners[0].p_B)
-                                       .cross(corners[3].p_B - corners[0].p_B)
-                                       .normalized();
+  const Eigen::Vector3d normal_B =
+      (corners[1].p_B - corners[0].p_B).cross(corners[3].p_B - corners[0].p_B).normalized();
   const PoseFit first = fit_poses({pose_of_first(corners, lens)}, residuals);
-  const PoseFit second =
-      fit_poses({flipped(first.poses[0], corners[0].p_B, normal_B)}, residuals);
+  const PoseFit second = fit_poses({flipped(first.poses[0], corners[0].p_B, normal_B)}, residuals);
   const PoseFit& best = first.squares <= second.squares ? first : second;
   const PoseFit& other = first.squares <= second.squares ? second : first;
   constexpr double kSame = 0.01;   // [rad]

@@ -43,8 +43,8 @@ SeenTag seen_tag(const apriltag_detection_t& detection) {
   return out;
 }
 
-/// False where a corner may be cut off: where two edges of the tag end at the picture's, the detector
-/// still tells a corner.
+/// False where a corner may be cut off: where two edges of the tag end at the picture's, the
+/// detector still tells a corner.
 bool is_inside(const SeenTag& tag, const render::Image& image) {
   constexpr double kRim = 4;  // [px]
   return std::all_of(tag.corners.begin(), tag.corners.end(), [&](const Eigen::Vector2d& corner) {
@@ -106,7 +106,8 @@ std::vector<SeenTag> TagDetector::find(const render::Image& image) {
 Result<render::Image> tag_picture(int id, int pixels) {
   constexpr int kMaxPixels = 100;
   if (id < 0 || id >= kTagCount || pixels < 1 || pixels > kMaxPixels) {
-    return fail(Errc::bad_input, text(msg::perception_bad_tag, id, kTagCount - 1, pixels, kMaxPixels));
+    return fail(Errc::bad_input,
+                text(msg::perception_bad_tag, id, kTagCount - 1, pixels, kMaxPixels));
   }
   const Family family(tag36h11_create());
   const std::vector<std::uint8_t> cells = cells_of(*family, id);
@@ -114,7 +115,9 @@ Result<render::Image> tag_picture(int id, int pixels) {
   render::Image out{side, side, {}};
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      out.rgb.insert(out.rgb.end(), 3, cells[static_cast<std::size_t>(y / pixels * family->total_width + x / pixels)]);
+      out.rgb.insert(
+          out.rgb.end(), 3,
+          cells[static_cast<std::size_t>(y / pixels * family->total_width + x / pixels)]);
     }
   }
   return out;

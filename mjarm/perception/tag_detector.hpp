@@ -19,8 +19,8 @@ struct SeenTag {
   std::array<Eigen::Vector2d, 4> corners = {};
 };
 
-/// Finds tags in pictures (AprilTag 3: M. Krogius, A. Haggenmiller and E. Olson, IROS 2019). Used by
-/// one thread at a time; the same picture gives the same answer.
+/// Finds tags in pictures (AprilTag 3: M. Krogius, A. Haggenmiller and E. Olson, IROS 2019). Used
+/// by one thread at a time; the same picture gives the same answer.
 class TagDetector {
  public:
   /// @return not_available, with the package that helps, where the library is not built in.

@@ -1,7 +1,7 @@
 #include "mjarm/perception/tag_pose.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <optional>
@@ -52,8 +52,10 @@ std::vector<Sample> samples_on(const Corners& corners, const render::RgbdFrame& 
   }
   const auto& lens = frame.intrinsics;
   std::vector<Sample> out;
-  for (int y = std::max(0, static_cast<int>(low.y())); y <= std::min(lens.height - 1.0, high.y()); ++y) {
-    for (int x = std::max(0, static_cast<int>(low.x())); x <= std::min(lens.width - 1.0, high.x()); ++x) {
+  for (int y = std::max(0, static_cast<int>(low.y())); y <= std::min(lens.height - 1.0, high.y());
+       ++y) {
+    for (int x = std::max(0, static_cast<int>(low.x())); x <= std::min(lens.width - 1.0, high.x());
+         ++x) {
       if (!is_inside(corners, {x, y})) continue;
       ++all;
       const float inverse = inverse_depth(
@@ -65,8 +67,8 @@ std::vector<Sample> samples_on(const Corners& corners, const render::RgbdFrame& 
   return out;
 }
 
-/// The plane of most samples: those that lie off it by more than three sigma are left out, again and
-/// again. Nothing where too few are left.
+/// The plane of most samples: those that lie off it by more than three sigma are left out, again
+/// and again. Nothing where too few are left.
 std::optional<SeenPlane> plane_of(const std::vector<Sample>& samples, const DepthModel& model) {
   constexpr int kRounds = 6;
   constexpr double kLeastShare = 0.7;

@@ -21,8 +21,8 @@ struct TagPose {
   double residual = 0;  ///< [px] root of the mean squared distance of corners
 };
 
-/// Pose of a tag from its corners and from the plane that depth shows on it. Corners alone leave the
-/// tilt of a small tag open by degrees, and twofold where it faces the camera; depth tells it.
+/// Pose of a tag from its corners and from the plane that depth shows on it. Corners alone leave
+/// the tilt of a small tag open by degrees, and twofold where it faces the camera; depth tells it.
 /// @param size         [m] edge of the black square, > 0
 /// @param depth_sigma  [m] standard deviation of depth 0.5 m away, as RgbdOptions has it
 /// @return wrong_size; no_depth where less than half of the tag has depth; disagrees where that is

@@ -30,13 +30,14 @@ TEST(TagDetector, FindsEachTagInItsPictureWithItsCorners) {
   Result<TagDetector> detector = TagDetector::create();
   if (!detector) GTEST_SKIP() << detector.error().what;
   for (const int id : {0, 1, 77, 586}) {
-    const std::vector<SeenTag> seen = detector->find(pasted(*tag_picture(id, 9), 320, 240, 100, 60));
+    const std::vector<SeenTag> seen =
+        detector->find(pasted(*tag_picture(id, 9), 320, 240, 100, 60));
     ASSERT_EQ(seen.size(), 1U) << id;
     EXPECT_EQ(seen[0].id, id);
     // The black square is 72 pixels wide, from column 109 on: its edge is between two pixels.
     const double left = 108.5, right = 180.5, top = 68.5, bottom = 140.5;
-    const std::array<Eigen::Vector2d, 4> expected{Eigen::Vector2d(left, bottom),
-                                                  {right, bottom}, {right, top}, {left, top}};
+    const std::array<Eigen::Vector2d, 4> expected{
+        Eigen::Vector2d(left, bottom), {right, bottom}, {right, top}, {left, top}};
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_LT((seen[0].corners[i] - expected[i]).norm(), 0.3) << id << ", corner " << i;
     }

@@ -84,7 +84,8 @@ ImageFit fit(const DepthScene& scene, int cluster, const DrawWith& draw, Eigen::
     const FitView view = view_of(scene, cluster, box, side);
     const double pixel = 1 / (view.middle * view.lens.fx);
     const float limit = side == 40 ? 12 : 4;
-    out = fit_image(view, draw, x, {.limit = limit, .step = pixel * step_of_pixel, .steps = 12}, raster);
+    out = fit_image(view, draw, x, {.limit = limit, .step = pixel * step_of_pixel, .steps = 12},
+                    raster);
     x = out.x;
   }
   return out;
@@ -117,7 +118,8 @@ std::optional<UnknownObject> measure_unknown(const DepthScene& scene, int cluste
   const ImageFit as_box = fit(scene, cluster, box, first, box_step, raster);
   Eigen::VectorXd round(4);
   round << first[0], first[1], (first[3] + first[4]) / 4, first[5];
-  const ImageFit as_cylinder = fit(scene, cluster, cylinder, round, Eigen::VectorXd::Ones(4), raster);
+  const ImageFit as_cylinder =
+      fit(scene, cluster, cylinder, round, Eigen::VectorXd::Ones(4), raster);
 
   UnknownObject out;
   if (as_box.cost <= as_cylinder.cost) {

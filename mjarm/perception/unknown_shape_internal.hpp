@@ -8,8 +8,8 @@
 
 namespace mjarm::perception {
 
-/// The box or cylinder, upright on the table, that explains a cluster best; nothing without a table,
-/// or where the cluster is too large to be something on it.
+/// The box or cylinder, upright on the table, that explains a cluster best; nothing without a
+/// table, or where the cluster is too large to be something on it.
 [[nodiscard]] std::optional<UnknownObject> measure_unknown(const DepthScene& scene, int cluster,
                                                            Raster& raster);
 

@@ -16,7 +16,8 @@ namespace {
 CameraIntrinsics intrinsics_of(const mjvGLCamera& eye, int width, int height) {
   const double near = eye.frustum_near;
   const double high = double{eye.frustum_top} - eye.frustum_bottom;
-  const double half = eye.frustum_width > 0 ? double{eye.frustum_width} : 0.5 * high * width / height;
+  const double half =
+      eye.frustum_width > 0 ? double{eye.frustum_width} : 0.5 * high * width / height;
   return {.width = width,
           .height = height,
           .fx = near * width / (2 * half),
@@ -50,10 +51,10 @@ Result<void> check_options(const RgbdOptions& options) {
   }
   if (!(options.nearest > 0) || !(options.farthest > options.nearest) ||
       !finite(options.farthest)) {
-    return fail(Errc::bad_input, text(msg::render_rgbd_range, "nearest, farthest",
-                                      std::to_string(options.nearest) + ", " +
-                                          std::to_string(options.farthest),
-                                      text(msg::render_rgbd_ranges)));
+    return fail(Errc::bad_input,
+                text(msg::render_rgbd_range, "nearest, farthest",
+                     std::to_string(options.nearest) + ", " + std::to_string(options.farthest),
+                     text(msg::render_rgbd_ranges)));
   }
   return {};
 }
@@ -120,8 +121,7 @@ Result<RgbdFrame> RgbdCamera::look(const Snapshot& snapshot, Rng& noise) {
   const mjvGLCamera eye = mjv_averageCamera(&scene.raw().camera[0], &scene.raw().camera[1]);
   return RgbdFrame{.color = std::move(*color),
                    .depth = std::move(*depth),
-                   .intrinsics =
-                       intrinsics_of(eye, impl_->options.width, impl_->options.height),
+                   .intrinsics = intrinsics_of(eye, impl_->options.width, impl_->options.height),
                    .X_WC = pose_of(scene.data(), impl_->id)};
 }
 
