@@ -34,6 +34,17 @@ if(MJARM_OMPL AND OMPL_FOUND)
   set(MJARM_HAS_OMPL ON)
 endif()
 
+# Tags in pictures are a choice.
+set(MJARM_HAS_APRILTAG OFF)
+if(MJARM_APRILTAG STREQUAL "AUTO")
+  find_package(AprilTag QUIET)
+elseif(MJARM_APRILTAG)
+  find_package(AprilTag REQUIRED)
+endif()
+if(MJARM_APRILTAG AND AprilTag_FOUND)
+  set(MJARM_HAS_APRILTAG ON)
+endif()
+
 # Debian 12 names the target of yaml-cpp 0.7 without a namespace.
 if(NOT TARGET yaml-cpp::yaml-cpp)
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)

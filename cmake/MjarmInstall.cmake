@@ -29,5 +29,5 @@ configure_package_config_file(cmake/mjarmConfig.cmake.in mjarmConfig.cmake
 write_basic_package_version_file(mjarmConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/mjarmConfig.cmake"
               "${PROJECT_BINARY_DIR}/mjarmConfigVersion.cmake" cmake/FindMuJoCo.cmake
-              cmake/FindOMPL.cmake
+              cmake/FindOMPL.cmake cmake/FindAprilTag.cmake
         DESTINATION "${config_dir}")

@@ -11,7 +11,7 @@ run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libe
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev ccache xvfb xauth xdotool ffmpeg
   libopenmpi-dev openmpi-bin"
 optional_packages="libosmesa6"
-optional_test_packages="libompl-dev"
+optional_test_packages="libompl-dev libapriltag-dev"
 
 # One process at a time sets up or builds in this folder.
 lock() {

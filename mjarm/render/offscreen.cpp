@@ -14,12 +14,29 @@ namespace {
 constexpr int kMaxSize = 8192;
 
 /// OpenGL gives rows from bottom to top.
-void flip_rows(Image& image) {
-  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
-  auto top = image.rgb.begin();
-  auto bottom = image.rgb.end() - static_cast<std::ptrdiff_t>(row);
-  for (; top < bottom; top += row, bottom -= row) {
-    std::swap_ranges(top, top + static_cast<std::ptrdiff_t>(row), bottom);
+/// @param row  numbers in a row
+template <class T>
+void flip_rows(std::vector<T>& picture, int row) {
+  auto top = picture.begin();
+  auto bottom = picture.end() - row;
+  for (; top < bottom; top += row, bottom -= row) std::swap_ranges(top, top + row, bottom);
+}
+
+/// Moves the plane in front of which nothing is drawn; the lines of sight stay.
+void set_nearest(mjvGLCamera& camera, float nearest) {
+  const float scale = nearest / camera.frustum_near;
+  camera.frustum_near = nearest;
+  camera.frustum_center *= scale;
+  camera.frustum_width *= scale;
+  camera.frustum_bottom *= scale;
+  camera.frustum_top *= scale;
+}
+
+/// From what OpenGL holds (1 at the near plane, 0 at the far one) to [m]; 0 at the far plane.
+void to_metres(std::vector<float>& depth, double near, double far) {
+  for (float& value : depth) {
+    const double d = value;
+    value = d > 0 ? static_cast<float>(near * far / (near + d * (far - near))) : 0;
   }
 }
 
@@ -56,6 +73,7 @@ struct OffscreenRenderer::Impl {
         supersampling(supersampling_of(options)),
         viewport{0, 0, supersampling * options.width, supersampling * options.height} {
     mjr_defaultContext(&context_);
+    if (!options.sites) std::fill_n(scene.option().sitegroup, mjNGROUP, mjtByte{0});
   }
   ~Impl() {
     if (gl.make_current()) mjr_freeContext(&context_);
@@ -75,6 +93,26 @@ struct OffscreenRenderer::Impl {
     if (outcome.failed) {
       return fail(Errc::not_available, text(msg::render_upload_failed, outcome.error));
     }
+    return {};
+  }
+
+  /// Makes the list of what is seen; the context is current afterwards.
+  Result<void> prepare(const Snapshot& snapshot, const Camera& camera, const Overlay& overlay) {
+    if (Result<void> set = scene.set_state(snapshot); !set) return set;
+    if (Result<void> set = scene.set_camera(camera); !set) return set;
+    if (Result<void> current = gl.make_current(); !current) return current;
+    scene.update(overlay);
+    return {};
+  }
+
+  /// Draws what `prepare` has listed, and reads colours and depth where they are wanted.
+  Result<void> render(std::uint8_t* rgb, float* depth) {
+    mjr_setBuffer(mjFB_OFFSCREEN, &context_);
+    mjr_render(viewport, &scene.raw(), &context_);
+    mjr_readPixels(rgb, depth, viewport, &context_);
+    const int error = mjr_getError();
+    gl.release();
+    if (error != 0) return fail(Errc::system, text(msg::render_gl_error, error));
     return {};
   }
 
@@ -107,33 +145,48 @@ OffscreenRenderer& OffscreenRenderer::operator=(OffscreenRenderer&&) noexcept = 
 
 Result<Image> OffscreenRenderer::draw(const Snapshot& snapshot, const Camera& camera,
                                       const Overlay& overlay) {
-  Scene& scene = impl_->scene;
-  if (Result<void> set = scene.set_state(snapshot); !set) return fail(std::move(set.error()));
-  if (Result<void> set = scene.set_camera(camera); !set) return fail(std::move(set.error()));
-  if (Result<void> current = impl_->gl.make_current(); !current) {
-    return fail(std::move(current.error()));
+  if (Result<void> ready = impl_->prepare(snapshot, camera, overlay); !ready) {
+    return fail(std::move(ready.error()));
   }
-  scene.update(overlay);
+  mjvScene& scene = impl_->scene.raw();
   // Lines have their width in pixels.
-  for (int i = 0; i < scene.raw().ngeom; ++i) {
-    mjvGeom& geom = scene.raw().geoms[i];
+  for (int i = 0; i < scene.ngeom; ++i) {
+    mjvGeom& geom = scene.geoms[i];
     if (geom.type == mjGEOM_LINE) geom.size[0] *= static_cast<float>(impl_->supersampling);
   }
-  impl_->context_.shadowClip = static_cast<float>(scene.shadow_reach());
-  mjr_setBuffer(mjFB_OFFSCREEN, &impl_->context_);
-  mjr_render(impl_->viewport, &scene.raw(), &impl_->context_);
+  impl_->context_.shadowClip = static_cast<float>(impl_->scene.shadow_reach());
   Image image{impl_->viewport.width, impl_->viewport.height, {}};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * image.height);
-  mjr_readPixels(image.rgb.data(), nullptr, impl_->viewport, &impl_->context_);
-  const int error = mjr_getError();
-  impl_->gl.release();
-  if (error != 0) {
-    return fail(Errc::system, text(msg::render_gl_error, error));
+  if (Result<void> drawn = impl_->render(image.rgb.data(), nullptr); !drawn) {
+    return fail(std::move(drawn.error()));
   }
-  flip_rows(image);
+  flip_rows(image.rgb, 3 * image.width);
   return impl_->supersampling > 1 ? halved(image) : image;
 }
 
+Result<std::vector<float>> OffscreenRenderer::draw_depth(const Snapshot& snapshot,
+                                                         const Camera& camera, double nearest) {
+  if (impl_->quality != RenderQuality::exact || impl_->supersampling > 1) {
+    return fail(Errc::usage, text(msg::render_depth_not_exact));
+  }
+  if (Result<void> ready = impl_->prepare(snapshot, camera, {}); !ready) {
+    return fail(std::move(ready.error()));
+  }
+  mjvScene& scene = impl_->scene.raw();
+  for (mjvGLCamera& eye : scene.camera) set_nearest(eye, static_cast<float>(nearest));
+  // Numbers near 0 are the finest, so they are given to what is far away.
+  impl_->context_.readDepthMap = mjDEPTH_ZEROFAR;
+  std::vector<float> depth(static_cast<std::size_t>(impl_->viewport.width) *
+                           static_cast<std::size_t>(impl_->viewport.height));
+  if (Result<void> drawn = impl_->render(nullptr, depth.data()); !drawn) {
+    return fail(std::move(drawn.error()));
+  }
+  flip_rows(depth, impl_->viewport.width);
+  to_metres(depth, scene.camera[0].frustum_near, scene.camera[0].frustum_far);
+  return depth;
+}
+
+Scene& OffscreenRenderer::scene() noexcept { return impl_->scene; }
 const GlContext& OffscreenRenderer::gl() const noexcept { return impl_->gl; }
 RenderQuality OffscreenRenderer::quality() const noexcept { return impl_->quality; }
 

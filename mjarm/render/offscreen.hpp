@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/model.hpp"
@@ -26,6 +27,7 @@ struct OffscreenOptions {
   /// 1 or 2: each pixel is the mean of so many by so many. Two smooth shadows as well, whose edges
   /// and specks no smoothing of OpenGL reaches; a picture takes up to four times as long.
   int supersampling = 1;
+  bool sites = true;  ///< marks of the model, which no camera of a robot would see
 };
 
 /// Draws pictures of a model without a window. Each renderer is used by one thread at a time; it
@@ -46,6 +48,16 @@ class OffscreenRenderer {
   [[nodiscard]] Result<Image> draw(const Snapshot& snapshot, const Camera& camera = {},
                                    const Overlay& overlay = {});
 
+  /// Depth in the middle of each pixel, along the camera's line of sight, row by row from the top:
+  /// shape (height * width,), [m]; 0 where nothing is.
+  /// @param nearest  [m] > 0: what is nearer than this is cut away.
+  /// @return usage unless made with RenderQuality::exact and one sample a pixel; else fails as
+  ///         `draw` does.
+  [[nodiscard]] Result<std::vector<float>> draw_depth(const Snapshot& snapshot,
+                                                      const Camera& camera, double nearest);
+
+  /// What was drawn last, for those who may include mujoco.h.
+  [[nodiscard]] Scene& scene() noexcept;
   [[nodiscard]] const GlContext& gl() const noexcept;
   [[nodiscard]] RenderQuality quality() const noexcept;  ///< the one chosen
 

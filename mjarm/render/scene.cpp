@@ -32,7 +32,10 @@ mjModel with_quality(const mjModel& original, RenderQuality quality, bool softwa
     asked.numslices = std::min(asked.numslices, slices);
     asked.numstacks = std::min(asked.numstacks, stacks);
   };
-  if (quality == RenderQuality::low) {
+  if (quality == RenderQuality::exact) {
+    asked.numslices = 128;  // a ball of 0.3 m is flattened by 0.09 mm
+    asked.numstacks = 64;
+  } else if (quality == RenderQuality::low) {
     // Not used at first; a window may switch shadows on.
     asked.shadowsize = std::min(asked.shadowsize, 1024);
     software ? at_most(12, 6) : at_most(16, 8);
@@ -130,7 +133,7 @@ struct Scene::Impl {
       std::copy(std::begin(before.flags), std::end(before.flags), scene.flags);
       return;
     }
-    scene.flags[mjRND_SHADOW] = quality != RenderQuality::low;
+    scene.flags[mjRND_SHADOW] = quality == RenderQuality::medium || quality == RenderQuality::high;
     scene.flags[mjRND_REFLECTION] = reflections;
   }
 

@@ -22,6 +22,7 @@
 #include "mjarm/install/installed.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/model/mujoco_library.hpp"
+#include "mjarm/perception/tag_detector.hpp"
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/render/fonts.hpp"
 #include "mjarm/render/gl_context.hpp"
@@ -110,6 +111,14 @@ void look_at_ompl(Findings& findings) {
   add(findings, "ompl", "OMPL", version, version.empty() ? text(msg::app_doctor_no_ompl) : version);
 }
 
+/// Only who looks for tags in pictures needs it.
+void look_at_apriltag(Findings& findings) {
+  const bool built_in = perception::has_tags();
+  const char* name = "AprilTag tag36h11";
+  add(findings, "apriltag", "AprilTag", built_in,
+      built_in ? name : text(msg::app_doctor_no_apriltag));
+}
+
 /// What is kept from run to run; safe to delete.
 void look_at_cache(Findings& findings) {
   constexpr double kMega = 1e6;
@@ -165,6 +174,7 @@ Result<int> run(bool json) {
   look_at_fonts(findings);
   look_at_ffmpeg(findings);
   look_at_ompl(findings);
+  look_at_apriltag(findings);
   look_at_cache(findings);
   look_at_models(findings);
   look_at_meshes(findings);

@@ -1,0 +1,167 @@
+#include "mjarm/model/surface.hpp"
+
+#include <mujoco/mujoco.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "mjarm/core/messages/model.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/rotation.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr int kAround = 64;      // faces about an axis
+constexpr int kHalfAround = 16;  // rows of faces from the equator to a pole
+constexpr int kLastGroupSeen = 2;
+
+/// Turns a curve (r, z), from the lower end of the z axis to its upper one, about that axis; both
+/// ends lie on it. Without the volume that flat faces cut away the radius is a little larger.
+Surface turned(const std::vector<Eigen::Vector2d>& curve) {
+  const double step = 2 * std::numbers::pi / kAround;
+  const double stretch = std::sqrt(step / std::sin(step));
+  Surface out;
+  out.vertices.emplace_back(0, 0, curve.front().y());
+  const int rings = static_cast<int>(curve.size()) - 2;
+  for (int ring = 1; ring <= rings; ++ring) {
+    const Eigen::Vector2d& at = curve[static_cast<std::size_t>(ring)];
+    for (int i = 0; i < kAround; ++i) {
+      out.vertices.emplace_back(stretch * at.x() * std::cos(step * i),
+                                stretch * at.x() * std::sin(step * i), at.y());
+    }
+  }
+  out.vertices.emplace_back(0, 0, curve.back().y());
+  const auto vertex = [](int ring, int i) { return 1 + (ring - 1) * kAround + i % kAround; };
+  const int top = static_cast<int>(out.vertices.size()) - 1;
+  for (int i = 0; i < kAround; ++i) {
+    out.triangles.push_back({0, vertex(1, i + 1), vertex(1, i)});
+    for (int ring = 1; ring < rings; ++ring) {
+      out.triangles.push_back({vertex(ring, i), vertex(ring, i + 1), vertex(ring + 1, i + 1)});
+      out.triangles.push_back({vertex(ring, i), vertex(ring + 1, i + 1), vertex(ring + 1, i)});
+    }
+    out.triangles.push_back({vertex(rings, i), vertex(rings, i + 1), top});
+  }
+  return out;
+}
+
+/// A ball, stretched along z by a straight part: a capsule.
+Surface round_surface(double radius, double half_straight) {
+  std::vector<Eigen::Vector2d> curve;
+  for (int i = -kHalfAround; i <= kHalfAround; ++i) {
+    const double angle = 0.5 * std::numbers::pi * i / kHalfAround;
+    const double z = radius * std::sin(angle);
+    const double r = radius * std::cos(angle);
+    if (i <= 0) curve.emplace_back(r, z - half_straight);
+    if (i > 0 || (i == 0 && half_straight > 0)) curve.emplace_back(r, z + half_straight);
+  }
+  return turned(curve);
+}
+
+Surface mesh_surface(const mjModel& m, int mesh) {
+  Surface out;
+  const float* vertices = m.mesh_vert + 3 * m.mesh_vertadr[mesh];
+  for (int i = 0; i < m.mesh_vertnum[mesh]; ++i) {
+    out.vertices.emplace_back(vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]);
+  }
+  const int* faces = m.mesh_face + 3 * m.mesh_faceadr[mesh];
+  for (int i = 0; i < m.mesh_facenum[mesh]; ++i) {
+    out.triangles.push_back({faces[3 * i], faces[3 * i + 1], faces[3 * i + 2]});
+  }
+  return out;
+}
+
+/// In the geom's frame; nothing for planes and height fields.
+std::optional<Surface> geom_surface(const mjModel& m, int geom) {
+  const mjtNum* size = m.geom_size + 3 * geom;
+  switch (m.geom_type[geom]) {
+    case mjGEOM_BOX:
+      return box_surface({size[0], size[1], size[2]});
+    case mjGEOM_CYLINDER:
+      return cylinder_surface(size[0], size[1]);
+    case mjGEOM_SPHERE:
+      return round_surface(size[0], 0);
+    case mjGEOM_CAPSULE:
+      return round_surface(size[0], size[1]);
+    case mjGEOM_ELLIPSOID: {
+      Surface ball = round_surface(1, 0);
+      for (Eigen::Vector3d& v : ball.vertices)
+        v = v.cwiseProduct(Eigen::Vector3d(size[0], size[1], size[2]));
+      return ball;
+    }
+    case mjGEOM_MESH:
+      return mesh_surface(m, m.geom_dataid[geom]);
+    default:
+      return std::nullopt;
+  }
+}
+
+bool is_seen(const mjModel& m, int geom) {
+  const int material = m.geom_matid[geom];
+  const float alpha = material >= 0 ? m.mat_rgba[4 * material + 3] : m.geom_rgba[4 * geom + 3];
+  return m.geom_group[geom] <= kLastGroupSeen && alpha > 0;
+}
+
+int body_number(const mjModel& m, std::string_view name, std::vector<std::string>& names) {
+  for (int body = 1; body < m.nbody; ++body) {
+    names.emplace_back(m.names + m.name_bodyadr[body]);
+    if (names.back() == name) return body;
+  }
+  return -1;
+}
+
+}  // namespace
+
+Surface box_surface(const Eigen::Vector3d& half) {
+  Surface out;
+  for (int i = 0; i < 8; ++i) {
+    out.vertices.push_back(
+        half.cwiseProduct(Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  }
+  out.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                   {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return out;
+}
+
+Surface cylinder_surface(double radius, double half_height) {
+  return turned(
+      {{0, -half_height}, {radius, -half_height}, {radius, half_height}, {0, half_height}});
+}
+
+void append(Surface& surface_A, const Surface& surface_B, const Pose& X_AB) {
+  const int before = static_cast<int>(surface_A.vertices.size());
+  for (const Eigen::Vector3d& v : surface_B.vertices) surface_A.vertices.push_back(X_AB * v);
+  for (const auto& [a, b, c] : surface_B.triangles) {
+    surface_A.triangles.push_back({before + a, before + b, before + c});
+  }
+}
+
+Result<Surface> body_surface(const Model& model, std::string_view body) {
+  const mjModel& m = *model.raw();
+  std::vector<std::string> names;
+  const int number = body_number(m, body, names);
+  if (number < 0) {
+    return fail(Errc::bad_input, text(msg::model_surface_no_body, std::string(body),
+                                      did_you_mean(std::string(body), names)));
+  }
+  Surface out;
+  for (int i = 0; i < m.body_geomnum[number]; ++i) {
+    const int geom = m.body_geomadr[number] + i;
+    if (!is_seen(m, geom)) continue;
+    const std::optional<Surface> part = geom_surface(m, geom);
+    if (!part) return fail(Errc::bad_input, text(msg::model_surface_flat, std::string(body)));
+    const mjtNum* q = m.geom_quat + 4 * geom;
+    append(out, *part,
+           {.p = Eigen::Map<const Eigen::Vector3d>(m.geom_pos + 3 * geom),
+            .R = to_matrix(Quat(q[0], q[1], q[2], q[3]))});
+  }
+  if (out.triangles.empty()) {
+    return fail(Errc::bad_input, text(msg::model_surface_unseen, std::string(body)));
+  }
+  return out;
+}
+
+}  // namespace mjarm

@@ -1,0 +1,72 @@
+#include "mjarm/model/surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+
+namespace mjarm {
+namespace {
+
+/// [m^3] enclosed, by Gauss's theorem: right only where all triangles go round the same way.
+double volume_of(const Surface& surface) {
+  double sum = 0;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const auto at = [&](int i) { return surface.vertices[static_cast<std::size_t>(i)]; };
+    sum += at(a).dot(at(b).cross(at(c))) / 6;
+  }
+  return sum;
+}
+
+double top_of(const Surface& surface) {
+  double z = -1e9;
+  for (const Eigen::Vector3d& v : surface.vertices) z = std::max(z, v.z());
+  return z;
+}
+
+TEST(Surface, BoxesAndCylindersEncloseTheirVolume) {
+  EXPECT_NEAR(volume_of(box_surface({0.1, 0.2, 0.3})), 0.048, 1e-12);
+  EXPECT_NEAR(volume_of(cylinder_surface(0.1, 0.3)), std::numbers::pi * 0.01 * 0.6, 1e-12);
+  Surface both = box_surface({0.1, 0.1, 0.1});
+  append(both, box_surface({0.1, 0.1, 0.1}), {.p = {1, 2, 3}});
+  EXPECT_NEAR(volume_of(both), 0.016, 1e-12);
+  EXPECT_NEAR(top_of(both), 3.1, 1e-12);
+}
+
+constexpr const char* kThings = R"(
+<mujoco>
+  <asset><mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>
+  <worldbody>
+    <geom type="plane" size="1 1 1"/>
+    <body name="ball"><freejoint/><geom type="sphere" size="0.1" pos="0 0 0.5"/></body>
+    <body name="pill"><freejoint/><geom type="capsule" size="0.1 0.2" euler="0 90 0"/></body>
+    <body name="egg"><freejoint/><geom type="ellipsoid" size="0.1 0.2 0.3"/></body>
+    <body name="wedge"><freejoint/><geom type="mesh" mesh="wedge"/></body>
+    <body name="two"><freejoint/><geom type="box" size="0.1 0.1 0.1" pos="0 0 1"/>
+      <geom type="cylinder" size="0.1 0.1"/><geom type="box" size="2 2 2" group="3"/>
+      <geom type="box" size="2 2 2" rgba="1 1 1 0"/></body>
+    <body name="unseen"><freejoint/><geom type="box" size="1 1 1" group="3"/></body>
+  </worldbody>
+</mujoco>)";
+
+TEST(Surface, OfABodyIsThatOfItsGeomsInItsFrame) {
+  const Model model = *Model::from_mjcf(kThings);
+  const auto of = [&](const char* body) { return *body_surface(model, body); };
+  const double ball = 4.0 / 3 * std::numbers::pi;
+  EXPECT_NEAR(volume_of(of("ball")), ball * 1e-3, 5e-5);
+  EXPECT_NEAR(top_of(of("ball")), 0.6, 1e-12);
+  EXPECT_NEAR(volume_of(of("pill")), ball * 1e-3 + std::numbers::pi * 0.01 * 0.4, 1e-4);
+  EXPECT_NEAR(top_of(of("pill")), 0.1, 1e-3);
+  EXPECT_NEAR(volume_of(of("egg")), ball * 6e-3, 1e-4);
+  EXPECT_NEAR(volume_of(of("wedge")), 1.0 / 6, 1e-6);
+  EXPECT_NEAR(top_of(of("wedge")), 1, 1e-6)
+      << "MuJoCo moves meshes to their centre, the body does not";
+  EXPECT_NEAR(volume_of(of("two")), 8e-3 + std::numbers::pi * 2e-3, 1e-9);
+  EXPECT_NE(body_surface(model, "wegde").error().what.find("\"wedge\""), std::string::npos);
+  EXPECT_FALSE(body_surface(model, "unseen"));
+  EXPECT_FALSE(body_surface(model, "world"));
+}
+
+}  // namespace
+}  // namespace mjarm

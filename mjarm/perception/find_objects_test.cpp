@@ -1,0 +1,293 @@
+#include "mjarm/perception/find_objects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mjarm/perception/look_test.hpp"
+#include "tests/support/rounds.hpp"
+
+namespace mjarm::perception {
+namespace {
+
+using mjarm::testing::rounds;
+using namespace mjarm::perception::testing;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// One look for all tests: what costs is the model and OpenGL.
+Look& look() {
+  static Look one;
+  return one;
+}
+
+#define SKIP_WITHOUT_OPENGL() \
+  if (!look().works()) GTEST_SKIP() << "no OpenGL"
+
+/// Median and largest of each figure, for who measures (--gtest_output=xml).
+void record(const std::string& name, std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  ::testing::Test::RecordProperty(name + "_median", std::to_string(values[values.size() / 2]));
+  ::testing::Test::RecordProperty(name + "_max", std::to_string(values.back()));
+}
+
+// The oracle is where the simulation has the bodies.
+void every_placement_is_found(bool with_tag, double max_mm, double max_deg) {
+  Result<ObjectFinder> finder = ObjectFinder::create(objects_of(look().model(), with_tag));
+  ASSERT_TRUE(finder) << finder.error().what;
+  Rng rng(11), noise(12);
+  std::vector<double> millimetres, degrees;
+  const std::size_t bodies = with_tag ? 1 : 3;
+  for (int i = 0; i < rounds(3, 100); ++i) {
+    const Places places = random_places(rng);
+    const Result<FoundScene> found = finder->find(look()(places, noise));
+    ASSERT_TRUE(found) << found.error().what;
+    ASSERT_TRUE(found->table);
+    EXPECT_NEAR(found->table->offset, 0, 1e-3);
+    for (std::size_t k = 0; k < bodies; ++k) {
+      const auto& [name, pose] = found->objects[k];
+      ASSERT_TRUE(pose) << "look " << i << ": " << name << ": " << describe(pose.error().code);
+      EXPECT_EQ(pose->by_tag, with_tag && k == 0);
+      EXPECT_LT(pose->residual, 0.004);
+      const Pose& X_WO = *places.bodies[k];
+      millimetres.push_back(1000 * (pose->X_WO.p - X_WO.p).norm());
+      degrees.push_back(turn_between(k, with_tag, pose->X_WO.R, X_WO.R) / kDegree);
+      EXPECT_LT(millimetres.back(), max_mm) << "look " << i << ": " << name;
+      EXPECT_LT(degrees.back(), max_deg) << "look " << i << ": " << name;
+    }
+  }
+  record("mm", millimetres);
+  record("deg", degrees);
+}
+
+TEST(FindObjects, EveryPlacementIsFoundByItsTag) {
+  SKIP_WITHOUT_OPENGL();
+  if (!has_tags()) GTEST_SKIP() << "built without AprilTag (libapriltag-dev)";
+  every_placement_is_found(true, 2, 1);
+}
+
+TEST(FindObjects, EveryPlacementIsFoundByItsShape) {
+  SKIP_WITHOUT_OPENGL();
+  every_placement_is_found(false, 3, 2);
+}
+
+ObjectFinder finder_of(bool with_tag, const FindOptions& options = {}) {
+  return std::move(*ObjectFinder::create(objects_of(look().model(), with_tag), options));
+}
+
+TEST(FindObjects, TheSameFrameGivesTheSameAnswer) {
+  SKIP_WITHOUT_OPENGL();
+  Rng rng(3), noise(4);
+  const render::RgbdFrame frame = look()(random_places(rng), noise);
+  ObjectFinder first = finder_of(false);
+  const FoundScene once = *first.find(frame);
+  const FoundScene again = *first.find(frame);
+  const FoundScene other = *finder_of(false).find(frame);
+  for (std::size_t k = 0; k < 3; ++k) {
+    ASSERT_TRUE(once.objects[k].pose);
+    EXPECT_EQ(once.objects[k].pose->X_WO.p, again.objects[k].pose->X_WO.p);
+    EXPECT_EQ(once.objects[k].pose->X_WO.R, other.objects[k].pose->X_WO.R);
+  }
+}
+
+// What is not there is not found, and what nobody knows is measured.
+TEST(FindObjects, AStrangerIsMeasuredAndNothingElseIsFound) {
+  SKIP_WITHOUT_OPENGL();
+  Places places{.eye = eye_at({0, 0, 0}, 0.6, 0.4, 1)};
+  places.bodies[3] = standing(0.02, 0.01, 0.02, 0.5);
+  Rng noise(4);
+  const FoundScene found = *finder_of(false).find(look()(places, noise));
+  for (const FoundObject& object : found.objects) {
+    ASSERT_FALSE(object.pose) << object.name;
+    EXPECT_EQ(object.pose.error().code, FindErrc::not_seen);
+  }
+  ASSERT_EQ(found.unknown.size(), 1U);
+  const UnknownObject& stranger = found.unknown[0];
+  EXPECT_EQ(stranger.kind, UnknownObject::Kind::box);
+  EXPECT_LT((stranger.X_WO.p - places.bodies[3]->p).norm(), 0.002);
+  const auto [small, large] = std::minmax(stranger.size.x(), stranger.size.y());
+  EXPECT_NEAR(small, 0.06, 0.002);
+  EXPECT_NEAR(large, 0.12, 0.002);
+  EXPECT_NEAR(stranger.size.z(), 0.04, 0.002);
+}
+
+TEST(FindObjects, AnUnknownCanIsACylinder) {
+  SKIP_WITHOUT_OPENGL();
+  Places places{.eye = eye_at({0, 0, 0}, 0.6, 2, 0.8)};
+  places.bodies[1] = standing(0.02, 0.01, 0.05, 0);
+  Rng noise(4);
+  ObjectFinder nobody = std::move(*ObjectFinder::create({}));
+  const FoundScene found = *nobody.find(look()(places, noise));
+  ASSERT_EQ(found.unknown.size(), 1U);
+  EXPECT_EQ(found.unknown[0].kind, UnknownObject::Kind::cylinder);
+  EXPECT_NEAR(found.unknown[0].size.x(), 0.066, 0.001);
+  EXPECT_NEAR(found.unknown[0].size.z(), 0.1, 0.001);
+  EXPECT_LT((found.unknown[0].X_WO.p - places.bodies[1]->p).norm(), 0.001);
+}
+
+/// No pose, or the right one.
+void never_wrong(const FoundScene& found, const Places& places, bool with_tag, int look_number) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& [name, pose] = found.objects[k];
+    if (!pose) continue;
+    ASSERT_TRUE(places.bodies[k]) << "look " << look_number << ": " << name << " is not there";
+    EXPECT_LT((pose->X_WO.p - places.bodies[k]->p).norm(), 0.003) << look_number << ": " << name;
+    EXPECT_LT(turn_between(k, with_tag, pose->X_WO.R, places.bodies[k]->R), 2 * kDegree)
+        << look_number << ": " << name;
+  }
+}
+
+// Something between camera and object hides a part of it: its pose or a reason, never a wrong pose.
+TEST(FindObjects, WhatIsHiddenInPartHasItsPoseOrAReason) {
+  SKIP_WITHOUT_OPENGL();
+  ObjectFinder finder = finder_of(false);
+  Rng rng(21), noise(22);
+  int found_ones = 0, refused = 0;
+  for (int i = 0; i < rounds(3, 100); ++i) {
+    Places places{.eye = eye_at({0, 0, 0.03}, rng.uniform(0.5, 0.8), rng.uniform(-3, 3),
+                                rng.uniform(0.6, 1.4))};
+    const std::size_t k = rng.below(3);
+    places.bodies[k] = standing(0, 0, std::array{0.03, 0.05, 0.0}[k], rng.uniform(-3, 3));
+    const Eigen::Vector3d beside(rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06), 0);
+    places.bodies[3] =
+        Pose{.p = 0.25 * places.eye.p + beside, .R = from_euler({rng.uniform(-3, 3), 0, 1})};
+    const FoundScene found = *finder.find(look()(places, noise));
+    never_wrong(found, places, false, i);
+    ++(found.objects[k].pose ? found_ones : refused);
+  }
+  EXPECT_GT(found_ones + refused, 0);
+}
+
+// Two known objects side by side, often in touch.
+TEST(FindObjects, ObjectsInTouchHaveTheirPoseOrAReason) {
+  SKIP_WITHOUT_OPENGL();
+  ObjectFinder finder = finder_of(false);
+  Rng rng(31), noise(32);
+  for (int i = 0; i < rounds(2, 100); ++i) {
+    Places places{.eye = eye_at({0, 0, 0.03}, rng.uniform(0.5, 0.8), rng.uniform(-3, 3), 1)};
+    const double angle = rng.uniform(-3, 3);
+    const double apart = rng.uniform(0.065, 0.1);
+    places.bodies[0] = standing(0, 0, 0.03, rng.uniform(-3, 3));
+    places.bodies[1] = standing(apart * std::cos(angle), apart * std::sin(angle), 0.05, 0);
+    never_wrong(*finder.find(look()(places, noise)), places, false, i);
+  }
+}
+
+TEST(FindObjects, ATagOnAnotherFaceOrOfAnotherSizeOrSeenTwiceGivesNoPose) {
+  SKIP_WITHOUT_OPENGL();
+  if (!has_tags()) GTEST_SKIP() << "built without AprilTag (libapriltag-dev)";
+  Places places{.eye = eye_at({0, 0, 0.03}, 0.5, 0.4, 1)};
+  places.bodies[0] = standing(0, 0, 0.03, 0.3);
+  Rng noise(4);
+  render::RgbdFrame frame = look()(places, noise);
+  const auto code = [&](const ObjectTag& tag, const render::RgbdFrame& seen) {
+    std::vector<KnownObject> objects{*known_object(look().model(), "box")};
+    objects[0].tag = tag;
+    ObjectFinder finder = std::move(*ObjectFinder::create(objects));
+    const FoundScene found = *finder.find(seen);
+    return found.objects[0].pose ? std::string() : describe(found.objects[0].pose.error().code);
+  };
+  const ObjectTag right{.id = kTag, .size = kTagSize, .X_OT = kTagOnBox};
+  EXPECT_EQ(code(right, frame), "");
+  ObjectTag side = right;
+  side.X_OT = {.p = {0.0502, 0, 0}, .R = from_euler({0, std::numbers::pi / 2, 0})};
+  EXPECT_EQ(code(side, frame), describe(FindErrc::disagrees));
+  ObjectTag small = right;
+  small.size = 0.05;
+  EXPECT_EQ(code(small, frame), describe(FindErrc::wrong_size));
+  ObjectTag other = right;
+  other.id = kTag + 1;
+  EXPECT_EQ(code(other, frame), describe(FindErrc::not_seen));
+  render::RgbdFrame blind = frame;
+  std::fill(blind.depth.begin(), blind.depth.end(), std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(code(right, blind), describe(FindErrc::no_depth));
+  // The same tag once more, painted into a corner of the picture.
+  const render::Image tag = *tag_picture(kTag, 8);
+  for (int y = 0; y < tag.height; ++y) {
+    std::copy_n(tag.rgb.begin() + 3 * y * tag.width, 3 * tag.width,
+                frame.color.rgb.begin() + 3 * ((y + 20) * frame.color.width + 20));
+  }
+  EXPECT_EQ(code(right, frame), describe(FindErrc::tag_twice));
+}
+
+TEST(FindObjects, FramesWithoutDepthFindNothingAndUnfitOnesAreRefused) {
+  SKIP_WITHOUT_OPENGL();
+  Rng rng(3), noise(4);
+  const render::RgbdFrame frame = look()(random_places(rng), noise);
+  ObjectFinder finder = finder_of(false);
+  for (const float nothing : {0.0F, std::numeric_limits<float>::quiet_NaN(), -1.0F,
+                              std::numeric_limits<float>::infinity()}) {
+    render::RgbdFrame blind = frame;
+    std::fill(blind.depth.begin(), blind.depth.end(), nothing);
+    const FoundScene found = *finder.find(blind);
+    EXPECT_FALSE(found.table);
+    EXPECT_TRUE(found.unknown.empty());
+    for (const FoundObject& object : found.objects) EXPECT_FALSE(object.pose);
+  }
+  // A pixel here and there that has none does no harm.
+  render::RgbdFrame holes = frame;
+  for (float& z : holes.depth)
+    z = rng.uniform() < 0.2 ? std::numeric_limits<float>::quiet_NaN() : z;
+  const FoundScene through_holes = *finder.find(holes);
+  for (const FoundObject& object : through_holes.objects) EXPECT_TRUE(object.pose) << object.name;
+  const auto refused = [&](auto change) {
+    render::RgbdFrame bad = frame;
+    change(bad);
+    const Result<FoundScene> found = finder.find(bad);
+    return !found && found.error().code == Errc::bad_input;
+  };
+  EXPECT_TRUE(refused([](auto& f) { f.depth.pop_back(); }));
+  EXPECT_TRUE(refused([](auto& f) { f.color.width = 640; }));
+  EXPECT_TRUE(refused([](auto& f) { f.color.rgb.clear(); }));
+  EXPECT_TRUE(refused([](auto& f) { f.intrinsics.fx = 0; }));
+  EXPECT_TRUE(refused([](auto& f) { f.X_WC.p.x() = std::numeric_limits<double>::quiet_NaN(); }));
+  EXPECT_TRUE(refused([](auto& f) { f = {}; }));
+}
+
+// Two objects of one shape cannot be told apart, and say so.
+TEST(FindObjects, TwinsAreAmbiguous) {
+  SKIP_WITHOUT_OPENGL();
+  Places places{.eye = eye_at({0, 0, 0.03}, 0.6, 0.4, 1)};
+  places.bodies[1] = standing(0, 0, 0.05, 0);
+  Rng noise(4);
+  KnownObject can = *known_object(look().model(), "can");
+  KnownObject twin = can;
+  twin.name = "twin";
+  ObjectFinder finder = std::move(*ObjectFinder::create({can, twin}));
+  const FoundScene found = *finder.find(look()(places, noise));
+  for (const FoundObject& object : found.objects) {
+    ASSERT_FALSE(object.pose);
+    EXPECT_EQ(object.pose.error().code, FindErrc::ambiguous);
+    ASSERT_TRUE(object.pose.error().best);
+    EXPECT_LT((object.pose.error().best->X_WO.p - places.bodies[1]->p).norm(), 0.001);
+  }
+}
+
+TEST(FindObjects, ObjectsAndOptionsThatCannotBeAreNamed) {
+  const KnownObject good{.name = "cube", .surface = box_surface({0.02, 0.02, 0.02})};
+  const auto why = [](std::vector<KnownObject> objects, const FindOptions& options = {}) {
+    const Result<ObjectFinder> made = ObjectFinder::create(std::move(objects), options);
+    return made ? std::string() : made.error().what;
+  };
+  EXPECT_EQ(why({good}), "");
+  EXPECT_NE(why({good, good}).find("cube"), std::string::npos);
+  EXPECT_NE(why({{.name = "none", .surface = {}}}).find("none"), std::string::npos);
+  KnownObject bad = good;
+  bad.surface.triangles[0][1] = 99;
+  EXPECT_NE(why({bad}), "");
+  bad = good;
+  bad.surface.vertices[3].x() = std::numeric_limits<double>::infinity();
+  EXPECT_NE(why({bad}), "");
+  EXPECT_NE(why({{.name = "dust", .surface = box_surface({1e-4, 1e-4, 1e-4})}}).find("dust"),
+            std::string::npos);
+  bad = good;
+  bad.tag = ObjectTag{.id = 587, .size = 0.05};
+  EXPECT_NE(why({bad}).find("587"), std::string::npos);
+  EXPECT_NE(why({good}, {.depth_sigma = -1}).find("depth_sigma"), std::string::npos);
+  EXPECT_NE(why({good}, {.table = Plane{.normal_W = {0, 0, 2}}}).find("table"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mjarm::perception

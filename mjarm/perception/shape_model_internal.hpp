@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjarm/core/pose.hpp"
+#include "mjarm/model/surface.hpp"
+
+namespace mjarm::perception {
+
+/// A surface with what the search for it asks again and again.
+struct ShapeModel {
+  explicit ShapeModel(Surface of);
+  Surface surface;
+  Surface coarse;                        ///< with details below 0.15 of its radius left out
+  Eigen::Vector3d centre;                ///< [m] mean of the surface, in the object's frame O
+  double radius = 0;                     ///< [m] about the centre
+  std::vector<Eigen::Vector3d> points;   ///< [m] evenly spread over the surface, in O
+  std::vector<Eigen::Vector3d> normals;  ///< unit length, of either side
+};
+
+/// [m] How far the surface in pose `A` is from that in pose `B`: root of the mean squared distance
+/// of points to the nearest point's tangent plane. About 0 for poses that the object's symmetry
+/// makes the same, whatever that symmetry is.
+[[nodiscard]] double surface_distance(const ShapeModel& shape, const Pose& A, const Pose& B);
+
+/// [m^2] (6, 6) M: a twist t = (v, w) about the centre, in the frame of `X`, moves the surface
+/// along its normals by sqrt(t^T M t), root mean square. Zero for motions along its symmetry.
+[[nodiscard]] Eigen::Matrix<double, 6, 6> normal_motion(const ShapeModel& shape, const Pose& X);
+
+}  // namespace mjarm::perception
