@@ -128,8 +128,9 @@ std::vector<ProgramFault> faults_of(const std::string& instructions) {
   const support::TempFolder folder;
   const auto file = folder.write("one.yaml", "scene: universal_robots_ur5e/pick.xml\nprogram:\n" +
                                                  instructions);
-  const auto loaded = load_program(file);
-  return loaded ? loaded->plan.faults : std::vector<ProgramFault>{{.what = loaded.error().what}};
+  auto loaded = load_program(file);
+  EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().what);
+  return loaded ? std::move(loaded->plan.faults) : std::vector<ProgramFault>();
 }
 
 TEST(PickInstruction, FaultsNameTheirPlaceAndWhatIsKnown) {
