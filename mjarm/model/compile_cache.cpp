@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 #include <system_error>
 
 #include "mjarm/core/sha256.hpp"
@@ -13,9 +12,8 @@ namespace {
 /// To be raised when compile_here() gives something else for the same.
 constexpr const char* kModels = "mjarm models 1\n";
 constexpr std::size_t kHashDigits = 64;
+constexpr char kRead = 'r', kLooks = 'l';                   // before what is noted of a file
 constexpr std::size_t kMaxKept = UserCache::kMaxBytes / 4;  // of one model [bytes]
-
-using Number = std::uint32_t;
 
 /// All that decides about a model but the files its description names.
 std::string key_of(const SpecSource& source) {
@@ -52,28 +50,34 @@ std::optional<CompileCache> CompileCache::of(const SpecSource& source) {
   std::vector<Asset> assets;
   for (const AssetFile& file : asset_files(source.files)) {
     if (file.kind == "model") return {};
-    if (std::ranges::count(assets, file.path, &Asset::path) > 0) continue;
-    assets.push_back(look_at(file.path, file.kind == "mesh" || file.kind == "texture"));
+    const bool may_be_looks = file.kind == "mesh" || file.kind == "texture";
+    const auto known = std::ranges::find(assets, file.path, &Asset::path);
+    if (known == assets.end()) {
+      assets.push_back(look_at(file.path, may_be_looks));
+    } else {
+      known->may_be_looks = known->may_be_looks && may_be_looks;
+    }
   }
   return CompileCache(std::move(*cache), key_of(source), std::move(assets));
+}
+
+std::string CompileCache::note_of(const Asset& asset, bool is_read) {
+  if (is_read) return hash_of(asset.path);
+  std::string note =
+      std::to_string(asset.size) + ' ' + std::to_string(asset.changed.time_since_epoch().count());
+  note.resize(kHashDigits, ' ');
+  return note;
 }
 
 std::optional<LoadedModel> CompileCache::find(const Read& read) const {
   const std::optional<std::string> value = cache_.find(key_);
   if (!value) return {};
   std::string_view left = *value;
-  const auto take = [&](Number& number) {
-    if (left.size() < sizeof number) return false;
-    std::memcpy(&number, left.data(), sizeof number);
-    left.remove_prefix(sizeof number);
-    return true;
-  };
-  Number count = 0, index = 0;
-  if (!take(count)) return {};
-  for (Number k = 0; k < count; ++k) {
-    if (!take(index) || index >= assets_.size() || left.size() < kHashDigits) return {};
-    if (left.substr(0, kHashDigits) != hash_of(assets_[index].path)) return {};
-    left.remove_prefix(kHashDigits);
+  for (const Asset& asset : assets_) {
+    if (left.size() < 1 + kHashDigits) return {};
+    const bool is_read = left.front() == kRead;
+    if (left.substr(1, kHashDigits) != note_of(asset, is_read)) return {};
+    left.remove_prefix(1 + kHashDigits);
   }
   return read(left);
 }
@@ -81,22 +85,12 @@ std::optional<LoadedModel> CompileCache::find(const Read& read) const {
 void CompileCache::keep(std::string_view said, const LoadedModel& loaded) const {
   if (said.size() > kMaxKept) return;
   std::string value;
-  const auto put = [&](std::size_t number) {
-    const auto fixed = static_cast<Number>(number);
-    value.append(reinterpret_cast<const char*>(&fixed), sizeof fixed);
-  };
-  std::vector<std::size_t> used;
-  for (std::size_t k = 0; k < assets_.size(); ++k) {
-    const std::string name = assets_[k].path.filename().string();
-    if (!assets_[k].may_be_looks || std::ranges::count(loaded.read_files, name) > 0) {
-      used.push_back(k);
-    }
-  }
-  put(used.size());
-  for (const std::size_t k : used) {
-    put(k);
-    value += hash_of(assets_[k].path);
-    if (look_at(assets_[k].path, assets_[k].may_be_looks) != assets_[k]) return;
+  for (const Asset& asset : assets_) {
+    const std::string name = asset.path.filename().string();
+    const bool is_read = !asset.may_be_looks || std::ranges::count(loaded.read_files, name) > 0;
+    value += is_read ? kRead : kLooks;
+    value += note_of(asset, is_read);
+    if (look_at(asset.path, asset.may_be_looks) != asset) return;
   }
   value += said;
   cache_.keep(key_, value);

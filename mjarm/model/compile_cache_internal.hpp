@@ -15,7 +15,8 @@ namespace mjarm {
 
 /// What MuJoCo made of a description, in UserCache, as most of the time before a first plan is its
 /// work on meshes. Kept under all text of the description, with the SHA-256 of every mesh and field
-/// that decided about it: where one of these has changed, nothing is known. Only of models without
+/// that decided about it, and size and date of those that are only looked at, which MuJoCo reads at
+/// times and may refuse: where one of these has changed, nothing is known. Only of models without
 /// looks; those that a description puts together from others (<model>) are not kept.
 class CompileCache {
  public:
@@ -39,6 +40,8 @@ class CompileCache {
     std::uintmax_t size = 0;
     [[nodiscard]] bool operator==(const Asset&) const = default;
   };
+  /// Of a file that decides about the model its hash, else size and date.
+  static std::string note_of(const Asset& asset, bool is_read);
   static Asset look_at(const std::filesystem::path& path, bool may_be_looks);
   CompileCache(UserCache cache, std::string key, std::vector<Asset> assets)
       : cache_(std::move(cache)), key_(std::move(key)), assets_(std::move(assets)) {}

@@ -96,9 +96,10 @@ TEST_F(CompileCacheTest, GivesTheSameUntilAFileThatMattersHasChanged) {
   ASSERT_EQ(kept().size(), 1U);
   const std::string entry = read_file(kept().front()).value();
   EXPECT_EQ(loaded(), before);
-  write("looks", 0.2F);
-  EXPECT_EQ(loaded(), before);
   EXPECT_EQ(read_file(kept().front()).value(), entry);  // nothing was made anew
+  write("looks", 0.2F);  // MuJoCo may refuse it, so it gets to see it
+  EXPECT_EQ(loaded(), before);
+  EXPECT_NE(read_file(kept().front()).value(), entry);
   for (const char* mesh : {"contact", "mass", "size"}) {
     write(mesh, 0.2F);
     const std::string after = made_anew();
