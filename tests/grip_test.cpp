@@ -35,11 +35,11 @@ class HeldPart {
  public:
   explicit HeldPart(const Held& held, bool icy = false)
       : robot_(loaded(folder_
-                              .write("scene.xml", std::string("<mujoco><include file='") +
-                                                      held.file + "'/><worldbody><body name='part' " +
-                                                      "pos='0 0 3'><freejoint/><geom " + held.geom +
-                                                      "/></body></worldbody></mujoco>")
-                              .string())),
+                          .write("scene.xml", std::string("<mujoco><include file='") + held.file +
+                                                  "'/><worldbody><body name='part' " +
+                                                  "pos='0 0 3'><freejoint/><geom " + held.geom +
+                                                  "/></body></worldbody></mujoco>")
+                          .string())),
         model_(mj_copyModel(nullptr, robot_.model.raw()), mj_deleteModel),
         data_(mj_makeData(model_.get()), mj_deleteData) {
     if (icy) {

@@ -82,8 +82,7 @@ Result<NearRobot> menagerie_panda(const fs::path& archive, const fs::path& folde
 
 Result<std::vector<NearRobot>> near_robots(const fs::path& data, const fs::path& folder) {
   std::vector<NearRobot> robots;
-  for (Result<NearRobot> robot :
-       {shipped_ur5e(folder / "ur5e"), shipped_panda(folder / "panda")}) {
+  for (Result<NearRobot> robot : {shipped_ur5e(folder / "ur5e"), shipped_panda(folder / "panda")}) {
     if (!robot) return fail(std::move(robot.error()));
     robots.push_back(std::move(*robot));
   }

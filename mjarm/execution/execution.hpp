@@ -36,10 +36,10 @@ struct ExecutedMotion {
 
 /// Moves an arm in a simulation along the motions of a plan: the one driver of all faces. Either
 /// step by step, to be stopped and taken up again as a user likes, or all in one call. What the
-/// gripper is told to do is told over the first kGripShare of that motion, at a steady rate: fingers
-/// that are thrown shut throw what they hold. The controller knows the mass of what the plan has in
-/// the gripper, as if it hung at the tool frame. The arm goes on from where it
-/// stands; Sim::place() puts it at the plan's start.
+/// gripper is told to do is told over the first kGripShare of that motion, at a steady rate:
+/// fingers that are thrown shut throw what they hold. The controller knows the mass of what the
+/// plan has in the gripper, as if it hung at the tool frame. The arm goes on from where it stands;
+/// Sim::place() puts it at the plan's start.
 class Execution {
  public:
   using State = MotionClock::State;

@@ -100,8 +100,8 @@ class OpenHand {
     std::vector<char> out(static_cast<std::size_t>(m.nv), 0);
     for (const int g : geoms_) {
       for (int b = m.geom_bodyid[g]; b > 0; b = m.body_parentid[b]) {
-        const bool hand = std::ranges::any_of(
-            geoms_, [&](int other) { return m.geom_bodyid[other] == b; });
+        const bool hand =
+            std::ranges::any_of(geoms_, [&](int other) { return m.geom_bodyid[other] == b; });
         if (!hand) break;
         for (int k = 0; k < m.body_dofnum[b]; ++k) {
           out[static_cast<std::size_t>(m.body_dofadr[b] + k)] = 1;
@@ -200,8 +200,7 @@ Result<Jaws> find_jaws(const Model& model, const Arm& arm) {
   const std::unique_ptr<mjModel, void (*)(mjModel*)> still(mj_copyModel(nullptr, model.raw()),
                                                            mj_deleteModel);
   const MujocoOutcome opened = call_mujoco([&] { hand.open(arm, *still); });
-  const std::optional<Jaws> jaws =
-      opened.failed ? std::nullopt : JawsMeasure(hand).measure();
+  const std::optional<Jaws> jaws = opened.failed ? std::nullopt : JawsMeasure(hand).measure();
   if (!jaws) return fail(Errc::not_available, text(msg::model_no_jaws, arm.tip, arm.name));
   return *jaws;
 }

@@ -18,15 +18,16 @@ struct ShapePart {
   /// [m] box and ellipsoid: half extents; ball: the radius; cylinder and capsule: radius and half
   /// length along z; hull: half extents of a box round it.
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> vertices = {};    ///< [m] hull: its corners, in G
-  std::vector<std::array<int, 3>> faces = {};    ///< hull: triangles, seen from outside they turn left
+  std::vector<Eigen::Vector3d> vertices = {};  ///< [m] hull: its corners, in G
+  std::vector<std::array<int, 3>> faces =
+      {};  ///< hull: triangles, seen from outside they turn left
 };
 
 /// What a body that can be carried consists of, with all that hangs on it.
 struct ObjectShape {
-  std::vector<ShapePart> parts;                           ///< those that collide
-  Eigen::Vector3d center_B = Eigen::Vector3d::Zero();     ///< [m] of mass
-  double mass = 0;                                        ///< [kg]
+  std::vector<ShapePart> parts;                        ///< those that collide
+  Eigen::Vector3d center_B = Eigen::Vector3d::Zero();  ///< [m] of mass
+  double mass = 0;                                     ///< [kg]
 };
 
 /// The shape of the body with that number; joints below it stand at their initial values. Planes,

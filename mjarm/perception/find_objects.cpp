@@ -38,7 +38,7 @@ FoundPose found_pose(const DepthScene& scene, const ShapeFit& fit, bool by_tag) 
 }
 
 bool is_sunk(const DepthScene& scene, const ShapeModel& shape, const Pose& X_CO) {
-  return sunk_depth(scene, shape.surface, X_CO) > kSunk;
+  return sunk_depth(scene, shape.fine.surface, X_CO) > kSunk;
 }
 
 /// Nothing speaks against it but what may hide it.
@@ -59,7 +59,7 @@ struct Match {
 std::vector<float> whole_drawing(const DepthScene& scene, const ShapeModel& shape, const Pose& X_CO,
                                  Raster& raster) {
   raster.clear(scene.lens);
-  raster.draw(shape.surface, X_CO);
+  raster.draw(shape.fine.surface, X_CO, shape.fine.sides);
   return raster.inverse();
 }
 

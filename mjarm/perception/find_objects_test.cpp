@@ -40,14 +40,18 @@ void every_placement_is_found(bool with_tag, double max_mm, double max_deg) {
   Rng rng(11), noise(12);
   std::vector<double> millimetres, degrees;
   const std::size_t bodies = with_tag ? 1 : 3;
-  for (int i = 0; i < rounds(3, 100); ++i) {
-    const Places places = random_places(rng);
+  for (int i = 0; i < rounds(2, 100, 1); ++i) {
+    const Places places = random_places(rng, with_tag ? 0 : static_cast<std::size_t>(i % 3));
     const Result<FoundScene> found = finder->find(look()(places, noise));
     ASSERT_TRUE(found) << found.error().what;
     ASSERT_TRUE(found->table);
     EXPECT_NEAR(found->table->offset, 0, 1e-3);
     for (std::size_t k = 0; k < bodies; ++k) {
       const auto& [name, pose] = found->objects[k];
+      if (!places.bodies[k]) {
+        EXPECT_FALSE(pose) << "look " << i << ": " << name << " is not there";
+        continue;
+      }
       ASSERT_TRUE(pose) << "look " << i << ": " << name << ": " << describe(pose.error().code);
       EXPECT_EQ(pose->by_tag, with_tag && k == 0);
       EXPECT_LT(pose->residual, 0.004);
@@ -77,10 +81,17 @@ ObjectFinder finder_of(bool with_tag, const FindOptions& options = {}) {
   return std::move(*ObjectFinder::create(objects_of(look().model(), with_tag), options));
 }
 
+/// Three objects, seen from above.
+Places all_in_sight(Rng& rng) {
+  Places out = random_places(rng, 0);
+  while (!out.bodies[1]) out = random_places(rng, 0);
+  return out;
+}
+
 TEST(FindObjects, TheSameFrameGivesTheSameAnswer) {
   SKIP_WITHOUT_OPENGL();
   Rng rng(3), noise(4);
-  const render::RgbdFrame frame = look()(random_places(rng), noise);
+  const render::RgbdFrame frame = look()(all_in_sight(rng), noise);
   ObjectFinder first = finder_of(false);
   const FoundScene once = *first.find(frame);
   const FoundScene again = *first.find(frame);
@@ -145,7 +156,7 @@ TEST(FindObjects, WhatIsHiddenInPartHasItsPoseOrAReason) {
   ObjectFinder finder = finder_of(false);
   Rng rng(21), noise(22);
   int found_ones = 0, refused = 0;
-  for (int i = 0; i < rounds(3, 100); ++i) {
+  for (int i = 0; i < rounds(2, 100, 1); ++i) {
     Places places{.eye = eye_at({0, 0, 0.03}, rng.uniform(0.5, 0.8), rng.uniform(-3, 3),
                                 rng.uniform(0.6, 1.4))};
     const std::size_t k = rng.below(3);
@@ -165,7 +176,7 @@ TEST(FindObjects, ObjectsInTouchHaveTheirPoseOrAReason) {
   SKIP_WITHOUT_OPENGL();
   ObjectFinder finder = finder_of(false);
   Rng rng(31), noise(32);
-  for (int i = 0; i < rounds(2, 100); ++i) {
+  for (int i = 0; i < rounds(2, 100, 1); ++i) {
     Places places{.eye = eye_at({0, 0, 0.03}, rng.uniform(0.5, 0.8), rng.uniform(-3, 3), 1)};
     const double angle = rng.uniform(-3, 3);
     const double apart = rng.uniform(0.065, 0.1);
@@ -215,7 +226,7 @@ TEST(FindObjects, ATagOnAnotherFaceOrOfAnotherSizeOrSeenTwiceGivesNoPose) {
 TEST(FindObjects, FramesWithoutDepthFindNothingAndUnfitOnesAreRefused) {
   SKIP_WITHOUT_OPENGL();
   Rng rng(3), noise(4);
-  const render::RgbdFrame frame = look()(random_places(rng), noise);
+  const render::RgbdFrame frame = look()(all_in_sight(rng), noise);
   ObjectFinder finder = finder_of(false);
   for (const float nothing : {0.0F, std::numeric_limits<float>::quiet_NaN(), -1.0F,
                               std::numeric_limits<float>::infinity()}) {

@@ -58,7 +58,7 @@ TEST(HandEyeLook, RenderedViewsTellTheCameraWithinAMillimetre) {
   const Pose flip{.R = Eigen::Vector3d(1, -1, -1).asDiagonal()};
   std::vector<HandEyeView> views;
   render::CameraIntrinsics lens;
-  for (int i = 0; i < mjarm::testing::rounds(8, 20); ++i) {
+  for (int i = 0; i < mjarm::testing::rounds(5, 20); ++i) {
     const Pose X_WC =
         testing::eye_at({0.07 + rng.uniform(-0.03, 0.03), 0.035, 0}, rng.uniform(0.4, 0.6),
                         rng.uniform(-3, 3), rng.uniform(0.7, 1.4));

@@ -130,12 +130,16 @@ inline double turn_between(std::size_t body, bool with_tag, const Eigen::Matrix3
   return least;
 }
 
-/// The three objects beside each other, standing or lying, seen from somewhere 0.5 to 0.8 m away.
-inline Places random_places(Rng& rng) {
+/// The three objects beside each other, standing or lying, seen from somewhere 0.5 to 0.8 m away;
+/// where the camera is so low that they would hide each other, `alone` by itself, 0.4 to 0.8 m
+/// away.
+inline Places random_places(Rng& rng, std::size_t alone) {
   const auto yaw = [&] { return rng.uniform(-std::numbers::pi, std::numbers::pi); };
   const auto near = [&](double x) { return x + rng.uniform(-0.02, 0.02); };
   const Pose on_side{.R = from_euler({std::numbers::pi / 2, 0, 0})};
-  Places out{.eye = eye_at({0, 0, 0.03}, rng.uniform(0.5, 0.8), yaw(), rng.uniform(0.6, 1.48))};
+  const double elevation = rng.uniform(0.6, 1.48);
+  const bool low = elevation < 1;
+  Places out{.eye = eye_at({0, 0, 0.03}, rng.uniform(low ? 0.4 : 0.5, 0.8), yaw(), elevation)};
   out.bodies[0] = standing(near(-0.08), near(0), 0.03, yaw());
   const bool can_lies = rng.below(3) == 0;
   out.bodies[1] = standing(near(0.06), near(0.07), can_lies ? 0.033 : 0.05, yaw());
@@ -143,6 +147,9 @@ inline Places random_places(Rng& rng) {
   const bool step_lies = rng.below(3) == 0;
   out.bodies[2] = standing(near(0.07), near(-0.07), step_lies ? 0.025 : 0, yaw());
   if (step_lies) *out.bodies[2] = *out.bodies[2] * on_side;
+  for (std::size_t k = 0; low && k < 3; ++k) {
+    if (k != alone) out.bodies[k].reset();
+  }
   return out;
 }
 

@@ -54,10 +54,31 @@ Surface joined(const Surface& surface, double cell) {
   return out;
 }
 
+/// True where each edge has a triangle on both sides, all of them go round the same way, and the
+/// solid is on the inner side.
+bool is_closed(const Surface& surface) {
+  std::map<std::pair<int, int>, int> edges;
+  double volume = 0;
+  for (const auto& t : surface.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
+    const auto at = [&](std::size_t i) { return surface.vertices[static_cast<std::size_t>(t[i])]; };
+    volume += at(0).dot(at(1).cross(at(2)));
+  }
+  return volume > 0 && std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+           const auto other = edges.find({edge.first.second, edge.first.first});
+           return edge.second == 1 && other != edges.end() && other->second == 1;
+         });
+}
+
 }  // namespace
 
-ShapeModel::ShapeModel(Surface of) : surface(std::move(of)), centre(Eigen::Vector3d::Zero()) {
-  const auto corners = [this](const std::array<int, 3>& triangle) {
+DrawnSurface::DrawnSurface(Surface of)
+    : surface(std::move(of)),
+      sides(is_closed(surface) ? Raster::Sides::front : Raster::Sides::both) {}
+
+ShapeModel::ShapeModel(Surface of) : fine(std::move(of)), coarse(Surface{}) {
+  const Surface& surface = fine.surface;
+  const auto corners = [&](const std::array<int, 3>& triangle) {
     std::array<Eigen::Vector3d, 3> out;
     for (std::size_t i = 0; i < 3; ++i) {
       out[i] = surface.vertices[static_cast<std::size_t>(triangle[i])];
@@ -73,7 +94,7 @@ ShapeModel::ShapeModel(Surface of) : surface(std::move(of)), centre(Eigen::Vecto
   }
   if (area > 0) centre /= area;
   for (const Eigen::Vector3d& v : surface.vertices) radius = std::max(radius, (v - centre).norm());
-  coarse = joined(surface, 0.15 * radius);
+  coarse = DrawnSurface(joined(surface, 0.15 * radius));
   // Each point stands for as much of the surface; within a triangle they follow an even sequence
   // (M. Roberts' R2).
   double passed = 0;

@@ -5,15 +5,24 @@
 
 #include "mjarm/core/pose.hpp"
 #include "mjarm/model/surface.hpp"
+#include "mjarm/perception/raster_internal.hpp"
 
 namespace mjarm::perception {
+
+/// A surface, and which of its triangles have to be drawn.
+struct DrawnSurface {
+  explicit DrawnSurface(Surface of);
+  Surface surface;
+  Raster::Sides sides;  ///< those in front where the surface is closed and goes round one way
+};
 
 /// A surface with what the search for it asks again and again.
 struct ShapeModel {
   explicit ShapeModel(Surface of);
-  Surface surface;
-  Surface coarse;                        ///< with details below 0.15 of its radius left out
-  Eigen::Vector3d centre;                ///< [m] mean of the surface, in the object's frame O
+  DrawnSurface fine;
+  DrawnSurface coarse;  ///< with details below 0.15 of its radius left out
+  Eigen::Vector3d centre =
+      Eigen::Vector3d::Zero();           ///< [m] mean of the surface, in the object's frame O
   double radius = 0;                     ///< [m] about the centre
   std::vector<Eigen::Vector3d> points;   ///< [m] evenly spread over the surface, in O
   std::vector<Eigen::Vector3d> normals;  ///< unit length, of either side

@@ -63,7 +63,7 @@ float sunk_residual(const DepthScene& scene, const FitView& view, const ShapeMod
                     const Pose& X_CO) {
   constexpr double kFree = 0.0015;  // [m]
   constexpr double kSigma = 0.003;  // [m]
-  const double sunk = sunk_depth(scene, shape.coarse, X_CO) - kFree;
+  const double sunk = sunk_depth(scene, shape.coarse.surface, X_CO) - kFree;
   return sunk > 0 ? static_cast<float>(std::sqrt(view.cluster_pixels) * sunk / kSigma) : 0;
 }
 
@@ -78,13 +78,13 @@ std::vector<Start> starts_of(const DepthScene& scene, const FitView& view, const
     Pose X_CO = with_centre(shape, orientation(i, kStarts),
                             seen_C + 0.5 * shape.radius * seen_C.normalized());
     raster.clear(view.lens);
-    raster.draw(shape.coarse, X_CO);
+    raster.draw(shape.coarse.surface, X_CO, shape.coarse.sides);
     const std::vector<float>& drawn = raster.inverse();
     const Eigen::Vector3d drawn_C =
         mean_point(view, drawn, [&](std::size_t at) { return drawn[at] > view.table_inverse[at]; });
     if (drawn_C.z() > 0) X_CO.p += seen_C - drawn_C;
     raster.clear(view.lens);
-    raster.draw(shape.coarse, X_CO);
+    raster.draw(shape.coarse.surface, X_CO, shape.coarse.sides);
     residuals_of(view, raster.inverse(), limit, r);
     r.push_back(sunk_residual(scene, view, shape, X_CO));
     out.push_back({X_CO, cost_of(r)});
@@ -104,13 +104,13 @@ Eigen::VectorXd steps_of(const FitView& view, const ShapeModel& shape, double pi
 }
 
 Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
-              const Surface& surface, const Start& start, float limit, double pixels,
+              const DrawnSurface& drawn, const Start& start, float limit, double pixels,
               Raster& raster) {
   constexpr int kSteps = 6;
   const Pose X_CO = start.X_CO;
   const auto draw = [&](const Eigen::VectorXd& x, Raster& into) {
     const Pose X = turned_about_centre(shape, X_CO, x);
-    into.draw(surface, X);
+    into.draw(drawn.surface, X, drawn.sides);
     return sunk_residual(scene, view, shape, X);
   };
   const ImageFit fit =
@@ -160,7 +160,7 @@ float far_limit(const FitView& view) {
 /// that nothing grows without bounds.
 Cluster box_round(const DepthScene& scene, const ShapeModel& shape, const Pose& X_CO, Cluster box) {
   constexpr double kNearest = 0.01;  // [m]
-  for (const Eigen::Vector3d& vertex : shape.surface.vertices) {
+  for (const Eigen::Vector3d& vertex : shape.fine.surface.vertices) {
     const Eigen::Vector3d p_C = X_CO * vertex;
     if (p_C.z() < kNearest) continue;
     const Eigen::Array2d at = scene.lens.project(p_C).array();
@@ -210,7 +210,7 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
       scene, shape, X_CO, cluster >= 0 ? scene.clusters[static_cast<std::size_t>(cluster)] : none);
   FitView view = view_of(scene, cluster, box, kMaxSide);
   raster.clear(view.lens);
-  raster.draw(shape.surface, X_CO);
+  raster.draw(shape.fine.surface, X_CO, shape.fine.sides);
   const std::vector<float> drawn = raster.inverse();
   int pixels = 0, seen = 0, outside = 0, missing = 0, explained = 0;
   double squares = 0;
@@ -242,7 +242,7 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
   out.residual = seen > 0 ? std::sqrt(squares / seen) : 0;
   if (view.middle > 0) {
     const auto draw = [&](const Eigen::VectorXd& x, Raster& into) {
-      into.draw(shape.surface, turned_about_centre(shape, X_CO, x));
+      into.draw(shape.fine.surface, turned_about_centre(shape, X_CO, x), shape.fine.sides);
       return 0.0F;
     };
     const ImageFit fit =
@@ -283,7 +283,7 @@ std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const Sh
     const FitView fine = view_of(scene, cluster, box_round(scene, shape, start.X_CO, box), 110);
     Start last = start;
     for (const double pixels : {3, 1}) {
-      last = refined(scene, fine, shape, shape.surface, last, kFineLimit, pixels, raster);
+      last = refined(scene, fine, shape, shape.fine, last, kFineLimit, pixels, raster);
     }
     if (!out.empty() && is_same(shape, last.X_CO, out.front().X_CO)) continue;
     out.push_back(check_shape(scene, cluster, shape, last.X_CO, raster));

@@ -16,11 +16,11 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// Two opposite points of a body that fingers may press on.
 struct Pinch {
-  Vector3d center_B;                     ///< [m] midway
-  Vector3d close_B;                      ///< unit
-  Vector3d first_B;                      ///< unit, square to close_B: an approach that suits it
-  double width = 0;                      ///< [m]
-  Vector3d along_B = Vector3d::Zero();   ///< it was moved along that; zero: it was not
+  Vector3d center_B;                    ///< [m] midway
+  Vector3d close_B;                     ///< unit
+  Vector3d first_B;                     ///< unit, square to close_B: an approach that suits it
+  double width = 0;                     ///< [m]
+  Vector3d along_B = Vector3d::Zero();  ///< it was moved along that; zero: it was not
 };
 
 /// [m] how far the part reaches along `way_G` (unit) from its origin.
@@ -69,7 +69,8 @@ class PinchFinder {
       case Kind::box:
         for (int i = 0; i < 3; ++i) {
           add(Vector3d::Unit(i), 2 * s[i]);
-          for (const int j : {(i + 1) % 3, (i + 2) % 3}) beside(Vector3d::Unit(i), 2 * s[i], j, s[j]);
+          for (const int j : {(i + 1) % 3, (i + 2) % 3})
+            beside(Vector3d::Unit(i), 2 * s[i], j, s[j]);
         }
         break;
       case Kind::ellipsoid:
@@ -93,8 +94,8 @@ class PinchFinder {
  private:
   void add(const Vector3d& close_G, double width, const Vector3d& center_G = Vector3d::Zero(),
            const Vector3d& along_G = Vector3d::Zero()) {
-    const Vector3d first = along_G.isZero() ? Vector3d(close_G.unitOrthogonal())
-                                            : Vector3d(close_G.cross(along_G));
+    const Vector3d first =
+        along_G.isZero() ? Vector3d(close_G.unitOrthogonal()) : Vector3d(close_G.cross(along_G));
     const Eigen::Matrix3d& R_BG = part_.X_BG.R;
     out_.push_back({part_.X_BG * center_G, R_BG * close_G, R_BG * first, width, R_BG * along_G});
   }
@@ -179,8 +180,8 @@ std::optional<Pose> tool_at(const ObjectShape& shape, const Pinch& pinch,
                             const GraspOptions& options) {
   const double front = reach(shape, pinch.center_B, approach_B);
   const double back = reach(shape, pinch.center_B, -approach_B);
-  const double depth = std::min({0.0, front - jaws.tips - options.keep_off,
-                                 jaws.palm - back - options.keep_off});
+  const double depth =
+      std::min({0.0, front - jaws.tips - options.keep_off, jaws.palm - back - options.keep_off});
   if (depth + jaws.tips < options.contact - back) return std::nullopt;
   Eigen::Matrix3d of_B, of_T;
   of_B << pinch.close_B, approach_B, approach_B.cross(pinch.close_B);

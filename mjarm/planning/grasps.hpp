@@ -17,13 +17,13 @@ struct Grasp {
 
 /// What is asked of grasps. Every default is usable as is.
 struct GraspOptions {
-  double spare = 0.006;   ///< [m] >= 0 by which the open gripper is wider than what it holds
-  double keep_off = 2e-3; ///< [m] >= 0 of the palm from the body, of the tips from its far side
-  double contact = 4e-3;  ///< [m] >= 0 that the fingers reach over the body at least
+  double spare = 0.006;    ///< [m] >= 0 by which the open gripper is wider than what it holds
+  double keep_off = 2e-3;  ///< [m] >= 0 of the palm from the body, of the tips from its far side
+  double contact = 4e-3;   ///< [m] >= 0 that the fingers reach over the body at least
   /// Directions that are tried: of closing round an axis of symmetry, over half a turn; of approach
   /// round the line of closing, over a whole turn. 4 to 64.
   int turns = 8;
-  double slope = 0.2;     ///< [rad] by which two faces may be off parallel, half of it each, > 0
+  double slope = 0.2;  ///< [rad] by which two faces may be off parallel, half of it each, > 0
 };
 
 /// The grasps of one body.

@@ -51,8 +51,8 @@ Pose moved(const Pose& X_WT, const Vector3d& way_W) { return {X_WT.p + way_W, X_
 
 class PickPlanner {
  public:
-  PickPlanner(const Robot& robot, const SceneState& scene, std::span<const double> q,
-              PickTask task, const PickOptions& options)
+  PickPlanner(const Robot& robot, const SceneState& scene, std::span<const double> q, PickTask task,
+              const PickOptions& options)
       : robot_(robot),
         scene_(scene),
         q_(q),
@@ -109,15 +109,13 @@ class PickPlanner {
       for (const SceneObject& one : bodies.objects) names.push_back(one.name);
       std::string list;
       for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
-      return failure(PickErrc::no_object,
-                     text(msg::pick_no_object, task_.object,
-                          list.empty() ? "" : text(msg::pick_objects, list)) +
-                         did_you_mean(task_.object, names));
+      return failure(PickErrc::no_object, text(msg::pick_no_object, task_.object,
+                                               list.empty() ? "" : text(msg::pick_objects, list)) +
+                                              did_you_mean(task_.object, names));
     }
     sort_bodies(bodies);
     if (!scene_.attached.empty()) {
-      return failure(PickErrc::hand_full,
-                     text(msg::pick_hand_full, scene_.attached.front().body));
+      return failure(PickErrc::hand_full, text(msg::pick_hand_full, scene_.attached.front().body));
     }
     Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm);
     if (!jaws) return failure(PickErrc::no_gripper, jaws.error().what);
@@ -131,9 +129,8 @@ class PickPlanner {
     if (!std::isfinite(grasps_.narrowest)) {
       return failure(PickErrc::too_wide, text(msg::pick_no_sides, task_.object));
     }
-    return failure(PickErrc::too_wide,
-                   text(msg::pick_too_wide, task_.object, 1000 * grasps_.narrowest,
-                        1000 * jaws_.opening));
+    return failure(PickErrc::too_wide, text(msg::pick_too_wide, task_.object,
+                                            1000 * grasps_.narrowest, 1000 * jaws_.opening));
   }
 
   /// The names of the links and of what moves with the tool.
@@ -233,9 +230,9 @@ class PickPlanner {
     Result<SceneState> held = close_gripper(robot_.model, robot_.arm, as_span(q_grasp_), open_);
     const bool holds = held && held->attached.size() == 1;
     if (!holds || held->attached.front().body != task_.object) {
-      return tl::unexpected(Drop{PickErrc::not_held,
-                                 holds ? text(msg::pick_holds_other, held->attached.front().body)
-                                       : text(msg::pick_holds_nothing)});
+      return tl::unexpected(
+          Drop{PickErrc::not_held, holds ? text(msg::pick_holds_other, held->attached.front().body)
+                                         : text(msg::pick_holds_nothing)});
     }
     one.X_TB = held->attached.front().X_TB;
     return task_.place ? look_at_place(one, *held) : Result<void, Drop>{};
@@ -244,9 +241,9 @@ class PickPlanner {
   Result<void, Drop> look_at_place(GoodGrasp& one, const SceneState& held) const {
     const Pose X_BT = one.X_TB.inverse();
     const PlaceGoal& place = *task_.place;
-    ExactChecker checker(robot_.model, robot_.arm,
-                         {.rules = {.attached = held.attached}, .qpos = held.qpos,
-                          .rest_depth = kRest});
+    ExactChecker checker(
+        robot_.model, robot_.arm,
+        {.rules = {.attached = held.attached}, .qpos = held.qpos, .rest_depth = kRest});
     const IkSolver ik = solver(checker);
     std::optional<Drop> why;
     double nearest = std::numeric_limits<double>::infinity();
@@ -346,8 +343,7 @@ class PickPlanner {
     for (const auto& [code, count] : counts) {
       list += (list.empty() ? "" : ", ") + text(msg::pick_count, count, std::string(name(code)));
     }
-    std::string what =
-        text(msg::pick_none, dropped_.size(), task_.object, list, farthest->what);
+    std::string what = text(msg::pick_none, dropped_.size(), task_.object, list, farthest->what);
     const PickErrc code = farthest->code;
     return tl::unexpected(PickFailure{code, std::move(what), std::move(dropped_)});
   }
@@ -357,7 +353,7 @@ class PickPlanner {
   std::span<const double> q_;
   PickTask task_;
   const PickOptions& options_;
-  IkSolver reach_;  ///< geometry alone
+  IkSolver reach_;                               ///< geometry alone
   std::set<std::string> links_, hand_, object_;  ///< names of bodies
   Jaws jaws_;
   Vector3d approach_T_ = Vector3d::UnitZ();

@@ -24,8 +24,8 @@ struct PlaceGoal {
 
 /// One object, from where it stands to where it is to be.
 struct PickTask {
-  std::string object;                    ///< a body with a free joint
-  std::optional<PlaceGoal> place = {};   ///< none: it is only lifted
+  std::string object;                   ///< a body with a free joint
+  std::optional<PlaceGoal> place = {};  ///< none: it is only lifted
 };
 
 /// How a pick is planned. Every default is usable as is.
@@ -41,16 +41,16 @@ struct PickOptions {
 
 /// Why a grasp was dropped, or why there is none. In the order in which they are found out.
 enum class PickErrc {
-  no_object,            ///< no body of that name, or one that cannot be carried
-  no_gripper,           ///< the arm has none, or the tool frame is not between its fingers
-  hand_full,            ///< something is held already; of plan_place(): nothing is
-  too_wide,             ///< no two opposite sides are as near together as the gripper opens
-  grasp_out_of_reach,   ///< the tool cannot be had there
-  grasp_blocked,        ///< it can, but not without contact
-  not_held,             ///< the fingers close on something else, or on nothing
-  place_out_of_reach,   ///< with that grasp the place cannot be had
-  place_blocked,        ///< it can, but not without contact
-  no_way,               ///< both can, but not the ways between them
+  no_object,           ///< no body of that name, or one that cannot be carried
+  no_gripper,          ///< the arm has none, or the tool frame is not between its fingers
+  hand_full,           ///< something is held already; of plan_place(): nothing is
+  too_wide,            ///< no two opposite sides are as near together as the gripper opens
+  grasp_out_of_reach,  ///< the tool cannot be had there
+  grasp_blocked,       ///< it can, but not without contact
+  not_held,            ///< the fingers close on something else, or on nothing
+  place_out_of_reach,  ///< with that grasp the place cannot be had
+  place_blocked,       ///< it can, but not without contact
+  no_way,              ///< both can, but not the ways between them
   stopped,
 };
 /// "no_object", "too_wide", ...

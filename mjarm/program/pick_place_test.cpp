@@ -70,7 +70,8 @@ TEST(PlanPick, WhatItPlansPhysicsDo) {
 TEST(PlanPick, NothingHoldsButFriction) {
   const support::TempFolder folder;
   const Robot robot = at_table(
-      folder, kUr5e, "<geom type='box' size='0.02 0.025 0.03' mass='0.1' friction='0 0 0' priority='2'/>");
+      folder, kUr5e,
+      "<geom type='box' size='0.02 0.025 0.03' mass='0.1' friction='0 0 0' priority='2'/>");
   const auto picked = plan(robot, to({0.5, -0.2, 0.23}));
   ASSERT_TRUE(picked) << picked.error().what;
   EXPECT_GT(executed(robot, picked->plan).y(), 0);
@@ -84,8 +85,7 @@ TEST(PlanPick, InTwoPartsItIsTheSame) {
   EXPECT_FALSE(lifted->X_WB_place);
   ASSERT_EQ(lifted->plan.scene_end.attached.size(), 1u);
   const PlaceGoal goal{.X_WB = {.p = {0.5, -0.2, 0.23}}, .any_turn = true};
-  const auto put =
-      plan_place(robot, lifted->plan.scene_end, as_span(lifted->plan.q_end()), goal);
+  const auto put = plan_place(robot, lifted->plan.scene_end, as_span(lifted->plan.q_end()), goal);
   ASSERT_TRUE(put) << put.error().what;
   EXPECT_TRUE(put->plan.scene_end.attached.empty());
   EXPECT_LT((put->X_WB_place->p - goal.X_WB.p).norm(), 1e-12);
@@ -111,13 +111,12 @@ TEST(PlanPick, TellsWhyItCannot) {
   EXPECT_EQ(too_wide.code, PickErrc::too_wide);
   EXPECT_THAT(too_wide.what, HasSubstr("100.0 mm wide at its narrowest, the gripper opens 85.0"));
 
-  const Robot walled =
-      at_table(folder, kUr5e, kBox,
-               "<geom type='box' size='0.1 0.1 0.01' pos='0.5 0.1 0.28'/>"
-               "<geom type='box' size='0.1 0.01 0.05' pos='0.5 0.14 0.25'/>"
-               "<geom type='box' size='0.1 0.01 0.05' pos='0.5 0.06 0.25'/>"
-               "<geom type='box' size='0.01 0.1 0.05' pos='0.535 0.1 0.25'/>"
-               "<geom type='box' size='0.01 0.1 0.05' pos='0.465 0.1 0.25'/>");
+  const Robot walled = at_table(folder, kUr5e, kBox,
+                                "<geom type='box' size='0.1 0.1 0.01' pos='0.5 0.1 0.28'/>"
+                                "<geom type='box' size='0.1 0.01 0.05' pos='0.5 0.14 0.25'/>"
+                                "<geom type='box' size='0.1 0.01 0.05' pos='0.5 0.06 0.25'/>"
+                                "<geom type='box' size='0.01 0.1 0.05' pos='0.535 0.1 0.25'/>"
+                                "<geom type='box' size='0.01 0.1 0.05' pos='0.465 0.1 0.25'/>");
   const PickFailure blocked = refused(walled, to({0.5, -0.2, 0.23}));
   EXPECT_EQ(blocked.code, PickErrc::grasp_blocked) << blocked.what;
   EXPECT_FALSE(blocked.dropped.empty());
@@ -126,8 +125,8 @@ TEST(PlanPick, TellsWhyItCannot) {
 /// The faults of a program before the shipped table.
 std::vector<ProgramFault> faults_of(const std::string& instructions) {
   const support::TempFolder folder;
-  const auto file = folder.write("one.yaml", "scene: universal_robots_ur5e/pick.xml\nprogram:\n" +
-                                                 instructions);
+  const auto file =
+      folder.write("one.yaml", "scene: universal_robots_ur5e/pick.xml\nprogram:\n" + instructions);
   auto loaded = load_program(file);
   EXPECT_TRUE(loaded) << (loaded ? "" : loaded.error().what);
   return loaded ? std::move(loaded->plan.faults) : std::vector<ProgramFault>();
@@ -150,8 +149,9 @@ TEST(PickInstruction, GoesOnFromWhereThingsWerePut) {
                         "  - place: {pos: [0.5, -0.3, 0.256]}\n  - pick: box\n"
                         "  - place: {pos: [0.52, 0.2, 0.23], euler: [0, 0, 0]}\n")
                   .empty());
-  const auto taken = faults_of("  - pick: can\n  - place: {pos: [0.5, -0.3, 0.256]}\n"
-                               "  - pick: box\n  - place: {pos: [0.5, -0.3, 0.236]}\n");
+  const auto taken = faults_of(
+      "  - pick: can\n  - place: {pos: [0.5, -0.3, 0.256]}\n"
+      "  - pick: box\n  - place: {pos: [0.5, -0.3, 0.236]}\n");
   ASSERT_EQ(taken.size(), 1u);
   EXPECT_EQ(taken[0].reason, "place_blocked") << taken[0].what;
   EXPECT_EQ(taken[0].place.line, 5);

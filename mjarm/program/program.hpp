@@ -115,7 +115,7 @@ struct Grip {
 
 /// An object is picked up. Where `place` is the next instruction the grasp is one that suits it.
 struct Pick {
-  std::string object;      ///< a body with a free joint
+  std::string object;  ///< a body with a free joint
   FilePlace place = {};
 };
 

@@ -99,12 +99,11 @@ class ProgramPlanner {
     i += picks && goal ? 2 : 1;
     if (!planned) {
       const bool named = planned.error().code == PickErrc::no_object;
-      detail::add_fault(plan_.faults,
-                        {.place = step.place,
-                         .word = std::string(step.word),
-                         .reason = std::string(name(planned.error().code)),
-                         .what = planned.error().what,
-                         .code = named ? Errc::bad_input : Errc::impossible});
+      detail::add_fault(plan_.faults, {.place = step.place,
+                                       .word = std::string(step.word),
+                                       .reason = std::string(name(planned.error().code)),
+                                       .what = planned.error().what,
+                                       .code = named ? Errc::bad_input : Errc::impossible});
       return false;
     }
     for (PlannedMove& move : planned->plan.moves) {

@@ -30,7 +30,8 @@ std::string read_data(const std::filesystem::path& file) {
 }
 
 std::string read_mjcf(const std::filesystem::path& file) {
-  const std::string include = "<include file=\"", open = "<mujocoinclude>", close = "</mujocoinclude>";
+  const std::string include = "<include file=\"", open = "<mujocoinclude>",
+                    close = "</mujocoinclude>";
   std::string text = read_data(file);
   for (std::size_t at = 0; (at = text.find(include, at)) != std::string::npos;) {
     const std::size_t name = at + include.size();
