@@ -282,7 +282,7 @@ std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const Sh
     if (!out.empty() && start.cost > 2 * starts.front().cost) break;
     const FitView fine = view_of(scene, cluster, box_round(scene, shape, start.X_CO, box), 110);
     Start last = start;
-    for (const double pixels : {3, 1}) {
+    for (const double pixels : {6, 2, 1}) {
       last = refined(scene, fine, shape, shape.fine, last, kFineLimit, pixels, raster);
     }
     if (!out.empty() && is_same(shape, last.X_CO, out.front().X_CO)) continue;

@@ -80,7 +80,7 @@ TEST(TagPose, DepthTellsTheTiltThatCornersLeaveOpen) {
   TagDetector detector = std::move(*TagDetector::create());
   Rng rng(5), noise(6);
   double worst = 0, worst_alone = 0;
-  for (int i = 0; i < mjarm::testing::rounds(3, 100); ++i) {
+  for (int i = 0; i < mjarm::testing::rounds(4, 100); ++i) {
     Places places{.eye = eye_at({0, 0, 0.06}, 0.8, rng.uniform(-3, 3), rng.uniform(1.2, 1.5))};
     places.bodies[0] = standing(0, 0, 0.03, rng.uniform(-3, 3));
     const render::RgbdFrame frame = look(places, noise);
