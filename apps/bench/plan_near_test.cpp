@@ -105,7 +105,7 @@ json judged(const support::TempFolder& folder, const json& path) {
                        {"timed", "python"}, {"us", {1e6}},    {"problems", {"table 1, 1"}},
                        {"paths", {path}},   {"motions", {10}}};
   const std::string peers = write_peers(folder, "\n" + answer.dump() + "\n",
-                                        "grep -qF ur5e.xml \"$2\" || exit 3\n"
+                                        "grep -qF ur5e_gripper.xml \"$2\" || exit 3\n"
                                         "grep -qF '\"acceleration\":[5' \"$2\" || exit 5\n"
                                         "grep -qF '\"every\":7' \"$2\" || exit 4");
   const json bench = near_json(folder, "1", {"--peers", peers, "--peer-every", "7"});
