@@ -216,10 +216,6 @@ Result<void> check_grasp(const Model& model, const Arm& arm, std::span<const dou
 
 }  // namespace
 
-SceneState first_scene(const Model& model) {
-  return {.qpos = detail::rest_configuration(*model.raw())};
-}
-
 Result<SceneState> close_gripper(const Model& model, const Arm& arm, std::span<const double> q,
                                  const SceneState& before) {
   if (Result<void> fine = check_grasp(model, arm, q, before); !fine) return fail(fine.error());

@@ -19,9 +19,6 @@ struct SceneState {
   std::vector<AttachedBody> attached = {};  ///< to the tool of the arm
 };
 
-/// How things stand in a model: its keyframe `home`, else initial values; nothing is attached.
-[[nodiscard]] SceneState first_scene(const Model& model);
-
 /// The scene once the gripper has closed, the arm resting at `q`: the fingers go from where they
 /// stand along the ways of their joints (and of joints that equality constraints couple to them)
 /// and push free bodies before them, until something is between two of them, or between a finger

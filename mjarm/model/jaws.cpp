@@ -10,6 +10,7 @@
 
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/home.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/model/scene_bodies.hpp"
 
@@ -51,8 +52,7 @@ class OpenHand {
   void open(const Arm& arm, mjModel& still) {
     for (double& g : still.opt.gravity) g = 0;
     mj_resetData(&still, d_.get());
-    const int home = mj_name2id(&still, mjOBJ_KEY, "home");
-    if (home >= 0) mj_resetDataKeyframe(&still, d_.get(), home);
+    std::ranges::copy(home_configuration(&still), d_->qpos);
     std::vector<double> rest(d_->qpos, d_->qpos + still.nq);
     for (int i = 0; i < arm.dof(); ++i) {
       rest[static_cast<std::size_t>(arm.joints[static_cast<std::size_t>(i)].qpos)] = arm.home[i];

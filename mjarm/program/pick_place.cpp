@@ -14,7 +14,7 @@
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/kinematics/ik.hpp"
-#include "mjarm/model/joint_values.hpp"
+#include "mjarm/model/home.hpp"
 #include "mjarm/model/scene_bodies.hpp"
 
 namespace mjarm::program {
@@ -59,7 +59,9 @@ class PickPlanner {
         task_(std::move(task)),
         options_(options),
         reach_(robot.arm, {.task = task_for(robot.arm)}) {
-    if (scene_.qpos.empty()) scene_.qpos = first_scene(robot.model).qpos;
+    if (!scene_.qpos.empty()) return;
+    const std::span<const double> home = home_configuration(robot.model.raw());
+    scene_.qpos.assign(home.begin(), home.end());
   }
 
   Result<PickPlan, PickFailure> plan() {
@@ -117,7 +119,7 @@ class PickPlanner {
     if (!scene_.attached.empty()) {
       return failure(PickErrc::hand_full, text(msg::pick_hand_full, scene_.attached.front().body));
     }
-    Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm);
+    const Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm);
     if (!jaws) return failure(PickErrc::no_gripper, jaws.error().what);
     jaws_ = *jaws;
     approach_T_ = jaws_.approach_T;
