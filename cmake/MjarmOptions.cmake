@@ -9,9 +9,11 @@ set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # What ccache needs to see past precompiled headers.
+  # What ccache needs to see past precompiled headers. It compares the headers themselves, not what
+  # the preprocessor makes of them: GCC knows the headers in a precompiled one by their bytes, so one
+  # that differs in a comment alone would be read again, and all in it defined twice.
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros
-                                  "${CCACHE_PROGRAM}")
+                                  CCACHE_DEPEND=1 "${CCACHE_PROGRAM}")
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 

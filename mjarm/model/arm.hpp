@@ -110,7 +110,7 @@ struct Arm {
   JointLimits limits;
   std::string tip;  ///< name of the tool frame (site or body)
   Pose X_JT;        ///< tool frame in the frame of the last joint
-  JointVec home;    ///< [rad or m] of home_keyframe(), else the middle of the limits
+  JointVec home;    ///< [rad or m] of home_keyframe(), the middle of the limits where there is none
   std::optional<Gripper> gripper;
   /// What overlaps by design, which is no contact to planning, checks and runs. A simulation pushes
   /// such parts apart all the same, as the file has it.
