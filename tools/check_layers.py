@@ -27,7 +27,7 @@ ALLOWED = {
     "serve": "core model sim",
     "rl": "core model kinematics control sim",
     "install": "core model",
-    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl",
+    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception",
 }
 
 # Where MuJoCo's own headers may be included; tests may, everywhere: MuJoCo is their oracle.

@@ -23,6 +23,7 @@ namespace mjarm::app {
 [[nodiscard]] Command plan_suite();
 [[nodiscard]] Command time_suite();
 [[nodiscard]] Command control_suite();
+[[nodiscard]] Command pick_suite();
 [[nodiscard]] Command sim_suite();
 [[nodiscard]] Command rl_suite();
 

@@ -151,6 +151,11 @@ Result<FollowOutcome> Execution::run_to_end(Sim& sim, const AfterStep& after_ste
   return outcome();
 }
 
+JointVec Execution::error(const Sim& sim) const {
+  if (!stepper_) return JointVec::Zero(plan_->arms.front().dof());
+  return stepper_->error(sim);
+}
+
 FollowOutcome Execution::outcome() const {
   FollowOutcome all;
   for (const ExecutedMotion& motion : motions_) all.add(motion.outcome);

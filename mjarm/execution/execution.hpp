@@ -77,6 +77,9 @@ class Execution {
   [[nodiscard]] const std::vector<ExecutedMotion>& motions() const { return motions_; }
   /// What all of them did together; its first contact is one that the plan does not know.
   [[nodiscard]] FollowOutcome outcome() const;
+  /// (dof,) [rad or m] How far the joints are from the reference of the last step; zeros before the
+  /// first.
+  [[nodiscard]] JointVec error(const Sim& sim) const;
   /// What became of the objects of the scene.
   [[nodiscard]] std::vector<ObservedObject> objects() const { return watch_.objects(); }
 

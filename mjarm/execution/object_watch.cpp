@@ -6,6 +6,7 @@
 #include "mjarm/core/messages/execution.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/object_shape.hpp"
 
 namespace mjarm {
 namespace {
@@ -40,6 +41,9 @@ std::string describe(const ObservedObject& object) {
 
 ObjectWatch::ObjectWatch(const Model& model, const MotionPlan& plan)
     : plan_(&plan), bodies_(scene_bodies(model, plan.arms.front())) {
+  for (const SceneObject& object : bodies_.objects) {
+    centers_.push_back(object_shape(model, object.body).center_B);
+  }
   restart();
 }
 
@@ -97,10 +101,14 @@ void ObjectWatch::compare(const Sim& sim, std::size_t move, std::size_t object) 
     const Trajectory& still = plan_->moves[move].trajectory;
     track.X_WB_plan = fk(arm, as_span(still.at(0).q)) * turn.before->X_TB;
   }
+  Pose planned = turn.now != nullptr ? sim.tool(arm) * turn.now->X_TB : track.X_WB_plan;
+  if (turn.now != nullptr && !track.R_plan_true) {
+    track.R_plan_true = planned.R.transpose() * X_WB.R;
+  }
   // The gripper closes on it, or opens: where it goes meanwhile is shown by what follows.
   if ((turn.before == nullptr) != (turn.now == nullptr)) return;
-  const Pose planned = turn.now != nullptr ? sim.tool(arm) * turn.now->X_TB : track.X_WB_plan;
-  const double off = (X_WB.p - planned.p).norm();
+  const double off = (X_WB * centers_[object] - planned * centers_[object]).norm();
+  if (track.R_plan_true) planned.R *= *track.R_plan_true;
   const double turned = angle_between(planned.R, X_WB.R);
   ObservedObject& seen = track.seen;
   seen.off_plan = std::max(seen.off_plan, off);

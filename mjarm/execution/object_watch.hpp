@@ -70,9 +70,12 @@ class ObjectWatch {
     std::vector<const AttachedBody*> attached;  ///< per move of the plan: in the gripper at its end
     Pose X_WB_first;                            ///< at the beginning
     Pose X_WB_plan;                             ///< where it stands, where it is not carried
-    std::set<std::string> rests_on;             ///< touched while it was not carried
-    std::map<std::string, double> touched;      ///< while it was carried, and when first [s]
-    bool disturbed = false;                     ///< by the arm, or by what that disturbed
+    /// How it truly stands in the plan's frame of it when it is first picked up: whoever planned
+    /// may know it up to its symmetry alone.
+    std::optional<Eigen::Matrix3d> R_plan_true;
+    std::set<std::string> rests_on;         ///< touched while it was not carried
+    std::map<std::string, double> touched;  ///< while it was carried, and when first [s]
+    bool disturbed = false;                 ///< by the arm, or by what that disturbed
     ObservedObject seen;
   };
   /// What the plan has of an object before a moment and from then on.
@@ -89,7 +92,8 @@ class ObjectWatch {
 
   const MotionPlan* plan_;
   SceneBodies bodies_;
-  std::vector<Track> tracks_;  ///< per object
+  std::vector<Eigen::Vector3d> centers_;  ///< [m] of mass, per object, which no symmetry moves
+  std::vector<Track> tracks_;             ///< per object
   std::optional<TimedContact> first_contact_;
   bool begun_ = false;
 };

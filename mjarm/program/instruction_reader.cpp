@@ -227,6 +227,14 @@ Instruction::What read_grip(const YamlNode& node, const NamedThings&) {
   return Grip{word_of(node, "grip", {"open", "close"}) == "close"};
 }
 
+/// `look: rgbd`, or with fields.
+Instruction::What read_look(const YamlNode& node, const NamedThings& named) {
+  if (node.kind == YamlNode::Kind::scalar) return Look{text_of(node, "look"), node.place};
+  const Fields fields(node, "look", {"camera"}, named.faults);
+  const YamlNode& camera = fields.need("camera");
+  return Look{fields.take("camera", std::string(), text_of), camera.place};
+}
+
 /// `pick: can`, or with fields.
 Instruction::What read_pick(const YamlNode& node, const NamedThings& named) {
   if (node.kind == YamlNode::Kind::scalar) return Pick{text_of(node, "pick"), node.place};
@@ -268,7 +276,7 @@ struct Word {
   const char* word;
   Instruction::What (*read)(const YamlNode& node, const NamedThings& named);
 };
-constexpr std::array<Word, 14> kWords{{{"movej", read_movej},
+constexpr std::array<Word, 15> kWords{{{"movej", read_movej},
                                        {"movel", read_movel},
                                        {"movec", read_movec},
                                        {"ellipse", read_ellipse},
@@ -280,6 +288,7 @@ constexpr std::array<Word, 14> kWords{{{"movej", read_movej},
                                        {"repeat", read_repeat},
                                        {"plan", read_plan},
                                        {"grip", read_grip},
+                                       {"look", read_look},
                                        {"pick", read_pick},
                                        {"place", read_place}}};
 

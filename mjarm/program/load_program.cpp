@@ -83,7 +83,7 @@ Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& 
 }
 
 Result<LoadedProgram> load_program(const std::string& name_or_path, const StopCheck& stop,
-                                   const LoadOptions& load) {
+                                   const LoadOptions& load, const SeeScene& see) {
   const Result<std::filesystem::path> found = find_program_file(name_or_path);
   if (!found) return fail(found.error());
   Result<ProgramText> read = look_through_file(*found);
@@ -93,18 +93,18 @@ Result<LoadedProgram> load_program(const std::string& name_or_path, const StopCh
   }
   Result<Robot> robot = load_program_robot(read->program, *found, load);
   if (!robot) return fail(std::move(robot.error()));
-  return plan_loaded(found->string(), std::move(read->program), std::move(*robot), stop);
+  return plan_loaded(found->string(), std::move(read->program), std::move(*robot), stop, see);
 }
 
 Result<LoadedProgram> load_sound_program(const std::string& name_or_path, const StopCheck& stop,
-                                         const LoadOptions& load) {
-  Result<LoadedProgram> loaded = load_program(name_or_path, stop, load);
+                                         const LoadOptions& load, const SeeScene& see) {
+  Result<LoadedProgram> loaded = load_program(name_or_path, stop, load, see);
   if (loaded && !loaded->plan.ok()) return fail(first_fault(*loaded));
   return loaded;
 }
 
 Result<LoadedProgram> plan_loaded(const std::string& file, Program program, Robot robot,
-                                  const StopCheck& stop) {
+                                  const StopCheck& stop, const SeeScene& see) {
   std::optional<Progress> progress;
   std::size_t told = 0;
   const auto after_step = [&](std::size_t done, std::size_t total) {
@@ -112,8 +112,8 @@ Result<LoadedProgram> plan_loaded(const std::string& file, Program program, Robo
     progress->advance(done - told);
     told = done;
   };
-  ProgramPlan plan =
-      plan_program(robot.model, robot.arm, program, {.after_step = after_step, .stop = stop});
+  ProgramPlan plan = plan_program(robot.model, robot.arm, program,
+                                  {.see = see, .after_step = after_step, .stop = stop});
   if (is_stopped(stop)) return fail(stopped());
   return LoadedProgram{file, std::move(program), std::move(robot), std::move(plan)};
 }

@@ -44,19 +44,23 @@ struct LoadedProgram {
 /// error names the first.
 /// @param stop  ends the planning with stopped(), as in the others.
 /// @param load  how the robot's files are read.
+/// @param see   does the instruction `look`.
 [[nodiscard]] Result<LoadedProgram> load_program(const std::string& name_or_path,
                                                  const StopCheck& stop = {},
-                                                 const LoadOptions& load = {});
+                                                 const LoadOptions& load = {},
+                                                 const SeeScene& see = {});
 
 /// The same; a plan with faults is an error, the first of them.
 [[nodiscard]] Result<LoadedProgram> load_sound_program(const std::string& name_or_path,
                                                        const StopCheck& stop = {},
-                                                       const LoadOptions& load = {});
+                                                       const LoadOptions& load = {},
+                                                       const SeeScene& see = {});
 
 /// Plans a program for a robot that is loaded already, with a progress bar.
 /// @param file  for messages.
 [[nodiscard]] Result<LoadedProgram> plan_loaded(const std::string& file, Program program,
-                                                Robot robot, const StopCheck& stop = {});
+                                                Robot robot, const StopCheck& stop = {},
+                                                const SeeScene& see = {});
 
 /// `file:line:column: movel: out of reach by ...`.
 [[nodiscard]] std::string line_of(const LoadedProgram& loaded, const ProgramFault& fault);

@@ -221,6 +221,12 @@ class PickPlanner {
 
   /// Fills in what is known of a grasp that can be had and put down with.
   Result<void, Drop> look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker) {
+    const auto same = [&](const Grasp& tried) {
+      return tried.X_BT.p == one.grasp.X_BT.p && tried.X_BT.R == one.grasp.X_BT.R;
+    };
+    if (std::ranges::any_of(options_.avoid, same)) {
+      return tl::unexpected(Drop{PickErrc::failed_before, text(msg::pick_failed_before)});
+    }
     for (const Pose& X_WT : {back_from(one.X_WT), one.X_WT}) {
       auto q = posture(ik, X_WT, checker, false);
       if (!q) return tl::unexpected(std::move(q.error()));
@@ -240,6 +246,18 @@ class PickPlanner {
     return task_.place ? look_at_place(one, *held) : Result<void, Drop>{};
   }
 
+  /// All that is as good as the goal.
+  static std::vector<Pose> poses_at(const PlaceGoal& place) {
+    std::vector<Pose> out;
+    for (int k = 0; k < (place.any_turn ? kTurns : 1); ++k) {
+      const Eigen::AngleAxisd turn(2 * std::numbers::pi * k / kTurns, Vector3d::UnitZ());
+      const Pose X_WB{place.X_WB.p, turn.toRotationMatrix() * place.X_WB.R};
+      if (place.same.empty()) out.push_back(X_WB);
+      for (const Pose& X_BS : place.same) out.push_back(X_WB * X_BS);
+    }
+    return out;
+  }
+
   Result<void, Drop> look_at_place(GoodGrasp& one, const SceneState& held) const {
     const Pose X_BT = one.X_TB.inverse();
     const PlaceGoal& place = *task_.place;
@@ -249,9 +267,7 @@ class PickPlanner {
     const IkSolver ik = solver(checker);
     std::optional<Drop> why;
     double nearest = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < (place.any_turn ? kTurns : 1); ++k) {
-      const Eigen::AngleAxisd turn(2 * std::numbers::pi * k / kTurns, Vector3d::UnitZ());
-      const Pose X_WB{place.X_WB.p, turn.toRotationMatrix() * place.X_WB.R};
+    for (const Pose& X_WB : poses_at(place)) {
       const Pose X_WT = moved(X_WB * X_BT, options_.drop * Vector3d::UnitZ());
       auto q = posture(ik, X_WT, checker, true);
       if (q) q = posture(ik, above(X_WT), checker, true);
@@ -310,7 +326,11 @@ class PickPlanner {
       drop(one.grasp, {PickErrc::no_way, plan.faults.front().what});
       return std::nullopt;
     }
-    PickPlan out{.plan = std::move(plan), .X_TB = one.X_TB, .X_WB_place = {}, .dropped = dropped_};
+    PickPlan out{.plan = std::move(plan),
+                 .grasp = one.grasp,
+                 .X_TB = one.X_TB,
+                 .X_WB_place = {},
+                 .dropped = dropped_};
     if (task_.place) out.X_WB_place = one.X_WB_place;
     return out;
   }
@@ -369,6 +389,8 @@ class PickPlanner {
 
 std::string_view name(PickErrc code) noexcept {
   switch (code) {
+    case PickErrc::not_seen:
+      return "not_seen";
     case PickErrc::no_object:
       return "no_object";
     case PickErrc::no_gripper:
@@ -377,6 +399,8 @@ std::string_view name(PickErrc code) noexcept {
       return "hand_full";
     case PickErrc::too_wide:
       return "too_wide";
+    case PickErrc::failed_before:
+      return "failed_before";
     case PickErrc::grasp_out_of_reach:
       return "grasp_out_of_reach";
     case PickErrc::grasp_blocked:

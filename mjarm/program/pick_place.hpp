@@ -20,6 +20,9 @@ namespace mjarm::program {
 struct PlaceGoal {
   Pose X_WB;              ///< of its body in the world
   bool any_turn = false;  ///< it may be turned about the world's vertical as the arm likes
+  /// Poses X_BS that are as good: a body in X_WB * X_BS looks as it does in X_WB. None but that
+  /// itself where empty.
+  std::vector<Pose> same = {};
 };
 
 /// One object, from where it stands to where it is to be.
@@ -31,20 +34,23 @@ struct PickTask {
 /// How a pick is planned. Every default is usable as is.
 struct PickOptions {
   GraspOptions grasp = {};
-  double approach = 0.08;    ///< [m] > 0 of the straight way to the object, and away from it
-  double lift = 0.1;         ///< [m] > 0 straight up with it, and straight down to its place
-  double drop = 1e-3;        ///< [m] >= 0 above its place where it is let go
-  double tool_speed = 0.15;  ///< [m/s] > 0 on straight ways
-  std::size_t tries = 12;    ///< grasps that are planned to the end at most, >= 1
+  double approach = 0.08;         ///< [m] > 0 of the straight way to the object, and away from it
+  double lift = 0.1;              ///< [m] > 0 straight up with it, and straight down to its place
+  double drop = 1e-3;             ///< [m] >= 0 above its place where it is let go
+  double tool_speed = 0.15;       ///< [m/s] > 0 on straight ways
+  std::vector<Grasp> avoid = {};  ///< that were tried in vain
+  std::size_t tries = 12;         ///< grasps that are planned to the end at most, >= 1
   StopCheck stop = {};
 };
 
 /// Why a grasp was dropped, or why there is none. In the order in which they are found out.
 enum class PickErrc {
+  not_seen,            ///< no camera saw where it is
   no_object,           ///< no body of that name, or one that cannot be carried
   no_gripper,          ///< the arm has none, or the tool frame is not between its fingers
   hand_full,           ///< something is held already; of plan_place(): nothing is
   too_wide,            ///< no two opposite sides are as near together as the gripper opens
+  failed_before,       ///< it is one of PickOptions::avoid
   grasp_out_of_reach,  ///< the tool cannot be had there
   grasp_blocked,       ///< it can, but not without contact
   not_held,            ///< the fingers close on something else, or on nothing
@@ -66,6 +72,7 @@ struct DroppedGrasp {
 /// What was decided, before anything moves.
 struct PickPlan {
   ProgramPlan plan;  ///< from where the arm stands until it has let go and drawn back, or lifted it
+  Grasp grasp;       ///< that was chosen; of plan_place(): none
   Pose X_TB;         ///< the object in the frame of the tool that holds it
   std::optional<Pose> X_WB_place;  ///< where the object will be
   std::vector<DroppedGrasp> dropped;

@@ -113,6 +113,12 @@ struct Grip {
   bool close = true;
 };
 
+/// A camera of the scene looks where the objects are, before anything moves.
+struct Look {
+  std::string camera;
+  FilePlace place = {};
+};
+
 /// An object is picked up. Where `place` is the next instruction the grasp is one that suits it.
 struct Pick {
   std::string object;  ///< a body with a free joint
@@ -135,7 +141,7 @@ struct Repeat {
 /// One sentence of a program.
 struct Instruction {
   using What = std::variant<MoveJ, MoveL, MoveC, DrawEllipse, DrawPolyline, DrawText, Wait, Set,
-                            PlanMove, Grip, Pick, Place, Repeat>;
+                            PlanMove, Grip, Look, Pick, Place, Repeat>;
   What what;
   FilePlace place = {};
 };

@@ -1,6 +1,7 @@
 #include "mjarm/program/program_plan.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -42,6 +43,10 @@ class ProgramPlanner {
         ++i;
         continue;
       }
+      if (steps_[i].kind == Step::Kind::look) {
+        look(steps_[i++], at);
+        continue;
+      }
       if (steps_[i].kind == Step::Kind::pick || steps_[i].kind == Step::Kind::place) {
         known = carry(i, at);
         continue;
@@ -80,6 +85,29 @@ class ProgramPlanner {
     return plan;
   }
 
+  /// Things stand where the camera sees them.
+  void look(const Step& step, Stand& at) {
+    const auto fault = [&](std::string_view reason, std::string what, Errc code) {
+      detail::add_fault(plan_.faults, {.place = step.place,
+                                       .word = std::string(step.word),
+                                       .reason = std::string(reason),
+                                       .what = std::move(what),
+                                       .code = code});
+    };
+    if (!options_.see) {
+      return fault("not_available", text(msg::program_nobody_looks), Errc::not_available);
+    }
+    Result<SeenScene> seen = options_.see({model_, plan_.arms[step.tool]}, step.object,
+                                          places_.state(at.scene), as_span(at.q));
+    if (!seen) {
+      const bool named = seen.error().code == Errc::bad_input;
+      return fault(named ? "unknown_name" : "not_available", seen.error().what, seen.error().code);
+    }
+    at.scene = places_.enter(std::move(seen->scene));
+    unseen_ = std::move(seen->unseen);
+    same_ = std::move(seen->same);
+  }
+
   /// Picks up, puts down, or both where one follows the other; goes on behind them. False where the
   /// arm's posture is not known then.
   bool carry(std::size_t& i, Stand& at) {
@@ -89,11 +117,24 @@ class ProgramPlanner {
     std::optional<PlaceGoal> goal;
     if (place != nullptr && place->kind == Step::Kind::place) {
       goal = PlaceGoal{place->X_WT, place->any_turn};
+      const std::vector<AttachedBody>& held = places_.attached(at.scene);
+      const auto same = same_.find(picks || held.empty() ? step.object : held.front().body);
+      if (same != same_.end()) goal->same = same->second;
     }
     const PickOptions how{.tool_speed = step.speed > 0 ? step.speed : PickOptions().tool_speed,
                           .stop = options_.stop};
     const Robot robot{model_, plan_.arms[step.tool]};
     const SceneState& scene = places_.state(at.scene);
+    if (const auto unseen = unseen_.find(step.object); picks && unseen != unseen_.end()) {
+      i += goal ? 2 : 1;
+      detail::add_fault(plan_.faults,
+                        {.place = step.place,
+                         .word = std::string(step.word),
+                         .reason = "not_seen",
+                         .what = text(msg::program_not_seen, step.object, unseen->second),
+                         .code = Errc::impossible});
+      return false;
+    }
     auto planned = picks ? plan_pick(robot, scene, as_span(at.q), {step.object, goal}, how)
                          : plan_place(robot, scene, as_span(at.q), *goal, how);
     i += picks && goal ? 2 : 1;
@@ -226,9 +267,11 @@ class ProgramPlanner {
   std::vector<Step> steps_;
   FilePlace start_place_;
   const ProgramPlanOptions& options_;
-  std::size_t told_ = 0;        // steps that were told of
-  detail::DetourChain chain_;   // the last one
-  std::set<FilePlace> mended_;  // places of faults for which a change was looked for
+  std::size_t told_ = 0;                       // steps that were told of
+  detail::DetourChain chain_;                  // the last one
+  std::set<FilePlace> mended_;                 // places of faults for which a change was looked for
+  std::map<std::string, std::string> unseen_;  // objects that no camera saw, and why
+  std::map<std::string, std::vector<Pose>> same_;  // objects known up to symmetry
   ProgramPlan plan_;
   detail::Workplaces places_;  // of the plan's arms
   detail::StepPlanner planner_;

@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,11 +65,26 @@ struct ProgramPlan : MotionPlan {
 [[nodiscard]] std::vector<ProgramFault> find_misfits(const Model& model, const Arm& arm,
                                                      const Program& program);
 
+/// How a camera saw a scene.
+struct SeenScene {
+  SceneState scene = {};                        ///< what was seen stands where it was seen
+  std::map<std::string, std::string> unseen{};  ///< objects without a pose, and why
+  /// Of objects whose pose is known up to their symmetry alone: PlaceGoal::same.
+  std::map<std::string, std::vector<Pose>> same{};
+};
+/// Looks at a scene with a camera of the model: session/see_scene.hpp has one.
+/// @param scene  how things stand; what cannot be seen is taken from it.
+/// @param q      (dof,) [rad or m] where the arm stands.
+using SeeScene =
+    std::function<Result<SeenScene>(const Robot& robot, const std::string& camera,
+                                    const SceneState& scene, std::span<const double> q)>;
+
 /// How to think a program through. Every default is usable as is.
 struct ProgramPlanOptions {
   bool collision = true;     ///< look at contact, and measure clearance
   double tool_speed = 0.25;  ///< [m/s] where the program says none, > 0
   SceneState scene = {};     ///< how things stand at first; empty: as in the model
+  SeeScene see = {};         ///< does the instruction `look`, which is a fault without
   /// Called after every step with how many of how many are done. May be empty.
   std::function<void(std::size_t done, std::size_t total)> after_step = {};
   StopCheck stop = {};  ///< ends the work; the plan then has a fault `stopped`

@@ -300,6 +300,20 @@ class StepWriter {
     push(std::move(step));
   }
 
+  void add(const Look& what, const Instruction& instruction) {
+    // The whole program is planned before it runs, so only what is there at first can be seen.
+    const auto rests = [](const Step& step) {
+      return step.kind == Step::Kind::look || step.kind == Step::Kind::wait;
+    };
+    if (!std::ranges::all_of(out_.steps, rests)) {
+      throw StepFault{instruction.place, "bad_input", text(msg::program_late_look)};
+    }
+    Step step = begun(Step::Kind::look, instruction);
+    step.object = what.camera;
+    step.place = what.place;
+    push(std::move(step));
+  }
+
   void add(const Pick& what, const Instruction& instruction) {
     Step step = begun(Step::Kind::pick, instruction);
     step.object = what.object;

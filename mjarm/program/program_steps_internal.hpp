@@ -14,7 +14,7 @@ namespace mjarm::program::detail {
 
 /// One thing to be done, with all that holds at that moment; repeats are unrolled.
 struct Step {
-  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan, pick, place };
+  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan, look, pick, place };
 
   Kind kind = Kind::wait;
   std::string_view word;
@@ -36,7 +36,7 @@ struct Step {
   double seconds = 0;                    ///< wait
   std::optional<double> clearance = {};  ///< [m] plan: what is asked
   bool close = false;                    ///< grip
-  std::string object = {};               ///< pick
+  std::string object = {};               ///< pick; look: the camera
   bool any_turn = false;                 ///< place; its X_WT is that of the object's body
 };
 

@@ -56,7 +56,8 @@ Attempt StepPlanner::begin(std::size_t i, const Stand& at) {
     case Step::Kind::grip:
       return grip(i, at);
     case Step::Kind::plan:
-    case Step::Kind::pick:  // ProgramPlanner's
+    case Step::Kind::look:  // ProgramPlanner's
+    case Step::Kind::pick:
     case Step::Kind::place:
       break;
   }

@@ -7,6 +7,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/session/see_scene.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -31,8 +32,8 @@ void tell_text_faults(const Options& options) {
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which));
   catch_interrupts();
-  const Result<program::LoadedProgram> loaded =
-      program::load_program(options.file, interrupted, load_options(options.robot));
+  const Result<program::LoadedProgram> loaded = program::load_program(
+      options.file, interrupted, load_options(options.robot), session::see_scene);
   if (!loaded) {
     tell_text_faults(options);
     return fail(loaded.error());

@@ -13,6 +13,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/program/urscript.hpp"
+#include "mjarm/session/see_scene.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -42,8 +43,8 @@ Result<int> run(const Options& options) {
   const Result<LongResult> result = LongResult::begin(options.out, options.replace);
   if (!result) return fail(result.error());
   catch_interrupts();
-  const Result<program::LoadedProgram> loaded =
-      program::load_sound_program(options.file, interrupted, load_options(options.robot));
+  const Result<program::LoadedProgram> loaded = program::load_sound_program(
+      options.file, interrupted, load_options(options.robot), session::see_scene);
   if (!loaded) return fail(loaded.error());
   const Result<std::string> script = program::to_urscript(loaded->program, loaded->robot,
                                                           loaded->plan, {.version = MJARM_VERSION});

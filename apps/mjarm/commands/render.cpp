@@ -19,6 +19,7 @@
 #include "mjarm/session/render_program.hpp"
 #include "mjarm/session/run_model.hpp"
 #include "mjarm/session/run_video.hpp"
+#include "mjarm/session/see_scene.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -118,8 +119,8 @@ Result<std::string> picture(const Job& job) {
 }
 
 Result<std::string> program_picture(const RobotChoice& chosen, const PictureRequest& wanted) {
-  const Result<program::LoadedProgram> loaded =
-      program::load_sound_program(chosen.robot, interrupted, load_options(chosen));
+  const Result<program::LoadedProgram> loaded = program::load_sound_program(
+      chosen.robot, interrupted, load_options(chosen), session::see_scene);
   if (!loaded) return fail(loaded.error());
   const Robot& robot = loaded->robot;
   Result<render::Camera> camera = choose_camera(robot.model, wanted.camera);

@@ -11,6 +11,7 @@
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/session/see_scene.hpp"
 #include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
@@ -66,8 +67,8 @@ Result<int> run(const Options& options) {
   const Result<LongResult> free = LongResult::begin(chosen->out, chosen->replace);
   if (!free) return fail(free.error());  // before it is planned
   catch_interrupts();
-  Result<program::LoadedProgram> loaded =
-      program::load_sound_program(options.file, interrupted, load_options(options.robot));
+  Result<program::LoadedProgram> loaded = program::load_sound_program(
+      options.file, interrupted, load_options(options.robot), session::see_scene);
   if (!loaded) return fail(loaded.error());
   const double duration = loaded->plan.duration();
   if (duration > *longest) {  // a slip of the pen, as a wait in milliseconds

@@ -18,6 +18,7 @@
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/session/free_sim.hpp"
 #include "mjarm/session/robot_session.hpp"
+#include "mjarm/session/see_scene.hpp"
 #include "mjarm/session/show_program.hpp"
 #include "mjarm/session/simulate_world.hpp"
 #include "mjarm/view/controls.hpp"
@@ -144,8 +145,8 @@ Result<int> run_program(const Options& options) {
   Result<view::WindowOptions> window = window_options(options, {});
   if (!window) return fail(window.error());
   catch_interrupts();
-  const Result<program::LoadedProgram> loaded =
-      program::load_sound_program(robot.robot, interrupted, load_options(robot));
+  const Result<program::LoadedProgram> loaded = program::load_sound_program(
+      robot.robot, interrupted, load_options(robot), session::see_scene);
   if (!loaded) return fail(loaded.error());
   if (auto set = set_camera(options, loaded->robot.model, *window); !set) return fail(set.error());
   return told(options, session::view_program(*loaded, *window, {*seconds}));

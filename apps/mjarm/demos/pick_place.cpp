@@ -7,6 +7,7 @@
 #include "apps/mjarm/demos/program_demo.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/session/see_scene.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -29,8 +30,8 @@ Result<Report> run_pick_place(const DemoOptions& options) {
   if (options.control) program->control = options.control;
   Result<Robot> robot = program::load_program_robot(*program, "pick_place.yaml");
   if (!robot) return fail(std::move(robot.error()));
-  const auto loaded =
-      program::plan_loaded("pick_place.yaml", std::move(*program), std::move(*robot), interrupted);
+  const auto loaded = program::plan_loaded("pick_place.yaml", std::move(*program),
+                                           std::move(*robot), interrupted, session::see_scene);
   return loaded ? run_demo_plan(*loaded, options) : fail(loaded.error());
 }
 

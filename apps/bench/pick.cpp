@@ -1,0 +1,143 @@
+#include "apps/bench/pick.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/suite.hpp"
+#include "apps/mjarm/cli/table.hpp"
+#include "apps/mjarm/cli/usage.hpp"
+#include "mjarm/core/log.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr int kMaxScenes = 100'000;
+
+struct Options : ReportOptions {
+  std::string robot, scenes = "100", seed = "1";
+};
+
+/// All scenes of a set, solved.
+struct SolvedSet {
+  std::string name, robot;
+  std::vector<PickVerdict> verdicts;
+};
+
+double degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
+std::vector<std::string> row_of(const SolvedSet& set) {
+  double seen = 0, seen_turn = 0, off = 0, turn = 0, others = 0, seconds = 0;
+  std::size_t placed = 0, tries = 0;
+  for (const PickVerdict& one : set.verdicts) {
+    seen = std::max(seen, one.seen_position);
+    seen_turn = std::max(seen_turn, one.seen_rotation);
+    tries += one.tries;
+    if (!one.placed) continue;
+    ++placed;
+    off = std::max(off, one.position);
+    turn = std::max(turn, one.rotation);
+    others = std::max(others, one.others);
+    seconds += one.seconds;
+  }
+  return {set.robot,
+          set.name,
+          fmt::format("{}/{}", placed, set.verdicts.size()),
+          fmt::format("{:.2f} mm, {:.2f} deg", 1e3 * seen, degrees(seen_turn)),
+          fmt::format("{:.2f} mm, {:.2f} deg", 1e3 * off, degrees(turn)),
+          fmt::format("{:.2f}", 1e3 * others),
+          std::to_string(tries),
+          fmt::format("{:.1f}", placed == 0 ? 0 : seconds / static_cast<double>(placed))};
+}
+
+std::string to_table(const std::vector<SolvedSet>& sets, bool timing) {
+  std::vector<std::vector<std::string>> rows{
+      {text(msg::bench_pick_robot), text(msg::bench_pick_set), text(msg::bench_pick_placed),
+       text(msg::bench_pick_seen), text(msg::bench_pick_error), text(msg::bench_pick_others),
+       text(msg::bench_pick_tries), text(msg::bench_pick_cycle)}};
+  std::string misses;
+  for (const SolvedSet& set : sets) {
+    rows.push_back(row_of(set));
+    for (std::size_t i = 0; i < set.verdicts.size(); ++i) {
+      const PickVerdict& one = set.verdicts[i];
+      if (one.placed) continue;
+      misses += text(msg::bench_pick_miss, set.robot, set.name, i, one.object, one.miss) + '\n';
+    }
+  }
+  std::string out = timing ? bench_occasion() + "\n\n" : std::string();
+  out += markdown_table(rows);
+  return misses.empty() ? out : out + '\n' + misses;
+}
+
+JsonDoc to_json(const std::vector<SolvedSet>& sets) {
+  std::vector<JsonDoc> docs;
+  for (const SolvedSet& set : sets) {
+    std::vector<JsonDoc> scenes;
+    for (const PickVerdict& one : set.verdicts) {
+      scenes.push_back({{"object", one.object},
+                        {"placed", one.placed},
+                        {"position", one.position},
+                        {"rotation", one.rotation},
+                        {"seen_position", one.seen_position},
+                        {"seen_rotation", one.seen_rotation},
+                        {"others", one.others},
+                        {"tries", static_cast<int>(one.tries)},
+                        {"seconds", one.seconds},
+                        {"miss", one.miss}});
+    }
+    docs.push_back({{"robot", set.robot}, {"set", set.name}, {"scenes", std::move(scenes)}});
+  }
+  return {{"sets", std::move(docs)}};
+}
+
+Result<int> run_pick(const Options& options) {
+  const Result<int> scenes = parse_count("--scenes", options.scenes, kMaxScenes);
+  if (!scenes) return fail(scenes.error());
+  const Result<int> seed = parse_count("--seed", options.seed, kMaxScenes);
+  if (!seed) return fail(seed.error());
+  std::vector<PickSet> sets;
+  for (const char* robot : {"ur5e", "panda"}) {
+    if (!options.robot.empty() && options.robot != robot) continue;
+    Result<PickSet> set = draw_table_scenes(robot, *scenes, static_cast<std::uint64_t>(*seed));
+    if (!set) return fail(std::move(set.error()));
+    sets.push_back(std::move(*set));
+  }
+  if (sets.empty()) return fail(Errc::usage, text(msg::bench_pick_no_robot, options.robot));
+  Progress progress(text(msg::bench_pick_progress),
+                    sets.size() * static_cast<std::size_t>(*scenes));
+  std::vector<SolvedSet> solved;
+  for (const PickSet& set : sets) {
+    solved.push_back({set.name, set.robot, {}});
+    for (const PickProblem& problem : set.problems) {
+      Result<PickVerdict> verdict = solve_pick(set, problem);
+      if (!verdict) return fail(std::move(verdict.error()));
+      solved.back().verdicts.push_back(std::move(*verdict));
+      progress.advance();
+    }
+  }
+  const std::string out =
+      options.json ? to_json(solved).document() : to_table(solved, !options.no_timing);
+  std::fputs(out.c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+Command pick_suite() {
+  return {"pick", msg::bench_pick_summary, msg::bench_pick_examples, [](CLI::App& app) -> Run {
+            auto options = std::make_shared<Options>();
+            add_option(app, "--robot", options->robot, msg::bench_pick_option_robot, "NAME");
+            add_option(app, "--scenes", options->scenes, msg::bench_pick_option_scenes, "N");
+            add_option(app, "--seed", options->seed, msg::bench_pick_option_seed, "N");
+            add_report_options(app, *options);
+            return [options] { return run_pick(*options); };
+          }};
+}
+
+}  // namespace mjarm::app

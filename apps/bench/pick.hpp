@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mjarm/core/pose.hpp"
+#include "mjarm/core/result.hpp"
+#include "mjarm/model/robot.hpp"
+#include "mjarm/program/pick_place.hpp"
+
+namespace mjarm::app {
+
+/// One object of a scene and where it stands.
+struct PlacedObject {
+  std::string name;
+  Pose X_WB;
+};
+
+/// One scene, and what is asked of the arm there.
+struct PickProblem {
+  std::uint64_t seed = 0;  ///< of the camera's noise
+  std::vector<PlacedObject> objects = {};
+  program::PickTask task = {};
+};
+
+/// How one problem went, by the simulation's own knowledge.
+struct PickVerdict {
+  std::string object;
+  bool placed = false;       ///< within 5 mm and 5 deg of its place, and nothing is wrong
+  double seen_position = 0;  ///< [m] of all objects that had a pose, the worst
+  double seen_rotation = 0;  ///< [rad] likewise, up to their symmetry
+  double position = 0;       ///< [m] from its place
+  double rotation = 0;       ///< [rad] likewise, up to its symmetry
+  double others = 0;         ///< [m] farthest that anything else was moved
+  std::size_t tries = 0;     ///< grasps that were executed
+  double seconds = 0;        ///< [s] simulated
+  double planning_us = 0;    ///< [us] of looking and planning
+  std::string miss = {};     ///< why not; empty where all is well
+};
+
+/// Scenes of one kind on one robot.
+struct PickSet {
+  std::string name;
+  std::string robot;
+  Robot loaded;
+  std::vector<PickProblem> problems;
+};
+
+/// Box, can and house anywhere on the shipped table, standing or lying, each 12 cm from the others;
+/// one of them is to be put anywhere into the tray, as it stands or lies, turned at will.
+/// @param robot  "ur5e" or "panda".
+[[nodiscard]] Result<PickSet> draw_table_scenes(const std::string& robot, int count,
+                                                std::uint64_t seed);
+
+/// [rad] between two orientations of one of the objects, up to its symmetry.
+[[nodiscard]] double turn_between(const std::string& object, const Eigen::Matrix3d& A,
+                                  const Eigen::Matrix3d& B);
+
+/// Looks with the scene's camera, picks and places, in a simulation of its own.
+/// @return an error where the camera cannot draw or the simulation broke down.
+[[nodiscard]] Result<PickVerdict> solve_pick(const PickSet& set, const PickProblem& problem);
+
+}  // namespace mjarm::app

@@ -1,0 +1,129 @@
+#include "mjarm/session/pick_and_place.hpp"
+
+#include <utility>
+
+#include "mjarm/core/messages/program.hpp"
+#include "mjarm/execution/execution.hpp"
+
+namespace mjarm::session {
+namespace {
+
+class PickRunner {
+ public:
+  PickRunner(const Robot& robot, Sim& sim, const PickAndPlaceOptions& options)
+      : robot_(robot), sim_(sim), options_(options) {
+    const JointVec from = q();
+    begun_.assign(from.data(), from.data() + from.size());
+  }
+
+  Result<PickAndPlaceOutcome> run(const Look& look, program::PickTask task) {
+    PickAndPlaceOutcome out;
+    program::PickOptions how = options_.pick;
+    while (!out.done && static_cast<int>(out.tries.size()) < options_.tries) {
+      const Result<program::SeenScene> seen = look(truth(), as_span(q()));
+      if (!seen) return fail(seen.error());
+      if (const auto unseen = seen->unseen.find(task.object); unseen != seen->unseen.end()) {
+        out.failure = {program::PickErrc::not_seen,
+                       text(msg::program_not_seen, task.object, unseen->second),
+                       {}};
+        break;
+      }
+      const auto same = seen->same.find(task.object);
+      if (task.place && same != seen->same.end()) task.place->same = same->second;
+      auto planned = program::plan_pick(robot_, seen->scene, as_span(q()), task, how);
+      if (!planned) {
+        out.failure = std::move(planned.error());
+        break;
+      }
+      how.avoid.push_back(planned->grasp);
+      Result<PickTry> done = execute(std::move(*planned), seen->scene);
+      if (!done) return fail(std::move(done.error()));
+      out.tries.push_back(std::move(*done));
+      out.done = out.tries.back().fault == GripFault::none;
+      if (out.tries.back().fault == GripFault::blocked) break;
+      if (!out.done) {
+        if (auto back = draw_back(seen->scene); !back) return fail(std::move(back.error()));
+      }
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] JointVec q() const { return sim_.arm_state(robot_.arm).q; }
+  [[nodiscard]] SceneState truth() const {
+    return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
+  }
+
+  /// Executes a plan until something goes wrong.
+  Result<PickTry> execute(program::PickPlan planned, const SceneState& scene) {
+    PickTry out{.planned = std::move(planned)};
+    const MotionPlan& plan = out.planned.plan;
+    Result<Execution> execution =
+        Execution::create(robot_.model, plan, {.control = options_.control});
+    if (!execution) return fail(std::move(execution.error()));
+    GripWatch watch(robot_.model, plan, scene);
+    const double begun = sim_.time();
+    const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
+      out.fault = watch.look(sim, execution->motions().back().move, execution->error(sim));
+      if (options_.after_step) options_.after_step(sim);
+      return out.fault == GripFault::none;
+    });
+    if (!done) return fail(done.error());
+    out.what = watch.what();
+    if (auto rested = rest(*execution); !rested) return fail(std::move(rested.error()));
+    out.seconds = sim_.time() - begun;
+    out.objects = execution->objects();
+    out.contact = execution->outcome().first_contact;
+    return out;
+  }
+
+  /// Lets an arm that was stopped on its way come to rest.
+  Result<void> rest(Execution& execution) {
+    execution.stop();
+    while (execution.state() == Execution::State::stopping) {
+      if (auto stepped = execution.step(sim_); !stepped) return stepped;
+      if (options_.after_step) options_.after_step(sim_);
+    }
+    return {};
+  }
+
+  /// Opens the gripper and goes straight up and back to the beginning, out of the camera's sight;
+  /// as far as it may.
+  Result<void> draw_back(const SceneState& scene) {
+    program::Program program;
+    program.name = "draw back";
+    const JointVec from = q();
+    program.start.values.assign(from.data(), from.data() + from.size());
+    Pose above = sim_.tool(robot_.arm);
+    above.p.z() += options_.pick.lift;
+    program.instructions = {{program::Grip{.close = false}},
+                            program::move_l(above),
+                            {program::PlanMove{.goal = program::JointValues{begun_}}}};
+    const program::ProgramPlan plan =
+        program::plan_program(robot_.model, robot_.arm, program, {.scene = scene});
+    Result<Execution> execution =
+        Execution::create(robot_.model, plan, {.control = options_.control});
+    if (!execution) return fail(std::move(execution.error()));
+    const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
+      if (options_.after_step) options_.after_step(sim);
+      return true;
+    });
+    if (!done) return fail(done.error());
+    return {};
+  }
+
+  const Robot& robot_;
+  Sim& sim_;
+  const PickAndPlaceOptions& options_;
+  std::vector<double> begun_;  ///< (dof,) [rad or m] where the arm stood at first
+};
+
+}  // namespace
+
+Result<PickAndPlaceOutcome> pick_and_place(const Robot& robot, Sim& sim, const Look& look,
+                                           const program::PickTask& task,
+                                           const PickAndPlaceOptions& options) {
+  return PickRunner(robot, sim, options).run(look, task);
+}
+
+}  // namespace mjarm::session

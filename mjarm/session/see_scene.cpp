@@ -1,0 +1,91 @@
+#include "mjarm/session/see_scene.hpp"
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "mjarm/core/messages/show.hpp"
+#include "mjarm/core/rng.hpp"
+#include "mjarm/model/scene_bodies.hpp"
+#include "mjarm/perception/symmetry.hpp"
+#include "mjarm/render/rgbd.hpp"
+#include "mjarm/sim/sim.hpp"
+
+namespace mjarm::session {
+
+struct SceneEye::Impl {
+  Robot robot;
+  Sim sim;
+  render::RgbdCamera camera;
+  perception::ObjectFinder finder;
+  std::map<std::string, std::vector<Pose>> same;
+  Rng noise;
+  perception::FoundScene found = {};
+};
+
+SceneEye::SceneEye(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SceneEye::~SceneEye() = default;
+SceneEye::SceneEye(SceneEye&&) noexcept = default;
+SceneEye& SceneEye::operator=(SceneEye&&) noexcept = default;
+
+Result<SceneEye> SceneEye::open(const Robot& robot, const std::string& camera,
+                                const SceneEyeOptions& options) {
+  std::vector<perception::KnownObject> objects;
+  std::map<std::string, std::vector<Pose>> same;
+  for (const SceneObject& object : scene_bodies(robot.model, robot.arm).objects) {
+    Result<perception::KnownObject> known = perception::known_object(robot.model, object.name);
+    if (!known) return fail(std::move(known.error()));
+    same[object.name] = perception::symmetries(known->surface);
+    objects.push_back(std::move(*known));
+  }
+  if (objects.empty()) return fail(Errc::bad_input, text(msg::show_nothing_to_see));
+  Result<render::RgbdCamera> eye =
+      render::RgbdCamera::create(robot.model, camera, {.depth_sigma = options.depth_sigma});
+  if (!eye) return fail(std::move(eye.error()));
+  auto finder = perception::ObjectFinder::create(
+      std::move(objects), {.depth_sigma = options.depth_sigma, .seed = options.seed});
+  if (!finder) return fail(std::move(finder.error()));
+  Sim sim(robot.model);
+  sim.reset_home();
+  return SceneEye(
+      std::make_unique<Impl>(Impl{robot, std::move(sim), std::move(*eye), std::move(*finder),
+                                  std::move(same), Rng(options.seed)}));
+}
+
+Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<const double> q) {
+  Sim& sim = impl_->sim;
+  sim.reset_home();
+  if (!scene.qpos.empty()) {
+    const std::vector<double> still(sim.qvel().size(), 0.0);
+    sim.set_state(scene.qpos, still);
+  }
+  sim.place(impl_->robot.arm, q);
+  const Result<render::RgbdFrame> frame = impl_->camera.look(sim.snapshot(), impl_->noise);
+  if (!frame) return fail(frame.error());
+  Result<perception::FoundScene> found = impl_->finder.find(*frame);
+  if (!found) return fail(std::move(found.error()));
+  impl_->found = std::move(*found);
+  program::SeenScene out;
+  for (const perception::FoundObject& one : impl_->found.objects) {
+    if (one.pose) {
+      sim.place_free(one.name, one.pose->X_WO);
+      if (!one.pose->by_tag) out.same[one.name] = impl_->same[one.name];
+      continue;
+    }
+    if (one.pose.error().best) sim.place_free(one.name, one.pose.error().best->X_WO);
+    out.unseen[one.name] = perception::describe(one.pose.error().code);
+  }
+  out.scene = {.qpos = {sim.qpos().begin(), sim.qpos().end()}, .attached = scene.attached};
+  return out;
+}
+
+const perception::FoundScene& SceneEye::found() const { return impl_->found; }
+
+Result<program::SeenScene> see_scene(const Robot& robot, const std::string& camera,
+                                     const SceneState& scene, std::span<const double> q) {
+  Result<SceneEye> eye = SceneEye::open(robot, camera);
+  if (!eye) return fail(std::move(eye.error()));
+  return eye->look(scene, q);
+}
+
+}  // namespace mjarm::session
