@@ -198,6 +198,19 @@ DepthScene depth_scene(const render::RgbdFrame& frame, const DepthModel& model,
   return scene;
 }
 
+void leave_out(DepthScene& scene, const std::vector<float>& known) {
+  std::size_t i = 0;
+  for (int y = 0; y < scene.lens.height; ++y) {
+    for (int x = 0; x < scene.lens.width; ++x, ++i) {
+      const double q = known[i];
+      const double band = 4 * scene.model.sigma + DepthModel::from_metres(kAbove, q);
+      const bool stands = q > scene.table_at(scene.lens.ray({x, y})) + band;
+      if (stands && std::abs(scene.inverse[i] - q) <= band) scene.label[i] = kBeyond;
+    }
+  }
+  gather(scene, kSmoothJump);
+}
+
 void take_out(DepthScene& scene, const std::vector<float>& drawn) {
   constexpr int kRim = 2;         // [px]
   constexpr double kOff = 0.006;  // [m] and six sigma

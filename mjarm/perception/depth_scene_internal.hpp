@@ -48,6 +48,11 @@ struct DepthScene {
 [[nodiscard]] DepthScene depth_scene(const render::RgbdFrame& frame, const DepthModel& model,
                                      const std::optional<Plane>& table, Rng& rng);
 
+/// Takes the pixels that show what is known to stand above the table out of clusters, and makes
+/// these anew.
+/// @param known  [1/m] (lens.height * lens.width,) 0 where nothing is
+void leave_out(DepthScene& scene, const std::vector<float>& known);
+
 /// Takes the pixels of clusters in which `drawn` stands where depth is (and two pixels about them)
 /// out of them.
 /// @param drawn  [1/m] (lens.height * lens.width,) 0 where nothing is

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "mjarm/core/messages/perception.hpp"
 #include "mjarm/perception/check_frame_internal.hpp"
 #include "mjarm/perception/check_objects_internal.hpp"
 #include "mjarm/perception/shape_search_internal.hpp"
@@ -18,6 +19,7 @@ using ObjectPose = Result<FoundPose, FindFailure>;
 
 constexpr double kMostMissing = 0.1;       // share of its pixels through which more is seen
 constexpr double kMostUnexplained = 0.1;   // share of a cluster's pixels that are not it
+constexpr double kMostMisfit = 1.2;        // of the pixels that it explains
 constexpr double kTouching = 0.6;          // the same where it may be a part of the cluster
 constexpr double kLeastSeen = 0.8;         // of an object without a tag
 constexpr double kMostOutside = 0.05;      // of it, outside of the picture
@@ -43,7 +45,8 @@ bool is_sunk(const DepthScene& scene, const ShapeModel& shape, const Pose& X_CO)
 
 /// Nothing speaks against it but what may hide it.
 bool is_possible(const DepthScene& scene, const ShapeModel& shape, const ShapeFit& fit) {
-  return fit.missing <= kMostMissing && fit.seen > 0 && !is_sunk(scene, shape, fit.X_CO);
+  return fit.missing <= kMostMissing && fit.misfit <= kMostMisfit && fit.seen > 0 &&
+         !is_sunk(scene, shape, fit.X_CO);
 }
 bool is_whole(const ShapeFit& fit) { return fit.unexplained <= kMostUnexplained; }
 
@@ -278,10 +281,19 @@ ObjectFinder::~ObjectFinder() = default;
 ObjectFinder::ObjectFinder(ObjectFinder&&) noexcept = default;
 ObjectFinder& ObjectFinder::operator=(ObjectFinder&&) noexcept = default;
 
-Result<FoundScene> ObjectFinder::find(const render::RgbdFrame& frame) {
+Result<FoundScene> ObjectFinder::find(const render::RgbdFrame& frame,
+                                      std::span<const float> known) {
   if (Result<void> checked = check_frame(frame); !checked) return fail(std::move(checked.error()));
+  if (!known.empty() && known.size() != frame.depth.size()) {
+    return fail(Errc::bad_input, text(msg::perception_bad_known, known.size(), frame.depth.size()));
+  }
   Rng rng(impl_->options.seed);
   DepthScene scene = depth_scene(frame, impl_->model, impl_->options.table, rng);
+  if (!known.empty()) {
+    std::vector<float> inverse(known.size());
+    std::ranges::transform(known, inverse.begin(), inverse_depth);
+    leave_out(scene, inverse);
+  }
   std::vector<ObjectPose> poses(impl_->objects.size(), fail(FindFailure{}));
   impl_->find_by_tags(frame, scene, poses);
   // First what is seen in one piece; then pieces that may be parts of one thing, the nearer part

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,8 +89,12 @@ class ObjectFinder {
   ObjectFinder(ObjectFinder&&) noexcept;
   ObjectFinder& operator=(ObjectFinder&&) noexcept;
 
+  /// @param known  [m] (height * width,) depth of what is known to be there besides objects and
+  ///               table (the arm, walls), 0 where nothing is: what looks like that is no object;
+  ///               empty: nothing is known.
   /// @return bad_input where the frame does not fit together. Pixels without depth are none.
-  [[nodiscard]] Result<FoundScene> find(const render::RgbdFrame& frame);
+  [[nodiscard]] Result<FoundScene> find(const render::RgbdFrame& frame,
+                                        std::span<const float> known = {});
 
  private:
   struct Impl;

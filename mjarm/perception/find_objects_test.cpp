@@ -124,6 +124,27 @@ TEST(FindObjects, AStrangerIsMeasuredAndNothingElseIsFound) {
   EXPECT_NEAR(stranger.size.z(), 0.04, 0.002);
 }
 
+TEST(FindObjects, WhatIsKnownToBeThereIsNoObject) {
+  SKIP_WITHOUT_OPENGL();
+  Result<ObjectFinder> finder = ObjectFinder::create(objects_of(look().model(), false));
+  ASSERT_TRUE(finder) << finder.error().what;
+  Rng noise(21);
+  Places places{.eye = eye_at({0, 0, 0.03}, 0.7, 0.4, 0.9)};
+  places.bodies[3] = standing(0.12, 0, 0.02, 0.3);  // the stranger
+  const render::RgbdFrame without_can = look()(places, noise);
+  places.bodies[1] = standing(0, 0, 0.05, 0);
+  const render::RgbdFrame frame = look()(places, noise);
+  const auto unknown = finder->find(frame);
+  ASSERT_TRUE(unknown) << unknown.error().what;
+  EXPECT_EQ(unknown->unknown.size(), 1u);
+  const auto known = finder->find(frame, without_can.depth);
+  ASSERT_TRUE(known) << known.error().what;
+  ASSERT_TRUE(known->objects[1].pose);
+  EXPECT_LT((known->objects[1].pose->X_WO.p - places.bodies[1]->p).norm(), 2e-3);
+  EXPECT_TRUE(known->unknown.empty());
+  EXPECT_FALSE(finder->find(frame, std::vector<float>(3, 1.0F)));
+}
+
 TEST(FindObjects, AnUnknownCanIsACylinder) {
   SKIP_WITHOUT_OPENGL();
   Places places{.eye = eye_at({0, 0, 0}, 0.6, 2, 0.8)};

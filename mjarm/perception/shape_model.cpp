@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/perception/shape_model_internal.hpp"
 
 namespace mjarm::perception {
@@ -110,6 +111,9 @@ ShapeModel::ShapeModel(Surface of) : fine(std::move(of)), coarse(Surface{}) {
       normals.push_back(n.normalized());
     }
   }
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) spread += (p - centre) * (p - centre).transpose();
+  axes = symmetric_eigen(spread).vectors;
 }
 
 double surface_distance(const ShapeModel& shape, const Pose& A, const Pose& B) {

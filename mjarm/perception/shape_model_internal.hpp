@@ -22,10 +22,11 @@ struct ShapeModel {
   DrawnSurface fine;
   DrawnSurface coarse;  ///< with details below 0.15 of its radius left out
   Eigen::Vector3d centre =
-      Eigen::Vector3d::Zero();           ///< [m] mean of the surface, in the object's frame O
-  double radius = 0;                     ///< [m] about the centre
-  std::vector<Eigen::Vector3d> points;   ///< [m] evenly spread over the surface, in O
-  std::vector<Eigen::Vector3d> normals;  ///< unit length, of either side
+      Eigen::Vector3d::Zero();  ///< [m] mean of the surface, in the object's frame O
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< of its inertia, in O
+  double radius = 0;                                   ///< [m] about the centre
+  std::vector<Eigen::Vector3d> points;                 ///< [m] evenly spread over the surface, in O
+  std::vector<Eigen::Vector3d> normals;                ///< unit length, of either side
 };
 
 /// [m] How far the surface in pose `A` is from that in pose `B`: root of the mean squared distance

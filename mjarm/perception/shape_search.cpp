@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -11,10 +13,12 @@
 namespace mjarm::perception {
 namespace {
 
-constexpr float kFineLimit = 4;  // [sigma]
+constexpr float kFineLimit = 4;   // [sigma]
+constexpr double kModel = 0.001;  // [m] that the shape itself may be off
 constexpr int kStarts = 300;
-constexpr double kFar = 0.02;    // [m] as far as anything pulls at first
-constexpr double kSame = 0.003;  // [m] of surface_distance: the same pose, up to symmetry
+constexpr std::size_t kCoarse = 4;  // poses that are left of them
+constexpr double kFar = 0.02;       // [m] as far as anything pulls at first
+constexpr double kSame = 0.003;     // [m] of surface_distance: the same pose, up to symmetry
 
 /// Evenly spread over all orientations (M. Alexa, Super-Fibonacci spirals, CVPR 2022).
 Eigen::Matrix3d orientation(int i, int n) {
@@ -67,16 +71,18 @@ float sunk_residual(const DepthScene& scene, const FitView& view, const ShapeMod
   return sunk > 0 ? static_cast<float>(std::sqrt(view.cluster_pixels) * sunk / kSigma) : 0;
 }
 
-/// All orientations, each so placed that what is seen of it has the cluster's mean.
+bool is_better(const Start& a, const Start& b) { return a.cost < b.cost; }
+
+/// Orientations, each so placed that what is seen of it has the cluster's mean; the best first.
 std::vector<Start> starts_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
-                             float limit, Raster& raster) {
+                             const std::vector<Eigen::Matrix3d>& orientations, float limit,
+                             Raster& raster) {
   const Eigen::Vector3d seen_C = mean_point(
       view, view.inverse, [&](std::size_t i) { return view.kind[i] == FitView::cluster; });
   std::vector<Start> out;
   std::vector<float> r;
-  for (int i = 0; i < kStarts; ++i) {
-    Pose X_CO = with_centre(shape, orientation(i, kStarts),
-                            seen_C + 0.5 * shape.radius * seen_C.normalized());
+  for (const Eigen::Matrix3d& R_CO : orientations) {
+    Pose X_CO = with_centre(shape, R_CO, seen_C + 0.5 * shape.radius * seen_C.normalized());
     raster.clear(view.lens);
     raster.draw(shape.coarse.surface, X_CO, shape.coarse.sides);
     const std::vector<float>& drawn = raster.inverse();
@@ -89,8 +95,24 @@ std::vector<Start> starts_of(const DepthScene& scene, const FitView& view, const
     r.push_back(sunk_residual(scene, view, shape, X_CO));
     out.push_back({X_CO, cost_of(r)});
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  std::stable_sort(out.begin(), out.end(), is_better);
+  return out;
+}
+
+/// Orientations that are easily taken for that one: turned by quarters about the shape's axes.
+std::vector<Eigen::Matrix3d> quarter_turns(const ShapeModel& shape, const Eigen::Matrix3d& R_CO) {
+  std::vector<Eigen::Matrix3d> out;
+  std::array<int, 3> to{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d turn = Eigen::Matrix3d::Zero();
+      for (int k = 0; k < 3; ++k) {
+        turn(k, to[static_cast<std::size_t>(k)]) = (signs >> k & 1) != 0 ? -1 : 1;
+      }
+      if (turn.determinant() < 0 || turn.isIdentity()) continue;
+      out.push_back(R_CO * shape.axes * turn * shape.axes.transpose());
+    }
+  } while (std::next_permutation(to.begin(), to.end()));
   return out;
 }
 
@@ -126,8 +148,7 @@ std::vector<Start> best_of(const DepthScene& scene, const FitView& view, const S
   starts.resize(std::min(starts.size(), tried));
   for (Start& start : starts)
     start = refined(scene, view, shape, shape.coarse, start, limit, 1, raster);
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  std::stable_sort(starts.begin(), starts.end(), is_better);
   std::vector<Start> out;
   const double same = std::max(kSame, 0.5 / (view.middle * view.lens.fx));  // half a pixel
   for (const Start& start : starts) {
@@ -213,7 +234,7 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
   raster.draw(shape.fine.surface, X_CO, shape.fine.sides);
   const std::vector<float> drawn = raster.inverse();
   int pixels = 0, seen = 0, outside = 0, missing = 0, explained = 0;
-  double squares = 0;
+  double squares = 0, misfit = 0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (drawn[i] <= view.table_inverse[i]) continue;
     if (view.kind[i] == FitView::none) continue;
@@ -229,6 +250,8 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
       ++seen;
       explained += view.kind[i] == FitView::cluster ? 1 : 0;
       squares += std::pow(off / (q * q), 2);
+      const double may = std::hypot(scene.model.sigma, DepthModel::from_metres(kModel, q));
+      misfit += std::pow(off / may, 2);
     } else if (off > 0) {
       ++missing;
     }
@@ -240,6 +263,7 @@ ShapeFit check_shape(const DepthScene& scene, int cluster, const ShapeModel& sha
   out.missing = share(missing, pixels);
   out.unexplained = 1 - share(explained, view.cluster_pixels);
   out.residual = seen > 0 ? std::sqrt(squares / seen) : 0;
+  out.misfit = seen > 0 ? std::sqrt(misfit / seen) : 0;
   if (view.middle > 0) {
     const auto draw = [&](const Eigen::VectorXd& x, Raster& into) {
       into.draw(shape.fine.surface, turned_about_centre(shape, X_CO, x), shape.fine.sides);
@@ -261,13 +285,27 @@ bool is_same(const ShapeModel& shape, const Pose& A, const Pose& B) {
 std::vector<Start> rough_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
                                 Raster& raster) {
   const FitView view = rough_view(scene, cluster, 20);
-  return starts_of(scene, view, shape, far_limit(view), raster);
+  std::vector<Eigen::Matrix3d> all;
+  for (int i = 0; i < kStarts; ++i) all.push_back(orientation(i, kStarts));
+  return starts_of(scene, view, shape, all, far_limit(view), raster);
 }
 
 std::vector<Start> coarse_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
                                  std::vector<Start> starts, Raster& raster) {
   const FitView view = rough_view(scene, cluster, 28);
-  return best_of(scene, view, shape, std::move(starts), 8, 4, far_limit(view), raster);
+  const float limit = far_limit(view);
+  std::vector<Start> best =
+      best_of(scene, view, shape, std::move(starts), 8, kCoarse, limit, raster);
+  std::vector<Eigen::Matrix3d> turns;
+  for (std::size_t k = 0; k < std::min<std::size_t>(best.size(), 2); ++k) {
+    std::ranges::move(quarter_turns(shape, best[k].X_CO.R), std::back_inserter(turns));
+  }
+  std::vector<Start> turned = starts_of(scene, view, shape, turns, limit, raster);
+  turned = best_of(scene, view, shape, std::move(turned), kCoarse, kCoarse, limit, raster);
+  best.insert(best.end(), turned.begin(), turned.end());
+  std::stable_sort(best.begin(), best.end(), is_better);
+  best.resize(std::min(best.size(), kCoarse));
+  return best;
 }
 
 std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const ShapeModel& shape,

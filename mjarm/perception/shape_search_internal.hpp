@@ -16,6 +16,7 @@ struct ShapeFit {
   double missing = 0;      ///< share of its pixels through which something farther is seen
   double unexplained = 0;  ///< share of the cluster's pixels that it does not explain
   double residual = 0;     ///< [m] root mean square of depth over the pixels seen
+  double misfit = 0;  ///< the same as a share of what noise and a shape that is 1 mm off explain
   double uncertainty = 0;  ///< [m] standard deviation of its surface in the least certain direction
 };
 

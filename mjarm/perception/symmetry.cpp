@@ -6,7 +6,6 @@
 #include <functional>
 #include <numbers>
 
-#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/perception/shape_model_internal.hpp"
 
@@ -24,17 +23,12 @@ constexpr int kMostFold = 12;           // about one axis
 
 /// Directions about which the surface may be symmetrical, without their opposites.
 std::vector<Vector3d> likely_axes(const ShapeModel& shape) {
-  Matrix3d spread = Matrix3d::Zero();
-  for (const Vector3d& p : shape.points) {
-    spread += (p - shape.centre) * (p - shape.centre).transpose();
-  }
   std::vector<Vector3d> out;
   const auto add = [&](const Vector3d& axis) {
     const auto same = [&](const Vector3d& known) { return known.cross(axis).norm() < kSameAxis; };
     if (std::ranges::none_of(out, same)) out.push_back(axis);
   };
-  const Eigen::MatrixXd principal = symmetric_eigen(spread).vectors;
-  for (int k = 0; k < 3; ++k) add(principal.col(k));
+  for (int k = 0; k < 3; ++k) add(shape.axes.col(k));
   const Surface& surface = shape.fine.surface;
   std::vector<Vector3d> faces;  // normals, as long as they are large
   for (const auto& t : surface.triangles) {

@@ -16,16 +16,16 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const Robot& robot() {
+const Robot& pick_robot() {
   static const Robot kRobot = load_robot("universal_robots_ur5e/pick.xml").value();
   return kRobot;
 }
 
-ProgramPlan planned(const std::string& instructions, const SeeScene& see) {
+ProgramPlan planned_seeing(const std::string& instructions, const SeeScene& see) {
   const auto program = parse_program(
       "scene: universal_robots_ur5e/pick.xml\nprogram:\n" + instructions, "look.yaml");
   EXPECT_TRUE(program) << program.error().what;
-  return plan_program(robot().model, robot().arm, *program, {.see = see});
+  return plan_program(pick_robot().model, pick_robot().arm, *program, {.see = see});
 }
 
 /// Sees the box so far from where the model has it.
@@ -56,8 +56,9 @@ Eigen::Vector3d grasp_of(const ProgramPlan& plan) {
 TEST(Look, ThingsArePickedUpWhereTheyAreSeen) {
   std::string asked;
   const Eigen::Vector3d off(0.02, 0.03, 0);
-  const ProgramPlan there = planned("  - look: rgbd\n  - pick: box\n", eye({0, 0, 0}, &asked));
-  const ProgramPlan seen = planned("  - look: {camera: rgbd}\n  - pick: box\n", eye(off));
+  const ProgramPlan there =
+      planned_seeing("  - look: rgbd\n  - pick: box\n", eye({0, 0, 0}, &asked));
+  const ProgramPlan seen = planned_seeing("  - look: {camera: rgbd}\n  - pick: box\n", eye(off));
   ASSERT_THAT(there.faults, IsEmpty());
   ASSERT_THAT(seen.faults, IsEmpty());
   EXPECT_EQ(asked, "rgbd");
@@ -71,7 +72,7 @@ TEST(Look, WhatIsNotSeenIsNotPickedUp) {
     return SeenScene{.scene = scene, .unseen = {{"box", "it is hidden"}}};
   };
   const ProgramPlan plan =
-      planned("  - look: rgbd\n  - pick: box\n  - place: {pos: [0.5, -0.3, 0.236]}\n", see);
+      planned_seeing("  - look: rgbd\n  - pick: box\n  - place: {pos: [0.5, -0.3, 0.236]}\n", see);
   ASSERT_EQ(plan.faults.size(), 1u);
   EXPECT_EQ(plan.faults.front().reason, "not_seen");
   EXPECT_EQ(plan.faults.front().place.line, 4);
@@ -93,20 +94,21 @@ TEST(Look, APlaceMayBeTakenAsTheSymmetryOfTheThingHasIt) {
   };
   const std::string text =
       "  - look: rgbd\n  - pick: box\n  - place: {pos: [0.5, -0.3, 0.236], euler: [0, 0, 0]}\n";
-  EXPECT_THAT(planned(text, see(true)).faults, IsEmpty());
+  EXPECT_THAT(planned_seeing(text, see(true)).faults, IsEmpty());
   // To turn it over it would have to be held from below.
-  EXPECT_EQ(planned(text, see(false)).faults.size(), 1u);
+  EXPECT_EQ(planned_seeing(text, see(false)).faults.size(), 1u);
 }
 
 TEST(Look, StandsBeforeAllThatMoves) {
-  const ProgramPlan plan = planned("  - movej: {joints: home}\n  - look: rgbd\n", eye({0, 0, 0}));
+  const ProgramPlan plan =
+      planned_seeing("  - movej: {joints: home}\n  - look: rgbd\n", eye({0, 0, 0}));
   ASSERT_EQ(plan.faults.size(), 1u);
   EXPECT_EQ(plan.faults.front().place.line, 4);
   EXPECT_THAT(plan.faults.front().what, HasSubstr("before all that moves"));
 }
 
 TEST(Look, NeedsSomebodyWhoLooks) {
-  const ProgramPlan plan = planned("  - look: rgbd\n", {});
+  const ProgramPlan plan = planned_seeing("  - look: rgbd\n", {});
   ASSERT_EQ(plan.faults.size(), 1u);
   EXPECT_EQ(plan.faults.front().reason, "not_available");
 }
@@ -116,7 +118,7 @@ TEST(Look, TellsWhatTheEyeSays) {
                           std::span<const double>) -> Result<SeenScene> {
     return fail(Errc::bad_input, "no camera " + camera);
   };
-  const ProgramPlan plan = planned("  - look: rgb\n", see);
+  const ProgramPlan plan = planned_seeing("  - look: rgb\n", see);
   ASSERT_EQ(plan.faults.size(), 1u);
   EXPECT_EQ(plan.faults.front().reason, "unknown_name");
   EXPECT_EQ(plan.faults.front().code, Errc::bad_input);

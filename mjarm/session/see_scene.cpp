@@ -12,11 +12,17 @@
 #include "mjarm/sim/sim.hpp"
 
 namespace mjarm::session {
+namespace {
+
+constexpr double kAway = -50;  // [m] height at which nothing is seen
+
+}  // namespace
 
 struct SceneEye::Impl {
   Robot robot;
   Sim sim;
   render::RgbdCamera camera;
+  render::RgbdCamera bare;  ///< for what is known without looking: all but the objects
   perception::ObjectFinder finder;
   std::map<std::string, std::vector<Pose>> same;
   Rng noise;
@@ -39,17 +45,21 @@ Result<SceneEye> SceneEye::open(const Robot& robot, const std::string& camera,
     objects.push_back(std::move(*known));
   }
   if (objects.empty()) return fail(Errc::bad_input, text(msg::show_nothing_to_see));
-  Result<render::RgbdCamera> eye =
-      render::RgbdCamera::create(robot.model, camera, {.depth_sigma = options.depth_sigma});
+  Result<render::RgbdCamera> eye = render::RgbdCamera::create(
+      robot.model, camera,
+      {.depth_sigma = options.depth_sigma, .quality = render::RenderQuality::low});
   if (!eye) return fail(std::move(eye.error()));
+  auto bare = render::RgbdCamera::create(robot.model, camera,
+                                         {.depth_sigma = 0, .quality = render::RenderQuality::low});
+  if (!bare) return fail(std::move(bare.error()));
   auto finder = perception::ObjectFinder::create(
       std::move(objects), {.depth_sigma = options.depth_sigma, .seed = options.seed});
   if (!finder) return fail(std::move(finder.error()));
   Sim sim(robot.model);
   sim.reset_home();
   return SceneEye(
-      std::make_unique<Impl>(Impl{robot, std::move(sim), std::move(*eye), std::move(*finder),
-                                  std::move(same), Rng(options.seed)}));
+      std::make_unique<Impl>(Impl{robot, std::move(sim), std::move(*eye), std::move(*bare),
+                                  std::move(*finder), std::move(same), Rng(options.seed)}));
 }
 
 Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<const double> q) {
@@ -62,7 +72,12 @@ Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<con
   sim.place(impl_->robot.arm, q);
   const Result<render::RgbdFrame> frame = impl_->camera.look(sim.snapshot(), impl_->noise);
   if (!frame) return fail(frame.error());
-  Result<perception::FoundScene> found = impl_->finder.find(*frame);
+  const Snapshot full = sim.snapshot();
+  for (const auto& [name, poses] : impl_->same) sim.place_free(name, {.p = {0, 0, kAway}});
+  const Result<render::RgbdFrame> known = impl_->bare.look(sim.snapshot(), impl_->noise);
+  if (!known) return fail(known.error());
+  if (Result<void> back = sim.restore(full); !back) return fail(std::move(back.error()));
+  Result<perception::FoundScene> found = impl_->finder.find(*frame, known->depth);
   if (!found) return fail(std::move(found.error()));
   impl_->found = std::move(*found);
   program::SeenScene out;
