@@ -26,7 +26,7 @@ std::string refusal(const std::vector<std::string>& arguments, int code = 2) {
 
 TEST(BenchRefuses, WordsThatNoSuiteKnows) {
   for (const auto& [words, reason] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"bench"}, "ik, path, plan, time, control, sim, rl"},
+           {{"bench"}, "ik, path, plan, time, control, pick, sim, rl"},
            {{"bench", "ik", "path"}, "\"path\" is not expected"},
            {{"bench", "ik", "--robots", "ur5e"}, "did you mean \"--robot\"?"},
            {{"bench", "ik", "--peers"}, "--peers"},
