@@ -140,10 +140,25 @@ JointLimits DetourPlanner::limits_at(double share) const {
   return limits;
 }
 
+Result<PlanningWorld*> DetourPlanner::world() {
+  if (!world_) {
+    Result<PlanningWorld> made = PlanningWorld::create(robot_, options_);
+    if (!made) return fail(std::move(made.error()));
+    world_ = std::move(*made);
+  }
+  return &*world_;
+}
+
+Result<WayProver> DetourPlanner::prover_of(std::span<const PlannedPath> paths) {
+  const Result<PlanningWorld*> here = world();
+  if (!here) return fail(here.error());
+  return (*here)->prover(paths, stop_);
+}
+
 bool DetourPlanner::lead_into(const JointState& end, std::span<const PlannedPath> paths,
                               double share, Trajectory& motion, MoveMeasures& measures) {
   const JointLimits limits = limits_at(share);
-  const Result<WayProver> prover = world_->prover(paths, stop_);
+  const Result<WayProver> prover = prover_of(paths);
   if (!prover) return false;
   std::optional<Trajectory> led = mjarm::lead_into(motion, end, limits, *prover);
   if (!led) return false;
@@ -157,7 +172,7 @@ bool DetourPlanner::lead_into(const JointState& end, std::span<const PlannedPath
 Result<DetourMotion, DetourFault> DetourPlanner::timed(std::vector<PlannedPath> paths,
                                                        double share) {
   const JointLimits limits = limits_at(share);
-  const Result<WayProver> prover = world_->prover(paths, stop_);
+  const Result<WayProver> prover = prover_of(paths);
   if (!prover) return no_detour("bad_input", prover.error().what);
   Corners corners = corners_of(paths);
   Result<PathMotion> motion =
@@ -182,15 +197,12 @@ Result<DetourMotion, DetourFault> DetourPlanner::plan(const JointVec& q,
     Result<DetourMotion, DetourFault> found = plan(q, goals, share, margin_);
     if (found || is_stopped(stop_)) return found;
   }
-  if (!world_) {
-    Result<PlanningWorld> made = PlanningWorld::create(robot_, options_);
-    if (!made) return no_detour("bad_input", made.error().what);
-    world_ = std::move(*made);
-  }
+  const Result<PlanningWorld*> here = world();
+  if (!here) return no_detour("bad_input", here.error().what);
   PlanOptions search = kSearch;
   search.stop = stop_;
   search.clearance = clearance;
-  Result<PlannedPath, WorldFailure> path = world_->plan(as_span(q), goals, search);
+  Result<PlannedPath, WorldFailure> path = (*here)->plan(as_span(q), goals, search);
   if (!path) {
     const WorldFailure& why = path.error();
     const char* reason = why.code == WorldErrc::no_path ? name_of(why.search.code) : "bad_input";

@@ -78,6 +78,8 @@ class DetourPlanner {
 
  private:
   [[nodiscard]] JointLimits limits_at(double share) const;
+  [[nodiscard]] Result<PlanningWorld*> world();
+  [[nodiscard]] Result<WayProver> prover_of(std::span<const PlannedPath> paths);
   [[nodiscard]] std::optional<std::string> touches(const JointVec& q) const;
   /// What touches in the answer to a pose that touches least.
   [[nodiscard]] std::optional<std::string> least_touch(const JointVec& q, const Pose& X_WT) const;
@@ -88,7 +90,7 @@ class DetourPlanner {
   WorldOptions options_;
   StopCheck stop_;
   double margin_;
-  std::optional<PlanningWorld> world_;  // made when a detour is asked for first
+  std::optional<PlanningWorld> world_;  // made when it is asked for first
 };
 
 }  // namespace mjarm::program::detail

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/program/program_plan.hpp"
 #include "mjarm/program/program_reader.hpp"
 #include "mjarm/trajectory/tool_down_test.hpp"
@@ -66,6 +67,30 @@ void expect_free(const PlannedMove& move) {
   const LimitUse use = check_limits(move.trajectory, walled().arm.limits);
   EXPECT_LE(use.worst(), 1 + 1e-6);
   EXPECT_LE(use.position.maxCoeff(), 1e-9);
+}
+
+/// Of many scenes only the last ones are kept, so one may be asked that never planned.
+TEST(DetourPlanner, TimesPathsThatAnotherOnePlanned) {
+  const Robot& robot = walled();
+  const ExactChecker checker(robot.model, robot.arm);
+  const IkSolver ik(robot.arm, {.task = task_for(robot.arm)});
+  const detail::MoveJudge judge(robot.arm, checker, checker);
+  detail::DetourPlanner first(robot, ik, judge), second(robot, ik, judge), third(robot, ik, judge);
+  const auto program = parse_program(
+      std::string("robot: ur5e\nprogram:\n") + stop_at(kBefore) + plan_to(kBehind), "p.yaml");
+  const ProgramPlan plan = plan_program(robot.model, robot.arm, program.value());
+  const JointVec from = plan.moves.back().corners.front(), to = plan.moves.back().corners.back();
+  const auto motion = first.plan(from, std::span(&to, 1), 1);
+  ASSERT_TRUE(motion) << motion.error().what;
+  const auto again = second.timed(motion->paths, 1);
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->motion.trajectory.duration(), motion->motion.trajectory.duration());
+  // To rest there is nothing to be gained, and nothing changes.
+  Trajectory kept = motion->motion.trajectory;
+  MoveMeasures measures = motion->measures;
+  const JointState end = kept.at(kept.duration());
+  static_cast<void>(third.lead_into(end, motion->paths, 1, kept, measures));
+  EXPECT_LE(kept.duration(), motion->motion.trajectory.duration() + 1e-9);
 }
 
 TEST(DetourPlanner, TheStraightWayHitsAndThePlannedOneDoesNot) {
