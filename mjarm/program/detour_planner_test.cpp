@@ -74,7 +74,7 @@ TEST(DetourPlanner, TimesPathsThatAnotherOnePlanned) {
   const Robot& robot = walled();
   const ExactChecker checker(robot.model, robot.arm);
   const IkSolver ik(robot.arm, {.task = task_for(robot.arm)});
-  const detail::MoveJudge judge(robot.arm, checker, checker);
+  const MoveJudge judge(robot.arm, checker, checker);
   detail::DetourPlanner first(robot, ik, judge), second(robot, ik, judge), third(robot, ik, judge);
   const auto program = parse_program(
       std::string("robot: ur5e\nprogram:\n") + stop_at(kBefore) + plan_to(kBehind), "p.yaml");
