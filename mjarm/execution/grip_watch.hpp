@@ -16,7 +16,8 @@ namespace mjarm {
 /// the way that is left.
 inline constexpr double kFingerSlide = 2e-3, kFingerTurn = 0.03;
 /// [rad or m] that a joint may be off the reference: of an arm that is free it is a thousandth, but
-/// 0.02 where an actuator is at its limit for a moment (the last joint of a Panda that turns round).
+/// 0.02 where an actuator is at its limit for a moment (the last joint of a Panda that turns
+/// round).
 inline constexpr double kBlockedError = 0.05;
 
 /// What can go wrong with what is carried.
