@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
@@ -23,7 +24,8 @@ std::string_view name(GripFault fault) noexcept {
   return "";
 }
 
-GripWatch::GripWatch(const Model& model, const MotionPlan& plan, SceneState before) : plan_(&plan) {
+GripWatch::GripWatch(const Model& model, const MotionPlan& plan, SceneState before)
+    : plan_(&plan), on_way_(std::numeric_limits<double>::infinity()) {
   const Arm& arm = plan.arms.front();
   holding_.resize(plan.moves.size());
   if (!arm.gripper) return;
@@ -76,7 +78,8 @@ GripFault GripWatch::look(const Sim& sim, std::size_t move, const JointVec& erro
   if (fault_ != GripFault::none || move >= holding_.size()) return fault_;
   int joint = 0;
   const double most = error.cwiseAbs().maxCoeff(&joint);
-  if (most > kBlockedError) {
+  if (most <= kBlockedError) on_way_ = sim.time();
+  if (sim.time() - on_way_ > kBlockedTime) {
     const Arm& arm = plan_->arms.front();
     what_ = text(msg::execution_blocked, arm.joints[static_cast<std::size_t>(joint)].name, most,
                  sim.time());

@@ -15,10 +15,10 @@ namespace mjarm {
 /// [m] and [rad] that a finger may close farther than what it holds lets it; of thin things half of
 /// the way that is left.
 inline constexpr double kFingerSlide = 2e-3, kFingerTurn = 0.03;
-/// [rad or m] that a joint may be off the reference: of an arm that is free it is a thousandth, but
-/// 0.02 where an actuator is at its limit for a moment (the last joint of a Panda that turns
-/// round).
-inline constexpr double kBlockedError = 0.05;
+/// [rad or m] that a joint may be off the reference for so long [s]: of an arm that is free it is a
+/// thousandth, but more for a moment where a servo's damping takes all of its range (the last joint
+/// of a Panda that runs towards its limit).
+inline constexpr double kBlockedError = 0.03, kBlockedTime = 0.2;
 
 /// What can go wrong with what is carried.
 enum class GripFault {
@@ -61,6 +61,7 @@ class GripWatch {
   /// By motion: the configuration (nq,) in which the fingers hold something; empty where they hold
   /// nothing.
   std::vector<std::vector<double>> holding_;
+  double on_way_;       ///< [s] when all joints were last where they should be
   bool holds_ = false;  ///< something, when it was last looked at
   GripFault fault_ = GripFault::none;
   std::string what_;
