@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
@@ -30,8 +29,6 @@ struct SolvedSet {
   std::vector<PickVerdict> verdicts;
 };
 
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
-
 std::vector<std::string> row_of(const SolvedSet& set) {
   double seen = 0, seen_turn = 0, off = 0, turn = 0, others = 0, seconds = 0;
   std::size_t placed = 0, tries = 0;
@@ -49,8 +46,8 @@ std::vector<std::string> row_of(const SolvedSet& set) {
   return {set.robot,
           set.name,
           fmt::format("{}/{}", placed, set.verdicts.size()),
-          fmt::format("{:.2f} mm, {:.2f} deg", 1e3 * seen, degrees(seen_turn)),
-          fmt::format("{:.2f} mm, {:.2f} deg", 1e3 * off, degrees(turn)),
+          fmt::format("{:.2f} mm, {:.2f} deg", 1e3 * seen, in_degrees(seen_turn)),
+          fmt::format("{:.2f} mm, {:.2f} deg", 1e3 * off, in_degrees(turn)),
           fmt::format("{:.2f}", 1e3 * others),
           std::to_string(tries),
           fmt::format("{:.1f}", placed == 0 ? 0 : seconds / static_cast<double>(placed))};

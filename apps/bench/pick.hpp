@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ struct PickSet {
 /// [rad] between two orientations of one of the objects, up to its symmetry.
 [[nodiscard]] double turn_between(const std::string& object, const Eigen::Matrix3d& A,
                                   const Eigen::Matrix3d& B);
+
+[[nodiscard]] inline double in_degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 /// Looks with the scene's camera, picks and places, in a simulation of its own.
 /// @return an error where the camera cannot draw or the simulation broke down.

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
@@ -14,9 +13,7 @@ namespace {
 
 constexpr double kPlaced = 5e-3;        // [m]
 constexpr double kPlacedTurn = 0.0873;  // [rad] 5 deg
-double in_degrees(double radians) { return radians * 180 / std::numbers::pi; }
-
-constexpr double kMoved = 1e-3;  // [m] that nothing else may be moved by
+constexpr double kMoved = 1e-3;         // [m] that nothing else may be moved by
 
 /// A world of one problem, and what is true in it.
 class PickWorld {

@@ -85,23 +85,26 @@ class ProgramPlanner {
     return plan;
   }
 
+  /// A step that cannot be done, with nothing to be had in its place.
+  void refuse(const Step& step, std::string_view reason, std::string what, Errc code) {
+    detail::add_fault(plan_.faults, {.place = step.place,
+                                     .word = std::string(step.word),
+                                     .reason = std::string(reason),
+                                     .what = std::move(what),
+                                     .code = code});
+  }
+
   /// Things stand where the camera sees them.
   void look(const Step& step, Stand& at) {
-    const auto fault = [&](std::string_view reason, std::string what, Errc code) {
-      detail::add_fault(plan_.faults, {.place = step.place,
-                                       .word = std::string(step.word),
-                                       .reason = std::string(reason),
-                                       .what = std::move(what),
-                                       .code = code});
-    };
     if (!options_.see) {
-      return fault("not_available", text(msg::program_nobody_looks), Errc::not_available);
+      return refuse(step, "not_available", text(msg::program_nobody_looks), Errc::not_available);
     }
     Result<SeenScene> seen = options_.see({model_, plan_.arms[step.tool]}, step.object,
                                           places_.state(at.scene), as_span(at.q));
     if (!seen) {
       const bool named = seen.error().code == Errc::bad_input;
-      return fault(named ? "unknown_name" : "not_available", seen.error().what, seen.error().code);
+      return refuse(step, named ? "unknown_name" : "not_available", seen.error().what,
+                    seen.error().code);
     }
     at.scene = places_.enter(std::move(seen->scene));
     unseen_ = std::move(seen->unseen);
@@ -127,12 +130,8 @@ class ProgramPlanner {
     const SceneState& scene = places_.state(at.scene);
     if (const auto unseen = unseen_.find(step.object); picks && unseen != unseen_.end()) {
       i += goal ? 2 : 1;
-      detail::add_fault(plan_.faults,
-                        {.place = step.place,
-                         .word = std::string(step.word),
-                         .reason = "not_seen",
-                         .what = text(msg::program_not_seen, step.object, unseen->second),
-                         .code = Errc::impossible});
+      refuse(step, name(PickErrc::not_seen),
+             text(msg::program_not_seen, step.object, unseen->second), Errc::impossible);
       return false;
     }
     auto planned = picks ? plan_pick(robot, scene, as_span(at.q), {step.object, goal}, how)
@@ -140,11 +139,8 @@ class ProgramPlanner {
     i += picks && goal ? 2 : 1;
     if (!planned) {
       const bool named = planned.error().code == PickErrc::no_object;
-      detail::add_fault(plan_.faults, {.place = step.place,
-                                       .word = std::string(step.word),
-                                       .reason = std::string(name(planned.error().code)),
-                                       .what = planned.error().what,
-                                       .code = named ? Errc::bad_input : Errc::impossible});
+      refuse(step, name(planned.error().code), planned.error().what,
+             named ? Errc::bad_input : Errc::impossible);
       return false;
     }
     for (PlannedMove& move : planned->plan.moves) {
