@@ -86,7 +86,7 @@ void Execution::take_load(const Model& model, std::size_t move) {
     const SceneBodies bodies = scene_bodies(model, plan_->arms.front());
     for (const AttachedBody& one : plan_->moves[move - 1].attached) {
       const auto object = std::ranges::find(bodies.objects, one.body, &SceneObject::name);
-      if (object != bodies.objects.end()) load += object_shape(model, object->body).mass;
+      if (object != bodies.objects.end()) load += object_mass(model, object->body).mass;
     }
   }
   if (load == load_) return;

@@ -42,7 +42,7 @@ std::string describe(const ObservedObject& object) {
 ObjectWatch::ObjectWatch(const Model& model, const MotionPlan& plan)
     : plan_(&plan), bodies_(scene_bodies(model, plan.arms.front())) {
   for (const SceneObject& object : bodies_.objects) {
-    centers_.push_back(object_shape(model, object.body).center_B);
+    centers_.push_back(object_mass(model, object.body).center_B);
   }
   restart();
 }

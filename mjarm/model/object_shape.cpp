@@ -70,11 +70,9 @@ std::optional<ShapePart> part_of(const mjModel* m, int geom) {
   }
 }
 
-}  // namespace
-
-ObjectShape object_shape(const Model& model, int body) {
-  const mjModel* m = model.raw();
-  ObjectShape shape;
+/// Calls `visit(k, X_BK)` for a body and all that hangs on it.
+template <class Visit>
+void visit_below(const mjModel* m, int body, const Visit& visit) {
   std::vector<std::optional<Pose>> X_BK(static_cast<std::size_t>(m->nbody));
   X_BK[static_cast<std::size_t>(body)] = Pose();
   for (int k = body; k < static_cast<int>(m->nbody); ++k) {  // parents come before children
@@ -83,18 +81,35 @@ ObjectShape object_shape(const Model& model, int body) {
         k > body && parent) {
       here = *parent * pose_of(m->body_pos + 3 * k, m->body_quat + 4 * k);
     }
-    if (!here) continue;
-    shape.mass += m->body_mass[k];
-    shape.center_B += m->body_mass[k] * (*here * Vector3d(m->body_ipos + 3 * k));
+    if (here) visit(k, *here);
+  }
+}
+
+}  // namespace
+
+ObjectMass object_mass(const Model& model, int body) {
+  const mjModel* m = model.raw();
+  ObjectMass out;
+  visit_below(m, body, [&](int k, const Pose& X_BK) {
+    out.mass += m->body_mass[k];
+    out.center_B += m->body_mass[k] * (X_BK * Vector3d(m->body_ipos + 3 * k));
+  });
+  if (out.mass > 0) out.center_B /= out.mass;
+  return out;
+}
+
+ObjectShape object_shape(const Model& model, int body) {
+  const mjModel* m = model.raw();
+  ObjectShape shape{object_mass(model, body), {}};
+  visit_below(m, body, [&](int k, const Pose& X_BK) {
     for (int g = m->body_geomadr[k]; g < m->body_geomadr[k] + m->body_geomnum[k]; ++g) {
       if (m->geom_contype[g] == 0 && m->geom_conaffinity[g] == 0) continue;
       std::optional<ShapePart> part = part_of(m, g);
       if (!part) continue;
-      part->X_BG = *here * pose_of(m->geom_pos + 3 * g, m->geom_quat + 4 * g);
+      part->X_BG = X_BK * pose_of(m->geom_pos + 3 * g, m->geom_quat + 4 * g);
       shape.parts.push_back(std::move(*part));
     }
-  }
-  if (shape.mass > 0) shape.center_B /= shape.mass;
+  });
   return shape;
 }
 

@@ -23,12 +23,19 @@ struct ShapePart {
       {};  ///< hull: triangles, seen from outside they turn left
 };
 
-/// What a body that can be carried consists of, with all that hangs on it.
-struct ObjectShape {
-  std::vector<ShapePart> parts;                        ///< those that collide
+/// How heavy a body is, with all that hangs on it.
+struct ObjectMass {
   Eigen::Vector3d center_B = Eigen::Vector3d::Zero();  ///< [m] of mass
   double mass = 0;                                     ///< [kg]
 };
+
+/// What a body that can be carried consists of, with all that hangs on it.
+struct ObjectShape : ObjectMass {
+  std::vector<ShapePart> parts;  ///< those that collide
+};
+
+/// The mass of the body with that number; joints below it stand at their initial values.
+[[nodiscard]] ObjectMass object_mass(const Model& model, int body);
 
 /// The shape of the body with that number; joints below it stand at their initial values. Planes,
 /// height fields and flexes are left out.
