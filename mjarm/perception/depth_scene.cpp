@@ -111,12 +111,27 @@ void label_pixels(DepthScene& scene) {
   }
 }
 
+/// Another hue, however bright both are lit; dark pixels have none.
+bool hue_changes(const render::Image& color, std::size_t a, std::size_t b) {
+  constexpr int kDark = 60;        // of 765
+  constexpr double kChange = 0.1;  // of the shares of red and green in all
+  const auto* A = &color.rgb[3 * a];
+  const auto* B = &color.rgb[3 * b];
+  const int sum_a = A[0] + A[1] + A[2];
+  const int sum_b = B[0] + B[1] + B[2];
+  if (sum_a < kDark || sum_b < kDark) return false;
+  const auto change = [&](int k) {
+    return std::abs(static_cast<double>(A[k]) / sum_a - static_cast<double>(B[k]) / sum_b);
+  };
+  return change(0) + change(1) > kChange;
+}
+
 /// Gives each connected piece of what is above the table its number: neighbours belong together
-/// unless depth jumps.
+/// unless depth jumps or hue changes.
 class Gatherer {
  public:
-  Gatherer(DepthScene& scene, double jump)
-      : scene_(scene), jump_(jump), todo_(scene.label.size(), 0) {
+  Gatherer(DepthScene& scene, double jump, const render::Image* color)
+      : scene_(scene), jump_(jump), color_(color), todo_(scene.label.size(), 0) {
     for (std::size_t i = 0; i < todo_.size(); ++i) {
       todo_[i] = scene.label[i] >= 0 || scene.label[i] == kSpeck ? 1 : 0;
     }
@@ -165,12 +180,14 @@ class Gatherer {
     const double q = scene_.inverse[static_cast<std::size_t>(from)];
     const double most = 6 * scene_.model.sigma + DepthModel::from_metres(jump_, q);
     if (std::abs(scene_.inverse[i] - q) > most) return;
+    if (color_ != nullptr && hue_changes(*color_, static_cast<std::size_t>(from), i)) return;
     todo_[i] = 0;
     piece_.push_back(to);
   }
 
   DepthScene& scene_;
   double jump_;  ///< [m] and six sigma
+  const render::Image* color_;
   std::vector<char> todo_;
   std::vector<int> piece_;
 };
@@ -239,9 +256,9 @@ void take_out(DepthScene& scene, const std::vector<float>& drawn) {
   }
 }
 
-void gather(DepthScene& scene, double jump) {
+void gather(DepthScene& scene, double jump, const render::Image* color) {
   scene.clusters.clear();
-  Gatherer(scene, jump).run();
+  Gatherer(scene, jump, color).run();
 }
 
 }  // namespace mjarm::perception

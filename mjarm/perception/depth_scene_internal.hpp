@@ -59,8 +59,9 @@ void leave_out(DepthScene& scene, const std::vector<float>& known);
 void take_out(DepthScene& scene, const std::vector<float>& drawn);
 
 /// Makes clusters anew of all pixels that are in one, and of specks.
-/// @param jump  [m] in depth between neighbours that still belong together, beside the noise
-void gather(DepthScene& scene, double jump);
+/// @param jump   [m] in depth between neighbours that still belong together, beside the noise
+/// @param color  of the same pixels: where its hue changes a cluster ends; null: depth alone counts
+void gather(DepthScene& scene, double jump, const render::Image* color = nullptr);
 /// What a smooth surface may fall from one pixel to the next.
 inline constexpr double kSmoothJump = 0.004;  // [m]
 

@@ -21,7 +21,7 @@ constexpr double kMostMissing = 0.1;       // share of its pixels through which 
 constexpr double kMostUnexplained = 0.1;   // share of a cluster's pixels that are not it
 constexpr double kMostMisfit = 1.2;        // of the pixels that it explains
 constexpr double kTouching = 0.6;          // the same where it may be a part of the cluster
-constexpr double kLeastSeen = 0.8;         // of an object without a tag
+constexpr double kLeastSeen = 0.6;         // of an object without a tag
 constexpr double kMostOutside = 0.05;      // of it, outside of the picture
 constexpr double kWhole = 0.95;            // of one that nothing hides
 constexpr double kMostUncertain = 0.0006;  // [m]
@@ -296,8 +296,10 @@ Result<FoundScene> ObjectFinder::find(const render::RgbdFrame& frame,
   }
   std::vector<ObjectPose> poses(impl_->objects.size(), fail(FindFailure{}));
   impl_->find_by_tags(frame, scene, poses);
-  // First what is seen in one piece; then pieces that may be parts of one thing, the nearer part
-  // hiding how they are joined.
+  // First what is seen in one piece of one hue, in one piece of any, and then pieces that may be
+  // parts of one thing, the nearer part hiding how they are joined.
+  gather(scene, kSmoothJump, &frame.color);
+  impl_->find_by_shapes(scene, false, poses);
   for (const double jump : {kSmoothJump, kPieceJump}) {
     gather(scene, jump);
     impl_->find_by_shapes(scene, jump == kPieceJump, poses);

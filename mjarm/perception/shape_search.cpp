@@ -73,22 +73,33 @@ float sunk_residual(const DepthScene& scene, const FitView& view, const ShapeMod
 
 bool is_better(const Start& a, const Start& b) { return a.cost < b.cost; }
 
-/// Orientations, each so placed that what is seen of it has the cluster's mean; the best first.
+/// Whether anything else may hide a part of the cluster.
+bool is_hidden(const FitView& view) {
+  return std::ranges::find(view.kind, FitView::other) != view.kind.end();
+}
+
+/// Orientations, each so placed that what is seen of it, where nothing else hides it, has the
+/// cluster's mean; the best first.
 std::vector<Start> starts_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
                              const std::vector<Eigen::Matrix3d>& orientations, float limit,
                              Raster& raster) {
+  const int shifts = is_hidden(view) ? 3 : 1;
   const Eigen::Vector3d seen_C = mean_point(
       view, view.inverse, [&](std::size_t i) { return view.kind[i] == FitView::cluster; });
   std::vector<Start> out;
   std::vector<float> r;
   for (const Eigen::Matrix3d& R_CO : orientations) {
     Pose X_CO = with_centre(shape, R_CO, seen_C + 0.5 * shape.radius * seen_C.normalized());
-    raster.clear(view.lens);
-    raster.draw(shape.coarse.surface, X_CO, shape.coarse.sides);
-    const std::vector<float>& drawn = raster.inverse();
-    const Eigen::Vector3d drawn_C =
-        mean_point(view, drawn, [&](std::size_t at) { return drawn[at] > view.table_inverse[at]; });
-    if (drawn_C.z() > 0) X_CO.p += seen_C - drawn_C;
+    for (int k = 0; k < shifts; ++k) {
+      raster.clear(view.lens);
+      raster.draw(shape.coarse.surface, X_CO, shape.coarse.sides);
+      const std::vector<float>& drawn = raster.inverse();
+      const Eigen::Vector3d drawn_C = mean_point(view, drawn, [&](std::size_t at) {
+        const bool behind = view.kind[at] == FitView::other && view.inverse[at] > drawn[at];
+        return drawn[at] > view.table_inverse[at] && !behind;
+      });
+      if (drawn_C.z() > 0) X_CO.p += seen_C - drawn_C;
+    }
     raster.clear(view.lens);
     raster.draw(shape.coarse.surface, X_CO, shape.coarse.sides);
     residuals_of(view, raster.inverse(), limit, r);
@@ -141,16 +152,29 @@ Start refined(const DepthScene& scene, const FitView& view, const ShapeModel& sh
   return {turned_about_centre(shape, X_CO, fit.x), fit.cost};
 }
 
-/// Refines the first ones and keeps, best first, so many that differ by more than symmetry.
-std::vector<Start> best_of(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
-                           std::vector<Start> starts, std::size_t tried, std::size_t kept,
-                           float limit, Raster& raster) {
-  starts.resize(std::min(starts.size(), tried));
-  for (Start& start : starts)
-    start = refined(scene, view, shape, shape.coarse, start, limit, 1, raster);
+/// The best of what is found from a little beside: outlines in whole pixels make shallow minima.
+Start best_near(const DepthScene& scene, const FitView& view, const ShapeModel& shape,
+                const Start& start, Raster& raster) {
+  constexpr double kTurn = 0.04;  // [rad]
+  Start best = start;
+  for (int k = 0; k < 6; ++k) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(6);
+    x[3 + k / 2] = k % 2 == 0 ? kTurn : -kTurn;
+    Start near{turned_about_centre(shape, start.X_CO, x), 0};
+    for (const double pixels : {2, 1}) {
+      near = refined(scene, view, shape, shape.fine, near, kFineLimit, pixels, raster);
+    }
+    if (near.cost < best.cost) best = near;
+  }
+  return best;
+}
+
+/// So many of them, the best first, that differ by more than symmetry and half a pixel.
+std::vector<Start> distinct(const FitView& view, const ShapeModel& shape, std::vector<Start> starts,
+                            std::size_t kept) {
   std::stable_sort(starts.begin(), starts.end(), is_better);
+  const double same = std::max(kSame, 0.5 / (view.middle * view.lens.fx));
   std::vector<Start> out;
-  const double same = std::max(kSame, 0.5 / (view.middle * view.lens.fx));  // half a pixel
   for (const Start& start : starts) {
     if (out.size() == kept) break;
     const bool known = std::any_of(out.begin(), out.end(), [&](const Start& other) {
@@ -159,6 +183,16 @@ std::vector<Start> best_of(const DepthScene& scene, const FitView& view, const S
     if (!known) out.push_back(start);
   }
   return out;
+}
+
+/// Refines the first ones.
+std::vector<Start> first_refined(const DepthScene& scene, const FitView& view,
+                                 const ShapeModel& shape, std::vector<Start> starts,
+                                 std::size_t tried, float limit, Raster& raster) {
+  starts.resize(std::min(starts.size(), tried));
+  for (Start& start : starts)
+    start = refined(scene, view, shape, shape.coarse, start, limit, 1, raster);
+  return starts;
 }
 
 /// The cluster with a rim of a share of its size.
@@ -294,18 +328,16 @@ std::vector<Start> coarse_search(const DepthScene& scene, int cluster, const Sha
                                  std::vector<Start> starts, Raster& raster) {
   const FitView view = rough_view(scene, cluster, 28);
   const float limit = far_limit(view);
-  std::vector<Start> best =
-      best_of(scene, view, shape, std::move(starts), 8, kCoarse, limit, raster);
+  starts = first_refined(scene, view, shape, std::move(starts), 8, limit, raster);
+  std::vector<Start> best = distinct(view, shape, std::move(starts), kCoarse);
   std::vector<Eigen::Matrix3d> turns;
   for (std::size_t k = 0; k < std::min<std::size_t>(best.size(), 2); ++k) {
     std::ranges::move(quarter_turns(shape, best[k].X_CO.R), std::back_inserter(turns));
   }
   std::vector<Start> turned = starts_of(scene, view, shape, turns, limit, raster);
-  turned = best_of(scene, view, shape, std::move(turned), kCoarse, kCoarse, limit, raster);
-  best.insert(best.end(), turned.begin(), turned.end());
-  std::stable_sort(best.begin(), best.end(), is_better);
-  best.resize(std::min(best.size(), kCoarse));
-  return best;
+  turned = first_refined(scene, view, shape, std::move(turned), kCoarse, limit, raster);
+  std::ranges::move(turned, std::back_inserter(best));
+  return distinct(view, shape, std::move(best), kCoarse);
 }
 
 std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const ShapeModel& shape,
@@ -313,7 +345,8 @@ std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const Sh
   const Cluster& box = scene.clusters[static_cast<std::size_t>(cluster)];
   const FitView middle = rough_view(scene, cluster, 56);
   const float limit = 2 * kFineLimit;
-  starts = best_of(scene, middle, shape, std::move(starts), 4, 2, limit, raster);
+  starts = first_refined(scene, middle, shape, std::move(starts), kCoarse, limit, raster);
+  starts = distinct(middle, shape, std::move(starts), 2);
   std::vector<ShapeFit> out;
   for (const Start& start : starts) {
     // What was far behind stays there.
@@ -323,6 +356,7 @@ std::vector<ShapeFit> fine_search(const DepthScene& scene, int cluster, const Sh
     for (const double pixels : {6, 2, 1}) {
       last = refined(scene, fine, shape, shape.fine, last, kFineLimit, pixels, raster);
     }
+    last = best_near(scene, fine, shape, last, raster);
     if (!out.empty() && is_same(shape, last.X_CO, out.front().X_CO)) continue;
     out.push_back(check_shape(scene, cluster, shape, last.X_CO, raster));
   }

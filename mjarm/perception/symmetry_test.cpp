@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <numbers>
 
 #include "mjarm/core/rotation.hpp"
@@ -40,6 +41,28 @@ TEST(Symmetries, OfACanAreTurnsAndTheFlip) {
   const auto all = symmetries(cylinder_surface(0.03, 0.05));
   EXPECT_EQ(all.size(), 2u * kRoundTurns);
   for (const Pose& one : all) EXPECT_NEAR(std::abs(one.R(2, 2)), 1, 1e-6);
+}
+
+// Turned at will it is off by a millimetre at most, and is not round all the same.
+TEST(Symmetries, OfASmallPrismOfSixSidesAreTwelve) {
+  Surface prism;
+  for (const double z : {-0.025, 0.025}) {
+    for (int k = 0; k < 6; ++k) {
+      const double angle = std::numbers::pi * k / 3;
+      prism.vertices.emplace_back(0.025 * std::cos(angle), 0.025 * std::sin(angle), z);
+    }
+  }
+  for (int k = 0; k < 6; ++k) {
+    const int next = (k + 1) % 6;
+    prism.triangles.push_back({k, next, next + 6});
+    prism.triangles.push_back({k, next + 6, k + 6});
+    if (k == 0 || k == 5) continue;
+    prism.triangles.push_back({0, next, k});
+    prism.triangles.push_back({6, k + 6, next + 6});
+  }
+  const auto all = symmetries(prism);
+  EXPECT_EQ(all.size(), 12u);
+  EXPECT_TRUE(has(all, Eigen::AngleAxisd(std::numbers::pi / 3, Vector3d::UnitZ()).matrix()));
 }
 
 TEST(Symmetries, OfAnLWithLegsOfTwoLengthsAreNone) {
