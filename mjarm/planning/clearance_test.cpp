@@ -112,7 +112,7 @@ TEST(Clearance, WhereNoPathKeepsItTheLargestThatIsPossibleIsSaid) {
   const LanguageScope english(Language::english);
   const Robot robot = slider(0.1);  // 30 mm above and below the ball
   PlanningWorld world = PlanningWorld::create(robot).value();
-  const auto none = world.plan(kLeftOfFence, right(), {.clearance = 0.05});
+  const auto none = world.plan(kLeftOfFence, right(), {.time_limit = 0, .clearance = 0.05});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().search.code, PlanErrc::too_near);
   const double possible = none.error().search.possible;

@@ -80,9 +80,10 @@ TEST(RegionPlan, DrawsMoreWhereTheFirstPosesAreInTheWay) {
   PlanningWorld world = walled_world();
   // A box in the wall, of which but the top is free: of the first 16 poses none.
   const PathEnd goal{.regions = {region_about(down(0, -0.5, 0.2), {0.02, 0.1, 0.215}, 0.1, 1)}};
-  const auto path = world.plan(at(down(0.3, -0.45, 0.3)), goal);
+  const PlanOptions patient{.time_limit = 0};
+  const auto path = world.plan(at(down(0.3, -0.45, 0.3)), goal, patient);
   ASSERT_TRUE(path) << path.error().what;
-  const auto again = world.plan(at(down(0.3, -0.45, 0.3)), goal);
+  const auto again = world.plan(at(down(0.3, -0.45, 0.3)), goal, patient);
   EXPECT_EQ(again->q, path->q);
 }
 
