@@ -26,6 +26,7 @@ constexpr double kFingersOpen = 1e-3;  // [m or rad] so near to open they need n
 constexpr double kRest = 1e-3;         // [m] what is carried may be so deep in what it lies on
 constexpr int kTurns = 8;              // about the vertical that are tried at a place
 constexpr double kClear = 0.05;        // [m] more clearance than that makes no grasp better
+constexpr double kBeside = 1e-3;       // [m] from all but the object, where the fingers close
 
 /// What a grasp costs that comes from aside, in the place of one from above; the same as so many
 /// metres off the centre of mass.
@@ -175,11 +176,13 @@ class PickPlanner {
     }
     std::ranges::stable_sort(all, {}, &GoodGrasp::cost);
     ExactChecker checker(robot_.model, robot_.arm, {.qpos = open_.qpos});
+    ExactChecker beside(robot_.model, robot_.arm,
+                        {.margin = kClear, .rules = without_object(), .qpos = open_.qpos});
     const IkSolver ik = solver(checker);
     std::vector<GoodGrasp> good;
     for (GoodGrasp& one : all) {
       if (good.size() == options_.tries || is_stopped(options_.stop)) break;
-      if (auto fine = look_at(one, ik, checker); !fine) {
+      if (auto fine = look_at(one, ik, checker, beside); !fine) {
         drop(one.grasp, std::move(fine.error()));
       } else {
         good.push_back(std::move(one));
@@ -187,6 +190,17 @@ class PickPlanner {
     }
     std::ranges::stable_sort(good, {}, &GoodGrasp::cost);
     return good;
+  }
+
+  /// The hand and the object do not count for each other.
+  [[nodiscard]] ContactRules without_object() const {
+    ContactRules rules;
+    for (const std::string& object : object_) {
+      for (const std::string& hand : hand_) {
+        if (!hand.starts_with('#')) rules.allowed.push_back({hand, object});
+      }
+    }
+    return rules;
   }
 
   /// An answer without contact to a pose. Where the hand, or what it holds, is in contact with what
@@ -220,7 +234,9 @@ class PickPlanner {
   }
 
   /// Fills in what is known of a grasp that can be had and put down with.
-  Result<void, Drop> look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker) {
+  /// @param beside  leaves out what the hand is near to in any case: the object.
+  Result<void, Drop> look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker,
+                             ExactChecker& beside) {
     const auto same = [&](const Grasp& tried) {
       return tried.X_BT.p == one.grasp.X_BT.p && tried.X_BT.R == one.grasp.X_BT.R;
     };
@@ -232,8 +248,14 @@ class PickPlanner {
       if (!q) return tl::unexpected(std::move(q.error()));
       q_grasp_ = *q;
     }
-    if (const auto report = checker.check(as_span(q_grasp_)); report && report->nearest) {
-      one.cost += kClear - std::min(report->nearest->distance, kClear);
+    if (const auto report = beside.check(as_span(q_grasp_)); report && report->nearest) {
+      const NearestPair& near = *report->nearest;
+      if (near.distance < kBeside) {
+        return tl::unexpected(
+            Drop{PickErrc::grasp_blocked,
+                 text(msg::pick_too_near, near.pair.body1, near.pair.body2, 1000 * near.distance)});
+      }
+      one.cost += kClear - std::min(near.distance, kClear);
     }
     Result<SceneState> held = close_gripper(robot_.model, robot_.arm, as_span(q_grasp_), open_);
     const bool holds = held && held->attached.size() == 1;
