@@ -1,9 +1,12 @@
 #include "mjarm/session/pick_and_place.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/execution/execution.hpp"
+#include "mjarm/model/describe.hpp"
 
 namespace mjarm::session {
 namespace {
@@ -20,7 +23,7 @@ class PickRunner {
     PickAndPlaceOutcome out;
     program::PickOptions how = options_.pick;
     while (!out.done && static_cast<int>(out.tries.size()) < options_.tries) {
-      const Result<program::SeenScene> seen = look(truth(), as_span(q()));
+      const Result<program::SeenScene> seen = look_for(task.object, look);
       if (!seen) return fail(seen.error());
       if (const auto unseen = seen->unseen.find(task.object); unseen != seen->unseen.end()) {
         out.failure = {program::PickErrc::not_seen,
@@ -52,6 +55,34 @@ class PickRunner {
   [[nodiscard]] JointVec q() const { return sim_.arm_state(robot_.arm).q; }
   [[nodiscard]] SceneState truth() const {
     return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
+  }
+
+  /// Looks, from elsewhere too where that does not find the object.
+  Result<program::SeenScene> look_for(const std::string& object, const Look& look) {
+    Result<program::SeenScene> seen = look(truth(), as_span(q()));
+    for (const Vantage& vantage : options_.vantages) {
+      if (!seen || !seen->unseen.contains(object) || is_stopped(options_.pick.stop)) break;
+      const Result<bool> there = move({plan_to(vantage.X_WT)}, seen->scene);
+      if (!there) return fail(there.error());
+      if (!*there) continue;
+      Result<program::SeenScene> more = vantage.look(truth(), as_span(q()));
+      if (!more) return more;
+      add_unseen(*seen, *more);
+      seen = std::move(more);
+    }
+    return seen;
+  }
+
+  /// Adds to `seen` what only an earlier look found.
+  void add_unseen(const program::SeenScene& earlier, program::SeenScene& seen) const {
+    for (const BodyInfo& body : describe(robot_.model).bodies) {
+      if (!seen.unseen.contains(body.name) || earlier.unseen.contains(body.name)) continue;
+      const auto at = static_cast<std::ptrdiff_t>(body.joints.front().qpos);
+      std::copy_n(earlier.scene.qpos.begin() + at, 7, seen.scene.qpos.begin() + at);
+      seen.unseen.erase(body.name);
+      const auto same = earlier.same.find(body.name);
+      if (same != earlier.same.end()) seen.same.insert(*same);
+    }
   }
 
   /// Executes a plan until something goes wrong.
@@ -90,15 +121,26 @@ class PickRunner {
   /// Opens the gripper and goes straight up and back to the beginning, out of the camera's sight;
   /// as far as it may.
   Result<void> draw_back(const SceneState& scene) {
-    program::Program program;
-    program.name = "draw back";
-    const JointVec from = q();
-    program.start.values.assign(from.data(), from.data() + from.size());
     Pose above = sim_.tool(robot_.arm);
     above.p.z() += options_.pick.lift;
-    program.instructions = {{program::Grip{.close = false}},
-                            program::move_l(above),
-                            {program::PlanMove{.goal = program::JointValues{begun_}}}};
+    const Result<bool> there = move({{program::Grip{.close = false}},
+                                     program::move_l(above),
+                                     {program::PlanMove{.goal = program::JointValues{begun_}}}},
+                                    scene);
+    return there ? Result<void>() : fail(there.error());
+  }
+
+  static program::Instruction plan_to(const Pose& X_WT) {
+    return {program::PlanMove{.goal = program::ProgramPose{.X_FT = X_WT}}};
+  }
+
+  /// From where the arm stands, as far as it may. @return whether that was all of it.
+  Result<bool> move(std::vector<program::Instruction> instructions, const SceneState& scene) {
+    program::Program program;
+    program.name = "move";
+    const JointVec from = q();
+    program.start.values.assign(from.data(), from.data() + from.size());
+    program.instructions = std::move(instructions);
     const program::ProgramPlan plan =
         program::plan_program(robot_.model, robot_.arm, program, {.scene = scene});
     Result<Execution> execution =
@@ -109,7 +151,7 @@ class PickRunner {
       return true;
     });
     if (!done) return fail(done.error());
-    return {};
+    return plan.ok();
   }
 
   const Robot& robot_;

@@ -15,11 +15,26 @@
 
 namespace mjarm::session {
 
+/// Tells how things stand, as far as that can be seen.
+/// @param scene  how they truly stand.
+/// @param q      (dof,) [rad or m] where the arm stands.
+using Look =
+    std::function<Result<program::SeenScene>(const SceneState& scene, std::span<const double> q)>;
+
+/// Where else to look from: the tool's pose there, and what tells how things stand then.
+struct Vantage {
+  Pose X_WT;
+  Look look;
+};
+
 /// How a pick is done. Every default is usable as is.
 struct PickAndPlaceOptions {
   program::PickOptions pick = {};
   int tries = 3;  ///< grasps that are executed at most, >= 1
   ControlMode control = ControlMode::computed_torque;
+  /// The arm goes there in turn as long as nothing tells where the object is; those it cannot get
+  /// to are passed over.
+  std::vector<Vantage> vantages = {};
   /// Called after every step. May be empty.
   std::function<void(const Sim& sim)> after_step = {};
 };
@@ -42,16 +57,11 @@ struct PickAndPlaceOutcome {
   std::optional<program::PickFailure> failure;
 };
 
-/// Tells how things stand, as far as that can be seen.
-/// @param scene  how they truly stand.
-/// @param q      (dof,) [rad or m] where the arm stands.
-using Look =
-    std::function<Result<program::SeenScene>(const SceneState& scene, std::span<const double> q)>;
-
 /// Looks, plans to pick an object up and to put it down (plan_pick()), and executes that in `sim`
 /// from where the arm stands. What goes wrong is noticed by fingers and joints (GripWatch): with
 /// nothing held, or where what was held is lost, the gripper opens, the arm draws back, looks again
-/// and takes another grasp; an arm that is blocked stays where it is.
+/// and takes another grasp; an arm that is blocked stays where it is. What one look did not find,
+/// looks from elsewhere may (PickAndPlaceOptions::vantages).
 /// @param look  SceneEye::look(), or what else tells poses.
 /// @return an error where the simulation broke down, or nobody could look.
 [[nodiscard]] Result<PickAndPlaceOutcome> pick_and_place(const Robot& robot, Sim& sim,

@@ -3,6 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+#include <utility>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/session/see_scene.hpp"
 #include "mjarm/sim/sim.hpp"
@@ -124,6 +130,41 @@ TEST(PickAndPlace, WhatCannotBeSeenIsNotPickedUp) {
   EXPECT_THAT(outcome->failure->what, HasSubstr("it is hidden"));
 }
 
+/// Straight above the things, the fingers downwards.
+Vantage above_the_things(Look look) {
+  return {.X_WT = {.p = {0.49, 0.18, 0.58}, .R = from_euler({std::numbers::pi, 0, 0})},
+          .look = std::move(look)};
+}
+
+TEST(PickAndPlace, WhatTheFirstLookDoesNotFindIsLookedForFromElsewhere) {
+  PickWorldOfTest world;
+  int looks = 0;
+  const Look blind = [](const SceneState& scene, std::span<const double>) {
+    return Result<program::SeenScene>(
+        program::SeenScene{.scene = scene, .unseen = {{"box", "it is hidden"}}});
+  };
+  const Look from_above = [&](const SceneState& scene, std::span<const double> q) {
+    ++looks;
+    const Pose X_WT = fk(world.robot.arm, q);
+    EXPECT_LT((X_WT.p - Eigen::Vector3d(0.49, 0.18, 0.58)).norm(), 1e-3);
+    // The can, which the first look found, is hidden now.
+    Sim elsewhere(world.robot.model);
+    elsewhere.set_state(scene.qpos, std::vector<double>(world.sim.qvel().size(), 0));
+    elsewhere.place_free("can", world.pose("box"));
+    program::SeenScene seen{.scene = scene, .unseen = {{"can", "it is hidden"}}};
+    seen.scene.qpos.assign(elsewhere.qpos().begin(), elsewhere.qpos().end());
+    return Result<program::SeenScene>(std::move(seen));
+  };
+  Vantage out_of_reach = above_the_things(from_above);
+  out_of_reach.X_WT.p.x() = 3;
+  const auto outcome = world.pick(
+      blind, {.vantages = {out_of_reach, above_the_things(from_above), above_the_things(blind)}});
+  ASSERT_TRUE(outcome) << outcome.error().what;
+  EXPECT_TRUE(outcome->done) << (outcome->failure ? outcome->failure->what : "");
+  EXPECT_EQ(looks, 1);
+  EXPECT_LT((world.pose("box").p - kPlace.p).norm(), 5e-3);
+}
+
 /// How well the shipped camera knows where things are.
 TEST(SceneEye, SeesTheThingsOfTheShippedSceneWhereTheyAre) {
   PickWorldOfTest world;
@@ -154,6 +195,30 @@ TEST(SceneEye, WhatIsNotThereHasNoPose) {
   ASSERT_EQ(seen->unseen.size(), 1u);
   EXPECT_EQ(seen->unseen.begin()->first, "can");
   EXPECT_EQ(seen->same.count("can"), 0u);
+}
+
+TEST(SceneEye, TheOneAtTheWristSeesBehindThings) {
+  PickWorldOfTest world;
+  Result<SceneEye> eye = SceneEye::open(world.robot, "rgbd");
+  Result<SceneEye> wrist = SceneEye::open(world.robot, "wrist");
+  if (!eye && eye.error().code == Errc::not_available) GTEST_SKIP() << "no OpenGL";
+  ASSERT_TRUE(eye && wrist);
+  world.sim.place_free("can", {.p = {0.5, 0.15, 0.25}});
+  world.sim.place_free("box", {.p = {0.44, 0.15, 0.22},
+                               .R = from_euler({std::numbers::pi / 2, 0, std::numbers::pi / 2})});
+  const SceneState truth{.qpos = {world.sim.qpos().begin(), world.sim.qpos().end()},
+                         .attached = {}};
+  const auto behind = eye->look(truth, as_span(world.robot.arm.home));
+  ASSERT_TRUE(behind) << behind.error().what;
+  EXPECT_TRUE(behind->unseen.contains("box"));
+  const auto above =
+      IkSolver(world.robot.arm).solve(above_the_things({}).X_WT, as_span(world.robot.arm.home));
+  ASSERT_TRUE(above);
+  const auto seen = wrist->look(truth, as_span(above->q));
+  ASSERT_TRUE(seen) << seen.error().what;
+  EXPECT_THAT(seen->unseen, IsEmpty());
+  const Pose found = frame_pose(world.robot.model, "box", seen->scene.qpos).value();
+  EXPECT_LT((found.p - world.pose("box").p).norm(), 2e-3);
 }
 
 TEST(SceneEye, NamesTheNearestCamera) {

@@ -16,6 +16,20 @@ namespace {
 
 constexpr double kAway = -50;  // [m] height at which nothing is seen
 
+/// Whether the camera looks through a point of the world: something farther is seen there.
+bool sees_through(const render::RgbdFrame& frame, const Eigen::Vector3d& p_W) {
+  const Eigen::Vector3d p_C = frame.X_WC.inverse() * p_W;
+  if (!(p_C.z() > 0)) return false;
+  const Eigen::Vector2d at = frame.intrinsics.project(p_C).array().round();
+  const bool inside = at.x() >= 0 && at.y() >= 0 && at.x() < frame.intrinsics.width &&
+                      at.y() < frame.intrinsics.height;
+  if (!inside) return false;
+  const auto pixel =
+      static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(frame.intrinsics.width) +
+      static_cast<std::size_t>(at.x());
+  return frame.depth[pixel] > p_C.z();
+}
+
 }  // namespace
 
 struct SceneEye::Impl {
@@ -25,6 +39,7 @@ struct SceneEye::Impl {
   render::RgbdCamera bare;  ///< for what is known without looking: all but the objects
   perception::ObjectFinder finder;
   std::map<std::string, std::vector<Pose>> same;
+  std::map<std::string, Pose> home;  ///< where the model has the objects
   Rng noise;
   perception::FoundScene found = {};
 };
@@ -38,10 +53,14 @@ Result<SceneEye> SceneEye::open(const Robot& robot, const std::string& camera,
                                 const SceneEyeOptions& options) {
   std::vector<perception::KnownObject> objects;
   std::map<std::string, std::vector<Pose>> same;
+  std::map<std::string, Pose> home;
+  Sim sim(robot.model);
+  sim.reset_home();
   for (const SceneObject& object : scene_bodies(robot.model, robot.arm).objects) {
     Result<perception::KnownObject> known = perception::known_object(robot.model, object.name);
     if (!known) return fail(std::move(known.error()));
     same[object.name] = perception::symmetries(known->surface);
+    home[object.name] = sim.body_pose(object.body);
     objects.push_back(std::move(*known));
   }
   if (objects.empty()) return fail(Errc::bad_input, text(msg::show_nothing_to_see));
@@ -55,11 +74,9 @@ Result<SceneEye> SceneEye::open(const Robot& robot, const std::string& camera,
   auto finder = perception::ObjectFinder::create(
       std::move(objects), {.depth_sigma = options.depth_sigma, .seed = options.seed});
   if (!finder) return fail(std::move(finder.error()));
-  Sim sim(robot.model);
-  sim.reset_home();
-  return SceneEye(
-      std::make_unique<Impl>(Impl{robot, std::move(sim), std::move(*eye), std::move(*bare),
-                                  std::move(*finder), std::move(same), Rng(options.seed)}));
+  return SceneEye(std::make_unique<Impl>(Impl{robot, std::move(sim), std::move(*eye),
+                                              std::move(*bare), std::move(*finder), std::move(same),
+                                              std::move(home), Rng(options.seed)}));
 }
 
 Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<const double> q) {
@@ -87,7 +104,13 @@ Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<con
       if (!one.pose->by_tag) out.same[one.name] = impl_->same[one.name];
       continue;
     }
-    if (one.pose.error().best) sim.place_free(one.name, one.pose.error().best->X_WO);
+    Pose X_WB = impl_->home[one.name];
+    if (one.pose.error().best) {
+      X_WB = one.pose.error().best->X_WO;
+    } else if (sees_through(*frame, X_WB.p)) {
+      X_WB.p.z() = kAway;
+    }
+    sim.place_free(one.name, X_WB);
     out.unseen[one.name] = perception::describe(one.pose.error().code);
   }
   out.scene = {.qpos = {sim.qpos().begin(), sim.qpos().end()}, .attached = scene.attached};

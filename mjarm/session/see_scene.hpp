@@ -32,7 +32,7 @@ class SceneEye {
   SceneEye& operator=(SceneEye&&) noexcept;
 
   /// Draws `scene` and finds the objects in it. Those without a pose stand where they seem to be,
-  /// else where `scene` has them.
+  /// else where the model has them, and nowhere (far below) where the camera sees that they do not.
   /// @param scene  how things truly stand, the fingers included; nothing attached is looked for.
   /// @param q      (dof,) [rad or m] where the arm stands.
   [[nodiscard]] Result<program::SeenScene> look(const SceneState& scene, std::span<const double> q);
