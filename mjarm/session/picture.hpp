@@ -21,6 +21,7 @@ struct PictureOptions {
   std::optional<render::RenderQuality> quality = {};  ///< default: as `offscreen_options` chooses
   double fps = 30;                                    ///< [1/s]
   std::vector<render::LegendEntry> legend = {};       ///< drawn into every picture
+  int strip = 0;  ///< so many pictures of a program in one, from its beginning to its end; 0: one
 };
 
 /// How to draw: without a quality asked for, high; low for a video without a GPU.
@@ -28,6 +29,9 @@ struct PictureOptions {
 
 /// The camera `overview` where the model has one, else the model's own view.
 [[nodiscard]] render::Camera default_camera(const Model& model);
+
+/// Pictures of one size as one: side by side, more than four in two rows.
+[[nodiscard]] render::Image strip_of(const std::vector<render::Image>& pictures);
 
 /// Draws one picture and writes it. @return the line to tell.
 [[nodiscard]] Result<std::string> write_picture(render::OffscreenRenderer& renderer,

@@ -8,6 +8,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/execution/execution.hpp"
+#include "mjarm/render/png.hpp"
 #include "mjarm/render/trail.hpp"
 #include "mjarm/session/program_scene.hpp"
 #include "mjarm/session/run_video.hpp"
@@ -94,6 +95,42 @@ Result<std::string> picture_of(ProgramRun& run, const Job& job, Progress& progre
   return write_picture(*renderer, options, run.sim().snapshot(), job.camera, run.overlay());
 }
 
+/// Pictures at even times from the beginning to the end, in one.
+Result<std::string> strip_over(ProgramRun& run, const Job& job, double duration,
+                               Progress& progress) {
+  const PictureOptions& options = job.options;
+  Result<render::OffscreenRenderer> renderer =
+      render::OffscreenRenderer::create(job.model, offscreen_options(options));
+  if (!renderer) return fail(std::move(renderer.error()));
+  std::vector<render::Image> pictures;
+  Result<void> drawn;
+  const auto draw = [&] {
+    Result<render::Image> image = renderer->draw(run.sim().snapshot(), job.camera, run.overlay());
+    if (image) {
+      pictures.push_back(std::move(*image));
+    } else {
+      drawn = fail(std::move(image.error()));
+    }
+    return image.has_value();
+  };
+  const auto after_step = [&] {
+    progress.advance();
+    const double due = duration * static_cast<double>(pictures.size()) / (options.strip - 1);
+    const bool wanted = static_cast<int>(pictures.size()) < options.strip - 1;
+    if (wanted && run.sim().time() >= due && !draw()) return false;
+    return !interrupted();
+  };
+  if (Result<void> ran = run.run(job.seconds, after_step); !ran) return fail(ran.error());
+  if (interrupted()) return fail(Errc::system, text(msg::show_stopped, options.out.string()));
+  if (!drawn || !draw()) return fail(std::move(drawn.error()));
+  render::Image strip = strip_of(pictures);
+  (void)render::add_legend(strip, options.legend);
+  if (Result<void> written = render::write_png(strip, options.out); !written) {
+    return fail(std::move(written.error()));
+  }
+  return text(msg::show_picture, options.out.string(), strip.width, strip.height);
+}
+
 }  // namespace
 
 Result<std::string> render_program(const program::LoadedProgram& loaded,
@@ -106,6 +143,7 @@ Result<std::string> render_program(const program::LoadedProgram& loaded,
                     static_cast<std::uint64_t>(duration / model.timestep()));
   ProgramRun run(loaded);
   const Job job{model, options, camera, seconds};
+  if (options.strip > 0) return strip_over(run, job, duration, progress);
   return options.video ? video_of(run, job, progress) : picture_of(run, job, progress);
 }
 

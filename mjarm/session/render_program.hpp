@@ -8,7 +8,8 @@
 
 namespace mjarm::session {
 
-/// Runs a plan without faults and makes a picture of its end or a video of all of it.
+/// Runs a plan without faults and makes a picture of its end, a strip of pictures or a video of all
+/// of it.
 /// @param seconds  [s] of simulated time at most.
 /// @return the line to tell, or why there is no file.
 [[nodiscard]] Result<std::string> render_program(const program::LoadedProgram& loaded,

@@ -7,6 +7,7 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
+#include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/render_options.hpp"
 #include "apps/mjarm/commands/sim_options.hpp"
 #include "apps/mjarm/messages/app.hpp"
@@ -25,12 +26,14 @@ namespace mjarm::app {
 namespace {
 
 constexpr double kSeconds = 5;  // of a model's video
+constexpr int kMostInStrip = 24;
 
 struct Options {
   RobotChoice robot;
   PictureArguments picture;
   SimArguments sim;
   bool turn = false;
+  std::string strip;
 };
 
 /// A model that is drawn, and how.
@@ -141,6 +144,9 @@ Result<void> check_use(const Options& options, const PictureRequest& wanted) {
   if (program && !given.empty()) {
     return fail(Errc::usage, text(msg::render_command_not_program, given));
   }
+  if (!options.strip.empty() && (!program || wanted.video)) {
+    return fail(Errc::usage, text(msg::render_command_strip_of_program));
+  }
   if (options.turn && !wanted.video) {
     return fail(Errc::usage, text(msg::render_command_video_only, "--turn"));
   }
@@ -165,8 +171,14 @@ Result<std::string> render(const Options& options, const PictureRequest& wanted)
 
 Result<int> run(const Options& options) {
   if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::render_command_which));
-  const Result<PictureRequest> wanted = read_picture_options(options.picture);
+  Result<PictureRequest> wanted = read_picture_options(options.picture);
   if (!wanted) return fail(wanted.error());
+  if (!options.strip.empty()) {
+    const Result<int> count = parse_count("--strip", options.strip, kMostInStrip);
+    if (!count) return fail(count.error());
+    if (*count < 2) return fail(Errc::usage, text(msg::render_command_strip_count, *count));
+    wanted->strip = *count;
+  }
   const auto result = LongResult::begin(options.picture.out, options.picture.replace);
   if (!result) return fail(result.error());
   const Result<std::string> line = render(options, *wanted);
@@ -180,6 +192,7 @@ Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "file", options->robot.robot, msg::render_command_file, "FILE|PROGRAM");
   add_picture_options(app, options->picture);
+  add_option(app, "--strip", options->strip, msg::render_command_option_strip, "N");
   add_flag(app, "--turn", options->turn, msg::render_command_option_turn);
   add_sim_options(app, options->sim);
   add_load_options(app, options->robot);
