@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <utility>
 
@@ -20,7 +20,7 @@ namespace {
 constexpr int kMaxScenes = 100'000;
 
 struct Options : ReportOptions {
-  std::string robot, scenes = "100", seed = "1";
+  std::string robot, set, scenes = "100", seed = "1";
 };
 
 /// All scenes of a set, solved.
@@ -61,6 +61,11 @@ std::string to_table(const std::vector<SolvedSet>& sets, bool timing) {
   std::string misses;
   for (const SolvedSet& set : sets) {
     rows.push_back(row_of(set));
+    int passed_over = 0;
+    for (const PickVerdict& one : set.verdicts) passed_over += one.passed_over;
+    if (passed_over > 0) {
+      misses += text(msg::bench_pick_passed_over, set.robot, set.name, passed_over) + '\n';
+    }
     for (std::size_t i = 0; i < set.verdicts.size(); ++i) {
       const PickVerdict& one = set.verdicts[i];
       if (one.placed) continue;
@@ -86,6 +91,7 @@ JsonDoc to_json(const std::vector<SolvedSet>& sets) {
                         {"others", one.others},
                         {"tries", static_cast<int>(one.tries)},
                         {"seconds", one.seconds},
+                        {"passed_over", one.passed_over},
                         {"miss", one.miss}});
     }
     docs.push_back({{"robot", set.robot}, {"set", set.name}, {"scenes", std::move(scenes)}});
@@ -93,26 +99,45 @@ JsonDoc to_json(const std::vector<SolvedSet>& sets) {
   return {{"sets", std::move(docs)}};
 }
 
+/// The scenes that are asked for.
+Result<std::vector<PickSet>> sets_of(const Options& options, std::uint64_t seed) {
+  constexpr std::array<
+      std::pair<const char*, Result<PickSet> (*)(const std::string&, std::uint64_t)>, 2>
+      kSets = {{{"table", table_scenes}, {"clutter", clutter_scenes}}};
+  std::vector<PickSet> out;
+  bool known = options.set.empty();
+  for (const char* robot : {"ur5e", "panda"}) {
+    for (const auto& [name, scenes] : kSets) {
+      known = known || options.set == name;
+      if (!options.set.empty() && options.set != name) continue;
+      if (!options.robot.empty() && options.robot != robot) continue;
+      Result<PickSet> set = scenes(robot, seed);
+      if (!set) return fail(std::move(set.error()));
+      out.push_back(std::move(*set));
+    }
+  }
+  if (!known) return fail(Errc::usage, text(msg::bench_pick_no_set, options.set));
+  if (out.empty()) return fail(Errc::usage, text(msg::bench_pick_no_robot, options.robot));
+  return out;
+}
+
 Result<int> run_pick(const Options& options) {
   const Result<int> scenes = parse_count("--scenes", options.scenes, kMaxScenes);
   if (!scenes) return fail(scenes.error());
   const Result<int> seed = parse_count("--seed", options.seed, kMaxScenes);
   if (!seed) return fail(seed.error());
-  std::vector<PickSet> sets;
-  for (const char* robot : {"ur5e", "panda"}) {
-    if (!options.robot.empty() && options.robot != robot) continue;
-    Result<PickSet> set = draw_table_scenes(robot, *scenes, static_cast<std::uint64_t>(*seed));
-    if (!set) return fail(std::move(set.error()));
-    sets.push_back(std::move(*set));
-  }
-  if (sets.empty()) return fail(Errc::usage, text(msg::bench_pick_no_robot, options.robot));
+  Result<std::vector<PickSet>> loaded = sets_of(options, static_cast<std::uint64_t>(*seed));
+  if (!loaded) return fail(std::move(loaded.error()));
+  const std::vector<PickSet>& sets = *loaded;
   Progress progress(text(msg::bench_pick_progress),
                     sets.size() * static_cast<std::size_t>(*scenes));
   std::vector<SolvedSet> solved;
   for (const PickSet& set : sets) {
     solved.push_back({set.name, set.robot, {}});
-    for (const PickProblem& problem : set.problems) {
-      Result<PickVerdict> verdict = solve_pick(set, problem);
+    for (int i = 0; i < *scenes; ++i) {
+      const Result<PickProblem> problem = set.draw(static_cast<std::uint64_t>(i));
+      if (!problem) return fail(problem.error());
+      Result<PickVerdict> verdict = solve_pick(set, *problem);
       if (!verdict) return fail(std::move(verdict.error()));
       solved.back().verdicts.push_back(std::move(*verdict));
       progress.advance();
@@ -130,6 +155,7 @@ Command pick_suite() {
   return {"pick", msg::bench_pick_summary, msg::bench_pick_examples, [](CLI::App& app) -> Run {
             auto options = std::make_shared<Options>();
             add_option(app, "--robot", options->robot, msg::bench_pick_option_robot, "NAME");
+            add_option(app, "--set", options->set, msg::bench_pick_option_set, "NAME");
             add_option(app, "--scenes", options->scenes, msg::bench_pick_option_scenes, "N");
             add_option(app, "--seed", options->seed, msg::bench_pick_option_seed, "N");
             add_report_options(app, *options);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct PickProblem {
   std::uint64_t seed = 0;  ///< of the camera's noise
   std::vector<PlacedObject> objects = {};
   program::PickTask task = {};
+  int passed_over = 0;  ///< objects that were drawn before `task`, and could not be had at all
 };
 
 /// How one problem went, by the simulation's own knowledge.
@@ -36,7 +38,7 @@ struct PickVerdict {
   double others = 0;         ///< [m] farthest that anything else was moved
   std::size_t tries = 0;     ///< grasps that were executed
   double seconds = 0;        ///< [s] simulated
-  double planning_us = 0;    ///< [us] of looking and planning
+  int passed_over = 0;       ///< PickProblem::passed_over
   std::string miss = {};     ///< why not; empty where all is well
 };
 
@@ -45,14 +47,18 @@ struct PickSet {
   std::string name;
   std::string robot;
   Robot loaded;
-  std::vector<PickProblem> problems;
+  std::function<Result<PickProblem>(std::uint64_t i)> draw;  ///< scene i
 };
 
 /// Box, can and house anywhere on the shipped table, standing or lying, each 12 cm from the others;
 /// one of them is to be put anywhere into the tray, as it stands or lies, turned at will.
 /// @param robot  "ur5e" or "panda".
-[[nodiscard]] Result<PickSet> draw_table_scenes(const std::string& robot, int count,
-                                                std::uint64_t seed);
+[[nodiscard]] Result<PickSet> table_scenes(const std::string& robot, std::uint64_t seed);
+
+/// The same with eight objects, half of them so put that they touch another one (0.2 mm) or stand
+/// 1 to 6 mm beside it, a beam and a lamp over them. The one that is asked for has a grasp and a
+/// way to its place where all poses are known; those that have none are counted.
+[[nodiscard]] Result<PickSet> clutter_scenes(const std::string& robot, std::uint64_t seed);
 
 /// [rad] between two orientations of one of the objects, up to its symmetry.
 [[nodiscard]] double turn_between(const std::string& object, const Eigen::Matrix3d& A,

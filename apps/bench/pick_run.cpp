@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <numbers>
 #include <utility>
+#include <vector>
 
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/pick.hpp"
 #include "apps/bench/suite.hpp"
-#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/session/pick_and_place.hpp"
 #include "mjarm/session/see_scene.hpp"
 
@@ -83,21 +85,41 @@ std::string fault_of(const session::PickAndPlaceOutcome& outcome) {
   return {};
 }
 
+/// Where the camera at the wrist sees all of the things, from straight above; turned in four ways,
+/// as one may be out of reach.
+std::vector<Pose> over_the_table() {
+  std::vector<Pose> out;
+  for (int k = 0; k < 4; ++k) {
+    const double yaw = std::numbers::pi * k / 2;
+    out.push_back({.p = {0.49, 0.18, 0.58}, .R = from_euler({std::numbers::pi, 0, yaw})});
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<PickVerdict> solve_pick(const PickSet& set, const PickProblem& problem) {
   Result<session::SceneEye> eye =
       session::SceneEye::open(set.loaded, "rgbd", {.seed = problem.seed});
   if (!eye) return fail(std::move(eye.error()));
+  Result<session::SceneEye> wrist =
+      session::SceneEye::open(set.loaded, "wrist", {.seed = problem.seed + 1});
+  if (!wrist) return fail(std::move(wrist.error()));
   PickWorld world(set, problem);
-  PickVerdict out{.object = problem.task.object};
-  const auto look = [&](const SceneState& scene, std::span<const double> q) {
-    Result<program::SeenScene> seen = eye->look(scene, q);
-    if (seen) world.judge_look(eye->found(), out);
-    return seen;
+  PickVerdict out{.object = problem.task.object, .passed_over = problem.passed_over};
+  const auto looking_with = [&](session::SceneEye& with) {
+    return [&](const SceneState& scene, std::span<const double> q) {
+      Result<program::SeenScene> seen = with.look(scene, q);
+      if (seen) world.judge_look(with.found(), out);
+      return seen;
+    };
   };
-  const auto outcome = session::pick_and_place(set.loaded, world.sim(), look, problem.task,
-                                               {.pick = {.stop = interrupted}});
+  session::PickAndPlaceOptions options{.pick = {.stop = interrupted}};
+  for (const Pose& X_WT : over_the_table()) {
+    options.vantages.push_back({X_WT, looking_with(*wrist)});
+  }
+  const auto outcome =
+      session::pick_and_place(set.loaded, world.sim(), looking_with(*eye), problem.task, options);
   if (interrupted()) return fail(stopped());
   if (!outcome) return fail(outcome.error());
   out.tries = outcome->tries.size();
