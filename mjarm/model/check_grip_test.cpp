@@ -74,6 +74,25 @@ TEST(CheckGrip, OursHold) {
   }
 }
 
+/// What a file may have beside, which is none of the grip's business.
+TEST(CheckGrip, OursHoldInAnyKindOfStep) {
+  const support::TempFolder folder;
+  for (const char* option :
+       {"integrator=\"RK4\"", "integrator=\"Euler\"", "timestep=\"0.005\"", "timestep=\"0.0002\"",
+        "gravity=\"0 0 0\"", "noslip_iterations=\"3\"", "solver=\"CG\""}) {
+    const auto file = folder.write("a.xml", scene_of("<option " + std::string(option) + "/>"));
+    EXPECT_THAT(about_grip(checked(file)), IsEmpty()) << option;
+    EXPECT_TRUE(diagnosed(file).as_is.held) << option;
+  }
+  // Forces that begin 1 mm before the surfaces meet.
+  const auto ahead = folder.write(
+      "b.xml", "<mujoco><default><geom margin=\"0.001\"/></default>" + scene_of("").substr(8));
+  const Model model = Model::load(ahead).value();
+  const int pad = mj_name2id(model.raw(), mjOBJ_GEOM, "left_pad_solid");
+  ASSERT_EQ(model.raw()->geom_margin[pad], 0.001);
+  EXPECT_TRUE(diagnosed(ahead).as_is.held);
+}
+
 TEST(CheckGrip, NothingIsSaidWithoutAGripper) {
   for (const char* robot : {"ur5e", "car", "hello", "franka_emika_panda/panda_nohand.xml"}) {
     const CheckReport report = checked(find_model_file(robot).value());

@@ -229,7 +229,9 @@ bool GripTrial::is_held(const mjModel& m, const mjData* d, std::vector<int>* pad
       continue;
     }
     const double push = Vector3d(contact.frame).dot(close_W) * (second ? 1 : -1);
-    if (std::abs(push) < kAgainst || contact.dist > 0) continue;
+    mjtNum force[6] = {0};
+    mj_contactForce(&m, d, c, force);
+    if (std::abs(push) < kAgainst || !(force[0] > 0)) continue;
     sides[push > 0 ? 1 : 0] = true;
     if (hand_[static_cast<std::size_t>(m.geom_bodyid[other])] != 0) touching.insert(other);
   }
