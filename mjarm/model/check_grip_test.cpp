@@ -29,7 +29,7 @@ std::string scene_of(const std::string& option, const std::string& more = "") {
 }
 constexpr const char* kSoftFriction = "<option cone=\"pyramidal\" impratio=\"1\"/>";
 
-CheckReport checked(const std::filesystem::path& file) {
+CheckReport report_on(const std::filesystem::path& file) {
   const auto report = check_model(file);
   if (!report) throw std::runtime_error(report.error().what);
   return *report;
@@ -65,7 +65,7 @@ TEST(CheckGrip, OursHold) {
     SCOPED_TRACE(robot);
     const auto file = find_model_file(robot);
     ASSERT_TRUE(file) << file.error().what;
-    const CheckReport report = checked(*file);
+    const CheckReport report = report_on(*file);
     EXPECT_THAT(about_grip(report), IsEmpty());
     EXPECT_TRUE(report.grip_mend.empty());
     const detail::GripDiagnosis grip = diagnosed(*file);
@@ -81,7 +81,7 @@ TEST(CheckGrip, OursHoldInAnyKindOfStep) {
        {"integrator=\"RK4\"", "integrator=\"Euler\"", "timestep=\"0.005\"", "timestep=\"0.0002\"",
         "gravity=\"0 0 0\"", "noslip_iterations=\"3\"", "solver=\"CG\""}) {
     const auto file = folder.write("a.xml", scene_of("<option " + std::string(option) + "/>"));
-    EXPECT_THAT(about_grip(checked(file)), IsEmpty()) << option;
+    EXPECT_THAT(about_grip(report_on(file)), IsEmpty()) << option;
     EXPECT_TRUE(diagnosed(file).as_is.held) << option;
   }
   // Forces that begin 1 mm before the surfaces meet.
@@ -95,7 +95,7 @@ TEST(CheckGrip, OursHoldInAnyKindOfStep) {
 
 TEST(CheckGrip, NothingIsSaidWithoutAGripper) {
   for (const char* robot : {"ur5e", "car", "hello", "franka_emika_panda/panda_nohand.xml"}) {
-    const CheckReport report = checked(find_model_file(robot).value());
+    const CheckReport report = report_on(find_model_file(robot).value());
     EXPECT_THAT(about_grip(report), IsEmpty()) << robot;
     EXPECT_TRUE(report.grip_mend.empty());
   }
@@ -150,7 +150,7 @@ TEST(CheckGrip, CreepIsThatOfASimulationOfTheWholeArm) {
 TEST(CheckGrip, TellsTheCreepAsItIsAndMended) {
   const support::TempFolder folder;
   const auto file = folder.write("a.xml", scene_of(kSoftFriction));
-  const CheckReport report = checked(file);
+  const CheckReport report = report_on(file);
   const Words words = about_grip(report);
   ASSERT_THAT(words, SizeIs(3));
   EXPECT_THAT(words[0],
@@ -158,19 +158,19 @@ TEST(CheckGrip, TellsTheCreepAsItIsAndMended) {
                         "fingers: 10 um/s of creep; with the settings of --fix: 0.17 um/s"));
   EXPECT_THAT(words[1], HasSubstr("grip_cone: "));
   EXPECT_THAT(words[2], HasSubstr("grip_impratio: impratio is 1"));
-  EXPECT_EQ(about_grip(checked(file)), words) << "the same a second time";
+  EXPECT_EQ(about_grip(report_on(file)), words) << "the same a second time";
 }
 
 TEST(CheckGrip, WhatIsMendedIsNotFoundAgain) {
   const support::TempFolder folder, other;
   const auto file = folder.write("a.xml", scene_of(kSoftFriction));
-  const CheckReport report = checked(file);
+  const CheckReport report = report_on(file);
   ASSERT_FALSE(report.grip_mend.empty());
   const auto exported = export_mended(Model::load(file).value(), report.grip_mend, other.path());
   ASSERT_TRUE(exported) << exported.error().what;
   EXPECT_THAT(exported->notes, IsEmpty());
   const auto mended = other.write("b.xml", exported->content);
-  EXPECT_THAT(about_grip(checked(mended)), IsEmpty());
+  EXPECT_THAT(about_grip(report_on(mended)), IsEmpty());
   EXPECT_NEAR(diagnosed(mended).as_is.creep, diagnosed(file).mended.creep, 1e-9);
 
   const Model before = Model::load(file).value(), after = Model::load(mended).value();
@@ -187,7 +187,7 @@ TEST(CheckGrip, WhatIsMendedIsNotFoundAgain) {
 TEST(CheckGrip, AnotherFileUnderTheSameNameIsNotMended) {
   const support::TempFolder folder;
   const auto file = folder.write("a.xml", scene_of(kSoftFriction));
-  const CheckReport report = checked(file);
+  const CheckReport report = report_on(file);
   const Model model = Model::load(file).value();
   folder.write("a.xml", scene_of(kSoftFriction, "<worldbody><geom size=\"1\"/></worldbody>"));
   const auto exported = export_mended(model, report.grip_mend, folder.path());
@@ -227,7 +227,7 @@ TEST(CheckGrip, HullsThatFillTheJawsAreTold) {
   const support::TempFolder folder;
   const auto whole =
       folder.write("whole.xml", hooked_gripper("<geom type=\"mesh\" mesh=\"hook\"/>"));
-  const Words words = about_grip(checked(whole));
+  const Words words = about_grip(report_on(whole));
   ASSERT_THAT(words, ::testing::Not(IsEmpty()));
   EXPECT_THAT(words[0], HasSubstr("jaws_overlap: reaches "));
   EXPECT_THAT(words[0], HasSubstr("mm into the space between the open fingers"));
@@ -235,7 +235,7 @@ TEST(CheckGrip, HullsThatFillTheJawsAreTold) {
       "pieces.xml",
       hooked_gripper("<geom type=\"box\" size=\".0325 .0025 .02\" pos=\".0175 .0025 0\"/>"
                      "<geom type=\"box\" size=\".0025 .02 .02\" pos=\".0475 -.02 0\"/>"));
-  EXPECT_THAT(about_grip(checked(pieces)), IsEmpty());
+  EXPECT_THAT(about_grip(report_on(pieces)), IsEmpty());
 }
 
 TEST(CheckGrip, ScenesTooLargeToTryAreToldSo) {
@@ -246,7 +246,7 @@ TEST(CheckGrip, ScenesTooLargeToTryAreToldSo) {
   }
   const auto file = folder.write("a.xml", scene_of("", balls + "</worldbody>"));
   const double begin = cpu_seconds();
-  const Words words = about_grip(checked(file));
+  const Words words = about_grip(report_on(file));
   EXPECT_LT(cpu_seconds() - begin, 2);
   ASSERT_THAT(words, SizeIs(1));
   EXPECT_THAT(words[0], HasSubstr("grip_not_measured: what the gripper holds is not measured: 128 "
