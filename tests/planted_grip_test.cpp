@@ -144,6 +144,16 @@ INSTANTIATE_TEST_SUITE_P(
             CheckCode::jaws_overlap,
             kNote,
             R"(<geom "spur">)"},
+        Fault{
+            "FingersThatMeetBeforeTheCube",
+            kGripRobot,
+            kGripFingers,
+            {{"", R"(<geom name="left_finger_solid")",
+              R"(<geom name="spur" class="solid" type="box" pos="0 -0.03 0.01" size="0.012 0.035 0.01"/>
+    <geom name="left_finger_solid")"}},
+            CheckCode::jaws_overlap,
+            kNote,
+            R"(<geom "spur">)"},
         Fault{"Creep",
               kGripRobot,
               kGripDrive,

@@ -78,7 +78,8 @@ class GripFindings {
       const double depth = 1000 * one.depth;
       note(CheckCode::jaws_overlap, geom_place(one.geom[0], "pos"),
            one.geom[1] < 0 ? text(msg::check_jaws_filled, depth)
-                           : text(msg::check_jaws_overlap, geom_words(one.geom[1]), depth));
+                           : text(one.closing ? msg::check_jaws_meet : msg::check_jaws_overlap,
+                                  geom_words(one.geom[1]), depth));
     }
   }
 

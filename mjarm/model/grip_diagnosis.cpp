@@ -45,8 +45,10 @@ class Diagnosis {
 
   GripDiagnosis run() {
     out_.overlaps = trial_.overlaps();
-    for (const JawOverlap& one : out_.overlaps) part(one);
     out_.as_is = trial_.run({});
+    out_.overlaps.insert(out_.overlaps.end(), out_.as_is.overlaps.begin(),
+                         out_.as_is.overlaps.end());
+    for (const JawOverlap& one : out_.overlaps) part(one);
     out_.mend.pads = out_.as_is.held ? with_their_like(out_.as_is.pads) : trial_.finger_geoms();
     find_candidates();
     out_.mended = trial_.run(out_.mend);

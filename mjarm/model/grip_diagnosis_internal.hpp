@@ -29,7 +29,7 @@ struct GripDiagnosis {
   GripMend mend;
   bool creeps = false;               ///< as it is much more than mended
   std::vector<GripFault> faults;     ///< in the order of the settings
-  std::vector<JawOverlap> overlaps;  ///< in the open hand
+  std::vector<JawOverlap> overlaps;  ///< in the open hand, then once it has closed
 };
 
 /// Solver settings of a contact between a pad and a thing of MuJoCo's defaults.

@@ -192,14 +192,31 @@ void GripTrial::look_for_overlaps() {
     std::ranges::copy(open_qpos_, d->qpos);
     mj_fwdPosition(m.get(), d.get());
   });
-  if (outcome.failed) return;
+  if (!outcome.failed) overlaps_ = overlaps_in(d.get());
+}
+
+std::vector<JawOverlap> GripTrial::overlaps_in(const mjData* d) const {
+  std::vector<JawOverlap> out;
   for (int c = 0; c < d->ncon; ++c) {
     const mjContact& contact = d->contact[c];
     if (contact.dist > -kOverlap || contact.geom[0] < 0 || contact.geom[1] < 0) continue;
     JawOverlap overlap{{contact.geom[0], contact.geom[1]}, -contact.dist};
     if (overlap.geom[0] == cube_geom_) std::swap(overlap.geom[0], overlap.geom[1]);
     if (overlap.geom[1] == cube_geom_) overlap.geom[1] = -1;
-    overlaps_.push_back(overlap);
+    out.push_back(overlap);
+  }
+  return out;
+}
+
+/// What of the hand overlaps once it has closed as far as it goes, while the cube is where it was.
+void GripTrial::note_stops(const mjData* d, GripOutcome& out) const {
+  const Vector3d from(open_qpos_.data() + cube_qpos_), to(d->qpos + cube_qpos_);
+  const double edge = 2 * source_.geom_size[3 * cube_geom_];
+  if (!out.held && (out.touched || (to - from).norm() > edge / 2)) return;
+  for (JawOverlap one : overlaps_in(d)) {
+    if (one.geom[1] < 0) continue;
+    one.closing = true;
+    out.overlaps.push_back(one);
   }
 }
 
@@ -279,6 +296,7 @@ GripOutcome GripTrial::run(const GripMend& mend) const {
     std::ranges::copy(open_qpos_, d->qpos);
     std::ranges::copy(open_act_, d->act);
     out.held = close(*m, d.get(), out);
+    note_stops(d.get(), out);
     if (!out.held) return;
     const Vector3d down = kGravity * (X_WT_.R * jaws_.approach_T);
     mju_copy3(m->opt.gravity, down.data());

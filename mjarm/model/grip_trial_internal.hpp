@@ -27,20 +27,22 @@ inline constexpr double kTrialMass = 0.1;  ///< [kg]
 [[nodiscard]] Result<MjModelPtr> with_trial_cube(const Model& model, double edge,
                                                  const LoadOptions& options);
 
-/// What came of closing a gripper on the cube.
-struct GripOutcome {
-  bool touched = false;     ///< both sides have come to touch it
-  bool held = false;        ///< the cube is between two parts of the hand
-  bool lost = false;        ///< it was, and has left them
-  double closing_time = 0;  ///< [s] from the command until both sides touch
-  double creep = 0;         ///< [m/s] along gravity, relative to the hand
-  std::vector<int> pads;    ///< geoms of the fingers that touch it, ascending
-};
-
-/// Parts of a hand that overlap while it holds nothing and stands open.
+/// Parts of a hand that overlap where the cube alone should be between them.
 struct JawOverlap {
   int geom[2] = {-1, -1};  ///< the second one -1: a hull that reaches to where the cube will be
   double depth = 0;        ///< [m]
+  bool closing = false;  ///< the fingers have come up to the cube, or have been stopped on the way
+};
+
+/// What came of closing a gripper on the cube.
+struct GripOutcome {
+  bool touched = false;              ///< both sides have come to touch it
+  bool held = false;                 ///< the cube is between two parts of the hand
+  bool lost = false;                 ///< it was, and has left them
+  double closing_time = 0;           ///< [s] from the command until both sides touch
+  double creep = 0;                  ///< [m/s] along gravity, relative to the hand
+  std::vector<int> pads;             ///< geoms of the fingers that touch it, ascending
+  std::vector<JawOverlap> overlaps;  ///< that keep it from being held, or take part of the force
 };
 
 /// Closes a gripper on a cube while stiff springs hold the arm at home. Gravity points out of the
@@ -68,6 +70,8 @@ class GripTrial {
   void open();
   void place_cube(const mjModel& m);
   void look_for_overlaps();
+  void note_stops(const mjData* d, GripOutcome& out) const;
+  [[nodiscard]] std::vector<JawOverlap> overlaps_in(const mjData* d) const;
   void step(const mjModel& m, mjData* d, double seconds) const;
   bool rest(const mjModel& m, mjData* d, double seconds) const;
   bool close(const mjModel& m, mjData* d, GripOutcome& out) const;
