@@ -30,7 +30,8 @@ constexpr int kMaxSteps = 3000;     // of each phase
 constexpr double kStill = 1e-3;     // [rad/s or m/s] slower is at rest
 constexpr double kAgainst = 0.5;    // cosine between a push and the way of closing
 constexpr double kAligned = 0.985;  // cosine of 10 degrees
-constexpr double kOverlap = 5e-4;   // [m] deeper than a soft contact
+constexpr double kOverlap = 5e-4;   // [m] deeper than a soft contact, in the open hand
+constexpr double kMeet = 1e-4;      // [m] the same where nothing should touch
 
 struct DeleteTrialData {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -192,14 +193,14 @@ void GripTrial::look_for_overlaps() {
     std::ranges::copy(open_qpos_, d->qpos);
     mj_fwdPosition(m.get(), d.get());
   });
-  if (!outcome.failed) overlaps_ = overlaps_in(d.get());
+  if (!outcome.failed) overlaps_ = overlaps_in(d.get(), kOverlap);
 }
 
-std::vector<JawOverlap> GripTrial::overlaps_in(const mjData* d) const {
+std::vector<JawOverlap> GripTrial::overlaps_in(const mjData* d, double deeper) const {
   std::vector<JawOverlap> out;
   for (int c = 0; c < d->ncon; ++c) {
     const mjContact& contact = d->contact[c];
-    if (contact.dist > -kOverlap || contact.geom[0] < 0 || contact.geom[1] < 0) continue;
+    if (contact.dist > -deeper || contact.geom[0] < 0 || contact.geom[1] < 0) continue;
     JawOverlap overlap{{contact.geom[0], contact.geom[1]}, -contact.dist};
     if (overlap.geom[0] == cube_geom_) std::swap(overlap.geom[0], overlap.geom[1]);
     if (overlap.geom[1] == cube_geom_) overlap.geom[1] = -1;
@@ -213,7 +214,7 @@ void GripTrial::note_stops(const mjData* d, GripOutcome& out) const {
   const Vector3d from(open_qpos_.data() + cube_qpos_), to(d->qpos + cube_qpos_);
   const double edge = 2 * source_.geom_size[3 * cube_geom_];
   if (!out.held && (out.touched || (to - from).norm() > edge / 2)) return;
-  for (JawOverlap one : overlaps_in(d)) {
+  for (JawOverlap one : overlaps_in(d, kMeet)) {
     if (one.geom[1] < 0) continue;
     one.closing = true;
     out.overlaps.push_back(one);

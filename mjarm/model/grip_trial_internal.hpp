@@ -71,7 +71,7 @@ class GripTrial {
   void place_cube(const mjModel& m);
   void look_for_overlaps();
   void note_stops(const mjData* d, GripOutcome& out) const;
-  [[nodiscard]] std::vector<JawOverlap> overlaps_in(const mjData* d) const;
+  [[nodiscard]] std::vector<JawOverlap> overlaps_in(const mjData* d, double deeper) const;
   void step(const mjModel& m, mjData* d, double seconds) const;
   bool rest(const mjModel& m, mjData* d, double seconds) const;
   bool close(const mjModel& m, mjData* d, GripOutcome& out) const;
