@@ -110,20 +110,28 @@ inline std::string all_of(const CheckReport& report) {
   return all;
 }
 
-/// Plants the fault and checks what is said about it.
-inline void expect_named(const Fault& fault) {
-  const support::TempFolder folder;
+/// Writes the models with the fault into `folder`. @return where in the edited file, npos for an
+/// edit that does not fit.
+inline std::size_t plant(const support::TempFolder& folder, const Fault& fault, std::string& text) {
   copy_models(folder);
-  std::string text = folder.read(fault.edited);
+  text = folder.read(fault.edited);
   std::size_t at = 0;
   for (const Edit& edit : fault.edits) {
     const std::size_t behind = text.find(edit.behind);
-    ASSERT_NE(behind, std::string::npos) << edit.behind;
-    at = text.find(edit.from, behind);
-    ASSERT_NE(at, std::string::npos) << edit.from;
+    at = behind == std::string::npos ? behind : text.find(edit.from, behind);
+    if (at == std::string::npos) return at;
     text.replace(at, edit.from.size(), edit.to);
   }
   folder.write(fault.edited, text);
+  return at;
+}
+
+/// Plants the fault and checks what is said about it.
+inline void expect_named(const Fault& fault) {
+  const support::TempFolder folder;
+  std::string text;
+  const std::size_t at = plant(folder, fault, text);
+  ASSERT_NE(at, std::string::npos) << "an edit does not fit " << fault.edited;
   std::size_t meant = edit_start(text, at);
   if (fault.line_of != nullptr) meant = text.find(fault.line_of);
   ASSERT_NE(meant, std::string::npos);

@@ -80,6 +80,7 @@ class Closing {
     if (!state_.attached.empty()) return std::move(state_);  // it is closed on that
     const std::vector<double> from = state_.qpos;
     const int steps = way_.has_ends() && !candidates_.empty() ? kSteps : 0;
+    way_.find_way(from);
     for (int k = 0; k <= steps; ++k) {
       way_.set(from, steps == 0 ? 1.0 : static_cast<double>(k) / steps, state_.qpos);
       if (steps == 0 || close_to_here()) break;

@@ -23,8 +23,8 @@ struct SceneState {
 /// stand along the ways of their joints (and of joints that equality constraints couple to them)
 /// and push free bodies before them, until something is between two of them, or between a finger
 /// and the hand, with opposite normals; that is attached then, where the fingers have it. Geometry
-/// alone, in steps of 1/200 of the way: no mass, no friction. Linkages that close loops are not
-/// followed: with them nothing is attached.
+/// alone, in steps of 1/200 of the way: no mass, no friction. A hand of linkages that close loops
+/// (connect and weld constraints) goes as it does in a simulation where it touches nothing.
 /// @param q       (dof,) [rad or m]
 /// @param before  what is attached already stays so, and then the fingers stand.
 /// @return bad_input for sizes that do not fit, rules that are not sound, or an arm without

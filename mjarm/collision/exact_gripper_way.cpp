@@ -26,9 +26,11 @@ double ratio_of(const mjModel& m, int actuator, int joint) {
 
 }  // namespace
 
-GripperWay::GripperWay(const mjModel& m, const Arm& arm) : m_(m) {
+GripperWay::GripperWay(const mjModel& m, const Arm& arm) : m_(m), linkage_(m, arm) {
   if (!arm.gripper) return;
   const Gripper& gripper = *arm.gripper;
+  ctrl_open_ = gripper.ctrl_open;
+  ctrl_closed_ = gripper.ctrl_closed;
   const int actuator = actuator_of(m, gripper.id);
   if (actuator < 0) return;
   const bool ctrl_lengthens = m.actuator_gainprm[actuator * mjNGAIN] > 0;
@@ -63,7 +65,24 @@ void GripperWay::find_coupled() {
   }
 }
 
+/// The command that goes with where the driven joints stand; open where they have no ends.
+double GripperWay::ctrl_in(const std::vector<double>& qpos) const {
+  double sum = 0;
+  for (const Driven& one : driven_) {
+    const double whole = one.closed - one.open;
+    const double here = qpos[static_cast<std::size_t>(m_.jnt_qposadr[one.joint])];
+    if (whole != 0) sum += std::clamp((here - one.open) / whole, 0.0, 1.0);
+  }
+  const double share = driven_.empty() ? 0.0 : sum / static_cast<double>(driven_.size());
+  return ctrl_open_ + share * (ctrl_closed_ - ctrl_open_);
+}
+
+void GripperWay::find_way(const std::vector<double>& from) {
+  if (linkage_.has_loops()) linkage_.find_way(from, ctrl_in(from), ctrl_closed_);
+}
+
 bool GripperWay::moves(int body) const {
+  if (linkage_.has_loops()) return linkage_.moves(body);
   const auto on = [&](const auto& one) { return m_.jnt_bodyid[one.joint] == body; };
   return std::ranges::any_of(driven_, on) || std::ranges::any_of(coupled_, on);
 }
@@ -80,6 +99,7 @@ void GripperWay::set_coupled(std::vector<double>& qpos) const {
 
 void GripperWay::set(const std::vector<double>& from, double share,
                      std::vector<double>& qpos) const {
+  if (linkage_.has_loops()) return linkage_.set(share, qpos);
   if (!has_ends_) return;
   for (const Driven& one : driven_) {
     const auto at = static_cast<std::size_t>(m_.jnt_qposadr[one.joint]);
@@ -88,7 +108,11 @@ void GripperWay::set(const std::vector<double>& from, double share,
   set_coupled(qpos);
 }
 
-void GripperWay::set_open(std::vector<double>& qpos) const {
+void GripperWay::set_open(std::vector<double>& qpos) {
+  if (linkage_.has_loops()) {
+    linkage_.find_way(qpos, ctrl_in(qpos), ctrl_open_);
+    return linkage_.set(1, qpos);
+  }
   if (!has_ends_) return;
   for (const Driven& one : driven_) {
     qpos[static_cast<std::size_t>(m_.jnt_qposadr[one.joint])] = one.open;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "mjarm/collision/exact_linkage_internal.hpp"
 #include "mjarm/model/arm.hpp"
 
 namespace mjarm::detail {
@@ -14,14 +15,16 @@ class GripperWay {
   /// @param arm  of the model; without a gripper nothing moves.
   GripperWay(const mjModel& m, const Arm& arm);
 
-  /// Every driven joint has an end at which the gripper is closed.
-  [[nodiscard]] bool has_ends() const { return has_ends_; }
+  /// Every driven joint has an end at which the gripper is closed, or there are closed loops.
+  [[nodiscard]] bool has_ends() const { return has_ends_ || linkage_.has_loops(); }
   /// A joint of the gripper moves this body against its parent.
   [[nodiscard]] bool moves(int body) const;
   /// Writes the joints at `share` of their way from where they stand in `from` (nq,) to closed.
   void set(const std::vector<double>& from, double share, std::vector<double>& qpos) const;
   /// Writes the joints at the end at which the gripper is open.
-  void set_open(std::vector<double>& qpos) const;
+  void set_open(std::vector<double>& qpos);
+  /// To be called before `set`: where the fingers go from `from` (nq,).
+  void find_way(const std::vector<double>& from);
 
  private:
   struct Driven {
@@ -34,9 +37,12 @@ class GripperWay {
     const mjtNum* polynomial = nullptr;
   };
   void find_coupled();
+  [[nodiscard]] double ctrl_in(const std::vector<double>& qpos) const;
   void set_coupled(std::vector<double>& qpos) const;
 
   const mjModel& m_;
+  Linkage linkage_;
+  double ctrl_open_ = 0, ctrl_closed_ = 0;
   std::vector<Driven> driven_;
   std::vector<Coupled> coupled_;  ///< after what they are coupled to
   bool has_ends_ = true;

@@ -21,6 +21,13 @@ inline constexpr double kInf = std::numeric_limits<double>::infinity();
   return {Eigen::Vector3d(pos), to_matrix(Quat(quat[0], quat[1], quat[2], quat[3]))};
 }
 
+/// The axis of a frame that is nearest to `v`.
+[[nodiscard]] inline Eigen::Vector3d nearest_axis(const Eigen::Vector3d& v) {
+  int k = 0;
+  v.cwiseAbs().maxCoeff(&k);
+  return Eigen::Vector3d::Unit(k) * (v[k] < 0 ? -1 : 1);
+}
+
 /// A tool frame T, fixed to a body.
 struct TipFrame {
   std::string name;

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Names of the codes in the order of the enum.
-constexpr std::array<std::string_view, 49> kNames = {"not_loadable",
+constexpr std::array<std::string_view, 59> kNames = {"not_loadable",
                                                      "name_doubled",
                                                      "inertia_triangle",
                                                      "inertia_not_positive",
@@ -61,6 +61,16 @@ constexpr std::array<std::string_view, 49> kNames = {"not_loadable",
                                                      "servo_undamped",
                                                      "timestep_large",
                                                      "gravity_odd",
+                                                     "grip_creep",
+                                                     "grip_cone",
+                                                     "grip_impratio",
+                                                     "pads_soft",
+                                                     "pads_slippery",
+                                                     "pads_condim",
+                                                     "finger_damping",
+                                                     "finger_slow",
+                                                     "jaws_overlap",
+                                                     "grip_not_measured",
                                                      "overlap_by_design"};
 static_assert(kNames[static_cast<std::size_t>(CheckCode::overlap_by_design)] ==
               "overlap_by_design");
@@ -124,6 +134,7 @@ Result<void> check_loaded(CheckContext context, const CheckOptions& options) {
   check_actuators(context);
   check_sag(context);
   check_home(context);
+  check_grip(context);
   return {};
 }
 
@@ -151,7 +162,9 @@ Result<CheckReport> check_model(const fs::path& file, const CheckOptions& option
     report.loads = model.has_value();
     const CheckContext context{.description = description,
                                .model = model ? &*model : nullptr,
-                               .findings = report.findings};
+                               .load = options.load,
+                               .findings = report.findings,
+                               .grip_mend = report.grip_mend};
     check_text(context);
     if (model) {
       if (auto done = check_loaded(context, options); !done) return fail(done.error());

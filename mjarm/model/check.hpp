@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/model/grip_check.hpp"
 #include "mjarm/model/model.hpp"
 
 namespace mjarm {
@@ -14,7 +15,7 @@ namespace mjarm {
 enum class Grade {
   error,    ///< the description says something that cannot be, or that nobody can have meant
   warning,  ///< the model works, but most likely not as was meant
-  note,     ///< worth knowing; nothing to mend
+  note,     ///< worth knowing; nothing that must be mended
 };
 /// "error", "warning" or "note".
 [[nodiscard]] std::string_view name(Grade grade) noexcept;
@@ -69,6 +70,16 @@ enum class CheckCode {
   servo_undamped,          ///< a servo without any damping
   timestep_large,          ///< a time step above 10 ms
   gravity_odd,             ///< gravity that is not about 9.8 m/s^2 along -z
+  grip_creep,              ///< what the gripper holds creeps out of it
+  grip_cone,               ///< the friction cone is pyramidal
+  grip_impratio,           ///< friction softer than what holds
+  pads_soft,               ///< pads whose contacts give way (solref, solimp)
+  pads_slippery,           ///< pads of little friction
+  pads_condim,             ///< pads that resist no twisting
+  finger_damping,          ///< joints of the gripper damped much beside their inertia
+  finger_slow,             ///< joints of the gripper damped so much that it closes slowly
+  jaws_overlap,            ///< shapes of the open gripper that overlap, or fill its jaws
+  grip_not_measured,       ///< the gripper does not hold a cube, or has no jaws to hold it in
   overlap_by_design,       ///< parts of the arm that overlap, or are sunk in what stands, always
 };
 /// The code as a word, such as `inertia_triangle`.
@@ -89,6 +100,7 @@ struct CheckReport {
   std::string file;
   bool loads = false;  ///< the loader accepts the file
   std::vector<Finding> findings;
+  GripMend grip_mend;  ///< what of a gripper can be mended, for export_mended()
 
   [[nodiscard]] int count(Grade grade) const;
 };
@@ -109,7 +121,9 @@ struct CheckOptions {
 ///   under the servos of their usual models hang by 5 to 30 mm (the UR5e by 8 mm at home and 30 mm
 ///   stretched out), which is a property of such servos and not a fault of the file. So is a radius
 ///   of gyration up to three times the size of the body: figures identified from motion, like the
-///   Panda's, go that far.
+///   Panda's, go that far. And so is what a gripper lets creep: it is measured, on a cube that the
+///   gripper closes on in a simulation of a few seconds, as the file is and with each setting that
+///   would make it hold better (some tenths of a second of computing time).
 ///
 /// A file that is well-formed XML but does not load is still searched for the faults its text
 /// shows.

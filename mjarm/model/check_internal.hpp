@@ -77,6 +77,12 @@ class Description {
   /// An actuator by its name; with `attributes`, the element that sets the first one of them.
   [[nodiscard]] Place actuator(const std::string& name,
                                const std::vector<const char*>& attributes = {}) const;
+  /// A geom by its name; its body, `owner`, where it has none.
+  /// @param attribute  the place is that of the default class that sets it, where one does.
+  [[nodiscard]] Place geom(const std::string& name, const std::string& owner,
+                           const char* attribute) const;
+  /// The last <option> with one of the attributes; the root where there is none.
+  [[nodiscard]] Place option(const char* attribute) const;
   /// The class that a default class stands in; empty for the outermost one.
   [[nodiscard]] std::string parent_class(const std::string& cls) const;
 
@@ -102,7 +108,9 @@ struct CheckContext {
   const Description& description;
   const Model* model = nullptr;  ///< null where the file does not load
   const Arm* arm = nullptr;      ///< null where none is found
+  const LoadOptions& load;       ///< with which the model was loaded
   std::vector<Finding>& findings;
+  GripMend& grip_mend;
 
   void add(CheckCode code, Grade grade, Place place, std::string what) const {
     findings.push_back({code, grade, std::move(place.file), place.line, std::move(place.element),
@@ -125,6 +133,7 @@ void check_arm(const CheckContext& context);
 void check_actuators(const CheckContext& context);
 void check_sag(const CheckContext& context);
 void check_home(const CheckContext& context);
+void check_grip(const CheckContext& context);
 
 /// Eigenvalues of an inertia [kg m^2].
 [[nodiscard]] Eigen::Vector3d principal_moments(const Eigen::Matrix3d& I);

@@ -156,4 +156,24 @@ Place Description::actuator(const std::string& name,
   return result;
 }
 
+Place Description::geom(const std::string& name, const std::string& owner,
+                        const char* attribute) const {
+  const SourceNode* node = name.empty() ? nullptr : find("worldbody", "geom", name);
+  if (node == nullptr) return body(owner);
+  Place result = place(*node);
+  if (const std::optional<Setting> found = setting(*node, attribute)) {
+    result.file = *found->node->file;
+    result.line = found->node->element->GetLineNum();
+  }
+  return result;
+}
+
+Place Description::option(const char* attribute) const {
+  const SourceNode* last = nullptr;
+  for (const SourceNode& node : nodes_) {
+    if (node.section == "option" && node.element->Attribute(attribute) != nullptr) last = &node;
+  }
+  return last != nullptr ? place(*last) : root();
+}
+
 }  // namespace mjarm

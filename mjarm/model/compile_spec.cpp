@@ -9,6 +9,7 @@
 #include "mjarm/model/complaint_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/model/stand_ins_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -152,30 +153,6 @@ Result<void> check_step(const std::string& file, const mjModel* model, std::stri
   return fail(Errc::bad_input,
               text(msg::model_refused, file, text(msg::guard_first_step, outcome.error)));
 }
-
-/// Shipped files in the places where MuJoCo looks for those that a scene includes.
-class StandIns {
- public:
-  StandIns() { mj_defaultVFS(&files_); }
-  ~StandIns() { mj_deleteVFS(&files_); }
-  StandIns(const StandIns&) = delete;
-  StandIns& operator=(const StandIns&) = delete;
-
-  void add(const XmlSources& sources) {
-    for (const auto& document : sources.documents()) {
-      if (document->stands_for.empty()) continue;
-      const std::string& text = document->text;
-      any_ = true;
-      mj_addBufferVFS(&files_, document->stands_for.c_str(), text.data(),
-                      static_cast<int>(text.size()));
-    }
-  }
-  [[nodiscard]] const mjVFS* get() const { return any_ ? &files_ : nullptr; }
-
- private:
-  mjVFS files_;
-  bool any_ = false;
-};
 
 /// One description on its way to a model.
 class Compiler {

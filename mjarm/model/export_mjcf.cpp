@@ -3,10 +3,11 @@
 #include <utility>
 
 #include "mjarm/core/messages/model.hpp"
-#include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/export_internal.hpp"
+#include "mjarm/model/grip_mend_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
+#include "mjarm/model/spec_origin_internal.hpp"
 
 namespace mjarm {
 namespace fs = std::filesystem;
@@ -88,41 +89,14 @@ std::string saved(const mjSpec* spec, std::string& error) {
   return xml;
 }
 
-/// The description that `model` was compiled from, read once more; null, with `error` filled, where
-/// that is not possible any more.
-MjSpecPtr description_of(const Model& model, std::string& error) {
-  char words[kErrorSize] = "";
-  mjSpec* parsed = nullptr;
-  const std::string& urdf = model.urdf_text();
-  const MujocoOutcome outcome = call_mujoco([&] {
-    parsed = urdf.empty() ? mj_parseXML(model.file().c_str(), nullptr, words, kErrorSize)
-                          : mj_parseXMLString(urdf.c_str(), nullptr, words, kErrorSize);
-  });
-  MjSpecPtr spec(parsed);
-  if (outcome.failed || spec == nullptr) {
-    error = outcome.failed ? outcome.error : words;
-    return nullptr;
-  }
-  if (!urdf.empty()) {
-    BodyPairs apart;
-    const mjModel* m = model.raw();
-    for (int e = 0; e < m->nexclude; ++e) {  // ids of both bodies in one number
-      const int pair = m->exclude_signature[e];
-      apart.emplace_back(object_name(m, mjOBJ_BODY, pair >> 16),
-                         object_name(m, mjOBJ_BODY, pair & 0xffff));
-    }
-    finish_urdf(spec.get(), apart);
-  }
-  return spec;
-}
-
-}  // namespace
-
-Result<Exported> export_mjcf(const Model& model, const fs::path& folder) {
+/// Text of `model` with what `change` does to its description first.
+template <class Change>
+Result<Exported> export_changed(const Model& model, const fs::path& folder, const Change& change) {
   const std::string file = model.file().string();
   std::string error;
-  const MjSpecPtr spec = description_of(model, error);
+  const MjSpecPtr spec = SpecOrigin(model).parse(error);
   if (spec == nullptr) return fail(Errc::impossible, text(msg::model_not_exported, file, error));
+  if (!change(*spec)) return fail(Errc::impossible, text(msg::model_file_changed, file));
   Exported exported;
   if (FileNames(spec.get(), model.file(), folder).rename()) {
     exported.notes.push_back(text(msg::model_files_stay));
@@ -137,6 +111,17 @@ Result<Exported> export_mjcf(const Model& model, const fs::path& folder) {
     return fail(Errc::impossible, text(msg::model_not_exported, file, error));
   }
   return exported;
+}
+
+}  // namespace
+
+Result<Exported> export_mjcf(const Model& model, const fs::path& folder) {
+  return export_changed(model, folder, [](mjSpec&) { return true; });
+}
+
+Result<Exported> export_mended(const Model& model, const GripMend& mend, const fs::path& folder) {
+  return export_changed(model, folder,
+                        [&](mjSpec& spec) { return detail::apply(mend, *model.raw(), spec); });
 }
 
 }  // namespace mjarm

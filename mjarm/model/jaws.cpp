@@ -24,6 +24,10 @@ constexpr double kFar = 0.25;     // [m] what is farther from the tool frame is 
 constexpr double kStep = 5e-4;    // [m] between rays that find where the fingers end
 constexpr double kFlat = 2e-3;    // [m] by which a finger's surface may step back
 constexpr int kDirections = 180;  // of closing that are tried, over half a turn
+constexpr double kBehind = 0.05;  // [m] from the middle of the fingers back, where jaws may begin
+constexpr double kAhead = 0.15;   // [m] and on, where they have ended
+constexpr double kCoarse = 2e-3;  // [m] between places that are looked at
+constexpr double kGrasp = 0.012;  // [m] from the fingertips to where a part is held, at most
 
 struct DeleteJawsData {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -45,6 +49,7 @@ class OpenHand {
       if (bodies.role[static_cast<std::size_t>(body)] != BodyRole::hand) continue;
       if (m_->geom_contype[g] != 0 || m_->geom_conaffinity[g] != 0) geoms_.push_back(g);
     }
+    last_link_ = m_->dof_bodyid[arm.joints.back().dof];
     if (const auto tip = find_frame(model, arm.tip)) tip_ = *tip;
   }
 
@@ -88,11 +93,19 @@ class OpenHand {
   }
 
   /// [m] the mean of where the hand's geoms are.
-  [[nodiscard]] Vector3d middle_W() const {
-    Vector3d sum = Vector3d::Zero();
-    for (const int g : geoms_) sum += Vector3d(d_->geom_xpos + 3 * g);
-    return geoms_.empty() ? sum : Vector3d(sum / static_cast<double>(geoms_.size()));
+  [[nodiscard]] Vector3d middle_W() const { return middle_W(geoms_); }
+
+  /// [m] the mean of where the geoms of its fingers are; of all, where none moves.
+  [[nodiscard]] Vector3d fingers_W() const {
+    std::vector<int> moved;
+    for (const int g : geoms_) {
+      if (m_->body_weldid[m_->geom_bodyid[g]] != m_->body_weldid[last_link_]) moved.push_back(g);
+    }
+    return middle_W(moved.empty() ? geoms_ : moved);
   }
+
+  /// [m] where the last link of the arm begins.
+  [[nodiscard]] Vector3d last_link_W() const { return Vector3d(d_->xpos + 3 * last_link_); }
 
  private:
   /// Per degree of freedom: it moves a part of the hand and nothing else.
@@ -124,18 +137,18 @@ class OpenHand {
     for (int k = 0; k < dofs[type]; ++k) d_->qvel[dof + k] = 0;
   }
 
+  [[nodiscard]] Vector3d middle_W(const std::vector<int>& geoms) const {
+    Vector3d sum = Vector3d::Zero();
+    for (const int g : geoms) sum += Vector3d(d_->geom_xpos + 3 * g);
+    return geoms.empty() ? sum : Vector3d(sum / static_cast<double>(geoms.size()));
+  }
+
   const mjModel* m_;
   std::unique_ptr<mjData, DeleteJawsData> d_;
   std::vector<int> geoms_;
+  int last_link_ = 0;
   TipFrame tip_;
 };
-
-/// The axis of a frame that is nearest to `v`.
-Vector3d nearest_axis(const Vector3d& v) {
-  int k = 0;
-  v.cwiseAbs().maxCoeff(&k);
-  return Vector3d::Unit(k) * (v[k] < 0 ? -1 : 1);
-}
 
 /// Measures the space between the fingers.
 class JawsMeasure {
@@ -146,6 +159,31 @@ class JawsMeasure {
     const Vector3d behind = X_WT_.inverse() * hand_.middle_W();
     if (behind.norm() == 0) return std::nullopt;
     jaws_.approach_T = nearest_axis(-behind);
+    return measure_here();
+  }
+
+  /// The same for a tool frame anywhere: between the fingers, near their tips.
+  std::optional<Jaws> measure_along() {
+    const Pose X_TW = X_WT_.inverse();
+    const Vector3d middle = X_TW * hand_.fingers_W();
+    const Vector3d ahead = middle - X_TW * hand_.last_link_W();
+    if (ahead.norm() == 0) return std::nullopt;
+    jaws_.approach_T = nearest_axis(ahead);
+    std::optional<double> first, last;
+    for (double s = -kBehind; s < kAhead; s += kCoarse) {
+      origin_T_ = middle + s * jaws_.approach_T;
+      if (!is_between()) continue;
+      if (!first) first = s;
+      last = s;
+    }
+    if (!first) return std::nullopt;
+    const double back = std::min(kGrasp, (*last - *first) / 2);
+    origin_T_ = middle + (*last - back) * jaws_.approach_T;
+    return measure_here();
+  }
+
+ private:
+  std::optional<Jaws> measure_here() {
     if (!find_closing()) return std::nullopt;
     jaws_.half_width = std::min(extent(jaws_.side_T()), extent(-jaws_.side_T()));
     jaws_.tips = extent(jaws_.approach_T);
@@ -153,7 +191,16 @@ class JawsMeasure {
     return jaws_;
   }
 
- private:
+  /// Parts that move against each other lie on both sides.
+  [[nodiscard]] bool is_between() const {
+    const Vector3d x = nearest_axis(jaws_.approach_T.unitOrthogonal());
+    for (const Vector3d& way : {x, Vector3d(jaws_.approach_T.cross(x))}) {
+      const Hit there = ray(origin_T_, way), back = ray(origin_T_, -way);
+      if (there.far + back.far < kInf && there.body != back.body) return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] Hit ray(const Vector3d& p_T, const Vector3d& way_T) const {
     return hand_.ray(X_WT_ * p_T, X_WT_.R * way_T);
   }
@@ -166,11 +213,11 @@ class JawsMeasure {
     for (int k = 0; k < kDirections; ++k) {
       const double angle = std::numbers::pi * k / kDirections;
       const Vector3d way = std::cos(angle) * x + std::sin(angle) * y;
-      const Hit there = ray(Vector3d::Zero(), way), back = ray(Vector3d::Zero(), -way);
+      const Hit there = ray(origin_T_, way), back = ray(origin_T_, -way);
       if (there.far + back.far >= best - 1e-6 || there.body == back.body) continue;
       best = there.far + back.far;
       jaws_.close_T = way;
-      jaws_.center_T = way * (there.far - back.far) / 2;
+      jaws_.center_T = origin_T_ + way * (there.far - back.far) / 2;
       jaws_.opening = best;
     }
     return best < kInf;
@@ -189,20 +236,34 @@ class JawsMeasure {
 
   const OpenHand& hand_;
   Pose X_WT_;
+  Vector3d origin_T_ = Vector3d::Zero();  ///< from where it is looked for the fingers
   Jaws jaws_;
 };
 
-}  // namespace
-
-Result<Jaws> find_jaws(const Model& model, const Arm& arm) {
+/// What `measure` says of the open hand of `arm`.
+template <class Measure>
+Result<Jaws> measure_open(const Model& model, const Arm& arm, const Measure& measure) {
   if (!arm.gripper) return fail(Errc::not_available, text(msg::model_no_gripper, arm.name));
   OpenHand hand(model, arm);
   const std::unique_ptr<mjModel, void (*)(mjModel*)> still(mj_copyModel(nullptr, model.raw()),
                                                            mj_deleteModel);
   const MujocoOutcome opened = call_mujoco([&] { hand.open(arm, *still); });
-  const std::optional<Jaws> jaws = opened.failed ? std::nullopt : JawsMeasure(hand).measure();
+  const std::optional<Jaws> jaws = opened.failed ? std::nullopt : measure(hand);
   if (!jaws) return fail(Errc::not_available, text(msg::model_no_jaws, arm.tip, arm.name));
   return *jaws;
+}
+
+}  // namespace
+
+Result<Jaws> find_jaws(const Model& model, const Arm& arm) {
+  return measure_open(model, arm, [](const OpenHand& hand) { return JawsMeasure(hand).measure(); });
+}
+
+Result<Jaws> find_jaws_anywhere(const Model& model, const Arm& arm) {
+  return measure_open(model, arm, [](const OpenHand& hand) {
+    const std::optional<Jaws> here = JawsMeasure(hand).measure();
+    return here ? here : JawsMeasure(hand).measure_along();
+  });
 }
 
 }  // namespace mjarm

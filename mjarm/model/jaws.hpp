@@ -29,4 +29,9 @@ struct Jaws {
 /// @return not_available where the arm has no gripper, or its tool frame is not between fingers.
 [[nodiscard]] Result<Jaws> find_jaws(const Model& model, const Arm& arm);
 
+/// The same, and where the tool frame is not between the fingers (at the flange, beyond their
+/// tips), the jaws near the fingertips, on the line through the middle of the fingers.
+/// @return not_available where the arm has no gripper, or nothing lies between its fingers.
+[[nodiscard]] Result<Jaws> find_jaws_anywhere(const Model& model, const Arm& arm);
+
 }  // namespace mjarm

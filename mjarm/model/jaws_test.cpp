@@ -39,5 +39,21 @@ TEST(Jaws, AreNotFoundWithoutAGripperOrFarFromIt) {
   EXPECT_THAT(flange.error().what, ::testing::HasSubstr("attachment_site"));
 }
 
+TEST(Jaws, AreFoundFromAnyToolFrame) {
+  const Model model = testing::shipped("ur5e_gripper");
+  const auto tool = find_jaws_anywhere(model, find_arm(model).value());
+  const auto flange =
+      find_jaws_anywhere(model, find_arm(model, {.tip = "attachment_site"}).value());
+  ASSERT_TRUE(tool && flange) << flange.error().what;
+  EXPECT_NEAR(flange->opening, tool->opening, 1e-4);
+  // Both frames are parallel; the pads reach from 123 to 160 mm from the flange.
+  EXPECT_NEAR(std::abs(flange->close_T.dot(tool->close_T)), 1, 1e-9);
+  EXPECT_GT(flange->center_T.z(), 0.123);
+  EXPECT_LT(flange->center_T.z(), 0.16);
+  EXPECT_TRUE(flange->approach_T.isApprox(Eigen::Vector3d::UnitZ()));
+  const Model ur5e = testing::shipped("ur5e");
+  EXPECT_FALSE(find_jaws_anywhere(ur5e, find_arm(ur5e).value()));
+}
+
 }  // namespace
 }  // namespace mjarm

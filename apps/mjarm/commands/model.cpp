@@ -20,6 +20,7 @@ struct Options {
   std::vector<std::string> package_paths;
   bool json = false;
   ExportOptions export_to;
+  FixOptions fix;
   bool allow_outside = false;
 };
 
@@ -74,7 +75,10 @@ Result<int> run_check(const Options& options) {
   const Result<std::filesystem::path> file = find_model_file(options.file);
   if (!file) return fail(file.error());
   const CheckOptions check{.tip = options.tip, .load = load_options(options)};
-  if (options.against.empty()) return check_file(*file, check, options.json);
+  if (options.against.empty()) return check_file(*file, check, options.json, options.fix);
+  if (!options.fix.out.empty()) {
+    return fail(Errc::usage, text(msg::app_exclusive_options, "--against", "--fix"));
+  }
   const Result<std::filesystem::path> other = find_model_file(options.against);
   if (!other) return fail(other.error());
   return check_against(*file, *other, check, options.json);
@@ -94,6 +98,8 @@ Run setup(CLI::App& app) {
   add_options(check, *options);
   add_option(check, "--tip", options->tip, msg::app_option_tip, "FRAME");
   add_option(check, "--against", options->against, msg::app_model_against, "FILE");
+  add_option(check, "--fix", options->fix.out, msg::app_option_fix, "OUT.xml");
+  add_overwrite_option(check, options->fix.replace);
   CLI::App& export_to =
       add_subcommand(app, "export", msg::app_model_export_summary, msg::app_model_export_examples);
   add_file_options(export_to, *options);

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
@@ -87,11 +91,53 @@ std::string to_json(const CheckReport& report) {
   return json.document();
 }
 
-Result<int> check_file(const fs::path& file, const CheckOptions& options, bool json) {
+namespace {
+
+/// Refuses what could not be written, before anything is measured.
+Result<std::optional<LongResult>> begin_fix(const fs::path& file, const FixOptions& fix) {
+  if (fix.out.empty()) return std::optional<LongResult>();
+  if (fs::path(fix.out).extension() != ".xml") {
+    return fail(Errc::usage, text(msg::app_fix_ending, fix.out));
+  }
+  std::error_code unknown;
+  if (fs::equivalent(fix.out, file, unknown)) {
+    return fail(Errc::usage, text(msg::app_fix_over_input, fix.out));
+  }
+  Result<LongResult> result = LongResult::begin(fix.out, fix.replace);
+  if (!result) return fail(result.error());
+  return std::optional<LongResult>(std::move(*result));
+}
+
+Result<void> write_fix(const fs::path& file, const CheckOptions& options, const GripMend& mend,
+                       const LongResult& result, const std::string& out) {
+  const Result<Model> model = Model::load(file, options.load);
+  if (!model) return fail(model.error());
+  const Result<Exported> exported = export_mended(*model, mend, fs::absolute(out).parent_path());
+  if (!exported) return fail(exported.error());
+  if (auto written = write_file(out, exported->content); !written) return fail(written.error());
+  result.made();
+  // All that MJCF cannot take along.
+  if (!exported->notes.empty()) log_warning(text(msg::app_fix_files_stay, out));
+  return {};
+}
+
+}  // namespace
+
+Result<int> check_file(const fs::path& file, const CheckOptions& options, bool json,
+                       const FixOptions& fix) {
+  const Result<std::optional<LongResult>> result = begin_fix(file, fix);
+  if (!result) return fail(result.error());
   const Result<CheckReport> report = check_model(file, options);
   if (!report) return fail(report.error());
   const std::string words = json ? to_json(*report) : to_text(*report);
   print_lines(words);
+  if (result->has_value() && report->grip_mend.empty()) {
+    if (report->loads) log_info(text(msg::app_fix_nothing, file.string(), fix.out));
+  } else if (result->has_value()) {
+    auto done = write_fix(file, options, report->grip_mend, **result, fix.out);
+    if (!done) return fail(done.error());
+    log_info(text(msg::app_fix_written, fix.out));
+  }
   if (report->count(Grade::error) == 0) return 0;
   return fail(report->loads ? Errc::impossible : Errc::bad_input,
               worst_line(report->findings.front()));

@@ -90,5 +90,56 @@ TEST(ModelCheck, AgainstFindsTheTurnedBase) {
   EXPECT_EQ(mjarm({"model", "check", "ur5e", "--against", "none.xml"}).exit_code, 2);
 }
 
+/// A UR5e whose gripper lets things creep, with a mesh of its own beside it.
+std::string creeping_scene(const support::TempFolder& folder) {
+  folder.write("in/meshes/stone.obj",
+               "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  return folder
+      .write("in/scene.xml", R"(<mujoco><include file="universal_robots_ur5e/ur5e_gripper.xml"/>
+        <compiler meshdir="meshes"/><option cone="pyramidal" impratio="1"/>
+        <asset><mesh name="stone" file="stone.obj"/></asset>
+        <worldbody><geom type="mesh" mesh="stone" pos="2 0 0"/></worldbody></mujoco>)")
+      .string();
+}
+
+TEST(ModelCheck, FixWritesASceneWhoseGripperHolds) {
+  const support::TempFolder folder;
+  const std::string scene = creeping_scene(folder);
+  const std::string out = (folder.path() / "out/fixed.xml").string();
+  std::filesystem::create_directory(folder.path() / "out");
+  const auto result = mjarm({"model", "check", scene, "--fix", out});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("[grip_creep]"), std::string::npos) << result.out;
+  EXPECT_NE(result.err.find(out + ": written"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("--allow-outside"), std::string::npos) << result.err;
+  const auto again = mjarm({"model", "check", out, "--allow-outside"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out.find("[grip_"), std::string::npos) << again.out;
+  EXPECT_NE(again.out.find("nothing wrong"), std::string::npos) << again.out;
+  const auto nothing = mjarm({"model", "check", out, "--allow-outside", "--fix", scene + ".xml"});
+  EXPECT_EQ(nothing.exit_code, 0) << nothing.err;
+  EXPECT_NE(nothing.err.find("is not written"), std::string::npos) << nothing.err;
+  EXPECT_FALSE(std::filesystem::exists(scene + ".xml"));
+  const auto chinese = mjarm({"model", "check", scene, "--lang", "zh-CN"});
+  EXPECT_NE(chinese.out.find("蠕滑"), std::string::npos) << chinese.out;
+}
+
+TEST(ModelCheck, FixRefusesWhatItCannotWrite) {
+  const support::TempFolder folder;
+  const std::string scene = creeping_scene(folder);
+  const std::string before = folder.read("in/scene.xml");
+  const auto over = mjarm({"model", "check", scene, "--fix", scene});
+  EXPECT_EQ(over.exit_code, 2);
+  EXPECT_NE(only_line(over).find("name another one for --fix"), std::string::npos) << over.err;
+  EXPECT_EQ(folder.read("in/scene.xml"), before);
+  const auto urdf = mjarm({"model", "check", scene, "--fix", "out.urdf"});
+  EXPECT_EQ(urdf.exit_code, 2);
+  EXPECT_NE(only_line(urdf).find(".xml"), std::string::npos) << urdf.err;
+  EXPECT_EQ(mjarm({"model", "check", scene, "--fix", "o.xml", "--against", "ur5e"}).exit_code, 2);
+  const auto nowhere = mjarm({"model", "check", scene, "--fix", "/none/o.xml"});
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_NE(nowhere.err.find("/none"), std::string::npos) << nowhere.err;
+}
+
 }  // namespace
 }  // namespace mjarm::app
