@@ -8,7 +8,7 @@ constexpr const char* kGripRobot = "universal_robots_ur5e/ur5e_gripper.xml";
 constexpr const char* kGripClasses = "universal_robots_ur5e/parts/gripper_common.xml";
 constexpr const char* kGripFingers = "universal_robots_ur5e/parts/gripper.xml";
 constexpr const char* kGripDrive = "universal_robots_ur5e/parts/gripper_drive.xml";
-constexpr const char* kGripOption = R"(<option cone="elliptic" impratio="30"/>)";
+constexpr const char* kGripOption = R"(cone="elliptic" impratio="30")";
 constexpr const char* kLeftJoint = R"(<joint name="left_finger_joint" class="finger"/>)";
 constexpr const char* kRightJoint = R"(<joint name="right_finger_joint" class="finger"/>)";
 
@@ -48,14 +48,14 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Pyramidal",
               kGripRobot,
               kGripClasses,
-              {{"", kGripOption, R"(<option cone="pyramidal" impratio="1"/>)"}},
+              {{"", kGripOption, R"(cone="pyramidal" impratio="1")"}},
               CheckCode::grip_cone,
               kNote,
               "<option>"},
         Fault{"LowImpratio",
               kGripRobot,
               kGripClasses,
-              {{"", kGripOption, R"(<option cone="elliptic" impratio="1"/>)"}},
+              {{"", kGripOption, R"(cone="elliptic" impratio="1")"}},
               CheckCode::grip_impratio,
               kNote,
               "<option>"},
