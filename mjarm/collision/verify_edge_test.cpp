@@ -146,7 +146,7 @@ TEST(VerifyEdge, AgreesWithDenseSamplesInCrowds) {
 /// speaks against it.
 TEST(VerifyEdge, ProvesEveryCertifiedEdgeAmongPlatesAndWires) {
   Rng rng(42);
-  const int wanted = testing::rounds(2000, 100'000, 200);
+  const int wanted = testing::rounds(1000, 100'000, 200);
   int certified = 0;
   for (int round = 0; certified < wanted; ++round) {
     const Scene scene = random_scene(2 + round % 6, 5, true, rng);

@@ -116,6 +116,30 @@ TEST_F(Render, AModelAtHome) {
   EXPECT_NE(qualities[1].rgb, qualities[2].rgb);
 }
 
+TEST_F(Render, AProgramInPicturesSideBySide) {
+  const auto program = folder_.write("cell.yaml", kRenderedProgram).string();
+  const std::vector<std::string> small = {program, "--size", "160x90", "--quality", "low"};
+  const Picture end = picture(small);
+  std::vector<std::string> words = small;
+  words.insert(words.end(), {"--strip", "5"});
+  const Picture strip = picture(words);
+  ASSERT_EQ(strip.width, 3 * 160U + 2 * 4);
+  ASSERT_EQ(strip.height, 2 * 90U + 4);
+  const auto part = [&](unsigned column, unsigned row) {
+    std::vector<unsigned char> out;
+    for (unsigned y = 0; y < 90; ++y) {
+      const auto from = strip.rgb.begin() + 3 * ((row * 94 + y) * strip.width + column * 164);
+      out.insert(out.end(), from, from + 3 * 160);
+    }
+    return out;
+  };
+  EXPECT_EQ(part(1, 1), end.rgb) << "the last one is the end";
+  EXPECT_NE(part(0, 0), part(1, 0));
+  EXPECT_NE(part(1, 0), part(2, 0));
+  EXPECT_NE(part(0, 1), part(1, 1));
+  EXPECT_EQ(part(2, 1), std::vector<unsigned char>(3 * 160 * 90, 255)) << "nothing is left";
+}
+
 TEST_F(Render, AShippedProgramByItsName) {
   const std::vector<std::string> small = {"--size", "160x90", "--quality", "low"};
   const auto drawn = [&](const char* name) {
@@ -257,6 +281,10 @@ TEST(RenderUsage, BadRequestsAreOneLine) {
       {{"ur5e", "--out", png, "--camera", "90deg,0"}, "2 values"},
       {{"ur5e", "--out", png, "--camera", "90mm,0,1"}, "--camera"},
       {{"ur5e", "--out", png, "--camera", "0,0,0"}, "distance"},
+      {{"ur5e", "--out", png, "--strip", "4"}, "pictures of motion programs"},
+      {{"ellipse", "--out", out("a.mp4"), "--strip", "4"}, "pictures of motion programs"},
+      {{"ellipse", "--out", png, "--strip", "1"}, "at least 2"},
+      {{"ellipse", "--out", png, "--strip", "25"}, "--strip"},
       {{"ur6e", "--out", png}, "ur5e"},
       {{"none.yaml", "--out", png}, "none.yaml"},
   };
