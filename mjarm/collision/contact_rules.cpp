@@ -3,10 +3,10 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
-#include <memory>
 #include <set>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
+#include "mjarm/collision/exact_data_internal.hpp"
 #include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/core/nearest_word.hpp"
@@ -14,10 +14,6 @@
 
 namespace mjarm {
 namespace {
-
-struct DeleteRest {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 bool is_free_body(const mjModel& m, int body) {
   const int joint = m.body_jntadr[body];
@@ -96,7 +92,7 @@ Result<AttachedBody> attach_in_place(const Model& model, const Arm& arm, const s
     return fail(std::move(fine.error()));
   }
   const mjModel& m = *model.raw();
-  const std::unique_ptr<mjData, DeleteRest> d(mj_makeData(&m));
+  const detail::MjDataPtr d(mj_makeData(&m));
   const std::vector<double> rest = detail::rest_configuration(m);
   std::copy(rest.begin(), rest.end(), d->qpos);
   mj_kinematics(&m, d.get());

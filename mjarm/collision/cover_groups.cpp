@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "mjarm/collision/cover_geoms_internal.hpp"
+#include "mjarm/collision/exact_data_internal.hpp"
 #include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/core/messages/collision.hpp"
 #include "mjarm/kinematics/fk.hpp"
@@ -15,10 +15,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastBound = 1e-5;  // [m] finer ones need more points than memory has
-
-struct DeletePoses {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 class GeomSorter {
  public:
@@ -124,7 +120,7 @@ class GeomSorter {
   const CoverOptions& options_;
   ArmBodies bodies_;
   ContactFilter filter_;
-  std::unique_ptr<mjData, DeletePoses> d_;
+  MjDataPtr d_;
   std::vector<double> rest_;
   std::vector<Pose> X_WJ_;
   std::map<std::pair<int, std::vector<bool>>, std::size_t> groups_;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
+#include "mjarm/collision/exact_data_internal.hpp"
 #include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/collision/exact_memory_internal.hpp"
 #include "mjarm/collision/never_meet_internal.hpp"
@@ -24,10 +25,6 @@ namespace {
 
 using detail::GeomGap;
 using detail::GeomIds;
-
-struct DeleteData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -348,7 +345,7 @@ struct ExactChecker::Impl {
   std::optional<std::set<GeomIds>> constant_pairs;  // once they were looked for
   std::optional<detail::NeverMeet> never_meet;      // once it was asked for; each copy its own
   detail::ClearanceMemory memory;
-  std::unique_ptr<mjData, DeleteData> d;
+  detail::MjDataPtr d;
 };
 
 Result<ExactChecker> ExactChecker::create(const Model& model, const Arm& arm,

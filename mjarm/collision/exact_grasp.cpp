@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <memory>
 #include <optional>
 
 #include "mjarm/collision/exact_arm_bodies_internal.hpp"
+#include "mjarm/collision/exact_data_internal.hpp"
 #include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/collision/exact_gripper_way_internal.hpp"
 #include "mjarm/core/finite.hpp"
@@ -25,10 +25,6 @@ constexpr int kSteps = 200;         // of the way of the fingers
 constexpr double kLook = 5e-3;      // [m] so near a finger is looked at
 constexpr double kTouch = 1e-6;     // [m] nearer than this is touching
 constexpr double kOpposite = -0.4;  // cosine of two normals that hold something between them
-
-struct DeleteGraspData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 /// How near one finger, or the hand itself, is to a body.
 struct Side {
@@ -193,7 +189,7 @@ class Closing {
   std::span<const double> q_;
   SceneState state_;
   detail::GripperWay way_;
-  std::unique_ptr<mjData, DeleteGraspData> d_;
+  detail::MjDataPtr d_;
   std::map<int, std::vector<int>> fingers_;  ///< geoms by finger; 0: the hand itself
   std::vector<Candidate> candidates_;
 };

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
+#include "mjarm/collision/exact_data_internal.hpp"
 #include "mjarm/collision/exact_linkage_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
@@ -12,13 +12,6 @@ constexpr double kRamp = 1;      // [s] in which the command changes
 constexpr double kMoving = 2.5;  // [s] at most
 constexpr int kMaxLinkSteps = 5000;
 constexpr double kResting = 1e-3;  // [rad/s or m/s] slower is at rest
-
-struct DeleteLinkData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-struct DeleteLinkModel {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-};
 
 /// True for what hangs on `body`, itself not.
 bool hangs_beyond(const mjModel& m, int descendant, int body) {
@@ -80,8 +73,8 @@ void Linkage::note(const mjData& d) {
 void Linkage::find_way(const std::vector<double>& from, double ctrl_from, double ctrl) {
   way_.clear();
   length_.clear();
-  const std::unique_ptr<mjModel, DeleteLinkModel> still(mj_copyModel(nullptr, &m_));
-  const std::unique_ptr<mjData, DeleteLinkData> d(mj_makeData(still.get()));
+  const MjModelPtr still(mj_copyModel(nullptr, &m_));
+  const MjDataPtr d(mj_makeData(still.get()));
   mju_zero3(still->opt.gravity);
   still->opt.disableflags |= mjDSBL_CONTACT;
   std::ranges::copy(from, d->qpos);

@@ -8,6 +8,7 @@
 #include "mjarm/collision/cover_geoms_internal.hpp"
 #include "mjarm/collision/cover_pairs_internal.hpp"
 #include "mjarm/collision/edge_march_internal.hpp"
+#include "mjarm/collision/exact_data_internal.hpp"
 #include "mjarm/collision/exact_gaps_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
@@ -24,10 +25,6 @@ using detail::Watch;
 constexpr double kMarchMeasured = 0.2;  // [m] farther than that balls round the geoms will do
 constexpr double kFarthest = 10;        // [m] to which distances are measured
 constexpr double kMeasureError = 1e-5;  // [m] more than MuJoCo's distances are off by
-
-struct DeleteScratch {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 }  // namespace
 
@@ -125,7 +122,7 @@ struct ModelMarch::Impl final : detail::MarchGeometry {
   Arm arm;
   detail::GeomGroups groups;
   detail::Meetings meetings;
-  std::unique_ptr<mjData, DeleteScratch> d;
+  detail::MjDataPtr d;
 };
 
 Result<ModelMarch> ModelMarch::create(const Model& model, const Arm& arm, const ContactRules& rules,

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <set>
 
 #include "mjarm/core/messages/check.hpp"
@@ -8,6 +7,7 @@
 #include "mjarm/model/check_internal.hpp"
 #include "mjarm/model/check_pose_internal.hpp"
 #include "mjarm/model/home.hpp"
+#include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
@@ -139,7 +139,7 @@ void check_home(const CheckContext& context) {
   const std::vector<char> moved = moved_bodies(m, first);
   check_collision_shapes(context, moved);
   report_design(context);
-  const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(m), mj_deleteData);
+  const MjDataPtr data(mj_makeData(m));
   const std::vector<double> qpos = home_qpos(context);
   std::copy(qpos.begin(), qpos.end(), data->qpos);
   const MujocoOutcome outcome = call_mujoco([&] { mj_fwdPosition(m, data.get()); });

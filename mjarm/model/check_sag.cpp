@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
 
 #include "mjarm/core/messages/check.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/check_internal.hpp"
 #include "mjarm/model/check_pose_internal.hpp"
+#include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
@@ -15,10 +15,6 @@ namespace {
 
 /// Sag of the tool that is more than a property of position servos [m].
 constexpr double kMaxSag = 0.05;
-
-struct DeleteData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 /// The arm at rest: torques that hold it, and where its tool goes when joints yield.
 class RestingArm {
@@ -83,7 +79,7 @@ class RestingArm {
 
   const mjModel* m_;
   const Arm& arm_;
-  std::unique_ptr<mjData, DeleteData> data_;
+  MjDataPtr data_;
   std::vector<double> qpos_;
   TipFrame tip_;
 };

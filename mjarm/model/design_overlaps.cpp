@@ -5,16 +5,13 @@
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/design_overlaps_internal.hpp"
 #include "mjarm/model/home.hpp"
+#include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm {
 namespace {
 
 constexpr int kPostures = 64;
-
-struct DeleteMjData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 /// Pairs of parts that overlap at `d->qpos`.
 PartPairs overlapping(const mjModel* m, mjData* d, const ModelParts& parts) {
@@ -42,7 +39,7 @@ void draw_posture(const mjModel* m, Rng& rng, mjtNum* qpos) {
 }
 
 PartPairs draw_overlapping(const mjModel& m, const mjtNum* qpos, const ModelParts& parts) {
-  const std::unique_ptr<mjData, DeleteMjData> d(mj_makeData(&m));
+  const MjDataPtr d(mj_makeData(&m));
   std::copy(qpos, qpos + m.nq, d->qpos);
   PartPairs always = overlapping(&m, d.get(), parts);
   Rng rng(1);

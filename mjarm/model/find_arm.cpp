@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
@@ -10,6 +9,7 @@
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/design_overlaps_internal.hpp"
 #include "mjarm/model/home.hpp"
+#include "mjarm/model/load_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -161,7 +161,7 @@ Result<Pose> frame_pose(const Model& model, std::string_view frame, std::span<co
   }
   const Result<TipFrame> found = find_frame(model, frame);
   if (!found) return fail(found.error());
-  const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(m), mj_deleteData);
+  const MjDataPtr data(mj_makeData(m));
   std::copy(qpos.begin(), qpos.end(), data->qpos);
   mj_kinematics(m, data.get());
   const int b = found->body;

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <utility>
 
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/load_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -98,7 +98,7 @@ std::optional<Gripper> find_gripper(const mjModel* m, const std::vector<int>& jo
   const auto range = ctrl_range(m, chosen, drives);
   if (!range) return std::nullopt;
 
-  const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(m), mj_deleteData);
+  const MjDataPtr data(mj_makeData(m));
   const bool longer_is_wider =
       opening(m, data.get(), drives, 1) > opening(m, data.get(), drives, 0);
   const bool ctrl_lengthens = m->actuator_gainprm[chosen * mjNGAIN] > 0;

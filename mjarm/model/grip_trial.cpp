@@ -33,11 +33,6 @@ constexpr double kAligned = 0.985;  // cosine of 10 degrees
 constexpr double kOverlap = 5e-4;   // [m] deeper than a soft contact, in the open hand
 constexpr double kMeet = 1e-4;      // [m] the same where nothing should touch
 
-struct DeleteTrialData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-using TrialData = std::unique_ptr<mjData, DeleteTrialData>;
-
 bool is_slider_or_hinge(const mjModel& m, int joint) {
   return m.jnt_type[joint] == mjJNT_HINGE || m.jnt_type[joint] == mjJNT_SLIDE;
 }
@@ -85,7 +80,7 @@ MjModelPtr GripTrial::hand_alone(const GripMend& mend) const {
   mjModel& m = *copy;
   apply(mend, m);
   if (!mend.armature.empty()) {
-    const TrialData data(mj_makeData(&m));
+    const MjDataPtr data(mj_makeData(&m));
     mj_setConst(&m, data.get());
   }
   const auto of_hand = [&](int body) { return hand_[static_cast<std::size_t>(body)] != 0; };
@@ -153,7 +148,7 @@ bool GripTrial::rest(const mjModel& m, mjData* d, double seconds) const {
 void GripTrial::open() {
   const MjModelPtr m = hand_alone({});
   m->geom_contype[cube_geom_] = m->geom_conaffinity[cube_geom_] = 0;
-  const TrialData d(mj_makeData(m.get()));
+  const MjDataPtr d(mj_makeData(m.get()));
   const MujocoOutcome outcome = mjarm::call_mujoco([&] {
     std::ranges::copy(open_qpos_, d->qpos);
     d->ctrl[ctrl_] = ctrl_open_;
@@ -188,7 +183,7 @@ void GripTrial::place_cube(const mjModel& m) {
 
 void GripTrial::look_for_overlaps() {
   const MjModelPtr m = hand_alone({});
-  const TrialData d(mj_makeData(m.get()));
+  const MjDataPtr d(mj_makeData(m.get()));
   const MujocoOutcome outcome = mjarm::call_mujoco([&] {
     std::ranges::copy(open_qpos_, d->qpos);
     mj_fwdPosition(m.get(), d.get());
@@ -292,7 +287,7 @@ GripOutcome GripTrial::run(const GripMend& mend) const {
   GripOutcome out;
   if (!opens_) return out;
   const MjModelPtr m = hand_alone(mend);
-  const TrialData d(mj_makeData(m.get()));
+  const MjDataPtr d(mj_makeData(m.get()));
   const MujocoOutcome outcome = mjarm::call_mujoco([&] {
     std::ranges::copy(open_qpos_, d->qpos);
     std::ranges::copy(open_act_, d->act);

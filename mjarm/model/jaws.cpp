@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/home.hpp"
+#include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/model/scene_bodies.hpp"
 
@@ -28,10 +28,6 @@ constexpr double kBehind = 0.05;  // [m] from the middle of the fingers back, wh
 constexpr double kAhead = 0.15;   // [m] and on, where they have ended
 constexpr double kCoarse = 2e-3;  // [m] between places that are looked at
 constexpr double kGrasp = 0.012;  // [m] from the fingertips to where a part is held, at most
-
-struct DeleteJawsData {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 /// Where a ray meets a part of the hand.
 struct Hit {
@@ -144,7 +140,7 @@ class OpenHand {
   }
 
   const mjModel* m_;
-  std::unique_ptr<mjData, DeleteJawsData> d_;
+  MjDataPtr d_;
   std::vector<int> geoms_;
   int last_link_ = 0;
   TipFrame tip_;
@@ -245,8 +241,7 @@ template <class Measure>
 Result<Jaws> measure_open(const Model& model, const Arm& arm, const Measure& measure) {
   if (!arm.gripper) return fail(Errc::not_available, text(msg::model_no_gripper, arm.name));
   OpenHand hand(model, arm);
-  const std::unique_ptr<mjModel, void (*)(mjModel*)> still(mj_copyModel(nullptr, model.raw()),
-                                                           mj_deleteModel);
+  const MjModelPtr still(mj_copyModel(nullptr, model.raw()));
   const MujocoOutcome opened = call_mujoco([&] { hand.open(arm, *still); });
   const std::optional<Jaws> jaws = opened.failed ? std::nullopt : measure(hand);
   if (!jaws) return fail(Errc::not_available, text(msg::model_no_jaws, arm.tip, arm.name));

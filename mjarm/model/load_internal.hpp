@@ -21,10 +21,14 @@ namespace mjarm {
 struct DeleteMjModel {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
 };
+struct DeleteMjData {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
 struct DeleteMjSpec {
   void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
 };
 using MjModelPtr = std::unique_ptr<mjModel, DeleteMjModel>;
+using MjDataPtr = std::unique_ptr<mjData, DeleteMjData>;
 using MjSpecPtr = std::unique_ptr<mjSpec, DeleteMjSpec>;
 
 /// What comes out of a file.

@@ -1,12 +1,12 @@
 #include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <memory>
 
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/point_mass_internal.hpp"
 
 namespace mjarm::detail {
@@ -40,7 +40,7 @@ void add_point_mass(mjModel& m, int body, const Eigen::Vector3d& p_B, double mas
   mju_copy4(quat, wxyz);
   m.body_sameframe[body] = mjSAMEFRAME_NONE;
   m.body_simple[body] = 0;
-  const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(&m), mj_deleteData);
+  const MjDataPtr data(mj_makeData(&m));
   mj_setConst(&m, data.get());
 }
 
