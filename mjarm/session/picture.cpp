@@ -52,16 +52,20 @@ render::Image strip_of(const std::vector<render::Image>& pictures) {
   return out;
 }
 
+Result<std::string> write_image(render::Image image, const PictureOptions& options) {
+  (void)render::add_legend(image, options.legend);
+  if (Result<void> written = render::write_png(image, options.out); !written) {
+    return fail(std::move(written.error()));
+  }
+  return text(msg::show_picture, options.out.string(), image.width, image.height);
+}
+
 Result<std::string> write_picture(render::OffscreenRenderer& renderer,
                                   const PictureOptions& options, const Snapshot& snapshot,
                                   const render::Camera& camera, const render::Overlay& overlay) {
   Result<render::Image> image = renderer.draw(snapshot, camera, overlay);
   if (!image) return fail(image.error());
-  (void)render::add_legend(*image, options.legend);
-  if (Result<void> written = render::write_png(*image, options.out); !written) {
-    return fail(std::move(written.error()));
-  }
-  return text(msg::show_picture, options.out.string(), image->width, image->height);
+  return write_image(std::move(*image), options);
 }
 
 }  // namespace mjarm::session

@@ -33,6 +33,9 @@ struct PictureOptions {
 /// Pictures of one size as one: side by side, more than four in two rows.
 [[nodiscard]] render::Image strip_of(const std::vector<render::Image>& pictures);
 
+/// Adds the legend to a picture and writes it. @return the line to tell.
+[[nodiscard]] Result<std::string> write_image(render::Image image, const PictureOptions& options);
+
 /// Draws one picture and writes it. @return the line to tell.
 [[nodiscard]] Result<std::string> write_picture(render::OffscreenRenderer& renderer,
                                                 const PictureOptions& options,

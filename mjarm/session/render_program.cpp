@@ -8,7 +8,6 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/execution/execution.hpp"
-#include "mjarm/render/png.hpp"
 #include "mjarm/render/trail.hpp"
 #include "mjarm/session/program_scene.hpp"
 #include "mjarm/session/run_video.hpp"
@@ -123,12 +122,7 @@ Result<std::string> strip_over(ProgramRun& run, const Job& job, double duration,
   if (Result<void> ran = run.run(job.seconds, after_step); !ran) return fail(ran.error());
   if (interrupted()) return fail(Errc::system, text(msg::show_stopped, options.out.string()));
   if (!drawn || !draw()) return fail(std::move(drawn.error()));
-  render::Image strip = strip_of(pictures);
-  (void)render::add_legend(strip, options.legend);
-  if (Result<void> written = render::write_png(strip, options.out); !written) {
-    return fail(std::move(written.error()));
-  }
-  return text(msg::show_picture, options.out.string(), strip.width, strip.height);
+  return write_image(strip_of(pictures), options);
 }
 
 }  // namespace
