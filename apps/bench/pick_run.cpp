@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -102,24 +103,34 @@ Result<PickVerdict> solve_pick(const PickSet& set, const PickProblem& problem) {
   Result<session::SceneEye> eye =
       session::SceneEye::open(set.loaded, "rgbd", {.seed = problem.seed});
   if (!eye) return fail(std::move(eye.error()));
-  Result<session::SceneEye> wrist =
-      session::SceneEye::open(set.loaded, "wrist", {.seed = problem.seed + 1});
-  if (!wrist) return fail(std::move(wrist.error()));
   PickWorld world(set, problem);
   PickVerdict out{.object = problem.task.object, .passed_over = problem.passed_over};
-  const auto looking_with = [&](session::SceneEye& with) {
-    return [&](const SceneState& scene, std::span<const double> q) {
-      Result<program::SeenScene> seen = with.look(scene, q);
-      if (seen) world.judge_look(with.found(), out);
-      return seen;
-    };
+  const auto look_with = [&](session::SceneEye& with, const SceneState& scene,
+                             std::span<const double> q) {
+    Result<program::SeenScene> seen = with.look(scene, q);
+    if (seen) world.judge_look(with.found(), out);
+    return seen;
+  };
+  const session::Look look = [&](const SceneState& scene, std::span<const double> q) {
+    return look_with(*eye, scene, q);
+  };
+  // Opened where it is needed: most things are seen without it.
+  std::optional<session::SceneEye> wrist;
+  const session::Look from_above = [&](const SceneState& scene,
+                                       std::span<const double> q) -> Result<program::SeenScene> {
+    if (!wrist) {
+      auto opened = session::SceneEye::open(set.loaded, "wrist", {.seed = problem.seed + 1});
+      if (!opened) return fail(std::move(opened.error()));
+      wrist = std::move(*opened);
+    }
+    return look_with(*wrist, scene, q);
   };
   session::PickAndPlaceOptions options{.pick = {.stop = interrupted}};
   for (const Pose& X_WT : over_the_table()) {
-    options.vantages.push_back({X_WT, looking_with(*wrist)});
+    options.vantages.push_back({X_WT, from_above});
   }
   const auto outcome =
-      session::pick_and_place(set.loaded, world.sim(), looking_with(*eye), problem.task, options);
+      session::pick_and_place(set.loaded, world.sim(), look, problem.task, options);
   if (interrupted()) return fail(stopped());
   if (!outcome) return fail(outcome.error());
   out.tries = outcome->tries.size();
