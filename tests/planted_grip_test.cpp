@@ -9,8 +9,17 @@ constexpr const char* kGripClasses = "universal_robots_ur5e/parts/gripper_common
 constexpr const char* kGripFingers = "universal_robots_ur5e/parts/gripper.xml";
 constexpr const char* kGripDrive = "universal_robots_ur5e/parts/gripper_drive.xml";
 constexpr const char* kGripOption = R"(cone="elliptic" impratio="30")";
-constexpr const char* kLeftJoint = R"(<joint name="left_finger_joint" class="finger"/>)";
-constexpr const char* kRightJoint = R"(<joint name="right_finger_joint" class="finger"/>)";
+
+/// The joints of both fingers with one more attribute; the left one, which is told, last.
+std::vector<Edit> with_joints(const std::string& attribute) {
+  std::vector<Edit> out;
+  for (const char* side : {"right", "left"}) {
+    const std::string joint =
+        std::string("<joint name=\"") + side + "_finger_joint\" class=\"finger\"";
+    out.push_back({"", joint + "/>", joint + " " + attribute + "/>"});
+  }
+  return out;
+}
 
 class PlantedGrip : public ::testing::TestWithParam<Fault> {};
 
@@ -95,45 +104,14 @@ INSTANTIATE_TEST_SUITE_P(
               CheckCode::pads_condim,
               kNote,
               R"(<geom "left_pad_solid">)"},
-        Fault{"DampedBesideInertia",
-              kGripRobot,
-              kGripFingers,
-              {{"", kRightJoint,
-                R"(<joint name="right_finger_joint" class="finger" damping="2000"/>)"},
-               {"", kLeftJoint,
-                R"(<joint name="left_finger_joint" class="finger" damping="2000"/>)"}},
-              CheckCode::finger_damping,
-              kNote,
-              R"(<joint "left_finger_joint">)"},
-        Fault{
-            "DriveBesideInertia",
-            kGripRobot,
-            kGripFingers,
-            {{"", kRightJoint, R"(<joint name="right_finger_joint" class="finger" armature="0"/>)"},
-             {"", kLeftJoint, R"(<joint name="left_finger_joint" class="finger" armature="0"/>)"}},
-            CheckCode::finger_damping,
-            kNote,
-            R"(<joint "left_finger_joint">)"},
-        Fault{"SlowByDamping",
-              kGripRobot,
-              kGripFingers,
-              {{"", kRightJoint,
-                R"(<joint name="right_finger_joint" class="finger" damping="8000"/>)"},
-               {"", kLeftJoint,
-                R"(<joint name="left_finger_joint" class="finger" damping="8000"/>)"}},
-              CheckCode::finger_slow,
-              kNote,
-              R"(<joint "left_finger_joint">)"},
-        Fault{"SlowByArmature",
-              kGripRobot,
-              kGripFingers,
-              {{"", kRightJoint,
-                R"(<joint name="right_finger_joint" class="finger" armature="1000"/>)"},
-               {"", kLeftJoint,
-                R"(<joint name="left_finger_joint" class="finger" armature="1000"/>)"}},
-              CheckCode::finger_slow,
-              kNote,
-              R"(<joint "left_finger_joint">)"},
+        Fault{"DampedBesideInertia", kGripRobot, kGripFingers, with_joints(R"(damping="2000")"),
+              CheckCode::finger_damping, kNote, R"(<joint "left_finger_joint">)"},
+        Fault{"DriveBesideInertia", kGripRobot, kGripFingers, with_joints(R"(armature="0")"),
+              CheckCode::finger_damping, kNote, R"(<joint "left_finger_joint">)"},
+        Fault{"SlowByDamping", kGripRobot, kGripFingers, with_joints(R"(damping="8000")"),
+              CheckCode::finger_slow, kNote, R"(<joint "left_finger_joint">)"},
+        Fault{"SlowByArmature", kGripRobot, kGripFingers, with_joints(R"(armature="1000")"),
+              CheckCode::finger_slow, kNote, R"(<joint "left_finger_joint">)"},
         Fault{
             "FingersThatOverlap",
             kGripRobot,
