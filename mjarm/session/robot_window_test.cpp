@@ -221,24 +221,25 @@ TEST_F(RobotInWindow, InItsOwnThreadTheArmFollowsAsWell) {
   const Eigen::Vector3d held = before.p + 0.9 * size() * Eigen::Vector3d::UnitX();
   const Eigen::Vector2d from = pixel(held);
   const Eigen::Vector2d to = pixel(held - 0.1 * Eigen::Vector3d::UnitX());
-  // Each thing the user does waits for what the one before did, not for the clock: pictures may be slow.
+  // Each thing the user does waits for what the one before did, not for the clock: pictures may be
+  // slow.
   enum class Hand { away, pressed, dragging, let_go };
   Hand hand = Hand::away;
   int waited = 0;
   const auto act = [&] {
-    const bool held = handle_.gizmo().held().has_value();
-    if (hand == Hand::away || (hand == Hand::pressed && !held && ++waited > 20)) {
+    const bool is_held = handle_.gizmo().held().has_value();
+    if (hand == Hand::away || (hand == Hand::pressed && !is_held && ++waited > 20)) {
       xdotool({"mouseup", "1", "mousemove", word(from.x()), word(from.y()), "mousedown", "1"});
       hand = Hand::pressed;
       waited = 0;
-    } else if (hand == Hand::pressed && held) {
+    } else if (hand == Hand::pressed && is_held) {
       xdotool({"mousemove", word(to.x()), word(to.y())});
       hand = Hand::dragging;
     } else if (hand == Hand::dragging && target_pose().p.x() < before.p.x() - 0.05) {
       xdotool({"mouseup", "1"});
       hand = Hand::let_go;
     }
-    return hand == Hand::let_go && !held;
+    return hand == Hand::let_go && !is_held;
   };
   view::ViewLink link;
   std::thread worker([&] { simulate_world(view_, link); });
