@@ -20,12 +20,13 @@ namespace {
 constexpr int kMaxScenes = 100'000;
 
 struct Options : ReportOptions {
-  std::string robot, set, scenes = "100", seed = "1";
+  std::string robot, set, scenes = "100", first = "0", seed = "1";
 };
 
 /// All scenes of a set, solved.
 struct SolvedSet {
   std::string name, robot;
+  std::size_t first;  ///< number of the first scene
   std::vector<PickVerdict> verdicts;
 };
 
@@ -69,7 +70,9 @@ std::string to_table(const std::vector<SolvedSet>& sets, bool timing) {
     for (std::size_t i = 0; i < set.verdicts.size(); ++i) {
       const PickVerdict& one = set.verdicts[i];
       if (one.placed) continue;
-      misses += text(msg::bench_pick_miss, set.robot, set.name, i, one.object, one.miss) + '\n';
+      misses +=
+          text(msg::bench_pick_miss, set.robot, set.name, set.first + i, one.object, one.miss) +
+          '\n';
     }
   }
   std::string out = timing ? bench_occasion() + "\n\n" : std::string();
@@ -124,6 +127,8 @@ Result<std::vector<PickSet>> sets_of(const Options& options, std::uint64_t seed)
 Result<int> run_pick(const Options& options) {
   const Result<int> scenes = parse_count("--scenes", options.scenes, kMaxScenes);
   if (!scenes) return fail(scenes.error());
+  const Result<std::uint64_t> first = parse_whole("--first", options.first);
+  if (!first) return fail(first.error());
   const Result<int> seed = parse_count("--seed", options.seed, kMaxScenes);
   if (!seed) return fail(seed.error());
   Result<std::vector<PickSet>> loaded = sets_of(options, static_cast<std::uint64_t>(*seed));
@@ -133,9 +138,9 @@ Result<int> run_pick(const Options& options) {
                     sets.size() * static_cast<std::size_t>(*scenes));
   std::vector<SolvedSet> solved;
   for (const PickSet& set : sets) {
-    solved.push_back({set.name, set.robot, {}});
+    solved.push_back({set.name, set.robot, *first, {}});
     for (int i = 0; i < *scenes; ++i) {
-      const Result<PickProblem> problem = set.draw(static_cast<std::uint64_t>(i));
+      const Result<PickProblem> problem = set.draw(*first + static_cast<std::uint64_t>(i));
       if (!problem) return fail(problem.error());
       Result<PickVerdict> verdict = solve_pick(set, *problem);
       if (!verdict) return fail(std::move(verdict.error()));
@@ -157,6 +162,7 @@ Command pick_suite() {
             add_option(app, "--robot", options->robot, msg::bench_pick_option_robot, "NAME");
             add_option(app, "--set", options->set, msg::bench_pick_option_set, "NAME");
             add_option(app, "--scenes", options->scenes, msg::bench_pick_option_scenes, "N");
+            add_option(app, "--first", options->first, msg::bench_pick_option_first, "N");
             add_option(app, "--seed", options->seed, msg::bench_pick_option_seed, "N");
             add_report_options(app, *options);
             return [options] { return run_pick(*options); };

@@ -56,8 +56,9 @@ struct PickSet {
 [[nodiscard]] Result<PickSet> table_scenes(const std::string& robot, std::uint64_t seed);
 
 /// The same with eight objects, half of them so put that they touch another one (0.2 mm) or stand
-/// 1 to 6 mm beside it, a beam and a lamp over them. The one that is asked for has a grasp and a
-/// way to its place where all poses are known; those that have none are counted.
+/// 1 to 6 mm beside it, a beam and a lamp over them. The one that is asked for has a grasp with
+/// 1 mm to spare beside the fingers, and a way to its place, where all poses are known; those that
+/// have none are counted.
 [[nodiscard]] Result<PickSet> clutter_scenes(const std::string& robot, std::uint64_t seed);
 
 /// [rad] between two orientations of one of the objects, up to its symmetry.

@@ -15,7 +15,8 @@
 namespace mjarm::app {
 namespace {
 
-constexpr int kDraws = 200;  // of a place for one object, before the scene is begun anew
+constexpr double kToSpare = 1e-3;  // [m] beside the fingers: more than a look is wrong by
+constexpr int kDraws = 200;        // of a place for one object, before the scene is begun anew
 
 /// Puts all objects of a scene on the table, some of them beside each other.
 class Clutter {
@@ -120,7 +121,7 @@ class Clutter {
       program::PickTask task = out.task;
       task.place->same = same_[task.object];
       if (program::plan_pick(robot_, truth, as_span(robot_.arm.home), task,
-                             {.stop = interrupted})) {
+                             {.keep_off = kToSpare, .stop = interrupted})) {
         return true;
       }
       ++passed_over;

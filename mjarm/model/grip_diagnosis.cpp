@@ -249,7 +249,7 @@ Result<GripDiagnosis> diagnose_grip(const Model& model, const Arm& arm,
   if (model.nv() > kMaxDofs) {
     return fail(Errc::not_available, text(msg::check_grip_too_large, model.nv()));
   }
-  const Result<Jaws> jaws = find_jaws_anywhere(model, arm);
+  const Result<Jaws> jaws = find_jaws(model, arm);
   if (!jaws) return fail(jaws.error());
   const double edge = trial_edge(*jaws);
   if (edge < kSmallestCube) return fail(Errc::not_available, text(msg::check_grip_does_not_open));

@@ -236,29 +236,18 @@ class JawsMeasure {
   Jaws jaws_;
 };
 
-/// What `measure` says of the open hand of `arm`.
-template <class Measure>
-Result<Jaws> measure_open(const Model& model, const Arm& arm, const Measure& measure) {
+}  // namespace
+
+Result<Jaws> find_jaws(const Model& model, const Arm& arm) {
   if (!arm.gripper) return fail(Errc::not_available, text(msg::model_no_gripper, arm.name));
   OpenHand hand(model, arm);
   const MjModelPtr still(mj_copyModel(nullptr, model.raw()));
   const MujocoOutcome opened = call_mujoco([&] { hand.open(arm, *still); });
-  const std::optional<Jaws> jaws = opened.failed ? std::nullopt : measure(hand);
-  if (!jaws) return fail(Errc::not_available, text(msg::model_no_jaws, arm.tip, arm.name));
+  std::optional<Jaws> jaws;
+  if (!opened.failed) jaws = JawsMeasure(hand).measure();
+  if (!opened.failed && !jaws) jaws = JawsMeasure(hand).measure_along();
+  if (!jaws) return fail(Errc::not_available, text(msg::model_no_jaws, arm.name));
   return *jaws;
-}
-
-}  // namespace
-
-Result<Jaws> find_jaws(const Model& model, const Arm& arm) {
-  return measure_open(model, arm, [](const OpenHand& hand) { return JawsMeasure(hand).measure(); });
-}
-
-Result<Jaws> find_jaws_anywhere(const Model& model, const Arm& arm) {
-  return measure_open(model, arm, [](const OpenHand& hand) {
-    const std::optional<Jaws> here = JawsMeasure(hand).measure();
-    return here ? here : JawsMeasure(hand).measure_along();
-  });
 }
 
 }  // namespace mjarm

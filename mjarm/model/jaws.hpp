@@ -23,15 +23,11 @@ struct Jaws {
   [[nodiscard]] Eigen::Vector3d side_T() const { return approach_T.cross(close_T); }
 };
 
-/// Opens the gripper in a simulation without gravity, the arm at home, and measures by rays from
-/// the tool frame: whatever drives the fingers (slides, tendons, linkages with closed loops), what
-/// counts is where they stand.
-/// @return not_available where the arm has no gripper, or its tool frame is not between fingers.
-[[nodiscard]] Result<Jaws> find_jaws(const Model& model, const Arm& arm);
-
-/// The same, and where the tool frame is not between the fingers (at the flange, beyond their
-/// tips), the jaws near the fingertips, on the line through the middle of the fingers.
+/// Opens the gripper in a simulation without gravity, the arm at home, and measures by rays:
+/// whatever drives the fingers (slides, tendons, linkages with closed loops), what counts is where
+/// they stand. The jaws are at the tool frame where that is between the fingers, else (at the
+/// flange, beyond their tips) near the fingertips, on the line through the middle of the fingers.
 /// @return not_available where the arm has no gripper, or nothing lies between its fingers.
-[[nodiscard]] Result<Jaws> find_jaws_anywhere(const Model& model, const Arm& arm);
+[[nodiscard]] Result<Jaws> find_jaws(const Model& model, const Arm& arm);
 
 }  // namespace mjarm

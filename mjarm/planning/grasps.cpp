@@ -135,20 +135,46 @@ class PinchFinder {
   }
 
   void through_hull() {
-    const double parallel = std::cos(options_.slope);
+    for (const Flat& flat : flats()) through(flat.center(), flat.normal);
+    for (std::size_t f = 0; f < part_.faces.size(); ++f) {
+      if (const Vector3d n = normal_of(f); !n.isZero()) through(middle(f), n);
+    }
+  }
+
+  /// Pressed on at `p` of a face with that normal, and opposite.
+  void through(const Vector3d& p, const Vector3d& normal) {
+    const auto [width, there] = leaves(p, -normal);
+    if (width == kInfinite || -there.dot(normal) < std::cos(options_.slope)) return;
+    // Both faces share what they are off parallel.
+    const Vector3d close = (normal - there).normalized();
+    const Vector3d center = p - normal * width / 2;
+    if (is_known(center, close)) return;
+    add(close, reach(part_, close) + reach(part_, -close), center);
+    found_.push_back({center, close});
+  }
+
+  /// Triangles that are one flat face of the hull.
+  struct Flat {
+    Vector3d normal, moment = Vector3d::Zero();
+    double area = 0;
+    [[nodiscard]] Vector3d center() const { return moment / area; }
+  };
+
+  [[nodiscard]] std::vector<Flat> flats() const {
+    constexpr double kSame = 0.9999;  // cosine of two normals: 0.8 deg
+    std::vector<Flat> out;
     for (std::size_t f = 0; f < part_.faces.size(); ++f) {
       const Vector3d n = normal_of(f);
       if (n.isZero()) continue;
-      const Vector3d p = (corner(f, 0) + corner(f, 1) + corner(f, 2)) / 3;
-      const auto [width, there] = leaves(p, -n);
-      if (width == kInfinite || -there.dot(n) < parallel) continue;
-      // Both faces share what they are off parallel.
-      const Vector3d close = (n - there).normalized();
-      const Vector3d center = p - n * width / 2;
-      if (is_known(center, close)) continue;
-      add(close, reach(part_, close) + reach(part_, -close), center);
-      found_.push_back({center, close});
+      auto flat =
+          std::ranges::find_if(out, [&](const Flat& one) { return one.normal.dot(n) > kSame; });
+      if (flat == out.end()) flat = out.insert(flat, {.normal = n});
+      const double area =
+          (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm() / 2;
+      flat->area += area;
+      flat->moment += area * middle(f);
     }
+    return out;
   }
 
   /// Faces that are parts of one flat face say the same.
@@ -161,6 +187,9 @@ class PinchFinder {
 
   [[nodiscard]] const Vector3d& corner(std::size_t face, std::size_t k) const {
     return part_.vertices[static_cast<std::size_t>(part_.faces[face][k])];
+  }
+  [[nodiscard]] Vector3d middle(std::size_t face) const {
+    return (corner(face, 0) + corner(face, 1) + corner(face, 2)) / 3;
   }
   [[nodiscard]] Vector3d normal_of(std::size_t face) const {
     const Vector3d n = (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
@@ -190,6 +219,13 @@ std::optional<Pose> tool_at(const ObjectShape& shape, const Pinch& pinch,
   return Pose{pinch.center_B + depth * approach_B - R_BT * jaws.center_T, R_BT};
 }
 
+/// The approach that others are turned from.
+Vector3d first_approach(const Pinch& pinch, const GraspOptions& options) {
+  const Vector3d& wanted = options.approach_B;
+  const Vector3d square = wanted - wanted.dot(pinch.close_B) * pinch.close_B;
+  return square.norm() > 0.1 ? square.normalized() : pinch.first_B;
+}
+
 }  // namespace
 
 Grasps find_grasps(const ObjectShape& shape, const Jaws& jaws, const GraspOptions& options) {
@@ -201,10 +237,11 @@ Grasps find_grasps(const ObjectShape& shape, const Jaws& jaws, const GraspOption
     if (pinch.width + options.spare > jaws.opening) continue;
     const Vector3d arm = shape.center_B - pinch.center_B;
     const double off = (arm - arm.dot(pinch.close_B) * pinch.close_B).norm();
+    const Vector3d first = first_approach(pinch, options);
     for (int k = 0; k < options.turns; ++k) {
       const double angle = 2 * std::numbers::pi * k / options.turns;
       const Vector3d approach =
-          std::cos(angle) * pinch.first_B + std::sin(angle) * pinch.close_B.cross(pinch.first_B);
+          std::cos(angle) * first + std::sin(angle) * pinch.close_B.cross(first);
       if (std::abs(approach.dot(pinch.along_B)) > 0.8) continue;
       for (const double way : {1.0, -1.0}) {
         Pinch turned = pinch;

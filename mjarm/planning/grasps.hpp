@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "mjarm/core/pose.hpp"
@@ -23,6 +24,9 @@ struct GraspOptions {
   /// Directions that are tried: of closing round an axis of symmetry, over half a turn; of approach
   /// round the line of closing, over a whole turn. 4 to 64.
   int turns = 8;
+  /// A direction of approach (unit, in the body's frame) that is among those tried round every line
+  /// of closing, as near as may be: straight down, for instance. Zero: any.
+  Eigen::Vector3d approach_B = Eigen::Vector3d::Zero();
   double slope = 0.2;  ///< [rad] by which two faces may be off parallel, half of it each, > 0
 };
 

@@ -36,6 +36,7 @@ struct PickOptions {
   GraspOptions grasp = {};
   double approach = 0.08;         ///< [m] > 0 of the straight way to the object, and away from it
   double lift = 0.1;              ///< [m] > 0 straight up with it, and straight down to its place
+  double keep_off = 5e-4;         ///< [m] >= 0 from all but the object, where the fingers close
   double drop = 1e-3;             ///< [m] >= 0 above its place where it is let go
   double tool_speed = 0.15;       ///< [m/s] > 0 on straight ways
   std::vector<Grasp> avoid = {};  ///< that were tried in vain
@@ -47,7 +48,7 @@ struct PickOptions {
 enum class PickErrc {
   not_seen,            ///< no camera saw where it is
   no_object,           ///< no body of that name, or one that cannot be carried
-  no_gripper,          ///< the arm has none, or the tool frame is not between its fingers
+  no_gripper,          ///< the arm has none, or none with two fingers that face each other
   hand_full,           ///< something is held already; of plan_place(): nothing is
   too_wide,            ///< no two opposite sides are as near together as the gripper opens
   failed_before,       ///< it is one of PickOptions::avoid

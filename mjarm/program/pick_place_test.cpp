@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/model/robot.hpp"
@@ -120,6 +123,23 @@ TEST(PlanPick, TellsWhyItCannot) {
   const PickFailure blocked = refused(walled, to({0.5, -0.2, 0.23}));
   EXPECT_EQ(blocked.code, PickErrc::grasp_blocked) << blocked.what;
   EXPECT_FALSE(blocked.dropped.empty());
+}
+
+TEST(PlanPick, FingersThatCloseMeetNothingElse) {
+  const support::TempFolder folder;
+  const auto plate = [](const char* name, double x) {
+    return "<body name='" + std::string(name) + "' pos='" + std::to_string(x) +
+           " 0.1 0.23'><freejoint/><geom type='box' size='0.002 0.06 0.03' mass='0.1'/></body>";
+  };
+  // Between the open fingers and the box.
+  const Robot robot = at_table(folder, kUr5e, "<geom type='box' size='0.02 0.06 0.03' mass='0.1'/>",
+                               plate("plate", 0.47) + plate("other", 0.53));
+  const auto picked = plan(robot, to({0.5, -0.2, 0.23}));
+  ASSERT_FALSE(picked);
+  EXPECT_EQ(picked.error().code, PickErrc::grasp_blocked) << picked.error().what;
+  EXPECT_TRUE(std::ranges::any_of(picked.error().dropped, [](const DroppedGrasp& one) {
+    return one.what.find("would push") != std::string::npos;
+  }));
 }
 
 /// The faults of a program before the shipped table.

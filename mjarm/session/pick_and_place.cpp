@@ -11,6 +11,8 @@
 namespace mjarm::session {
 namespace {
 
+constexpr double kNeighbour = 0.15;  // [m] a thing so far off may be in the way of fingers
+
 class PickRunner {
  public:
   PickRunner(const Robot& robot, Sim& sim, const PickAndPlaceOptions& options)
@@ -57,11 +59,14 @@ class PickRunner {
     return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
   }
 
-  /// Looks, from elsewhere too where that does not find the object.
+  /// Looks, from elsewhere too where that does not find the object, or something beside it.
   Result<program::SeenScene> look_for(const std::string& object, const Look& look) {
     Result<program::SeenScene> seen = look(truth(), as_span(q()));
+    bool looked_again = false;
     for (const Vantage& vantage : options_.vantages) {
-      if (!seen || !seen->unseen.contains(object) || is_stopped(options_.pick.stop)) break;
+      if (!seen || is_stopped(options_.pick.stop)) break;
+      const bool hidden = seen->unseen.contains(object);
+      if (!hidden && (looked_again || !hides_neighbour(*seen, object))) break;
       const Result<bool> there = move({plan_to(vantage.X_WT)}, seen->scene);
       if (!there) return fail(there.error());
       if (!*there) continue;
@@ -69,8 +74,22 @@ class PickRunner {
       if (!more) return more;
       add_unseen(*seen, *more);
       seen = std::move(more);
+      looked_again = true;
     }
     return seen;
+  }
+
+  /// Whether fingers that close on the object may meet something of which no pose is known: it
+  /// seems to be near, or may be anywhere.
+  [[nodiscard]] bool hides_neighbour(const program::SeenScene& seen,
+                                     const std::string& object) const {
+    const auto place = [&](const std::string& body) {
+      return frame_pose(robot_.model, body, seen.scene.qpos).value_or(Pose{}).p;
+    };
+    if (!seen.anywhere.empty()) return true;
+    return std::ranges::any_of(seen.unseen, [&](const auto& one) {
+      return (place(one.first) - place(object)).norm() < kNeighbour;
+    });
   }
 
   /// Adds to `seen` what only an earlier look found.
@@ -80,6 +99,7 @@ class PickRunner {
       const auto at = static_cast<std::ptrdiff_t>(body.joints.front().qpos);
       std::copy_n(earlier.scene.qpos.begin() + at, 7, seen.scene.qpos.begin() + at);
       seen.unseen.erase(body.name);
+      seen.anywhere.erase(body.name);
       const auto same = earlier.same.find(body.name);
       if (same != earlier.same.end()) seen.same.insert(*same);
     }

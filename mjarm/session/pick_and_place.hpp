@@ -32,8 +32,8 @@ struct PickAndPlaceOptions {
   program::PickOptions pick = {};
   int tries = 3;  ///< grasps that are executed at most, >= 1
   ControlMode control = ControlMode::computed_torque;
-  /// The arm goes there in turn as long as nothing tells where the object is; those it cannot get
-  /// to are passed over.
+  /// The arm goes there in turn as long as nothing tells where the object is, and to one of them
+  /// where something beside the object is hidden; those it cannot get to are passed over.
   std::vector<Vantage> vantages = {};
   /// Called after every step. May be empty.
   std::function<void(const Sim& sim)> after_step = {};

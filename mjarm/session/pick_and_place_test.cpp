@@ -165,6 +165,24 @@ TEST(PickAndPlace, WhatTheFirstLookDoesNotFindIsLookedForFromElsewhere) {
   EXPECT_LT((world.pose("box").p - kPlace.p).norm(), 5e-3);
 }
 
+TEST(PickAndPlace, WhatMayHideBesideTheObjectIsLookedForOnce) {
+  PickWorldOfTest world;
+  int looks = 0;
+  const auto hidden = [&](bool counts) {
+    return [&looks, counts](const SceneState& scene, std::span<const double>) {
+      looks += counts ? 1 : 0;
+      return Result<program::SeenScene>(program::SeenScene{
+          .scene = scene, .unseen = {{"can", "it is hidden"}}, .anywhere = {"can"}});
+    };
+  };
+  const auto outcome =
+      world.pick(hidden(false),
+                 {.vantages = {above_the_things(hidden(true)), above_the_things(hidden(true))}});
+  ASSERT_TRUE(outcome) << outcome.error().what;
+  EXPECT_TRUE(outcome->done) << (outcome->failure ? outcome->failure->what : "");
+  EXPECT_EQ(looks, 1);
+}
+
 /// How well the shipped camera knows where things are.
 TEST(SceneEye, SeesTheThingsOfTheShippedSceneWhereTheyAre) {
   PickWorldOfTest world;

@@ -107,8 +107,9 @@ Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<con
     Pose X_WB = impl_->home[one.name];
     if (one.pose.error().best) {
       X_WB = one.pose.error().best->X_WO;
-    } else if (sees_through(*frame, X_WB.p)) {
-      X_WB.p.z() = kAway;
+    } else {
+      if (sees_through(*frame, X_WB.p)) X_WB.p.z() = kAway;
+      out.anywhere.insert(one.name);
     }
     sim.place_free(one.name, X_WB);
     out.unseen[one.name] = perception::describe(one.pose.error().code);
