@@ -195,9 +195,23 @@ Report MotionRun::report(std::span<const MeasuredRun> runs, double tolerance, Re
     const double error = off_path ? out.path_error->max : out.static_error->position;
     out.ok = false;
     out.reason = off_path ? "path_error" : "static_error";
-    out.detail = text(msg::execution_off_path, 1e3 * error, 1e3 * tolerance, 100 * out.done);
+    out.detail =
+        text(msg::execution_off_path, 1e3 * error, 1e3 * tolerance, 100 * out.done) + why_off();
   }
   return out;
+}
+
+/// What the simulation shows of why the arm was off, to be added; empty where it shows nothing.
+std::string MotionRun::why_off() const {
+  constexpr double kOften = 0.05;
+  const double limited = static_cast<double>(total_.limited_steps);
+  const double share = limited / std::max(1.0, static_cast<double>(total_.steps));
+  if (share > kOften) return text(msg::execution_off_force, 100 * share);
+  for (const Contact& contact : sim_.contacts()) {
+    if (!is_by_design(arm_, contact)) continue;
+    return text(msg::execution_off_rubs, contact.first, contact.second);
+  }
+  return {};
 }
 
 void MotionRun::put_sums(Report& report) const {

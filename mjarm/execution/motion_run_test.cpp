@@ -111,6 +111,20 @@ TEST(MotionRun, WithdrawsOkWhereATargetIsMissed) {
   EXPECT_THAT(off_goal.detail, HasSubstr("100 mm"));
 }
 
+TEST(MotionRun, SaysWhenAnArmIsTooWeakForItsPath) {
+  std::string weak = small_world();
+  for (std::size_t at = 0; (at = weak.find("-60 60", at)) != std::string::npos;) {
+    weak.replace(at, 6, "-2 2");
+  }
+  const Loaded robot = load_text(weak);
+  MotionRun run(robot.model, robot.arm);
+  ASSERT_TRUE(run.jump(robot.arm.home, kMode, 0.1));
+  Report known;
+  known.static_error = PoseError{.position = 0.1};
+  const Report report = run.report(run.measured_runs(), kTolerance, known);
+  EXPECT_THAT(report.detail, HasSubstr("100 % of the steps an actuator was at its limit"));
+}
+
 TEST(MotionRun, OnceStoppedNothingMovesAnyMore) {
   const Loaded robot = load_text(small_world());
   MotionRun run(robot.model, robot.arm);

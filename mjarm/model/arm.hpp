@@ -112,8 +112,8 @@ struct Arm {
   Pose X_JT;        ///< tool frame in the frame of the last joint
   JointVec home;    ///< [rad or m] of home_keyframe(), the middle of the limits where there is none
   std::optional<Gripper> gripper;
-  /// What overlaps by design, which is no contact to planning, checks and runs. A simulation pushes
-  /// such parts apart all the same, as the file has it.
+  /// What overlaps (or touches) by design, which is no contact to planning, checks and runs. A
+  /// simulation pushes such parts apart all the same, as the file has it.
   std::vector<DesignOverlap> overlapping = {};
 
   [[nodiscard]] int dof() const { return static_cast<int>(joints.size()); }

@@ -12,15 +12,16 @@ namespace mjarm {
 namespace {
 
 constexpr int kPostures = 64;
+constexpr double kTouch = 1e-4;  // [m] flush faces of links on one axis are off by rounding
 
-/// Pairs of parts that overlap at `d->qpos`.
+/// Pairs of parts that overlap or touch at `d->qpos`.
 PartPairs overlapping(const mjModel* m, mjData* d, const ModelParts& parts) {
   mj_kinematics(m, d);
   mj_collision(m, d);
   PartPairs pairs;
   for (int c = 0; c < d->ncon; ++c) {
     const mjContact& contact = d->contact[c];
-    if (contact.dist > 0 || contact.geom[0] < 0 || contact.geom[1] < 0) continue;
+    if (contact.dist > kTouch || contact.geom[0] < 0 || contact.geom[1] < 0) continue;
     const auto [a, b] = std::minmax(parts.of_geom[contact.geom[0]], parts.of_geom[contact.geom[1]]);
     if (!parts.may_count || parts.may_count(a, b)) pairs.insert({a, b});
   }
@@ -105,6 +106,8 @@ PartPairs always_overlapping(const mjModel* m, const mjtNum* qpos, const ModelPa
   mjModel head = *m;  // its arrays are those of the model; only the options differ
   head.opt.disableflags &= ~(mjDSBL_CONTACT | mjDSBL_CONSTRAINT);
   head.opt.enableflags &= ~mjENBL_SLEEP;
+  head.opt.enableflags |= mjENBL_OVERRIDE;  // of all geoms' margins
+  head.opt.o_margin = kTouch;
   PartPairs found;
   const MujocoOutcome outcome = call_mujoco([&] { found = draw_overlapping(head, qpos, parts); });
   return outcome.failed ? PartPairs() : found;

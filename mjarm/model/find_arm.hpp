@@ -20,9 +20,10 @@ struct ArmOptions {
 /// Finds the arm: the chain of hinge and slide joints from the world to the tip, without gripper
 /// fingers. Limits that the file lacks come from a small table of known robots, else from stated
 /// defaults (see limits_table.hpp). Joints off the chain keep their `home` or initial value; an arm
-/// on a free base starts after the free joint. Arm::overlapping is what overlaps at `home` and in
-/// each of 64 postures that are drawn within the ranges of all hinges and slides, with no free or
-/// ball joint between the two: nothing that merely lies somewhere is part of a design.
+/// on a free base starts after the free joint. Arm::overlapping is what overlaps, or touches to 0.1
+/// mm, at `home` and in each of 64 postures that are drawn within the ranges of all hinges and
+/// slides, with no free or ball joint between the two: nothing that merely lies somewhere is part
+/// of a design.
 ///
 /// Without `tip` the arm is the longest chain without fingers (joints with such a name, joints
 /// coupled with a neighbour, branches shorter than their trunk), and the tip is the frame rigidly

@@ -135,7 +135,7 @@ std::vector<GoodGrasp> GraspChoice::choose(int turns) {
     all.push_back(std::move(one));
   }
   std::ranges::stable_sort(all, {}, &GoodGrasp::cost);
-  ExactChecker checker(robot_.model, robot_.arm, {.qpos = open_.qpos});
+  ExactChecker checker(robot_.model, robot_.arm, {.margin = 0, .qpos = open_.qpos});
   ExactChecker beside(robot_.model, robot_.arm,
                       {.margin = kClear, .rules = without_object(), .qpos = open_.qpos});
   const IkSolver ik = solver(checker);
@@ -252,7 +252,7 @@ Result<void, Drop> GraspChoice::look_at_place(GoodGrasp& one, const SceneState& 
   const PlaceGoal& place = *task_.place;
   ExactChecker checker(
       robot_.model, robot_.arm,
-      {.rules = {.attached = held.attached}, .qpos = held.qpos, .rest_depth = kRest});
+      {.margin = 0, .rules = {.attached = held.attached}, .qpos = held.qpos, .rest_depth = kRest});
   const IkSolver ik = solver(checker);
   std::optional<Drop> why;
   double nearest = std::numeric_limits<double>::infinity();
