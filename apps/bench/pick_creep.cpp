@@ -104,8 +104,9 @@ std::string creep_table(std::span<const HoldVerdict> verdicts, const HoldTimes& 
        text(msg::bench_creep_rest, times.rest), text(msg::bench_creep_carried, times.carry()),
        text(msg::bench_creep_fastest), text(msg::bench_creep_fallen), text(msg::bench_creep_good)}};
   for (const HoldVerdict& one : verdicts) {
-    std::string step = fmt::format("{:g}", 1e3 * one.timestep);
-    if (one.own_step) step += " " + text(msg::bench_creep_own);
+    const double step_ms = 1e3 * one.timestep;
+    std::string step =
+        one.own_step ? text(msg::bench_creep_own, step_ms) : fmt::format("{:g}", step_ms);
     rows.push_back({one.robot, one.part, std::move(step), millimetres(one.rest),
                     millimetres(one.carried), fmt::format("{:.2f}", one.carried.fastest),
                     fmt::format("{:.0f}", 1e3 * one.fallen),
