@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/pick_creep.hpp"
+#include "apps/bench/pick_seen.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/cli/usage.hpp"
@@ -18,9 +20,12 @@ namespace mjarm::app {
 namespace {
 
 constexpr int kMaxScenes = 100'000;
+constexpr std::array kRobots = {"ur5e", "panda"};
 
 struct Options : ReportOptions {
-  std::string robot, set, scenes = "100", first = "0", seed = "1";
+  std::string robot, set, scenes = "100", first = "0", seed = "1", hold = "60";
+
+  [[nodiscard]] bool wants(std::string_view name) const { return set.empty() || set == name; }
 };
 
 /// All scenes of a set, solved.
@@ -54,7 +59,7 @@ std::vector<std::string> row_of(const SolvedSet& set) {
           fmt::format("{:.1f}", placed == 0 ? 0 : seconds / static_cast<double>(placed))};
 }
 
-std::string to_table(const std::vector<SolvedSet>& sets, bool timing) {
+std::string picks_table(const std::vector<SolvedSet>& sets) {
   std::vector<std::vector<std::string>> rows{
       {text(msg::bench_pick_robot), text(msg::bench_pick_set), text(msg::bench_pick_placed),
        text(msg::bench_pick_seen), text(msg::bench_pick_error), text(msg::bench_pick_others),
@@ -75,12 +80,11 @@ std::string to_table(const std::vector<SolvedSet>& sets, bool timing) {
           '\n';
     }
   }
-  std::string out = timing ? bench_occasion() + "\n\n" : std::string();
-  out += markdown_table(rows);
+  const std::string out = markdown_table(rows);
   return misses.empty() ? out : out + '\n' + misses;
 }
 
-JsonDoc to_json(const std::vector<SolvedSet>& sets) {
+JsonDoc picks_json(const std::vector<SolvedSet>& sets) {
   std::vector<JsonDoc> docs;
   for (const SolvedSet& set : sets) {
     std::vector<JsonDoc> scenes;
@@ -99,7 +103,7 @@ JsonDoc to_json(const std::vector<SolvedSet>& sets) {
     }
     docs.push_back({{"robot", set.robot}, {"set", set.name}, {"scenes", std::move(scenes)}});
   }
-  return {{"sets", std::move(docs)}};
+  return docs;
 }
 
 /// The scenes that are asked for.
@@ -108,39 +112,41 @@ Result<std::vector<PickSet>> sets_of(const Options& options, std::uint64_t seed)
       std::pair<const char*, Result<PickSet> (*)(const std::string&, std::uint64_t)>, 2>
       kSets = {{{"table", table_scenes}, {"clutter", clutter_scenes}}};
   std::vector<PickSet> out;
-  bool known = options.set.empty();
-  for (const char* robot : {"ur5e", "panda"}) {
+  for (const char* robot : kRobots) {
     for (const auto& [name, scenes] : kSets) {
-      known = known || options.set == name;
-      if (!options.set.empty() && options.set != name) continue;
+      if (!options.wants(name)) continue;
       if (!options.robot.empty() && options.robot != robot) continue;
       Result<PickSet> set = scenes(robot, seed);
       if (!set) return fail(std::move(set.error()));
       out.push_back(std::move(*set));
     }
   }
-  if (!known) return fail(Errc::usage, text(msg::bench_pick_no_set, options.set));
-  if (out.empty()) return fail(Errc::usage, text(msg::bench_pick_no_robot, options.robot));
   return out;
 }
 
-Result<int> run_pick(const Options& options) {
-  const Result<int> scenes = parse_count("--scenes", options.scenes, kMaxScenes);
-  if (!scenes) return fail(scenes.error());
-  const Result<std::uint64_t> first = parse_whole("--first", options.first);
-  if (!first) return fail(first.error());
-  const Result<int> seed = parse_count("--seed", options.seed, kMaxScenes);
-  if (!seed) return fail(seed.error());
-  Result<std::vector<PickSet>> loaded = sets_of(options, static_cast<std::uint64_t>(*seed));
-  if (!loaded) return fail(std::move(loaded.error()));
-  const std::vector<PickSet>& sets = *loaded;
+Result<void> check_names(const Options& options) {
+  constexpr std::array kNames = {"table", "clutter", "seen", "creep"};
+  if (!options.set.empty() && std::ranges::find(kNames, options.set) == kNames.end()) {
+    return fail(Errc::usage, text(msg::bench_pick_no_set, options.set));
+  }
+  if (!options.robot.empty() && std::ranges::find(kRobots, options.robot) == kRobots.end()) {
+    return fail(Errc::usage, text(msg::bench_pick_no_robot, options.robot));
+  }
+  if (options.set == "seen" && !options.robot.empty()) {
+    return fail(Errc::usage, text(msg::bench_pick_no_robot_in_seen));
+  }
+  return {};
+}
+
+Result<std::vector<SolvedSet>> solve_all(const std::vector<PickSet>& sets,
+                                         const SceneNumbers& scenes) {
   Progress progress(text(msg::bench_pick_progress),
-                    sets.size() * static_cast<std::size_t>(*scenes));
+                    sets.size() * static_cast<std::size_t>(scenes.count));
   std::vector<SolvedSet> solved;
   for (const PickSet& set : sets) {
-    solved.push_back({set.name, set.robot, *first, {}});
-    for (int i = 0; i < *scenes; ++i) {
-      const Result<PickProblem> problem = set.draw(*first + static_cast<std::uint64_t>(i));
+    solved.push_back({set.name, set.robot, scenes.first, {}});
+    for (int i = 0; i < scenes.count; ++i) {
+      const Result<PickProblem> problem = set.draw(scenes.number(i));
       if (!problem) return fail(problem.error());
       Result<PickVerdict> verdict = solve_pick(set, *problem);
       if (!verdict) return fail(std::move(verdict.error()));
@@ -148,8 +154,63 @@ Result<int> run_pick(const Options& options) {
       progress.advance();
     }
   }
-  const std::string out =
-      options.json ? to_json(solved).document() : to_table(solved, !options.no_timing);
+  return solved;
+}
+
+/// What is printed, as it comes.
+struct PickAnswer {
+  std::vector<std::string> tables = {};
+  JsonDoc json = {};
+};
+
+Result<PickAnswer> measure_all(const Options& options, const SceneNumbers& scenes,
+                               std::uint64_t seed, const HoldTimes& times) {
+  PickAnswer out;
+  Result<std::vector<PickSet>> sets = sets_of(options, seed);
+  if (!sets) return fail(std::move(sets.error()));
+  if (!sets->empty()) {
+    const Result<std::vector<SolvedSet>> solved = solve_all(*sets, scenes);
+    if (!solved) return fail(solved.error());
+    out.tables.push_back(picks_table(*solved));
+    out.json.set("sets", picks_json(*solved));
+  }
+  if (options.wants("seen") && options.robot.empty()) {
+    const Result<std::vector<SeenErrors>> seen = measure_seen(scenes, seed);
+    if (!seen) return fail(seen.error());
+    out.tables.push_back(text(msg::bench_seen_caption, scenes.count) + "\n\n" + seen_table(*seen));
+    out.json.set("seen", seen_json(*seen));
+  }
+  if (options.wants("creep")) {
+    const Result<std::vector<HoldVerdict>> held = measure_creep(options.robot, times);
+    if (!held) return fail(held.error());
+    out.tables.push_back(text(msg::bench_creep_caption) + "\n\n" + creep_table(*held, times));
+    out.json.set("creep", creep_json(*held));
+  }
+  return out;
+}
+
+Result<int> run_pick(const Options& options) {
+  constexpr int kMaxHold = 3600;  // [s]
+  if (Result<void> known = check_names(options); !known) return fail(std::move(known.error()));
+  const Result<int> scenes = parse_count("--scenes", options.scenes, kMaxScenes);
+  if (!scenes) return fail(scenes.error());
+  const Result<std::uint64_t> first = parse_whole("--first", options.first);
+  if (!first) return fail(first.error());
+  const Result<int> seed = parse_count("--seed", options.seed, kMaxScenes);
+  if (!seed) return fail(seed.error());
+  const Result<int> hold = parse_count("--hold", options.hold, kMaxHold);
+  if (!hold) return fail(hold.error());
+  const Result<PickAnswer> answer =
+      measure_all(options, {*first, *scenes}, static_cast<std::uint64_t>(*seed),
+                  {.rest = static_cast<double>(*hold)});
+  if (!answer) return fail(answer.error());
+  std::string out;
+  if (options.json) {
+    out = answer->json.document();
+  } else {
+    if (!options.no_timing) out = bench_occasion() + "\n";
+    for (const std::string& table : answer->tables) out += (out.empty() ? "" : "\n") + table;
+  }
   std::fputs(out.c_str(), stdout);
   return 0;
 }
@@ -164,6 +225,7 @@ Command pick_suite() {
             add_option(app, "--scenes", options->scenes, msg::bench_pick_option_scenes, "N");
             add_option(app, "--first", options->first, msg::bench_pick_option_first, "N");
             add_option(app, "--seed", options->seed, msg::bench_pick_option_seed, "N");
+            add_option(app, "--hold", options->hold, msg::bench_pick_option_hold, "S");
             add_report_options(app, *options);
             return [options] { return run_pick(*options); };
           }};

@@ -13,6 +13,14 @@
 
 namespace mjarm::app {
 
+/// Which of the scenes of a kind are looked at; each has a number, by which it is drawn.
+struct SceneNumbers {
+  std::uint64_t first = 0;
+  int count = 0;
+
+  [[nodiscard]] std::uint64_t number(int i) const { return first + static_cast<std::uint64_t>(i); }
+};
+
 /// One object of a scene and where it stands.
 struct PlacedObject {
   std::string name;

@@ -90,6 +90,15 @@ Result<Model> Model::load_guarded(const fs::path& file, LoadOptions options) {
   }
 }
 
+std::shared_ptr<Model::Impl> Model::own_copy() const {
+  const LoadedModel& own = impl_->loaded;
+  return std::make_shared<Impl>(
+      Impl{impl_->file,
+           impl_->format,
+           {MjModelPtr(mj_copyModel(nullptr, raw())), own.velocity_limits, own.effort_limits,
+            own.warnings, own.read_files, own.urdf_text}});
+}
+
 Result<Model> Model::with_point_mass(std::string_view frame, double mass) const {
   if (!(mass > 0) || !std::isfinite(mass)) {
     return fail(Errc::bad_input, text(msg::model_bad_mass, mass));
@@ -97,18 +106,32 @@ Result<Model> Model::with_point_mass(std::string_view frame, double mass) const 
   const Result<TipFrame> found = find_frame(*this, frame);
   if (!found) return fail(found.error());
   if (found->body == 0) return fail(Errc::bad_input, text(msg::model_mass_on_world, frame));
-  auto impl = std::make_shared<Impl>();
-  impl->file = impl_->file;
-  impl->format = impl_->format;
-  const LoadedModel& own = impl_->loaded;
-  impl->loaded = {MjModelPtr(mj_copyModel(nullptr, raw())),
-                  own.velocity_limits,
-                  own.effort_limits,
-                  own.warnings,
-                  own.read_files,
-                  own.urdf_text};
+  const std::shared_ptr<Impl> impl = own_copy();
   detail::add_point_mass(*impl->loaded.model, found->body, found->X_BT.p, mass);
-  return Model(std::move(impl));
+  return Model(impl);
+}
+
+Result<Model> Model::with_physics(const PhysicsChange& change) const {
+  const auto is_wrong = [](const std::optional<double>& value, bool zero) {
+    return value && !(std::isfinite(*value) && (*value > 0 || (zero && *value == 0)));
+  };
+  if (is_wrong(change.timestep, false)) {
+    return fail(Errc::bad_input, text(msg::model_bad_step, *change.timestep));
+  }
+  if (is_wrong(change.friction, true)) {
+    return fail(Errc::bad_input, text(msg::model_bad_friction, *change.friction));
+  }
+  const std::shared_ptr<Impl> impl = own_copy();
+  mjModel& m = *impl->loaded.model;
+  m.opt.timestep = change.timestep.value_or(m.opt.timestep);
+  const double factor = change.friction.value_or(1);
+  for (mjtNum& value : std::span(m.geom_friction, 3 * static_cast<std::size_t>(m.ngeom))) {
+    value *= factor;
+  }
+  for (mjtNum& value : std::span(m.pair_friction, 5 * static_cast<std::size_t>(m.npair))) {
+    value *= factor;
+  }
+  return Model(impl);
 }
 
 const fs::path& Model::file() const noexcept { return impl_->file; }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,12 @@ struct LoadOptions {
   bool looks = true;
 };
 
+/// What of a model's physics is other than its file has it; what is not set stays.
+struct PhysicsChange {
+  std::optional<double> timestep = {};  ///< [s] > 0
+  std::optional<double> friction = {};  ///< factor on all coefficients of friction, >= 0
+};
+
 /// Format of the file a model came from.
 enum class ModelFormat { mjcf, urdf };
 
@@ -52,6 +59,10 @@ class Model {
   /// @param mass  [kg] > 0
   /// @return an error for a frame that is none, with the nearest name, or is the world's.
   [[nodiscard]] Result<Model> with_point_mass(std::string_view frame, double mass) const;
+
+  /// The same robot or scene in other physics.
+  /// @return bad_input that names what is out of its range.
+  [[nodiscard]] Result<Model> with_physics(const PhysicsChange& change) const;
 
   [[nodiscard]] const std::filesystem::path& file() const noexcept;
   [[nodiscard]] ModelFormat format() const noexcept;
@@ -82,6 +93,7 @@ class Model {
   explicit Model(std::shared_ptr<const Impl> impl);
   [[nodiscard]] static Result<Model> load_guarded(const std::filesystem::path& file,
                                                   LoadOptions options);
+  [[nodiscard]] std::shared_ptr<Impl> own_copy() const;
   std::shared_ptr<const Impl> impl_;
 };
 

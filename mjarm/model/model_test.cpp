@@ -429,5 +429,29 @@ TEST(ShippedModels, MissNamesTheNearestAndTheChoices) {
   EXPECT_EQ(find_model_file(file.string()).value(), file);
 }
 
+TEST(Model, OtherPhysicsLeaveTheRestAsItIs) {
+  const Model model =
+      Model::from_mjcf(
+          "<mujoco><option timestep='0.002'/><worldbody><geom name='a' size='1' friction='0.8 0.1 "
+          "0.2'/><body><freejoint/><geom name='b' size='1' mass='3'/></body></worldbody><contact>"
+          "<pair geom1='a' geom2='b' friction='1 2 3 4 5'/></contact></mujoco>")
+          .value();
+  const Model other = model.with_physics({.timestep = 1e-4, .friction = 0.5}).value();
+  EXPECT_EQ(other.timestep(), 1e-4);
+  EXPECT_EQ(model.timestep(), 2e-3);
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(other.raw()->geom_friction[i], 0.5 * model.raw()->geom_friction[i]);
+  }
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(other.raw()->pair_friction[i], 0.5 * (i + 1));
+  EXPECT_EQ(other.raw()->body_mass[1], 3);
+  EXPECT_EQ(model.with_physics({}).value().timestep(), model.timestep());
+  for (const PhysicsChange& bad : {PhysicsChange{.timestep = 0}, PhysicsChange{.timestep = NAN},
+                                   PhysicsChange{.friction = -1}}) {
+    const auto refused = model.with_physics(bad);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::bad_input);
+  }
+}
+
 }  // namespace
 }  // namespace mjarm
