@@ -22,7 +22,7 @@
 
 namespace mjarm::perception::testing {
 
-/// A table at z = 0 with a box that has a tag on it, a cylinder, a post of its own shape (a mesh
+/// A table at z = 0 with a box that has a tag on it, two cylinders, a post of its own shape (a mesh
 /// that is not convex) and a stranger; a camera that can be put anywhere, all at places of their
 /// own.
 constexpr const char* kTable = R"(
@@ -51,18 +51,19 @@ constexpr const char* kTable = R"(
     <body name="can"><freejoint/><geom type="cylinder" size="0.033 0.05" rgba="0.2 0.5 0.3 1"/></body>
     <body name="step"><freejoint/><geom type="mesh" mesh="step" rgba="0.3 0.3 0.7 1"/></body>
     <body name="stranger"><freejoint/><geom type="box" size="0.03 0.06 0.02" rgba="0.7 0.7 0.2 1"/></body>
+    <body name="twin"><freejoint/><geom type="cylinder" size="0.033 0.05" rgba="0.2 0.5 0.3 1"/></body>
   </worldbody>
 </mujoco>)";
 
 inline constexpr int kTag = 7;
 inline constexpr double kTagSize = 0.06;
 inline const Pose kTagOnBox{.p = {0.005, 0, 0.0302}};
-inline const std::array<const char*, 5> kBodies{"eye", "box", "can", "step", "stranger"};
+inline const std::array<const char*, 6> kBodies{"eye", "box", "can", "step", "stranger", "twin"};
 
 /// Where bodies stand; those without a place are out of sight.
 struct Places {
   Pose eye;                                        ///< X_WC, x right, y down
-  std::array<std::optional<Pose>, 4> bodies = {};  ///< box, can, step, stranger
+  std::array<std::optional<Pose>, 5> bodies = {};  ///< box, can, step, stranger, twin of the can
 };
 
 class Look {
