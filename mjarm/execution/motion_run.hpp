@@ -79,7 +79,6 @@ class MotionRun {
   void add_span(const Curve* curve, double from, double to, const Pose& X_TU = {});
   /// Keeps what a motion did.
   void add(const FollowOutcome& outcome);
-  void put_sums(Report& report) const;
   void look_at_contacts(Report& report) const;
 
   Model model_;
