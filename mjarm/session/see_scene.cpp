@@ -49,6 +49,12 @@ bool sees_through(const render::RgbdFrame& frame, const Eigen::Vector3d& p_W) {
   return frame.depth[pixel] > p_C.z();
 }
 
+/// Where an object without a pose stands.
+struct Belief {
+  Pose X_WB;
+  bool anywhere = false;  ///< nothing is known of it
+};
+
 }  // namespace
 
 struct SceneEye::Impl {
@@ -59,10 +65,32 @@ struct SceneEye::Impl {
   perception::ObjectFinder finder;
   std::vector<SceneObject> objects;               ///< in the finder's order
   std::map<std::string, std::vector<Pose>> same;  ///< by name
-  std::map<std::string, Pose> last;  ///< where they were last seen, at first: the model has them
+  std::map<std::string, Pose> home;               ///< where the model has them, by name
+  std::map<std::string, Pose> last = {};          ///< where they were last seen, by name
   Rng noise;
   perception::FoundScene found = {};
+
+  [[nodiscard]] Belief believed(const perception::FoundObject& unseen,
+                                const render::RgbdFrame& frame) const;
 };
+
+/// A doubtful pose is no news where a sure one is known.
+Belief SceneEye::Impl::believed(const perception::FoundObject& unseen,
+                                const render::RgbdFrame& frame) const {
+  constexpr double kSamePlace = 0.02;  // [m]
+  const auto sure = last.find(unseen.name);
+  const bool known = sure != last.end();
+  if (const std::optional<perception::FoundPose>& best = unseen.pose.error().best) {
+    const bool near = known && (sure->second.p - best->X_WO.p).norm() < kSamePlace;
+    return {.X_WB = near ? sure->second : best->X_WO};
+  }
+  Belief out{.X_WB = known ? sure->second : home.at(unseen.name), .anywhere = !known};
+  if (sees_through(frame, out.X_WB.p)) {
+    out.X_WB.p.z() = kAway;
+    out.anywhere = true;
+  }
+  return out;
+}
 
 SceneEye::SceneEye(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SceneEye::~SceneEye() = default;
@@ -95,9 +123,16 @@ Result<SceneEye> SceneEye::open(const Robot& robot, const std::string& camera,
   auto finder = perception::ObjectFinder::create(
       std::move(*known), {.depth_sigma = options.depth_sigma, .seed = options.seed});
   if (!finder) return fail(std::move(finder.error()));
-  return SceneEye(std::make_unique<Impl>(
-      Impl{robot, std::move(sim), std::move(*eye), std::move(*bare), std::move(*finder),
-           std::move(objects), std::move(same), std::move(home), Rng(options.seed)}));
+  return SceneEye(std::make_unique<Impl>(Impl{robot,
+                                              std::move(sim),
+                                              std::move(*eye),
+                                              std::move(*bare),
+                                              std::move(*finder),
+                                              std::move(objects),
+                                              std::move(same),
+                                              std::move(home),
+                                              {},
+                                              Rng(options.seed)}));
 }
 
 Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<const double> q) {
@@ -130,14 +165,9 @@ Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<con
       if (!one.pose->by_tag) out.same[one.name] = impl_->same[one.name];
       continue;
     }
-    Pose X_WB = impl_->last[one.name];
-    if (one.pose.error().best) {
-      X_WB = one.pose.error().best->X_WO;
-    } else {
-      if (sees_through(*frame, X_WB.p)) X_WB.p.z() = kAway;
-      out.anywhere.insert(one.name);
-    }
-    sim.place_free(one.name, X_WB);
+    const Belief belief = impl_->believed(one, *frame);
+    sim.place_free(one.name, belief.X_WB);
+    if (belief.anywhere) out.anywhere.insert(one.name);
     out.unseen[one.name] = perception::describe(one.pose.error().code);
   }
   out.scene = {.qpos = {sim.qpos().begin(), sim.qpos().end()}, .attached = scene.attached};

@@ -34,13 +34,13 @@ Vector3d foot_of(const Surface& surface, const Pose& X_WB) {
 }
 
 /// Turned about the vertical by the least angle that brings the most level of a body's axes along x
-/// or y.
-Matrix3d along_the_sides(const Matrix3d& R_WB) {
+/// or y, and by so many quarter turns.
+Matrix3d along_the_sides(const Matrix3d& R_WB, int quarters) {
   Eigen::Index axis = 0;
   R_WB.topRows<2>().colwise().norm().maxCoeff(&axis);
   const double quarter = std::numbers::pi / 2;
   const double yaw = std::atan2(R_WB(1, axis), R_WB(0, axis));
-  return from_euler({0, 0, quarter * std::round(yaw / quarter) - yaw}) * R_WB;
+  return from_euler({0, 0, quarter * (std::round(yaw / quarter) + quarters) - yaw}) * R_WB;
 }
 
 /// An object, and what is known of it.
@@ -117,6 +117,7 @@ class Sorter {
       Result<program::SeenScene> seen = look(scene, at);
       for (const Thing& thing : things_) {
         if (!seen || !thing.put || seen->unseen.erase(thing.told.name) == 0) continue;
+        seen->anywhere.erase(thing.told.name);
         const Quat turn = to_quat(thing.put->R);
         const Vector3d& p = thing.put->p;
         std::ranges::copy(std::array{p.x(), p.y(), p.z(), turn.w(), turn.x(), turn.y(), turn.z()},
@@ -189,10 +190,10 @@ class Sorter {
       }
     }
     std::string what = text(msg::sort_bin_full, bins_[thing.told.bin].spots_W.size());
-    for (const std::size_t spot : free_spots(thing.told.bin)) {
+    for (const auto& [spot, quarters] : free_places(thing.told.bin)) {
+      const program::PickTask task{thing.told.name, goal_at(thing, spot, quarters)};
       const Result<PickAndPlaceOutcome> outcome =
-          pick_and_place(robot_, sim_, last_look_first(look),
-                         {thing.told.name, goal_at(thing, spot)}, options_.pick);
+          pick_and_place(robot_, sim_, last_look_first(look), task, options_.pick);
       if (!outcome) return fail(outcome.error());
       std::ranges::copy(outcome->tries, std::back_inserter(out_.tries));
       if (!outcome->tries.empty()) ++changes_;
@@ -233,20 +234,24 @@ class Sorter {
            code == program::PickErrc::place_blocked || code == program::PickErrc::no_way;
   }
 
-  [[nodiscard]] std::vector<std::size_t> free_spots(std::size_t bin) const {
-    std::vector<std::size_t> out;
-    for (std::size_t k = 0; k < bins_[bin].spots_W.size(); ++k) {
-      const bool taken = std::ranges::any_of(things_, [&](const Thing& thing) {
-        return thing.told.bin == bin && thing.told.spot == k;
-      });
-      if (!taken) out.push_back(k);
+  /// Free spots, and quarter turns there: all spots come before any turn.
+  [[nodiscard]] std::vector<std::pair<std::size_t, int>> free_places(std::size_t bin) const {
+    std::vector<std::pair<std::size_t, int>> out;
+    for (const int quarters : {0, 1}) {
+      for (std::size_t k = 0; k < bins_[bin].spots_W.size(); ++k) {
+        const bool taken = std::ranges::any_of(things_, [&](const Thing& thing) {
+          return thing.told.bin == bin && thing.told.spot == k;
+        });
+        if (!taken) out.emplace_back(k, quarters);
+      }
     }
     return out;
   }
 
   /// As it rests, over the spot.
-  [[nodiscard]] program::PlaceGoal goal_at(const Thing& thing, std::size_t spot) const {
-    Pose X_WB{.p = Vector3d::Zero(), .R = along_the_sides(thing.X_WB.R)};
+  [[nodiscard]] program::PlaceGoal goal_at(const Thing& thing, std::size_t spot,
+                                           int quarters) const {
+    Pose X_WB{.p = Vector3d::Zero(), .R = along_the_sides(thing.X_WB.R, quarters)};
     X_WB.p = bins_[thing.told.bin].spots_W[spot] - foot_of(thing.surface, X_WB);
     // One that looks the same in several ways is turned as the arm likes by these.
     const auto same = seen_.same.find(thing.told.name);

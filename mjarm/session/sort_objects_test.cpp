@@ -151,5 +151,25 @@ TEST(SceneEye, NamesThingsOfOneKindAsTheSimulationDoes) {
   }
 }
 
+TEST(SceneEye, WhatIsHiddenNowStandsWhereItWasLastSeen) {
+  SortWorldOfTest world;
+  Result<SceneEye> eye = SceneEye::open(world.robot, "rgbd");
+  if (!eye && eye.error().code == Errc::not_available) GTEST_SKIP() << "no OpenGL";
+  ASSERT_TRUE(eye) << eye.error().what;
+  const auto look = [&] {
+    const SceneState truth{.qpos = {world.sim.qpos().begin(), world.sim.qpos().end()},
+                           .attached = {}};
+    return eye->look(truth, as_span(world.robot.arm.home)).value();
+  };
+  world.sim.place_free("box", {.p = {0.44, 0.15, 0.22},
+                               .R = from_euler({std::numbers::pi / 2, 0, std::numbers::pi / 2})});
+  ASSERT_THAT(look().unseen, IsEmpty());
+  world.sim.place_free("can", {.p = {0.5, 0.15, 0.25}});  // before the box
+  const program::SeenScene seen = look();
+  EXPECT_TRUE(seen.unseen.contains("box"));
+  const Pose believed = frame_pose(world.robot.model, "box", seen.scene.qpos).value();
+  EXPECT_LT((believed.p - world.pose("box").p).norm(), 2e-3);
+}
+
 }  // namespace
 }  // namespace mjarm::session

@@ -39,7 +39,7 @@ struct SortKind {
   double standing;  ///< [m] height of its middle then
   double lying;     ///< [m] likewise on its side, 0: it has none
 };
-constexpr std::array<SortKind, 2> kSortKinds = {{{"cube", 0.018, 0}, {"can", 0.035, 0.026}}};
+constexpr std::array<SortKind, 2> kSortKinds = {{{"cube", 0.018, 0}, {"can", 0.035, 0.025}}};
 
 /// What a site `KIND_spotN` of the scene's bins is for, and all objects of that kind.
 std::vector<session::SortBin> bins_of(const Robot& robot) {
@@ -135,6 +135,10 @@ class SortDemo {
     if (!outcome) return fail(std::move(outcome.error()));
     return write(*outcome, options.pick.control);
   }
+
+  /// Keeps the window open, if there is one.
+  void linger() { show_.linger(sim_); }
+  [[nodiscard]] bool has_window() const { return show_.has_window(); }
 
  private:
   void show_step(const Sim& sim) {
@@ -250,12 +254,6 @@ class SortDemo {
     return report;
   }
 
- public:
-  /// Keeps the window open, if there is one.
-  void linger() { show_.linger(sim_); }
-  [[nodiscard]] bool has_window() const { return show_.has_window(); }
-
- private:
   const DemoOptions& options_;
   const Robot& robot_;
   std::vector<session::SortBin> bins_;
