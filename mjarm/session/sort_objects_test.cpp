@@ -100,6 +100,22 @@ TEST(SortObjects, WhatIsHiddenIsLookedForFromElsewhereAndLeftWithItsReason) {
   EXPECT_EQ(elsewhere, 1);
 }
 
+// Along x, as it lies, the fence would be in the way of the opening fingers.
+TEST(SortObjects, WhatFitsAtNoSpotAsItLiesIsTurned) {
+  SortWorldOfTest world;
+  world.sim.place_free("can", {.p = {0.52, 0.2, 0.228},
+                               .R = from_euler({std::numbers::pi / 2, 0, std::numbers::pi / 2})});
+  const std::vector<SortBin> bins{{{"can"}, {{0.5, 0.012, 0.2}}}};
+  const auto outcome =
+      sort_objects(world.robot, world.sim, world.looking(), bins,
+                   {.pick = {.pick = {.stop = [&] { return world.sim.time() > 0; }}}});
+  ASSERT_TRUE(outcome) << outcome.error().what;
+  ASSERT_EQ(outcome->tries.size(), 1u) << outcome->objects[0].what;
+  const Pose& planned = *outcome->tries[0].planned.X_WB_place;
+  EXPECT_GT(std::abs(planned.R.col(2).y()), 0.999);
+  EXPECT_LT((planned.p - Eigen::Vector3d(0.5, 0.012, 0.228)).norm(), 1e-3);
+}
+
 TEST(SortObjects, AStopEndsItAndSaysSo) {
   SortWorldOfTest world;
   const auto outcome = sort_objects(
