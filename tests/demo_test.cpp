@@ -307,5 +307,33 @@ TEST(DemoPickPlace, PutsAllThreeIntoTheTray) {
   EXPECT_TRUE(run.report["first_contact"].is_null());
 }
 
+TEST(DemoSort, StopsInTheMiddleWithItsReasonAndWholeFiles) {
+  const TempFolder folder;
+  const DemoRun run = run_demo(folder, {"sort", "--seconds", "0.2", "--seed", "3"});
+  if (run.result.err.find("OpenGL") != std::string::npos) GTEST_SKIP() << run.result.err;
+  ASSERT_EQ(run.result.exit_code, 1) << run.result.err;
+  EXPECT_EQ(run.report["reason"], "stopped");
+  EXPECT_NE(run.report["detail"].get<std::string>().find("0 of 10"), std::string::npos);
+  EXPECT_EQ(run.report["coverage"], 0);
+  EXPECT_EQ(run.report["seed"], 3);
+  EXPECT_EQ(run.report["grasps"], 1);
+  for (const char* file : {"out/log.csv", "out/plot.svg", "out/plot.png", "out/picture.png"}) {
+    EXPECT_TRUE(folder.exists(file)) << file;
+  }
+}
+
+TEST(DemoSort, RefusesWhatItCannotDo) {
+  const TempFolder folder;
+  const DemoRun other = run_demo(folder, {"sort", "--robot", "car"});
+  EXPECT_EQ(other.result.exit_code, 2);
+  EXPECT_NE(other.result.err.find("ur5e or panda"), std::string::npos) << other.result.err;
+  const DemoRun seed = run_demo(folder, {"sort", "--seed", "-1"});
+  EXPECT_EQ(seed.result.exit_code, 2);
+  EXPECT_NE(seed.result.err.find("--seed"), std::string::npos) << seed.result.err;
+  const DemoRun unused = run_demo(folder, {"pick_place", "--seed", "1"});
+  EXPECT_EQ(unused.result.exit_code, 2);
+  EXPECT_NE(unused.result.err.find("--seed"), std::string::npos) << unused.result.err;
+}
+
 }  // namespace
 }  // namespace mjarm

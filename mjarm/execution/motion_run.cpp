@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
-#include "mjarm/core/number.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
@@ -177,7 +176,7 @@ void MotionRun::look_at_contacts(Report& report) const {
 Report MotionRun::report(std::span<const MeasuredRun> runs, double tolerance, Report begun) const {
   Report out = std::move(begun);
   out.model = model_.name();
-  put_sums(out);
+  put_outcome(total_, out);
   if (const std::optional<double> speed = max_tool_speed(runs)) {
     out.tool_speed_max = std::max(out.tool_speed_max.value_or(0), *speed);
   }
@@ -212,18 +211,6 @@ std::string MotionRun::why_off() const {
     return text(msg::execution_off_rubs, contact.first, contact.second);
   }
   return {};
-}
-
-void MotionRun::put_sums(Report& report) const {
-  report.duration = total_.duration;
-  report.steps = static_cast<long>(total_.steps);
-  report.velocity_use = total_.velocity_use;
-  report.torque_use = total_.torque_use;
-  report.saturated_steps = static_cast<long>(total_.limited_steps);
-  if (!total_.first_contact) return;
-  const Contact& contact = total_.first_contact->contact;
-  report.first_contact =
-      contact.first + " - " + contact.second + " at " + number(total_.first_contact->time) + " s";
 }
 
 }  // namespace mjarm

@@ -80,7 +80,6 @@ class MotionRun {
   /// Keeps what a motion did.
   void add(const FollowOutcome& outcome);
   [[nodiscard]] std::string why_off() const;
-  void put_sums(Report& report) const;
   void look_at_contacts(Report& report) const;
 
   Model model_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/number.hpp"
 #include "mjarm/path/path_measures.hpp"
 
 namespace mjarm {
@@ -130,6 +131,18 @@ void add_motion(const PlannedMove& move, const Arm& arm, Report& report) {
   if (!move.curve) return;
   add_measures(move.measures->manipulability, move.measures->singularity.smallest, report);
   add_dips(move.dips, arm, report);
+}
+
+void put_outcome(const FollowOutcome& total, Report& report) {
+  report.duration = total.duration;
+  report.steps = static_cast<long>(total.steps);
+  report.velocity_use = total.velocity_use;
+  report.torque_use = total.torque_use;
+  report.saturated_steps = static_cast<long>(total.limited_steps);
+  if (!total.first_contact) return;
+  const Contact& contact = total.first_contact->contact;
+  report.first_contact =
+      contact.first + " - " + contact.second + " at " + number(total.first_contact->time) + " s";
 }
 
 std::string to_json(const Report& report) {

@@ -13,6 +13,7 @@
 #include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/execution/object_watch.hpp"
 #include "mjarm/sim/sim.hpp"
+#include "mjarm/sim/stepper.hpp"
 #include "mjarm/trajectory/tool_motion.hpp"
 
 namespace mjarm {
@@ -85,6 +86,9 @@ void add_motion(const ToolMotion& motion, const Arm& arm, Report& report);
 
 /// The same of one motion of a program; joint moves and rests have only their joint steps.
 void add_motion(const PlannedMove& move, const Arm& arm, Report& report);
+
+/// Puts in how long it took, what limits were used and what touched first.
+void put_outcome(const FollowOutcome& total, Report& report);
 
 /// `report` as one JSON document, keys in fixed order, full double precision, newline at the end.
 [[nodiscard]] std::string to_json(const Report& report);

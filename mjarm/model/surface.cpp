@@ -2,6 +2,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -113,6 +114,29 @@ int body_number(const mjModel& m, std::string_view name, std::vector<std::string
   return -1;
 }
 
+/// So many numbers of two geoms, of those that start at `first`, are the same.
+template <class T>
+bool are_equal(const T* first, int a, int b, int count) {
+  return std::equal(first + count * a, first + count * (a + 1), first + count * b);
+}
+
+bool geoms_look_alike(const mjModel& m, int a, int b) {
+  return m.geom_type[a] == m.geom_type[b] && m.geom_dataid[a] == m.geom_dataid[b] &&
+         m.geom_matid[a] == m.geom_matid[b] && are_equal(m.geom_size, a, b, 3) &&
+         are_equal(m.geom_pos, a, b, 3) && are_equal(m.geom_quat, a, b, 4) &&
+         are_equal(m.geom_rgba, a, b, 4);
+}
+
+/// The geoms of a body that are drawn.
+std::vector<int> seen_geoms(const mjModel& m, int body) {
+  std::vector<int> out;
+  for (int i = 0; i < m.body_geomnum[body]; ++i) {
+    const int geom = m.body_geomadr[body] + i;
+    if (is_seen(m, geom)) out.push_back(geom);
+  }
+  return out;
+}
+
 }  // namespace
 
 Surface box_surface(const Eigen::Vector3d& half) {
@@ -148,9 +172,7 @@ Result<Surface> body_surface(const Model& model, std::string_view body) {
                                       did_you_mean(std::string(body), names)));
   }
   Surface out;
-  for (int i = 0; i < m.body_geomnum[number]; ++i) {
-    const int geom = m.body_geomadr[number] + i;
-    if (!is_seen(m, geom)) continue;
+  for (const int geom : seen_geoms(m, number)) {
     const std::optional<Surface> part = geom_surface(m, geom);
     if (!part) return fail(Errc::bad_input, text(msg::model_surface_flat, std::string(body)));
     const mjtNum* q = m.geom_quat + 4 * geom;
@@ -162,6 +184,16 @@ Result<Surface> body_surface(const Model& model, std::string_view body) {
     return fail(Errc::bad_input, text(msg::model_surface_unseen, std::string(body)));
   }
   return out;
+}
+
+bool look_alike(const Model& model, std::string_view body, std::string_view other) {
+  const mjModel& m = *model.raw();
+  std::vector<std::string> names;
+  const int a = body_number(m, body, names);
+  const int b = body_number(m, other, names);
+  return a >= 0 && b >= 0 &&
+         std::ranges::equal(seen_geoms(m, a), seen_geoms(m, b),
+                            [&](int geom, int as) { return geoms_look_alike(m, geom, as); });
 }
 
 }  // namespace mjarm

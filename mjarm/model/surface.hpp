@@ -34,4 +34,8 @@ void append(Surface& surface_A, const Surface& surface_B, const Pose& X_AB);
 ///         plane or a height field.
 [[nodiscard]] Result<Surface> body_surface(const Model& model, std::string_view body);
 
+/// Whether nothing that is drawn tells two bodies of a model apart: geoms of the same shapes, sizes
+/// and colours at the same places, in the same order. False where there is no such body.
+[[nodiscard]] bool look_alike(const Model& model, std::string_view body, std::string_view other);
+
 }  // namespace mjarm

@@ -68,5 +68,29 @@ TEST(Surface, OfABodyIsThatOfItsGeomsInItsFrame) {
   EXPECT_FALSE(body_surface(model, "world"));
 }
 
+TEST(Surface, BodiesLookAlikeWhereNothingThatIsDrawnTellsThemApart) {
+  const Model model = *Model::from_mjcf(R"(
+<mujoco>
+  <worldbody>
+    <body name="a" pos="1 0 0"><freejoint/><geom type="box" size="1 2 3" rgba="1 0 0 1"/></body>
+    <body name="same" pos="5 0 0" euler="0 0 30"><freejoint/>
+      <geom type="box" size="1 2 3" rgba="1 0 0 1" mass="7"/>
+      <geom type="sphere" size="1" group="3"/></body>
+    <body name="blue" pos="9 0 0"><freejoint/><geom type="box" size="1 2 3" rgba="0 0 1 1"/></body>
+    <body name="long" pos="13 0 0"><freejoint/><geom type="box" size="1 2 4" rgba="1 0 0 1"/></body>
+    <body name="two" pos="17 0 0"><freejoint/><geom type="box" size="1 2 3" rgba="1 0 0 1"/>
+      <geom type="sphere" size="1"/></body>
+    <body name="off" pos="21 0 0"><freejoint/>
+      <geom type="box" size="1 2 3" pos="0 0 1" rgba="1 0 0 1"/></body>
+  </worldbody>
+</mujoco>)");
+  EXPECT_TRUE(look_alike(model, "a", "a"));
+  EXPECT_TRUE(look_alike(model, "a", "same"));
+  for (const char* other : {"blue", "long", "two", "off", "nobody"}) {
+    EXPECT_FALSE(look_alike(model, "a", other)) << other;
+    EXPECT_FALSE(look_alike(model, other, "a")) << other;
+  }
+}
+
 }  // namespace
 }  // namespace mjarm

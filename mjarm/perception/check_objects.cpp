@@ -1,5 +1,7 @@
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "mjarm/core/messages/perception.hpp"
@@ -38,11 +40,32 @@ std::string fault_of(const ObjectTag& tag) {
   return sound ? std::string() : text(msg::perception_tag_of_object, tag.id, tag.size);
 }
 
+/// Whether two bodies that look alike may have these surfaces.
+bool is_one_surface(const Surface& a, const Surface& b) {
+  constexpr double kSame = 1e-6;  // [m]
+  return a.triangles == b.triangles &&
+         std::ranges::equal(a.vertices, b.vertices,
+                            [](const Eigen::Vector3d& v, const Eigen::Vector3d& w) {
+                              return (v - w).cwiseAbs().maxCoeff() < kSame;
+                            });
+}
+
+/// What is wrong with an object as one of its kind. @param kinds  the first one of each so far.
+std::string fault_of_kind(const KnownObject& object,
+                          std::map<std::string, const KnownObject*>& kinds) {
+  if (object.kind.empty()) return {};
+  if (object.tag) return text(msg::perception_kind_with_tag, object.kind);
+  const KnownObject& first = *kinds.try_emplace(object.kind, &object).first->second;
+  if (is_one_surface(first.surface, object.surface)) return {};
+  return text(msg::perception_kind_of_two_shapes, object.kind, first.name);
+}
+
 }  // namespace
 
 Result<void> check_objects(std::span<const KnownObject> objects) {
   std::set<std::string> names;
   std::set<int> tags;
+  std::map<std::string, const KnownObject*> kinds;
   for (const KnownObject& object : objects) {
     std::string fault = fault_of(object.surface);
     if (fault.empty() && object.tag) fault = fault_of(*object.tag);
@@ -51,6 +74,7 @@ Result<void> check_objects(std::span<const KnownObject> objects) {
     if (fault.empty() && object.tag && !tags.insert(object.tag->id).second) {
       fault = text(msg::perception_tag_of_two, object.tag->id);
     }
+    if (fault.empty()) fault = fault_of_kind(object, kinds);
     if (!fault.empty()) {
       return fail(Errc::bad_input, text(msg::perception_bad_object, object.name, fault));
     }

@@ -8,14 +8,13 @@
 #include "mjarm/core/messages/perception.hpp"
 #include "mjarm/perception/check_frame_internal.hpp"
 #include "mjarm/perception/check_objects_internal.hpp"
+#include "mjarm/perception/object_kind_internal.hpp"
 #include "mjarm/perception/shape_search_internal.hpp"
 #include "mjarm/perception/tag_pose.hpp"
 #include "mjarm/perception/unknown_shape_internal.hpp"
 
 namespace mjarm::perception {
 namespace {
-
-using ObjectPose = Result<FoundPose, FindFailure>;
 
 constexpr double kMostMissing = 0.1;       // share of its pixels through which more is seen
 constexpr double kMostUnexplained = 0.1;   // share of a cluster's pixels that are not it
@@ -50,9 +49,9 @@ bool is_possible(const DepthScene& scene, const ShapeModel& shape, const ShapeFi
 }
 bool is_whole(const ShapeFit& fit) { return fit.unexplained <= kMostUnexplained; }
 
-/// One object in one cluster.
+/// One piece of a kind in one cluster.
 struct Match {
-  std::size_t object;
+  std::size_t kind;
   int cluster;
   ShapeFit fit;
   bool twofold;  ///< another pose explains it as well
@@ -85,9 +84,9 @@ bool may_hold(const DepthScene& scene, int cluster, const ShapeModel& shape) {
   return (across - kSlack) / (box.middle * scene.lens.fx) < 2 * shape.radius;
 }
 
-/// An object that a cluster may be, with poses to refine, the best first.
+/// A kind of which a cluster may be, with poses to refine, the best first.
 struct Rival {
-  std::size_t object;
+  std::size_t kind;
   std::vector<Start> starts;
 };
 
@@ -103,30 +102,35 @@ void drop_hopeless(std::vector<Rival>& rivals) {
 
 struct ObjectFinder::Impl {
   std::vector<KnownObject> objects;
-  std::vector<ShapeModel> shapes = {};
+  std::vector<ObjectKind> kinds;
   FindOptions options;
   DepthModel model;
   std::optional<TagDetector> tags = {};
   Raster raster = {};
-  std::vector<char> settled = {};  ///< of the frame: objects that are found, or known by a tag
 
-  ObjectPose pose_by_tag(std::size_t i, const std::vector<SeenTag>& seen,
+  /// The tag of the object that a kind is for itself; null where it is known by its shape.
+  [[nodiscard]] const ObjectTag* tag_of(const ObjectKind& kind) const {
+    const std::optional<ObjectTag>& tag = objects[kind.objects.front()].tag;
+    return tag ? &*tag : nullptr;
+  }
+  ObjectPose pose_by_tag(const ObjectKind& kind, const std::vector<SeenTag>& seen,
                          const render::RgbdFrame& frame, const DepthScene& scene);
   void find_by_tags(const render::RgbdFrame& frame, DepthScene& scene,
                     std::vector<ObjectPose>& out);
-  void find_by_shapes(DepthScene& scene, bool last, std::vector<ObjectPose>& out);
+  void find_by_shapes(DepthScene& scene, bool last);
   std::vector<Rival> rivals(const DepthScene& scene, int cluster);
-  std::vector<Match> matches(const DepthScene& scene, std::vector<ObjectPose>& out);
+  std::vector<Match> matches(const DepthScene& scene);
   void add(std::vector<Match>& found, const Match& match) const;
-  void claim(DepthScene& scene, std::size_t i, const Pose& X_WO) {
-    take_out(scene, whole_drawing(scene, shapes[i], scene.X_WC.inverse() * X_WO, raster));
+  [[nodiscard]] bool is_ambiguous(const std::vector<Match>& found, const Match& match) const;
+  void claim(DepthScene& scene, const ObjectKind& kind, const Pose& X_WO) {
+    take_out(scene, whole_drawing(scene, kind.shape, scene.X_WC.inverse() * X_WO, raster));
   }
 };
 
-ObjectPose ObjectFinder::Impl::pose_by_tag(std::size_t i, const std::vector<SeenTag>& seen,
+ObjectPose ObjectFinder::Impl::pose_by_tag(const ObjectKind& kind, const std::vector<SeenTag>& seen,
                                            const render::RgbdFrame& frame,
                                            const DepthScene& scene) {
-  const ObjectTag& tag = *objects[i].tag;
+  const ObjectTag& tag = *tag_of(kind);
   const auto is_it = [&](const SeenTag& other) { return other.id == tag.id; };
   const auto count = std::count_if(seen.begin(), seen.end(), is_it);
   if (count != 1) {
@@ -136,10 +140,10 @@ ObjectPose ObjectFinder::Impl::pose_by_tag(std::size_t i, const std::vector<Seen
                                                 tag.size, frame, options.depth_sigma);
   if (!at) return fail(FindFailure{.code = at.error()});
   const Pose X_CO = at->X_CT * tag.X_OT.inverse();
-  const int cluster = cluster_under(scene, whole_drawing(scene, shapes[i], X_CO, raster));
-  const ShapeFit fit = check_shape(scene, cluster, shapes[i], X_CO, raster);
+  const int cluster = cluster_under(scene, whole_drawing(scene, kind.shape, X_CO, raster));
+  const ShapeFit fit = check_shape(scene, cluster, kind.shape, X_CO, raster);
   const FoundPose pose = found_pose(scene, fit, true);
-  if (!is_possible(scene, shapes[i], fit)) {
+  if (!is_possible(scene, kind.shape, fit)) {
     return fail(FindFailure{.code = FindErrc::disagrees, .best = pose});
   }
   return pose;
@@ -147,56 +151,54 @@ ObjectPose ObjectFinder::Impl::pose_by_tag(std::size_t i, const std::vector<Seen
 
 void ObjectFinder::Impl::find_by_tags(const render::RgbdFrame& frame, DepthScene& scene,
                                       std::vector<ObjectPose>& out) {
-  settled.assign(objects.size(), 0);
-  for (std::size_t i = 0; i < objects.size(); ++i) settled[i] = objects[i].tag ? 1 : 0;
   if (!tags) return;
   const std::vector<SeenTag> seen = tags->find(frame.color);
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].tag) out[i] = pose_by_tag(i, seen, frame, scene);
+  for (const ObjectKind& kind : kinds) {
+    if (tag_of(kind)) out[kind.objects.front()] = pose_by_tag(kind, seen, frame, scene);
   }
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (out[i]) claim(scene, i, out[i]->X_WO);
+  for (const ObjectKind& kind : kinds) {
+    if (const ObjectPose& pose = out[kind.objects.front()]) claim(scene, kind, pose->X_WO);
   }
 }
 
-/// Objects without a tag that may be the cluster, as coarse pictures show: none that another one
+/// Kinds without a tag of which the cluster may be, as coarse pictures show: none that another one
 /// explains far better.
 std::vector<Rival> ObjectFinder::Impl::rivals(const DepthScene& scene, int cluster) {
   std::vector<Rival> out;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (settled[i] || !may_hold(scene, cluster, shapes[i])) continue;
-    out.push_back({i, rough_search(scene, cluster, shapes[i], raster)});
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    const ObjectKind& kind = kinds[k];
+    if (tag_of(kind) || kind.left() == 0 || !may_hold(scene, cluster, kind.shape)) continue;
+    out.push_back({k, rough_search(scene, cluster, kind.shape, raster)});
   }
   drop_hopeless(out);
   for (Rival& rival : out) {
     rival.starts =
-        coarse_search(scene, cluster, shapes[rival.object], std::move(rival.starts), raster);
+        coarse_search(scene, cluster, kinds[rival.kind].shape, std::move(rival.starts), raster);
   }
   drop_hopeless(out);
   return out;
 }
 
-std::vector<Match> ObjectFinder::Impl::matches(const DepthScene& scene,
-                                               std::vector<ObjectPose>& out) {
+std::vector<Match> ObjectFinder::Impl::matches(const DepthScene& scene) {
   std::vector<Match> found;
   for (int c = 0; c < static_cast<int>(scene.clusters.size()); ++c) {
     std::vector<Match> here;
     double best = 1e18;
-    for (auto& [i, starts] : rivals(scene, c)) {
+    for (auto& [k, starts] : rivals(scene, c)) {
+      ObjectKind& kind = kinds[k];
       const std::vector<ShapeFit> fits =
-          fine_search(scene, c, shapes[i], std::move(starts), raster);
-      if (!is_possible(scene, shapes[i], fits[0])) continue;
+          fine_search(scene, c, kind.shape, std::move(starts), raster);
+      if (!is_possible(scene, kind.shape, fits[0])) continue;
+      if (kind.is_found(scene.X_WC * fits[0].X_CO)) continue;
       if (!is_whole(fits[0])) {
-        const bool unseen = !out[i] && out[i].error().code == FindErrc::not_seen;
-        if (unseen && fits[0].seen >= kLeastSeen && fits[0].unexplained < kTouching) {
-          out[i] = fail(
-              FindFailure{.code = FindErrc::touching, .best = found_pose(scene, fits[0], false)});
+        if (fits[0].seen >= kLeastSeen && fits[0].unexplained < kTouching) {
+          kind.add_touching(found_pose(scene, fits[0], false));
         }
         continue;
       }
-      const bool twofold = fits.size() > 1 && is_possible(scene, shapes[i], fits[1]) &&
+      const bool twofold = fits.size() > 1 && is_possible(scene, kind.shape, fits[1]) &&
                            is_whole(fits[1]) && fits[1].cost < fits[0].cost + margin(fits[0].cost);
-      here.push_back({i, c, fits[0], twofold});
+      here.push_back({k, c, fits[0], twofold});
       best = std::min(best, fits[0].cost);
     }
     for (const Match& match : here) {
@@ -209,8 +211,8 @@ std::vector<Match> ObjectFinder::Impl::matches(const DepthScene& scene,
 /// Two pieces of one object tell of the same pose: it is one match, the more certain one.
 void ObjectFinder::Impl::add(std::vector<Match>& found, const Match& match) const {
   const auto known = std::find_if(found.begin(), found.end(), [&](const Match& other) {
-    return other.object == match.object &&
-           is_same(shapes[match.object], other.fit.X_CO, match.fit.X_CO);
+    return other.kind == match.kind &&
+           is_same(kinds[match.kind].shape, other.fit.X_CO, match.fit.X_CO);
   });
   if (known == found.end()) {
     found.push_back(match);
@@ -219,34 +221,43 @@ void ObjectFinder::Impl::add(std::vector<Match>& found, const Match& match) cons
   }
 }
 
+/// Another pose, another kind, or more pieces than there are left explain what is seen as well.
+bool ObjectFinder::Impl::is_ambiguous(const std::vector<Match>& found, const Match& match) const {
+  const ObjectKind& kind = kinds[match.kind];
+  std::size_t pieces = 0;
+  for (const Match& other : found) {
+    if (other.kind != match.kind) {
+      if (other.cluster == match.cluster) return true;
+      continue;
+    }
+    ++pieces;
+    if (&other != &match && kind.is_one_piece(other.fit.X_CO, match.fit.X_CO)) return true;
+  }
+  return match.twofold || pieces > kind.left();
+}
+
 /// @param last  no later round will look at what is doubtful once more
-void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, bool last,
-                                        std::vector<ObjectPose>& out) {
-  const std::vector<Match> found = matches(scene, out);
-  const auto alone = [&](const Match& match) {
-    return std::none_of(found.begin(), found.end(), [&](const Match& other) {
-      return (other.object == match.object) != (other.cluster == match.cluster);
-    });
-  };
-  std::vector<std::pair<std::size_t, Pose>> claims;
+void ObjectFinder::Impl::find_by_shapes(DepthScene& scene, bool last) {
+  const std::vector<Match> found = matches(scene);
+  std::vector<std::optional<FindErrc>> faults;
   for (const Match& match : found) {
-    const FoundPose pose = found_pose(scene, match.fit, false);
     std::optional<FindErrc> fault;
-    if (match.twofold || !alone(match)) fault = FindErrc::ambiguous;
+    if (is_ambiguous(found, match)) fault = FindErrc::ambiguous;
     if (match.fit.uncertainty > kMostUncertain || match.fit.seen < kLeastSeen ||
         match.fit.outside > kMostOutside) {
       fault = match.fit.seen < kWhole ? FindErrc::occluded : FindErrc::ambiguous;
     }
-    if (fault) {
-      out[match.object] = fail(FindFailure{.code = *fault, .best = pose});
-    } else {
-      out[match.object] = pose;
-    }
-    if (!fault || last) claims.emplace_back(match.object, pose.X_WO);
+    faults.push_back(fault);
   }
-  for (const auto& [object, X_WO] : claims) {
-    settled[object] = 1;
-    claim(scene, object, X_WO);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ObjectKind& kind = kinds[found[i].kind];
+    const FoundPose pose = found_pose(scene, found[i].fit, false);
+    if (faults[i]) {
+      kind.add_doubtful(*faults[i], pose);
+    } else {
+      kind.add(pose);
+    }
+    if (!faults[i] || last) claim(scene, kind, pose.X_WO);
   }
 }
 
@@ -264,10 +275,12 @@ Result<ObjectFinder> ObjectFinder::create(std::vector<KnownObject> objects,
   if (Result<void> checked = check_options(options); !checked) {
     return fail(std::move(checked.error()));
   }
-  auto impl = std::make_unique<Impl>(Impl{
-      .objects = std::move(objects), .options = options, .model = DepthModel(options.depth_sigma)});
+  std::vector<ObjectKind> kinds = object_kinds(objects);
+  auto impl = std::make_unique<Impl>(Impl{.objects = std::move(objects),
+                                          .kinds = std::move(kinds),
+                                          .options = options,
+                                          .model = DepthModel(options.depth_sigma)});
   for (const KnownObject& object : impl->objects) {
-    impl->shapes.emplace_back(object.surface);
     if (!object.tag || impl->tags) continue;
     Result<TagDetector> tags = TagDetector::create();
     if (!tags) return fail(std::move(tags.error()));
@@ -281,11 +294,15 @@ ObjectFinder::~ObjectFinder() = default;
 ObjectFinder::ObjectFinder(ObjectFinder&&) noexcept = default;
 ObjectFinder& ObjectFinder::operator=(ObjectFinder&&) noexcept = default;
 
-Result<FoundScene> ObjectFinder::find(const render::RgbdFrame& frame,
-                                      std::span<const float> known) {
+Result<FoundScene> ObjectFinder::find(const render::RgbdFrame& frame, std::span<const float> known,
+                                      std::span<const std::optional<Pose>> believed) {
   if (Result<void> checked = check_frame(frame); !checked) return fail(std::move(checked.error()));
   if (!known.empty() && known.size() != frame.depth.size()) {
     return fail(Errc::bad_input, text(msg::perception_bad_known, known.size(), frame.depth.size()));
+  }
+  if (!believed.empty() && believed.size() != impl_->objects.size()) {
+    return fail(Errc::bad_input,
+                text(msg::perception_bad_believed, believed.size(), impl_->objects.size()));
   }
   Rng rng(impl_->options.seed);
   DepthScene scene = depth_scene(frame, impl_->model, impl_->options.table, rng);
@@ -295,16 +312,18 @@ Result<FoundScene> ObjectFinder::find(const render::RgbdFrame& frame,
     leave_out(scene, inverse);
   }
   std::vector<ObjectPose> poses(impl_->objects.size(), fail(FindFailure{}));
+  for (ObjectKind& kind : impl_->kinds) kind.begin();
   impl_->find_by_tags(frame, scene, poses);
   // First what is seen in one piece of one hue, in one piece of any, and then pieces that may be
   // parts of one thing, the nearer part hiding how they are joined.
   gather(scene, kSmoothJump, &frame.color);
-  impl_->find_by_shapes(scene, false, poses);
+  impl_->find_by_shapes(scene, false);
   for (const double jump : {kSmoothJump, kPieceJump}) {
     gather(scene, jump);
-    impl_->find_by_shapes(scene, jump == kPieceJump, poses);
+    impl_->find_by_shapes(scene, jump == kPieceJump);
   }
   gather(scene, kSmoothJump);
+  for (const ObjectKind& kind : impl_->kinds) kind.name_pieces(believed, poses);
   FoundScene out{.table = scene.table};
   for (std::size_t i = 0; i < poses.size(); ++i) {
     out.objects.push_back({impl_->objects[i].name, std::move(poses[i])});

@@ -30,6 +30,9 @@ struct KnownObject {
   std::string name = {};
   Surface surface = {};               ///< in its frame O; 5 mm to 5 m across
   std::optional<ObjectTag> tag = {};  ///< without one it is known by its shape
+  /// Objects of one kind are as good as each other: they have one surface, and no tag. Empty: there
+  /// is none like it.
+  std::string kind = {};
 };
 
 /// A body of a model as an object: its frame is the body's, its name the body's.
@@ -77,8 +80,9 @@ struct FoundScene {
 };
 
 /// Finds known objects in what an RGB-D camera sees: by their tags, else by their shapes. An object
-/// either has a pose with which the whole picture agrees, or a reason why not. Used by one thread
-/// at a time; the same frame gives the same answer.
+/// either has a pose with which the whole picture agrees, or a reason why not. Of one kind as many
+/// are found as are seen, each piece under one name; where more are seen than there are, all are
+/// ambiguous. Used by one thread at a time; the same frame gives the same answer.
 class ObjectFinder {
  public:
   /// @return bad_input that names the object or option; not_available where objects have tags and
@@ -92,9 +96,14 @@ class ObjectFinder {
   /// @param known  [m] (height * width,) depth of what is known to be there besides objects and
   ///               table (the arm, walls), 0 where nothing is: what looks like that is no object;
   ///               empty: nothing is known.
-  /// @return bad_input where the frame does not fit together. Pixels without depth are none.
+  /// @param believed  (objects,) X_WO where each was, as far as that is known: of one kind the
+  ///               nearest gets the name, so that names stay from look to look. Nothing else comes
+  ///               of it. Empty: nothing is known.
+  /// @return bad_input where the frame or the sizes do not fit together. Pixels without depth are
+  ///         none.
   [[nodiscard]] Result<FoundScene> find(const render::RgbdFrame& frame,
-                                        std::span<const float> known = {});
+                                        std::span<const float> known = {},
+                                        std::span<const std::optional<Pose>> believed = {});
 
  private:
   struct Impl;

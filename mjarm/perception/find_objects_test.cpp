@@ -272,7 +272,89 @@ TEST(FindObjects, FramesWithoutDepthFindNothingAndUnfitOnesAreRefused) {
   EXPECT_TRUE(refused([](auto& f) { f = {}; }));
 }
 
-// Two objects of one shape cannot be told apart, and say so.
+/// The can and its twin, as good as each other.
+ObjectFinder twins_finder() {
+  KnownObject can = *known_object(look().model(), "can");
+  can.kind = "can";
+  KnownObject twin = can;
+  twin.name = "twin";
+  return std::move(*ObjectFinder::create({can, twin}));
+}
+
+// Objects of one kind are each found, and names follow where they were believed to be.
+TEST(FindObjects, EachOfAKindIsFoundAndKeepsItsName) {
+  SKIP_WITHOUT_OPENGL();
+  Places places{.eye = eye_at({0, 0, 0.03}, 0.6, 0.4, 1)};
+  const Pose here = standing(-0.06, 0.02, 0.05, 0), there = standing(0.07, 0, 0.05, 0);
+  places.bodies[1] = here;
+  places.bodies[kTwin] = there;
+  Rng noise(4);
+  const render::RgbdFrame frame = look()(places, noise);
+  ObjectFinder finder = twins_finder();
+  const auto is_at = [](const FoundObject& object, const Pose& X_WO) {
+    return object.pose && (object.pose->X_WO.p - X_WO.p).norm() < 0.001;
+  };
+  using Believed = std::vector<std::optional<Pose>>;
+  for (const auto& [believed, first_is_here] : {std::pair<Believed, bool>{{here, there}, true},
+                                                {{there, here}, false},
+                                                {{{}, here}, false}}) {
+    const FoundScene found = *finder.find(frame, {}, believed);
+    EXPECT_EQ(found.objects[0].name, "can");
+    EXPECT_TRUE(is_at(found.objects[0], first_is_here ? here : there));
+    EXPECT_TRUE(is_at(found.objects[1], first_is_here ? there : here));
+    EXPECT_TRUE(found.unknown.empty());
+  }
+  const FoundScene unnamed = *finder.find(frame);
+  EXPECT_NE(is_at(unnamed.objects[0], here), is_at(unnamed.objects[1], here));
+  EXPECT_NE(is_at(unnamed.objects[0], there), is_at(unnamed.objects[1], there));
+  const auto refused = finder.find(frame, {}, Believed(3));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::bad_input);
+}
+
+// One piece has one name, whatever is believed.
+TEST(FindObjects, OfAKindTheOneThatIsHiddenHasAReason) {
+  SKIP_WITHOUT_OPENGL();
+  Places places{.eye = eye_at({0, 0, 0.03}, 0.6, 0, 0.3)};
+  places.bodies[1] = standing(0.05, 0, 0.05, 0);
+  places.bodies[kTwin] = standing(-0.05, 0, 0.05, 0);  // behind it
+  Rng noise(4);
+  const Pose front = *places.bodies[1], back = *places.bodies[kTwin];
+  const render::RgbdFrame both = look()(places, noise);
+  places.bodies[kTwin].reset();
+  const render::RgbdFrame one = look()(places, noise);
+  ObjectFinder finder = twins_finder();
+  for (const auto& [frame, why] :
+       {std::pair(&both, FindErrc::occluded), {&one, FindErrc::not_seen}}) {
+    for (const std::size_t seen : {0, 1}) {
+      const std::vector<std::optional<Pose>> believed{seen == 0 ? front : back,
+                                                      seen == 0 ? back : front};
+      const FoundScene found = *finder.find(*frame, {}, believed);
+      ASSERT_TRUE(found.objects[seen].pose);
+      EXPECT_LT((found.objects[seen].pose->X_WO.p - front.p).norm(), 0.001);
+      ASSERT_FALSE(found.objects[1 - seen].pose);
+      EXPECT_EQ(found.objects[1 - seen].pose.error().code, why);
+    }
+  }
+}
+
+// Where more is seen than there is, nobody knows which is which.
+TEST(FindObjects, MoreOfAKindThanThereAreAreAmbiguous) {
+  SKIP_WITHOUT_OPENGL();
+  Places places{.eye = eye_at({0, 0, 0.03}, 0.6, 0.4, 1)};
+  places.bodies[1] = standing(-0.06, 0.02, 0.05, 0);
+  places.bodies[kTwin] = standing(0.07, 0, 0.05, 0);
+  Rng noise(4);
+  KnownObject can = *known_object(look().model(), "can");
+  can.kind = "can";
+  ObjectFinder finder = std::move(*ObjectFinder::create({can}));
+  const FoundScene found = *finder.find(look()(places, noise));
+  ASSERT_FALSE(found.objects[0].pose);
+  EXPECT_EQ(found.objects[0].pose.error().code, FindErrc::ambiguous);
+}
+
+// Two objects of one shape of which nobody says that they are one kind cannot be told apart, and
+// say so.
 TEST(FindObjects, TwinsAreAmbiguous) {
   SKIP_WITHOUT_OPENGL();
   Places places{.eye = eye_at({0, 0, 0.03}, 0.6, 0.4, 1)};
@@ -311,6 +393,13 @@ TEST(FindObjects, ObjectsAndOptionsThatCannotBeAreNamed) {
   bad = good;
   bad.tag = ObjectTag{.id = 587, .size = 0.05};
   EXPECT_NE(why({bad}).find("587"), std::string::npos);
+  KnownObject one = good, other{.name = "brick", .surface = box_surface({0.02, 0.02, 0.03})};
+  one.kind = other.kind = "block";
+  EXPECT_NE(why({one, other}).find("\"brick\""), std::string::npos);
+  other.surface = good.surface;
+  EXPECT_EQ(why({one, other}), "");
+  other.tag = ObjectTag{.id = 1, .size = 0.02};
+  EXPECT_NE(why({one, other}).find("tag"), std::string::npos);
   EXPECT_NE(why({good}, {.depth_sigma = -1}).find("depth_sigma"), std::string::npos);
   EXPECT_NE(why({good}, {.table = Plane{.normal_W = {0, 0, 2}}}).find("table"), std::string::npos);
 }

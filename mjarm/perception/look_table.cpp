@@ -10,7 +10,7 @@
 namespace mjarm::perception::look_table {
 namespace {
 
-constexpr std::array<const char*, kBodies> kNames{"box", "can", "step", "stranger"};
+constexpr std::array<const char*, kBodies> kNames{"box", "can", "step", "stranger", "twin"};
 
 }  // namespace
 

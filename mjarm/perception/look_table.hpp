@@ -13,8 +13,8 @@
 #include "mjarm/render/rgbd.hpp"
 
 /// The table on which the errors of poses are measured: the shipped scene `scenes/look_table.xml`,
-/// with a box that has a tag, a can, a step that is not convex, a stranger that nobody knows, and a
-/// camera that can be put anywhere.
+/// with a box that has a tag, a can, a step that is not convex, a stranger that nobody knows, a
+/// twin of the can, and a camera that can be put anywhere.
 namespace mjarm::perception::look_table {
 
 inline constexpr int kTag = 7;            ///< that of the box
@@ -22,7 +22,7 @@ inline constexpr double kTagSize = 0.06;  ///< [m]
 inline const Pose kTagOnBox{.p = {0.005, 0, 0.0302}};
 
 /// Bodies of the table, in the order of Places.
-enum Body : std::size_t { kBox, kCan, kStep, kStranger, kBodies };
+enum Body : std::size_t { kBox, kCan, kStep, kStranger, kTwin, kBodies };
 
 /// Where they stand; those without a place are out of sight.
 struct Places {

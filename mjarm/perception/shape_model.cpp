@@ -71,6 +71,20 @@ bool is_closed(const Surface& surface) {
          });
 }
 
+/// [m] The distance of the nearest face's plane where all faces look away from `centre`, else 0.
+double inner_radius(const DrawnSurface& drawn, const Eigen::Vector3d& centre) {
+  if (drawn.sides != Raster::Sides::front) return 0;
+  double least = 1e9;
+  for (const auto& t : drawn.surface.triangles) {
+    const auto at = [&](std::size_t i) {
+      return drawn.surface.vertices[static_cast<std::size_t>(t[i])];
+    };
+    const Eigen::Vector3d n = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    least = std::min(least, n.dot(at(0) - centre));
+  }
+  return std::max(0.0, least);
+}
+
 }  // namespace
 
 DrawnSurface::DrawnSurface(Surface of)
@@ -95,6 +109,7 @@ ShapeModel::ShapeModel(Surface of) : fine(std::move(of)), coarse(Surface{}) {
   }
   if (area > 0) centre /= area;
   for (const Eigen::Vector3d& v : surface.vertices) radius = std::max(radius, (v - centre).norm());
+  inner = inner_radius(fine, centre);
   coarse = DrawnSurface(joined(surface, 0.15 * radius));
   // Each point stands for as much of the surface; within a triangle they follow an even sequence
   // (M. Roberts' R2).

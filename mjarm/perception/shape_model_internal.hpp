@@ -25,8 +25,9 @@ struct ShapeModel {
       Eigen::Vector3d::Zero();  ///< [m] mean of the surface, in the object's frame O
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< of its inertia, in O
   double radius = 0;                                   ///< [m] about the centre
-  std::vector<Eigen::Vector3d> points;                 ///< [m] evenly spread over the surface, in O
-  std::vector<Eigen::Vector3d> normals;                ///< unit length, of either side
+  double inner = 0;                      ///< [m] of a ball about it that is all solid; 0: unknown
+  std::vector<Eigen::Vector3d> points;   ///< [m] evenly spread over the surface, in O
+  std::vector<Eigen::Vector3d> normals;  ///< unit length, of either side
 };
 
 /// [m] How far the surface in pose `A` is from that in pose `B`: root of the mean squared distance

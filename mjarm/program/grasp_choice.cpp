@@ -45,6 +45,14 @@ std::vector<Pose> poses_at(const PlaceGoal& place) {
   return out;
 }
 
+/// @param opened  with open fingers, whatever these are to the object
+Result<JointVec, Drop> free_once_open(ExactChecker& opened, const JointVec& q) {
+  const auto report = opened.check(as_span(q));
+  if (report && report->free) return q;
+  return tl::unexpected(
+      Drop{PickErrc::place_blocked, report ? describe(*report) : report.error().what});
+}
+
 }  // namespace
 
 GraspChoice::GraspChoice(const Robot& robot, const SceneState& scene, std::span<const double> q,
@@ -254,11 +262,17 @@ Result<void, Drop> GraspChoice::look_at_place(GoodGrasp& one, const SceneState& 
       robot_.model, robot_.arm,
       {.margin = 0, .rules = {.attached = held.attached}, .qpos = held.qpos, .rest_depth = kRest});
   const IkSolver ik = solver(checker);
+  std::optional<ExactChecker> opened;
+  if (!open_.qpos.empty()) {
+    opened.emplace(robot_.model, robot_.arm,
+                   ExactOptions{.rules = without_object(), .qpos = open_.qpos});
+  }
   std::optional<Drop> why;
   double nearest = std::numeric_limits<double>::infinity();
   for (const Pose& X_WB : poses_at(place)) {
     const Pose X_WT = moved(X_WB * X_BT, options_.drop * Vector3d::UnitZ());
     auto q = posture(ik, X_WT, checker, true);
+    if (q && opened) q = free_once_open(*opened, *q);
     if (q) q = posture(ik, above(X_WT), checker, true);
     if (!q) {
       if (!why || why->code < q.error().code) why = std::move(q.error());

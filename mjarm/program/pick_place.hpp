@@ -90,7 +90,8 @@ struct PickFailure {
 /// straight up, by the planner with the object attached, straight down, open, straight away. Of all
 /// grasps (find_grasps()) those come first that come from above, hold it near its centre of mass
 /// and keep clear of what stands beside; each is looked at with every answer of the inverse
-/// kinematics, and whether the place can be had with it, before ways are planned. All of it is
+/// kinematics, and whether the place can be had with it and the fingers may open there, before ways
+/// are planned. All of it is
 /// proved as plan_program() does.
 /// @param scene  how things stand: where objects were seen, how far the fingers are open; empty:
 ///               as in the model.

@@ -142,6 +142,26 @@ TEST(PlanPick, FingersThatCloseMeetNothingElse) {
   }));
 }
 
+/// Between two walls the fingers that hold it fit either way, but along one alone may they open.
+TEST(PlanPick, PutsItDownWhereTheFingersMayOpen) {
+  const support::TempFolder folder;
+  const Robot robot =
+      at_table(folder, kUr5e, kBox,
+               "<geom name='left_wall' type='box' size='0.1 0.005 0.03' pos='0.5 -0.135 0.23'/>"
+               "<geom name='right_wall' type='box' size='0.1 0.005 0.03' pos='0.5 -0.265 0.23'/>");
+  const PlaceGoal goal{.X_WB = {.p = {0.5, -0.2, 0.23}}};
+  const auto picked = plan(robot, {.object = "thing", .place = goal});
+  ASSERT_TRUE(picked) << picked.error().what;
+  std::size_t blocked = 0;
+  for (const DroppedGrasp& one : picked->dropped) {
+    EXPECT_NE(one.code, PickErrc::no_way) << one.what;
+    if (one.code != PickErrc::place_blocked) continue;
+    ++blocked;
+    EXPECT_THAT(one.what, HasSubstr("_wall"));
+  }
+  EXPECT_GT(blocked, 0u);
+}
+
 /// The faults of a program before the shipped table.
 std::vector<ProgramFault> faults_of(const std::string& instructions) {
   const support::TempFolder folder;

@@ -70,7 +70,7 @@ struct ProgramPlan : MotionPlan {
 struct SeenScene {
   SceneState scene = {};                        ///< what was seen stands where it was seen
   std::map<std::string, std::string> unseen{};  ///< objects without a pose, and why
-  std::set<std::string> anywhere{};             ///< those of `unseen` of which nothing was seen
+  std::set<std::string> anywhere{};             ///< those of `unseen` of which nothing is known
   /// Of objects whose pose is known up to their symmetry alone: PlaceGoal::same.
   std::map<std::string, std::vector<Pose>> same{};
 };

@@ -44,6 +44,10 @@ class PickRunner {
       Result<PickTry> done = execute(std::move(*planned), seen->scene);
       if (!done) return fail(std::move(done.error()));
       out.tries.push_back(std::move(*done));
+      if (is_stopped(options_.pick.stop)) {
+        out.failure = {program::PickErrc::stopped, stopped().what, {}};
+        break;
+      }
       out.done = out.tries.back().fault == GripFault::none;
       if (out.tries.back().fault == GripFault::blocked) break;
       if (!out.done) {
@@ -51,12 +55,6 @@ class PickRunner {
       }
     }
     return out;
-  }
-
- private:
-  [[nodiscard]] JointVec q() const { return sim_.arm_state(robot_.arm).q; }
-  [[nodiscard]] SceneState truth() const {
-    return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
   }
 
   /// Looks, from elsewhere too where that does not find the object, or something beside it.
@@ -77,6 +75,12 @@ class PickRunner {
       looked_again = true;
     }
     return seen;
+  }
+
+ private:
+  [[nodiscard]] JointVec q() const { return sim_.arm_state(robot_.arm).q; }
+  [[nodiscard]] SceneState truth() const {
+    return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
   }
 
   /// Whether fingers that close on the object may meet something of which no pose is known: it
@@ -109,20 +113,21 @@ class PickRunner {
   Result<PickTry> execute(program::PickPlan planned, const SceneState& scene) {
     PickTry out{.planned = std::move(planned)};
     const MotionPlan& plan = out.planned.plan;
-    Result<Execution> execution =
-        Execution::create(robot_.model, plan, {.control = options_.control});
+    Result<Execution> execution = Execution::create(
+        robot_.model, plan, {.control = options_.control, .recorder = options_.recorder});
     if (!execution) return fail(std::move(execution.error()));
     GripWatch watch(robot_.model, plan, scene);
     const double begun = sim_.time();
     const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
       out.fault = watch.look(sim, execution->motions().back().move, execution->error(sim));
       if (options_.after_step) options_.after_step(sim);
-      return out.fault == GripFault::none;
+      return out.fault == GripFault::none && !is_stopped(options_.pick.stop);
     });
     if (!done) return fail(done.error());
     out.what = watch.what();
     if (auto rested = rest(*execution); !rested) return fail(std::move(rested.error()));
     out.seconds = sim_.time() - begun;
+    out.motions = execution->motions();
     out.objects = execution->objects();
     out.contact = execution->outcome().first_contact;
     return out;
@@ -163,12 +168,12 @@ class PickRunner {
     program.instructions = std::move(instructions);
     const program::ProgramPlan plan =
         program::plan_program(robot_.model, robot_.arm, program, {.scene = scene});
-    Result<Execution> execution =
-        Execution::create(robot_.model, plan, {.control = options_.control});
+    Result<Execution> execution = Execution::create(
+        robot_.model, plan, {.control = options_.control, .recorder = options_.recorder});
     if (!execution) return fail(std::move(execution.error()));
     const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
       if (options_.after_step) options_.after_step(sim);
-      return true;
+      return !is_stopped(options_.pick.stop);
     });
     if (!done) return fail(done.error());
     return plan.ok();
@@ -186,6 +191,11 @@ Result<PickAndPlaceOutcome> pick_and_place(const Robot& robot, Sim& sim, const L
                                            const program::PickTask& task,
                                            const PickAndPlaceOptions& options) {
   return PickRunner(robot, sim, options).run(look, task);
+}
+
+Result<program::SeenScene> look_for(const Robot& robot, Sim& sim, const Look& look,
+                                    const std::string& object, const PickAndPlaceOptions& options) {
+  return PickRunner(robot, sim, options).look_for(object, look);
 }
 
 }  // namespace mjarm::session

@@ -7,6 +7,7 @@
 
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/stop.hpp"
+#include "mjarm/execution/execution.hpp"
 #include "mjarm/execution/grip_watch.hpp"
 #include "mjarm/execution/object_watch.hpp"
 #include "mjarm/model/robot.hpp"
@@ -35,6 +36,7 @@ struct PickAndPlaceOptions {
   /// The arm goes there in turn as long as nothing tells where the object is, and to one of them
   /// where something beside the object is hidden; those it cannot get to are passed over.
   std::vector<Vantage> vantages = {};
+  Recorder* recorder = nullptr;  ///< gets every step; outlives the call; null = nobody records
   /// Called after every step. May be empty.
   std::function<void(const Sim& sim)> after_step = {};
 };
@@ -45,6 +47,7 @@ struct PickTry {
   GripFault fault = GripFault::none;
   std::string what = {};                     ///< one line for people about `fault`
   double seconds = 0;                        ///< [s] simulated, from the look until the arm rested
+  std::vector<ExecutedMotion> motions = {};  ///< of `planned.plan`, as far as it came
   std::vector<ObservedObject> objects = {};  ///< as the simulation knows them, for whoever judges
   std::optional<TimedContact> contact = {};  ///< the first one that the plan does not know
 };
@@ -68,5 +71,11 @@ struct PickAndPlaceOutcome {
                                                          const Look& look,
                                                          const program::PickTask& task,
                                                          const PickAndPlaceOptions& options = {});
+
+/// Looks as pick_and_place() does: from elsewhere too where that does not find the object, or
+/// something beside it. What only an earlier look found is in the answer.
+[[nodiscard]] Result<program::SeenScene> look_for(const Robot& robot, Sim& sim, const Look& look,
+                                                  const std::string& object,
+                                                  const PickAndPlaceOptions& options = {});
 
 }  // namespace mjarm::session

@@ -1,5 +1,6 @@
 #include "mjarm/session/see_scene.hpp"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/scene_bodies.hpp"
+#include "mjarm/model/surface.hpp"
 #include "mjarm/perception/symmetry.hpp"
 #include "mjarm/render/rgbd.hpp"
 #include "mjarm/sim/sim.hpp"
@@ -15,6 +17,23 @@ namespace mjarm::session {
 namespace {
 
 constexpr double kAway = -50;  // [m] height at which nothing is seen
+
+/// All that can be carried; those that look alike are one kind, named after the first of them.
+Result<std::vector<perception::KnownObject>> known_objects(
+    const Robot& robot, const std::vector<SceneObject>& objects) {
+  std::vector<perception::KnownObject> out;
+  for (const SceneObject& object : objects) {
+    Result<perception::KnownObject> known = perception::known_object(robot.model, object.name);
+    if (!known) return fail(std::move(known.error()));
+    const auto alike = std::ranges::find_if(out, [&](const perception::KnownObject& other) {
+      return look_alike(robot.model, other.name, object.name);
+    });
+    known->kind = alike == out.end() ? object.name : alike->kind;
+    out.push_back(std::move(*known));
+  }
+  if (out.empty()) return fail(Errc::bad_input, text(msg::show_nothing_to_see));
+  return out;
+}
 
 /// Whether the camera looks through a point of the world: something farther is seen there.
 bool sees_through(const render::RgbdFrame& frame, const Eigen::Vector3d& p_W) {
@@ -30,6 +49,12 @@ bool sees_through(const render::RgbdFrame& frame, const Eigen::Vector3d& p_W) {
   return frame.depth[pixel] > p_C.z();
 }
 
+/// Where an object without a pose stands.
+struct Belief {
+  Pose X_WB;
+  bool anywhere = false;  ///< nothing is known of it
+};
+
 }  // namespace
 
 struct SceneEye::Impl {
@@ -38,11 +63,34 @@ struct SceneEye::Impl {
   render::RgbdCamera camera;
   render::RgbdCamera bare;  ///< for what is known without looking: all but the objects
   perception::ObjectFinder finder;
-  std::map<std::string, std::vector<Pose>> same;
-  std::map<std::string, Pose> home;  ///< where the model has the objects
+  std::vector<SceneObject> objects;               ///< in the finder's order
+  std::map<std::string, std::vector<Pose>> same;  ///< by name
+  std::map<std::string, Pose> home;               ///< where the model has them, by name
+  std::map<std::string, Pose> last = {};          ///< where they were last seen, by name
   Rng noise;
   perception::FoundScene found = {};
+
+  [[nodiscard]] Belief believed(const perception::FoundObject& unseen,
+                                const render::RgbdFrame& frame) const;
 };
+
+/// A doubtful pose is no news where a sure one is known.
+Belief SceneEye::Impl::believed(const perception::FoundObject& unseen,
+                                const render::RgbdFrame& frame) const {
+  constexpr double kSamePlace = 0.02;  // [m]
+  const auto sure = last.find(unseen.name);
+  const bool known = sure != last.end();
+  if (const std::optional<perception::FoundPose>& best = unseen.pose.error().best) {
+    const bool near = known && (sure->second.p - best->X_WO.p).norm() < kSamePlace;
+    return {.X_WB = near ? sure->second : best->X_WO};
+  }
+  Belief out{.X_WB = known ? sure->second : home.at(unseen.name), .anywhere = !known};
+  if (sees_through(frame, out.X_WB.p)) {
+    out.X_WB.p.z() = kAway;
+    out.anywhere = true;
+  }
+  return out;
+}
 
 SceneEye::SceneEye(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 SceneEye::~SceneEye() = default;
@@ -51,19 +99,20 @@ SceneEye& SceneEye::operator=(SceneEye&&) noexcept = default;
 
 Result<SceneEye> SceneEye::open(const Robot& robot, const std::string& camera,
                                 const SceneEyeOptions& options) {
-  std::vector<perception::KnownObject> objects;
+  std::vector<SceneObject> objects = scene_bodies(robot.model, robot.arm).objects;
+  Result<std::vector<perception::KnownObject>> known = known_objects(robot, objects);
+  if (!known) return fail(std::move(known.error()));
   std::map<std::string, std::vector<Pose>> same;
   std::map<std::string, Pose> home;
   Sim sim(robot.model);
   sim.reset_home();
-  for (const SceneObject& object : scene_bodies(robot.model, robot.arm).objects) {
-    Result<perception::KnownObject> known = perception::known_object(robot.model, object.name);
-    if (!known) return fail(std::move(known.error()));
-    same[object.name] = perception::symmetries(known->surface);
-    home[object.name] = sim.body_pose(object.body);
-    objects.push_back(std::move(*known));
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const perception::KnownObject& object = (*known)[i];
+    home[object.name] = sim.body_pose(objects[i].body);
+    const auto alike = same.find(object.kind);
+    same[object.name] =
+        alike == same.end() ? perception::symmetries(object.surface) : alike->second;
   }
-  if (objects.empty()) return fail(Errc::bad_input, text(msg::show_nothing_to_see));
   Result<render::RgbdCamera> eye = render::RgbdCamera::create(
       robot.model, camera,
       {.depth_sigma = options.depth_sigma, .quality = render::RenderQuality::low});
@@ -72,11 +121,18 @@ Result<SceneEye> SceneEye::open(const Robot& robot, const std::string& camera,
                                          {.depth_sigma = 0, .quality = render::RenderQuality::low});
   if (!bare) return fail(std::move(bare.error()));
   auto finder = perception::ObjectFinder::create(
-      std::move(objects), {.depth_sigma = options.depth_sigma, .seed = options.seed});
+      std::move(*known), {.depth_sigma = options.depth_sigma, .seed = options.seed});
   if (!finder) return fail(std::move(finder.error()));
-  return SceneEye(std::make_unique<Impl>(Impl{robot, std::move(sim), std::move(*eye),
-                                              std::move(*bare), std::move(*finder), std::move(same),
-                                              std::move(home), Rng(options.seed)}));
+  return SceneEye(std::make_unique<Impl>(Impl{robot,
+                                              std::move(sim),
+                                              std::move(*eye),
+                                              std::move(*bare),
+                                              std::move(*finder),
+                                              std::move(objects),
+                                              std::move(same),
+                                              std::move(home),
+                                              {},
+                                              Rng(options.seed)}));
 }
 
 Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<const double> q) {
@@ -90,28 +146,28 @@ Result<program::SeenScene> SceneEye::look(const SceneState& scene, std::span<con
   const Result<render::RgbdFrame> frame = impl_->camera.look(sim.snapshot(), impl_->noise);
   if (!frame) return fail(frame.error());
   const Snapshot full = sim.snapshot();
+  std::vector<std::optional<Pose>> believed;
+  for (const SceneObject& object : impl_->objects) {
+    believed.emplace_back(sim.body_pose(object.body));
+  }
   for (const auto& [name, poses] : impl_->same) sim.place_free(name, {.p = {0, 0, kAway}});
   const Result<render::RgbdFrame> known = impl_->bare.look(sim.snapshot(), impl_->noise);
   if (!known) return fail(known.error());
   if (Result<void> back = sim.restore(full); !back) return fail(std::move(back.error()));
-  Result<perception::FoundScene> found = impl_->finder.find(*frame, known->depth);
+  Result<perception::FoundScene> found = impl_->finder.find(*frame, known->depth, believed);
   if (!found) return fail(std::move(found.error()));
   impl_->found = std::move(*found);
   program::SeenScene out;
   for (const perception::FoundObject& one : impl_->found.objects) {
     if (one.pose) {
       sim.place_free(one.name, one.pose->X_WO);
+      impl_->last[one.name] = one.pose->X_WO;
       if (!one.pose->by_tag) out.same[one.name] = impl_->same[one.name];
       continue;
     }
-    Pose X_WB = impl_->home[one.name];
-    if (one.pose.error().best) {
-      X_WB = one.pose.error().best->X_WO;
-    } else {
-      if (sees_through(*frame, X_WB.p)) X_WB.p.z() = kAway;
-      out.anywhere.insert(one.name);
-    }
-    sim.place_free(one.name, X_WB);
+    const Belief belief = impl_->believed(one, *frame);
+    sim.place_free(one.name, belief.X_WB);
+    if (belief.anywhere) out.anywhere.insert(one.name);
     out.unseen[one.name] = perception::describe(one.pose.error().code);
   }
   out.scene = {.qpos = {sim.qpos().begin(), sim.qpos().end()}, .attached = scene.attached};

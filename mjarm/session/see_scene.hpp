@@ -31,8 +31,11 @@ class SceneEye {
   SceneEye(SceneEye&&) noexcept;
   SceneEye& operator=(SceneEye&&) noexcept;
 
-  /// Draws `scene` and finds the objects in it. Those without a pose stand where they seem to be,
-  /// else where the model has them, and nowhere (far below) where the camera sees that they do not.
+  /// Draws `scene` and finds the objects in it. Those that look alike are one kind: a piece that is
+  /// seen gets the name of the body that truly stands nearest, so that it is the simulation's own
+  /// and stays from look to look. Those without a pose stand where they seem to be (where they were
+  /// seen before, if that is near), else where they were last seen (before that, where the model
+  /// has them), and nowhere (far below) where the camera sees that they do not.
   /// @param scene  how things truly stand, the fingers included; nothing attached is looked for.
   /// @param q      (dof,) [rad or m] where the arm stands.
   [[nodiscard]] Result<program::SeenScene> look(const SceneState& scene, std::span<const double> q);

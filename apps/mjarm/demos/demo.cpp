@@ -96,6 +96,9 @@ std::span<const Demo> demos() {
        kUseRobot | kUseSeconds | kUseControl,
        "  mjarm demo pick_place --headless --video\n"
        "  mjarm demo pick_place --robot panda"},
+      {"sort", msg::demo_about_sort, run_sort, kUseRobot | kUseSeconds | kUseControl | kUseDraw,
+       "  mjarm demo sort --headless --video\n"
+       "  mjarm demo sort --robot panda --seed 7"},
       {"square", msg::demo_about_square, run_square, kDriven | kUseAllow,
        "  mjarm demo square --robot my_arm.urdf"},
       {"reach", msg::train_about_reach, run_reach, 0, "  mjarm demo reach --headless"},

@@ -60,7 +60,8 @@ std::span<const DemoOption> demo_options() {
       {"--normal", kUsePlane, &A::normal, msg::demo_values_normal, "X,Y,Z"},
       {"--euler", kUseOrientation, &A::euler, msg::demo_values_euler, "X,Y,Z"},
       {"--quat", kUseOrientation, &A::quat, msg::demo_values_quat, "W,X,Y,Z"},
-      {"--seed-q", kUseSeed, &A::seed_q, msg::demo_values_seed, "Q"}};
+      {"--seed-q", kUseSeed, &A::seed_q, msg::demo_values_seed, "Q"},
+      {"--seed", kUseDraw, &A::seed, msg::demo_option_seed, "N"}};
   return kOptions;
 }
 
@@ -146,6 +147,7 @@ Result<DemoValues> read_values(const DemoArguments& arguments) {
                     .b = {},
                     .height = {},
                     .text = arguments.text,
+                    .seed = 1,
                     .seed_q = arguments.seed_q,
                     .start = arguments.start,
                     .joints = arguments.joints,
@@ -165,6 +167,11 @@ Result<DemoValues> read_values(const DemoArguments& arguments) {
           .and_then([&] { return read_size("--b", arguments.b, values.b); })
           .and_then([&] { return read_size("--radius", arguments.radius, values.a); });
   if (!read) return fail(std::move(read.error()));
+  if (!arguments.seed.empty()) {
+    const Result<std::uint64_t> seed = parse_whole("--seed", arguments.seed);
+    if (!seed) return fail(seed.error());
+    values.seed = *seed;
+  }
   if (!arguments.radius.empty()) values.b = values.a;
   if (values.normal && !(values.normal->norm() > 1e-9)) {
     return fail(Errc::bad_input, text(msg::demo_values_zero, arguments.normal));

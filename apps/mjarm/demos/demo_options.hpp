@@ -12,7 +12,7 @@ namespace mjarm::app {
 struct DemoArguments {
   std::string out, seconds, text, control, robot, tip;
   std::string pos, to, from, euler, quat, seed_q, joints, ctrl, start;
-  std::string center, normal, a, b, radius, height;
+  std::string center, normal, a, b, radius, height, seed;
   std::vector<std::string> package_paths, allow;
   bool headless = false, meshes = false, guide = false, video = false, no_timing = false,
        allow_outside = false;

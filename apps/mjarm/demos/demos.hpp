@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,7 @@ struct DemoValues {
   std::optional<double> a, b;               ///< [m] semi-axes, > 0
   std::optional<double> height;             ///< [m] of a letter, > 0
   std::string text;                         ///< to be written
+  std::uint64_t seed = 1;                   ///< of what is drawn at random
   std::string seed_q, start, joints, ctrl;  ///< one value a joint, for `parse_joints`
 
   /// Whether the user changes where the tool goes.
@@ -62,6 +64,7 @@ enum DemoUse : unsigned {
   kUsePlane = 16384,      ///< --center, --normal
   kUseAxes = 32768,       ///< --a, --b, --radius
   kUseAllow = 65536,      ///< --allow
+  kUseDraw = 131072,      ///< --seed
 };
 
 /// One demo. `run` makes the motion and writes its files; a report with `ok` false is a demo that
@@ -89,6 +92,7 @@ Result<Report> run_singularity(const DemoOptions& options);
 Result<Report> run_flip(const DemoOptions& options);
 Result<Report> run_avoid(const DemoOptions& options);
 Result<Report> run_pick_place(const DemoOptions& options);
+Result<Report> run_sort(const DemoOptions& options);
 Result<Report> run_square(const DemoOptions& options);
 Result<Report> run_reach(const DemoOptions& options);
 

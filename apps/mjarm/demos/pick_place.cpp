@@ -23,7 +23,7 @@ constexpr std::array<PickScene, 2> kScenes = {
 
 Result<Report> run_pick_place(const DemoOptions& options) {
   const auto scene = std::ranges::find(kScenes, options.robot.robot, &PickScene::robot);
-  if (scene == kScenes.end()) return fail(Errc::usage, text(msg::demo_pick_scene));
+  if (scene == kScenes.end()) return fail(Errc::usage, text(msg::demo_own_scenes, "pick_place"));
   Result<program::Program> program = demo_program("pick_place");
   if (!program) return fail(std::move(program.error()));
   program->scene = scene->scene;
