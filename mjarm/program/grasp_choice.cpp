@@ -265,7 +265,7 @@ Result<void, Drop> GraspChoice::look_at_place(GoodGrasp& one, const SceneState& 
   std::optional<ExactChecker> opened;
   if (!open_.qpos.empty()) {
     opened.emplace(robot_.model, robot_.arm,
-                   ExactOptions{.rules = without_object(), .qpos = open_.qpos});
+                   ExactOptions{.margin = 0, .rules = without_object(), .qpos = open_.qpos});
   }
   std::optional<Drop> why;
   double nearest = std::numeric_limits<double>::infinity();
