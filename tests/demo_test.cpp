@@ -310,7 +310,8 @@ TEST(DemoPickPlace, PutsAllThreeIntoTheTray) {
 TEST(DemoSort, StopsInTheMiddleWithItsReasonAndWholeFiles) {
   const TempFolder folder;
   const DemoRun run = run_demo(folder, {"sort", "--seconds", "0.2", "--seed", "3"});
-  if (run.result.err.find("nothing can be drawn") != std::string::npos) GTEST_SKIP() << run.result.err;
+  if (run.result.err.find("nothing can be drawn") != std::string::npos)
+    GTEST_SKIP() << run.result.err;
   ASSERT_EQ(run.result.exit_code, 1) << run.result.err;
   EXPECT_EQ(run.report["reason"], "stopped");
   EXPECT_NE(run.report["detail"].get<std::string>().find("0 of 10"), std::string::npos);
