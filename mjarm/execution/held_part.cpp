@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "mjarm/control/actuation.hpp"
+#include "mjarm/control/controller.hpp"
 #include "mjarm/core/messages/execution.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -34,29 +34,28 @@ Result<int> number_of(const Robot& robot, std::string_view part) {
   return fail(Errc::bad_input, text(msg::execution_no_part, part, did_you_mean(part, names)));
 }
 
-bool has_servos(const Arm& arm) {
-  return std::ranges::all_of(arm.joints, [](const ArmJoint& joint) {
-    return joint.actuator && servo_stiffness(*joint.actuator) > 0;
-  });
-}
-
 }  // namespace
 
 struct HeldPart::Impl {
   Arm arm;
   Sim sim;
+  Controller controller;
   int part;
   StopCheck stop;
   IkSolver ik;
-  JointVec q;  ///< where the arm is sent
+  StepReference reference;  ///< of the step that was done last
   std::vector<double> ctrl = {};
 
   [[nodiscard]] Pose in_tool() const { return sim.tool(arm).inverse() * sim.body_pose(part); }
 
-  Result<void> step() {
+  /// @param q  where the arm shall be after the step.
+  Result<void> step_to(const JointVec& q) {
     if (is_stopped(stop)) return fail(stopped());
+    reference = {reference.now, reference.next, q};
+    controller.command(sim.qpos(), sim.qvel(), reference, ctrl);
     return sim.step(ctrl);
   }
+  Result<void> stand() { return step_to(reference.next); }
 
   /// What the part touches.
   [[nodiscard]] std::optional<std::string> neighbour() const {
@@ -75,24 +74,25 @@ struct HeldPart::Impl {
     ctrl.assign(sim.ctrl().begin(), sim.ctrl().end());
     ctrl[static_cast<std::size_t>(arm.gripper->id)] = arm.gripper->ctrl_closed;
     for (const double end = sim.time() + kClosing; sim.time() < end;) {
-      if (Result<void> done = step(); !done) return done;
+      if (Result<void> done = stand(); !done) return done;
       sim.place_free(name, sim.tool(arm) * X_TB);
     }
     for (const double end = sim.time() + kSettling; sim.time() < end;) {
-      if (Result<void> done = step(); !done) return done;
+      if (Result<void> done = stand(); !done) return done;
     }
     return {};
   }
 
-  /// @param command  command(t) changes ctrl, t [s] after the beginning.
-  template <class Command>
-  Result<Creep> watch(double seconds, const Command& command) {
+  /// @param where  where(t) [rad or m] is where the arm shall be at t [s] after the beginning.
+  template <class Where>
+  Result<Creep> watch(double seconds, const Where& where) {
     Creep out;
     const Pose X_TB = in_tool();
     const double begin = sim.time();
     for (Pose last = sim.body_pose(part); sim.time() < begin + seconds;) {
-      if (Result<void> done = command(sim.time() - begin); !done) return fail(done.error());
-      if (Result<void> done = step(); !done) return fail(done.error());
+      const Result<JointVec> q = where(sim.time() + sim.model().timestep() - begin);
+      if (!q) return fail(q.error());
+      if (Result<void> done = step_to(*q); !done) return fail(done.error());
       const Pose X_WB = sim.body_pose(part), now = in_tool();
       out.moved = std::max(out.moved, (now.p - X_TB.p).norm());
       out.turned = std::max(out.turned, angle_between(now.R, X_TB.R));
@@ -111,11 +111,14 @@ HeldPart& HeldPart::operator=(HeldPart&&) noexcept = default;
 Result<HeldPart> HeldPart::grip(const Robot& robot, std::string_view part, const Pose& X_TB,
                                 StopCheck stop) {
   if (!robot.arm.gripper) return fail(Errc::bad_input, text(msg::execution_no_gripper));
-  if (!has_servos(robot.arm)) return fail(Errc::bad_input, text(msg::execution_no_servos));
   const Result<int> body = number_of(robot, part);
   if (!body) return fail(body.error());
-  auto impl = std::make_unique<Impl>(Impl{robot.arm, Sim(robot.model), *body, std::move(stop),
-                                          IkSolver(robot.arm), robot.arm.home});
+  Result<Controller> controller =
+      Controller::create(robot.model, robot.arm, ControlMode::computed_torque);
+  if (!controller) return fail(std::move(controller.error()));
+  auto impl = std::make_unique<Impl>(Impl{robot.arm, Sim(robot.model), std::move(*controller),
+                                          *body, std::move(stop), IkSolver(robot.arm),
+                                          hold(as_span(robot.arm.home))});
   impl->sim.reset_home();
   impl->sim.place(robot.arm, as_span(robot.arm.home));
   if (Result<void> closed = impl->close(part, X_TB); !closed) {
@@ -127,23 +130,20 @@ Result<HeldPart> HeldPart::grip(const Robot& robot, std::string_view part, const
 Pose HeldPart::in_tool() const { return impl_->in_tool(); }
 
 Result<Creep> HeldPart::rest(double seconds) {
-  return impl_->watch(seconds, [](double) { return Result<void>(); });
+  const JointVec q = impl_->reference.next;
+  return impl_->watch(seconds, [&](double) { return Result<JointVec>(q); });
 }
 
 Result<Creep> HeldPart::carry(double seconds) {
   Impl& own = *impl_;
-  const Pose X_WT = fk(own.arm, as_span(own.q));
-  return own.watch(seconds, [&](double t) -> Result<void> {
+  const Pose X_WT = fk(own.arm, as_span(own.reference.next));
+  return own.watch(seconds, [&](double t) -> Result<JointVec> {
     const double share = std::min(t, 1.0);
     const double y = share * share * kAmplitude * std::sin(kMiddle / kAmplitude * t);
-    const auto answer = own.ik.solve({X_WT.p + Eigen::Vector3d(0, y, 0), X_WT.R}, as_span(own.q));
+    const auto answer =
+        own.ik.solve({X_WT.p + Eigen::Vector3d(0, y, 0), X_WT.R}, as_span(own.reference.next));
     if (!answer) return fail(Errc::impossible, describe(answer.error(), own.arm));
-    own.q = answer->q;
-    for (int i = 0; i < own.arm.dof(); ++i) {
-      const ArmActuator& drive = *own.arm.joints[static_cast<std::size_t>(i)].actuator;
-      own.ctrl[static_cast<std::size_t>(drive.id)] = ctrl_for_torque(drive, 0, own.q[i], 0);
-    }
-    return {};
+    return answer->q;
   });
 }
 

@@ -18,7 +18,8 @@ struct Creep {
 };
 
 /// A trial of what holds and how well: a part between the fingers of a robot in a simulation of its
-/// own, in which nothing but contact keeps it there.
+/// own, in which nothing but contact keeps it there. The arm follows by computed torque, which does
+/// not know the part.
 class HeldPart {
  public:
   /// From the robot's home, where the fingers are open: closes the gripper on the part, which is
@@ -27,8 +28,8 @@ class HeldPart {
   /// @param X_TB  its place there.
   /// @param stop  ends this and what is asked later.
   /// @return bad_input where there is no such body or no gripper, where the part touches something
-  ///         before the fingers close, or where joints of the arm are not driven by position
-  ///         servos; an error where the simulation breaks down or is stopped.
+  ///         before the fingers close; fails as Controller::create() does, and where the simulation
+  ///         breaks down or is stopped.
   [[nodiscard]] static Result<HeldPart> grip(const Robot& robot, std::string_view part,
                                              const Pose& X_TB = {}, StopCheck stop = {});
   ~HeldPart();
