@@ -48,11 +48,12 @@ tidy_sources() {
       --extra-arg=-Wno-unknown-warning-option 2> >(grep -v 'warnings.* generated' >&2)
 }
 
-# Starts a display of our own, so that tests of windows run anywhere and disturb nobody.
+# Starts a display of our own, so that tests of windows run anywhere and disturb nobody. -noreset: else it starts anew
+# whenever its last client leaves, and refuses who comes meanwhile.
 start_display() {
   local number
   command -v Xvfb >/dev/null || return 0
-  coproc XVFB { exec Xvfb -displayfd 1 -screen 0 1280x1024x24 -nolisten tcp 2>/dev/null; }
+  coproc XVFB { exec Xvfb -displayfd 1 -noreset -screen 0 1280x1024x24 -nolisten tcp 2>/dev/null; }
   trap 'kill "$XVFB_PID" 2>/dev/null || true' EXIT
   if read -r -t 20 -u "${XVFB[0]}" number; then
     export DISPLAY=:$number
