@@ -14,14 +14,14 @@ namespace {
 constexpr int kPostures = 64;
 constexpr double kTouch = 1e-4;  // [m] flush faces of links on one axis are off by rounding
 
-/// Pairs of parts that overlap or touch at `d->qpos`.
+/// Pairs of parts that overlap or touch at `d->qpos`, to the margin that `m` has for all geoms.
 PartPairs overlapping(const mjModel* m, mjData* d, const ModelParts& parts) {
   mj_kinematics(m, d);
   mj_collision(m, d);
   PartPairs pairs;
   for (int c = 0; c < d->ncon; ++c) {
     const mjContact& contact = d->contact[c];
-    if (contact.dist > kTouch || contact.geom[0] < 0 || contact.geom[1] < 0) continue;
+    if (contact.geom[0] < 0 || contact.geom[1] < 0) continue;
     const auto [a, b] = std::minmax(parts.of_geom[contact.geom[0]], parts.of_geom[contact.geom[1]]);
     if (!parts.may_count || parts.may_count(a, b)) pairs.insert({a, b});
   }

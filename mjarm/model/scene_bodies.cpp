@@ -31,7 +31,7 @@ SceneBodies scene_bodies(const Model& model, const Arm& arm) {
     out.moved_by[i] += out.moved_by[parent];
     if (joint >= 0 && m.jnt_type[joint] == mjJNT_FREE && b != root) {
       out.object_of[i] = static_cast<int>(out.objects.size());
-      out.objects.push_back({object_name(&m, mjOBJ_BODY, b), b});
+      out.objects.push_back({object_name(&m, mjOBJ_BODY, b), b, m.jnt_qposadr[joint]});
     } else {
       out.object_of[i] = out.object_of[parent];
     }

@@ -20,6 +20,7 @@ enum class BodyRole {
 struct SceneObject {
   std::string name;  ///< of the body; `#7`, its number, where it has none
   int body = -1;     ///< its number in the model
+  int qpos = -1;     ///< the first of the seven rows of its free joint
 };
 
 /// The bodies of a model by what they are to an arm; all vectors are per body.

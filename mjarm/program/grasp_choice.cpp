@@ -47,8 +47,8 @@ std::vector<Pose> poses_at(const PlaceGoal& place) {
 
 /// @param opened  with open fingers, whatever these are to the object
 Result<JointVec, Drop> free_once_open(ExactChecker& opened, const JointVec& q) {
+  if (opened.is_free(as_span(q))) return q;
   const auto report = opened.check(as_span(q));
-  if (report && report->free) return q;
   return tl::unexpected(
       Drop{PickErrc::place_blocked, report ? describe(*report) : report.error().what});
 }
@@ -88,13 +88,16 @@ Result<void, PickFailure> GraspChoice::look() {
   const Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm);
   if (!jaws) return failure(PickErrc::no_gripper, jaws.error().what);
   jaws_ = *jaws;
-  approach_T_ = jaws_.approach_T;
   Result<SceneState> open = open_gripper(robot_.model, robot_.arm, q_, scene_);
   if (!open) return failure(PickErrc::no_gripper, open.error().what);
   open_ = std::move(*open);
   shape_ = object_shape(robot_.model, object->body);
   const Grasps grasps = find_grasps(shape_, jaws_, options_.grasp);
-  if (!grasps.all.empty()) return {};
+  if (!grasps.all.empty()) {
+    opened_.emplace(robot_.model, robot_.arm,
+                    ExactOptions{.margin = kClear, .rules = without_object(), .qpos = open_.qpos});
+    return {};
+  }
   if (!std::isfinite(grasps.narrowest)) {
     return failure(PickErrc::too_wide, text(msg::pick_no_sides, task_.object));
   }
@@ -114,7 +117,7 @@ void GraspChoice::sort_bodies(const SceneBodies& bodies) {
     }
   }
   for (const SceneObject& one : bodies.objects) {
-    if (one.name != task_.object) others_.push_back(one.name);
+    if (one.name != task_.object) others_.push_back(one);
   }
 }
 
@@ -144,13 +147,11 @@ std::vector<GoodGrasp> GraspChoice::choose(int turns) {
   }
   std::ranges::stable_sort(all, {}, &GoodGrasp::cost);
   ExactChecker checker(robot_.model, robot_.arm, {.margin = 0, .qpos = open_.qpos});
-  ExactChecker beside(robot_.model, robot_.arm,
-                      {.margin = kClear, .rules = without_object(), .qpos = open_.qpos});
   const IkSolver ik = solver(checker);
   std::vector<GoodGrasp> good;
   for (GoodGrasp& one : all) {
     if (good.size() == options_.tries || is_stopped(options_.stop)) break;
-    if (auto fine = look_at(one, ik, checker, beside); !fine) {
+    if (auto fine = look_at(one, ik, checker); !fine) {
       drop(one.grasp, std::move(fine.error()));
     } else {
       good.push_back(std::move(one));
@@ -202,9 +203,7 @@ bool GraspChoice::is_of_hand(const GeomPair& pair, bool holds) const {
 }
 
 /// Fills in what is known of a grasp that can be had and put down with.
-/// @param beside  leaves out what the hand is near to in any case: the object.
-Result<void, Drop> GraspChoice::look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker,
-                                        ExactChecker& beside) {
+Result<void, Drop> GraspChoice::look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker) {
   const auto tried = [&](const Grasp& other) { return same(other, one.grasp); };
   if (std::ranges::any_of(options_.avoid, tried)) {
     return tl::unexpected(Drop{PickErrc::failed_before, text(msg::pick_failed_before)});
@@ -215,7 +214,7 @@ Result<void, Drop> GraspChoice::look_at(GoodGrasp& one, const IkSolver& ik, Exac
     q_grasp_ = *q;
   }
   double clear = kClear;
-  if (auto fine = keep_off(beside, clear); !fine) return fine;
+  if (auto fine = keep_off(*opened_, clear); !fine) return fine;
   Result<SceneState> held = close_gripper(robot_.model, robot_.arm, as_span(q_grasp_), open_);
   const bool holds = held && held->attached.size() == 1;
   if (!holds || held->attached.front().body != task_.object) {
@@ -231,11 +230,10 @@ Result<void, Drop> GraspChoice::look_at(GoodGrasp& one, const IkSolver& ik, Exac
 
 /// The fingers where they hold it, and on the way there.
 Result<void, Drop> GraspChoice::look_at_closing(const SceneState& held, double& clear) const {
-  for (const std::string& other : others_) {
-    const Result<Pose> before = frame_pose(robot_.model, other, open_.qpos);
-    const Result<Pose> after = frame_pose(robot_.model, other, held.qpos);
-    if (before && after && before->p != after->p) {
-      return tl::unexpected(Drop{PickErrc::grasp_blocked, text(msg::pick_pushes, other)});
+  for (const SceneObject& other : others_) {
+    if (!std::equal(open_.qpos.begin() + other.qpos, open_.qpos.begin() + other.qpos + 7,
+                    held.qpos.begin() + other.qpos)) {
+      return tl::unexpected(Drop{PickErrc::grasp_blocked, text(msg::pick_pushes, other.name)});
     }
   }
   ExactChecker beside(robot_.model, robot_.arm,
@@ -255,24 +253,19 @@ Result<void, Drop> GraspChoice::keep_off(ExactChecker& beside, double& clear) co
                                                            near.pair.body2, 1000 * near.distance)});
 }
 
-Result<void, Drop> GraspChoice::look_at_place(GoodGrasp& one, const SceneState& held) const {
+Result<void, Drop> GraspChoice::look_at_place(GoodGrasp& one, const SceneState& held) {
   const Pose X_BT = one.X_TB.inverse();
   const PlaceGoal& place = *task_.place;
   ExactChecker checker(
       robot_.model, robot_.arm,
       {.margin = 0, .rules = {.attached = held.attached}, .qpos = held.qpos, .rest_depth = kRest});
   const IkSolver ik = solver(checker);
-  std::optional<ExactChecker> opened;
-  if (!open_.qpos.empty()) {
-    opened.emplace(robot_.model, robot_.arm,
-                   ExactOptions{.margin = 0, .rules = without_object(), .qpos = open_.qpos});
-  }
   std::optional<Drop> why;
   double nearest = std::numeric_limits<double>::infinity();
   for (const Pose& X_WB : poses_at(place)) {
     const Pose X_WT = moved(X_WB * X_BT, options_.drop * Vector3d::UnitZ());
     auto q = posture(ik, X_WT, checker, true);
-    if (q && opened) q = free_once_open(*opened, *q);
+    if (q && opened_) q = free_once_open(*opened_, *q);
     if (q) q = posture(ik, above(X_WT), checker, true);
     if (!q) {
       if (!why || why->code < q.error().code) why = std::move(q.error());
@@ -289,7 +282,7 @@ Result<void, Drop> GraspChoice::look_at_place(GoodGrasp& one, const SceneState& 
 }
 
 Pose GraspChoice::back_from(const Pose& X_WT) const {
-  return moved(X_WT, -options_.approach * (X_WT.R * approach_T_));
+  return moved(X_WT, -options_.approach * (X_WT.R * jaws_.approach_T));
 }
 Pose GraspChoice::above(const Pose& X_WT) const {
   return moved(X_WT, options_.lift * Vector3d::UnitZ());
@@ -301,9 +294,7 @@ void GraspChoice::drop(const Grasp& grasp, Drop why) {
 
 Result<GoodGrasp, Drop> GraspChoice::in_hand(const AttachedBody& object) {
   task_.object = object.body;
-  if (const Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm)) {
-    approach_T_ = jaws->approach_T;
-  }
+  if (const Result<Jaws> jaws = find_jaws(robot_.model, robot_.arm)) jaws_ = *jaws;
   sort_bodies(scene_bodies(robot_.model, robot_.arm));
   q_grasp_ = joint_vec(q_);
   GoodGrasp out;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -62,11 +63,10 @@ class GraspChoice {
   Result<JointVec, Drop> posture(const IkSolver& ik, const Pose& X_WT, ExactChecker& checker,
                                  bool holds) const;
   [[nodiscard]] bool is_of_hand(const GeomPair& pair, bool holds) const;
-  Result<void, Drop> look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker,
-                             ExactChecker& beside);
+  Result<void, Drop> look_at(GoodGrasp& one, const IkSolver& ik, ExactChecker& checker);
   Result<void, Drop> look_at_closing(const SceneState& held, double& clear) const;
   Result<void, Drop> keep_off(ExactChecker& beside, double& clear) const;
-  Result<void, Drop> look_at_place(GoodGrasp& one, const SceneState& held) const;
+  Result<void, Drop> look_at_place(GoodGrasp& one, const SceneState& held);
 
   const Robot& robot_;
   SceneState scene_;
@@ -75,11 +75,12 @@ class GraspChoice {
   const PickOptions& options_;
   IkSolver reach_;                               ///< geometry alone
   std::set<std::string> links_, hand_, object_;  ///< names of bodies
-  std::vector<std::string> others_;              ///< objects that are not asked for
+  std::vector<SceneObject> others_;              ///< objects that are not asked for
   Jaws jaws_;
-  Eigen::Vector3d approach_T_ = Eigen::Vector3d::UnitZ();
   ObjectShape shape_;
   SceneState open_;  ///< with open fingers
+  /// Open fingers, but not near to the object, which they are in any case; none in_hand().
+  std::optional<ExactChecker> opened_;
   JointVec q_grasp_;
   std::vector<DroppedGrasp> dropped_;
 };

@@ -6,7 +6,7 @@
 
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/execution/execution.hpp"
-#include "mjarm/model/describe.hpp"
+#include "mjarm/model/scene_bodies.hpp"
 
 namespace mjarm::session {
 namespace {
@@ -98,13 +98,13 @@ class PickRunner {
 
   /// Adds to `seen` what only an earlier look found.
   void add_unseen(const program::SeenScene& earlier, program::SeenScene& seen) const {
-    for (const BodyInfo& body : describe(robot_.model).bodies) {
-      if (!seen.unseen.contains(body.name) || earlier.unseen.contains(body.name)) continue;
-      const auto at = static_cast<std::ptrdiff_t>(body.joints.front().qpos);
-      std::copy_n(earlier.scene.qpos.begin() + at, 7, seen.scene.qpos.begin() + at);
-      seen.unseen.erase(body.name);
-      seen.anywhere.erase(body.name);
-      const auto same = earlier.same.find(body.name);
+    for (const SceneObject& object : scene_bodies(robot_.model, robot_.arm).objects) {
+      if (!seen.unseen.contains(object.name) || earlier.unseen.contains(object.name)) continue;
+      std::copy_n(earlier.scene.qpos.begin() + object.qpos, 7,
+                  seen.scene.qpos.begin() + object.qpos);
+      seen.unseen.erase(object.name);
+      seen.anywhere.erase(object.name);
+      const auto same = earlier.same.find(object.name);
       if (same != earlier.same.end()) seen.same.insert(*same);
     }
   }

@@ -12,7 +12,7 @@
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/rotation.hpp"
-#include "mjarm/model/describe.hpp"
+#include "mjarm/model/scene_bodies.hpp"
 #include "mjarm/model/surface.hpp"
 
 namespace mjarm::session {
@@ -47,7 +47,7 @@ Matrix3d along_the_sides(const Matrix3d& R_WB, int quarters) {
 struct Thing {
   SortedObject told;
   Surface surface;
-  std::ptrdiff_t qpos = 0;       ///< its first row
+  int qpos = 0;                  ///< SceneObject::qpos
   Pose X_WB = {};                ///< where it was seen last, or is thought to be
   bool is_seen = false;          ///< in the last look
   std::optional<Pose> put = {};  ///< where it was put down and not seen elsewhere since
@@ -66,18 +66,18 @@ class Sorter {
     if (!(options_.at_spot > 0) || options_.chances < 1) {
       return fail(Errc::bad_input, text(msg::sort_bad_options, options_.at_spot, options_.chances));
     }
-    const ModelInfo info = describe(robot_.model);
+    const std::vector<SceneObject> objects = scene_bodies(robot_.model, robot_.arm).objects;
     for (std::size_t b = 0; b < bins_.size(); ++b) {
       for (const std::string& name : bins_[b].objects) {
         Result<Surface> surface = body_surface(robot_.model, name);
         if (!surface) return fail(std::move(surface.error()));
-        const auto body = std::ranges::find(info.bodies, name, &BodyInfo::name);
-        if (body->joints.size() != 1 || body->joints.front().type != "free") {
+        const auto object = std::ranges::find(objects, name, &SceneObject::name);
+        if (object == objects.end()) {
           return fail(Errc::bad_input, text(msg::sort_not_free, name));
         }
         things_.push_back({.told = {.name = name, .bin = b, .spot = {}},
                            .surface = std::move(*surface),
-                           .qpos = static_cast<std::ptrdiff_t>(body->joints.front().qpos)});
+                           .qpos = object->qpos});
       }
     }
     return {};
