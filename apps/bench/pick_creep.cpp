@@ -23,8 +23,8 @@ struct Part {
 /// The can lies across the hand, into which it would reach otherwise.
 const std::array kParts{Part{"cube"}, Part{"can", {.R = from_euler({0, std::numbers::pi / 2, 0})}},
                         Part{"prism"}};
-/// Time steps, of that of the scene; the first is that of robots alone.
-constexpr std::array kSteps = {4.0, 1.0, 0.5};
+constexpr double kRobotStep = 0.002;  ///< [s] the time step of robots alone
+constexpr std::size_t kSteps = 3;     ///< that one, the scene's and half of it
 
 constexpr double kMostAtRest = 1e-4;   // [m]
 constexpr double kMostCarried = 5e-4;  // [m]
@@ -72,7 +72,7 @@ JsonDoc to_json(const Creep& creep) {
 Result<std::vector<HoldVerdict>> measure_creep(const std::string& robot, const HoldTimes& times) {
   std::vector<HoldVerdict> out;
   Progress progress(text(msg::bench_creep_progress),
-                    (robot.empty() ? 2 : 1) * kParts.size() * kSteps.size());
+                    (robot.empty() ? 2 : 1) * kParts.size() * kSteps);
   for (const auto& [name, file] : {std::pair("ur5e", "universal_robots_ur5e/hold.xml"),
                                    std::pair("panda", "franka_emika_panda/hold.xml")}) {
     if (!robot.empty() && robot != name) continue;
@@ -81,8 +81,9 @@ Result<std::vector<HoldVerdict>> measure_creep(const std::string& robot, const H
     for (const Part& part : kParts) {
       const Result<double> fallen = drop(*scene, part);
       if (!fallen) return fail(fallen.error());
-      for (const double step : kSteps) {
-        Result<HoldVerdict> verdict = hold(*scene, part, step * scene->model.timestep(), times);
+      const double own = scene->model.timestep();
+      for (const double step : std::array<double, kSteps>{kRobotStep, own, own / 2}) {
+        Result<HoldVerdict> verdict = hold(*scene, part, step, times);
         if (!verdict) return fail(std::move(verdict.error()));
         verdict->robot = name;
         verdict->fallen = *fallen;

@@ -49,7 +49,7 @@ void compare_edge(const FastChecker& checker, const Obstacles& world, std::span<
 TEST(CheckEdge, NoFalseCertificateAmongPlatesAndWires) {
   Rng rng(21);
   EdgeTally tally;
-  const int worlds = testing::rounds(250, 2500, 25);
+  const int worlds = testing::rounds(60, 2500, 25);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(2 + round % 6, rng);
     SphereSet set = testing::random_spheres(arm, rng);
@@ -76,7 +76,7 @@ TEST(CheckEdge, NoFalseCertificateAmongPlatesAndWires) {
 TEST(CheckEdge, WhatLiesBesideIsProvedAsWell) {
   Rng rng(24);
   int proved = 0, narrow = 0;
-  const int worlds = testing::rounds(60, 2000, 25);
+  const int worlds = testing::rounds(30, 2000, 25);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(2 + round % 6, rng);
     SphereSet set = testing::random_spheres(arm, rng);

@@ -21,7 +21,7 @@ using testing::Tally;
 TEST(FastChecker, NeverFreeWhereRandomRobotsCollide) {
   Rng rng(11);
   Tally tally;
-  const int worlds = testing::rounds(150, 15'000, 15);
+  const int worlds = testing::rounds(50, 15'000, 15);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
     const SphereSet set = testing::random_spheres(arm, rng);
@@ -202,10 +202,10 @@ TEST(FastChecker, RandomStatesOfThePublicProblems) {
     Tally tally;
     for (std::size_t i = 0; i < all.problems.size(); i += 10) {
       compare(all.arm, all.set, all.problems[i].obstacles, kLevels[i / 10 % 3], rng,
-              testing::rounds(300, 30'000), tally);
+              testing::rounds(120, 30'000), tally);
     }
-    EXPECT_GT(tally.free, 1000);
-    EXPECT_GT(tally.blocked, 1000);
+    EXPECT_GT(tally.free, 500);
+    EXPECT_GT(tally.blocked, 500);
   }
 }
 

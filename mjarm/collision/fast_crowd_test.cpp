@@ -29,7 +29,7 @@ void compare_in_worlds(std::uint64_t seed, int states, const Make& make,
                        const testing::Slack& slack = {}) {
   Rng rng(seed);
   Tally tally;
-  const int worlds = testing::rounds(30, 3000, 10);
+  const int worlds = testing::rounds(12, 3000, 10);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
     SphereSet set = testing::random_spheres(arm, rng);
@@ -97,7 +97,7 @@ TEST(FastCrowd, NothingIsFreeInsideOfASolidMesh) {
 TEST(FastCrowd, NoFalseCertificateOfEdges) {
   Rng rng(52);
   int free = 0, hit = 0;
-  const int worlds = testing::rounds(45, 1500, 10);
+  const int worlds = testing::rounds(15, 1500, 10);
   for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(2 + round % 6, rng);
     SphereSet set = testing::random_spheres(arm, rng);

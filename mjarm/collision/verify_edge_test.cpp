@@ -98,7 +98,7 @@ Scene random_scene(int dof, int obstacles, bool thin, Rng& rng) {
 TEST(VerifyEdge, AgreesWithDenseSamples) {
   Rng rng(41);
   VerifyTally tally;
-  const int scenes = testing::rounds(150, 5000, 15);
+  const int scenes = testing::rounds(50, 5000, 15);
   for (int round = 0; round < scenes; ++round) {
     const Scene scene = random_scene(1 + round % 7, 3, round % 2 == 0, rng);
     for (int k = 0; k < 10; ++k) {
@@ -118,7 +118,7 @@ TEST(VerifyEdge, AgreesWithDenseSamplesInCrowds) {
   Rng rng(45);
   VerifyTally tally;
   int certified = 0, proved = 0;
-  const int scenes = testing::rounds(60, 2000, 10);
+  const int scenes = testing::rounds(20, 2000, 10);
   for (int round = 0; round < scenes; ++round) {
     Scene scene = random_scene(2 + round % 6, 1, true, rng);
     for (int k = 0; k < 2; ++k) scene.world.solids.push_back(testing::random_composite(rng));
@@ -146,7 +146,7 @@ TEST(VerifyEdge, AgreesWithDenseSamplesInCrowds) {
 /// speaks against it.
 TEST(VerifyEdge, ProvesEveryCertifiedEdgeAmongPlatesAndWires) {
   Rng rng(42);
-  const int wanted = testing::rounds(1000, 100'000, 200);
+  const int wanted = testing::rounds(300, 100'000, 200);
   int certified = 0;
   for (int round = 0; certified < wanted; ++round) {
     const Scene scene = random_scene(2 + round % 6, 5, true, rng);
@@ -176,7 +176,7 @@ TEST(VerifyEdge, ProvesCertifiedEdgesOfThePublicProblems) {
   const auto robot = FastRobot::create(all.arm, all.set).value();
   Rng rng(43);
   int certified = 0;
-  const std::size_t stride = static_cast<std::size_t>(testing::rounds(7, 1));
+  const std::size_t stride = static_cast<std::size_t>(testing::rounds(20, 1));
   for (std::size_t i = 0; i < all.problems.size(); i += stride) {
     const testing::PlanningProblem& problem = all.problems[i];
     const auto checker = FastChecker::create(robot, problem.obstacles).value();

@@ -89,7 +89,7 @@ TEST(SevenAxisHard, InsideVoids) {
 TEST(SevenAxisHard, BeyondALimitOnly) {
   const Arm arm = panda();
   Rng rng(112);
-  const int count = negatives(500);
+  const int count = negatives(250);
   auto reasons = compare(count, rng, [&] {
     JointVec q = random_q(arm, rng);
     const auto joint = static_cast<Eigen::Index>(rng.below(7));

@@ -9,6 +9,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/path/poses_test.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm {
 namespace {
@@ -86,7 +87,7 @@ TEST(BlendedPolyline, LeavesItsLegsOnlyWithinTheRadius) {
 
 TEST(BlendedPolyline, TellsTheRadiusAndTheDistanceOfEveryCorner) {
   Rng rng(2);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < testing::rounds(25, 1000); ++i) {
     const std::vector<Pose> points = gentle_poses(rng, 5);
     const double blend = rng.uniform(0.01, 0.8);
     const Curve curve = *Curve::polyline(points, blend);
@@ -121,7 +122,7 @@ TEST(BlendedPolyline, TellsTheRadiusAndTheDistanceOfEveryCorner) {
 
 TEST(BlendedPolyline, TurnsPositionAndRotationWithoutJumps) {
   Rng rng(3);
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < testing::rounds(15, 400); ++i) {
     const double scale = std::pow(10, rng.uniform(-5, 4));
     const std::vector<Pose> points = gentle_poses(rng, 3, scale);
     const double leg =

@@ -9,6 +9,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/path/poses_test.hpp"
 #include "tests/support/constants.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm {
 namespace {
@@ -49,7 +50,7 @@ std::vector<Curve> random_curves(Rng& rng) {
 
 TEST(Curve, IsWalkedByItsOwnLength) {
   Rng rng(1);
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < testing::rounds(20, 1000); ++i) {
     for (const Curve& curve : random_curves(rng)) {
       ASSERT_DOUBLE_EQ(curve.length(), curve.end());
       double s = 0;
