@@ -9,7 +9,7 @@ run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libe
   libgl1-mesa-dri ca-certificates libcurl4-openssl-dev libssl-dev zlib1g-dev fonts-dejavu-core
   fonts-wqy-microhei"
 test_packages="libgtest-dev libgmock-dev libbenchmark-dev ccache xvfb xauth xdotool ffmpeg
-  libopenmpi-dev openmpi-bin"
+  libopenmpi-dev openmpi-bin python3-dev python3-venv"
 optional_packages="libosmesa6"
 optional_test_packages="libompl-dev libapriltag-dev"
 
@@ -198,11 +198,12 @@ set_up_machine() {
 
 # configure PRESET: where that was not done.
 configure() {
-  local preset=$1 folder=$root/build/$1
+  local preset=$1 folder=$root/build/$1 options=()
   if [[ ! -e $folder/build.ninja ]] ||
     { [[ -n ${MUJOCO_ROOT:-} ]] && ! uses_mujoco_root "$preset"; }; then
+    [[ $preset != dev && $preset != wheel ]] || mapfile -t options < <(python_options)
     step "Configuring $preset" quiet cmake -S "$root" --preset "$preset" \
-      -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" ||
+      -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" "${options[@]}" ||
       die "cmake could not configure the preset $preset"
   fi
 }

@@ -16,7 +16,7 @@ check() {
 }
 
 sources() {
-  find "$root"/{mjarm,apps,examples,tests} -type f \( -name '*.hpp' -o -name '*.cpp' \) | sort
+  find "$root"/{mjarm,apps,examples,python,tests} -type f \( -name '*.hpp' -o -name '*.cpp' \) | sort
 }
 
 check_layers() { python3 "$root/tools/check_layers.py" "$root"; }
@@ -65,7 +65,7 @@ start_display() {
 # run_ctest PRESET [OPTION...]: runs every test, or those that options of ctest name, and adds to the
 # counts.
 run_ctest() {
-  local folder=$root/build/$1 results=$root/build/$1/results.xml counts
+  local folder=$root/build/$1 results=$root/build/$1/results.xml
   shift
   rm -f "$results"
   start_display
@@ -75,10 +75,35 @@ run_ctest() {
     check "ctest" false
     return
   }
-  counts=$(python3 "$root/tools/test_summary.py" "$results")
+  count_results "$results"
+}
+
+# Adds what a JUnit file holds to the counts, and says what failed or was skipped.
+count_results() {
+  local counts
+  counts=$(python3 "$root/tools/test_summary.py" "$1")
   sed '$d' <<<"$counts"
   read -r p f s <<<"$(tail -n 1 <<<"$counts")"
   passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+}
+
+# run_pytest PRESET: the wheel of that build, installed, and its tests.
+run_pytest() {
+  local build=$root/build/$1
+  find_python || { skipped=$((skipped + 1)) && echo "SKIPPED: python: no Python 3.11 with headers and venv"; return; }
+  check "wheel" build_wheel "$1" "$build/wheel"
+  ((failed)) && return
+  check "wheel: installed" test_wheel "$build/wheel" "$build/pytest.xml"
+  [[ ! -e $build/pytest.xml ]] || count_results "$build/pytest.xml"
+}
+
+run_wheel() {
+  check "build" build_counted wheel mjarm_python mjarm_python_stub
+  ((failed)) || check "wheel" build_wheel wheel "$root/dist"
+  ((failed)) || check "wheel: installed" test_wheel "$root/dist" "$root/build/wheel/pytest.xml"
+  [[ ! -e $root/build/wheel/pytest.xml ]] || count_results "$root/build/wheel/pytest.xml"
+  ((failed)) || say "$(du -h "$root"/dist/*.whl)"
+  finish
 }
 
 # Prints the plain last line; its exit code tells whether all is well.
@@ -98,6 +123,7 @@ run_tests() {
   if ((failed == 0)) || [[ -x $root/build/$1/bin/core_test ]]; then
     check "headers stand alone" check_headers "$1"
     run_ctest "$1"
+    run_pytest "$1"
   fi
   finish
 }

@@ -1,4 +1,4 @@
-"""Reads a JUnit file of ctest: says what failed and what was skipped and why.
+"""Reads a JUnit file of ctest or pytest: says what failed and what was skipped and why.
 
 Usage: test_summary.py FILE. The last line printed is "PASSED FAILED SKIPPED", three numbers.
 """
@@ -19,10 +19,19 @@ def skip_reason(case):
     return (skipped.get("message") if skipped is not None else "") or "no reason given"
 
 
+def status_of(case):
+    """What ctest calls it; pytest has elements instead."""
+    if case.get("status"):
+        return case.get("status")
+    if case.find("failure") is not None or case.find("error") is not None:
+        return "fail"
+    return "run" if case.find("skipped") is None else "notrun"
+
+
 def main(path):
     failed, skipped, passed = [], collections.defaultdict(list), 0
     for case in ElementTree.parse(path).getroot().iter("testcase"):
-        status = case.get("status")
+        status = status_of(case)
         if status == "run":
             passed += 1
         elif status == "fail":

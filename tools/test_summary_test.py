@@ -23,16 +23,32 @@ set MJARM_TEST_DATA</system-out></testcase>
 </testsuite>
 """
 
+PYTEST = """<?xml version="1.0"?>
+<testsuites><testsuite name="pytest" tests="4">
+  <testcase classname="tests.a" name="passes" time="0.1"/>
+  <testcase classname="tests.a" name="fails"><failure message="assert 1 == 2">...</failure></testcase>
+  <testcase classname="tests.a" name="breaks"><error message="fixture">...</error></testcase>
+  <testcase classname="tests.a" name="waits"><skipped type="pytest.skip" message="no display"/></testcase>
+</testsuite></testsuites>
+"""
+
 
 class SummaryTest(unittest.TestCase):
-    def test_counts_names_and_reasons(self):
+    def lines_of(self, results):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "results.xml"
-            file.write_text(RESULTS)
+            file.write_text(results)
             out = io.StringIO()
             with contextlib.redirect_stdout(out):
                 test_summary.main(file)
-        lines = out.getvalue().splitlines()
+        return out.getvalue().splitlines()
+
+    def test_counts_what_pytest_writes(self):
+        self.assertEqual(self.lines_of(PYTEST),
+                         ["SKIPPED: 1 (waits): no display", "FAILED: fails", "FAILED: breaks", "1 2 1"])
+
+    def test_counts_names_and_reasons(self):
+        lines = self.lines_of(RESULTS)
         self.assertEqual(lines[-1], "1 1 3")
         self.assertIn("FAILED: core.B", lines)
         self.assertIn("SKIPPED: 2 (core.C, ...): set MJARM_TEST_DATA", lines)

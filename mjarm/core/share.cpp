@@ -10,14 +10,20 @@ namespace mjarm {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> share_folders() {
+  // Looked for once: that takes the program loader's lock, which no thread should hold when another
+  // one copies the process (`run_in_child`).
+  static const fs::path self = library_of(reinterpret_cast<const void*>(&share_folder));
+  static const fs::path mujoco = loaded_library("libmujoco");
   std::vector<fs::path> folders;
-  if (const Result<fs::path> program = executable_path()) {
+  const Result<fs::path> program = executable_path();
+  if (program) {
     folders.push_back((program->parent_path() / ".." / "share" / "mjarm").lexically_normal());
   }
-  // mjarm itself is linked in and has no place of its own; MuJoCo is installed beside it. Looked
-  // for once: that takes the program loader's lock, which no thread should hold when another one
-  // copies the process (`run_in_child`).
-  static const fs::path mujoco = loaded_library("libmujoco");
+  if (!self.empty() && self != program.value_or(fs::path())) {
+    folders.push_back(self.parent_path() / "share" / "mjarm");
+  }
+  // What is linked into somebody else's program has no place of its own; MuJoCo is installed
+  // beside it.
   if (!mujoco.empty()) {
     folders.push_back((mujoco.parent_path() / MJARM_LIBRARY_TO_SHARE).lexically_normal());
   }

@@ -1,7 +1,5 @@
 #include "mjarm/install/http.hpp"
 
-#include <curl/curl.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -17,6 +15,7 @@
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/install/curl_internal.hpp"
 
 namespace mjarm::install {
 namespace {
@@ -26,34 +25,45 @@ constexpr int kMaxAttempts = 200;
 constexpr std::uint64_t kWorthSaying = 4'000'000;  // bytes to be read past
 
 struct FreeHandle {
-  void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
+  const Curl* curl;
+  void operator()(CURL* handle) const { curl->easy_cleanup(handle); }
 };
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using Handle = std::unique_ptr<CURL, FreeHandle>;
 
+/// An address in its parts; without libcurl an empty one.
 class Url {
  public:
   explicit Url(const std::string& text) { set(CURLUPART_URL, text.c_str()); }
+  ~Url() {
+    if (curl_) (*curl_)->url_cleanup(url_);
+  }
+  Url(const Url&) = delete;
+  Url& operator=(const Url&) = delete;
+
   bool set(CURLUPart part, const char* value, unsigned flags = 0) {
-    return curl_url_set(url_.get(), part, value, flags) == CURLUE_OK;
+    return curl_ && (*curl_)->url_set(url_, part, value, flags) == CURLUE_OK;
   }
   /// Empty where it is none.
-  std::string whole() const {
+  [[nodiscard]] std::string whole() const {
     char* text = nullptr;
-    if (curl_url_get(url_.get(), CURLUPART_URL, &text, 0) != CURLUE_OK) return {};
-    const std::unique_ptr<char, decltype(&curl_free)> owner(text, curl_free);
-    return text;
+    if (!curl_ || (*curl_)->url_get(url_, CURLUPART_URL, &text, 0) != CURLUE_OK) return {};
+    std::string out = text;
+    (*curl_)->free(text);
+    return out;
   }
 
  private:
-  std::unique_ptr<CURLU, decltype(&curl_url_cleanup)> url_{curl_url(), curl_url_cleanup};
+  Result<const Curl*> curl_ = curl();
+  CURLU* url_ = curl_ ? (*curl_)->url() : nullptr;
 };
 
 /// One request in progress, as the callbacks of curl see it.
 struct Transfer {
-  CURL* curl = nullptr;
+  const Curl* curl = nullptr;
+  CURL* handle = nullptr;
   std::uint64_t from = 0;                      ///< first byte that was asked for
   std::uint64_t left = 0;                      ///< bytes still wanted
   std::function<bool(std::string_view)> take;  ///< false ends the transfer
@@ -70,7 +80,7 @@ std::size_t on_body(char* data, std::size_t, std::size_t size, void* user) {
   auto& transfer = *static_cast<Transfer*>(user);
   if (!transfer.skip) {  // a server that knows no ranges sends everything
     long status = 0;
-    curl_easy_getinfo(transfer.curl, CURLINFO_RESPONSE_CODE, &status);
+    transfer.curl->easy_getinfo(transfer.handle, CURLINFO_RESPONSE_CODE, &status);
     transfer.skip = status == 200 ? transfer.from : 0;
     if (*transfer.skip >= kWorthSaying)
       log_info(text(msg::install_no_ranges, *transfer.skip / 1000000));
@@ -89,25 +99,26 @@ int on_progress(void*, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
   return interrupted() ? 1 : 0;
 }
 
-void apply(CURL* curl, const HttpOptions& options) {
-  curl_easy_setopt(curl, CURLOPT_USERAGENT, "mjarm/" MJARM_VERSION);
-  curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl, CURLOPT_FAILONERROR, 1L);
-  curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 1L);
-  curl_easy_setopt(curl, CURLOPT_MAXREDIRS, 10L);
-  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https,file");
-  curl_easy_setopt(curl, CURLOPT_REDIR_PROTOCOLS_STR, "http,https");
-  curl_easy_setopt(curl, CURLOPT_NETRC, static_cast<long>(CURL_NETRC_OPTIONAL));
-  curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, options.connect_timeout);
-  curl_easy_setopt(curl, CURLOPT_LOW_SPEED_LIMIT, 1L);
-  curl_easy_setopt(curl, CURLOPT_LOW_SPEED_TIME, options.stall_timeout);
-  curl_easy_setopt(curl, CURLOPT_NOPROGRESS, 0L);
-  curl_easy_setopt(curl, CURLOPT_XFERINFOFUNCTION, on_progress);
-  if (!options.proxy.empty()) curl_easy_setopt(curl, CURLOPT_PROXY, options.proxy.c_str());
+void apply(const Curl& curl, CURL* handle, const HttpOptions& options) {
+  const auto set = [&](CURLoption option, auto value) { curl.easy_setopt(handle, option, value); };
+  set(CURLOPT_USERAGENT, "mjarm/" MJARM_VERSION);
+  set(CURLOPT_NOSIGNAL, 1L);
+  set(CURLOPT_FAILONERROR, 1L);
+  set(CURLOPT_FOLLOWLOCATION, 1L);
+  set(CURLOPT_MAXREDIRS, 10L);
+  set(CURLOPT_PROTOCOLS_STR, "http,https,file");
+  set(CURLOPT_REDIR_PROTOCOLS_STR, "http,https");
+  set(CURLOPT_NETRC, static_cast<long>(CURL_NETRC_OPTIONAL));
+  set(CURLOPT_CONNECTTIMEOUT, options.connect_timeout);
+  set(CURLOPT_LOW_SPEED_LIMIT, 1L);
+  set(CURLOPT_LOW_SPEED_TIME, options.stall_timeout);
+  set(CURLOPT_NOPROGRESS, 0L);
+  set(CURLOPT_XFERINFOFUNCTION, on_progress);
+  if (!options.proxy.empty()) set(CURLOPT_PROXY, options.proxy.c_str());
   if (options.ca_bundle.empty()) return;
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(options.ca_bundle, ignored);
-  curl_easy_setopt(curl, folder ? CURLOPT_CAPATH : CURLOPT_CAINFO, options.ca_bundle.c_str());
+  set(folder ? CURLOPT_CAPATH : CURLOPT_CAINFO, options.ca_bundle.c_str());
 }
 
 /// A broken or slow connection may do better next time; what the server or the machine refuses
@@ -138,8 +149,8 @@ Outcome explain(const Transfer& transfer, const std::string& url, CURLcode code,
     return {.error = Error{Errc::impossible, text(msg::install_interrupted)}};
   }
   long status = 0;
-  curl_easy_getinfo(transfer.curl, CURLINFO_RESPONSE_CODE, &status);
-  std::string reason = *detail == '\0' ? curl_easy_strerror(code) : detail;
+  transfer.curl->easy_getinfo(transfer.handle, CURLINFO_RESPONSE_CODE, &status);
+  std::string reason = *detail == '\0' ? transfer.curl->easy_strerror(code) : detail;
   if (code == CURLE_HTTP_RETURNED_ERROR) reason = "HTTP " + std::to_string(status);
   return {.error = Error{Errc::not_available,
                          text(msg::install_cannot_fetch, without_password(url), reason)},
@@ -154,29 +165,34 @@ struct Request {
 };
 
 Outcome perform(const Request& request, const HttpOptions& options, std::string* final_url) {
-  static const CURLcode started = curl_global_init(CURL_GLOBAL_DEFAULT);
-  const Handle handle(started == CURLE_OK ? curl_easy_init() : nullptr);
+  const Result<const Curl*> library = curl();
+  if (!library) return {.error = library.error()};
+  const Curl& curl = **library;
+  const Handle handle(curl.easy_init(), {&curl});
   if (!handle) {
     return {.error = Error{Errc::system, text(msg::install_cannot_fetch, request.url, "libcurl")}};
   }
-  CURL* curl = handle.get();
-  Transfer transfer{.curl = curl,
+  Transfer transfer{.curl = &curl,
+                    .handle = handle.get(),
                     .from = request.range.from,
                     .left = request.range.size(),
                     .take = request.take,
                     .skip = {}};
   char detail[CURL_ERROR_SIZE] = "";
-  apply(curl, options);
-  curl_easy_setopt(curl, CURLOPT_ERRORBUFFER, detail);
-  curl_easy_setopt(curl, CURLOPT_URL, request.url.c_str());
-  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, on_body);
-  curl_easy_setopt(curl, CURLOPT_WRITEDATA, &transfer);
+  apply(curl, handle.get(), options);
+  const auto set = [&](CURLoption option, auto value) {
+    curl.easy_setopt(handle.get(), option, value);
+  };
+  set(CURLOPT_ERRORBUFFER, static_cast<char*>(detail));
+  set(CURLOPT_URL, request.url.c_str());
+  set(CURLOPT_WRITEFUNCTION, on_body);
+  set(CURLOPT_WRITEDATA, &transfer);
   const std::string range =
       std::to_string(request.range.from) + "-" + std::to_string(request.range.to - 1);
-  if (!request.whole) curl_easy_setopt(curl, CURLOPT_RANGE, range.c_str());
-  const CURLcode code = curl_easy_perform(curl);
+  if (!request.whole) set(CURLOPT_RANGE, range.c_str());
+  const CURLcode code = curl.easy_perform(handle.get());
   char* effective = nullptr;
-  curl_easy_getinfo(curl, CURLINFO_EFFECTIVE_URL, &effective);
+  curl.easy_getinfo(handle.get(), CURLINFO_EFFECTIVE_URL, &effective);
   if (final_url != nullptr && effective != nullptr) *final_url = effective;
   return explain(transfer, request.url, code, detail);
 }

@@ -13,6 +13,10 @@ namespace mjarm {
 namespace fs = std::filesystem;
 namespace {
 
+// MuJoCo 4.0.0, with which the package of Python may run, lacks it: there cube maps of six files
+// keep their names.
+#pragma weak mjs_getInStringVec
+
 constexpr int kErrorSize = 1024;
 
 /// Renames the files of a description that will stand in another folder.
@@ -31,7 +35,7 @@ class FileNames {
     for_each(mjOBJ_TEXTURE, [&](mjsElement* e) {
       mjsTexture* texture = mjs_asTexture(e);
       move(texture->file, textures);
-      for (int side = 0; side < 6; ++side) {
+      for (int side = 0; side < 6 && &mjs_getInStringVec != nullptr; ++side) {
         const std::string name = mjs_getInStringVec(texture->cubefiles, side);
         if (!name.empty()) {
           mjs_setInStringVec(texture->cubefiles, side, moved(name, textures).c_str());

@@ -71,6 +71,13 @@ Result<Model> Model::from_mjcf(const std::string& text) {
   return Model(std::make_shared<const Impl>(Impl{{}, ModelFormat::mjcf, std::move(*loaded)}));
 }
 
+Model Model::copy_of(const mjModel_* model) {
+  install_mujoco_handler();
+  LoadedModel copy;
+  copy.model.reset(mj_copyModel(nullptr, model));
+  return Model(std::make_shared<const Impl>(Impl{{}, ModelFormat::mjcf, std::move(copy)}));
+}
+
 Result<Model> Model::load_guarded(const fs::path& file, LoadOptions options) {
   try {
     if (is_shipped(file)) options.trusted = options.allow_outside = true;

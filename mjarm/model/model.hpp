@@ -54,6 +54,10 @@ class Model {
   /// @return MuJoCo's complaint in one line. Never throws, never ends the process.
   [[nodiscard]] static Result<Model> from_mjcf(const std::string& text);
 
+  /// A model that somebody else has compiled: a copy, so that it may change or end afterwards.
+  /// @param model  not null; of the MuJoCo library that this process runs with.
+  [[nodiscard]] static Model copy_of(const mjModel_* model);
+
   /// The same robot with a point mass at the origin of a frame (site or body): a load that the
   /// unchanged model does not know.
   /// @param mass  [kg] > 0

@@ -103,6 +103,19 @@ TEST(Model, TellsTheFormatByTheRootElement) {
   EXPECT_EQ(mjcf->file(), folder.path() / "named.urdf");
 }
 
+TEST(Model, OfSomebodyElseIsCopied) {
+  const Model own = Model::load(find_model_file("ur5e").value()).value();
+  mjModel* theirs = mj_copyModel(nullptr, own.raw());
+  const Model copy = Model::copy_of(theirs);
+  mj_deleteModel(theirs);
+  EXPECT_EQ(copy.name(), own.name());
+  EXPECT_EQ(copy.nq(), own.nq());
+  EXPECT_TRUE(copy.file().empty());
+  const Arm arm = find_arm(copy).value();
+  EXPECT_EQ(arm.tip, find_arm(own).value().tip);
+  EXPECT_EQ(arm.home, find_arm(own).value().home);
+}
+
 TEST(Model, UrdfKeepsFixedFramesLimitsAndLooks) {
   const support::TempFolder folder;
   const auto model = Model::load(folder.write("two.urdf", kTwoLinks));

@@ -1,0 +1,20 @@
+"""Loads the MuJoCo library of the package mujoco-core, the one that `import mujoco` uses too."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.util
+import pathlib
+
+
+def load() -> None:
+    """Makes its functions known to the process, without importing `mujoco`."""
+    spec = importlib.util.find_spec("mujoco")
+    folders = list(spec.submodule_search_locations or ()) if spec else []
+    found = [file for folder in folders for file in sorted(pathlib.Path(folder).glob("libmujoco.so.*"))]
+    if not found:
+        raise ImportError("mjarm needs the library of MuJoCo 4.0: pip install 'mujoco-core>=4.0,<4.1'")
+    suitable = [file for file in found if file.name.startswith("libmujoco.so.4.0.")]
+    if not suitable:
+        raise ImportError(f"mjarm needs MuJoCo 4.0, but {found[0]} is installed: pip install 'mujoco-core>=4.0,<4.1'")
+    ctypes.CDLL(str(suitable[0]), mode=ctypes.RTLD_GLOBAL)

@@ -1,0 +1,178 @@
+#include "python/src/convert.hpp"
+
+#include <nanobind/stl/string.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "mjarm/core/finite.hpp"
+#include "mjarm/core/rotation.hpp"
+
+namespace mjarm::python {
+namespace {
+
+std::string shape_text(const Reals& array) {
+  std::string out = "(";
+  for (std::size_t i = 0; i < array.ndim(); ++i) {
+    out += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
+  }
+  return out + (array.ndim() == 1 ? ",)" : ")");
+}
+
+std::string shape_text(std::span<const long long> shape) {
+  std::string out = "(";
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    out += (i > 0 ? ", " : "") + (shape[i] < 0 ? "n" : std::to_string(shape[i]));
+  }
+  return out + (shape.size() == 1 ? ",)" : ")");
+}
+
+bool has_shape(const Reals& array, std::span<const long long> shape) {
+  if (array.ndim() != shape.size()) return false;
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    if (shape[i] >= 0 && array.shape(i) != static_cast<std::size_t>(shape[i])) return false;
+  }
+  return true;
+}
+
+/// From a row-major (4, 4).
+Pose pose_of_matrix(const double* m, const std::string& name) {
+  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> matrix(m);
+  const Pose X{matrix.topRightCorner<3, 1>(), matrix.topLeftCorner<3, 3>()};
+  const double off = (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const Eigen::RowVector4d last(0, 0, 0, 1);
+  if (off > 1e-6 || X.R.determinant() < 0 || !(matrix.row(3) - last).isZero(1e-9)) {
+    raise_bad_input(name +
+                    ": expected a rotation matrix and a position [m] with (0, 0, 0, 1) below");
+  }
+  return X;
+}
+
+}  // namespace
+
+Reals reals(nb::handle value, const char* name) {
+  Reals out;
+  if (!nb::try_cast(value, out, false)) {
+    nb::object made;
+    try {
+      // Text is no number to us, though numpy reads some.
+      made = nb::module_::import_("numpy").attr("asarray")(value);
+      if (nb::cast<std::string>(made.attr("dtype").attr("kind")).find_first_of("buif") != 0) {
+        throw nb::type_error("");
+      }
+      made = nb::module_::import_("numpy").attr("asarray")(made, "float64", "C");
+    } catch (const std::exception&) {
+      raise_bad_input(std::string(name) + ": expected numbers, not " +
+                      nb::cast<std::string>(nb::str(nb::handle(value).type().attr("__name__"))));
+    }
+    out = nb::cast<Reals>(made);
+  }
+  if (!all_finite(span_of(out)))
+    raise_bad_input(std::string(name) + ": not every number is finite");
+  return out;
+}
+
+Reals reals(nb::handle value, const char* name, std::initializer_list<long long> shape) {
+  Reals out = reals(value, name);
+  const std::span<const long long> wanted(shape.begin(), shape.size());
+  if (!has_shape(out, wanted)) {
+    raise_bad_input(std::string(name) + ": expected shape " + shape_text(wanted) + ", not " +
+                    shape_text(out));
+  }
+  return out;
+}
+
+Eigen::Vector3d vector3(nb::handle value, const char* name) {
+  return Eigen::Map<const Eigen::Vector3d>(reals(value, name, {3}).data());
+}
+
+nb::object array(std::vector<double> values, std::initializer_list<std::size_t> shape) {
+  auto owned = std::make_unique<std::vector<double>>(std::move(values));
+  double* const data = owned->data();
+  nb::capsule owner(owned.release(), [](void* p) noexcept {
+    const std::unique_ptr<std::vector<double>> ends(static_cast<std::vector<double>*>(p));
+  });
+  return nb::cast(nb::ndarray<nb::numpy, double>(data, shape.size(), shape.begin(), owner));
+}
+
+nb::object array(const JointVec& q) {
+  return array(std::vector<double>(q.begin(), q.end()), {static_cast<std::size_t>(q.size())});
+}
+
+nb::object array(std::span<const JointVec> rows, int dof) {
+  std::vector<double> values;
+  values.reserve(rows.size() * static_cast<std::size_t>(dof));
+  for (const JointVec& row : rows) values.insert(values.end(), row.begin(), row.end());
+  return array(std::move(values), {rows.size(), static_cast<std::size_t>(dof)});
+}
+
+nb::object array(const Pose& X) {
+  std::vector<double> values;
+  values.reserve(16);
+  for (int row = 0; row < 3; ++row) {
+    values.insert(values.end(), {X.R(row, 0), X.R(row, 1), X.R(row, 2), X.p[row]});
+  }
+  values.insert(values.end(), {0, 0, 0, 1});
+  return array(std::move(values), {4, 4});
+}
+
+Pose pose_of(nb::handle value, const char* name) {
+  if (nb::isinstance<Pose>(value)) return nb::cast<const Pose&>(value);
+  return pose_of_matrix(reals(value, name, {4, 4}).data(), name);
+}
+
+std::vector<Pose> poses_of(nb::handle value, const char* name) {
+  std::vector<Pose> out;
+  if (nb::isinstance<nb::tuple>(value) && nb::len(value) == 2 && !nb::isinstance<Pose>(value[0]) &&
+      reals(value[0], name).ndim() == 2 && reals(value[0], name).shape(1) == 3) {
+    const Reals pos = reals(value[0], name, {-1, 3});
+    const Reals quat = reals(value[1], name, {static_cast<long long>(pos.shape(0)), 4});
+    for (std::size_t i = 0; i < pos.shape(0); ++i) {
+      const double* const q = quat.data() + 4 * i;
+      const Quat turn(q[0], q[1], q[2], q[3]);
+      if (turn.norm() < 1e-9) raise_bad_input(std::string(name) + ": a quaternion is zero");
+      out.push_back({Eigen::Map<const Eigen::Vector3d>(pos.data() + 3 * i), to_matrix(turn)});
+    }
+    return out;
+  }
+  if (nb::isinstance<nb::sequence>(value) && nb::len(value) > 0 && nb::isinstance<Pose>(value[0])) {
+    for (const nb::handle one : value) out.push_back(pose_of(one, name));
+    return out;
+  }
+  const Reals matrices = reals(value, name, {-1, 4, 4});
+  for (std::size_t i = 0; i < matrices.shape(0); ++i) {
+    out.push_back(pose_of_matrix(matrices.data() + 16 * i, name));
+  }
+  return out;
+}
+
+nb::object error_class(const char* name) { return nb::module_::import_("mjarm.errors").attr(name); }
+
+void raise(nb::handle exception) {
+  PyErr_SetObject(exception.type().ptr(), exception.ptr());
+  throw nb::python_error();
+}
+
+void raise(const Error& error) {
+  const char* const kind = [&] {
+    switch (error.code) {
+      case Errc::bad_input:
+        return "BadInput";
+      case Errc::usage:
+        return "Usage";
+      case Errc::impossible:
+        return "Impossible";
+      case Errc::system:
+        return "SystemFault";
+      case Errc::not_available:
+        return "NotAvailable";
+    }
+    return "Error";
+  }();
+  raise(error_class(kind)(error.what));
+}
+
+void raise_bad_input(const std::string& what) { raise(Error{Errc::bad_input, what}); }
+
+}  // namespace mjarm::python

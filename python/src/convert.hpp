@@ -1,0 +1,71 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <cstddef>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjarm/core/joint_vec.hpp"
+#include "mjarm/core/pose.hpp"
+#include "mjarm/core/result.hpp"
+
+/// What all binding files share: arrays and poses in and out, failures into exceptions.
+namespace mjarm::python {
+
+namespace nb = nanobind;
+
+/// Numbers of a caller: float64, C order, read only; belongs to an array that it keeps alive.
+using Reals = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+
+/// Anything array-like; without a copy where it is such an array already.
+/// @throws a BadInput that names the argument, where it holds no numbers or some that are not
+/// finite.
+[[nodiscard]] Reals reals(nb::handle value, const char* name);
+
+/// The same of a given shape; a negative number stands for any.
+/// @throws a BadInput with the shape that was expected and that which was given.
+[[nodiscard]] Reals reals(nb::handle value, const char* name,
+                          std::initializer_list<long long> shape);
+
+/// (3,)
+[[nodiscard]] Eigen::Vector3d vector3(nb::handle value, const char* name);
+
+[[nodiscard]] inline std::span<const double> span_of(const Reals& array) {
+  return {array.data(), array.size()};
+}
+
+/// A new numpy array that owns `values`, in rows.
+[[nodiscard]] nb::object array(std::vector<double> values,
+                               std::initializer_list<std::size_t> shape);
+[[nodiscard]] nb::object array(const JointVec& q);
+/// (n, dof).
+[[nodiscard]] nb::object array(std::span<const JointVec> rows, int dof);
+/// (4, 4).
+[[nodiscard]] nb::object array(const Pose& X);
+
+/// A mjarm.Pose, or anything like an array of shape (4, 4).
+/// @throws a BadInput that names the argument.
+[[nodiscard]] Pose pose_of(nb::handle value, const char* name);
+/// Many: a list of those, an array (n, 4, 4), or a pair of positions (n, 3) and quaternions (n, 4).
+[[nodiscard]] std::vector<Pose> poses_of(nb::handle value, const char* name);
+
+/// An exception class of mjarm.errors.
+[[nodiscard]] nb::object error_class(const char* name);
+[[noreturn]] void raise(nb::handle exception);
+/// The exception of the failure's kind.
+[[noreturn]] void raise(const Error& error);
+[[noreturn]] void raise_bad_input(const std::string& what);
+
+/// The value, or the failure as an exception.
+template <class T>
+T value_of(Result<T>&& result) {
+  if (!result) raise(result.error());
+  if constexpr (!std::is_void_v<T>) return std::move(*result);
+}
+
+}  // namespace mjarm::python

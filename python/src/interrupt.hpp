@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <atomic>
+#include <memory>
+
+#include "mjarm/core/stop.hpp"
+
+namespace mjarm::python {
+
+/// Runs long calls without the lock of Python's interpreter, and ends them at Ctrl-C (or whatever
+/// other signal has a handler that throws).
+class Interrupt {
+ public:
+  /// To be given to the call.
+  [[nodiscard]] StopCheck check() const;
+  /// What the handler threw, as soon as the call is back.
+  void rethrow() const;
+
+ private:
+  struct State;
+  std::shared_ptr<State> state_ = make();
+  static std::shared_ptr<State> make();
+};
+
+/// `call(stop)` without the interpreter's lock.
+template <class Call>
+auto interruptible(const Call& call) {
+  const Interrupt interrupt;
+  auto result = [&] {
+    const nanobind::gil_scoped_release free;
+    return call(interrupt.check());
+  }();
+  interrupt.rethrow();
+  return result;
+}
+
+}  // namespace mjarm::python

@@ -1,0 +1,31 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "apps/mjarm/cli/cli.hpp"
+#include "apps/mjarm/commands/commands.hpp"
+#include "mjarm/model/mujoco_library.hpp"
+#include "python/src/bindings.hpp"
+
+NB_MODULE(_core, m) {
+  using namespace mjarm;
+  namespace nb = nanobind;
+  m.attr("__doc__") = "The C++ part of mjarm; use the package `mjarm`.";
+  m.def(
+      "mujoco_version", [] { return mujoco_library().version; },
+      "The version of the MuJoCo library in use, such as \"4.0.1\".");
+  m.def(
+      "run_program",
+      [](const std::vector<std::string>& arguments) {
+        const nb::gil_scoped_release free;
+        return app::run(app::commands(), arguments);
+      },
+      nb::arg("arguments"),
+      "Runs the command line as the program `mjarm` does and returns its exit code.");
+  python::bind_core(m);
+  python::bind_model(m);
+  python::bind_kinematics(m);
+  python::bind_path(m);
+  python::bind_planning(m);
+  python::bind_trajectory(m);
+}

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjarm/path/path_fix.hpp"
+#include "mjarm/path/path_measures.hpp"
+#include "mjarm/planning/planning_world.hpp"
+
+namespace mjarm::python {
+
+/// `mjarm.Path`: what came of a path, whole or not.
+struct BoundPath {
+  JointPath had = {};  ///< as far as it goes
+  int dof = 0;
+  std::vector<double> stops = {};  ///< parameters of its curve's corners; none: given poses
+  std::optional<PathFailure> failure = {};
+  std::string what = {};  ///< why it stops
+  std::vector<PathFix> fixes = {};
+  PathMeasures measures = {};
+};
+
+/// `mjarm.Plan`, and what it was planned in.
+struct BoundPlan {
+  PlannedPath path;
+  int dof = 0;
+  ContactRules rules = {};
+  std::shared_ptr<const PlanningWorld> world = {};
+};
+
+}  // namespace mjarm::python

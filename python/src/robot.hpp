@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include "mjarm/core/joint_vec.hpp"
+#include "mjarm/kinematics/ik.hpp"
+#include "mjarm/model/robot.hpp"
+
+namespace mjarm::python {
+
+/// `mjarm.Robot`: a loaded file, the arm in it, and what its calls need again and again.
+struct BoundRobot {
+  explicit BoundRobot(Robot loaded) : robot(std::move(loaded)), ik(robot.arm) {}
+
+  Robot robot;
+  IkSolver ik;  ///< with options as they are by default
+
+  [[nodiscard]] const Arm& arm() const { return robot.arm; }
+  [[nodiscard]] int dof() const { return robot.arm.dof(); }
+
+  /// Joint values of a caller: (dof,), or the whole configuration (nq,) of the model.
+  /// @throws a BadInput that names the argument: another shape, no numbers, degrees.
+  [[nodiscard]] JointVec joints(nanobind::handle value, const char* name) const;
+  /// The same where `None` means home.
+  [[nodiscard]] JointVec joints_or_home(nanobind::handle value, const char* name) const;
+  /// (n, dof).
+  [[nodiscard]] std::vector<double> rows(nanobind::handle value, const char* name) const;
+};
+
+}  // namespace mjarm::python

@@ -1,0 +1,97 @@
+"""The package as it is installed: one MuJoCo, quick to import, a program, and no way to crash it."""
+
+import json
+import os
+import pathlib
+import random
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import mjarm
+
+
+def python(code, **environment):
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120,
+                          env={**os.environ, **environment})
+
+
+def program(*words):
+    return subprocess.run([sys.executable, "-m", "mjarm", *words], capture_output=True, text=True, timeout=300)
+
+
+def test_shares_the_library_of_mujoco():
+    done = python("import mjarm, mujoco; print(mjarm.mujoco_version() == mujoco.__version__); "
+                  "print(len({l.split()[-1] for l in open('/proc/self/maps') if 'libmujoco.so' in l}))")
+    assert done.stdout.split() == ["True", "1"], done.stderr
+    done = python("import mujoco, mjarm; mjarm.Robot('ur5e'); mujoco.MjModel.from_xml_string('<mujoco/>'); print(1)")
+    assert done.stdout.split() == ["1"], done.stderr
+
+
+def test_another_mujoco_is_told(tmp_path):
+    (tmp_path / "mujoco").mkdir()
+    (tmp_path / "mujoco" / "__init__.py").touch()
+    done = python("import mjarm", PYTHONPATH=str(tmp_path))
+    assert "ImportError: mjarm needs the library of MuJoCo 4.0" in done.stderr
+    (tmp_path / "mujoco" / "libmujoco.so.3.3.7").touch()
+    done = python("import mjarm", PYTHONPATH=str(tmp_path))
+    assert "libmujoco.so.3.3.7 is installed" in done.stderr
+
+
+def test_imports_nothing_that_is_not_needed():
+    done = python("import sys, mjarm; print(*sorted(sys.modules))")
+    loaded = set(done.stdout.split())
+    assert "mjarm._core" in loaded
+    assert not loaded & {"scipy", "matplotlib", "torch", "gymnasium", "mujoco", "pandas"}
+
+
+def test_types_are_told():
+    stub = pathlib.Path(mjarm.__file__).with_name("_core.pyi")
+    assert "def ik(self, pose: PoseLike" in stub.read_text()
+    assert stub.with_name("py.typed").exists()
+
+
+def test_the_program_is_the_same(tmp_path):
+    done = program("ik", "--robot", "ur5e", "--pos", "-0.13,0.6,0.1", "--euler", "3.14,0,1.57", "--no-timing")
+    assert done.returncode == 0, done.stderr
+    q = mjarm.Robot("ur5e").ik(mjarm.Pose([-0.13, 0.6, 0.1], euler=[3.14, 0, 1.57])).q
+    assert json.loads(done.stdout)["q"] == q.tolist()  # to the last bit
+    assert program("no_such_command").returncode == 2
+    done = program("demo", "ellipse", "--headless", "--out", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "report.json").stat().st_size > 100
+
+
+def test_speaks_chinese():
+    code = "import mjarm; mjarm.set_language('zh')\ntry: mjarm.Robot('ur5e').ik(mjarm.Pose([2, 0, 0]))\n" \
+           "except mjarm.Unreachable as e: print(e)"
+    assert "够不着" in python(code, PYTHONIOENCODING="utf-8").stdout
+    with pytest.raises(mjarm.BadInput):
+        mjarm.set_language("xx")
+
+
+@pytest.mark.filterwarnings("ignore:nanobind")  # an object that is made a second time
+def test_nothing_a_caller_gives_crashes_it():
+    """A thousand wrong calls each end in an exception, or in an answer."""
+    chance = random.Random(1)
+    robot = mjarm.Robot("ur5e")
+    odd = [None, 0, -1, 1e308, float("nan"), "", "x" * 1000, b"\0", [], [[]], [1, [2]], {}, (), object(), robot,
+           mjarm.Pose, mjarm.Pose(), lambda *a: 1, np.zeros((0, 6)), np.zeros((3, 6)), np.zeros((2, 4, 4)), np.eye(4),
+           np.eye(4, dtype=np.float32), np.full(6, 1e300), np.array(["a"] * 6), np.zeros(6)[::-1], np.zeros((6, 12))[:, ::2],
+           np.zeros(7), range(6), memoryview(b"123456"), True, 10**40, [None] * 6, np.zeros(6, dtype=complex)]
+    calls = [getattr(robot, name) for name in dir(robot) if not name.startswith("_") and callable(getattr(robot, name))]
+    calls += [getattr(mjarm.Pose(), name) for name in ("__matmul__", "interpolate", "difference", "__setstate__")]
+    calls += [mjarm.Pose, mjarm.Pose.from_matrix, mjarm.Robot, mjarm.set_language]
+    names = ["seed", "task", "pos_tol", "max_step", "valid", "threads", "euler", "quat", "tip", "windings", "max"]
+    refused = 0
+    for _ in range(1000):
+        words = {name: chance.choice(odd) for name in chance.sample(names, chance.choice([0, 0, 1, 2]))}
+        try:
+            chance.choice(calls)(*chance.choices(odd, k=chance.randrange(4)), **words)
+        except (mjarm.Error, TypeError, OverflowError, ValueError):
+            refused += 1
+    assert refused > 700
+    mjarm.set_language("en")
+    assert robot.ik(robot.fk(robot.home)).pos_err < 1e-7
