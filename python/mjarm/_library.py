@@ -13,8 +13,9 @@ def load() -> None:
     folders = list(spec.submodule_search_locations or ()) if spec else []
     found = [file for folder in folders for file in sorted(pathlib.Path(folder).glob("libmujoco.so.*"))]
     if not found:
-        raise ImportError("mjarm needs the library of MuJoCo 4.0: pip install 'mujoco-core>=4.0,<4.1'")
+        raise ImportError("mjarm needs the library of MuJoCo 4.0 (需要 MuJoCo 4.0 的库): pip install 'mujoco-core>=4.0,<4.1'")
     suitable = [file for file in found if file.name.startswith("libmujoco.so.4.0.")]
     if not suitable:
-        raise ImportError(f"mjarm needs MuJoCo 4.0, but {found[0]} is installed: pip install 'mujoco-core>=4.0,<4.1'")
+        raise ImportError(f"mjarm needs MuJoCo 4.0, but {found[0]} is installed (需要 MuJoCo 4.0，但装的是别的版本): "
+                          "pip install 'mujoco-core>=4.0,<4.1'")
     ctypes.CDLL(str(suitable[0]), mode=ctypes.RTLD_GLOBAL)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import BadInput, Pose, Robot
+from ._core import language
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -54,11 +55,13 @@ class Chain:
         self._columns = [i for i, link in enumerate(self.links) if link.joint_type != "fixed"]
         mask = np.ones(len(self.links), bool) if active_links_mask is None else np.asarray(active_links_mask, bool)
         if mask.shape != (len(self.links),):
-            raise BadInput(f"active_links_mask: expected shape ({len(self.links)},), not {mask.shape}")
+            raise _bad(f"active_links_mask: expected shape ({len(self.links)},), not {mask.shape}",
+                       f"active_links_mask：形状应为 ({len(self.links)},)，而不是 {mask.shape}")
         if not mask[self._columns].all():
             still = [self.links[i].name for i in self._columns if not mask[i]]
-            raise BadInput(f"active_links_mask: joints cannot be left out of the search here ({', '.join(still)}); "
-                           "only fixed links and the base may be False")
+            raise _bad(f"active_links_mask: joints cannot be left out of the search here ({', '.join(still)}); only fixed "
+                       "links and the base may be False",
+                       f"active_links_mask：这里不能把关节排除在求解之外（{', '.join(still)}）；只有固定连杆和基座可以为 False")
         self.active_links_mask = mask
         self._turned = {axis: robot._with_tool(Pose(euler=turn)) for axis, turn in _TURNS.items()}
 
@@ -73,13 +76,14 @@ class Chain:
         """
         del symbolic
         if base_element_type != "link":
-            raise BadInput("base_element_type: only \"link\" is known here")
+            raise _bad('base_element_type: only "link" is known here', 'base_element_type：这里只支持 "link"')
         base, joints, tip = _walk(urdf_file, list(base_elements or ["base_link"]))
         robot = Robot(urdf_file, tip=tip, looks=False)
         moving = [name for name, kind in joints if kind != "fixed"]
         if moving != robot.joints:
-            raise BadInput(f"{os.fspath(urdf_file)}: joints before {base}, or coupled ones, are not known here: "
-                           f"{moving}, not {robot.joints}")
+            raise _bad(f"{os.fspath(urdf_file)}: joints before {base}, or coupled ones, are not known here: {moving}, not "
+                       f"{robot.joints}",
+                       f"{os.fspath(urdf_file)}：这里不支持 {base} 之前的关节或联动关节：{moving}，而不是 {robot.joints}")
         limits = iter(zip(robot.limits.lower, robot.limits.upper))
         links = [Link("Base link", "fixed", (-np.inf, np.inf))]
         links += [Link(name, kind, (0.0, 0.0) if kind == "fixed" else next(limits)) for name, kind in joints]
@@ -97,7 +101,8 @@ class Chain:
     def forward_kinematics(self, joints: ArrayLike, full_kinematics: bool = False) -> Array:
         """The tip in the base link, a matrix of shape (4, 4). `joints` has one number a link."""
         if full_kinematics:
-            raise BadInput("full_kinematics: frames between base and tip are told by Robot(..., tip=LINK).fk")
+            raise _bad("full_kinematics: frames between base and tip are told by Robot(..., tip=LINK).fk",
+                       "full_kinematics：基座与末端之间的坐标系请用 Robot(..., tip=连杆).fk 求得")
         return (self._base.inverse() @ self.robot.fk(self._active(joints, "joints"))).matrix
 
     def inverse_kinematics(self, target_position: ArrayLike | None = None, target_orientation: ArrayLike | None = None,
@@ -113,7 +118,8 @@ class Chain:
             With the reason.
         """
         if target_position is None:
-            raise BadInput("target_position: expected a place [m]; a turn alone is not known here")
+            raise _bad("target_position: expected a place [m]; a turn alone is not known here",
+                       "target_position：应给出位置（米）；这里不支持只给姿态")
         target = np.eye(4)
         target[:3, 3] = target_position
         if orientation_mode == "all":
@@ -121,7 +127,8 @@ class Chain:
         elif orientation_mode in _TURNS:
             target[:3, :3] = _frame_with(np.asarray(target_orientation, float), "XYZ".index(orientation_mode))
         elif orientation_mode is not None:
-            raise BadInput(f'orientation_mode: expected None, "X", "Y", "Z" or "all", not {orientation_mode!r}')
+            raise _bad(f'orientation_mode: expected None, "X", "Y", "Z" or "all", not {orientation_mode!r}',
+                       f'orientation_mode：应为 None、"X"、"Y"、"Z" 或 "all"，而不是 {orientation_mode!r}')
         return self.inverse_kinematics_frame(target, initial_position, orientation_mode=orientation_mode)
 
     def inverse_kinematics_frame(self, target: ArrayLike, initial_position: ArrayLike | None = None, *,
@@ -143,14 +150,20 @@ class Chain:
     def _active(self, values: ArrayLike, name: str) -> Array:
         given = np.asarray(values, float)
         if given.shape != (len(self.links),):
-            raise BadInput(f"{name}: expected one number a link, shape ({len(self.links)},), not {given.shape}")
+            raise _bad(f"{name}: expected one number a link, shape ({len(self.links)},), not {given.shape}",
+                       f"{name}：每个连杆一个数，形状应为 ({len(self.links)},)，而不是 {given.shape}")
         return given[self._columns]
+
+
+def _bad(english: str, chinese: str) -> BadInput:
+    """What is wrong, in the language in use."""
+    return BadInput(chinese if language() == "zh" else english)
 
 
 def _frame_with(axis: Array, column: int) -> Array:
     """Some rotation matrix with that axis [any length] as its column."""
     if axis.shape != (3,) or not np.isfinite(axis).all() or np.linalg.norm(axis) < 1e-9:
-        raise BadInput("target_orientation: expected a direction, shape (3,)")
+        raise _bad("target_orientation: expected a direction, shape (3,)", "target_orientation：应为方向，形状 (3,)")
     axis = axis / np.linalg.norm(axis)
     side = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     side /= np.linalg.norm(side)
@@ -167,7 +180,9 @@ def _walk(urdf_file: str | os.PathLike[str], elements: list[str]) -> tuple[str, 
         raise BadInput(f"{os.fspath(urdf_file)}: {error}") from None
     known = [link.get("name") for link in root.findall("link")]
     if elements[0] not in known:
-        raise BadInput(f"{os.fspath(urdf_file)}: no link \"{elements[0]}\"; name one with base_elements: {', '.join(map(str, known))}")
+        names = ", ".join(map(str, known))
+        raise _bad(f'{os.fspath(urdf_file)}: no link "{elements[0]}"; name one with base_elements: {names}',
+                   f'{os.fspath(urdf_file)}：没有连杆 "{elements[0]}"；请用 base_elements 指定其中之一：{names}')
     base = link = elements[0]
     wanted = elements[1:]
     joints: list[tuple[str, str]] = []
@@ -176,7 +191,8 @@ def _walk(urdf_file: str | os.PathLike[str], elements: list[str]) -> tuple[str, 
         if wanted:
             leaving = [j for j in leaving if j.get("name") == wanted[0]]
             if not leaving:
-                raise BadInput(f"{os.fspath(urdf_file)}: no joint \"{wanted[0]}\" leaves {link}")
+                raise _bad(f'{os.fspath(urdf_file)}: no joint "{wanted[0]}" leaves {link}',
+                           f'{os.fspath(urdf_file)}：{link} 之后没有关节 "{wanted[0]}"')
             wanted = wanted[2:]
         if not leaving:
             break

@@ -16,19 +16,19 @@ namespace {
 
 Eigen::Matrix3d rotation_of(nb::handle euler, nb::handle quat, nb::handle matrix) {
   if (!euler.is_none() + !quat.is_none() + !matrix.is_none() > 1) {
-    raise_bad_input("Pose: give one of euler, quat and matrix");
+    refuse(msg::python_one_turn);
   }
   if (!euler.is_none()) {
     const Eigen::Vector3d angles = vector3(euler, "euler");
     if (angles.cwiseAbs().maxCoeff() > 2 * std::numbers::pi + 1e-9) {
-      raise_bad_input("euler: expected angles in rad, not degrees (np.radians makes them)");
+      refuse(msg::python_degrees);
     }
     return from_euler(angles);
   }
   if (!quat.is_none()) {
     const Reals q = reals(quat, "quat", {4});
     const Quat turn(q.data()[0], q.data()[1], q.data()[2], q.data()[3]);
-    if (turn.norm() < 1e-9) raise_bad_input("quat: expected (w, x, y, z), not zeros");
+    if (turn.norm() < 1e-9) refuse(msg::python_zero_quat, "quat");
     return to_matrix(turn);
   }
   if (matrix.is_none()) return Eigen::Matrix3d::Identity();
@@ -37,7 +37,7 @@ Eigen::Matrix3d rotation_of(nb::handle euler, nb::handle quat, nb::handle matrix
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.data());
   if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 1e-6 ||
       R.determinant() < 0) {
-    raise_bad_input("matrix: expected a rotation matrix");
+    refuse(msg::python_no_rotation, "matrix");
   }
   return R;
 }
@@ -47,7 +47,7 @@ nb::object moved(const Pose& X, nb::handle what) {
   const Reals points = reals(what, "points");
   const bool one = points.ndim() == 1;
   if (points.ndim() == 0 || points.ndim() > 2 || points.shape(points.ndim() - 1) != 3) {
-    raise_bad_input("Pose @: expected a Pose, or points of shape (3,) or (n, 3)");
+    refuse(msg::python_points);
   }
   std::vector<double> out(points.size());
   for (std::size_t i = 0; i < out.size(); i += 3) {
@@ -139,7 +139,7 @@ BadInput
       .def(
           "interpolate",
           [](const Pose& X, nb::handle to, double t) {
-            if (!(t >= 0 && t <= 1)) raise_bad_input("t: expected a share from 0 to 1");
+            if (!(t >= 0 && t <= 1)) refuse(msg::python_share, "t");
             return interpolate(X, pose_of(to, "to"), t);
           },
           nb::arg("to"), nb::arg("t"),
@@ -177,10 +177,12 @@ void bind_core(nb::module_& m) {
   bind_pose(m);
   set_language(language_of_locale());
   m.def(
+      "language", [] { return language() == Language::chinese ? "zh" : "en"; },
+      "The language of messages, \"en\" or \"zh\".");
+  m.def(
       "set_language",
       [](const std::string& name) {
-        if (name != "en" && name.rfind("zh", 0) != 0)
-          raise_bad_input("language: expected en or zh");
+        if (name != "en" && name.rfind("zh", 0) != 0) refuse(msg::python_language);
         set_language(language_of(name));
       },
       nb::arg("name"),

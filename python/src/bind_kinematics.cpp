@@ -39,7 +39,7 @@ IkTask task_of(const std::string& word) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i] == word) return static_cast<IkTask>(i);
   }
-  raise_bad_input("task: expected pose, position or axis, not " + word);
+  refuse(msg::python_task, word);
 }
 
 /// What a caller's function threw while an answer was sought; solvers must not be thrown through.
@@ -122,9 +122,9 @@ nb::tuple ik_batch(const BoundRobot& robot, nb::handle poses, nb::handle seed, i
   const std::vector<double> seeds =
       one_each ? robot.rows(seed, "seed") : std::vector<double>(same.begin(), same.end());
   if (one_each && seeds.size() != X_WT.size() * dof) {
-    raise_bad_input("seed: expected as many rows as poses, " + std::to_string(X_WT.size()));
+    refuse(msg::python_seed_rows, X_WT.size());
   }
-  if (threads < 0) raise_bad_input("threads: expected 0 (all cores) or more");
+  if (threads < 0) refuse(msg::python_not_negative, "threads");
   std::vector<double> q(X_WT.size() * dof, std::numeric_limits<double>::quiet_NaN());
   auto ok = std::make_unique<std::vector<unsigned char>>(X_WT.size());
   {

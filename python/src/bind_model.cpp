@@ -17,9 +17,8 @@ JointVec BoundRobot::joints(nb::handle value, const char* name) const {
   const auto n = static_cast<std::size_t>(dof());
   const auto nq = static_cast<std::size_t>(robot.model.nq());
   if (given.ndim() != 1 || (given.size() != n && given.size() != nq)) {
-    const std::string whole = n == nq ? "" : " or the whole qpos (" + std::to_string(nq) + ",)";
-    raise_bad_input(std::string(name) + ": expected joint values [rad or m] of shape (" +
-                    std::to_string(n) + ",)" + whole);
+    if (n == nq) refuse(msg::python_joints, name, n);
+    refuse(msg::python_joints_or_qpos, name, n, nq);
   }
   JointVec q(dof());
   for (std::size_t i = 0; i < n; ++i) {

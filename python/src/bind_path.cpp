@@ -26,12 +26,11 @@ struct PathWords {
 };
 
 PathOptions options_of(const BoundRobot& robot, const PathWords& words) {
-  if (!is_sound_step(words.max_step))
-    raise_bad_input("max_step: expected more than 0, up to pi [rad or m]");
+  if (!is_sound_step(words.max_step)) refuse(msg::python_max_step);
   if (!(words.orientation_tol >= 0 && words.orientation_tol < std::numbers::pi / 2)) {
-    raise_bad_input("orientation_tol: expected 0 to pi/2 [rad]");
+    refuse(msg::python_tilt);
   }
-  if (!(words.tool_speed >= 0)) raise_bad_input("tool_speed: expected 0 or more [m/s]");
+  if (!(words.tool_speed >= 0)) refuse(msg::python_not_negative, "tool_speed");
   PathOptions options;
   options.max_step = words.max_step;
   options.orientation_tol = words.orientation_tol;
@@ -79,7 +78,7 @@ BoundPath follow_poses(const BoundRobot& robot, const std::vector<Pose>& poses,
                        const PathWords& words) {
   PathOptions options = options_of(robot, words);
   const JointVec q_start = robot.joints_or_home(words.start, "start");
-  if (poses.empty()) raise_bad_input("poses: expected one at least");
+  if (poses.empty()) refuse(msg::python_empty, "poses");
   return interruptible([&](const StopCheck& stop) {
     options.stop = stop;
     const std::span<const Pose> along = poses;
@@ -175,7 +174,7 @@ void bind_curve(nb::module_& m) {
       .def(
           "poses",
           [](const Curve& curve, int n) {
-            if (n < 2) raise_bad_input("n: expected 2 or more");
+            if (n < 2) refuse(msg::python_two);
             std::vector<Pose> out;
             for (int i = 0; i < n; ++i) out.push_back(curve.at(curve.end() * i / (n - 1)));
             return out;

@@ -129,7 +129,7 @@ PathEnd goal_of(const BoundRobot& robot, nb::handle goal) {
   } else {
     out.q.push_back(robot.joints(goal, "goal"));
   }
-  if (out.q.empty() && out.regions.empty()) raise_bad_input("goal: expected one at least");
+  if (out.q.empty() && out.regions.empty()) refuse(msg::python_empty, "goal");
   return out;
 }
 
@@ -156,7 +156,7 @@ BoundPlan plan(const BoundRobot& robot, nb::handle start, nb::handle goal, const
     world.qpos.assign(whole.data(), whole.data() + whole.size());
   }
   if (samples < 0 || rounds < 0 || !(time_limit >= 0)) {
-    raise_bad_input("samples, rounds, time_limit: expected 0 or more");
+    refuse(msg::python_not_negative, "samples, rounds, time_limit");
   }
   PlanOptions options{.seed = seed,
                       .samples = samples,
@@ -178,7 +178,7 @@ BoundPlan plan(const BoundRobot& robot, nb::handle start, nb::handle goal, const
 }
 
 std::vector<std::string> verify(const BoundRobot& robot, const BoundPlan& plan, double step) {
-  if (!(step >= kLeastVerifyStep)) raise_bad_input("step: expected 1e-5 or more [rad or m]");
+  if (!(step >= kLeastVerifyStep)) refuse(msg::python_verify_step);
   GivenPath rows;
   for (const JointVec& q : plan.path.q) rows.rows.emplace_back(q.begin(), q.end());
   const auto verdict = interruptible([&](const StopCheck& stop) {

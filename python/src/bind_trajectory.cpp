@@ -21,8 +21,7 @@ constexpr double kMostSamples = 1e8;
 Trajectory time_path_of_tool(const BoundRobot& robot, const BoundPath& path,
                              const TimingOptions& timing) {
   if (path.failure) raise(Error{Errc::impossible, path.what});
-  if (path.stops.empty())
-    raise_bad_input("time: poses have no way between them; give the path of a curve");
+  if (path.stops.empty()) refuse(msg::python_no_way);
   return value_of(time_tool_path(path.had, path.stops, robot.arm().limits, timing));
 }
 
@@ -37,8 +36,8 @@ Trajectory time_plan(const BoundPlan& plan, const JointLimits& limits) {
 }
 
 Trajectory time(const BoundRobot& robot, nb::handle what, double tool_speed, double share) {
-  if (!(share > 0 && share <= 1)) raise_bad_input("share: expected more than 0, up to 1");
-  if (!(tool_speed > 0)) raise_bad_input("tool_speed: expected more than 0 [m/s]");
+  if (!(share > 0 && share <= 1)) refuse(msg::python_share, "share");
+  if (!(tool_speed > 0)) refuse(msg::python_positive, "tool_speed");
   const TimingOptions timing{.tool_speed = tool_speed, .joint_share = share};
   if (nb::isinstance<BoundPath>(what)) {
     return time_path_of_tool(robot, nb::cast<const BoundPath&>(what), timing);
@@ -71,7 +70,7 @@ nb::tuple states(const Trajectory& motion, const std::vector<double>& times) {
 
 nb::tuple sample(const Trajectory& motion, double dt) {
   if (!(dt > 0) || motion.duration() / dt > kMostSamples) {
-    raise_bad_input("dt: expected seconds, and no more than 1e8 samples");
+    refuse(msg::python_dt);
   }
   std::vector<double> times;
   const auto whole = static_cast<std::size_t>(std::ceil(motion.duration() / dt - 1e-9));
@@ -89,7 +88,7 @@ void bind_trajectory(nb::module_& m) {
       .def(
           "at",
           [](const Trajectory& motion, double t) {
-            if (!std::isfinite(t)) raise_bad_input("t: expected seconds");
+            if (!std::isfinite(t)) refuse(msg::python_seconds);
             const JointState state = motion.at(t);
             return nb::make_tuple(array(state.q), array(state.v), array(state.a));
           },

@@ -43,8 +43,7 @@ Pose pose_of_matrix(const double* m, const std::string& name) {
   const double off = (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   const Eigen::RowVector4d last(0, 0, 0, 1);
   if (off > 1e-6 || X.R.determinant() < 0 || !(matrix.row(3) - last).isZero(1e-9)) {
-    raise_bad_input(name +
-                    ": expected a rotation matrix and a position [m] with (0, 0, 0, 1) below");
+    refuse(msg::python_no_pose, name);
   }
   return X;
 }
@@ -63,13 +62,12 @@ Reals reals(nb::handle value, const char* name) {
       }
       made = nb::module_::import_("numpy").attr("asarray")(made, "float64", "C");
     } catch (const std::exception&) {
-      raise_bad_input(std::string(name) + ": expected numbers, not " +
-                      nb::cast<std::string>(nb::str(nb::handle(value).type().attr("__name__"))));
+      refuse(msg::python_no_numbers, name,
+             nb::cast<std::string>(nb::str(nb::handle(value).type().attr("__name__"))));
     }
     out = nb::cast<Reals>(made);
   }
-  if (!all_finite(span_of(out)))
-    raise_bad_input(std::string(name) + ": not every number is finite");
+  if (!all_finite(span_of(out))) refuse(msg::python_not_finite, name);
   return out;
 }
 
@@ -77,8 +75,7 @@ Reals reals(nb::handle value, const char* name, std::initializer_list<long long>
   Reals out = reals(value, name);
   const std::span<const long long> wanted(shape.begin(), shape.size());
   if (!has_shape(out, wanted)) {
-    raise_bad_input(std::string(name) + ": expected shape " + shape_text(wanted) + ", not " +
-                    shape_text(out));
+    refuse(msg::python_shape, name, shape_text(wanted), shape_text(out));
   }
   return out;
 }
@@ -131,7 +128,7 @@ std::vector<Pose> poses_of(nb::handle value, const char* name) {
     for (std::size_t i = 0; i < pos.shape(0); ++i) {
       const double* const q = quat.data() + 4 * i;
       const Quat turn(q[0], q[1], q[2], q[3]);
-      if (turn.norm() < 1e-9) raise_bad_input(std::string(name) + ": a quaternion is zero");
+      if (turn.norm() < 1e-9) refuse(msg::python_zero_quat, name);
       out.push_back({Eigen::Map<const Eigen::Vector3d>(pos.data() + 3 * i), to_matrix(turn)});
     }
     return out;

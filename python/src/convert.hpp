@@ -13,6 +13,7 @@
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
+#include "python/messages/python.hpp"
 
 /// What all binding files share: arrays and poses in and out, failures into exceptions.
 namespace mjarm::python {
@@ -60,6 +61,11 @@ using Reals = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 /// The exception of the failure's kind.
 [[noreturn]] void raise(const Error& error);
 [[noreturn]] void raise_bad_input(const std::string& what);
+/// The same in the language in use.
+template <class... Values>
+[[noreturn]] void refuse(Msg message, const Values&... values) {
+  raise_bad_input(text(message, values...));
+}
 
 /// The value, or the failure as an exception.
 template <class T>

@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import subprocess
 import sys
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import mjarm
+from mjarm.ikpy import Chain
 
 
 def python(code, **environment):
@@ -70,6 +72,24 @@ def test_speaks_chinese():
     assert "够不着" in python(code, PYTHONIOENCODING="utf-8").stdout
     with pytest.raises(mjarm.BadInput):
         mjarm.set_language("xx")
+    before = mjarm.language()
+    try:
+        mjarm.set_language("zh-CN")
+        assert mjarm.language() == "zh"
+        with pytest.raises(mjarm.BadInput, match="应为数字，而不是 str"):
+            mjarm.Pose("here")
+        with pytest.raises(mjarm.BadInput, match="没有连杆"):
+            Chain.from_urdf_file(mjarm.Robot("ur5e").file.with_name("ur5e.urdf"), base_elements=["x"])
+    finally:
+        mjarm.set_language(before)
+
+
+def test_both_languages_leave_the_same_places_open():
+    catalogue = pathlib.Path(__file__).parents[1] / "messages" / "python.inc"
+    texts = re.findall(r'MJARM_MSG\(\w+,\s*"(.*?)",\s*"(.*?)"\)', catalogue.read_text(encoding="utf-8"), re.DOTALL)
+    assert len(texts) > 20
+    for english, chinese in texts:
+        assert english.count("{}") == chinese.count("{}"), english
 
 
 @pytest.mark.filterwarnings("ignore:nanobind")  # an object that is made a second time
