@@ -11,7 +11,7 @@ namespace {
 using Found = Result<PlannedPath, WorldFailure>;
 
 constexpr int kFirstRound = 2000;       // samples before more goals are drawn
-constexpr int kPulls = 3;               // of the ends of a path,
+constexpr int kEndPulls = 3;            // of the ends of a path,
 constexpr double kPullPaysPath = 0.01;  // each as long as it saves this share
 constexpr std::size_t kMaxStarts = 8;   // that are tried, those nearest to a goal
 
@@ -47,7 +47,7 @@ void pull_ends(const ClearScene& scene, ClearEnds ends, const EndConfigurations&
   const auto least_kept = [](const PlannedPath& of) {
     return of.kept.empty() ? 0 : *std::ranges::min_element(of.kept);
   };
-  for (int k = 0; k < kPulls && !is_stopped(options.stop); ++k) {
+  for (int k = 0; k < kEndPulls && !is_stopped(options.stop); ++k) {
     const JointVec& beside = path.q[path.q.size() - 2];
     const std::vector<JointVec> to{goals.pulled(path.goal, path.q.back(), beside)};
     const JointVec from =
