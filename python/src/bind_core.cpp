@@ -1,10 +1,9 @@
 // Poses, and the language of messages.
-#include <nanobind/operators.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
-#include <cmath>
-#include <optional>
+#include <cstdio>
+#include <numbers>
 
 #include "mjarm/core/messages.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -26,19 +25,13 @@ Eigen::Matrix3d rotation_of(nb::handle euler, nb::handle quat, nb::handle matrix
     return from_euler(angles);
   }
   if (!quat.is_none()) {
-    const Reals q = reals(quat, "quat", {4});
-    const Quat turn(q.data()[0], q.data()[1], q.data()[2], q.data()[3]);
-    if (turn.norm() < 1e-9) refuse(msg::python_zero_quat, "quat");
-    return to_matrix(turn);
+    return rotation_of_quat(reals(quat, "quat", {4}).data(), "quat");
   }
   if (matrix.is_none()) return Eigen::Matrix3d::Identity();
   const Reals m = reals(matrix, "matrix", {3, 3});
   const Eigen::Matrix3d R =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.data());
-  if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 1e-6 ||
-      R.determinant() < 0) {
-    refuse(msg::python_no_rotation, "matrix");
-  }
+  if (!is_rotation(R)) refuse(msg::python_no_rotation, "matrix");
   return R;
 }
 
@@ -107,18 +100,13 @@ BadInput
           nb::arg("matrix"), nb::sig("def from_matrix(matrix: ArrayLike) -> Pose"),
           "The pose of a homogeneous matrix, shape (4, 4).")
       .def_prop_ro(
-          "pos",
-          [](const Pose& X) { return array(std::vector<double>(X.p.begin(), X.p.end()), {3}); },
-          nb::sig("def pos(self) -> Array"), "Position [m], shape (3,).")
+          "pos", [](const Pose& X) { return array(X.p); }, nb::sig("def pos(self) -> Array"),
+          "Position [m], shape (3,).")
       .def_prop_ro(
           "quat", [](const Pose& X) { return array(quat_values(X), {4}); },
           nb::sig("def quat(self) -> Array"), "Unit quaternion (w, x, y, z), shape (4,).")
       .def_prop_ro(
-          "euler",
-          [](const Pose& X) {
-            const Eigen::Vector3d e = to_euler(X.R);
-            return array({e[0], e[1], e[2]}, {3});
-          },
+          "euler", [](const Pose& X) { return array(to_euler(X.R)); },
           nb::sig("def euler(self) -> Array"),
           "Angles [rad] about the fixed axes x, y, z, shape (3,).")
       .def_prop_ro(

@@ -156,10 +156,7 @@ nb::object fk_many(const BoundRobot& robot, nb::handle q) {
     std::vector<Pose> X_WT(n);
     fk_batch(robot.ik.chain(), rows, X_WT);
     for (std::size_t i = 0; i < n; ++i) {
-      Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(out.data() + 16 * i);
-      matrix.setIdentity();
-      matrix.topLeftCorner<3, 3>() = X_WT[i].R;
-      matrix.topRightCorner<3, 1>() = X_WT[i].p;
+      Eigen::Map<Homogeneous>(out.data() + 16 * i) = homogeneous(X_WT[i]);
     }
   }
   return array(std::move(out), {n, 4, 4});

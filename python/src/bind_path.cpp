@@ -200,16 +200,10 @@ void bind_outcome(nb::module_& m) {
           "kind", [](const PathFix& fix) { return std::string(name(fix.kind)); },
           "\"start\", \"shift\", \"tilt\", \"max_step\" or \"slower\".")
       .def_prop_ro(
-          "shift",
-          [](const PathFix& fix) {
-            return array({fix.change.shift[0], fix.change.shift[1], fix.change.shift[2]}, {3});
-          },
+          "shift", [](const PathFix& fix) { return array(fix.change.shift); },
           nb::sig("def shift(self) -> Array"), "[m] of the whole path in the world.")
       .def_prop_ro(
-          "tilt",
-          [](const PathFix& fix) {
-            return array({fix.change.tilt[0], fix.change.tilt[1], fix.change.tilt[2]}, {3});
-          },
+          "tilt", [](const PathFix& fix) { return array(fix.change.tilt); },
           nb::sig("def tilt(self) -> Array"), "[rad] rotation vector in the tool's frame.")
       .def_prop_ro(
           "start", [](const PathFix& fix) { return array(fix.start); },

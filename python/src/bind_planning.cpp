@@ -44,8 +44,6 @@ CollisionReport check(const BoundRobot& robot, nb::handle q, double margin, cons
   return value_of(checker.check(as_span(values)));
 }
 
-nb::object vector(const Eigen::Vector3d& p) { return array({p[0], p[1], p[2]}, {3}); }
-
 void bind_contacts(nb::module_& m) {
   nb::class_<ContactPoint>(m, "Contact", "Two shapes that overlap, where they do so most.")
       .def_prop_ro(
@@ -56,10 +54,10 @@ void bind_contacts(nb::module_& m) {
           "The bodies they belong to.")
       .def_ro("depth", &ContactPoint::depth, "Overlap along the normal [m], > 0.")
       .def_prop_ro(
-          "point", [](const ContactPoint& c) { return vector(c.point_W); },
+          "point", [](const ContactPoint& c) { return array(c.point_W); },
           nb::sig("def point(self) -> Array"), "Midway between the two surfaces, in the world [m].")
       .def_prop_ro(
-          "normal", [](const ContactPoint& c) { return vector(c.normal_W); },
+          "normal", [](const ContactPoint& c) { return array(c.normal_W); },
           nb::sig("def normal(self) -> Array"), "Unit vector from the first to the second.");
   nb::class_<CollisionReport>(m, "CollisionReport",
                               "What one configuration touches, or comes near to.")

@@ -35,16 +35,11 @@ bool has_shape(const Reals& array, std::span<const long long> shape) {
   return true;
 }
 
-/// From a row-major (4, 4).
-Pose pose_of_matrix(const double* m, const std::string& name) {
-  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  const Eigen::Map<const RowMajor> matrix(m);
+Pose pose_of_matrix(const double* m, const char* name) {
+  const Eigen::Map<const Homogeneous> matrix(m);
   const Pose X{matrix.topRightCorner<3, 1>(), matrix.topLeftCorner<3, 3>()};
-  const double off = (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   const Eigen::RowVector4d last(0, 0, 0, 1);
-  if (off > 1e-6 || X.R.determinant() < 0 || !(matrix.row(3) - last).isZero(1e-9)) {
-    refuse(msg::python_no_pose, name);
-  }
+  if (!is_rotation(X.R) || !(matrix.row(3) - last).isZero(1e-9)) refuse(msg::python_no_pose, name);
   return X;
 }
 
@@ -104,14 +99,31 @@ nb::object array(std::span<const JointVec> rows, int dof) {
   return array(std::move(values), {rows.size(), static_cast<std::size_t>(dof)});
 }
 
+nb::object array(const Eigen::Vector3d& v) {
+  return array(std::vector<double>(v.begin(), v.end()), {3});
+}
+
 nb::object array(const Pose& X) {
-  std::vector<double> values;
-  values.reserve(16);
-  for (int row = 0; row < 3; ++row) {
-    values.insert(values.end(), {X.R(row, 0), X.R(row, 1), X.R(row, 2), X.p[row]});
-  }
-  values.insert(values.end(), {0, 0, 0, 1});
-  return array(std::move(values), {4, 4});
+  const Homogeneous matrix = homogeneous(X);
+  return array(std::vector<double>(matrix.data(), matrix.data() + matrix.size()), {4, 4});
+}
+
+Homogeneous homogeneous(const Pose& X) {
+  Homogeneous out = Homogeneous::Identity();
+  out.topLeftCorner<3, 3>() = X.R;
+  out.topRightCorner<3, 1>() = X.p;
+  return out;
+}
+
+Eigen::Matrix3d rotation_of_quat(const double* quat, const char* name) {
+  const Quat turn(quat[0], quat[1], quat[2], quat[3]);
+  if (turn.norm() < 1e-9) refuse(msg::python_zero_quat, name);
+  return to_matrix(turn);
+}
+
+bool is_rotation(const Eigen::Matrix3d& R) {
+  const double off = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  return off <= 1e-6 && R.determinant() > 0;
 }
 
 Pose pose_of(nb::handle value, const char* name) {
@@ -126,10 +138,8 @@ std::vector<Pose> poses_of(nb::handle value, const char* name) {
     const Reals pos = reals(value[0], name, {-1, 3});
     const Reals quat = reals(value[1], name, {static_cast<long long>(pos.shape(0)), 4});
     for (std::size_t i = 0; i < pos.shape(0); ++i) {
-      const double* const q = quat.data() + 4 * i;
-      const Quat turn(q[0], q[1], q[2], q[3]);
-      if (turn.norm() < 1e-9) refuse(msg::python_zero_quat, name);
-      out.push_back({Eigen::Map<const Eigen::Vector3d>(pos.data() + 3 * i), to_matrix(turn)});
+      out.push_back({Eigen::Map<const Eigen::Vector3d>(pos.data() + 3 * i),
+                     rotation_of_quat(quat.data() + 4 * i, name)});
     }
     return out;
   }

@@ -46,8 +46,20 @@ using Reals = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 [[nodiscard]] nb::object array(const JointVec& q);
 /// (n, dof).
 [[nodiscard]] nb::object array(std::span<const JointVec> rows, int dof);
+/// (3,).
+[[nodiscard]] nb::object array(const Eigen::Vector3d& v);
 /// (4, 4).
 [[nodiscard]] nb::object array(const Pose& X);
+
+/// A homogeneous matrix, rows one after another.
+using Homogeneous = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+[[nodiscard]] Homogeneous homogeneous(const Pose& X);
+
+/// The rotation of (w, x, y, z), which is normalised.
+/// @throws a BadInput that names the argument, where all are zero.
+[[nodiscard]] Eigen::Matrix3d rotation_of_quat(const double* quat, const char* name);
+/// Whether it is one, to 1e-6.
+[[nodiscard]] bool is_rotation(const Eigen::Matrix3d& R);
 
 /// A mjarm.Pose, or anything like an array of shape (4, 4).
 /// @throws a BadInput that names the argument.
