@@ -1,6 +1,6 @@
 """Brings the tables of docs/benchmarks.md up to date.
 
-Usage: update_docs.py [ik|path|plan|near|time|control|pick|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
+Usage: update_docs.py [ik|path|plan|near|time|control|pick|python|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
 update_docs.py ik build/release/bin/mjarm --data cases --peers .venv
 update_docs.py plan build/release/bin/mjarm --data motionbenchmaker --peers .venv
 update_docs.py near build/release/bin/mjarm --data FOLDER --peers .venv-near
@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-SUITES = ("ik", "path", "time", "control", "pick")
+SUITES = ("ik", "path", "time", "control", "pick", "python")
 PICTURES = {"plan": "bench_plan", "near": "bench_plan", "rl": "curves"}  # drawn by suites that run by themselves only
 SUITE_OF = {"plan": ("plan", "--set", "panda,ur5,anytime,scaling"), "near": ("plan", "--set", "near")}
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"

@@ -1,14 +1,32 @@
 # Part of ./dev: the package of Python. Sourced after setup.sh, never run.
 
+# is_python PROGRAM LEAST BELOW: true for a Python of such a version, such as 3.11, with headers.
+is_python() {
+  "$1" - "$2" "$3" 2>/dev/null <<'END'
+import ensurepip, pathlib, sys, sysconfig, venv
+least, below = (tuple(map(int, word.split("."))) for word in sys.argv[1:])
+headers = pathlib.Path(sysconfig.get_paths()["include"]) / "Python.h"
+sys.exit(not (least <= sys.version_info[:2] < below and headers.is_file()))
+END
+}
+
 # True where there is a Python that the package can be built for, with its headers; it goes into $python3.
 find_python() {
-  for python3 in python3 /usr/bin/python3; do
-    "$python3" - 2>/dev/null <<'END' && return
-import ensurepip, pathlib, sys, sysconfig, venv
-sys.exit(sys.version_info < (3, 11) or not (pathlib.Path(sysconfig.get_paths()["include"]) / "Python.h").is_file())
-END
+  for python3 in ${python3:-} python3 /usr/bin/python3; do
+    is_python "$python3" 3.11 4.0 && return
   done
   return 1
+}
+
+# A Python for each kind of wheel, as far as there is one: 3.11 has its own, all from 3.12 on have one together.
+pythons_of_wheels() {
+  local one range
+  for range in "3.11 3.12" "3.12 4.0"; do
+    for one in python3 /usr/bin/python3 python3.11 python3.12 python3.13 python3.14 \
+      "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.*/bin/python3; do
+      is_python "$one" $range && echo "$one" && break
+    done
+  done
 }
 
 # python_environment NAME: a folder in .deps with what python/requirements-NAME.txt pins, made where it is missing; it
@@ -44,7 +62,6 @@ build_wheel() {
   work=$(mktemp -d "$build/wheel.XXXXXX")
   quiet "$environment/bin/pip" wheel "$root/python" --no-deps --no-build-isolation --disable-pip-version-check \
     -C cmake.define.MJARM_BUILD="$build" -C build-dir="$work/cmake" --wheel-dir "$work" &&
-    rm -rf "$target" &&
     quiet "$environment/bin/python" -B "$root/tools/repair_wheel.py" "$work"/mjarm-*.whl "$target"
   local code=$?
   rm -rf "$work"
@@ -56,9 +73,31 @@ test_wheel() {
   local results=$2
   python_environment test || return
   quiet "$environment/bin/pip" install --disable-pip-version-check --no-deps --no-index --force-reinstall \
-    "$1"/mjarm-*.whl || return
+    --find-links "$1" mjarm || return
   rm -f "$results"
-  (cd / && PATH=$environment/bin "$environment/bin/python" -B -m pytest -q -p no:cacheprovider --junitxml "$results" \
+  (cd / && PATH=$environment/bin "$environment/bin/python" -B -m pytest -q -p no:cacheprovider -n "$(jobs_at_once)" --junitxml "$results" \
     "$root/python/tests" >&2) || true
   [[ -e $results ]]
+}
+
+# check_types: judges the types of the installed wheel, as an editor does that is set to be strict.
+check_types() {
+  local tests site
+  python_environment test && tests=$environment && python_environment check || return
+  site=$("$tests/bin/python" -c 'import sysconfig; print(sysconfig.get_paths()["purelib"])')/mjarm
+  "$environment/bin/basedpyright" --project "$root/python/tests/pyrightconfig.json" --pythonpath "$tests/bin/python" \
+    "$site" "$root/python/examples" >&2
+}
+
+# check_abi FOLDER: the wheel for many versions of Python calls nothing that one of them lacks.
+check_abi() {
+  python_environment check && "$environment/bin/abi3audit" --strict "$1"/mjarm-*-abi3-*.whl >&2
+}
+
+# configure_wheel: the build folder of the wheel, for $python3.
+configure_wheel() {
+  python_environment build || return
+  rm -f "$root"/build/wheel/python/mjarm/_core*
+  quiet cmake -S "$root" --preset wheel -U 'Python_*' -U '_Python*' -U 'nanobind_*' \
+    -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" -DMJARM_PYTHON=ON -DPython_EXECUTABLE="$environment/bin/python"
 }

@@ -13,9 +13,12 @@ import zipfile
 
 # Of the system, whatever the machine.
 STAYS = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\+\+))\.so(\.|$)")
-# The rules for wheels take these for parts of every Linux, which a server without a display lacks. Under other names
-# they go along as well.
-TAKEN_FOR_GRANTED = ("libX11.so.6", "libXext.so.6", "libXrender.so.1", "libexpat.so.1", "libz.so.1")
+# The rules for wheels take these for parts of every Linux, which a small server lacks. Under other names they go along as
+# well.
+TAKEN_FOR_GRANTED = ("libexpat.so.1", "libz.so.1")
+# So are these, but where the system has them its OpenGL uses them too, and a window needs the same ones: the package
+# loads its own copies, in this folder, only where there are no others (_library.py).
+OF_THE_DISPLAY = ("libX11.so.6", "libXext.so.6", "libXrender.so.1")
 
 
 def run(*command):
@@ -36,9 +39,20 @@ def own_name(name):
     return name.replace("lib", "libmjarm_", 1) if name in TAKEN_FOR_GRANTED else name
 
 
+def keep_spare(files, folder):
+    """Copies libraries under their own names into a folder, with all that they need."""
+    folder.mkdir()
+    for path in files:
+        for name, needed in {path.name: path, **needed_libraries(path)}.items():
+            (folder / name).write_bytes(needed.read_bytes())
+    for copy in folder.iterdir():
+        patchelf("--set-rpath", "$ORIGIN", copy)
+
+
 def take_along(module, folder):
     """Copies all that the module needs into a folder, and has all of it look there."""
     libraries = {name: path for name, path in needed_libraries(module).items() if not name.startswith("libmujoco")}
+    keep_spare([libraries.pop(name) for name in OF_THE_DISPLAY], module.parent / "spare")
     for name, path in libraries.items():
         copy = folder / own_name(name)
         copy.write_bytes(path.read_bytes())

@@ -91,6 +91,7 @@ count_results() {
 run_pytest() {
   local build=$root/build/$1
   find_python || { skipped=$((skipped + 1)) && echo "SKIPPED: python: no Python 3.11 with headers and venv"; return; }
+  rm -rf "$build/wheel"
   check "wheel" build_wheel "$1" "$build/wheel"
   ((failed)) && return
   check "wheel: installed" test_wheel "$build/wheel" "$build/pytest.xml"
@@ -98,10 +99,19 @@ run_pytest() {
 }
 
 run_wheel() {
-  check "build" build_counted wheel mjarm_python mjarm_python_stub
-  ((failed)) || check "wheel" build_wheel wheel "$root/dist"
-  ((failed)) || check "wheel: installed" test_wheel "$root/dist" "$root/build/wheel/pytest.xml"
-  [[ ! -e $root/build/wheel/pytest.xml ]] || count_results "$root/build/wheel/pytest.xml"
+  local results=$root/build/wheel/pytest.xml
+  rm -rf "$root/dist"
+  for python3 in $(pythons_of_wheels); do
+    check "$("$python3" --version)" configure_wheel
+    ((failed)) || check "build" build_counted wheel mjarm_python mjarm_python_stub
+    ((failed)) || check "wheel" build_wheel wheel "$root/dist"
+    ((failed)) || check "wheel: installed" test_wheel "$root/dist" "$results"
+    ((failed)) && break
+    count_results "$results"
+  done
+  [[ -d $root/dist ]] || check "a Python of 3.11 or later, with headers" false
+  ((failed)) || check "types" check_types
+  if compgen -G "$root/dist/*-abi3-*.whl" >/dev/null; then check "abi3" check_abi "$root/dist"; fi
   ((failed)) || say "$(du -h "$root"/dist/*.whl)"
   finish
 }

@@ -15,8 +15,9 @@ namespace {
 /// `bench` with all suites as subcommands of its own.
 Run setup(CLI::App& bench) {
   std::vector<std::pair<const CLI::App*, Run>> suites;
-  for (const Command& suite : {ik_suite(), path_suite(), plan_suite(), time_suite(),
-                               control_suite(), pick_suite(), sim_suite(), rl_suite()}) {
+  for (const Command& suite :
+       {ik_suite(), path_suite(), plan_suite(), time_suite(), control_suite(), pick_suite(),
+        sim_suite(), rl_suite(), python_suite()}) {
     CLI::App& app = add_subcommand(bench, suite.name, suite.summary, suite.examples);
     suites.emplace_back(&app, suite.setup(app));
   }

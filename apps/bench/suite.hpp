@@ -26,6 +26,7 @@ namespace mjarm::app {
 [[nodiscard]] Command pick_suite();
 [[nodiscard]] Command sim_suite();
 [[nodiscard]] Command rl_suite();
+[[nodiscard]] Command python_suite();
 
 /// What one contestant did on one set of cases, ready to be shown.
 struct BenchEntry {

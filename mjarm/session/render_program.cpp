@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "mjarm/core/messages/show.hpp"
-#include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/render/trail.hpp"
@@ -64,6 +63,11 @@ struct Job {
   const PictureOptions& options;
   const render::Camera& camera;
   std::optional<double> seconds;
+  const StopCheck& stop;
+
+  [[nodiscard]] Error stopped() const {
+    return {Errc::system, text(msg::show_stopped, options.out.string())};
+  }
 };
 
 Result<std::string> video_of(ProgramRun& run, const Job& job, Progress& progress) {
@@ -71,9 +75,11 @@ Result<std::string> video_of(ProgramRun& run, const Job& job, Progress& progress
   if (!video) return fail(std::move(video.error()));
   const auto after_step = [&] {
     progress.advance();
-    return video->is_due(run.sim()) ? video->step(run.sim(), run.overlay()) : !interrupted();
+    if (is_stopped(job.stop)) return false;
+    return !video->is_due(run.sim()) || video->step(run.sim(), run.overlay());
   };
   if (Result<void> ran = run.run(job.seconds, after_step); !ran) return fail(ran.error());
+  if (is_stopped(job.stop)) return fail(job.stopped());
   if (Result<void> finished = video->finish(); !finished) return fail(finished.error());
   return video->summary();
 }
@@ -83,14 +89,12 @@ Result<std::string> picture_of(ProgramRun& run, const Job& job, Progress& progre
   Result<render::OffscreenRenderer> renderer =
       render::OffscreenRenderer::create(job.model, offscreen_options(options));
   if (!renderer) return fail(std::move(renderer.error()));
-  const auto after_step = [&progress] {
+  const auto after_step = [&] {
     progress.advance();
-    return !interrupted();
+    return !is_stopped(job.stop);
   };
   if (Result<void> ran = run.run(job.seconds, after_step); !ran) return fail(ran.error());
-  if (interrupted()) {
-    return fail(Errc::system, text(msg::show_stopped, options.out.string()));
-  }
+  if (is_stopped(job.stop)) return fail(job.stopped());
   return write_picture(*renderer, options, run.sim().snapshot(), job.camera, run.overlay());
 }
 
@@ -117,10 +121,10 @@ Result<std::string> strip_over(ProgramRun& run, const Job& job, double duration,
     const double due = duration * static_cast<double>(pictures.size()) / (options.strip - 1);
     const bool wanted = static_cast<int>(pictures.size()) < options.strip - 1;
     if (wanted && run.sim().time() >= due && !draw()) return false;
-    return !interrupted();
+    return !is_stopped(job.stop);
   };
   if (Result<void> ran = run.run(job.seconds, after_step); !ran) return fail(ran.error());
-  if (interrupted()) return fail(Errc::system, text(msg::show_stopped, options.out.string()));
+  if (is_stopped(job.stop)) return fail(job.stopped());
   if (!drawn || !draw()) return fail(std::move(drawn.error()));
   return write_image(strip_of(pictures), options);
 }
@@ -129,14 +133,14 @@ Result<std::string> strip_over(ProgramRun& run, const Job& job, double duration,
 
 Result<std::string> render_program(const program::LoadedProgram& loaded,
                                    const PictureOptions& options, const render::Camera& camera,
-                                   std::optional<double> seconds) {
+                                   std::optional<double> seconds, const StopCheck& stop) {
   const Model& model = loaded.robot.model;
   double duration = loaded.plan.duration() + kRestAtEnd;
   if (seconds) duration = std::min(duration, *seconds);
   Progress progress(text(msg::show_running),
                     static_cast<std::uint64_t>(duration / model.timestep()));
   ProgramRun run(loaded);
-  const Job job{model, options, camera, seconds};
+  const Job job{model, options, camera, seconds, stop};
   if (options.strip > 0) return strip_over(run, job, duration, progress);
   return options.video ? video_of(run, job, progress) : picture_of(run, job, progress);
 }

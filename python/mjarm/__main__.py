@@ -3,12 +3,12 @@
 import signal
 import sys
 
-from . import _core
+from ._core import run_program
 
 
 def main() -> int:
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # the program catches it itself, where it should
-    return _core.run_program(sys.argv[1:])
+    return run_program(sys.argv[1:])
 
 
 if __name__ == "__main__":

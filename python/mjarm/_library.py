@@ -1,4 +1,5 @@
-"""Loads the MuJoCo library of the package mujoco-core, the one that `import mujoco` uses too."""
+"""Loads the libraries that the package does not have in its own names: MuJoCo's, of the package mujoco-core, which
+`import mujoco` uses too, and those of X11."""
 
 from __future__ import annotations
 
@@ -19,3 +20,14 @@ def load() -> None:
         raise ImportError(f"mjarm needs MuJoCo 4.0, but {found[0]} is installed (需要 MuJoCo 4.0，但装的是别的版本): "
                           "pip install 'mujoco-core>=4.0,<4.1'")
     ctypes.CDLL(str(suitable[0]), mode=ctypes.RTLD_GLOBAL)
+    load_display()
+
+
+def load_display() -> None:
+    """Loads the libraries of X11: those of the system, as its OpenGL does, else copies that come with the package."""
+    spare = pathlib.Path(__file__).with_name("spare")
+    for name in ("libX11.so.6", "libXext.so.6", "libXrender.so.1"):
+        try:
+            ctypes.CDLL(name)
+        except OSError:
+            ctypes.CDLL(str(spare / name))

@@ -52,3 +52,12 @@ class NoPath(Impossible):
     """Why."""
     samples: int
     """Configurations that were drawn."""
+
+
+class NoPick(Impossible):
+    """An object cannot be picked up, or not put down."""
+
+    reason: str
+    """Word, such as "too_wide" or "grasp_out_of_reach"."""
+    dropped: list[str]
+    """What was wrong with each grasp that was looked at, a line each."""

@@ -63,7 +63,7 @@ class Chain:
                        "links and the base may be False",
                        f"active_links_mask：这里不能把关节排除在求解之外（{', '.join(still)}）；只有固定连杆和基座可以为 False")
         self.active_links_mask = mask
-        self._turned = {axis: robot._with_tool(Pose(euler=turn)) for axis, turn in _TURNS.items()}
+        self._turned = {axis: robot.with_tool(Pose(euler=turn)) for axis, turn in _TURNS.items()}
 
     @classmethod
     def from_urdf_file(cls, urdf_file: str | os.PathLike[str], base_elements: Sequence[str] | None = None,
@@ -88,7 +88,7 @@ class Chain:
         links = [Link("Base link", "fixed", (-np.inf, np.inf))]
         links += [Link(name, kind, (0.0, 0.0) if kind == "fixed" else next(limits)) for name, kind in joints]
         if last_link_vector is not None:
-            robot = robot._with_tool(Pose(last_link_vector))
+            robot = robot.with_tool(Pose(last_link_vector))
             links.append(Link("last_joint", "fixed", (0.0, 0.0)))
         return cls(robot, links, robot.frame(base), name=name, active_links_mask=active_links_mask)
 

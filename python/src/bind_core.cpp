@@ -36,7 +36,6 @@ Eigen::Matrix3d rotation_of(nb::handle euler, nb::handle quat, nb::handle matrix
 }
 
 nb::object moved(const Pose& X, nb::handle what) {
-  if (nb::isinstance<Pose>(what)) return nb::cast(X * nb::cast<const Pose&>(what));
   const Reals points = reals(what, "points");
   const bool one = points.ndim() == 1;
   if (points.ndim() == 0 || points.ndim() > 2 || points.shape(points.ndim() - 1) != 3) {
@@ -120,10 +119,12 @@ BadInput
           "matrix", [](const Pose& X) { return array(X); }, nb::sig("def matrix(self) -> Array"),
           "Homogeneous matrix, shape (4, 4).")
       .def("inverse", &Pose::inverse, "The pose of the other frame in this one.")
+      .def(
+          "__matmul__", [](const Pose& X, const Pose& other) { return X * other; },
+          nb::arg("other"), "The pose after this one.")
       .def("__matmul__", &moved, nb::arg("other"),
-           nb::sig("@overload\ndef __matmul__(self, other: Pose) -> Pose\n"
-                   "@overload\ndef __matmul__(self, other: ArrayLike) -> Array"),
-           "The pose after this one, or points [m] of shape (3,) or (n, 3) seen from its base.")
+           nb::sig("def __matmul__(self, other: ArrayLike) -> Array"),
+           "Points [m] of shape (3,) or (n, 3) of its frame, seen from its base.")
       .def(
           "interpolate",
           [](const Pose& X, nb::handle to, double t) {

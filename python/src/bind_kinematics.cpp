@@ -11,6 +11,7 @@
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/kinematics/ik_batch.hpp"
 #include "mjarm/kinematics/singularity.hpp"
+#include "mjarm/kinematics/track.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/convert.hpp"
 #include "python/src/robot.hpp"
@@ -126,25 +127,20 @@ nb::tuple ik_batch(const BoundRobot& robot, nb::handle poses, nb::handle seed, i
   }
   if (threads < 0) refuse(msg::python_not_negative, "threads");
   std::vector<double> q(X_WT.size() * dof, std::numeric_limits<double>::quiet_NaN());
-  auto ok = std::make_unique<std::vector<unsigned char>>(X_WT.size());
+  std::vector<unsigned char> ok(X_WT.size());
   {
     const nb::gil_scoped_release free;
     const auto answers = solve_batch(robot.ik, X_WT, seeds, {.threads = threads});
     for (std::size_t i = 0; i < answers.size(); ++i) {
       if (!answers[i]) continue;
-      (*ok)[i] = 1;
+      ok[i] = 1;
       std::copy(answers[i]->q.begin(), answers[i]->q.end(),
                 q.begin() + static_cast<std::ptrdiff_t>(i * dof));
     }
   }
-  auto* const flags = reinterpret_cast<bool*>(ok->data());
-  const std::size_t n = ok->size();
-  nb::capsule owner(ok.release(), [](void* p) noexcept {
-    const std::unique_ptr<std::vector<unsigned char>> ends(
-        static_cast<std::vector<unsigned char>*>(p));
-  });
+  const std::size_t n = ok.size();
   return nb::make_tuple(array(std::move(q), {n, dof}),
-                        nb::cast(nb::ndarray<nb::numpy, bool>(flags, {n}, owner)));
+                        owned<unsigned char, bool>(std::move(ok), {n}));
 }
 
 nb::object fk_many(const BoundRobot& robot, nb::handle q) {
@@ -241,10 +237,51 @@ constexpr const char* kIkAllSig =
     "float = "
     "float('inf'), valid: Callable[[Array], bool] | None = None) -> Array";
 
+/// `mjarm.Tracker`, and how many joints it leads.
+struct BoundTracker {
+  Robot robot;
+  Tracker tracker;
+};
+
+BoundTracker tracker(const BoundRobot& r, double dt, double gain, double speed_share) {
+  if (!(dt > 0)) refuse(msg::python_positive, "dt");
+  if (!(gain > 0 && gain <= 1)) refuse(msg::python_share, "gain");
+  if (!(speed_share > 0 && speed_share <= 1)) refuse(msg::python_share, "speed_share");
+  return {r.robot, Tracker(r.arm(), {.dt = dt, .gain = gain, .speed_share = speed_share})};
+}
+
+void bind_tracker(nb::module_& m) {
+  nb::class_<TrackStep>(m, "TrackStep", "One step of servoing.")
+      .def_prop_ro(
+          "q", [](const TrackStep& s) { return array(s.q); }, nb::sig("def q(self) -> Array"),
+          "Where to go [rad or m], (dof,), within the limits.")
+      .def_ro("pos_err", &TrackStep::pos_err, "Of the tool before the step [m].")
+      .def_ro("rot_err", &TrackStep::rot_err, "Likewise [rad].")
+      .def_ro("speed_scale", &TrackStep::speed_scale,
+              "Below 1 where the greatest speed slowed the whole step down.")
+      .def_ro("damping", &TrackStep::damping, "What was used; 0 away from singularities.")
+      .def_ro("held", &TrackStep::held, "Joints that stand at a limit.");
+  nb::class_<BoundTracker>(m, "Tracker",
+                           "Leads the tool after a pose that may change with every call.")
+      .def(
+          "step",
+          [](const BoundTracker& t, nb::handle pose, nb::handle q) {
+            const JointVec now = joint_vec(span_of(reals(q, "q", {t.robot.arm.dof()})));
+            const TrackStep step = t.tracker.step(pose_of(pose, "pose"), as_span(now));
+            if (!step.ok) refuse(msg::python_no_step);
+            return step;
+          },
+          nb::arg("pose"), nb::arg("q"),
+          nb::sig("def step(self, pose: PoseLike, q: ArrayLike) -> TrackStep"),
+          "One damped step from `q` [rad or m], (dof,), towards a pose (Y. Nakamura and H. "
+          "Hanafusa, J. Dyn. Sys. Meas.\nControl 108 (1986) 163), no joint faster than it may be.");
+}
+
 }  // namespace
 
 void bind_kinematics(nb::module_& m) {
   bind_answers(m);
+  bind_tracker(m);
   const IkOptions usual;
   const auto none = [](const char* name) { return nb::arg(name).none() = nb::none(); };
   auto robot = nb::borrow<nb::class_<BoundRobot>>(m.attr("Robot"));
@@ -293,6 +330,11 @@ void bind_kinematics(nb::module_& m) {
            "branch of a\n"
            "closed form, and with `windings` every winding of each. Raises as `ik` does where none "
            "is.")
+      .def("tracker", &tracker, nb::kw_only(), nb::arg("dt") = TrackOptions().dt,
+           nb::arg("gain") = TrackOptions().gain,
+           nb::arg("speed_share") = TrackOptions().speed_share,
+           "Differential inverse kinematics for servoing: `dt` [s] from call to call, `gain` the "
+           "share of the error taken off\nin a call, `speed_share` of the joints' greatest speed.")
       .def("ik_batch", &ik_batch, nb::arg("poses"), none("seed"), nb::kw_only(),
            nb::arg("threads") = 0,
            nb::sig("def ik_batch(self, poses: PosesLike, seed: ArrayLike | None = None, *, "

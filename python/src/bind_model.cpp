@@ -167,13 +167,13 @@ BadInput
           },
           nb::arg("name"), "Pose of a site or body in the world where everything stands at home.")
       .def(
-          "_with_tool",
+          "with_tool",
           [](const BoundRobot& r, nb::handle X_TN) {
             Robot other = r.robot;
             other.arm.X_JT = other.arm.X_JT * pose_of(X_TN, "tool");
             return BoundRobot(std::move(other));
           },
-          nb::arg("tool"), nb::sig("def _with_tool(self, tool: PoseLike) -> Robot"),
+          nb::arg("tool"), nb::sig("def with_tool(self, tool: PoseLike) -> Robot"),
           "With another tool frame, given in this one; for kinematics alone.")
       .def("__repr__", [](const BoundRobot& r) {
         return "<mjarm.Robot '" + r.arm().name + "', " + std::to_string(r.dof()) +

@@ -3,10 +3,12 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
 #include <optional>
 
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/path/solve_curve.hpp"
+#include "mjarm/trajectory/tool_motion.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/convert.hpp"
 #include "python/src/interrupt.hpp"
@@ -63,14 +65,17 @@ BoundPath outcome(const BoundRobot& robot, const Along& along, const JointVec& q
 }
 
 BoundPath follow_curve(const BoundRobot& robot, const Curve& curve, const PathWords& words) {
-  CurveOptions options{.path = options_of(robot, words)};
+  // As near to the curve as motions want it, which have joints go along splines.
+  CurveOptions options{.path = options_of(robot, words),
+                       .pos_tol = MotionOptions().pos_tol,
+                       .rot_tol = MotionOptions().rot_tol};
   const JointVec q_start = robot.joints_or_home(words.start, "start");
   BoundPath out = interruptible([&](const StopCheck& stop) {
     options.path.stop = stop;
     return outcome(robot, curve, q_start, solve_curve(robot.ik, curve, as_span(q_start), options),
                    options, options.path, words.fixes);
   });
-  out.stops = curve.corners();
+  out.curve = curve;
   return out;
 }
 
@@ -114,12 +119,8 @@ Curve ellipse(nb::handle center, double a, double b, nb::handle normal, nb::hand
        .R = nb::cast<const Pose&>(rotation).R}));
 }
 
-nb::object poses_at(const Curve& curve, nb::handle s) {
-  const Reals given = reals(s, "s");
-  if (given.ndim() == 0) return nb::cast(curve.at(given.data()[0]));
-  nb::list out;
-  for (const Pose& X : curve.poses(span_of(given))) out.append(nb::cast(X));
-  return out;
+std::vector<Pose> poses_at(const Curve& curve, nb::handle s) {
+  return curve.poses(span_of(reals(s, "s", {-1})));
 }
 
 void bind_curve(nb::module_& m) {
@@ -167,10 +168,15 @@ void bind_curve(nb::module_& m) {
                   "by default.")
       .def_prop_ro("length", &Curve::length, "[m]")
       .def_prop_ro("end", &Curve::end, "The largest parameter [m or rad].")
-      .def("at", &poses_at, nb::arg("s"),
-           nb::sig("@overload\ndef at(self, s: float) -> Pose\n"
-                   "@overload\ndef at(self, s: ArrayLike) -> list[Pose]"),
-           "The pose at a parameter, or those at many.")
+      .def(
+          "at",
+          [](const Curve& curve, double s) {
+            if (!std::isfinite(s)) refuse(msg::python_not_finite, "s");
+            return curve.at(s);
+          },
+          nb::arg("s"), "The pose at a parameter.")
+      .def("at", &poses_at, nb::arg("s"), nb::sig("def at(self, s: ArrayLike) -> list[Pose]"),
+           "Those at many, (n,).")
       .def(
           "poses",
           [](const Curve& curve, int n) {

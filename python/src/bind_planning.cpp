@@ -109,18 +109,23 @@ void bind_reasons(nb::module_& m) {
       .value("back_end", PlanErrc::back_end);
 }
 
-/// Joint values (dof,) or (n, dof), a pose, or several.
+/// Joint values (dof,) or (n, dof), a pose or a region, or several.
 PathEnd goal_of(const BoundRobot& robot, nb::handle goal) {
   PathEnd out;
-  const auto add = [&](const Pose& X) { out.regions.push_back(region_about(X)); };
-  if (nb::isinstance<Pose>(goal)) {
-    add(nb::cast<const Pose&>(goal));
-  } else if (nb::isinstance<nb::sequence>(goal) && nb::len(goal) > 0 &&
-             nb::isinstance<Pose>(goal[0])) {
-    for (const Pose& X : poses_of(goal, "goal")) add(X);
+  const auto is_place = [](nb::handle one) {
+    return nb::isinstance<Pose>(one) || nb::isinstance<TaskRegion>(one);
+  };
+  const auto add = [&](nb::handle one) {
+    out.regions.push_back(nb::isinstance<TaskRegion>(one) ? nb::cast<const TaskRegion&>(one)
+                                                          : region_about(pose_of(one, "goal")));
+  };
+  if (is_place(goal)) {
+    add(goal);
+  } else if (nb::isinstance<nb::sequence>(goal) && nb::len(goal) > 0 && is_place(goal[0])) {
+    for (const nb::handle one : goal) add(one);
   } else if (const Reals given = reals(goal, "goal");
              given.ndim() == 2 && given.shape(0) == 4 && given.shape(1) == 4 && robot.dof() != 4) {
-    add(pose_of(goal, "goal"));
+    add(goal);
   } else if (given.ndim() == 2) {
     const nb::object rows = nb::cast(given);
     for (std::size_t i = 0; i < given.shape(0); ++i) out.q.push_back(robot.joints(rows[i], "goal"));
@@ -143,9 +148,9 @@ PathEnd goal_of(const BoundRobot& robot, nb::handle goal) {
 }
 
 BoundPlan plan(const BoundRobot& robot, nb::handle start, nb::handle goal, const Names& held,
-               const Pairs& allowed, std::optional<double> upright, std::optional<double> clearance,
-               double margin, nb::handle qpos, std::uint64_t seed, int samples, int rounds,
-               double time_limit) {
+               const Pairs& allowed, std::optional<double> upright,
+               std::optional<TaskRegion> within, std::optional<double> clearance, double margin,
+               nb::handle qpos, std::uint64_t seed, int samples, int rounds, double time_limit) {
   const JointVec q_start = robot.joints_or_home(start, "start");
   const PathEnd end = goal_of(robot, goal);
   WorldOptions world{.rules = rules_of(robot, held, allowed, q_start), .margin = margin};
@@ -160,6 +165,7 @@ BoundPlan plan(const BoundRobot& robot, nb::handle start, nb::handle goal, const
                       .samples = samples,
                       .time_limit = time_limit,
                       .rounds = rounds,
+                      .within = std::move(within),
                       .clearance = clearance};
   if (upright) options.tilt = keep_upright(robot.arm(), as_span(q_start), *upright);
   const auto planner =
@@ -169,7 +175,8 @@ BoundPlan plan(const BoundRobot& robot, nb::handle start, nb::handle goal, const
     return planner->plan({.q = {q_start}}, end, options);
   });
   if (!path) raise_no_path(path.error());
-  return {.path = std::move(*path),
+  return {.robot = robot.robot,
+          .path = std::move(*path),
           .dof = robot.dof(),
           .rules = std::move(world.rules),
           .world = planner};
@@ -234,14 +241,17 @@ Parameters
 ----------
 start : array_like, shape (dof,), optional
     Where the arm is [rad or m]; None: home.
-goal : array_like or Pose
-    Joint values (dof,), several (n, dof), a pose of the tool or a list of poses: the shortest path to any is taken.
+goal : array_like, Pose or Region
+    Joint values (dof,), several (n, dof), a pose of the tool, a region of poses or a list of these: the shortest path to
+    any is taken.
 held : sequence of str, optional
     Bodies that are attached to the tool, as they stand while the arm is at `start`.
 allowed : sequence of (str, str), optional
     Bodies or shapes that may touch.
 upright : float, optional
     What points up at the start leans by no more than this all the way [rad].
+within : Region, optional
+    The tool stays in it all the way.
 clearance : float, optional
     What is kept from everything [m]; None: 5 mm where a path with it is soon found.
 margin : float, optional
@@ -280,14 +290,14 @@ void bind_planning(nb::module_& m) {
            "overlaps.")
       .def("plan", &plan, nb::arg("start").none(), nb::arg("goal"), nb::kw_only(),
            nb::arg("held") = Names(), nb::arg("allowed") = Pairs(),
-           nb::arg("upright").none() = nb::none(), nb::arg("clearance").none() = nb::none(),
-           nb::arg("margin") = 0.0, nb::arg("qpos").none() = nb::none(), nb::arg("seed") = 1,
-           nb::arg("samples") = 0, nb::arg("rounds") = 0,
-           nb::arg("time_limit") = PlanOptions().time_limit,
+           nb::arg("upright").none() = nb::none(), nb::arg("within").none() = nb::none(),
+           nb::arg("clearance").none() = nb::none(), nb::arg("margin") = 0.0,
+           nb::arg("qpos").none() = nb::none(), nb::arg("seed") = 1, nb::arg("samples") = 0,
+           nb::arg("rounds") = 0, nb::arg("time_limit") = PlanOptions().time_limit,
            nb::sig("def plan(self, start: ArrayLike | None, goal: ArrayLike | PoseLike | "
-                   "Sequence[Pose], *, held: "
+                   "Region | Sequence[Pose | Region], *, held: "
                    "Sequence[str] = (), allowed: Sequence[tuple[str, str]] = (), upright: float | "
-                   "None = None, clearance: "
+                   "None = None, within: Region | None = None, clearance: "
                    "float | None = None, margin: float = 0.0, qpos: ArrayLike | None = None, seed: "
                    "int = 1, samples: int = 0, "
                    "rounds: int = 0, time_limit: float = 10.0) -> Plan"),

@@ -4,9 +4,13 @@
 
 #include <cmath>
 
+#include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/execution/path_motion.hpp"
 #include "mjarm/trajectory/path_timing.hpp"
+#include "mjarm/trajectory/point_to_point.hpp"
+#include "mjarm/trajectory/tool_motion.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
+#include "mjarm/trajectory/via_points.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/convert.hpp"
 #include "python/src/interrupt.hpp"
@@ -18,24 +22,37 @@ namespace {
 
 constexpr double kMostSamples = 1e8;
 
-Trajectory time_path_of_tool(const BoundRobot& robot, const BoundPath& path,
-                             const TimingOptions& timing) {
+PlannedMove time_path_of_tool(const BoundRobot& robot, const BoundPath& path,
+                              const TimingOptions& timing) {
   if (path.failure) raise(Error{Errc::impossible, path.what});
-  if (path.stops.empty()) refuse(msg::python_no_way);
-  return value_of(time_tool_path(path.had, path.stops, robot.arm().limits, timing));
+  if (!path.curve) refuse(msg::python_no_way);
+  auto motion = interruptible([&](const StopCheck& stop) {
+    return time_tool_motion(robot.ik, *path.curve, path.had,
+                            {.path = {.stop = stop}, .timing = timing});
+  });
+  if (!motion) raise(Error{Errc::impossible, describe(motion.error(), robot.arm())});
+  return {.word = "path",
+          .trajectory = std::move(motion->trajectory),
+          .curve = std::move(motion->curve),
+          .dips = std::move(motion->dips)};
 }
 
-Trajectory time_plan(const BoundPlan& plan, const JointLimits& limits) {
+PlannedMove time_plan(const BoundPlan& plan, const JointLimits& limits) {
   PlanningWorld world = *plan.world;  // another thread may time the same plan
   auto motion = interruptible([&](const StopCheck& stop) -> Result<PathMotion> {
     const auto prover = world.prover({&plan.path, 1}, stop);
     if (!prover) return fail(prover.error());
     return time_path(plan.path.q, limits, *prover, {.stop = stop});
   });
-  return value_of(std::move(motion)).trajectory;
+  PathMotion timed = value_of(std::move(motion));
+  return {.word = "plan",
+          .trajectory = std::move(timed.trajectory),
+          .corners = plan.path.q,
+          .stopping = timed.stopping,
+          .attached = plan.rules.attached};
 }
 
-Trajectory time(const BoundRobot& robot, nb::handle what, double tool_speed, double share) {
+PlannedMove time(const BoundRobot& robot, nb::handle what, double tool_speed, double share) {
   if (!(share > 0 && share <= 1)) refuse(msg::python_share, "share");
   if (!(tool_speed > 0)) refuse(msg::python_positive, "tool_speed");
   const TimingOptions timing{.tool_speed = tool_speed, .joint_share = share};
@@ -50,7 +67,47 @@ Trajectory time(const BoundRobot& robot, nb::handle what, double tool_speed, dou
   const std::vector<double> values = robot.rows(what, "motion");
   const auto dof = static_cast<std::size_t>(robot.dof());
   for (std::size_t i = 0; i < values.size(); i += dof) rows.push_back(joint_vec({&values[i], dof}));
-  return value_of(time_waypoint_path(rows, limits));
+  return {.word = "joints", .trajectory = value_of(time_waypoint_path(rows, limits))};
+}
+
+/// A motion, and when each waypoint is met.
+nb::tuple time_via(const BoundRobot& robot, nb::handle waypoints, double share) {
+  if (!(share > 0 && share <= 1)) refuse(msg::python_share, "share");
+  std::vector<JointVec> rows;
+  const std::vector<double> values = robot.rows(waypoints, "waypoints");
+  const auto dof = static_cast<std::size_t>(robot.dof());
+  for (std::size_t i = 0; i < values.size(); i += dof) rows.push_back(joint_vec({&values[i], dof}));
+  ViaMotion motion = value_of([&] {
+    const nb::gil_scoped_release free;
+    return time_via_points(rows, robot.arm().limits, {.joint_share = share});
+  }());
+  return nb::make_tuple(PlannedMove{.word = "via", .trajectory = std::move(motion.trajectory)},
+                        array(std::move(motion.times), {rows.size()}));
+}
+
+JointState state_of(const BoundRobot& robot, nb::handle value, const char* name) {
+  const auto dof = static_cast<long long>(robot.dof());
+  if (nb::isinstance<nb::tuple>(value) && nb::len(value) == 3) {
+    const auto part = [&](int i) { return joint_vec(span_of(reals(value[i], name, {dof}))); };
+    return {part(0), part(1), part(2)};
+  }
+  return JointState::at_rest(robot.joints(value, name));
+}
+
+PlannedMove time_between(const BoundRobot& robot, nb::handle start, nb::handle end) {
+  return {.word = "joints",
+          .trajectory = value_of(point_to_point(state_of(robot, start, "start"),
+                                                state_of(robot, end, "end"), robot.arm().limits))};
+}
+
+nb::dict use_of(const PlannedMove& move, const JointLimits& limits) {
+  const LimitUse use = check_limits(move.trajectory, limits);
+  nb::dict out;
+  out["velocity"] = array(use.velocity);
+  out["acceleration"] = array(use.acceleration);
+  out["jerk"] = array(use.jerk);
+  out["position"] = array(use.position);
+  return out;
 }
 
 /// Columns t, q, v, a of the states at these times.
@@ -68,7 +125,8 @@ nb::tuple states(const Trajectory& motion, const std::vector<double>& times) {
                         array(std::move(v), {n, dof}), array(std::move(a), {n, dof}));
 }
 
-nb::tuple sample(const Trajectory& motion, double dt) {
+nb::tuple sample(const PlannedMove& move, double dt) {
+  const Trajectory& motion = move.trajectory;
   if (!(dt > 0) || motion.duration() / dt > kMostSamples) {
     refuse(msg::python_dt);
   }
@@ -82,30 +140,62 @@ nb::tuple sample(const Trajectory& motion, double dt) {
 }  // namespace
 
 void bind_trajectory(nb::module_& m) {
-  nb::class_<Trajectory>(m, "Motion", "A motion in time; joints keep their limits at every moment.")
-      .def_prop_ro("duration", &Trajectory::duration, "[s]")
-      .def_prop_ro("dof", &Trajectory::dof, "Number of joints.")
+  nb::class_<PlannedMove>(m, "Motion",
+                          "A motion in time; joints keep their limits at every moment.")
+      .def_prop_ro(
+          "duration", [](const PlannedMove& move) { return move.trajectory.duration(); }, "[s]")
+      .def_prop_ro(
+          "dof", [](const PlannedMove& move) { return move.trajectory.dof(); }, "Number of joints.")
+      .def_ro("word", &PlannedMove::word,
+              "What it is: \"path\", \"plan\", \"joints\", or the instruction of a program.")
+      .def_prop_ro(
+          "line", [](const PlannedMove& move) { return move.place.line; },
+          "Of the instruction in its program; 0: of none.")
+      .def_ro("curve", &PlannedMove::curve, "What the tool follows; None for joint moves.")
+      .def_prop_ro(
+          "dips",
+          [](const PlannedMove& move) {
+            nb::list out;
+            for (const SpeedDip& dip : move.dips) {
+              out.append(nb::make_tuple(dip.t_from, dip.t_to, dip.least));
+            }
+            return out;
+          },
+          nb::sig("def dips(self) -> list[tuple[float, float, float]]"),
+          "Where the tool is slower than asked: (from [s], to [s], least speed [m/s]).")
       .def(
           "at",
-          [](const Trajectory& motion, double t) {
+          [](const PlannedMove& move, double t) {
             if (!std::isfinite(t)) refuse(msg::python_seconds);
-            const JointState state = motion.at(t);
+            const JointState state = move.trajectory.at(t);
             return nb::make_tuple(array(state.q), array(state.v), array(state.a));
           },
           nb::arg("t"), nb::sig("def at(self, t: float) -> tuple[Array, Array, Array]"),
           "Positions [rad or m], velocities and accelerations at time `t` [s], each (dof,).")
+      .def(
+          "use",
+          [](const PlannedMove& move, const JointLimits& limits) {
+            if (limits.velocity.size() != move.trajectory.dof()) {
+              refuse(msg::python_other_arm, move.trajectory.dof(), limits.velocity.size());
+            }
+            return use_of(move, limits);
+          },
+          nb::arg("limits"), nb::sig("def use(self, limits: JointLimits) -> dict[str, Array]"),
+          "Worst use of each limit, by joint, as a share of it: velocity, acceleration, jerk, "
+          "sampled "
+          "every 1 ms; position: how\nfar beyond its range [rad or m].")
       .def("sample", &sample, nb::arg("dt"),
            nb::sig("def sample(self, dt: float) -> tuple[Array, Array, Array, Array]"),
            "Times [s], (n,), and positions, velocities, accelerations, (n, dof): every `dt` [s] "
            "and at the end.")
-      .def("__repr__", [](const Trajectory& motion) {
-        return "<mjarm.Motion: " + std::to_string(motion.duration()) + " s, " +
-               std::to_string(motion.dof()) + " joints>";
+      .def("__repr__", [](const PlannedMove& move) {
+        return "<mjarm.Motion: " + move.word + ", " + std::to_string(move.trajectory.duration()) +
+               " s, " + std::to_string(move.trajectory.dof()) + " joints>";
       });
   auto robot = nb::borrow<nb::class_<BoundRobot>>(m.attr("Robot"));
   robot.def("time", &time, nb::arg("motion"), nb::kw_only(),
             nb::arg("tool_speed") = TimingOptions().tool_speed, nb::arg("share") = 1.0,
-            nb::sig("def time(self, motion: Path | Plan | ArrayLike, *, tool_speed: float = 0.25, "
+            nb::sig("def time(self, motion: Path | Plan | ArrayLike | Sequence[ArrayLike], *, tool_speed: float = 0.25, "
                     "share: float = 1.0) -> "
                     "Motion"),
             "The fastest motion along what is given, from rest to rest, within the limits of "
@@ -116,6 +206,20 @@ void bind_trajectory(nb::module_& m) {
             "its corners as far as that is proved free; rows of joint values (n, dof) [rad or m] "
             "along the spline through\n"
             "them. `share` of the limits of velocity and acceleration is used.");
+  robot.def(
+      "time_between", &time_between, nb::arg("start"), nb::arg("end"),
+      nb::sig(
+          "def time_between(self, start: ArrayLike | tuple[ArrayLike, ArrayLike, ArrayLike], end: "
+          "ArrayLike | tuple[ArrayLike, ArrayLike, ArrayLike]) -> Motion"),
+      "The fastest motion of all joints together from one state to another: joint values at rest, "
+      "or "
+      "(q, v, a), each (dof,).");
+  robot.def("time_via", &time_via, nb::arg("waypoints"), nb::kw_only(), nb::arg("share") = 1.0,
+            nb::sig("def time_via(self, waypoints: ArrayLike, *, share: float = 1.0) -> "
+                    "tuple[Motion, Array]"),
+            "The fastest motion through rows of joint values (n, dof) [rad or m], which are passed "
+            "without a stop; its shape\n"
+            "between them is free. Also when each is met [s], (n,).");
 }
 
 }  // namespace mjarm::python

@@ -8,8 +8,19 @@ namespace mjarm::python {
 void bind_core(nanobind::module_& m);
 void bind_model(nanobind::module_& m);
 void bind_kinematics(nanobind::module_& m);
+void bind_posture(nanobind::module_& m);
 void bind_path(nanobind::module_& m);
+void bind_region(nanobind::module_& m);
 void bind_planning(nanobind::module_& m);
 void bind_trajectory(nanobind::module_& m);
+void bind_control(nanobind::module_& m);
+void bind_execution(nanobind::module_& m);
+void bind_program(nanobind::module_& m);
+void bind_pick(nanobind::module_& m);
+void bind_perception(nanobind::module_& m);
+void bind_tags(nanobind::module_& m);
+void bind_rl(nanobind::module_& m);
+void bind_pictures(nanobind::module_& m);
+void bind_view(nanobind::module_& m);
 
 }  // namespace mjarm::python

@@ -79,15 +79,6 @@ Eigen::Vector3d vector3(nb::handle value, const char* name) {
   return Eigen::Map<const Eigen::Vector3d>(reals(value, name, {3}).data());
 }
 
-nb::object array(std::vector<double> values, std::initializer_list<std::size_t> shape) {
-  auto owned = std::make_unique<std::vector<double>>(std::move(values));
-  double* const data = owned->data();
-  nb::capsule owner(owned.release(), [](void* p) noexcept {
-    const std::unique_ptr<std::vector<double>> ends(static_cast<std::vector<double>*>(p));
-  });
-  return nb::cast(nb::ndarray<nb::numpy, double>(data, shape.size(), shape.begin(), owner));
-}
-
 nb::object array(const JointVec& q) {
   return array(std::vector<double>(q.begin(), q.end()), {static_cast<std::size_t>(q.size())});
 }

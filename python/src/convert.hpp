@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -40,9 +41,20 @@ using Reals = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
   return {array.data(), array.size()};
 }
 
-/// A new numpy array that owns `values`, in rows.
-[[nodiscard]] nb::object array(std::vector<double> values,
-                               std::initializer_list<std::size_t> shape);
+/// A new numpy array that owns `values`, in rows; `As` has the size of T.
+template <class T, class As = T>
+[[nodiscard]] nb::object owned(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+  auto kept = std::make_unique<std::vector<T>>(std::move(values));
+  void* const data = kept->data();
+  nb::capsule owner(kept.release(), [](void* p) noexcept {
+    const std::unique_ptr<std::vector<T>> ends(static_cast<std::vector<T>*>(p));
+  });
+  return nb::cast(nb::ndarray<nb::numpy, As>(data, shape.size(), shape.begin(), owner));
+}
+[[nodiscard]] inline nb::object array(std::vector<double> values,
+                                      std::initializer_list<std::size_t> shape) {
+  return owned(std::move(values), shape);
+}
 [[nodiscard]] nb::object array(const JointVec& q);
 /// (n, dof).
 [[nodiscard]] nb::object array(std::span<const JointVec> rows, int dof);

@@ -25,7 +25,18 @@ NB_MODULE(_core, m) {
   python::bind_core(m);
   python::bind_model(m);
   python::bind_kinematics(m);
+  python::bind_posture(m);
   python::bind_path(m);
+  python::bind_region(m);
   python::bind_planning(m);
   python::bind_trajectory(m);
+  python::bind_control(m);
+  python::bind_execution(m);
+  python::bind_program(m);
+  python::bind_pick(m);
+  python::bind_perception(m);
+  python::bind_tags(m);
+  python::bind_rl(m);
+  python::bind_pictures(m);
+  python::bind_view(m);
 }

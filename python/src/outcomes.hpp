@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/path/curve.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/path_measures.hpp"
 #include "mjarm/planning/planning_world.hpp"
@@ -15,7 +16,7 @@ namespace mjarm::python {
 struct BoundPath {
   JointPath had = {};  ///< as far as it goes
   int dof = 0;
-  std::vector<double> stops = {};  ///< parameters of its curve's corners; none: given poses
+  std::optional<Curve> curve = {};  ///< that it follows; none: given poses
   std::optional<PathFailure> failure = {};
   std::string what = {};  ///< why it stops
   std::vector<PathFix> fixes = {};
@@ -24,6 +25,7 @@ struct BoundPath {
 
 /// `mjarm.Plan`, and what it was planned in.
 struct BoundPlan {
+  Robot robot;
   PlannedPath path;
   int dof = 0;
   ContactRules rules = {};

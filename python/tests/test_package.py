@@ -7,11 +7,13 @@ import random
 import re
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
 
 import mjarm
+from mjarm._core import ReachBatch
 from mjarm.ikpy import Chain
 
 
@@ -93,25 +95,43 @@ def test_both_languages_leave_the_same_places_open():
 
 
 @pytest.mark.filterwarnings("ignore:nanobind")  # an object that is made a second time
-def test_nothing_a_caller_gives_crashes_it():
-    """A thousand wrong calls each end in an exception, or in an answer."""
-    chance = random.Random(1)
+def test_nothing_a_caller_gives_crashes_it(tmp_path, monkeypatch):
+    """A thousand wrong calls over the whole surface, from two threads, each end in an exception, or in an answer."""
+    monkeypatch.chdir(tmp_path)
     robot = mjarm.Robot("ur5e")
-    odd = [None, 0, -1, 1e308, float("nan"), "", "x" * 1000, b"\0", [], [[]], [1, [2]], {}, (), object(), robot,
-           mjarm.Pose, mjarm.Pose(), lambda *a: 1, np.zeros((0, 6)), np.zeros((3, 6)), np.zeros((2, 4, 4)), np.eye(4),
-           np.eye(4, dtype=np.float32), np.full(6, 1e300), np.array(["a"] * 6), np.zeros(6)[::-1], np.zeros((6, 12))[:, ::2],
-           np.zeros(7), range(6), memoryview(b"123456"), True, 10**40, [None] * 6, np.zeros(6, dtype=complex)]
-    calls = [getattr(robot, name) for name in dir(robot) if not name.startswith("_") and callable(getattr(robot, name))]
-    calls += [getattr(mjarm.Pose(), name) for name in ("__matmul__", "interpolate", "difference", "__setstate__")]
-    calls += [mjarm.Pose, mjarm.Pose.from_matrix, mjarm.Robot, mjarm.set_language]
-    names = ["seed", "task", "pos_tol", "max_step", "valid", "threads", "euler", "quat", "tip", "windings", "max"]
-    refused = 0
-    for _ in range(1000):
-        words = {name: chance.choice(odd) for name in chance.sample(names, chance.choice([0, 0, 1, 2]))}
-        try:
-            chance.choice(calls)(*chance.choices(odd, k=chance.randrange(4)), **words)
-        except (mjarm.Error, TypeError, OverflowError, ValueError):
-            refused += 1
-    assert refused > 700
-    mjarm.set_language("en")
+    motion = robot.time([robot.home, robot.home + 0.05])
+    frame = mjarm.Frame(np.zeros((4, 4, 3), np.uint8), np.zeros((4, 4)), fx=1, fy=1, cx=1, cy=1)
+    things = [robot, motion, frame, mjarm.Pose(), robot.limits, robot.controller(), robot.tracker(), robot.simulate(motion, rest=0),
+              robot.line(robot.fk(robot.home), mjarm.Pose([9, 9, 9])), mjarm.Region(mjarm.Pose()), mjarm.Policy.load("reach"),
+              mjarm.Program.parse("robot: ur5e\nprogram:\n  - wait: 1ms\n"), mjarm.Curve.line(mjarm.Pose(), mjarm.Pose([1, 0, 0])),
+              robot.plan(robot.home, robot.home + 0.05), ReachBatch()]
+    odd = [None, 0, -1, 1e308, float("nan"), "", "x" * 1000, b"\0", [], [[]], [1, [2]], {}, (), object(), *things, mjarm.Pose,
+           lambda *a: 1, np.zeros((0, 6)), np.zeros((3, 6)), np.zeros((2, 4, 4)), np.eye(4), np.eye(4, dtype=np.float32),
+           np.full(6, 1e300), np.array(["a"] * 6), np.zeros(6)[::-1], np.zeros((6, 12))[:, ::2], np.zeros(7), range(6),
+           memoryview(b"123456"), True, 10**40, [None] * 6, np.zeros(6, dtype=complex), np.zeros((4, 4, 3), np.uint8)]
+    calls = [getattr(thing, name) for thing in things for name in dir(thing)
+             if not name.startswith("_") and name not in ("video", "mujoco_version") and callable(getattr(thing, name))]
+    calls += [getattr(mjarm.Pose(), name) for name in ("__matmul__", "__setstate__")]
+    calls += [getattr(mjarm, name) for name in mjarm.__all__ if name not in ("view", "language", "set_language")]
+    calls += [mjarm.Curve.ellipse, mjarm.Curve.polyline, mjarm.Curve.spline, mjarm.Pose.from_matrix, mjarm.Program.load,
+              mjarm.Program.parse, mjarm.Policy.load, mjarm.Region.bounds]
+    names = ["seed", "task", "pos_tol", "max_step", "valid", "threads", "euler", "quat", "tip", "windings", "max", "control", "rest",
+             "q", "qpos", "file", "width", "place", "held", "share", "tool_speed", "start"]
+    refused = []
+
+    def call_wrongly(seed):
+        chance = random.Random(seed)
+        for _ in range(500):
+            words = {name: chance.choice(odd) for name in chance.sample(names, chance.choice([0, 0, 1, 2]))}
+            try:
+                chance.choice(calls)(*chance.choices(odd, k=chance.randrange(4)), **words)
+            except (mjarm.Error, TypeError, OverflowError, ValueError, KeyError, AttributeError):
+                refused.append(1)
+
+    threads = [threading.Thread(target=call_wrongly, args=(seed,)) for seed in (1, 2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(refused) > 700
     assert robot.ik(robot.fk(robot.home)).pos_err < 1e-7

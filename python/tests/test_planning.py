@@ -139,3 +139,30 @@ def test_threads_plan_at_the_same_time(robot):
         thread.join()
     for path in answers:
         np.testing.assert_array_equal(path, alone)
+
+
+def test_regions(robot):
+    down = mjarm.Pose([0.3, -0.45, 0.3], euler=[np.pi, 0, 0])
+    region = mjarm.Region(down, half=[0.05, 0.05, 0.02], turn=np.pi)
+    assert np.allclose(region.middle.pos, down.pos) and region.room(down) == (0.02, pytest.approx(0, abs=1e-9))
+    goal = robot.plan(robot.home, region)
+    end = robot.fk(goal.path[-1])
+    assert (np.abs(end.pos - down.pos) <= [0.0501, 0.0501, 0.0201]).all()
+    assert (end @ mjarm.Pose([0, 0, 1])).pos[2] < end.pos[2] - 0.999  # the tool points down
+    exact = robot.plan(robot.home, down)
+    assert goal.length <= exact.length + 1e-9
+    far = mjarm.Pose(down.pos + [0, 0, 0.5], quat=down.quat)
+    assert region.room(far)[0] < 0 and region.room(region.nearest(far))[0] >= -1e-9
+    # It stays at its height all the way.
+    level = mjarm.Region.bounds(mjarm.Pose([0, 0, 0.3]), place_min=[-np.inf, -np.inf, -0.05], place_max=[np.inf, np.inf, 0.05],
+                                turn_min=[-np.pi, -np.pi / 2, -np.pi], turn_max=[np.pi, np.pi / 2, np.pi])
+    start = robot.ik(down).q
+    held = robot.plan(start, mjarm.Pose([-0.3, -0.45, 0.3], euler=[np.pi, 0, 0]), within=level)
+    for a, b in zip(held.path, held.path[1:]):
+        for t in np.linspace(0, 1, 20):
+            assert abs(robot.fk(a + t * (b - a)).pos[2] - 0.3) <= 0.0501
+    for words in ({"half": [-1, 0, 0]}, {"lean": 4}, {"turn": -1}):
+        with pytest.raises(mjarm.BadInput, match="Region"):
+            mjarm.Region(down, **words)
+    with pytest.raises(mjarm.BadInput, match="half"):
+        mjarm.Region(down, half=[1, 2])

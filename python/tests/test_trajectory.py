@@ -71,3 +71,32 @@ def test_what_cannot_be_timed(robot):
     for dt in (0, -1, 1e-12, float("nan")):
         with pytest.raises(mjarm.BadInput, match="dt"):
             motion.sample(dt)
+
+
+def test_from_state_to_state(robot):
+    start = (robot.home, np.full(6, 0.2), np.zeros(6))
+    motion = robot.time_between(start, robot.home + 0.4)
+    q, v, a = motion.at(0)
+    np.testing.assert_allclose(q, robot.home)
+    np.testing.assert_allclose(v, 0.2)
+    np.testing.assert_allclose(motion.at(motion.duration)[0], robot.home + 0.4, atol=1e-9)
+    use = motion.use(robot.limits)
+    assert all((use[name] <= 1.001).all() for name in ("velocity", "acceleration")) and not use["position"].any()
+    assert max(use["velocity"].max(), use["acceleration"].max(), use["jerk"].max()) > 0.9  # as fast as may be
+    rest = robot.time_between(robot.home, robot.home + 0.4)
+    assert 0.98 < rest.duration / robot.time([robot.home, robot.home + 0.4]).duration <= 1
+    with pytest.raises(mjarm.BadInput, match="shape"):
+        robot.time_between((robot.home, [0], [0]), robot.home)
+    with pytest.raises(mjarm.BadInput, match="joints"):
+        motion.use(mjarm.Robot("panda").limits)
+
+
+def test_waypoints_without_a_stop(robot):
+    waypoints = robot.home + np.array([[0] * 6, [0.3, 0, 0, 0, 0, 0], [0.3, -0.3, 0, 0, 0, 0], [0, -0.3, 0.2, 0, 0, 0]])
+    motion, times = robot.time_via(waypoints)
+    assert times[0] == 0 and times[-1] == pytest.approx(motion.duration) and (np.diff(times) > 0).all()
+    for t, q in zip(times, waypoints):
+        np.testing.assert_allclose(motion.at(t)[0], q, atol=1e-7)
+    stopping = sum(robot.time([a, b]).duration for a, b in zip(waypoints, waypoints[1:]))
+    assert motion.duration < 0.95 * stopping
+    assert np.abs(motion.at(times[1])[1]).max() > 0.05

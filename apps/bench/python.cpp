@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <utility>
+
+#include "apps/bench/ik.hpp"
+#include "apps/bench/messages/bench.hpp"
+#include "apps/bench/peers.hpp"
+#include "apps/bench/robots.hpp"
+#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/kinematics/ik_batch.hpp"
+#include "mjarm/rl/reach_env.hpp"
+
+namespace mjarm::app {
+namespace {
+
+constexpr std::size_t kBatch = 100'000;             // poses
+constexpr int kReachWorlds = 16, kReachSteps = 50;  // of the environment, in a round
+
+/// The reachable poses over and over.
+std::vector<Pose> many_poses(const IkCaseSet& set) {
+  std::vector<Pose> out;
+  while (out.size() < kBatch) out.push_back(set.cases[out.size() % set.cases.size()].X_WT);
+  return out;
+}
+
+/// Best mean time of a pose, all in one call.
+IkRun run_batch(const IkProblem& problem, int rounds) {
+  const IkSolver ik(problem.robot.arm);
+  const std::vector<Pose> poses = many_poses(problem.sets.front());
+  IkRun run{our_entry("mjarm", "batch", 1)};
+  for (int round = 0; round < rounds && !interrupted(); ++round) {
+    const Stopwatch watch;
+    const auto answers = solve_batch(ik, poses, as_span(problem.robot.arm.home), {.threads = 1});
+    run.us[0] = std::min(run.us[0], watch.us() / static_cast<double>(answers.size()));
+  }
+  return run;
+}
+
+/// Best mean time of an action of one world, many being stepped together.
+Result<IkRun> run_reach(int rounds) {
+  const rl::ReachOptions task{.environments = kReachWorlds, .threads = 1};
+  const Result<Model> model = rl::reach_model(task);
+  if (!model) return fail(model.error());
+  Result<rl::ReachEnv> env = rl::ReachEnv::create(*model, task);
+  if (!env) return fail(std::move(env.error()));
+  const std::vector<float> still(static_cast<std::size_t>(kReachWorlds * env->action_size()));
+  IkRun run{our_entry("mjarm", "reach", 1)};
+  for (int round = 0; round < rounds && !interrupted(); ++round) {
+    if (auto begun = env->reset(1); !begun) return fail(begun.error());
+    const Stopwatch watch;
+    for (int step = 0; step < kReachSteps; ++step) {
+      if (auto done = env->step(still); !done) return fail(done.error());
+    }
+    run.us[0] = std::min(run.us[0], watch.us() / (kReachWorlds * kReachSteps));
+  }
+  return run;
+}
+
+/// `bench/peers/python.py`
+Result<std::vector<IkRun>> run_python_peers(const IkProblem& problem,
+                                            const std::filesystem::path& environment, int rounds) {
+  Result<JsonDoc> job = robot_job(problem.robot, rounds);
+  if (!job) return fail(std::move(job.error()));
+  std::vector<JsonDoc> cases;
+  for (const IkCase& entry : problem.sets.front().cases) {
+    cases.push_back(pose_json(entry.X_WT));
+    cases.back().set("seed", entry.seed);
+  }
+  job->set("cases", std::move(cases));
+  job->set("batch", kBatch);
+  job->set("worlds", kReachWorlds);
+  job->set("steps", kReachSteps);
+  return peer_runs<IkRun>(environment, "python", std::move(*job),
+                          [](const JsonValue& line, IkRun& run) { run.q = rows_in(line, "q"); });
+}
+
+Result<BenchResult> measure_python(const BenchOptions& options, const std::string& robot,
+                                   int rounds) {
+  auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
+  if (!problem) return fail(std::move(problem.error()));
+  problem->sets.resize(1);  // those that can be reached
+  problem->paths.clear();
+  problem->q.clear();
+  std::vector<IkRun> runs = run_ik(*problem, rounds);
+  std::erase_if(runs, [](const IkRun& run) { return run.who != "mjarm" || run.us.size() < 2; });
+  runs.push_back(run_batch(*problem, rounds));
+  Result<IkRun> reach = run_reach(rounds);
+  if (!reach) return fail(std::move(reach.error()));
+  runs.push_back(std::move(*reach));
+  const auto judge_run = [&](IkRun& run) -> Result<int> {
+    if (run.q.empty()) {
+      run.cells = {"-"};
+      return 0;
+    }
+    if (Result<void> judged = judge(*problem, run); !judged) return fail(judged.error());
+    run.cells = {std::to_string(run.right) + "/" + std::to_string(run.q.size())};
+    run.details = {{"cases", run.q.size()}, {"right", run.right}};
+    return run.false_ok;
+  };
+  return compare(
+      options.peers, {problem->name, problem->robot.model.file().filename().string()},
+      std::move(runs), [&] { return run_python_peers(*problem, options.peers, rounds); }, judge_run,
+      msg::bench_ik_wrong);
+}
+
+}  // namespace
+
+Command python_suite() {
+  return {"python", msg::bench_python_summary, msg::bench_python_examples, [](CLI::App& app) {
+            return setup_robots(app, msg::bench_ik_option_data, true, {msg::bench_ik_right},
+                                measure_python);
+          }};
+}
+
+}  // namespace mjarm::app
