@@ -1,0 +1,106 @@
+"""Writes docs/python.md, the reference of the package of Python, from its docstrings.
+
+Usage: python_reference.py STUB PAGE, the stub being mjarm/_core.pyi of a build or of an installed package.
+"""
+
+import ast
+import inspect
+import pathlib
+import re
+import sys
+
+PACKAGE = pathlib.Path(__file__).resolve().parent.parent / "python" / "mjarm"
+HEAD = """# Python: reference
+
+Made from the docstrings by `tools/python_reference.py`. Units are SI; `Array` is a float64 array of numpy, `PoseLike` a `Pose` or an array (4, 4), `PosesLike` a
+list of those, an array (n, 4, 4) or a pair of positions (n, 3) and quaternions (n, 4). How things are used: [python/README.md](../python/README.md),
+[python/examples](../python/examples).
+"""
+
+
+def doc_of(node):
+    """With the sections of numpy's form as lists."""
+    lines = inspect.cleandoc(ast.get_docstring(node, clean=False) or "").splitlines()
+    out, inside = [], False
+    for i, line in enumerate(lines):
+        if re.fullmatch("-{3,}", line):
+            continue
+        if i + 1 < len(lines) and re.fullmatch("-{3,}", lines[i + 1]):
+            inside = True
+            out += [f"{line}:", ""]
+        elif inside and line and not line.startswith(" "):
+            name, _, kind = line.partition(" : ")
+            out.append(f"- `{name}`" + (f" ({kind})" if kind else ""))
+        elif inside and line:
+            out[-1] += (": " if out[-1].endswith((")", "`")) else " ") + line.strip()
+        else:
+            out.append(line)
+    return "\n".join(out)
+
+
+def decorators(node):
+    return {ast.unparse(one) for one in node.decorator_list}
+
+
+def signature(node, owner=None):
+    """As it is called: without self, on one line."""
+    arguments = ast.unparse(node.args)
+    if owner and "staticmethod" not in decorators(node):
+        arguments = re.sub(r"^(self|cls)(, /)?(, )?", "", arguments)
+    result = f" -> {ast.unparse(node.returns)}" if node.returns and node.name != "__init__" else ""
+    name = owner if node.name == "__init__" else node.name
+    return f"{name}({arguments}){result}".replace("'", '"')
+
+
+def entry(head, doc):
+    lines = doc.splitlines() or [""]
+    body = "\n".join(f"  {line}".rstrip() for line in lines[1:])
+    return f"- `{head}` {lines[0]}\n" + (f"{body}\n" if body.strip() else "")
+
+
+def describe_class(node):
+    out = [f"\n### {node.name}\n\n{doc_of(node)}\n\n"]
+    seen = set()
+    for one in node.body:
+        if isinstance(one, ast.AnnAssign | ast.Assign):
+            names = [ast.unparse(target) for target in (one.targets if isinstance(one, ast.Assign) else [one.target])]
+            out += [f"- `{name}`\n" for name in names if not name.startswith("_")]
+        if not isinstance(one, ast.FunctionDef) or (one.name.startswith("_") and one.name != "__init__"):
+            continue
+        marks = decorators(one)
+        if any(mark.endswith(".setter") for mark in marks) or (one.name, ast.unparse(one.args)) in seen:
+            continue
+        seen.add((one.name, ast.unparse(one.args)))
+        if "property" in marks:
+            out.append(entry(f"{one.name}: {ast.unparse(one.returns)}", doc_of(one)))
+        elif one.name != "__init__" or doc_of(one) or one.args.args[1:] or one.args.kwonlyargs:
+            out.append(entry(signature(one, node.name), doc_of(one)))
+    return "".join(out)
+
+
+def describe_module(source, public=None):
+    tree = ast.parse(source)
+    functions, classes = [], []
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef | ast.FunctionDef) and (node.name in public if public else not node.name.startswith("_")):
+            (classes if isinstance(node, ast.ClassDef) else functions).append(node)
+    out = [entry(signature(node), doc_of(node)) for node in functions]
+    return "".join(out) + "".join(describe_class(node) for node in sorted(classes, key=lambda node: node.name != "Robot"))
+
+
+def public_names():
+    tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
+    names = next(node.value for node in tree.body if isinstance(node, ast.Assign) and node.targets[0].id == "__all__")
+    return {name.value for name in names.elts}
+
+
+def page(stub):
+    parts = [HEAD, "\n## mjarm\n\n", describe_module(stub.read_text(encoding="utf-8"), public_names())]
+    for name in ("errors", "ikpy", "gym"):
+        source = (PACKAGE / f"{name}.py").read_text(encoding="utf-8")
+        parts += [f"\n## mjarm.{name}\n\n{doc_of(ast.parse(source))}\n\n", describe_module(source)]
+    return re.sub(r"\n{3,}", "\n\n", "".join(parts)).rstrip() + "\n"
+
+
+if __name__ == "__main__":
+    pathlib.Path(sys.argv[2]).write_text(page(pathlib.Path(sys.argv[1])), encoding="utf-8")
