@@ -39,6 +39,7 @@ std::vector<PlannedMove> moves_of(const BoundRobot& robot, nb::handle motion) {
   for (std::size_t i = 0; i < moves.size(); ++i) {
     const Trajectory& now = moves[i].trajectory;
     if (now.dof() != robot.dof()) refuse(msg::python_other_arm, now.dof(), robot.dof());
+    if (moves[i].tool != 0) refuse(msg::python_other_tool, i);
     if (i == 0) continue;
     const Trajectory& before = moves[i - 1].trajectory;
     const JointVec gap = now.at(0).q - before.at(before.duration()).q;
@@ -176,6 +177,14 @@ void bind_execution(nb::module_& m) {
           "Every step by columns: time (n,) [s]; q_ref, q, v, ctrl, torque (n, dof); tool_pos, "
           "tool_ref_pos (n, 3) [m];\n"
           "tool_quat, tool_ref_quat (n, 4); contacts, \"geom|geom;...\" a row.")
+      .def_prop_ro(
+          "qpos",
+          [](const BoundRun& run) {
+            const auto qpos = run.qpos();
+            return array({qpos.begin(), qpos.end()}, {qpos.size()});
+          },
+          nb::sig("def qpos(self) -> Array"),
+          "How everything stands at its end, (nq,): for the pick or the look that follows.")
       .def(
           "plot",
           [](const BoundRun& run, const std::optional<std::filesystem::path>& file) {

@@ -15,6 +15,7 @@
 #include "python/src/bindings.hpp"
 #include "python/src/convert.hpp"
 #include "python/src/images.hpp"
+#include "python/src/interrupt.hpp"
 #include "python/src/robot.hpp"
 
 namespace mjarm::python {
@@ -49,6 +50,7 @@ struct BoundCamera {
   Model model;
   render::RgbdCamera camera;
   Rng noise;
+  Turn turn = {};
 };
 
 Snapshot snapshot_of(const Model& model, nb::handle qpos) {
@@ -74,6 +76,13 @@ BoundCamera open_camera(const BoundRobot& robot, const std::string& name, int wi
 struct BoundEye {
   Robot robot;
   session::SceneEye eye;
+  Turn turn = {};
+};
+
+/// `mjarm.ObjectFinder`.
+struct BoundFinder {
+  perception::ObjectFinder finder;
+  Turn turn = {};
 };
 
 /// Of one look: what stands where.
@@ -101,13 +110,13 @@ Seen look_with(BoundEye& self, nb::handle qpos) {
       q[i] = scene.qpos[static_cast<std::size_t>(joint.qpos)];
     }
   }
-  const nb::gil_scoped_release free;
-  const auto seen = self.eye.look(scene, as_span(q));
-  if (!seen) {
-    const nb::gil_scoped_acquire bound;
-    raise(seen.error());
-  }
-  return seen_of(self.eye.found());
+  return value_of([&]() -> Result<Seen> {
+    const nb::gil_scoped_release free;
+    const auto turn = self.turn.lock();
+    const auto seen = self.eye.look(scene, as_span(q));
+    if (!seen) return fail(seen.error());
+    return seen_of(self.eye.found());
+  }());
 }
 
 perception::ObjectFinder make_finder(const BoundRobot& robot,
@@ -185,6 +194,7 @@ pose : Pose, optional
             const Snapshot snapshot = snapshot_of(self.model, qpos);
             auto frame = [&] {
               const nb::gil_scoped_release free;
+              const auto turn = self.turn.lock();
               return self.camera.look(snapshot, self.noise);
             }();
             return value_of(std::move(frame));
@@ -256,7 +266,7 @@ void bind_seen(nb::module_& m) {
            "Draws the scene at `qpos`, (nq,) (default: at home), and finds in the picture every "
            "body "
            "that can be carried.");
-  nb::class_<perception::ObjectFinder>(
+  nb::class_<BoundFinder>(
       m, "ObjectFinder",
       R"(Finds known objects in what an RGB-D camera sees: by their tags, else by their shapes.
 
@@ -275,22 +285,21 @@ unknown : bool, optional
 )")
       .def(
           "__init__",
-          [](perception::ObjectFinder* self, const BoundRobot& robot,
-             const std::vector<std::string>& objects,
+          [](BoundFinder* self, const BoundRobot& robot, const std::vector<std::string>& objects,
              const std::map<std::string, perception::ObjectTag>& tags, double depth_sigma,
              bool unknown) {
-            new (self)
-                perception::ObjectFinder(make_finder(robot, objects, tags, depth_sigma, unknown));
+            new (self) BoundFinder{make_finder(robot, objects, tags, depth_sigma, unknown)};
           },
           nb::arg("robot"), nb::arg("objects"), nb::kw_only(),
           nb::arg("tags") = std::map<std::string, perception::ObjectTag>(),
           nb::arg("depth_sigma") = perception::FindOptions().depth_sigma, nb::arg("unknown") = true)
       .def(
           "find",
-          [](perception::ObjectFinder& self, const RgbdFrame& frame) {
+          [](BoundFinder& self, const RgbdFrame& frame) {
             auto found = [&] {
               const nb::gil_scoped_release free;
-              return self.find(frame);
+              const auto turn = self.turn.lock();
+              return self.finder.find(frame);
             }();
             return seen_of(value_of(std::move(found)));
           },

@@ -44,6 +44,7 @@ nb::object copy_of(std::span<const T> values, std::initializer_list<std::size_t>
 struct BoundReach {
   rl::ReachEnv env;
   std::optional<render::OffscreenRenderer> renderer = {};
+  int width = 0, height = 0;  // [px] of the renderer
 
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(env.count()); }
   [[nodiscard]] std::size_t observations() const {
@@ -95,10 +96,7 @@ nb::object observations(const BoundReach& self) {
 }
 
 nb::object reset_reach(BoundReach& self, std::uint64_t seed) {
-  value_of([&] {
-    const nb::gil_scoped_release free;
-    return self.env.reset(seed);
-  }());
+  value_of(self.env.reset(seed));
   return observations(self);
 }
 
@@ -109,8 +107,8 @@ nb::tuple step_reach(BoundReach& self, nb::handle actions) {
   if (given.ndim() != 2 || given.shape(0) != self.count() || given.shape(1) != width) {
     refuse(msg::python_actions, self.count(), width);
   }
-  value_of(interruptible(
-      [&](const StopCheck& stop) { return self.env.step({given.data(), given.size()}, stop); }));
+  // With the interpreter's lock: nobody may read while it steps, and a step is short.
+  value_of(self.env.step({given.data(), given.size()}));
   return nb::make_tuple(observations(self), copy_of<float>(self.env.rewards(), {self.count()}),
                         copy_of<bool>(self.env.terminated(), {self.count()}),
                         copy_of<bool>(self.env.truncated(), {self.count()}));
@@ -122,10 +120,13 @@ void check_copy(const BoundReach& self, int copy) {
 
 nb::object draw_reach(BoundReach& self, int copy, int width, int height) {
   check_copy(self, copy);
-  if (!self.renderer) {
+  check_pixels(width, height);
+  if (!self.renderer || self.width != width || self.height != height) {
     self.renderer = value_of(render::OffscreenRenderer::create(
         self.env.model(),
         {.width = width, .height = height, .software_quality = render::RenderQuality::low}));
+    self.width = width;
+    self.height = height;
   }
   render::Overlay overlay;
   overlay.spheres.push_back(

@@ -151,6 +151,8 @@ void bind_trajectory(nb::module_& m) {
       .def_prop_ro(
           "line", [](const PlannedMove& move) { return move.place.line; },
           "Of the instruction in its program; 0: of none.")
+      .def_ro("closes", &PlannedMove::close,
+              "True: the gripper closes while it lasts; False: it opens; None: neither.")
       .def_ro("curve", &PlannedMove::curve, "What the tool follows; None for joint moves.")
       .def_prop_ro(
           "dips",
@@ -195,7 +197,8 @@ void bind_trajectory(nb::module_& m) {
   auto robot = nb::borrow<nb::class_<BoundRobot>>(m.attr("Robot"));
   robot.def("time", &time, nb::arg("motion"), nb::kw_only(),
             nb::arg("tool_speed") = TimingOptions().tool_speed, nb::arg("share") = 1.0,
-            nb::sig("def time(self, motion: Path | Plan | ArrayLike | Sequence[ArrayLike], *, tool_speed: float = 0.25, "
+            nb::sig("def time(self, motion: Path | Plan | ArrayLike | Sequence[ArrayLike], *, "
+                    "tool_speed: float = 0.25, "
                     "share: float = 1.0) -> "
                     "Motion"),
             "The fastest motion along what is given, from rest to rest, within the limits of "

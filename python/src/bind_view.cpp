@@ -40,7 +40,7 @@ void push_bodies(const std::vector<Push>& pushes, nb::handle data) {
   }
 }
 
-bool show_step(BoundWindow& window, const BoundRobot& robot, nb::handle data) {
+bool show_step(BoundWindow& window, const Turn& turn, const BoundRobot& robot, nb::handle data) {
   const Model& model = robot.robot.model;
   const bool whole = nb::hasattr(data, "qpos");
   const Reals qpos = reals(whole ? data.attr("qpos") : nb::borrow(data), "qpos", {model.nq()});
@@ -52,8 +52,10 @@ bool show_step(BoundWindow& window, const BoundRobot& robot, nb::handle data) {
     time = nb::cast<double>(data.attr("time"));
   }
   const std::vector<double> q(qpos.data(), qpos.data() + qpos.size());
-  const auto pushes =
-      interruptible([&](const StopCheck& stop) { return window.sync(q, qvel, time, stop); });
+  const auto pushes = interruptible([&](const StopCheck& stop) {
+    const auto lock = turn.lock();
+    return window.sync(q, qvel, time, stop);
+  });
   if (whole && nb::hasattr(data, "xfrc_applied")) push_bodies(pushes, data);
   return window.is_open();
 }
@@ -62,6 +64,7 @@ bool show_step(BoundWindow& window, const BoundRobot& robot, nb::handle data) {
 struct ShownRobot {
   BoundRobot robot;
   BoundWindow window;
+  Turn turn = {};
 };
 
 constexpr const char* kView = R"(Opens a window beside a simulation loop of your own.
@@ -97,7 +100,8 @@ void bind_view(nb::module_& m) {
           "is_open", [](const ShownRobot& s) { return s.window.is_open(); },
           "False once the user closed it.")
       .def(
-          "sync", [](ShownRobot& s, nb::handle data) { return show_step(s.window, s.robot, data); },
+          "sync",
+          [](ShownRobot& s, nb::handle data) { return show_step(s.window, s.turn, s.robot, data); },
           nb::arg("data").none(), nb::sig("def sync(self, data: Any) -> bool"),
           "One step was made: `data` is a mujoco.MjData, or qpos (nq,). What the user pushes goes "
           "into "

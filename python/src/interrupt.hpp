@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 
 #include "mjarm/core/stop.hpp"
 
@@ -35,5 +36,15 @@ auto interruptible(const Call& call) {
   interrupt.rethrow();
   return result;
 }
+
+/// Of an object that one thread at a time may use: calls that are made without the interpreter's
+/// lock wait for each other.
+class Turn {
+ public:
+  [[nodiscard]] std::unique_lock<std::mutex> lock() const { return std::unique_lock(*mutex_); }
+
+ private:
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
+};
 
 }  // namespace mjarm::python

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ class BoundRun {
   [[nodiscard]] const Report& report() const { return report_; }
   [[nodiscard]] const Recorder& recorder() const { return run_.recorder(); }
   [[nodiscard]] int dof() const { return loaded_.robot.arm.dof(); }
+  /// (nq,) at its end.
+  [[nodiscard]] std::span<const double> qpos() const { return run_.sim().qpos(); }
   /// Its page of charts.
   [[nodiscard]] render::Plot plot() const;
   /// The end of it.

@@ -59,6 +59,8 @@ def test_pictures():
     except mjarm.NotAvailable:
         pytest.skip("no OpenGL on this machine")
     assert picture.shape == (480, 640, 3) and picture.std() > 5
+    batch = env.unwrapped._batch
+    assert [batch.render(0, width, 90).shape for width in (120, 160)] == [(90, 120, 3), (90, 160, 3)]
 
 
 def test_the_shipped_policy_reaches():

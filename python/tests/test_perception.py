@@ -1,5 +1,7 @@
 """Cameras of a scene, real frames, objects, tags and calibration."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -117,3 +119,19 @@ def test_what_cannot_be_looked_at(robot):
         mjarm.Frame(np.zeros((4, 4, 3), np.uint8), np.zeros((4, 5)), fx=1, fy=1, cx=1, cy=1)
     with pytest.raises(mjarm.BadInput, match="nothing to look for"):
         mjarm.Robot("ur5e").eye("rgbd")
+
+
+def test_from_two_threads_they_wait_for_each_other(robot):
+    camera, finder = robot.camera("rgbd", width=320, height=180, depth_sigma=0), mjarm.ObjectFinder(robot, ["can"], unknown=False)
+    seen = []
+
+    def look():
+        for _ in range(3):
+            seen.append(finder.find(camera.look()))
+
+    threads = [threading.Thread(target=look) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(seen) == 6 and len({tuple(one["can"].pos) if "can" in one else one.missing["can"] for one in seen}) == 1

@@ -20,6 +20,12 @@ def test_a_can_goes_where_it_is_told(robot):
     assert run.ok, run.message
     (can,) = [thing for thing in run.report["objects"] if thing["name"] == "can"]
     assert can["carried"] and can["moved"] > 0.3
+    assert [motion.closes for motion in plan.motions if motion.closes is not None] == [True, False]
+    # Then another one, from how things stand now; both in one simulation.
+    then = robot.pick("box", mjarm.Pose([0.44, -0.33, 0.236]), any_turn=True, qpos=run.qpos)
+    both = robot.simulate(plan.motions + then.motions)
+    assert both.ok, both.message
+    np.testing.assert_allclose(both.report["duration"], run.report["duration"] + then.duration, atol=0.01)
 
 
 def test_it_is_only_lifted(robot):

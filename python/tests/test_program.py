@@ -85,3 +85,11 @@ def test_a_program_that_looks(tmp_path):
     assert run.ok, run.message
     moved = {thing["name"]: thing for thing in run.report["objects"]}
     assert any(thing["carried"] for thing in moved.values())
+
+
+def test_motions_of_another_tool_belong_to_their_program():
+    text = "robot: panda\nprogram:\n  - set: {tool: hand}\n  - movej: {joints: [0.1, -0.3, 0, -2, 0, 1.8, 0.7]}\n"
+    program = mjarm.Program.parse(text)
+    assert program.run().ok
+    with pytest.raises(mjarm.BadInput, match="another tool"):
+        program.robot.simulate(program.check().motions)
