@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mjarm/core/progress.hpp"
+#include "mjarm/core/progress_sink.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace mjarm {
@@ -83,6 +84,23 @@ TEST(Progress, OddNumbersAreHarmless) {
   EXPECT_NE(progress_line("x", 0, 200, 0, 80).find("  0% 0/200"), std::string::npos);
   EXPECT_NE(progress_line("x", 300, 200, 1, 80).find("100% 300/200"), std::string::npos);
   EXPECT_NE(progress_line("x", 1, 1000000, 1000, 80).find("99:59:59"), std::string::npos);
+}
+
+TEST(Progress, GoesWhereAProgramWantsIt) {
+  std::vector<std::string> lines;
+  set_progress_sink([&lines](const std::string& line) { lines.push_back(line); });
+  CaptureStderr();
+  {
+    Progress progress("solving", 100);
+    progress.advance(25);  // too soon to be shown
+    std::this_thread::sleep_for(std::chrono::milliseconds(550));
+    progress.advance(25);
+  }
+  set_progress_sink({});
+  EXPECT_EQ(GetCapturedStderr(), "");
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_NE(lines[0].find(" 50% 50/100"), std::string::npos);
+  EXPECT_EQ(lines[1], "");
 }
 
 TEST(Progress, SilentWhereStderrIsNoTerminal) {

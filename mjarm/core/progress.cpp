@@ -8,6 +8,7 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/progress_sink.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm {
@@ -16,6 +17,16 @@ namespace {
 constexpr std::int64_t kFirstDrawNs = 500'000'000;  // short jobs show nothing at all
 constexpr std::int64_t kBetweenDrawsNs = 100'000'000;
 
+ProgressSink& own_sink() {
+  static ProgressSink sink;
+  return sink;
+}
+
+void put(const std::string& line) {
+  if (own_sink()) return own_sink()(line);
+  show_status(line);
+}
+
 std::string duration_text(double seconds) {
   const auto s = static_cast<long long>(std::ceil(std::min(seconds, 359'999.0)));
   if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
@@ -23,6 +34,8 @@ std::string duration_text(double seconds) {
 }
 
 }  // namespace
+
+void set_progress_sink(ProgressSink sink) { own_sink() = std::move(sink); }
 
 std::string progress_line(const std::string& label, std::uint64_t done, std::uint64_t total,
                           double seconds, int width) {
@@ -43,12 +56,12 @@ std::string progress_line(const std::string& label, std::uint64_t done, std::uin
 Progress::Progress(std::string label, std::uint64_t total)
     : label_(std::move(label)),
       total_(total),
-      visible_(stderr_is_terminal() && log_level() <= LogLevel::info),
+      visible_((own_sink() || stderr_is_terminal()) && log_level() <= LogLevel::info),
       start_(Clock::now()),
       next_draw_ns_(kFirstDrawNs) {}
 
 Progress::~Progress() {
-  if (visible_) show_status("");
+  if (visible_) put("");
 }
 
 void Progress::advance(std::uint64_t steps) noexcept {
@@ -72,7 +85,7 @@ void Progress::draw_if_due(const Line& line) noexcept {
   if (elapsed.count() < next_draw_ns_) return;
   next_draw_ns_ = elapsed.count() + kBetweenDrawsNs;
   try {
-    show_status(line(std::chrono::duration<double>(elapsed).count()));
+    put(line(std::chrono::duration<double>(elapsed).count()));
   } catch (...) {  // a bar that cannot be drawn is no reason to stop the job
   }
 }

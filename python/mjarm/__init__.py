@@ -5,7 +5,9 @@
 >>> robot.ik(mjarm.Pose([-0.13, 0.6, 0.1], euler=[3.14, 0, 1.57])).q
 """
 
-from . import _library
+import sys
+
+from . import _library, _notebook
 
 _library.load()
 
@@ -55,6 +57,7 @@ from ._core import (  # noqa: E402 (the library comes first)
     language,
     mujoco_version,
     set_language,
+    set_progress,
     shipped_models,
     tag_picture,
     view,
@@ -116,7 +119,11 @@ __all__ = [
     "language",
     "mujoco_version",
     "set_language",
+    "set_progress",
     "shipped_models",
     "tag_picture",
     "view",
 ]
+
+if "ipykernel" in sys.modules:
+    set_progress(_notebook.show)

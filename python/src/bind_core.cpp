@@ -3,9 +3,11 @@
 #include <nanobind/stl/string.h>
 
 #include <cstdio>
+#include <memory>
 #include <numbers>
 
 #include "mjarm/core/messages.hpp"
+#include "mjarm/core/progress_sink.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/convert.hpp"
@@ -160,10 +162,35 @@ BadInput
       .def("__repr__", &shown);
 }
 
+/// Has progress go to a function of Python, from whatever thread.
+void set_progress(nb::handle show) {
+  if (show.is_none()) return set_progress_sink({});
+  if (PyCallable_Check(show.ptr()) == 0) refuse(msg::python_callable, "show");
+  const auto forget = [](nb::object* kept) {
+    if (Py_IsInitialized() == 0) return;  // the program ends: nobody may touch it any more
+    const nb::gil_scoped_acquire bound;
+    const std::unique_ptr<nb::object> ends(kept);
+  };
+  const std::shared_ptr<nb::object> kept(new nb::object(nb::borrow(show)), forget);
+  set_progress_sink([kept](const std::string& line) {
+    const nb::gil_scoped_acquire bound;
+    try {
+      (*kept)(line);
+    } catch (nb::python_error& error) {
+      error.discard_as_unraisable("mjarm.set_progress");
+    }
+  });
+}
+
 }  // namespace
 
 void bind_core(nb::module_& m) {
   bind_pose(m);
+  m.def(
+      "set_progress", &set_progress, nb::arg("show").none(),
+      nb::sig("def set_progress(show: Callable[[str], object] | None) -> None"),
+      "Has lines of progress of long calls go to a function, an empty one in the end; None: to the "
+      "terminal, if there is one.\nIn notebooks they are shown from the beginning.");
   set_language(language_of_locale());
   m.def(
       "language", [] { return language() == Language::chinese ? "zh" : "en"; },

@@ -5,6 +5,7 @@
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/output_folder.hpp"
+#include "mjarm/core/progress.hpp"
 #include "mjarm/render/fonts.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/session/motion_view.hpp"
@@ -23,7 +24,10 @@ Result<std::unique_ptr<BoundRun>> BoundRun::execute(program::LoadedProgram loade
   std::unique_ptr<BoundRun> self(new BoundRun(std::move(loaded), choice));
   const program::ProgramPlan& plan = self->loaded_.plan;
   MotionRun& run = self->run_;
+  const double steps = (plan.duration() + choice.rest) / self->loaded_.robot.model.timestep();
+  Progress progress(text(msg::show_running), static_cast<std::uint64_t>(steps));
   run.set_after_step([&](const Sim& sim, MotionPart part) {
+    progress.advance();
     self->trail_.set_pen(session::pen_of(part));
     self->trail_.add(sim.tool(run.arm()).p);
     return !is_stopped(stop);

@@ -164,3 +164,17 @@ def test_robots_plans_and_motions_show_themselves(robot, line, tmp_path):
     assert size_of(robot.plan(robot.home, robot.home + 0.5)._repr_png_()) == (640, 360)
     with pytest.raises(mjarm.BadInput, match="png"):
         robot.picture(file=tmp_path / "a.jpg")
+
+
+def test_progress_is_told(robot, capfd):
+    long = robot.time([robot.home + 0.5 * (-1) ** i for i in range(60)], share=0.3)
+    lines = []
+    mjarm.set_progress(lines.append)
+    try:
+        robot.simulate(long)
+    finally:
+        mjarm.set_progress(None)
+    assert len(lines) >= 2 and lines[-1] == "" and all("%" in line for line in lines[:-1])
+    assert capfd.readouterr().err == ""
+    with pytest.raises(mjarm.BadInput, match="show"):
+        mjarm.set_progress(3)

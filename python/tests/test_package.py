@@ -51,6 +51,14 @@ def test_imports_nothing_that_is_not_needed():
     assert not loaded & {"scipy", "matplotlib", "torch", "gymnasium", "mujoco", "pandas"}
 
 
+def test_a_notebook_shows_progress():
+    code = "import sys, types; sys.modules['ipykernel'] = types.ModuleType('ipykernel'); import mjarm; r = mjarm.Robot('ur5e'); " \
+           "r.simulate(r.time([r.home + 0.5 * (-1) ** i for i in range(60)], share=0.3))"
+    done = python(code)
+    assert done.returncode == 0 and "%" in done.stderr, done.stderr
+    assert not done.stderr.splitlines()[-1].strip()  # it is taken away in the end
+
+
 def test_types_are_told():
     stub = pathlib.Path(mjarm.__file__).with_name("_core.pyi")
     assert "def ik(self, pose: PoseLike" in stub.read_text()
@@ -112,7 +120,7 @@ def test_nothing_a_caller_gives_crashes_it(tmp_path, monkeypatch):
     calls = [getattr(thing, name) for thing in things for name in dir(thing)
              if not name.startswith("_") and name not in ("video", "mujoco_version") and callable(getattr(thing, name))]
     calls += [getattr(mjarm.Pose(), name) for name in ("__matmul__", "__setstate__")]
-    calls += [getattr(mjarm, name) for name in mjarm.__all__ if name not in ("view", "language", "set_language")]
+    calls += [getattr(mjarm, name) for name in mjarm.__all__ if name not in ("view", "language", "set_language", "set_progress")]
     calls += [mjarm.Curve.ellipse, mjarm.Curve.polyline, mjarm.Curve.spline, mjarm.Pose.from_matrix, mjarm.Program.load,
               mjarm.Program.parse, mjarm.Policy.load, mjarm.Region.bounds]
     names = ["seed", "task", "pos_tol", "max_step", "valid", "threads", "euler", "quat", "tip", "windings", "max", "control", "rest",
@@ -135,3 +143,21 @@ def test_nothing_a_caller_gives_crashes_it(tmp_path, monkeypatch):
         thread.join()
     assert len(refused) > 700
     assert robot.ik(robot.fk(robot.home)).pos_err < 1e-7
+
+
+def test_beside_the_renderer_of_mujoco():
+    """Both draw in one process, in turn."""
+    code = """
+import mujoco, mjarm
+robot = mjarm.Robot("ur5e")
+model = mujoco.MjModel.from_xml_path(str(robot.file)); data = mujoco.MjData(model); mujoco.mj_forward(model, data)
+try: renderer = mujoco.Renderer(model, 60, 80)
+except Exception: print("none"); raise SystemExit
+def draw(): renderer.update_scene(data); return renderer.render().tobytes()
+theirs, ours = draw(), robot.picture(width=80, height=60)
+print(draw() == theirs, robot.picture(width=80, height=60) == ours, len(set(theirs)) > 50)
+"""
+    done = python(code, MUJOCO_GL="egl", PYOPENGL_PLATFORM="egl")
+    if done.stdout.split() == ["none"]:
+        pytest.skip("MuJoCo's own renderer does not work on this machine")
+    assert done.stdout.split() == ["True"] * 3, done.stderr
