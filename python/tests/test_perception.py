@@ -84,24 +84,54 @@ def test_tags():
     assert mjarm.find_tags(np.zeros((100, 100, 3), np.uint8)) == []
 
 
+def looking_at(target, eye):
+    """A camera at `eye`: x to the right, y down, z towards the target."""
+    z = (target - eye) / np.linalg.norm(target - eye)
+    x = np.cross(z, [0.2, 1, 0])
+    x /= np.linalg.norm(x)
+    return mjarm.Pose(eye, matrix=np.stack([x, np.cross(z, x), z], axis=1))
+
+
+def picture_of(board, tags, X_BC, fx, cx, cy):
+    """What a camera sees of a white board with tags on it, ray by ray."""
+    v, u = np.mgrid[0:720, 0:1280]
+    rays = np.stack([(u - cx) / fx, (v - cy) / fx, np.ones_like(u)], axis=-1) @ X_BC.matrix[:3, :3].T
+    points = X_BC.pos + rays * (-X_BC.pos[2] / rays[..., 2])[..., None]
+    image = np.full((720, 1280, 3), 255, np.uint8)
+    for place, tag in zip(board, tags):
+        x, y = points[..., 0] - place[0], points[..., 1] - place[1]
+        on = (abs(x) < 0.0499) & (abs(y) < 0.0499)
+        image[on] = tag[((0.05 - y[on]) / 0.1 * len(tag)).astype(int), ((x[on] + 0.05) / 0.1 * len(tag)).astype(int)]
+    return image
+
+
 def test_hand_eye():
     """Views of a board that are computed: the camera comes out where it was put."""
-    rng = np.random.default_rng(3)
-    board = [mjarm.BoardTag(id, 0.08, mjarm.Pose([0.12 * (id % 2), 0.12 * (id // 2), 0])) for id in range(4)]
     camera_on_tool = mjarm.Pose([0.05, 0.02, 0.03], euler=[0.02, -0.03, 1.5])
     board_in_world = mjarm.Pose([0.5, 0.1, 0.0], euler=[0, 0, 0.3])
+    places = [np.array([0.12 * (i % 2), 0.12 * (i // 2), 0]) for i in range(4)]
+    board = [mjarm.BoardTag(i, 0.08, mjarm.Pose(place)) for i, place in enumerate(places)]
     frame = mjarm.Frame(np.zeros((720, 1280, 3), np.uint8), np.zeros((720, 1280)), fx=900, fy=900, cx=639.5, cy=359.5)
     try:
-        mjarm.find_tags(frame.color)
+        tags = [mjarm.tag_picture(i, 20) for i in range(4)]
     except mjarm.NotAvailable:
         pytest.skip("AprilTag is not built in")
+    seen, tools = [], []
+    for eye in ([0.06, 0.06, 0.5], [0.3, 0, 0.4], [-0.2, 0.1, 0.45], [0, 0.3, 0.4], [0.1, -0.25, 0.5]):
+        X_BC = looking_at(np.array([0.06, 0.06, 0]), np.array(eye))
+        seen.append(mjarm.find_tags(picture_of(places, tags, X_BC, 900, 639.5, 359.5)))
+        tools.append(board_in_world @ X_BC @ camera_on_tool.inverse())
+    found = mjarm.calibrate_hand_eye(board, seen, tools, "wrist", frame)
+    assert found.views == 5 and found.residual < 1
+    for one, wanted in ((found.camera, camera_on_tool), (found.board, board_in_world)):
+        off = one.difference(wanted)
+        assert off[0] < 0.003 and off[1] < 0.006, off
     with pytest.raises(mjarm.Impossible):
-        mjarm.calibrate_hand_eye(board, [[], []], [mjarm.Pose(), mjarm.Pose()], "wrist", frame)
+        mjarm.calibrate_hand_eye(board, [[], []], tools[:2], "wrist", frame)
     with pytest.raises(mjarm.BadInput, match="wrist"):
-        mjarm.calibrate_hand_eye(board, [[]], [mjarm.Pose()], "hand", frame)
+        mjarm.calibrate_hand_eye(board, seen, tools, "hand", frame)
     with pytest.raises(mjarm.BadInput, match="tool_poses"):
-        mjarm.calibrate_hand_eye(board, [[]], [mjarm.Pose(), mjarm.Pose()], "wrist", frame)
-    assert (camera_on_tool @ board_in_world).pos.shape == (3,) and rng is not None
+        mjarm.calibrate_hand_eye(board, seen, tools[:2], "wrist", frame)
 
 
 def test_what_cannot_be_looked_at(robot):
