@@ -16,12 +16,7 @@ Result<std::vector<IkRun>> run_ik_peers(const IkProblem& problem,
   if (!job) return fail(std::move(job.error()));
   std::vector<JsonDoc> sets;
   for (const IkCaseSet& set : problem.sets) {
-    std::vector<JsonDoc> cases;
-    for (const IkCase& entry : set.cases) {
-      cases.push_back(pose_json(entry.X_WT));
-      cases.back().set("seed", entry.seed);
-    }
-    sets.push_back({{"name", set.name}, {"cases", std::move(cases)}});
+    sets.push_back({{"name", set.name}, {"cases", cases_json(set)}});
   }
   job->set("fk", problem.q);
   job->set("sets", std::move(sets));
@@ -58,11 +53,7 @@ void describe(IkRun& run) {
 Result<BenchResult> measure_ik(const BenchOptions& options, const std::string& robot, int rounds) {
   const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
   if (!problem) return fail(problem.error());
-  const auto judge_run = [&](IkRun& run) -> Result<int> {
-    if (Result<void> judged = judge(*problem, run); !judged) return fail(judged.error());
-    describe(run);
-    return run.false_ok;
-  };
+  const auto judge_run = [&](IkRun& run) { return judge_and_describe(*problem, run); };
   return compare(
       options.peers, {problem->name, problem->robot.model.file().filename().string()},
       run_ik(*problem, rounds), [&] { return run_ik_peers(*problem, options.peers, rounds); },
@@ -70,6 +61,21 @@ Result<BenchResult> measure_ik(const BenchOptions& options, const std::string& r
 }
 
 }  // namespace
+
+std::vector<JsonDoc> cases_json(const IkCaseSet& set) {
+  std::vector<JsonDoc> cases;
+  for (const IkCase& entry : set.cases) {
+    cases.push_back(pose_json(entry.X_WT));
+    cases.back().set("seed", entry.seed);
+  }
+  return cases;
+}
+
+Result<int> judge_and_describe(const IkProblem& problem, IkRun& run) {
+  if (Result<void> judged = judge(problem, run); !judged) return fail(judged.error());
+  describe(run);
+  return run.false_ok;
+}
 
 Command ik_suite() {
   return {"ik", msg::bench_ik_summary, msg::bench_ik_examples, [](CLI::App& app) {

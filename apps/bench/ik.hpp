@@ -57,6 +57,13 @@ struct IkRun : BenchEntry {
 /// this thread, each call with a clock reading before and after. Stops at Ctrl-C.
 [[nodiscard]] std::vector<IkRun> run_ik(const IkProblem& problem, int rounds);
 
+/// The cases of a set as the peers read them.
+[[nodiscard]] std::vector<JsonDoc> cases_json(const IkCaseSet& set);
+
+/// Judges a run, and fills its cell and, for the JSON document, every miss.
+/// @return how many answers are wrong.
+[[nodiscard]] Result<int> judge_and_describe(const IkProblem& problem, IkRun& run);
+
 /// Counts what is right in `run`, by MuJoCo's own forward kinematics of the loaded file: an answer
 /// within 1e-4 m, 1e-3 rad and the limits for a pose that can be reached, "no" for any other.
 [[nodiscard]] Result<void> judge(const IkProblem& problem, IkRun& run);

@@ -60,12 +60,7 @@ Result<std::vector<IkRun>> run_python_peers(const IkProblem& problem,
                                             const std::filesystem::path& environment, int rounds) {
   Result<JsonDoc> job = robot_job(problem.robot, rounds);
   if (!job) return fail(std::move(job.error()));
-  std::vector<JsonDoc> cases;
-  for (const IkCase& entry : problem.sets.front().cases) {
-    cases.push_back(pose_json(entry.X_WT));
-    cases.back().set("seed", entry.seed);
-  }
-  job->set("cases", std::move(cases));
+  job->set("cases", cases_json(problem.sets.front()));
   job->set("batch", kBatch);
   job->set("worlds", kReachWorlds);
   job->set("steps", kReachSteps);
@@ -86,16 +81,7 @@ Result<BenchResult> measure_python(const BenchOptions& options, const std::strin
   Result<IkRun> reach = run_reach(rounds);
   if (!reach) return fail(std::move(reach.error()));
   runs.push_back(std::move(*reach));
-  const auto judge_run = [&](IkRun& run) -> Result<int> {
-    if (run.q.empty()) {
-      run.cells = {"-"};
-      return 0;
-    }
-    if (Result<void> judged = judge(*problem, run); !judged) return fail(judged.error());
-    run.cells = {std::to_string(run.right) + "/" + std::to_string(run.q.size())};
-    run.details = {{"cases", run.q.size()}, {"right", run.right}};
-    return run.false_ok;
-  };
+  const auto judge_run = [&](IkRun& run) { return judge_and_describe(*problem, run); };
   return compare(
       options.peers, {problem->name, problem->robot.model.file().filename().string()},
       std::move(runs), [&] { return run_python_peers(*problem, options.peers, rounds); }, judge_run,

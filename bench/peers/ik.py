@@ -9,7 +9,6 @@ mjarm, with MuJoCo's forward kinematics.
 import os
 import subprocess
 import sys
-import time
 import xml.etree.ElementTree
 
 import driver
@@ -177,15 +176,13 @@ PEERS = {
 
 
 def run_mean(cases, rounds, prepare, call):
-    """Best mean time of all [us]: one call is too short for the clock."""
     arguments = [prepare(case) for case in cases]
-    best = float("inf")
-    for _ in range(rounds):
-        start = time.perf_counter_ns()
+
+    def work():
         for words in arguments:
             call(*words)
-        best = min(best, (time.perf_counter_ns() - start) / 1000 / len(arguments))
-    return [best]
+
+    return driver.best_mean(rounds, len(arguments), work)
 
 
 def run_peer(job, name, maker, row):

@@ -5,14 +5,13 @@ Usage: python.py JOB.json ANSWERS.jsonl (mjarm calls it). Three sets: `reachable
 written as most are, with gymnasium and mujoco in plain Python.
 """
 
-import time
-
 import driver
 import ik
 
 
 def mjarm_calls(job):
     import mjarm
+    import numpy as np
 
     robot = mjarm.Robot(job["urdf"], tip=job["tip"])
 
@@ -22,19 +21,7 @@ def mjarm_calls(job):
         except mjarm.Unreachable:
             return None
 
-    import numpy as np
-
     return lambda case: (ik.matrix(case), np.array(case["seed"])), call, lambda found: None if found is None else found.q
-
-
-def best_mean(rounds, count, work, begin=lambda: None):
-    best = float("inf")
-    for _ in range(rounds):
-        begin()
-        start = time.perf_counter_ns()
-        work()
-        best = min(best, (time.perf_counter_ns() - start) / 1000 / count)
-    return [best]
 
 
 def mjarm_batch(job):
@@ -44,7 +31,7 @@ def mjarm_batch(job):
     robot = mjarm.Robot(job["urdf"], tip=job["tip"])
     poses = np.array([ik.matrix(case) for case in job["cases"]])
     poses = poses[np.arange(job["batch"]) % len(poses)]
-    return best_mean(job["rounds"], job["batch"], lambda: robot.ik_batch(poses, threads=1))
+    return driver.best_mean(job["rounds"], job["batch"], lambda: robot.ik_batch(poses, threads=1))
 
 
 def mjarm_reach(job):
@@ -53,7 +40,7 @@ def mjarm_reach(job):
 
     envs = ReachVectorEnv(job["worlds"], threads=1)
     still = np.zeros(envs.action_space.shape, np.float32)
-    return best_mean(job["rounds"], job["worlds"] * job["steps"], lambda: [envs.step(still) for _ in range(job["steps"])],
+    return driver.best_mean(job["rounds"], job["worlds"] * job["steps"], lambda: [envs.step(still) for _ in range(job["steps"])],
                      lambda: envs.reset(seed=1))
 
 
@@ -69,13 +56,10 @@ def plain_reach(job):
         def __init__(self):
             self.model = mujoco.MjModel.from_xml_path(str(mjarm.Robot("panda").file.with_name("scene.xml")))
             self.data = mujoco.MjData(self.model)
-            self.tool = self.model.site("tcp").id if "tcp" in self.names() else 0
+            self.tool = self.model.site("hand_tcp").id
             self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (23,), np.float32)
             self.action_space = gymnasium.spaces.Box(-1, 1, (7,), np.float32)
             self.goal = np.array([0.4, 0.2, 0.3])
-
-        def names(self):
-            return {self.model.site(i).name for i in range(self.model.nsite)}
 
         def see(self):
             q, v, p = self.data.qpos[:7], self.data.qvel[:7], self.data.site_xpos[self.tool]
@@ -83,7 +67,7 @@ def plain_reach(job):
 
         def reset(self, *, seed=None, options=None):
             super().reset(seed=seed)
-            mujoco.mj_resetDataKeyframe(self.model, self.data, 0) if self.model.nkey else mujoco.mj_resetData(self.model, self.data)
+            mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
             return self.see(), {}
 
         def step(self, action):
@@ -94,7 +78,7 @@ def plain_reach(job):
 
     worlds = [Reach() for _ in range(job["worlds"])]
     still = np.zeros(7, np.float32)
-    return best_mean(job["rounds"], job["worlds"] * job["steps"],
+    return driver.best_mean(job["rounds"], job["worlds"] * job["steps"],
                      lambda: [world.step(still) for _ in range(job["steps"]) for world in worlds],
                      lambda: [world.reset() for world in worlds])
 

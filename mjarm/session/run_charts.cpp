@@ -7,7 +7,10 @@
 #include <limits>
 #include <numeric>
 
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/messages/run_charts.hpp"
+#include "mjarm/core/messages/show.hpp"
+#include "mjarm/render/fonts.hpp"
 
 namespace mjarm::session {
 namespace {
@@ -186,6 +189,17 @@ render::Plot motion_plot(const std::string& title, const Arm& arm,
                  share_panel(msg::run_chart_torque, rows, [&](const RecordRow& row) {
                    return 100 * row.torque.cwiseQuotient(limits.torque).cwiseAbs().maxCoeff();
                  })};
+  return plot;
+}
+
+render::Plot run_plot(const std::string& name, const std::string& control, const Report& report,
+                      const Arm& arm, std::span<const MeasuredRun> runs, double tolerance) {
+  const LanguageScope drawn(render::picture_language());
+  render::Plot plot = motion_plot(name, arm, runs, tolerance);
+  if (report.path_error) {
+    plot.note = text(msg::show_plot_note, control, 1e3 * report.path_error->max,
+                     1e3 * report.path_error->rms, 100 * report.done);
+  }
   return plot;
 }
 

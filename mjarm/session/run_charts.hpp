@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mjarm/execution/measured_run.hpp"
+#include "mjarm/execution/report.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/render/plot.hpp"
 
@@ -18,6 +19,12 @@ namespace mjarm::session {
 [[nodiscard]] render::PlotPanel joint_panel(const Arm& arm, std::span<const MeasuredRun> runs);
 [[nodiscard]] render::PlotPanel joint_speed_panel(const Arm& arm,
                                                   std::span<const MeasuredRun> runs);
+
+/// The page of motion_plot() with what its report says of the path at the foot.
+/// @param name, control  that the report gets, or has.
+[[nodiscard]] render::Plot run_plot(const std::string& name, const std::string& control,
+                                    const Report& report, const Arm& arm,
+                                    std::span<const MeasuredRun> runs, double tolerance);
 
 /// One page about a run: tool path from three sides (planned dashed, executed solid), tool speed,
 /// error with its tolerance [m], joint values, worst use of velocity and torque limits.

@@ -4,11 +4,9 @@
 #include <utility>
 
 #include "mjarm/core/file.hpp"
-#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/kinematics/ik.hpp"
-#include "mjarm/render/fonts.hpp"
 #include "mjarm/session/picture.hpp"
 #include "mjarm/session/program_scene.hpp"
 #include "mjarm/session/run_charts.hpp"
@@ -126,12 +124,7 @@ Result<Report> Stage::finish(Report begun, double tolerance) {
 }
 
 Result<Report> Stage::finish(Report report, double tolerance, std::span<const MeasuredRun> runs) {
-  const LanguageScope drawn(render::picture_language());
-  render::Plot plot = motion_plot(name_, robot_.arm, runs, tolerance);
-  if (report.path_error) {
-    plot.note = text(msg::show_plot_note, control_, 1e3 * report.path_error->max,
-                     1e3 * report.path_error->rms, 100 * report.done);
-  }
+  render::Plot plot = run_plot(name_, control_, report, robot_.arm, runs, tolerance);
   return write(std::move(report), std::move(plot));
 }
 

@@ -27,6 +27,11 @@ from ._core import ReachBatch
 ID = "mjarm/Reach-v0"
 
 
+def _check(render_mode: str | None) -> None:
+    if render_mode not in (None, "rgb_array"):
+        raise ValueError(f"render_mode: expected None or rgb_array, not {render_mode!r}")
+
+
 def _spaces(batch: ReachBatch) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:
     return (
         gymnasium.spaces.Box(-np.inf, np.inf, (batch.observation_size,), np.float32),
@@ -37,12 +42,12 @@ def _spaces(batch: ReachBatch) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.B
 class ReachEnv(gymnasium.Env):
     """One arm that learns to bring its tool to goals; `info["distance"]` [m] tells how far it is off."""
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 25}
+    metadata = {"render_modes": ["rgb_array"]}
 
     def __init__(self, render_mode: str | None = None, **task: Any) -> None:
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise ValueError(f"render_mode: expected None or rgb_array, not {render_mode!r}")
+        _check(render_mode)
         self._batch = ReachBatch(**task)
+        self.metadata = self.metadata | {"render_fps": self._batch.fps}
         self.render_mode = render_mode
         self.observation_space, self.action_space = _spaces(self._batch)
 
@@ -65,11 +70,10 @@ class ReachEnv(gymnasium.Env):
 class ReachVectorEnv(gymnasium.vector.VectorEnv):
     """Many of them, stepped together in C++ on all cores; an episode that ends begins anew in the same step."""
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 25, "autoreset_mode": gymnasium.vector.AutoresetMode.SAME_STEP}
+    metadata = {"render_modes": ["rgb_array"], "autoreset_mode": gymnasium.vector.AutoresetMode.SAME_STEP}
 
     def __init__(self, num_envs: int = 1, render_mode: str | None = None, threads: int | None = None, **task: Any) -> None:
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise ValueError(f"render_mode: expected None or rgb_array, not {render_mode!r}")
+        _check(render_mode)
         self._batch = ReachBatch(environments=num_envs, threads=threads or len(os.sched_getaffinity(0)), **task)
         self.num_envs = num_envs
         self.render_mode = render_mode

@@ -86,13 +86,7 @@ class BoundController {
     // The clock of a world that was put back begins anew, and so does its motion.
     if (!begin_ || time < *begin_) begin_ = time;
     now_ = time + step;
-    if (!motion_ && rest_.size() == 0) {
-      rest_.resize(robot_.arm.dof());
-      for (int i = 0; i < robot_.arm.dof(); ++i) {
-        rest_[i] =
-            qpos[static_cast<std::size_t>(robot_.arm.joints[static_cast<std::size_t>(i)].qpos)];
-      }
-    }
+    if (!motion_ && rest_.size() == 0) rest_ = joints_in(qpos, robot_.arm);
     const StepReference out =
         motion_ ? reference_at(*motion_, time - *begin_, step) : mjarm::hold(as_span(rest_));
     reference_ = out.next;

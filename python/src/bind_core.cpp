@@ -61,11 +61,6 @@ std::string shown(const Pose& X) {
   return text;
 }
 
-std::vector<double> quat_values(const Pose& X) {
-  const Quat q = to_quat(X.R);
-  return {q.w(), q.x(), q.y(), q.z()};
-}
-
 void bind_pose(nb::module_& m) {
   nb::class_<Pose>(m, "Pose", R"(Pose of a frame in another: a position and a rotation.
 

@@ -5,10 +5,10 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
-#include <functional>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
-#include "mjarm/core/rotation.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/convert.hpp"
 #include "python/src/images.hpp"
@@ -74,9 +74,8 @@ nb::dict log_of(const BoundRun& run) {
   std::vector<double> pos, quat, pos_ref, quat_ref;
   std::vector<std::string> contacts;
   const auto add = [](const Pose& X, std::vector<double>& p, std::vector<double>& turn) {
-    const Quat r = to_quat(X.R);
     p.insert(p.end(), X.p.begin(), X.p.end());
-    turn.insert(turn.end(), {r.w(), r.x(), r.y(), r.z()});
+    std::ranges::copy(quat_values(X), std::back_inserter(turn));
   };
   const std::size_t n = run.recorder().size();
   for (std::size_t i = 0; i < n; ++i) {

@@ -20,11 +20,8 @@ JointVec BoundRobot::joints(nb::handle value, const char* name) const {
     if (n == nq) refuse(msg::python_joints, name, n);
     refuse(msg::python_joints_or_qpos, name, n, nq);
   }
-  JointVec q(dof());
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t at = given.size() == n ? i : static_cast<std::size_t>(arm().joints[i].qpos);
-    q[static_cast<Eigen::Index>(i)] = given.data()[at];
-  }
+  const std::span<const double> values = span_of(given);
+  const JointVec q = values.size() == n ? joint_vec(values) : joints_in(values, arm());
   value_of(check_joint_units(as_span(q), arm()));
   return q;
 }
@@ -38,6 +35,28 @@ std::vector<double> BoundRobot::rows(nb::handle value, const char* name) const {
   return {given.data(), given.data() + given.size()};
 }
 
+std::vector<JointVec> BoundRobot::waypoints(nb::handle value, const char* name) const {
+  const std::vector<double> values = rows(value, name);
+  const auto n = static_cast<std::size_t>(dof());
+  std::vector<JointVec> out;
+  for (std::size_t i = 0; i < values.size(); i += n) out.push_back(joint_vec({&values[i], n}));
+  return out;
+}
+
+JointVec joints_in(std::span<const double> qpos, const Arm& arm) {
+  JointVec q(arm.dof());
+  for (int i = 0; i < arm.dof(); ++i) {
+    q[i] = qpos[static_cast<std::size_t>(arm.joints[static_cast<std::size_t>(i)].qpos)];
+  }
+  return q;
+}
+
+std::vector<double> qpos_of(nb::handle value, const Model& model) {
+  if (value.is_none()) return {};
+  const Reals whole = reals(value, "qpos", {model.nq()});
+  return {whole.data(), whole.data() + whole.size()};
+}
+
 namespace {
 
 /// A name, a path, or a mujoco.MjModel.
@@ -49,7 +68,7 @@ Robot load(nb::handle model, const std::string& tip, bool allow_outside, bool lo
     Arm arm = value_of(find_arm(copy, {.tip = tip}));
     return {std::move(copy), std::move(arm)};
   }
-  const auto path = nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(model));
+  const std::string path = path_text(model);
   const RobotOptions options{
       .tip = tip,
       .load = {.package_paths = packages, .allow_outside = allow_outside, .looks = looks}};

@@ -56,9 +56,8 @@ struct BoundCamera {
 Snapshot snapshot_of(const Model& model, nb::handle qpos) {
   Sim sim(model);
   sim.reset_home();
-  if (!qpos.is_none()) {
-    const Reals whole = reals(qpos, "qpos", {model.nq()});
-    sim.set_state(span_of(whole), std::vector<double>(static_cast<std::size_t>(model.nv())));
+  if (const std::vector<double> whole = qpos_of(qpos, model); !whole.empty()) {
+    sim.set_state(whole, std::vector<double>(static_cast<std::size_t>(model.nv())));
   }
   return sim.snapshot();
 }
@@ -100,16 +99,9 @@ Seen seen_of(perception::FoundScene found) {
 }
 
 Seen look_with(BoundEye& self, nb::handle qpos) {
-  SceneState scene;
-  JointVec q = self.robot.arm.home;
-  if (!qpos.is_none()) {
-    const Reals whole = reals(qpos, "qpos", {self.robot.model.nq()});
-    scene.qpos.assign(whole.data(), whole.data() + whole.size());
-    for (int i = 0; i < self.robot.arm.dof(); ++i) {
-      const ArmJoint& joint = self.robot.arm.joints[static_cast<std::size_t>(i)];
-      q[i] = scene.qpos[static_cast<std::size_t>(joint.qpos)];
-    }
-  }
+  const SceneState scene{.qpos = qpos_of(qpos, self.robot.model)};
+  const Arm& arm = self.robot.arm;
+  const JointVec q = scene.qpos.empty() ? arm.home : joints_in(scene.qpos, arm);
   return value_of([&]() -> Result<Seen> {
     const nb::gil_scoped_release free;
     const auto turn = self.turn.lock();

@@ -17,15 +17,6 @@ namespace {
 
 using program::PickPlan;
 
-/// How things stand: those that were seen where they were seen, all else as in `qpos`.
-SceneState scene_of(const BoundRobot& robot, nb::handle qpos) {
-  SceneState scene;
-  if (qpos.is_none()) return scene;
-  const Reals whole = reals(qpos, "qpos", {robot.robot.model.nq()});
-  scene.qpos.assign(whole.data(), whole.data() + whole.size());
-  return scene;
-}
-
 [[noreturn]] void raise_no_pick(const program::PickFailure& failure) {
   nb::object exception = error_class("NoPick")(failure.what);
   exception.attr("reason") = std::string(name(failure.code));
@@ -45,7 +36,7 @@ PickPlan pick(const BoundRobot& robot, const std::string& object, nb::handle pla
     refuse(msg::python_positive, "tool_speed, approach, lift");
   }
   const JointVec q_start = robot.joints_or_home(q.is_none() ? qpos : q, "q");
-  const SceneState scene = scene_of(robot, qpos);
+  const SceneState scene{.qpos = qpos_of(qpos, robot.robot.model)};
   program::PickOptions options{.approach = approach, .lift = lift, .tool_speed = tool_speed};
   auto plan = interruptible([&](const StopCheck& stop) {
     options.stop = stop;

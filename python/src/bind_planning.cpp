@@ -154,10 +154,7 @@ BoundPlan plan(const BoundRobot& robot, nb::handle start, nb::handle goal, const
   const JointVec q_start = robot.joints_or_home(start, "start");
   const PathEnd end = goal_of(robot, goal);
   WorldOptions world{.rules = rules_of(robot, held, allowed, q_start), .margin = margin};
-  if (!qpos.is_none()) {
-    const Reals whole = reals(qpos, "qpos", {robot.robot.model.nq()});
-    world.qpos.assign(whole.data(), whole.data() + whole.size());
-  }
+  world.qpos = qpos_of(qpos, robot.robot.model);
   if (samples < 0 || rounds < 0 || !(time_limit >= 0)) {
     refuse(msg::python_not_negative, "samples, rounds, time_limit");
   }
@@ -177,7 +174,6 @@ BoundPlan plan(const BoundRobot& robot, nb::handle start, nb::handle goal, const
   if (!path) raise_no_path(path.error());
   return {.robot = robot.robot,
           .path = std::move(*path),
-          .dof = robot.dof(),
           .rules = std::move(world.rules),
           .world = planner};
 }
@@ -199,7 +195,7 @@ void bind_plan(nb::module_& m) {
   nb::class_<BoundPlan>(m, "Plan",
                         "A path of straight edges in joint space, each proved to be free.")
       .def_prop_ro(
-          "path", [](const BoundPlan& p) { return array(p.path.q, p.dof); },
+          "path", [](const BoundPlan& p) { return array(p.path.q, p.robot.arm.dof()); },
           nb::sig("def path(self) -> Array"),
           "Corners [rad or m], start and goal included, shape (n, dof).")
       .def_prop_ro(

@@ -33,11 +33,6 @@ struct BoundProgram {
   Robot robot;
 };
 
-/// `mjarm.ProgramPlan`.
-struct BoundProgramPlan {
-  LoadedProgram loaded;
-};
-
 LoadOptions load_options(bool allow_outside, const std::vector<fs::path>& packages) {
   return {.package_paths = packages, .allow_outside = allow_outside};
 }
@@ -52,7 +47,7 @@ BoundProgram with_robot(std::string file, Program program, const LoadOptions& lo
 
 BoundProgram load_program(nb::handle name_or_path, bool allow_outside,
                           const std::vector<fs::path>& packages) {
-  const auto name = nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(name_or_path));
+  const std::string name = path_text(name_or_path);
   const fs::path file = value_of(program::find_program_file(name));
   return with_robot(file.string(), value_of(program::read_program(file)),
                     load_options(allow_outside, packages));
@@ -66,10 +61,10 @@ BoundProgram parse_program(const std::string& text, const fs::path& folder, bool
   return with_robot(file.string(), std::move(program), load_options(allow_outside, packages));
 }
 
-BoundProgramPlan think_through(const BoundProgram& self) {
-  return {value_of(interruptible([&](const StopCheck& stop) {
+LoadedProgram think_through(const BoundProgram& self) {
+  return value_of(interruptible([&](const StopCheck& stop) {
     return program::plan_loaded(self.file, self.program, self.robot, stop, session::see_scene);
-  }))};
+  }));
 }
 
 LoadedProgram sound(LoadedProgram loaded) {
@@ -121,36 +116,35 @@ void bind_fault(nb::module_& m) {
 }
 
 void bind_program_plan(nb::module_& m) {
-  nb::class_<BoundProgramPlan>(m, "ProgramPlan",
-                               "A program that was thought through, before anything moves.")
+  nb::class_<LoadedProgram>(m, "ProgramPlan",
+                            "A program that was thought through, before anything moves.")
       .def_prop_ro(
-          "ok", [](const BoundProgramPlan& p) { return p.loaded.plan.ok(); },
+          "ok", [](const LoadedProgram& p) { return p.plan.ok(); },
           "It may run: there are no faults.")
       .def_prop_ro(
-          "faults", [](const BoundProgramPlan& p) { return p.loaded.plan.faults; },
+          "faults", [](const LoadedProgram& p) { return p.plan.faults; },
           "All that cannot be done, in the order of the program.")
       .def_prop_ro(
-          "motions", [](const BoundProgramPlan& p) { return p.loaded.plan.moves; },
+          "motions", [](const LoadedProgram& p) { return p.plan.moves; },
           "Its motions, one after another.")
       .def_prop_ro(
-          "duration", [](const BoundProgramPlan& p) { return p.loaded.plan.duration(); },
+          "duration", [](const LoadedProgram& p) { return p.plan.duration(); },
           "Of all motions [s].")
       .def(
           "run",
-          [](const BoundProgramPlan& p, const std::optional<std::string>& control, double rest,
-             double tolerance, double max_duration) {
-            return execute(p.loaded, control, rest, tolerance, max_duration);
-          },
+          [](const LoadedProgram& p, const std::optional<std::string>& control, double rest,
+             double tolerance,
+             double max_duration) { return execute(p, control, rest, tolerance, max_duration); },
           nb::kw_only(), nb::arg("control") = nb::none(), nb::arg("rest") = kRestAtEnd,
           nb::arg("tolerance") = BoundRun::Choice().tolerance, nb::arg("max_duration") = 3600.0,
           "As Program.run(), without planning again.")
       .def(
-          "urscript", [](const BoundProgramPlan& p) { return urscript(sound(p.loaded)); },
+          "urscript", [](const LoadedProgram& p) { return urscript(sound(p)); },
           "As a script for a controller of Universal Robots.")
-      .def("__bool__", [](const BoundProgramPlan& p) { return p.loaded.plan.ok(); })
-      .def("__len__", [](const BoundProgramPlan& p) { return p.loaded.plan.moves.size(); })
-      .def("__repr__", [](const BoundProgramPlan& p) {
-        const program::ProgramPlan& plan = p.loaded.plan;
+      .def("__bool__", [](const LoadedProgram& p) { return p.plan.ok(); })
+      .def("__len__", [](const LoadedProgram& p) { return p.plan.moves.size(); })
+      .def("__repr__", [](const LoadedProgram& p) {
+        const program::ProgramPlan& plan = p.plan;
         return "<mjarm.ProgramPlan: " + std::to_string(plan.moves.size()) + " motions, " +
                std::to_string(plan.duration()) + " s, " + std::to_string(plan.faults.size()) +
                " faults>";
@@ -209,14 +203,13 @@ void bind_program(nb::module_& m) {
           "run",
           [](const BoundProgram& p, const std::optional<std::string>& control, double rest,
              double tolerance, double max_duration) {
-            return execute(think_through(p).loaded, control, rest, tolerance, max_duration);
+            return execute(think_through(p), control, rest, tolerance, max_duration);
           },
           nb::kw_only(), nb::arg("control") = nb::none(), nb::arg("rest") = kRestAtEnd,
           nb::arg("tolerance") = BoundRun::Choice().tolerance, nb::arg("max_duration") = 3600.0,
           kRunProgram)
       .def(
-          "urscript",
-          [](const BoundProgram& p) { return urscript(sound(think_through(p).loaded)); },
+          "urscript", [](const BoundProgram& p) { return urscript(sound(think_through(p))); },
           "As a script for a controller of Universal Robots.")
       .def("__len__", [](const BoundProgram& p) { return p.program.instructions.size(); })
       .def("__repr__", [](const BoundProgram& p) {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "mjarm/core/share.hpp"
+#include "mjarm/model/model.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/rl/evaluate.hpp"
 #include "mjarm/rl/onnx_export.hpp"
@@ -137,13 +137,12 @@ nb::object draw_reach(BoundReach& self, int copy, int width, int height) {
 
 /// The name of a shipped policy, or a file.
 rl::TrainedPolicy load_policy(nb::handle name_or_path) {
-  const auto name = nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(name_or_path));
-  std::filesystem::path file = name;
+  const std::filesystem::path given = path_text(name_or_path);
   std::error_code none;
-  if (!std::filesystem::exists(file, none) && file.filename() == file && !file.has_extension()) {
-    file = value_of(share_folder()) / "models" / "policies" / (name + ".safetensors");
-  }
-  return value_of(rl::load_policy(file));
+  const bool shipped =
+      !std::filesystem::exists(given, none) && given.filename() == given && !given.has_extension();
+  return value_of(rl::load_policy(
+      shipped ? value_of(find_model_file("policies/" + given.string() + ".safetensors")) : given));
 }
 
 nb::object act(const rl::TrainedPolicy& self, nb::handle observation) {

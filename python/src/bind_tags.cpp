@@ -16,11 +16,6 @@
 namespace mjarm::python {
 namespace {
 
-/// The failure as an exception.
-[[noreturn]] void raise_not_found(perception::FindErrc code) {
-  raise(Error{Errc::impossible, describe(code)});
-}
-
 std::vector<perception::SeenTag> find_tags(nb::handle image) {
   const render::Image picture = image_of(image, "image");
   auto detector = value_of(perception::TagDetector::create());
@@ -92,7 +87,7 @@ void bind_tags(nb::module_& m) {
           "pose",
           [](const SeenTag& tag, double size, const render::RgbdFrame& frame, double depth_sigma) {
             const auto found = perception::tag_pose(tag, size, frame, depth_sigma);
-            if (!found) raise_not_found(found.error());
+            if (!found) raise(Error{Errc::impossible, describe(found.error())});
             return frame.X_WC * found->X_CT;
           },
           nb::arg("size"), nb::arg("frame"), nb::arg("depth_sigma") = 0.001,

@@ -63,20 +63,14 @@ PlannedMove time(const BoundRobot& robot, nb::handle what, double tool_speed, do
   limits.velocity *= share;
   limits.acceleration *= share;
   if (nb::isinstance<BoundPlan>(what)) return time_plan(nb::cast<const BoundPlan&>(what), limits);
-  std::vector<JointVec> rows;
-  const std::vector<double> values = robot.rows(what, "motion");
-  const auto dof = static_cast<std::size_t>(robot.dof());
-  for (std::size_t i = 0; i < values.size(); i += dof) rows.push_back(joint_vec({&values[i], dof}));
+  const std::vector<JointVec> rows = robot.waypoints(what, "motion");
   return {.word = "joints", .trajectory = value_of(time_waypoint_path(rows, limits))};
 }
 
 /// A motion, and when each waypoint is met.
 nb::tuple time_via(const BoundRobot& robot, nb::handle waypoints, double share) {
   if (!(share > 0 && share <= 1)) refuse(msg::python_share, "share");
-  std::vector<JointVec> rows;
-  const std::vector<double> values = robot.rows(waypoints, "waypoints");
-  const auto dof = static_cast<std::size_t>(robot.dof());
-  for (std::size_t i = 0; i < values.size(); i += dof) rows.push_back(joint_vec({&values[i], dof}));
+  const std::vector<JointVec> rows = robot.waypoints(waypoints, "waypoints");
   ViaMotion motion = value_of([&] {
     const nb::gil_scoped_release free;
     return time_via_points(rows, robot.arm().limits, {.joint_share = share});

@@ -79,6 +79,15 @@ Eigen::Vector3d vector3(nb::handle value, const char* name) {
   return Eigen::Map<const Eigen::Vector3d>(reals(value, name, {3}).data());
 }
 
+std::string path_text(nb::handle path) {
+  return nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(path));
+}
+
+std::vector<double> quat_values(const Pose& X) {
+  const Quat q = to_quat(X.R);
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
 nb::object array(const JointVec& q) {
   return array(std::vector<double>(q.begin(), q.end()), {static_cast<std::size_t>(q.size())});
 }

@@ -41,6 +41,12 @@ using Reals = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
   return {array.data(), array.size()};
 }
 
+/// Text of a str or an os.PathLike.
+[[nodiscard]] std::string path_text(nb::handle path);
+
+/// Unit quaternion (w, x, y, z).
+[[nodiscard]] std::vector<double> quat_values(const Pose& X);
+
 /// A new numpy array that owns `values`, in rows; `As` has the size of T.
 template <class T, class As = T>
 [[nodiscard]] nb::object owned(std::vector<T> values, std::initializer_list<std::size_t> shape) {

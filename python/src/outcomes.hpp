@@ -27,7 +27,6 @@ struct BoundPath {
 struct BoundPlan {
   Robot robot;
   PlannedPath path;
-  int dof = 0;
   ContactRules rules = {};
   std::shared_ptr<const PlanningWorld> world = {};
 };

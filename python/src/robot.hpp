@@ -2,6 +2,9 @@
 
 #include <nanobind/nanobind.h>
 
+#include <span>
+#include <vector>
+
 #include "mjarm/core/joint_vec.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/robot.hpp"
@@ -25,6 +28,15 @@ struct BoundRobot {
   [[nodiscard]] JointVec joints_or_home(nanobind::handle value, const char* name) const;
   /// (n, dof).
   [[nodiscard]] std::vector<double> rows(nanobind::handle value, const char* name) const;
+  /// The same as one vector a row.
+  [[nodiscard]] std::vector<JointVec> waypoints(nanobind::handle value, const char* name) const;
 };
+
+/// The arm's part of a whole configuration (nq,), shape (dof,).
+[[nodiscard]] JointVec joints_in(std::span<const double> qpos, const Arm& arm);
+
+/// A whole configuration (nq,) of the model; empty for None.
+/// @throws a BadInput for another shape, or no numbers.
+[[nodiscard]] std::vector<double> qpos_of(nanobind::handle value, const Model& model);
 
 }  // namespace mjarm::python

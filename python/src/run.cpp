@@ -2,11 +2,9 @@
 
 #include <utility>
 
-#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/progress.hpp"
-#include "mjarm/render/fonts.hpp"
 #include "mjarm/render/offscreen.hpp"
 #include "mjarm/session/motion_view.hpp"
 #include "mjarm/session/program_scene.hpp"
@@ -44,14 +42,8 @@ Result<std::unique_ptr<BoundRun>> BoundRun::execute(program::LoadedProgram loade
 }
 
 render::Plot BoundRun::plot() const {
-  const LanguageScope drawn(render::picture_language());
-  render::Plot plot =
-      session::motion_plot(report_.name, loaded_.robot.arm, measured_, choice_.tolerance);
-  if (report_.path_error) {
-    plot.note = text(msg::show_plot_note, report_.control, 1e3 * report_.path_error->max,
-                     1e3 * report_.path_error->rms, 100 * report_.done);
-  }
-  return plot;
+  return session::run_plot(report_.name, report_.control, report_, loaded_.robot.arm, measured_,
+                           choice_.tolerance);
 }
 
 render::Overlay BoundRun::overlay() const {

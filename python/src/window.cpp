@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "mjarm/core/log.hpp"
-#include "mjarm/kinematics/fk.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 #include "mjarm/render/trail.hpp"
 #include "mjarm/view/playback.hpp"
