@@ -274,12 +274,12 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
       {"model", robot.model.name()}, {"rest", std::move(rest_docs)}, {"laps", std::move(lap_docs)}};
 }
 
-struct Options : ReportOptions {
+struct ControlWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
   std::string poses = "100";
 };
 
-Result<int> run_control(const Options& options) {
+Result<int> run_control(const ControlWords& options) {
   constexpr int kMaxPoses = 100'000;
   const Result<int> poses = parse_count("--poses", options.poses, kMaxPoses);
   if (!poses) return fail(poses.error());
@@ -312,7 +312,7 @@ Result<int> run_control(const Options& options) {
 Command control_suite() {
   return {"control", msg::control_suite_summary, msg::control_suite_examples,
           [](CLI::App& app) -> Run {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<ControlWords>();
             add_robot_options(app, options->robot);
             add_option(app, "--poses", options->poses, msg::control_suite_option_poses, "N");
             add_report_options(app, *options);

@@ -13,10 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kCaseSeed = 1;
 constexpr int kReachable = 1000;
 constexpr int kUnreachable = 100;
-constexpr int kPaths = 20;
+constexpr int kCasePaths = 20;
 constexpr int kPathPoses = 100;
 constexpr double kPathStep = 0.01;  // [rad or m] largest joint step from pose to pose
 
@@ -24,7 +24,7 @@ std::vector<double> list(const JointVec& q) { return {q.begin(), q.end()}; }
 
 IkCaseSet make_reachable(const Arm& arm) {
   IkCaseSet set{"reachable", true, {}};
-  Rng rng(kSeed);
+  Rng rng(kCaseSeed);
   for (int i = 0; i < kReachable; ++i) {
     const Pose X_WT = fk(arm, as_span(random_q(arm, rng)));
     set.cases.push_back({X_WT, list(random_q(arm, rng))});
@@ -37,7 +37,7 @@ IkCaseSet make_unreachable(const Arm& arm) {
   const double stretch = stretch_of(arm);
   IkCaseSet set{"unreachable", false, {}};
   if (!std::isfinite(stretch)) return set;
-  Rng rng(kSeed, 1);
+  Rng rng(kCaseSeed, 1);
   for (int i = 0; i < kUnreachable; ++i) {
     Eigen::Vector3d direction(rng.normal(), rng.normal(), rng.normal());
     Pose X_WT = fk(arm, as_span(random_q(arm, rng)));
@@ -50,8 +50,8 @@ IkCaseSet make_unreachable(const Arm& arm) {
 /// Tool poses along straight lines in joint space, which every arm can follow.
 std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
   std::vector<std::vector<IkCase>> paths;
-  Rng rng(kSeed, 2);
-  for (int i = 0; i < kPaths; ++i) {
+  Rng rng(kCaseSeed, 2);
+  for (int i = 0; i < kCasePaths; ++i) {
     const JointVec from = random_q(arm, rng);
     const JointVec way = random_q(arm, rng) - from;
     const double length = std::max(way.cwiseAbs().maxCoeff(), 1e-9);
@@ -65,8 +65,8 @@ std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
   return paths;
 }
 
-Result<void> read_set(const fs::path& file, const Arm& arm, IkCaseSet& set) {
-  Rng rng(kSeed, 3);
+Result<void> read_case_set(const fs::path& file, const Arm& arm, IkCaseSet& set) {
+  Rng rng(kCaseSeed, 3);
   const auto take = [&](const JsonValue& object) -> Result<void> {
     const Result<Pose> X_WT = pose_of(object);
     if (!X_WT) return fail(X_WT.error());
@@ -82,14 +82,14 @@ Result<void> read_set(const fs::path& file, const Arm& arm, IkCaseSet& set) {
   return read_cases(file, LineReader::kLongestLine, set.cases, take);
 }
 
-Result<std::vector<IkCaseSet>> read_sets(const fs::path& folder, const std::string& name,
-                                         const Arm& arm) {
+Result<std::vector<IkCaseSet>> read_case_sets(const fs::path& folder, const std::string& name,
+                                              const Arm& arm) {
   std::vector<IkCaseSet> sets;
   for (const char* kind : {"reachable", "unreachable", "hard_negatives"}) {
     const fs::path file = folder / (name + "_" + kind + ".jsonl");
     if (!sets.empty() && !is_there(file)) continue;  // the first one must be there
     IkCaseSet& set = sets.emplace_back(IkCaseSet{kind, sets.empty(), {}});
-    if (auto read = read_set(file, arm, set); !read) return fail(std::move(read.error()));
+    if (auto read = read_case_set(file, arm, set); !read) return fail(std::move(read.error()));
   }
   return sets;
 }
@@ -104,11 +104,11 @@ Result<IkProblem> load_ik_problem(const RobotChoice& options, const fs::path& fo
   if (folder.empty()) {
     problem.sets = {make_reachable(arm), make_unreachable(arm)};
   } else {
-    Result<std::vector<IkCaseSet>> sets = read_sets(folder, problem.name, arm);
+    Result<std::vector<IkCaseSet>> sets = read_case_sets(folder, problem.name, arm);
     if (!sets) return fail(std::move(sets.error()));
     problem.sets = std::move(*sets);
   }
-  Rng rng(kSeed, 4);
+  Rng rng(kCaseSeed, 4);
   for (int i = 0; i < kReachable; ++i) problem.q.push_back(list(random_q(arm, rng)));
   problem.paths = make_paths(arm);
   return problem;

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kSeed = 1;
-constexpr std::size_t kSeeds = 10;
+constexpr std::uint64_t kPathSeed = 1;
+constexpr std::size_t kStarts = 10;
 constexpr int kLines = 20;
 constexpr int kPoses = 100;
 constexpr int kTries = 2000;
@@ -43,7 +43,7 @@ bool followed(const IkSolver& ik, const std::vector<Pose>& poses, JointVec q) {
 PathSet make_lines(const Arm& arm) {
   PathSet set{"lines", true, {}};
   const IkSolver ik(arm);
-  Rng rng(kSeed);
+  Rng rng(kPathSeed);
   for (int i = 0; i < kTries && set.paths.size() < kLines; ++i) {
     const JointVec q = random_q(arm, rng);
     const Pose from = fk(arm, as_span(q));
@@ -72,7 +72,7 @@ PathSet make_beyond(const Arm& arm, const PathSet& lines) {
   return set;
 }
 
-Result<void> read_set(const fs::path& file, const Arm& arm, PathSet& set) {
+Result<void> read_path_set(const fs::path& file, const Arm& arm, PathSet& set) {
   const auto take = [&](const JsonValue& object) -> Result<void> {
     Result<PathRequest> request = path_request_of(object, arm);
     if (!request) return fail(std::move(request.error()));
@@ -83,14 +83,14 @@ Result<void> read_set(const fs::path& file, const Arm& arm, PathSet& set) {
   return read_cases(file, kLongestLine, set.paths, take);
 }
 
-Result<std::vector<PathSet>> read_sets(const fs::path& folder, const std::string& name,
-                                       const Arm& arm) {
+Result<std::vector<PathSet>> read_path_sets(const fs::path& folder, const std::string& name,
+                                            const Arm& arm) {
   std::vector<PathSet> sets;
   for (const char* kind : {"lines", "ellipse_far", "ellipse"}) {
     const fs::path file = folder / (name + "_" + kind + ".jsonl");
     if (!is_there(file)) continue;
     PathSet& set = sets.emplace_back(PathSet{kind, std::string_view(kind) != "ellipse", {}});
-    if (auto read = read_set(file, arm, set); !read) return fail(std::move(read.error()));
+    if (auto read = read_path_set(file, arm, set); !read) return fail(std::move(read.error()));
   }
   return sets;
 }
@@ -103,13 +103,13 @@ Result<PathProblem> load_path_problem(const RobotChoice& options, const fs::path
   PathProblem problem{fs::path(options.robot).stem().string(), std::move(*robot), {}, {}};
   const Arm& arm = problem.robot.arm;
   problem.seeds.emplace_back(arm.home.begin(), arm.home.end());
-  Rng rng(kSeed, 1);
-  while (problem.seeds.size() < kSeeds) {
+  Rng rng(kPathSeed, 1);
+  while (problem.seeds.size() < kStarts) {
     const JointVec q = random_q(arm, rng);
     problem.seeds.emplace_back(q.begin(), q.end());
   }
   if (!folder.empty()) {
-    Result<std::vector<PathSet>> sets = read_sets(folder, problem.name, arm);
+    Result<std::vector<PathSet>> sets = read_path_sets(folder, problem.name, arm);
     if (!sets) return fail(std::move(sets.error()));
     problem.sets = std::move(*sets);
   }

@@ -19,10 +19,10 @@
 namespace mjarm::app {
 namespace {
 
-constexpr int kMaxScenes = 100'000;
+constexpr int kMostScenes = 100'000;
 constexpr std::array kRobots = {"ur5e", "panda"};
 
-struct Options : ReportOptions {
+struct PickWords : ReportOptions {
   std::string robot, set, scenes = "100", first = "0", seed = "1", hold = "60";
 
   [[nodiscard]] bool wants(std::string_view name) const { return set.empty() || set == name; }
@@ -107,7 +107,7 @@ JsonDoc picks_json(const std::vector<SolvedSet>& sets) {
 }
 
 /// The scenes that are asked for.
-Result<std::vector<PickSet>> sets_of(const Options& options, std::uint64_t seed) {
+Result<std::vector<PickSet>> sets_of(const PickWords& options, std::uint64_t seed) {
   constexpr std::array<
       std::pair<const char*, Result<PickSet> (*)(const std::string&, std::uint64_t)>, 2>
       kSets = {{{"table", table_scenes}, {"clutter", clutter_scenes}}};
@@ -124,7 +124,7 @@ Result<std::vector<PickSet>> sets_of(const Options& options, std::uint64_t seed)
   return out;
 }
 
-Result<void> check_names(const Options& options) {
+Result<void> check_names(const PickWords& options) {
   constexpr std::array kNames = {"table", "clutter", "seen", "creep"};
   if (!options.set.empty() && std::ranges::find(kNames, options.set) == kNames.end()) {
     return fail(Errc::usage, text(msg::bench_pick_no_set, options.set));
@@ -163,7 +163,7 @@ struct PickAnswer {
   JsonDoc json = {};
 };
 
-Result<PickAnswer> measure_all(const Options& options, const SceneNumbers& scenes,
+Result<PickAnswer> measure_all(const PickWords& options, const SceneNumbers& scenes,
                                std::uint64_t seed, const HoldTimes& times) {
   PickAnswer out;
   Result<std::vector<PickSet>> sets = sets_of(options, seed);
@@ -189,14 +189,14 @@ Result<PickAnswer> measure_all(const Options& options, const SceneNumbers& scene
   return out;
 }
 
-Result<int> run_pick(const Options& options) {
+Result<int> run_pick(const PickWords& options) {
   constexpr int kMaxHold = 3600;  // [s]
   if (Result<void> known = check_names(options); !known) return fail(std::move(known.error()));
-  const Result<int> scenes = parse_count("--scenes", options.scenes, kMaxScenes);
+  const Result<int> scenes = parse_count("--scenes", options.scenes, kMostScenes);
   if (!scenes) return fail(scenes.error());
   const Result<std::uint64_t> first = parse_whole("--first", options.first);
   if (!first) return fail(first.error());
-  const Result<int> seed = parse_count("--seed", options.seed, kMaxScenes);
+  const Result<int> seed = parse_count("--seed", options.seed, kMostScenes);
   if (!seed) return fail(seed.error());
   const Result<int> hold = parse_count("--hold", options.hold, kMaxHold);
   if (!hold) return fail(hold.error());
@@ -219,7 +219,7 @@ Result<int> run_pick(const Options& options) {
 
 Command pick_suite() {
   return {"pick", msg::bench_pick_summary, msg::bench_pick_examples, [](CLI::App& app) -> Run {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<PickWords>();
             add_option(app, "--robot", options->robot, msg::bench_pick_option_robot, "NAME");
             add_option(app, "--set", options->set, msg::bench_pick_option_set, "NAME");
             add_option(app, "--scenes", options->scenes, msg::bench_pick_option_scenes, "N");

@@ -4,6 +4,7 @@
 
 #include "apps/bench/runs_test.hpp"
 #include "mjarm/perception/tag_detector.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -35,6 +36,7 @@ TEST(BenchPick, PlacesWhatTheCameraSeesAndTwiceTheSame) {
 }
 
 TEST(BenchPick, PlacesWhatStandsInClutter) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   expect_placed(one_scene("ur5e", "clutter"), "ur5e", "clutter");
 }
 
@@ -73,7 +75,7 @@ TEST(BenchPick, MeasuresWhatIsSeenByTagAndByShape) {
 
 TEST(BenchPick, MeasuresWhatIsHeldAndDropsItWithoutFriction) {
   const json bench =
-      bench_json({"bench", "pick", "--set", "creep", "--robot", "panda", "--hold", "1"});
+      bench_json({"bench", "pick", "--set", "creep", "--robot", "panda", "--hold", "0.3"});
   ASSERT_EQ(bench.at("creep").size(), 9u);
   int own_steps = 0;
   for (const json& one : bench.at("creep")) {

@@ -17,7 +17,7 @@
 namespace mjarm::app {
 namespace {
 
-struct Options : ReportOptions {
+struct PlanWords : ReportOptions {
   std::string set, data, peers, peer_every = "10", goals = "200", seed = "1",
                                 out = "mjarm-out/bench-plan";
   Replace replace;
@@ -56,7 +56,7 @@ Result<void> add_set(const std::string& set, Job& job) {
   return {};
 }
 
-Result<Job> job_of(const Options& options) {
+Result<Job> job_of(const PlanWords& options) {
   constexpr int kMaxEvery = 1000, kMaxGoals = 10'000;
   Job job{.timing = !options.no_timing};
   const auto seed = parse_whole("--seed", options.seed);
@@ -92,7 +92,7 @@ struct Measured {
 };
 
 /// The scenes of `near` and their problems.
-Result<void> prepare_near(const Options& options, const Job& job, Measured& all) {
+Result<void> prepare_near(const PlanWords& options, const Job& job, Measured& all) {
   all.models = std::make_unique<ScratchFolder>("bench_near");
   const auto robots = near_robots(options.data, all.models->path());
   if (!robots) return fail(robots.error());
@@ -107,7 +107,7 @@ bool is_solved(const Job& job, const PlanSet& set) {
 }
 
 /// Reads everything before anything is measured.
-Result<Measured> prepare(const Options& options, const Job& job) {
+Result<Measured> prepare(const PlanWords& options, const Job& job) {
   Measured all;
   std::vector<std::string> arms = job.arms;
   if (job.anytime) arms.insert(arms.end(), kArms.begin(), kArms.end());
@@ -188,7 +188,7 @@ Result<void> write_more(const Job& job, const Measured& all, const std::string& 
   return draw_plan_times(all.solved, all.crowds, all.crowded, folder);
 }
 
-Result<int> run_plans(const Options& options) {
+Result<int> run_plans(const PlanWords& options) {
   const Result<Job> job = job_of(options);
   if (!job) return fail(job.error());
   Result<Measured> all = prepare(options, *job);
@@ -205,7 +205,7 @@ Result<int> run_plans(const Options& options) {
 
 Command plan_suite() {
   return {"plan", msg::bench_plan_summary, msg::bench_plan_examples, [](CLI::App& app) -> Run {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<PlanWords>();
             add_option(app, "--set", options->set, msg::bench_plan_option_set, "SET");
             add_option(app, "--data", options->data, msg::bench_plan_option_data, "DIR");
             add_option(app, "--peers", options->peers, msg::bench_option_peers, "VENV");

@@ -14,7 +14,7 @@
 namespace mjarm::app {
 namespace {
 
-struct Options : ReportOptions {
+struct RlWords : ReportOptions {
   std::string set, seeds = "5", steps, peers, out = "mjarm-out/bench-rl";
   Replace replace;
 };
@@ -61,7 +61,7 @@ Result<LearningRun> run_learner(const Model& model, const LearningSet& set, std:
 }
 
 /// The sets that are asked for, with so many steps and seeds.
-Result<std::vector<LearningSet>> sets_of(const Options& options, int seeds) {
+Result<std::vector<LearningSet>> sets_of(const RlWords& options, int seeds) {
   std::vector<LearningSet> sets = learning_sets();
   if (!options.set.empty()) {
     std::vector<std::string> names;
@@ -86,7 +86,7 @@ Result<std::vector<LearningSet>> sets_of(const Options& options, int seeds) {
 }
 
 /// All learners on all sets, seed by seed in turn, so that a busy machine is so for all of them.
-Result<std::vector<LearningRun>> run_all(const Options& options,
+Result<std::vector<LearningRun>> run_all(const RlWords& options,
                                          const std::vector<LearningSet>& sets, int seeds) {
   std::uint64_t total = 0;
   for (const LearningSet& set : sets) {
@@ -121,7 +121,7 @@ Result<std::vector<LearningRun>> run_all(const Options& options,
   return runs;
 }
 
-Result<int> run_rl(const Options& options) {
+Result<int> run_rl(const RlWords& options) {
   constexpr int kMaxSeeds = 100;
   const Result<int> seeds = parse_count("--seeds", options.seeds, kMaxSeeds);
   if (!seeds) return fail(seeds.error());
@@ -143,7 +143,7 @@ Result<int> run_rl(const Options& options) {
 
 Command rl_suite() {
   return {"rl", msg::bench_rl_summary, msg::bench_rl_examples, [](CLI::App& app) -> Run {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<RlWords>();
             add_option(app, "--set", options->set, msg::bench_rl_option_set, "SET");
             add_option(app, "--seeds", options->seeds, msg::bench_rl_option_seeds, "N");
             add_option(app, "--steps", options->steps, msg::bench_rl_option_steps, "N");

@@ -13,7 +13,7 @@ namespace {
 /// More than this takes hours.
 constexpr int kMax = 1'000'000;
 
-struct Options : ReportOptions {
+struct SimWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
   std::string rounds = "40", steps = "250";
 };
@@ -51,7 +51,7 @@ std::string to_table(const std::vector<SimBenchEntry>& entries, bool timing) {
   return out;
 }
 
-Result<int> run_sim(const Options& options) {
+Result<int> run_sim(const SimWords& options) {
   const Result<int> rounds = parse_count("--rounds", options.rounds, kMax);
   if (!rounds) return fail(rounds.error());
   const Result<int> steps = parse_count("--steps", options.steps, kMax);
@@ -72,7 +72,7 @@ Result<int> run_sim(const Options& options) {
 
 Command sim_suite() {
   return {"sim", msg::sim_bench_summary, msg::sim_bench_examples, [](CLI::App& app) -> Run {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<SimWords>();
             add_robot_options(app, options->robot);
             add_option(app, "--steps", options->steps, msg::sim_bench_steps, "N");
             add_option(app, "--rounds", options->rounds, msg::sim_bench_rounds, "N");

@@ -13,9 +13,9 @@ namespace mjarm::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kTimeSeed = 1;
 constexpr int kMoves = 500;
-constexpr int kPaths = 20;
+constexpr int kTimedPaths = 20;
 constexpr int kWaypoints = 10;
 constexpr int kLapPoints = 200;
 constexpr std::size_t kLargest = 1 << 28;  // [bytes] of a file
@@ -29,7 +29,7 @@ JointVec random_vec(Rng& rng, const JointVec& half) {
 
 /// Moves by up to half a turn of each joint; one in ten is a very short one.
 std::vector<TimeCase> make_moves(const JointLimits& limits, bool at_rest) {
-  Rng rng(kSeed, at_rest ? 0 : 1);
+  Rng rng(kTimeSeed, at_rest ? 0 : 1);
   const JointVec turn = JointVec::Constant(limits.velocity.size(), std::numbers::pi);
   // An acceleration from which the joint can still brake within its velocity limit.
   const JointVec a =
@@ -51,10 +51,10 @@ std::vector<TimeCase> make_moves(const JointLimits& limits, bool at_rest) {
 
 /// Random waypoints, 0.3 to 1.5 rad (or m) apart.
 std::vector<TimeCase> make_paths(Eigen::Index dof) {
-  Rng rng(kSeed, 2);
+  Rng rng(kTimeSeed, 2);
   const JointVec one = JointVec::Constant(dof, 1);
   std::vector<TimeCase> cases;
-  for (int i = 0; i < kPaths; ++i) {
+  for (int i = 0; i < kTimedPaths; ++i) {
     TimeCase entry{std::to_string(i), {}, {}, {random_vec(rng, one)}};
     while (entry.waypoints.size() < kWaypoints) {
       const JointVec way = random_vec(rng, one).normalized();
@@ -67,7 +67,7 @@ std::vector<TimeCase> make_paths(Eigen::Index dof) {
 
 /// A lap around an ellipse in joint space.
 std::vector<TimeCase> make_lap(Eigen::Index dof) {
-  Rng rng(kSeed, 3);
+  Rng rng(kTimeSeed, 3);
   const JointVec one = JointVec::Constant(dof, 1);
   const JointVec u = random_vec(rng, one).normalized(), v = random_vec(rng, one).normalized();
   TimeCase entry{"0", {}, {}, {}};
@@ -147,34 +147,35 @@ Result<void> read_moves(const fs::path& file, const JsonValue& known, std::vecto
   return {};
 }
 
-Result<void> read_paths(const fs::path& file, const JsonValue& known, std::vector<TimeSet>& sets) {
-  struct Kind {
+Result<void> read_timed_paths(const fs::path& file, const JsonValue& known,
+                              std::vector<TimeSet>& sets) {
+  struct TimedKind {
     const char *name, *best;
     TimeProblem problem;
   };
-  std::vector<Kind> kinds{{"path_va", "spline_va", TimeProblem::path_va},
-                          {"path_vaj", "spline_va", TimeProblem::path_vaj},
-                          {"via_vaj", "via_vaj", TimeProblem::via_vaj}};
+  std::vector<TimedKind> kinds{{"path_va", "spline_va", TimeProblem::path_va},
+                               {"path_vaj", "spline_va", TimeProblem::path_vaj},
+                               {"via_vaj", "via_vaj", TimeProblem::via_vaj}};
   if (file.stem().string().ends_with("_ellipse")) {
     kinds = {{"ellipse", "spline_va", TimeProblem::path_va}};
   }
   if (!is_there(file)) return {};
   const Result<TimeCases> all = read_motions(file, TimeProblem::path_va);
   if (!all) return fail(all.error());
-  for (const Kind& kind : kinds) {
+  for (const TimedKind& kind : kinds) {
     sets.push_back({kind.name, kind.problem, all->limits, all->cases,
                     best_of(known, file.stem().string(), kind.best, all->cases)});
   }
   return {};
 }
 
-Result<std::vector<TimeSet>> read_sets(const std::string& name, const fs::path& folder) {
+Result<std::vector<TimeSet>> read_time_sets(const std::string& name, const fs::path& folder) {
   const Result<JsonObject> known = read_best_known(folder);
   if (!known) return fail(known.error());
   std::vector<TimeSet> sets;
   Result<void> done = read_moves(folder / (name + "_p2p.json"), **known, sets);
-  if (done) done = read_paths(folder / (name + "_paths.json"), **known, sets);
-  if (done) done = read_paths(folder / (name + "_ellipse.json"), **known, sets);
+  if (done) done = read_timed_paths(folder / (name + "_paths.json"), **known, sets);
+  if (done) done = read_timed_paths(folder / (name + "_ellipse.json"), **known, sets);
   if (!done) return fail(done.error());
   return sets;
 }
@@ -182,7 +183,7 @@ Result<std::vector<TimeSet>> read_sets(const std::string& name, const fs::path& 
 }  // namespace
 
 Result<std::vector<TimeSet>> load_time_sets(const std::string& robot, const fs::path& folder) {
-  if (!folder.empty()) return read_sets(robot, folder);
+  if (!folder.empty()) return read_time_sets(robot, folder);
   const Result<Robot> loaded = load_robot({.robot = robot});
   if (!loaded) return fail(loaded.error());
   return make_sets(loaded->arm.limits);

@@ -17,7 +17,7 @@ namespace {
 constexpr int kMaxProved = 3;    // joints between two links; for more the search is too large
 constexpr int kMaxBoxes = 1000;  // of one search,
 constexpr int kFewBoxes = 100;   // where there are margins: such a robot is made for a few searches
-constexpr double kSpare = 1e-5;  // [m] by which spheres that never meet keep apart at least
+constexpr double kNeverMeet = 1e-5;  // [m] by which spheres that never meet keep apart at least
 
 using Joints = std::array<double, kMaxProved>;
 
@@ -61,7 +61,7 @@ class MeetingSearch {
       levers_[static_cast<std::size_t>(k - a_)] = levers[static_cast<std::size_t>(k)] + 1e-6;
     }
     boxes_ = 0;
-    return search(center_a, center_b, reach + kSpare, middle_, half_);
+    return search(center_a, center_b, reach + kNeverMeet, middle_, half_);
   }
 
  private:

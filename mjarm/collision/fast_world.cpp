@@ -19,7 +19,7 @@ constexpr double kEverywhere = 1e9;         // [m]
 enum class Kind { box, round, cylinder };
 
 /// A solid in the frame it was sorted into.
-struct Placed {
+struct PlacedSolid {
   int id = 0;
   int frame = 0;
   Kind kind = Kind::box;
@@ -62,7 +62,7 @@ class WorldBuilder {
     std::sort(ignored_.begin(), ignored_.end());
     place(obstacles);
     move_largest_frame_first();
-    std::sort(placed_.begin(), placed_.end(), [](const Placed& a, const Placed& b) {
+    std::sort(placed_.begin(), placed_.end(), [](const PlacedSolid& a, const PlacedSolid& b) {
       if (a.frame != b.frame) return a.frame < b.frame;
       if (a.kind != b.kind) return a.kind < b.kind;
       return a.distance < b.distance || (a.distance == b.distance && a.id < b.id);
@@ -119,7 +119,7 @@ class WorldBuilder {
   }
 
   void add_placed(const Obstacle& solid, int id, int frame) {
-    Placed placed;
+    PlacedSolid placed;
     placed.id = id;
     placed.frame = frame;
     fill(solid, placed);
@@ -152,7 +152,7 @@ class WorldBuilder {
     return static_cast<int>(frames_.size()) - 1;
   }
 
-  void fill(const Obstacle& solid, Placed& out) const {
+  void fill(const Obstacle& solid, PlacedSolid& out) const {
     const Eigen::Matrix3d& F = frames_[static_cast<std::size_t>(out.frame)];
     const Eigen::Vector3d p = F.transpose() * solid.X_WO.p;
     const Eigen::Matrix3d R = F.transpose() * solid.X_WO.R;
@@ -182,7 +182,7 @@ class WorldBuilder {
     }
   }
 
-  static void set_round(double radius, Placed& out) {
+  static void set_round(double radius, PlacedSolid& out) {
     out.kind = Kind::round;
     out.round = radius;
   }
@@ -190,7 +190,7 @@ class WorldBuilder {
   /// Frame 0 costs no turning.
   void move_largest_frame_first() {
     std::swap(frames_[0], frames_[static_cast<std::size_t>(main_)]);
-    for (Placed& placed : placed_) {
+    for (PlacedSolid& placed : placed_) {
       placed.frame = placed.frame == main_ ? 0 : placed.frame == 0 ? main_ : placed.frame;
     }
   }
@@ -224,7 +224,7 @@ class WorldBuilder {
     const CrowdSpace space{frames_, frames_[0].transpose() * all.reach_center_W, all.reach,
                            least_radius(), kMaxCubes / std::max<std::size_t>(loose_.size(), 1)};
     CrowdBuilder crowd(space, out_);
-    std::erase_if(placed_, [&](const Placed& placed) {
+    std::erase_if(placed_, [&](const PlacedSolid& placed) {
       if (!(is_crowd || placed.piece) || placed.endless) return false;
       crowd.add(add_item(all, placed));
       return true;
@@ -242,7 +242,7 @@ class WorldBuilder {
     return least;
   }
 
-  FastItem add_item(const GroupBounds& all, const Placed& placed) {
+  FastItem add_item(const GroupBounds& all, const PlacedSolid& placed) {
     if (placed.kind == Kind::cylinder) {
       add_cylinder(placed);
       const int index = static_cast<int>(out_.cylinders.size()) - 1;
@@ -285,7 +285,7 @@ class WorldBuilder {
   FastRun add_lists(const GroupBounds& bounds, double margin, const std::vector<int>& links) {
     const int first = static_cast<int>(out_.lists.size());
     Near near;
-    for (const Placed& placed : placed_) {
+    for (const PlacedSolid& placed : placed_) {
       if (ignored_by_all(links, placed.id)) continue;
       if (placed.frame != near.frame) near = near_in(bounds, placed.frame);
       const double max = bounds.reach + margin + 1e-4 + placed.round;
@@ -311,7 +311,7 @@ class WorldBuilder {
     out_.lists.push_back({frame, boxes, boxes, cylinders});
   }
 
-  void add(const Near& near, const Placed& placed) {
+  void add(const Near& near, const PlacedSolid& placed) {
     FastList& list = out_.lists.back();
     if (placed.kind == Kind::cylinder) {
       add_cylinder(placed);
@@ -328,7 +328,7 @@ class WorldBuilder {
   }
 
   /// Plain boxes are cut down to what is within reach, where floats are fine enough.
-  void add_box(const Near& near, const Placed& placed) {
+  void add_box(const Near& near, const PlacedSolid& placed) {
     FastBox box = placed.box;
     for (int k = 0; k < 3 && placed.kind == Kind::box; ++k) {
       const double low = near.middle[k] - near.max, high = near.middle[k] + near.max;
@@ -339,7 +339,7 @@ class WorldBuilder {
     out_.box_ids.push_back(placed.id);
   }
 
-  void add_cylinder(const Placed& placed) {
+  void add_cylinder(const PlacedSolid& placed) {
     const Eigen::Vector3d center = 0.5 * (placed.low + placed.high);
     const double half = 0.5 * (placed.high - placed.low)[placed.axis];
     const double leak = 8 * kFloat * (center.norm() + half + placed.round);
@@ -357,7 +357,7 @@ class WorldBuilder {
   std::vector<Eigen::Matrix3d> frames_;  // R_WF
   std::vector<int> used_;                // solids of each frame
   int main_ = 0;                         // the frame that most solids share
-  std::vector<Placed> placed_;
+  std::vector<PlacedSolid> placed_;
   std::vector<int> loose_;  // solids that need no frame of their own
   FastWorld& out_;
 };

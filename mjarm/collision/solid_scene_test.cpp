@@ -117,7 +117,7 @@ void expect_both(const SolidTally& tally) {
   EXPECT_GT(tally.hit, (tally.free + tally.hit) / 50);
 }
 
-void compare_robot(const CoveredRobot& robot, std::uint64_t seed) {
+void compare_solids(const CoveredRobot& robot, std::uint64_t seed) {
   Rng rng(seed);
   SolidTally states, edges, beside;
   compare_states(robot, 0.03, testing::rounds(5'000, 1'000'000), rng, states);
@@ -130,8 +130,8 @@ void compare_robot(const CoveredRobot& robot, std::uint64_t seed) {
   expect_both(beside);
 }
 
-TEST(SolidScene, Ur5eAsMujocoSeesIt) { compare_robot(testing::covered_robot("ur5e"), 401); }
-TEST(SolidScene, PandaAsMujocoSeesIt) { compare_robot(testing::covered_robot("panda"), 402); }
+TEST(SolidScene, Ur5eAsMujocoSeesIt) { compare_solids(testing::covered_robot("ur5e"), 401); }
+TEST(SolidScene, PandaAsMujocoSeesIt) { compare_solids(testing::covered_robot("panda"), 402); }
 
 TEST(SolidScene, RandomTreesAsMujocoSeesThem) {
   const support::TempFolder folder;

@@ -13,7 +13,7 @@ namespace {
 using detail::IkGoal;
 using detail::nearness;
 
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kWinding = 2 * std::numbers::pi;
 
 double distance(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
@@ -70,9 +70,9 @@ void expand(const Chain& chain, const IkSolution& solution, std::size_t max,
     const auto k = static_cast<std::size_t>(i);
     if (!chain.full_turn[k] || !std::isfinite(chain.upper[k] - chain.lower[k])) continue;
     const double q = solution.q[i];
-    const double first = q - kTurn * std::floor((q - chain.lower[k]) / kTurn);
+    const double first = q - kWinding * std::floor((q - chain.lower[k]) / kWinding);
     const std::size_t count = qs.size();
-    for (double other = first; other <= chain.upper[k] && qs.size() < max; other += kTurn) {
+    for (double other = first; other <= chain.upper[k] && qs.size() < max; other += kWinding) {
       if (std::abs(other - q) < 1) continue;  // the winding that is there already
       for (std::size_t j = 0; j < count && qs.size() < max; ++j) {
         qs.push_back(qs[j]);

@@ -17,7 +17,7 @@ struct Problem {
   JointVec seed;
 };
 
-Arm arm_of(const benchmark::State& state) {
+Arm ik_arm_of(const benchmark::State& state) {
   return state.range(0) == 6 ? testing::ur5e() : testing::panda();
 }
 
@@ -38,7 +38,7 @@ std::vector<Problem> problems(const Arm& arm, double step) {
 /// solved.
 void run(benchmark::State& state, double step) {
   using Clock = std::chrono::steady_clock;
-  const Arm arm = arm_of(state);
+  const Arm arm = ik_arm_of(state);
   const IkSolver ik(arm, {.closed_form = state.range(1) == 1});
   const std::vector<Problem> all = problems(arm, step);
   std::vector<double> us;
@@ -87,7 +87,7 @@ void ik_tracked_path(benchmark::State& state) {
 BENCHMARK(ik_tracked_path);
 
 void ik_servo_step(benchmark::State& state) {
-  const Arm arm = arm_of(state);
+  const Arm arm = ik_arm_of(state);
   const Tracker tracker(arm);
   const std::vector<Problem> all = problems(arm, 0.02);
   std::size_t i = 0;
@@ -99,7 +99,7 @@ void ik_servo_step(benchmark::State& state) {
 BENCHMARK(ik_servo_step)->Arg(6)->Arg(7);
 
 void ik_out_of_reach(benchmark::State& state) {
-  const Arm arm = arm_of(state);
+  const Arm arm = ik_arm_of(state);
   const IkSolver ik(arm);
   const Pose X_WT{{1.5, 0.3, 0.2}, Eigen::Matrix3d::Identity()};
   for (auto _ : state) benchmark::DoNotOptimize(ik.solve(X_WT, as_span(arm.home)));
@@ -107,7 +107,7 @@ void ik_out_of_reach(benchmark::State& state) {
 BENCHMARK(ik_out_of_reach)->Arg(6)->Arg(7);
 
 void ik_all_branches(benchmark::State& state) {
-  const Arm arm = arm_of(state);
+  const Arm arm = ik_arm_of(state);
   const IkSolver ik(arm);
   const std::vector<Problem> all = problems(arm, 0);
   std::size_t i = 0;
@@ -119,7 +119,7 @@ void ik_all_branches(benchmark::State& state) {
 BENCHMARK(ik_all_branches)->Arg(6);
 
 void ik_make_solver(benchmark::State& state) {
-  const Arm arm = arm_of(state);
+  const Arm arm = ik_arm_of(state);
   for (auto _ : state) benchmark::DoNotOptimize(IkSolver(arm));
 }
 BENCHMARK(ik_make_solver)->Arg(6)->Arg(7);

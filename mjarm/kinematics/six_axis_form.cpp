@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr double kAngleDefect = 0.02;  // [rad] axes farther off are another form
 constexpr double kPlaceDefect = 0.01;  // [m] likewise
 constexpr double kShort = 1e-3;        // [m and rad] what is shorter counts as nothing
-constexpr double kRounding = 1e-11;    // what is smaller is an exact 0 with rounding
+constexpr double kExactZero = 1e-11;   // what is smaller is an exact 0 with rounding
 
 /// The axes as lines in the world at q = 0, and the tool there.
 struct Lines {
@@ -78,9 +78,9 @@ detail::WristStep wrist_step(const Vector3d& h5, const Vector3d& h6, const Vecto
   out.phase = std::atan2(across, in_line);
   out.size = std::hypot(in_line, across);
   out.constant = h5.z() * h5.dot(h6);
-  if (std::abs(out.constant) < kRounding) out.constant = 0;
+  if (std::abs(out.constant) < kExactZero) out.constant = 0;
   out.excess = out.size * out.size - out.constant * out.constant - 1;
-  if (std::abs(out.excess) < kRounding) out.excess = 0;
+  if (std::abs(out.excess) < kExactZero) out.excess = 0;
   const Matrix3d R = Eigen::AngleAxisd(out.phase, h5).toRotationMatrix();
   out.h5 = h5;
   out.h6 = R * h6;
@@ -149,7 +149,7 @@ std::optional<SixAxis> SixAxis::recognise(const Chain& chain) {
   form.side_T_ = lines.X_WT.R.transpose() * side;
   std::copy(std::begin(lines.sign), std::end(lines.sign), form.sign_);
   const double span = p_C.norm() + elbow.upper + elbow.lower + form.p_TC_.norm();
-  form.slack_ = form.defect_ > kRounding ? 4 * form.defect_ * std::max(1.0, span) : 0.0;
+  form.slack_ = form.defect_ > kExactZero ? 4 * form.defect_ * std::max(1.0, span) : 0.0;
   return form;
 }
 

@@ -10,7 +10,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Two hinges about z, links of 0.5 m and 0.3 m.
 Arm planar_arm() {

@@ -21,9 +21,9 @@ std::string joint_type(int type) {
 }
 
 std::string geom_type(int type) {
-  static constexpr std::array<const char*, 9> kNames = {
+  static constexpr std::array<const char*, 9> kTypeNames = {
       "plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"};
-  return type >= 0 && type < static_cast<int>(kNames.size()) ? kNames[type] : "other";
+  return type >= 0 && type < static_cast<int>(kTypeNames.size()) ? kTypeNames[type] : "other";
 }
 
 /// What kind of object an actuator drives, as a word and as MuJoCo's type.
@@ -75,7 +75,7 @@ BodyInfo describe_body(const mjModel* m, int b) {
   return body;
 }
 
-ActuatorInfo describe_actuator(const mjModel* m, int a) {
+ActuatorInfo actuator_info(const mjModel* m, int a) {
   ActuatorInfo actuator;
   actuator.name = object_name(m, mjOBJ_ACTUATOR, a);
   const auto [word, type] = transmission(m->actuator_trntype[a]);
@@ -125,7 +125,7 @@ ModelInfo describe(const Model& model) {
     if (b > 0) info.bodies[b].depth = info.bodies[m->body_parentid[b]].depth + 1;
   }
   describe_frames(m, info);
-  for (int a = 0; a < m->nactuator; ++a) info.actuators.push_back(describe_actuator(m, a));
+  for (int a = 0; a < m->nactuator; ++a) info.actuators.push_back(actuator_info(m, a));
   for (int k = 0; k < m->nkey; ++k) {
     const double* qpos = m->key_qpos + k * m->nq;
     info.keyframes.push_back({object_name(m, mjOBJ_KEY, k), {qpos, qpos + m->nq}});

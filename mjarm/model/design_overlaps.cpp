@@ -12,7 +12,7 @@ namespace mjarm {
 namespace {
 
 constexpr int kPostures = 64;
-constexpr double kTouch = 1e-4;  // [m] flush faces of links on one axis are off by rounding
+constexpr double kFlush = 1e-4;  // [m] flush faces of links on one axis are off by rounding
 
 /// Pairs of parts that overlap or touch at `d->qpos`, to the margin that `m` has for all geoms.
 PartPairs overlapping(const mjModel* m, mjData* d, const ModelParts& parts) {
@@ -107,7 +107,7 @@ PartPairs always_overlapping(const mjModel* m, const mjtNum* qpos, const ModelPa
   head.opt.disableflags &= ~(mjDSBL_CONTACT | mjDSBL_CONSTRAINT);
   head.opt.enableflags &= ~mjENBL_SLEEP;
   head.opt.enableflags |= mjENBL_OVERRIDE;  // of all geoms' margins
-  head.opt.o_margin = kTouch;
+  head.opt.o_margin = kFlush;
   PartPairs found;
   const MujocoOutcome outcome = call_mujoco([&] { found = draw_overlapping(head, qpos, parts); });
   return outcome.failed ? PartPairs() : found;

@@ -79,7 +79,7 @@ Flags robot_trees(const mjModel* m, const Arm& arm) {
   return robots;
 }
 
-HeldJoint describe_joint(const mjModel* m, int j) {
+HeldJoint held_joint(const mjModel* m, int j) {
   HeldJoint joint;
   joint.name = object_name(m, mjOBJ_JOINT, j);
   joint.qpos = m->jnt_qposadr[j];
@@ -101,7 +101,7 @@ std::vector<HeldJoint> held_joints(const Model& model, const Arm& arm) {
   std::vector<HeldJoint> held;
   for (int j = 0; j < m->njnt; ++j) {
     if (own[j] != 0 || robots[m->dof_treeid[m->jnt_dofadr[j]]] == 0) continue;
-    HeldJoint joint = describe_joint(m, j);
+    HeldJoint joint = held_joint(m, j);
     const bool by_design = coupled[j] != 0 || hangs_on(m, m->jnt_bodyid[j], last);
     if (joint.actuator || !by_design) held.push_back(std::move(joint));
   }

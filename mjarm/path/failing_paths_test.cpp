@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
 #include "mjarm/path/path_fix.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm {
 namespace {
@@ -71,7 +71,7 @@ void judge(const testing::FailingPath& path, int number, const char* kind, Score
 
 /// 24 paths, 360 with MJARM_LONG_TESTS=1.
 void judge_all(std::uint64_t seed) {
-  const int rounds = std::getenv("MJARM_LONG_TESTS") != nullptr ? 15 : 1;
+  const int rounds = testing::rounds(1, 15);
   Rng rng(seed);
   Score score;
   int number = 0;

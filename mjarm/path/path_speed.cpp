@@ -9,9 +9,9 @@ constexpr double kRounding = 1e-7;  // [rad or m] of answers
 }  // namespace
 
 double time_at_speed(const Pose& X_before, const Pose& X_WT, double tool_speed) {
-  constexpr double kSamePoint = 1e-9;  // [m]
+  constexpr double kStanding = 1e-9;  // [m]
   const double way = (X_WT.p - X_before.p).norm();
-  return (way > kSamePoint ? way : angle_between(X_before.R, X_WT.R)) / tool_speed;
+  return (way > kStanding ? way : angle_between(X_before.R, X_WT.R)) / tool_speed;
 }
 
 JointVec longest_at_speed(const Arm& arm, const Pose& X_before, const Pose& X_WT,

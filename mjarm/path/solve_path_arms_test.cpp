@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/failing_paths_test.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/poses_test.hpp"
 #include "mjarm/path/solve_path.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm {
 namespace {
@@ -52,7 +51,7 @@ TEST(SolvePathArms, AnyOtherIsFollowedFromRandomStarts) {
 }
 
 TEST(SolvePathArms, LongPathsAreKeptInPieces) {
-  const bool thorough = std::getenv("MJARM_LONG_TESTS") != nullptr;
+  const bool thorough = testing::is_long();
   const int n = thorough ? 100'000 : 1'500;
   const Arm arm = testing::ur5e();
   Rng rng(5);

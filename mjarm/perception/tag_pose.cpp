@@ -14,9 +14,9 @@
 namespace mjarm::perception {
 namespace {
 
-constexpr double kCornerSigma = 0.15;   // [px] of a corner that the detector tells
-constexpr double kSizeTolerance = 0.1;  // of the size
-constexpr double kMostOff = 1.5;        // [px] root mean square of the corners
+constexpr double kCornerSigma = 0.15;     // [px] of a corner that the detector tells
+constexpr double kSizeTolerance = 0.1;    // of the size
+constexpr double kMostCornerError = 1.5;  // [px] root mean square of the corners
 constexpr int kFewestPixels = 30;
 
 using Corners = std::array<Eigen::Vector2d, 4>;
@@ -146,7 +146,7 @@ Result<TagPose, FindErrc> tag_pose(const SeenTag& tag, double size, const render
   const PoseFit fit = fit_poses({first}, residuals);
   const double corners = residuals(fit.poses).head<8>().squaredNorm() / 4;
   const double residual = kCornerSigma * std::sqrt(corners);
-  if (!(residual < kMostOff)) return fail(FindErrc::disagrees);
+  if (!(residual < kMostCornerError)) return fail(FindErrc::disagrees);
   return TagPose{.X_CT = fit.poses[0], .residual = residual};
 }
 

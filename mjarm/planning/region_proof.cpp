@@ -13,7 +13,7 @@ constexpr double kMaxStepPlace = 0.2;  // [m]
 constexpr double kInside = 0.7;  // share of the way from a bound to the middle that is aimed at,
 constexpr double kInsideTurn = 0.1;    // [rad] at most,
 constexpr double kInsidePlace = 0.02;  // [m]
-constexpr double kParallel = 1e-12;    // |a x b| of axes that are one
+constexpr double kOneAxis = 1e-12;     // |a x b| of axes that are one
 constexpr double kLeastCosine = 1e-3;  // of the pitch, in rates of roll and yaw
 constexpr double kLeastRange = 0.02;   // [rad or m, L2] of a step
 constexpr double kHalfTurn = std::numbers::pi;
@@ -84,7 +84,7 @@ void RegionProof::find_idle_joints(const Arm& arm) {
   const auto is_about = [&](int k, const Eigen::Vector3d& axis_W) {
     const auto joint = static_cast<std::size_t>(k);
     return hinge_[joint] &&
-           (X_WJ[joint].R * arm.joints[joint].axis).cross(axis_W).norm() < kParallel;
+           (X_WJ[joint].R * arm.joints[joint].axis).cross(axis_W).norm() < kOneAxis;
   };
   const auto slides = [&](int k) { return !hinge_[static_cast<std::size_t>(k)]; };
   const auto is_free = [&](int axis) { return !turn_bounds(region_, axis).any(); };
@@ -204,7 +204,7 @@ void RegionProof::add_rows(const FkJacobian& at, std::vector<JointVec>& rows,
   const double sine = way.norm(),
                need = -need_of(std::atan2(sine, u[2]), -region_.lean, region_.lean, kInsideTurn);
   if (need == 0) return;
-  const Eigen::Vector3d about = sine > kParallel ? Eigen::Vector3d(way / sine) : u.unitOrthogonal();
+  const Eigen::Vector3d about = sine > kOneAxis ? Eigen::Vector3d(way / sine) : u.unitOrthogonal();
   add(turns.transpose() * about, need, kMaxStepTurn);
   add(turns.transpose() * u.cross(about), 0, kMaxStepTurn);
 }

@@ -16,7 +16,7 @@
 namespace mjarm::render {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180;
+constexpr double kDegree = std::numbers::pi / 180;
 
 struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -96,8 +96,8 @@ mjvCamera free_camera(const CameraView& view) {
   camera.type = mjCAMERA_FREE;
   Eigen::Map<Eigen::Vector3d>(camera.lookat) = view.lookat_W;
   camera.distance = view.distance;
-  camera.azimuth = view.azimuth / kRadPerDeg;
-  camera.elevation = view.elevation / kRadPerDeg;
+  camera.azimuth = view.azimuth / kDegree;
+  camera.elevation = view.elevation / kDegree;
   return camera;
 }
 
@@ -211,8 +211,8 @@ CameraView Scene::view() const {
   if (camera.type != mjCAMERA_FIXED) {
     return {.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
             .distance = camera.distance,
-            .azimuth = camera.azimuth * kRadPerDeg,
-            .elevation = camera.elevation * kRadPerDeg};
+            .azimuth = camera.azimuth * kDegree,
+            .elevation = camera.elevation * kDegree};
   }
   using Eigen::Vector3d;
   const Vector3d p_WC = Eigen::Map<const Vector3d>(impl_->d->cam_xpos + 3 * camera.fixedcamid);

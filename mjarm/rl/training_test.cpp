@@ -7,6 +7,7 @@
 #include "mjarm/rl/reach_env.hpp"
 #include "mjarm/rl/reach_test.hpp"
 #include "mjarm/rl/safetensors.hpp"
+#include "tests/support/rounds.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -175,6 +176,7 @@ TEST(TrainingEnds, WhereThePolicyIsGoodEnough) {
 }
 
 TEST(TrainingEnds, SoonWithNineteenOfTwentyGoalsWithin5cm) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   const support::TempFolder folder;
   TrainingOptions options;
   options.task.threads = options.ppo.threads = 2;

@@ -22,7 +22,7 @@ using detail::Recovery;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-bool sound(const JointState& state, Eigen::Index dof) {
+bool is_sound(const JointState& state, Eigen::Index dof) {
   return state.q.size() == dof && state.v.size() == dof && state.a.size() == dof &&
          state.q.allFinite() && state.v.allFinite() && state.a.allFinite();
 }
@@ -140,7 +140,7 @@ class Movers {
   std::optional<PointToPointFailure> set(const JointState& start, const JointState& end,
                                          const JointLimits& limits) noexcept {
     dof_ = static_cast<int>(start.q.size());
-    if (dof_ == 0 || !sound(start, dof_) || !sound(end, dof_)) {
+    if (dof_ == 0 || !is_sound(start, dof_) || !is_sound(end, dof_)) {
       return PointToPointFailure{PointToPointErrc::bad_states, 0};
     }
     if (limits.velocity.size() != dof_ || limits.acceleration.size() != dof_ ||

@@ -108,7 +108,7 @@ class Ramp {
 /// The speed asked for at each sample.
 std::vector<double> asked_speeds(const Curve& curve, const std::vector<Sample>& samples,
                                  const TimingOptions& options) {
-  constexpr double kRoom = 1.5;
+  constexpr double kSpareWay = 1.5;
   const std::vector<double>& corners = curve.corners();
   std::vector<double> out;
   std::size_t leg = 0;
@@ -121,7 +121,7 @@ std::vector<double> asked_speeds(const Curve& curve, const std::vector<Sample>& 
       const double slower = s < from.s ? from.speed : before;
       before = from.speed;
       if (slower >= speed) continue;
-      speed = std::min(speed, ramp.at(ramp.way_to(slower) + std::abs(s - from.s) / kRoom));
+      speed = std::min(speed, ramp.at(ramp.way_to(slower) + std::abs(s - from.s) / kSpareWay));
     }
     return speed;
   };
@@ -131,7 +131,7 @@ std::vector<double> asked_speeds(const Curve& curve, const std::vector<Sample>& 
       ramp = Ramp(options, corners[leg + 1] - corners[leg]);
     }
     const double way = std::min(at.s - corners[leg], corners[leg + 1] - at.s);
-    out.push_back(std::min(ramp.at(way / kRoom), zone_speed(at.s)));
+    out.push_back(std::min(ramp.at(way / kSpareWay), zone_speed(at.s)));
   }
   return out;
 }

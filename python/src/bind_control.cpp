@@ -16,18 +16,16 @@
 namespace mjarm::python {
 namespace {
 
-/// An array of a MjData, without a copy.
-using View = nb::ndarray<double, nb::c_contig, nb::device::cpu>;
-
-View view_of(nb::handle data, const char* name, int size) {
-  View out;
-  if (!nb::hasattr(data, name) || !nb::try_cast(data.attr(name), out, false) || out.ndim() != 1) {
-    refuse(msg::python_no_data, name);
+/// An array of a MjData.
+template <class T>
+View<T> view_of(nb::handle data, const char* name, int size) {
+  std::optional<View<T>> out;
+  if (nb::hasattr(data, name)) out = View<T>::of(data.attr(name));
+  if (!out || out->ndim() != 1) refuse(msg::python_no_data, name);
+  if (out->size() != static_cast<std::size_t>(size)) {
+    refuse(msg::python_other_model, name, out->size(), size);
   }
-  if (out.size() != static_cast<std::size_t>(size)) {
-    refuse(msg::python_other_model, name, out.size(), size);
-  }
-  return out;
+  return std::move(*out);
 }
 
 /// `mjarm.Controller`: a controller, and what the arm is to do.
@@ -39,7 +37,7 @@ class BoundController {
   [[nodiscard]] std::string mode() const { return std::string(name(controller_.mode())); }
 
   void hold(nb::handle q) {
-    const JointVec values = joint_vec(span_of(reals(q, "q", {robot_.arm.dof()})));
+    const JointVec values = joint_vec(reals(q, "q", {robot_.arm.dof()}).span());
     value_of(check_joint_units(as_span(values), robot_.arm));
     rest_ = values;
     motion_.reset();
@@ -58,18 +56,17 @@ class BoundController {
   /// Writes the command of the step that comes.
   bool step(nb::handle data) {
     const Model& model = robot_.model;
-    const View qpos = view_of(data, "qpos", model.nq());
-    const View qvel = view_of(data, "qvel", model.nv());
-    const View ctrl = view_of(data, "ctrl", model.nu());
+    const auto qpos = view_of<const double>(data, "qpos", model.nq());
+    const auto qvel = view_of<const double>(data, "qvel", model.nv());
+    const auto ctrl = view_of<double>(data, "ctrl", model.nu());
     double time = 0;
     if (!nb::hasattr(data, "time") || !nb::try_cast(data.attr("time"), time) ||
         !std::isfinite(time)) {
       refuse(msg::python_no_data, "time");
     }
-    const std::span<const double> q{qpos.data(), qpos.size()};
+    const std::span<const double> q = qpos.span();
     const StepReference reference = next(q, time);
-    return controller_.command(q, {qvel.data(), qvel.size()}, reference,
-                               {ctrl.data(), ctrl.size()});
+    return controller_.command(q, qvel.span(), reference, ctrl.span());
   }
 
   /// Whether the motion is at its end.

@@ -109,7 +109,7 @@ BadInput
           "rotation",
           [](const Pose& X) {
             const Eigen::Matrix3d rows = X.R.transpose();
-            return array(std::vector<double>(rows.data(), rows.data() + 9), {3, 3});
+            return array({rows.data(), 9}, {3, 3});
           },
           nb::sig("def rotation(self) -> Array"), "Rotation matrix, shape (3, 3).")
       .def_prop_ro(

@@ -180,7 +180,7 @@ void bind_execution(nb::module_& m) {
           "qpos",
           [](const BoundRun& run) {
             const auto qpos = run.qpos();
-            return array({qpos.begin(), qpos.end()}, {qpos.size()});
+            return array(qpos, {qpos.size()});
           },
           nb::sig("def qpos(self) -> Array"),
           "How everything stands at its end, (nq,): for the pick or the look that follows.")

@@ -62,7 +62,7 @@ IkSolver solver_of(const BoundRobot& robot, const IkWords& words, Thrown& thrown
     options.valid = [call = words.valid, &thrown](std::span<const double> q) {
       if (thrown) return false;
       try {
-        const int answer = PyObject_IsTrue(call(array({q.begin(), q.end()}, {q.size()})).ptr());
+        const int answer = PyObject_IsTrue(call(array(q, {q.size()})).ptr());
         if (answer < 0) throw nb::python_error();
         return answer == 1;
       } catch (nb::python_error& error) {
@@ -126,45 +126,46 @@ nb::tuple ik_batch(const BoundRobot& robot, nb::handle poses, nb::handle seed, i
     refuse(msg::python_seed_rows, X_WT.size());
   }
   if (threads < 0) refuse(msg::python_not_negative, "threads");
-  std::vector<double> q(X_WT.size() * dof, std::numeric_limits<double>::quiet_NaN());
-  std::vector<unsigned char> ok(X_WT.size());
+  const NewArray<double> q({X_WT.size(), dof});
+  const NewArray<bool> ok({X_WT.size()});
   {
     const nb::gil_scoped_release free;
     const auto answers = solve_batch(robot.ik, X_WT, seeds, {.threads = threads});
     for (std::size_t i = 0; i < answers.size(); ++i) {
-      if (!answers[i]) continue;
-      ok[i] = 1;
-      std::copy(answers[i]->q.begin(), answers[i]->q.end(),
-                q.begin() + static_cast<std::ptrdiff_t>(i * dof));
+      ok.data[i] = answers[i].has_value();
+      double* const row = q.data + i * dof;
+      if (answers[i]) {
+        std::copy(answers[i]->q.begin(), answers[i]->q.end(), row);
+      } else {
+        std::fill_n(row, dof, std::numeric_limits<double>::quiet_NaN());
+      }
     }
   }
-  const std::size_t n = ok.size();
-  return nb::make_tuple(array(std::move(q), {n, dof}),
-                        owned<unsigned char, bool>(std::move(ok), {n}));
+  return nb::make_tuple(q.object, ok.object);
 }
 
 nb::object fk_many(const BoundRobot& robot, nb::handle q) {
   const std::vector<double> rows = robot.rows(q, "q");
   const std::size_t n = rows.size() / static_cast<std::size_t>(robot.dof());
-  std::vector<double> out(16 * n);
+  const NewArray<double> out({n, 4, 4});
   {
     const nb::gil_scoped_release free;
     std::vector<Pose> X_WT(n);
     fk_batch(robot.ik.chain(), rows, X_WT);
     for (std::size_t i = 0; i < n; ++i) {
-      Eigen::Map<Homogeneous>(out.data() + 16 * i) = homogeneous(X_WT[i]);
+      Eigen::Map<Homogeneous>(out.data + 16 * i) = homogeneous(X_WT[i]);
     }
   }
-  return array(std::move(out), {n, 4, 4});
+  return out.object;
 }
 
 nb::object jacobian(const BoundRobot& robot, nb::handle q) {
   const JointVec values = robot.joints(q, "q");
   const auto dof = static_cast<std::size_t>(robot.dof());
-  std::vector<double> rows(6 * dof);
+  const NewArray<double> rows({6, dof});
   using RowMajor = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::Map<RowMajor>(rows.data(), 6, robot.dof()) = fk_jacobian(robot.arm(), as_span(values)).J_W;
-  return array(std::move(rows), {6, dof});
+  Eigen::Map<RowMajor>(rows.data, 6, robot.dof()) = fk_jacobian(robot.arm(), as_span(values)).J_W;
+  return rows.object;
 }
 
 void bind_answers(nb::module_& m) {
@@ -266,7 +267,7 @@ void bind_tracker(nb::module_& m) {
       .def(
           "step",
           [](const BoundTracker& t, nb::handle pose, nb::handle q) {
-            const JointVec now = joint_vec(span_of(reals(q, "q", {t.robot.arm.dof()})));
+            const JointVec now = joint_vec(reals(q, "q", {t.robot.arm.dof()}).span());
             const TrackStep step = t.tracker.step(pose_of(pose, "pose"), as_span(now));
             if (!step.ok) refuse(msg::python_no_step);
             return step;

@@ -14,13 +14,16 @@ namespace mjarm::python {
 
 JointVec BoundRobot::joints(nb::handle value, const char* name) const {
   const Reals given = reals(value, name);
+  return joints(given.ndim() == 1 ? given.span() : std::span<const double>(), name);
+}
+
+JointVec BoundRobot::joints(std::span<const double> values, const char* name) const {
   const auto n = static_cast<std::size_t>(dof());
   const auto nq = static_cast<std::size_t>(robot.model.nq());
-  if (given.ndim() != 1 || (given.size() != n && given.size() != nq)) {
+  if (values.size() != n && values.size() != nq) {
     if (n == nq) refuse(msg::python_joints, name, n);
     refuse(msg::python_joints_or_qpos, name, n, nq);
   }
-  const std::span<const double> values = span_of(given);
   const JointVec q = values.size() == n ? joint_vec(values) : joints_in(values, arm());
   value_of(check_joint_units(as_span(q), arm()));
   return q;

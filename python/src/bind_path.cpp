@@ -120,7 +120,7 @@ Curve ellipse(nb::handle center, double a, double b, nb::handle normal, nb::hand
 }
 
 std::vector<Pose> poses_at(const Curve& curve, nb::handle s) {
-  return curve.poses(span_of(reals(s, "s", {-1})));
+  return curve.poses(reals(s, "s", {-1}).span());
 }
 
 void bind_curve(nb::module_& m) {

@@ -164,8 +164,8 @@ pose : Pose, optional
       .def_prop_ro(
           "depth",
           [](const RgbdFrame& f) {
-            return owned(f.depth, {static_cast<std::size_t>(f.color.height),
-                                   static_cast<std::size_t>(f.color.width)});
+            return array<float>(f.depth, {static_cast<std::size_t>(f.color.height),
+                                          static_cast<std::size_t>(f.color.width)});
           },
           nb::sig("def depth(self) -> Floats"),
           "Along the line of sight [m], (height, width), float32; 0 where nothing was measured.")

@@ -127,8 +127,10 @@ PathEnd goal_of(const BoundRobot& robot, nb::handle goal) {
              given.ndim() == 2 && given.shape(0) == 4 && given.shape(1) == 4 && robot.dof() != 4) {
     add(goal);
   } else if (given.ndim() == 2) {
-    const nb::object rows = nb::cast(given);
-    for (std::size_t i = 0; i < given.shape(0); ++i) out.q.push_back(robot.joints(rows[i], "goal"));
+    const std::size_t width = given.shape(1);
+    for (std::size_t i = 0; i < given.shape(0); ++i) {
+      out.q.push_back(robot.joints(given.span().subspan(i * width, width), "goal"));
+    }
   } else {
     out.q.push_back(robot.joints(goal, "goal"));
   }

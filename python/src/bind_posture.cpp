@@ -87,8 +87,8 @@ void bind_workspace(nb::module_& m) {
       .def_prop_ro(
           "branches",
           [](const WorkspaceMap& w) {
-            return array({w.branches.begin(), w.branches.end()},
-                         {static_cast<std::size_t>(w.rows), static_cast<std::size_t>(w.columns)});
+            return array<double>(w.branches, {static_cast<std::size_t>(w.rows),
+                                              static_cast<std::size_t>(w.columns)});
           },
           nb::sig("def branches(self) -> Array"),
           "Answers apart from windings, (rows, columns); 0: none. 1 for any where `counted` is "

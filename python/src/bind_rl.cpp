@@ -24,20 +24,13 @@
 namespace mjarm::python {
 namespace {
 
-using Floats = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
+using Floats = View<const float>;
 
 /// Anything array-like as float32; without a copy where it is that already.
 Floats floats(nb::handle value, const char* name) {
-  Floats out;
-  if (nb::try_cast(value, out, false)) return out;
-  const nb::object made =
-      nb::module_::import_("numpy").attr("asarray")(nb::cast(reals(value, name)), "float32", "C");
-  return nb::cast<Floats>(made);
-}
-
-template <class As, class T>
-nb::object copy_of(std::span<const T> values, std::initializer_list<std::size_t> shape) {
-  return owned<T, As>({values.begin(), values.end()}, shape);
+  if (std::optional<Floats> out = Floats::of(value)) return std::move(*out);
+  (void)reals(value, name);  // or says what is wrong
+  return *Floats::of(nb::module_::import_("numpy").attr("asarray")(value, "float32", "C"));
 }
 
 /// `mjarm.gym` has it: the environment, and what draws it.
@@ -92,7 +85,7 @@ std::unique_ptr<BoundReach> make_reach(int environments, int threads, const std:
 }
 
 nb::object observations(const BoundReach& self) {
-  return copy_of<float>(self.env.observations(), {self.count(), self.observations()});
+  return array<float>(self.env.observations(), {self.count(), self.observations()});
 }
 
 nb::object reset_reach(BoundReach& self, std::uint64_t seed) {
@@ -109,9 +102,9 @@ nb::tuple step_reach(BoundReach& self, nb::handle actions) {
   }
   // With the interpreter's lock: nobody may read while it steps, and a step is short.
   value_of(self.env.step({given.data(), given.size()}));
-  return nb::make_tuple(observations(self), copy_of<float>(self.env.rewards(), {self.count()}),
-                        copy_of<bool>(self.env.terminated(), {self.count()}),
-                        copy_of<bool>(self.env.truncated(), {self.count()}));
+  return nb::make_tuple(observations(self), array<float>(self.env.rewards(), {self.count()}),
+                        array<bool>(self.env.terminated(), {self.count()}),
+                        array<bool>(self.env.truncated(), {self.count()}));
 }
 
 void check_copy(const BoundReach& self, int copy) {
@@ -163,7 +156,7 @@ nb::object act(const rl::TrainedPolicy& self, nb::handle observation) {
     }
   }
   const std::span<const float> all = actions;
-  return one ? copy_of<float>(all, {out}) : copy_of<float>(all, {rows, out});
+  return one ? array<float>(all, {out}) : array<float>(all, {rows, out});
 }
 
 nb::dict evaluate(const rl::TrainedPolicy& self, int episodes, std::uint64_t seed, int threads) {
@@ -225,13 +218,13 @@ void bind_env(nb::module_& m) {
       .def_prop_ro(
           "final_observations",
           [](const BoundReach& b) {
-            return copy_of<float>(b.env.final_observations(), {b.count(), b.observations()});
+            return array<float>(b.env.final_observations(), {b.count(), b.observations()});
           },
           nb::sig("def final_observations(self) -> Floats"),
           "The last ones of episodes that ended in the step just done; other rows mean nothing.")
       .def_prop_ro(
           "distances",
-          [](const BoundReach& b) { return copy_of<double>(b.env.distances(), {b.count()}); },
+          [](const BoundReach& b) { return array<double>(b.env.distances(), {b.count()}); },
           nb::sig("def distances(self) -> Array"),
           "From tool to goal after the step just done [m], (count,).")
       .def(

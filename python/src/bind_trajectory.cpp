@@ -82,7 +82,7 @@ nb::tuple time_via(const BoundRobot& robot, nb::handle waypoints, double share) 
 JointState state_of(const BoundRobot& robot, nb::handle value, const char* name) {
   const auto dof = static_cast<long long>(robot.dof());
   if (nb::isinstance<nb::tuple>(value) && nb::len(value) == 3) {
-    const auto part = [&](int i) { return joint_vec(span_of(reals(value[i], name, {dof}))); };
+    const auto part = [&](int i) { return joint_vec(reals(value[i], name, {dof}).span()); };
     return {part(0), part(1), part(2)};
   }
   return JointState::at_rest(robot.joints(value, name));

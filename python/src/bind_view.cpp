@@ -14,8 +14,6 @@
 namespace mjarm::python {
 namespace {
 
-using Forces = nb::ndarray<double, nb::c_contig, nb::device::cpu>;
-
 BoundWindow open_window(const BoundRobot& robot, const std::string& title, bool trail,
                         bool real_time) {
   auto window = [&] {
@@ -28,11 +26,12 @@ BoundWindow open_window(const BoundRobot& robot, const std::string& title, bool 
 
 /// Puts what the user pushes into a MjData.
 void push_bodies(const std::vector<Push>& pushes, nb::handle data) {
-  Forces all;
-  if (pushes.empty() || !nb::try_cast(nb::handle(data).attr("xfrc_applied"), all, false)) return;
+  if (pushes.empty()) return;
+  const auto all = View<double>::of(nb::handle(data).attr("xfrc_applied"));
+  if (!all || all->ndim() != 2 || all->shape(1) != 6) return;
   for (const Push& push : pushes) {
-    if (push.body < 0 || static_cast<std::size_t>(push.body) >= all.shape(0)) continue;
-    double* const row = all.data() + 6 * static_cast<std::size_t>(push.body);
+    if (push.body < 0 || static_cast<std::size_t>(push.body) >= all->shape(0)) continue;
+    double* const row = all->data() + 6 * static_cast<std::size_t>(push.body);
     for (int k = 0; k < 3; ++k) {
       row[k] = push.force_W[k];
       row[3 + k] = push.torque_W[k];

@@ -46,8 +46,8 @@ Pose pose_of_matrix(const double* m, const char* name) {
 }  // namespace
 
 Reals reals(nb::handle value, const char* name) {
-  Reals out;
-  if (!nb::try_cast(value, out, false)) {
+  std::optional<Reals> out = Reals::of(value);
+  if (!out) {
     nb::object made;
     try {
       // Text is no number to us, though numpy reads some.
@@ -60,10 +60,10 @@ Reals reals(nb::handle value, const char* name) {
       refuse(msg::python_no_numbers, name,
              nb::cast<std::string>(nb::str(nb::handle(value).type().attr("__name__"))));
     }
-    out = nb::cast<Reals>(made);
+    out = Reals::of(made);
   }
-  if (!all_finite(span_of(out))) refuse(msg::python_not_finite, name);
-  return out;
+  if (!all_finite(out->span())) refuse(msg::python_not_finite, name);
+  return std::move(*out);
 }
 
 Reals reals(nb::handle value, const char* name, std::initializer_list<long long> shape) {
@@ -89,23 +89,22 @@ std::vector<double> quat_values(const Pose& X) {
 }
 
 nb::object array(const JointVec& q) {
-  return array(std::vector<double>(q.begin(), q.end()), {static_cast<std::size_t>(q.size())});
+  return array<double>(q, {static_cast<std::size_t>(q.size())});
 }
 
 nb::object array(std::span<const JointVec> rows, int dof) {
-  std::vector<double> values;
-  values.reserve(rows.size() * static_cast<std::size_t>(dof));
-  for (const JointVec& row : rows) values.insert(values.end(), row.begin(), row.end());
-  return array(std::move(values), {rows.size(), static_cast<std::size_t>(dof)});
+  const NewArray<double> made({rows.size(), static_cast<std::size_t>(dof)});
+  double* to = made.data;
+  for (const JointVec& row : rows) to = std::copy(row.begin(), row.end(), to);
+  return made.object;
 }
 
-nb::object array(const Eigen::Vector3d& v) {
-  return array(std::vector<double>(v.begin(), v.end()), {3});
-}
+nb::object array(const Eigen::Vector3d& v) { return array<double>(v, {3}); }
 
 nb::object array(const Pose& X) {
-  const Homogeneous matrix = homogeneous(X);
-  return array(std::vector<double>(matrix.data(), matrix.data() + matrix.size()), {4, 4});
+  const NewArray<double> made({4, 4});
+  Eigen::Map<Homogeneous>(made.data) = homogeneous(X);
+  return made.object;
 }
 
 Homogeneous homogeneous(const Pose& X) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
 
 #include <cstddef>
 #include <initializer_list>
@@ -15,14 +14,15 @@
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "python/messages/python.hpp"
+#include "python/src/arrays.hpp"
 
 /// What all binding files share: arrays and poses in and out, failures into exceptions.
 namespace mjarm::python {
 
 namespace nb = nanobind;
 
-/// Numbers of a caller: float64, C order, read only; belongs to an array that it keeps alive.
-using Reals = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+/// Numbers of a caller.
+using Reals = View<const double>;
 
 /// Anything array-like; without a copy where it is such an array already.
 /// @throws a BadInput that names the argument, where it holds no numbers or some that are not
@@ -37,30 +37,12 @@ using Reals = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 /// (3,)
 [[nodiscard]] Eigen::Vector3d vector3(nb::handle value, const char* name);
 
-[[nodiscard]] inline std::span<const double> span_of(const Reals& array) {
-  return {array.data(), array.size()};
-}
-
 /// Text of a str or an os.PathLike.
 [[nodiscard]] std::string path_text(nb::handle path);
 
 /// Unit quaternion (w, x, y, z).
 [[nodiscard]] std::vector<double> quat_values(const Pose& X);
 
-/// A new numpy array that owns `values`, in rows; `As` has the size of T.
-template <class T, class As = T>
-[[nodiscard]] nb::object owned(std::vector<T> values, std::initializer_list<std::size_t> shape) {
-  auto kept = std::make_unique<std::vector<T>>(std::move(values));
-  void* const data = kept->data();
-  nb::capsule owner(kept.release(), [](void* p) noexcept {
-    const std::unique_ptr<std::vector<T>> ends(static_cast<std::vector<T>*>(p));
-  });
-  return nb::cast(nb::ndarray<nb::numpy, As>(data, shape.size(), shape.begin(), owner));
-}
-[[nodiscard]] inline nb::object array(std::vector<double> values,
-                                      std::initializer_list<std::size_t> shape) {
-  return owned(std::move(values), shape);
-}
 [[nodiscard]] nb::object array(const JointVec& q);
 /// (n, dof).
 [[nodiscard]] nb::object array(std::span<const JointVec> rows, int dof);

@@ -16,13 +16,11 @@ constexpr const char* kImageShape = "(height, width, 3)";
 }  // namespace
 
 render::Image image_of(nb::handle value, const char* name) {
-  using Pixels = nb::ndarray<const std::uint8_t, nb::c_contig, nb::device::cpu>;
-  Pixels pixels;
-  nb::object made;
-  if (!nb::try_cast(value, pixels, false)) {
-    made = nb::module_::import_("numpy").attr("ascontiguousarray")(value);
-    if (!nb::try_cast(made, pixels, false)) refuse(msg::python_image, name, kImageShape);
-  }
+  using Pixels = View<const std::uint8_t>;
+  std::optional<Pixels> given = Pixels::of(value);
+  if (!given) given = Pixels::of(nb::module_::import_("numpy").attr("ascontiguousarray")(value));
+  if (!given) refuse(msg::python_image, name, kImageShape);
+  const Pixels& pixels = *given;
   constexpr std::size_t kMost = 16384;  // [px]
   if (pixels.ndim() != 3 || pixels.shape(2) != 3 || pixels.size() == 0 || pixels.shape(0) > kMost ||
       pixels.shape(1) > kMost) {
@@ -34,8 +32,8 @@ render::Image image_of(nb::handle value, const char* name) {
 }
 
 nb::object array_of(const render::Image& image) {
-  return owned(image.rgb,
-               {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width), 3});
+  return array<std::uint8_t>(image.rgb, {static_cast<std::size_t>(image.height),
+                                         static_cast<std::size_t>(image.width), 3});
 }
 
 void check_pixels(int width, int height) {

@@ -24,6 +24,7 @@ struct BoundRobot {
   /// Joint values of a caller: (dof,), or the whole configuration (nq,) of the model.
   /// @throws a BadInput that names the argument: another shape, no numbers, degrees.
   [[nodiscard]] JointVec joints(nanobind::handle value, const char* name) const;
+  [[nodiscard]] JointVec joints(std::span<const double> values, const char* name) const;
   /// The same where `None` means home.
   [[nodiscard]] JointVec joints_or_home(nanobind::handle value, const char* name) const;
   /// (n, dof).

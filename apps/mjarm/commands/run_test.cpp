@@ -6,6 +6,7 @@
 #include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/program/held_part_test.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -157,6 +158,7 @@ TEST(Check, BlockedMovesTellTheDetour) {
 class ShippedProgram : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ShippedProgram, IsFollowedToAThousandthOfAMillimetre) {
+  if (GetParam() == "pick_place" && !testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   const support::TempFolder folder;
   const auto out = folder.path() / "out";
   const auto result = mjarm({"run", GetParam(), "--headless", "--out", out.string()});

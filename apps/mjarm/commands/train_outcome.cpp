@@ -11,7 +11,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kDegPerRad = 180 / std::numbers::pi;
 
 }  // namespace
 
@@ -41,8 +41,8 @@ std::string evaluation_table(const rl::Evaluation& evaluation) {
       row(msg::train_row_touched, msg::train_percent, 100 * evaluation.touched)};
   if (evaluation.turn_p95 > 0) {
     rows.push_back(
-        row(msg::train_row_turn_median, msg::train_deg, kDegrees * evaluation.turn_median));
-    rows.push_back(row(msg::train_row_turn_p95, msg::train_deg, kDegrees * evaluation.turn_p95));
+        row(msg::train_row_turn_median, msg::train_deg, kDegPerRad * evaluation.turn_median));
+    rows.push_back(row(msg::train_row_turn_p95, msg::train_deg, kDegPerRad * evaluation.turn_p95));
   }
   return aligned(rows);
 }

@@ -12,11 +12,11 @@
 namespace mjarm::app {
 namespace {
 
-constexpr double kSpeed = 0.25;    // [m/s]
-constexpr double kFlipStep = 0.5;  // [rad] between poses 2 mm apart
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kFlipSpeed = 0.25;  // [m/s]
+constexpr double kFlipStep = 0.5;    // [rad] between poses 2 mm apart
+constexpr double kFlipDegrees = 180 / std::numbers::pi;
 
-Pose pose_at(double x) { return {{x, -0.4, 0.5}, tool_down()}; }
+Pose flip_pose(double x) { return {{x, -0.4, 0.5}, tool_down()}; }
 
 /// What the naive choice does to the line, for people and for the report.
 void tell_naive(const NaiveMotion& naive, const MeasuredRun& run, const Arm& arm, Report& report) {
@@ -29,7 +29,7 @@ void tell_naive(const NaiveMotion& naive, const MeasuredRun& run, const Arm& arm
                     {"naive_joint_step", naive.flip->jump},
                     {"naive_path_error_max", off}};
     log_info(text(msg::demo_flip_naive, 100 * naive.flip->fraction, joint,
-                  kDegrees * naive.flip->jump, 1e3 * off));
+                  kFlipDegrees * naive.flip->jump, 1e3 * off));
   } else if (naive.fraction < 1) {
     report.facts = {{"naive_reason", "stops"}, {"naive_fraction", naive.fraction}};
     log_info(text(msg::demo_flip_stops, 100 * naive.fraction));
@@ -45,15 +45,15 @@ Result<Report> run_flip(const DemoOptions& options) {
   if (!opened) return fail(std::move(opened.error()));
   session::Stage& stage = **opened;
   const IkSolver ik = free_solver(stage.robot());
-  const Result<Curve> line = Curve::line(pose_at(-0.1), pose_at(0.6));
+  const Result<Curve> line = Curve::line(flip_pose(-0.1), flip_pose(0.6));
   if (!line) return fail(line.error());
   stage.show().add_line(std::vector<Pose>{line->at(0), line->at(line->end())});
   const JointVec home = stage.arm().home;
   const Result<NaiveMotion> naive =
-      naive_motion(ik, *line, as_span(home), kSpeed, 0.008, kFlipStep);
+      naive_motion(ik, *line, as_span(home), kFlipSpeed, 0.008, kFlipStep);
   if (!naive) return fail(naive.error());
   const Result<ToolMotion, MotionFailure> motion =
-      plan_tool_motion(ik, *line, as_span(home), {.timing = {.tool_speed = kSpeed}});
+      plan_tool_motion(ik, *line, as_span(home), {.timing = {.tool_speed = kFlipSpeed}});
   if (!motion) return stage.refuse(motion.error());
 
   const ControlMode mode = stage.control(ControlMode::computed_torque);
