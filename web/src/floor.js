@@ -1,5 +1,6 @@
 // The look of planes: a plain floor with a grid of 0.1 m and 1 m that fades far away.
 import { Color, MeshStandardMaterial, Vector3 } from 'three';
+import { colorOf } from './paint.js';
 
 const HEAD = `
 uniform vec3 lineColor;
@@ -67,7 +68,7 @@ export class FloorLook {
       const rgba = material.userData.rgba;
       material.color.copy(base);
       // The model's own colour tints the floor of the page.
-      if (rgba) material.color.lerp(new Color().setRGB(rgba[0], rgba[1], rgba[2], 'srgb'), 0.25);
+      if (rgba) material.color.lerp(colorOf(rgba), 0.12);
     }
   }
 

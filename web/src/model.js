@@ -7,6 +7,7 @@ import { litUp, Paints } from './paint.js';
 
 const COLLISION = 3; // groups from here on are collision shapes
 const HIGHLIGHT = '#ff9a3c';
+const SEEN = 2e-6; // [m, or of a quaternion] less is not seen
 
 export class Model {
   /** @type {Group[]} */
@@ -19,6 +20,7 @@ export class Model {
   #scene;
   #stage;
   #selected = -1;
+  #poses = null;
   /** Called where shapes of ghosts have to be looked up again. */
   onShapes = null;
 
@@ -62,8 +64,10 @@ export class Model {
     return failed;
   }
 
-  /** @param {Float32Array} poses  see Frame.bodies */
+  /** @param {Float32Array} poses  see Frame.bodies @returns {boolean} whether anything moved visibly */
   pose(poses) {
+    if (this.#poses && poses.every((value, index) => Math.abs(value - this.#poses[index]) < SEEN)) return false;
+    this.#poses = poses;
     this.bodies.forEach((body, index) => {
       const at = 7 * index;
       body.position.set(poses[at], poses[at + 1], poses[at + 2]);
@@ -72,6 +76,7 @@ export class Model {
       body.updateMatrixWorld(true);
     });
     this.#stage.changed(true);
+    return true;
   }
 
   /** Pose of a body in the world. */
@@ -126,6 +131,7 @@ export class Model {
     for (const { geom, mesh } of this.#geoms) {
       if (geom.kind === 'plane') continue;
       const lit = geom.body === body && body > 0;
+      if (mesh.material !== mesh.userData.paint) mesh.material.dispose();
       mesh.material = lit ? litUp(mesh.userData.paint, HIGHLIGHT) : mesh.userData.paint;
     }
     this.#stage.changed();

@@ -19,7 +19,7 @@ import { el } from './dom.js';
  * @returns {NumberBox}
  */
 export function numberBox({ test, step, digits, lower, upper, onValue }) {
-  let shown = 0;
+  let shown = NaN; // nothing yet
   let typing = false;
   const node = el('input', {
     class: 'number', test, type: 'text', inputmode: 'decimal', role: 'spinbutton', autocomplete: 'off',
@@ -72,6 +72,7 @@ export function numberBox({ test, step, digits, lower, upper, onValue }) {
       event.preventDefault();
       const way = (event.key === 'ArrowUp' ? 1 : -1) * (event.shiftKey ? 10 : 1) * step;
       const value = within((typing ? read() ?? shown : shown) + way);
+      if (!Number.isFinite(value)) return;
       typing = false;
       write(value);
       onValue(value);

@@ -1,6 +1,7 @@
 // Puts the parts of the page together for one scene.
 import { byTest } from './dom.js';
 import { Eye } from './eye.js';
+import { GhostTool } from './ghost_tool.js';
 import { Help } from './help.js';
 import { jointSection } from './joints.js';
 import { listenToKeys } from './keys.js';
@@ -51,11 +52,17 @@ export function startPage(scene, source, notices) {
   run(page, source);
   exposeProbe(page);
   source.start();
-  page.model.load(source, (loaded, all) => byTest('view').setAttribute('aria-busy', String(loaded < all)))
-    .then((failed) => {
-      page.seeAll();
-      if (failed > 0) notices.say(t('no_mesh', failed), true);
-    });
+  page.model.load(source, showLoading).then((failed) => {
+    page.seeAll();
+    if (failed > 0) notices.say(t('no_mesh', failed), true);
+  });
+}
+
+function showLoading(loaded, all) {
+  const line = byTest('loading');
+  line.hidden = loaded >= all;
+  line.textContent = t('loading_meshes', loaded, all);
+  byTest('view').setAttribute('aria-busy', String(loaded < all));
 }
 
 function build(scene, source, notices, stage) {
@@ -68,6 +75,7 @@ function build(scene, source, notices, stage) {
   const target = new Target({ stage, eye, picker, outbox, readout, turns: options.turns });
   const push = new Push({ stage, eye, picker, model, outbox, readout });
   const overlay = new Overlay({ stage, model, eye });
+  const ghosts = new GhostTool({ picker, overlay, outbox, stage });
   const selection = new Selection({ scene, model, outbox });
   const transport = new Transport(outbox, options);
   const viewBar = new ViewBar(eye, model, scene.cameras);
@@ -84,9 +92,9 @@ function build(scene, source, notices, stage) {
   side.append(panels.node);
   fill(side);
   return {
-    scene, source, notices, stage, outbox, model, eye, picker, target, push, overlay, selection, transport, viewBar,
+    scene, source, notices, stage, outbox, model, eye, picker, target, push, ghosts, overlay, selection, transport, viewBar,
     menu, panels, joints, plots: new Plots(byTest('plots'), byTest('figures')),
-    pointer: new PointerHub(stage.canvas, eye, [push, target]), help: new Help(), layout: new Layout(),
+    pointer: new PointerHub(stage.canvas, eye, [push, target, ghosts]), help: new Help(), layout: new Layout(),
     triad: new Triad(byTest('triad'), eye), last: { frame: null },
     /** Light and shadow for all that is shown. */
     seeAll() {
@@ -96,7 +104,7 @@ function build(scene, source, notices, stage) {
   };
 }
 
-function wireControls({ outbox, stage, scene, notices, pointer, picker, overlay, selection, transport, eye, viewBar, help, layout }, options) {
+function wireControls({ outbox, stage, scene, notices, pointer, picker, ghosts, selection, transport, eye, viewBar, help, layout }, options) {
   const act = {
     target: () => options.can_target && outbox.send({ type: 'target' }),
     screenshot: () => saveScreenshot(stage, scene.name, notices),
@@ -105,10 +113,7 @@ function wireControls({ outbox, stage, scene, notices, pointer, picker, overlay,
   byTest('target').addEventListener('click', act.target);
   byTest('target').hidden = !options.can_target;
   byTest('screenshot').addEventListener('click', act.screenshot);
-  pointer.onClick = ({ x, y }) => {
-    const ghost = picker.firstOf(overlay.clickable(), x, y)?.object.userData.ghost;
-    if (ghost) outbox.send({ type: 'panel', id: ghost.item, value: ghost.value });
-  };
+  pointer.onClick = (where) => ghosts.click(where);
   pointer.onDouble = ({ x, y }) => selection.take(picker.geomAt(x, y));
   listenToKeys({ transport, eye, viewBar, help, layout, act });
 }
@@ -137,7 +142,7 @@ function listenToSource(page, source) {
 }
 
 /** Whether there is somebody who does what the controls say. */
-function enable({ scene, transport, panels, joints, target, push }, on) {
+function enable({ scene, transport, panels, joints, target, push, ghosts }, on) {
   const { can_push: canPush, can_target: canTarget } = scene.options;
   transport.enable(on);
   panels.enable(on);
@@ -146,7 +151,7 @@ function enable({ scene, transport, panels, joints, target, push }, on) {
     target.release();
     push.end();
   }
-  target.enabled = on;
+  target.enabled = ghosts.enabled = on;
   push.enabled = on && canPush;
   byTest('target').disabled = !(on && canTarget);
 }
@@ -163,10 +168,11 @@ function followLooks({ stage, model, overlay, plots, panels, eye, triad, viewBar
   onLanguage(() => panels.refresh());
   model.onShapes = () => overlay.refresh();
   stage.onSlow = () => {
-    stage.setShadows(false);
+    stage.setLow();
     menu.shadows.checked = false;
     notices.say(t('quality_low'));
   };
+  if (stage.isSoftware) stage.onSlow();
   eye.onChange = () => {
     triad.update();
     viewBar.update();
@@ -181,16 +187,17 @@ function run(page, source) {
   const tick = (now) => {
     requestAnimationFrame(tick);
     const frame = source.takeFrame();
+    let moved = false;
     if (frame) {
       const first = last.frame === null;
       last.frame = frame;
-      model.pose(frame.bodies);
+      moved = model.pose(frame.bodies);
       transport.show(frame);
       joints?.show(frame.qpos);
       selection.update();
       if (first) page.seeAll();
     }
-    eye.tick(now, frame !== null);
+    eye.tick(now, moved);
     pointer.update();
     push.update();
     target.update();

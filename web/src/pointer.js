@@ -50,6 +50,7 @@ export class PointerHub {
     canvas.addEventListener('lostpointercapture', (event) => this.#lift(event, false));
     canvas.addEventListener('pointerleave', () => { this.#hover = null; });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+    window.addEventListener('blur', () => this.#letGo());
     canvas.addEventListener('wheel', (event) => this.#wheel(event), { passive: false });
   }
 
@@ -150,6 +151,12 @@ export class PointerHub {
   #endTool() {
     this.#tool?.end();
     this.#tool = null;
+  }
+
+  #letGo() {
+    clearTimeout(this.#longTimer);
+    this.#down.clear();
+    this.#endTool();
   }
 
   /** Middle and distance of two fingers. */

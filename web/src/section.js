@@ -14,7 +14,7 @@ let count = 0;
  * @returns {{node: HTMLElement, body: HTMLElement}}
  */
 export function section({ test, title, word, open, children = [] }) {
-  const memory = `section.${test}`;
+  const memory = `section.${title ?? test}`;
   const id = `section-${++count}`;
   const name = el('span', { word });
   if (title !== undefined) name.textContent = title;

@@ -42,7 +42,7 @@ export class Stage {
     this.#fill.position.set(-0.8, 0.9, 0.35);
     this.#sky.position.set(0, 0, 1);
     this.scene.add(this.#sky, this.#sun, this.#sun.target, this.#fill);
-    const frontSky = new HemisphereLight(0xffffff, 0xb0b0b0, 2.2);
+    const frontSky = new HemisphereLight(0xffffff, 0xd8d8d8, 3.0);
     frontSky.position.set(0.2, -0.4, 1);
     this.front.add(frontSky);
     canvas.addEventListener('webglcontextrestored', () => this.changed(true));
@@ -83,6 +83,22 @@ export class Stage {
   setShadows(on) {
     this.#sun.castShadow = on;
     this.changed(true);
+  }
+
+  /** Whether the processor draws, for want of a graphics card. */
+  get isSoftware() {
+    const gl = this.renderer.getContext();
+    const names = gl.getExtension('WEBGL_debug_renderer_info');
+    const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : '';
+    return /swiftshader|llvmpipe|software|basic render/i.test(name);
+  }
+
+  /** No shadows, no more pixels than the page has. */
+  setLow() {
+    this.#ratio = 1;
+    this.onSlow = null;
+    this.setShadows(false);
+    this.#resize();
   }
 
   /** Draws where something changed. @param {number} now [ms] */
@@ -128,12 +144,7 @@ export class Stage {
     if (pace.last > 0 && now - pace.last < 1000) {
       pace.sum += now - pace.last;
       if (++pace.count === SLOW_COUNT) {
-        if (pace.sum / pace.count > SLOW) {
-          this.#ratio = 1;
-          this.onSlow();
-          this.onSlow = null;
-          this.#resize();
-        }
+        if (pace.sum / pace.count > SLOW) this.onSlow();
         pace.sum = pace.count = 0;
       }
     }

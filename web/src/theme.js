@@ -4,12 +4,12 @@ import { recall, remember } from './settings.js';
 
 const PALETTES = {
   light: {
-    skyTop: '#b9cbdd', skyBottom: '#eef2f6', floor: '#c3ccd6', line: '#8e9aa8',
+    skyTop: '#a9bfd6', skyBottom: '#f1f4f7', floor: '#c6cfd9', line: '#97a3b1',
     ambient: 1.25, sun: 2.1, fill: 0.55, label: '#10151c', labelBack: 'rgba(255,255,255,0.82)',
     plotInk: '#39424e', plotGrid: 'rgba(40,52,66,0.13)',
   },
   dark: {
-    skyTop: '#10141a', skyBottom: '#29313c', floor: '#39424e', line: '#5c6978',
+    skyTop: '#151b24', skyBottom: '#3a4452', floor: '#262d37', line: '#566374',
     ambient: 0.95, sun: 2.0, fill: 0.5, label: '#f2f5f8', labelBack: 'rgba(16,20,26,0.78)',
     plotInk: '#aab4c0', plotGrid: 'rgba(200,215,230,0.12)',
   },

@@ -13,12 +13,15 @@ const FACING = {
 export class Triad {
   #eye;
   #picture = svg('svg', { viewBox: '-42 -42 84 84' });
+  #lines = svg('g');
+  #knobs = svg('g');
   #ends;
 
   /** @param {HTMLElement} place @param {import('./eye.js').Eye} eye */
   constructor(place, eye) {
     this.#eye = eye;
     this.#ends = ['+', '-'].flatMap((sign) => LETTERS.map((letter, axis) => this.#end(sign, letter, axis)));
+    this.#picture.append(this.#lines, this.#knobs);
     place.append(this.#picture);
     const words = () => this.#ends.forEach(({ knob, name }) => label(knob, t('axis_view', name)));
     onLanguage(words);
@@ -34,13 +37,13 @@ export class Triad {
       end.depth = way * forward[key];
       end.line?.setAttribute('x2', x.toFixed(2));
       end.line?.setAttribute('y2', y.toFixed(2));
-      end.spot.setAttribute('transform', `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
+      end.knob.setAttribute('transform', `translate(${x.toFixed(2)} ${y.toFixed(2)})`);
     }
     // What is nearer is drawn later; the order only changes where it has to, to keep the focus.
     const wanted = [...this.#ends].sort((a, b) => b.depth - a.depth).map(({ knob }) => knob);
-    if (wanted.some((knob, index) => this.#picture.children[index] !== knob)) {
+    if (wanted.some((knob, index) => this.#knobs.children[index] !== knob)) {
       const held = document.activeElement;
-      this.#picture.replaceChildren(...wanted);
+      this.#knobs.replaceChildren(...wanted);
       if (wanted.includes(held)) held.focus();
     }
   }
@@ -52,8 +55,6 @@ export class Triad {
     const disc = svg('circle', {
       r: plus ? 8.5 : 5.5, fill: COLORS[axis], 'fill-opacity': plus ? 1 : 0.28, stroke: COLORS[axis], 'stroke-width': 1.2,
     });
-    const spot = svg('g', {}, disc);
-    if (plus) spot.append(svg('text', {}, letter));
     const go = () => this.#eye.face(...FACING[name]);
     const knob = svg('g', {
       class: 'knob', role: 'button', tabindex: plus ? 0 : -1, test: `axis${name}`,
@@ -67,8 +68,9 @@ export class Triad {
         },
       },
     });
-    if (line) knob.append(line);
-    knob.append(spot);
-    return { sign, axis, name, knob, spot, line, depth: 0 };
+    knob.append(disc);
+    if (plus) knob.append(svg('text', {}, letter));
+    if (line) this.#lines.append(line);
+    return { sign, axis, name, knob, line, depth: 0 };
   }
 }

@@ -50,12 +50,10 @@ const WORDS = {
   plots: ['Plots', '曲线图'],
   joints: ['Joints', '关节'],
   joint_value: ['{0}, value', '{0}，数值'],
-  no_panels: ['Nothing to set here.', '这里没有可调的内容。'],
   no_plots: ['No plots are on.', '没有打开的曲线图。'],
   sheet: ['Size of the panel', '面板大小'],
   plot_height: ['Height of the plots', '曲线图高度'],
   of_end: ['{0} of {1} s', '{0} / {1} s'],
-  sections: ['Sections', '分区'],
 
   // Settings.
   theme: ['Appearance', '外观'],
