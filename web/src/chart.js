@@ -11,7 +11,7 @@ const FONT = '11px system-ui, -apple-system, "Segoe UI", "PingFang SC", "Microso
  * @param {HTMLElement} place
  * @param {object} plot  see `plots` of the protocol
  * @param {{width: number, height: number}} size
- * @param {(values: (number|null)[]|null) => void} onRead  values under the mouse, by series
+ * @param {(values: (number|null)[]|null, share: number) => void} onRead  values under the mouse, by series
  */
 export function makeChart(place, plot, size, onRead) {
   const plane = plot.equal_aspect || !plot.series.every(({ x }) => isOrdered(x));
@@ -38,7 +38,8 @@ function overOptions(plot, onRead) {
   const read = (chart) => {
     const at = chart.cursor.idx;
     const inside = chart.cursor.left >= 0 && at !== null && at !== undefined;
-    onRead(inside ? plot.series.map((_, index) => nearestValue(chart.data, index + 1, at)) : null);
+    const share = chart.cursor.left / (chart.over.clientWidth || 1);
+    onRead(inside ? plot.series.map((_, index) => nearestValue(chart.data, index + 1, at)) : null, share);
   };
   return {
     scales: { x: { time: false }, y: { range: plot.y_from_zero ? fromZero : around } },

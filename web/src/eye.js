@@ -5,6 +5,7 @@ import { mayGlide } from './motion.js';
 const STEEPEST = Math.PI / 2;
 const GLIDE = 220; // [ms]
 const FOVY = 0.78; // [rad] of the free view
+const WIDEST = 1.15; // [rad] of it where the picture is narrow
 
 const basis = new Matrix4();
 
@@ -75,7 +76,7 @@ export class Eye {
   /** Shows all of a ball. */
   fit(middle, radius) {
     const narrow = Math.min(1, this.#stage.width / this.#stage.height);
-    const half = Math.atan(Math.tan(FOVY / 2) * narrow);
+    const half = Math.atan(Math.tan(this.#freeFovy() / 2) * narrow);
     const distance = (1.02 * radius) / Math.sin(half);
     this.#go({ lookat: middle.clone(), distance, azimuth: this.azimuth, elevation: this.elevation });
   }
@@ -155,12 +156,18 @@ export class Eye {
       basis.makeBasis(right, right.clone().cross(forward), forward.clone().negate());
       camera.quaternion.setFromRotationMatrix(basis);
       camera.position.copy(this.lookat).addScaledVector(forward, -this.distance);
-      this.#lens(FOVY, this.distance);
+      this.#lens(this.#freeFovy(), this.distance);
     }
     camera.updateMatrix();
     camera.updateMatrixWorld(true);
     this.#stage.changed();
     this.onChange?.();
+  }
+
+  /** A narrow picture sees as much to the sides as a square one, as far as that goes. */
+  #freeFovy() {
+    const narrow = Math.min(1, this.#stage.width / this.#stage.height);
+    return Math.min(WIDEST, 2 * Math.atan(Math.tan(FOVY / 2) / narrow));
   }
 
   #lens(fovy, distance) {

@@ -5,6 +5,9 @@ import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { colorOf } from './paint.js';
 
+const THINNEST = 1.5; // [pixels]
+const THICKEST = 14; // [pixels]
+
 export class FatLines {
   object;
   width = 0.003; // [m]
@@ -46,7 +49,7 @@ export class FatLines {
   /** @param {number} pixel  [m] that one stands for where the line is */
   look(pixel) {
     const { material } = this.object;
-    material.linewidth = Math.max(1.8, Math.min(14, this.width / pixel));
+    material.linewidth = Math.max(THINNEST, Math.min(THICKEST, this.width / pixel));
   }
 
   dispose() {

@@ -10,6 +10,7 @@ export class Figure {
   #chart = null;
   #shape = '';
   #plot = null;
+  #tip = el('div', { class: 'tip', hidden: true });
   #values = [];
   #hidden = new Set();
 
@@ -41,13 +42,15 @@ export class Figure {
     this.#chart?.dispose();
     const { title, series } = this.#plot;
     this.#values = series.map(() => el('span', { class: 'value' }));
+    this.#tip.replaceChildren(...series.map((one, index) => el('div', {}, swatch(one), el('span', {}, one.name), this.#values[index])));
     this.#caption.replaceChildren(el('strong', {}, title), ...series.map((one, index) => this.#key(one, index)));
     const { clientWidth: width, clientHeight: height } = this.#place;
     if (width < 20 || height < 20) {
       this.#chart = null; // it comes with its first size
       return;
     }
-    this.#chart = makeChart(this.#place, this.#plot, { width, height }, (values) => this.#read(values));
+    this.#chart = makeChart(this.#place, this.#plot, { width, height }, (values, share) => this.#read(values, share));
+    this.#place.append(this.#tip);
     for (const index of this.#hidden) this.#chart.setShown(index, false);
   }
 
@@ -59,12 +62,8 @@ export class Figure {
   }
 
   /** Name of a series, which switches it on and off. */
-  #key({ name, rgba, style }, index) {
-    const dash = { dashed: '4 3', points: '0.1 5' }[style] ?? 'none';
-    const line = svg('line', {
-      x1: 1, y1: 4, x2: 15, y2: 4, stroke: inkOf(rgba), 'stroke-width': style === 'points' ? 4 : 2,
-      'stroke-dasharray': dash, 'stroke-linecap': style === 'points' ? 'round' : 'butt',
-    });
+  #key(series, index) {
+    const { name } = series;
     const button = el('button', {
       type: 'button', class: 'key', test: `series-${name}`, 'aria-pressed': String(!this.#hidden.has(index)),
       on: {
@@ -76,18 +75,35 @@ export class Figure {
           this.#chart?.setShown(index, shown);
         },
       },
-    }, svg('svg', { viewBox: '0 0 16 8', 'aria-hidden': 'true' }, line), el('span', {}, name), this.#values[index]);
+    }, swatch(series), el('span', {}, name));
     return button;
   }
 
-  /** Values under the mouse. @param {(number|null)[]|null} values */
-  #read(values) {
+  /**
+   * Values under the mouse.
+   * @param {(number|null)[]|null} values
+   * @param {number} share  where the mouse is, from left to right: the values stand on the other side
+   */
+  #read(values, share) {
+    this.#tip.hidden = values === null;
+    this.#tip.classList.toggle('left', share > 0.5);
     this.#values.forEach((node, index) => {
       const value = values?.[index];
       const text = value === null || value === undefined ? '' : shortNumber(value);
       if (node.textContent !== text) node.textContent = text;
+      node.parentElement.hidden = text === '' || this.#hidden.has(index);
     });
   }
+}
+
+/** A piece of the line of a series. */
+function swatch({ rgba, style }) {
+  const dots = style === 'points';
+  const line = svg('line', {
+    x1: 1, y1: 4, x2: 15, y2: 4, stroke: inkOf(rgba), 'stroke-width': dots ? 4 : 2,
+    'stroke-dasharray': { dashed: '4 3', points: '0.1 5' }[style] ?? 'none', 'stroke-linecap': dots ? 'round' : 'butt',
+  });
+  return svg('svg', { class: 'swatch', viewBox: '0 0 16 8', 'aria-hidden': 'true' }, line);
 }
 
 function shortNumber(value) {

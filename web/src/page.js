@@ -167,12 +167,16 @@ function followLooks({ stage, model, overlay, plots, panels, eye, triad, viewBar
   repaint(theme.palette);
   onLanguage(() => panels.refresh());
   model.onShapes = () => overlay.refresh();
-  stage.onSlow = () => {
+  const drawLess = () => {
     stage.setLow();
     menu.shadows.checked = false;
+  };
+  stage.onSlow = () => {
+    drawLess();
     notices.say(t('quality_low'));
   };
-  if (stage.isSoftware) stage.onSlow();
+  stage.onResize = () => eye.apply();
+  if (stage.isSoftware) drawLess();
   eye.onChange = () => {
     triad.update();
     viewBar.update();

@@ -43,9 +43,12 @@ export class Plots {
       this.#figures.push(figure);
       this.#place.append(figure.node);
     }
-    if (this.#plots.length > 0) this.#empty.remove();
-    else this.#place.append(this.#empty);
-    fill(this.#place);
+    if (this.#plots.length > 0) {
+      this.#empty.remove();
+    } else {
+      this.#place.append(this.#empty);
+      fill(this.#place);
+    }
     this.#plots.forEach((plot, index) => this.#figures[index].show(plot));
   }
 }

@@ -23,6 +23,8 @@ export class Stage {
   #ratio = Math.min(window.devicePixelRatio || 1, 2);
   /** Called once where drawing turns out to be slow. */
   onSlow = null;
+  /** Called after each change of size. */
+  onResize = null;
 
   /** @param {HTMLCanvasElement} canvas; throws where there is no WebGL */
   constructor(canvas) {
@@ -141,14 +143,14 @@ export class Stage {
   #watchPace(now) {
     const pace = this.#pace;
     if (!this.onSlow) return;
-    if (pace.last > 0 && now - pace.last < 1000) {
-      pace.sum += now - pace.last;
-      if (++pace.count === SLOW_COUNT) {
-        if (pace.sum / pace.count > SLOW) this.onSlow();
-        pace.sum = pace.count = 0;
-      }
-    }
+    const way = now - pace.last;
+    const counts = pace.last > 0 && way < 1000;
     pace.last = now;
+    if (!counts) return;
+    pace.sum += way;
+    if (++pace.count < SLOW_COUNT) return;
+    if (pace.sum / pace.count > SLOW) this.onSlow();
+    pace.sum = pace.count = 0;
   }
 }
 
