@@ -1,5 +1,5 @@
 // The look of planes: a plain floor with a grid of 0.1 m and 1 m that fades far away.
-import { Color, MeshStandardMaterial, Vector3 } from 'three';
+import { Color, MeshLambertMaterial, Vector3 } from 'three';
 import { colorOf } from './paint.js';
 
 const HEAD = `
@@ -39,10 +39,10 @@ export class FloorLook {
 
   /**
    * @param {number[]|null} rgba  of the plane; null draws lines alone
-   * @returns {MeshStandardMaterial}
+   * @returns {MeshLambertMaterial}
    */
   material(rgba) {
-    const material = new MeshStandardMaterial({ roughness: 0.95, transparent: true });
+    const material = new MeshLambertMaterial({ transparent: true });
     const uniforms = { ...this.#uniforms, bare: { value: rgba ? 0 : 1 } };
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, uniforms);

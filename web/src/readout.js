@@ -14,7 +14,9 @@ export class Readout {
     node.hidden = false;
     node.textContent = text;
     const above = pointer.type === 'touch' ? 76 : 34; // a finger hides what is below it
-    node.style.transform = `translate(${Math.round(pointer.x + 14)}px, ${Math.round(pointer.y - above)}px)`;
+    const x = Math.min(pointer.x + 14, node.parentElement.clientWidth - 10 * text.length - 16);
+    const y = Math.max(pointer.y - above, 4);
+    node.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
   }
 
   hide() {

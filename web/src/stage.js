@@ -29,8 +29,12 @@ export class Stage {
   /** @param {HTMLCanvasElement} canvas; throws where there is no WebGL */
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    /** Whether the processor draws, for want of a graphics card. */
+    this.isSoftware = isSoftware();
+    const antialias = !this.isSoftware;
+    this.renderer = new WebGLRenderer({ canvas, antialias, powerPreference: 'high-performance' });
     this.renderer.autoClear = false;
+    this.renderer.debug.checkShaderErrors = false; // asking waits for the compiler
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     this.renderer.shadowMap.autoUpdate = false;
@@ -85,14 +89,6 @@ export class Stage {
   setShadows(on) {
     this.#sun.castShadow = on;
     this.changed(true);
-  }
-
-  /** Whether the processor draws, for want of a graphics card. */
-  get isSoftware() {
-    const gl = this.renderer.getContext();
-    const names = gl.getExtension('WEBGL_debug_renderer_info');
-    const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : '';
-    return /swiftshader|llvmpipe|software|basic render/i.test(name);
   }
 
   /** No shadows, no more pixels than the page has. */
@@ -152,6 +148,15 @@ export class Stage {
     if (pace.sum / pace.count > SLOW) this.onSlow();
     pace.sum = pace.count = 0;
   }
+}
+
+/** Asked of a canvas of its own, as smooth edges have to be chosen with the context. */
+function isSoftware() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  const names = gl?.getExtension('WEBGL_debug_renderer_info');
+  const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : '';
+  gl?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
 /** A picture that goes from one colour at the bottom to another at the top. */
