@@ -1,11 +1,11 @@
 // Charts by uPlot: values over one common axis, or places in a plane.
 import uPlot from 'uplot';
 import { inkOf } from './figure.js';
-import { theme } from './theme.js';
+import { FONTS, theme } from './theme.js';
 import { isOrdered, joined } from './chart_data.js';
 import { planeOptions, planeData } from './plane_chart.js';
 
-const FONT = '11px system-ui, -apple-system, "Segoe UI", "PingFang SC", "Microsoft YaHei", "Noto Sans CJK SC", sans-serif';
+const FONT = `11px ${FONTS}`;
 
 /**
  * @param {HTMLElement} place

@@ -192,7 +192,8 @@ export class Eye {
 
   #go(to) {
     this.#free();
-    const from = { lookat: this.lookat.clone(), distance: this.distance, azimuth: this.azimuth, elevation: this.elevation };
+    const { distance, azimuth, elevation } = this;
+    const from = { lookat: this.lookat.clone(), distance, azimuth, elevation };
     const turn = Math.atan2(Math.sin(to.azimuth - from.azimuth), Math.cos(to.azimuth - from.azimuth));
     const goal = { ...to, lookat: to.lookat.clone(), azimuth: from.azimuth + turn };
     if (mayGlide()) {

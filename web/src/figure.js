@@ -42,7 +42,8 @@ export class Figure {
     this.#chart?.dispose();
     const { title, series } = this.#plot;
     this.#values = series.map(() => el('span', { class: 'value' }));
-    this.#tip.replaceChildren(...series.map((one, index) => el('div', {}, swatch(one), el('span', {}, one.name), this.#values[index])));
+    this.#tip.replaceChildren(...series.map(
+      (one, index) => el('div', {}, swatch(one), el('span', {}, one.name), this.#values[index])));
     this.#caption.replaceChildren(el('strong', {}, title), ...series.map((one, index) => this.#key(one, index)));
     const { clientWidth: width, clientHeight: height } = this.#place;
     if (width < 20 || height < 20) {

@@ -1,8 +1,8 @@
 // A text at a point of the world, always of the same size on the screen.
 import { CanvasTexture, LinearFilter, Sprite, SpriteMaterial, SRGBColorSpace } from 'three';
-import { theme } from './theme.js';
+import { FONTS, theme } from './theme.js';
 
-const FONT = '500 13px system-ui, -apple-system, "Segoe UI", "PingFang SC", "Microsoft YaHei", "Noto Sans CJK SC", sans-serif';
+const FONT = `500 13px ${FONTS}`;
 const SHARP = 2; // pixels of the texture a pixel of the page
 const LONGEST = 99; // characters
 

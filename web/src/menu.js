@@ -35,7 +35,8 @@ export class Menu {
     );
     this.#button.addEventListener('click', () => this.toggle());
     document.addEventListener('pointerdown', (event) => {
-      if (!this.#node.hidden && !this.#node.contains(event.target) && !this.#button.contains(event.target)) this.close();
+      const inside = this.#node.contains(event.target) || this.#button.contains(event.target);
+      if (!this.#node.hidden && !inside) this.close();
     }, true);
     this.#node.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
@@ -69,7 +70,8 @@ export class Menu {
   }
 
   #select(test, word, options, current, use) {
-    const menu = el('select', { class: 'pick', test: `${test}-select`, wordLabel: word, on: { change: () => use(menu.value) } },
+    const on = { change: () => use(menu.value) };
+    const menu = el('select', { class: 'pick', test: `${test}-select`, wordLabel: word, on },
       ...options.map(([value, key]) => el('option', { value, word: key })));
     menu.value = current;
     return el('div', { class: 'row pick-row' }, el('span', { class: 'name', word }), menu);

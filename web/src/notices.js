@@ -24,7 +24,10 @@ export class Notices {
     const parts = [el('h2', {}, t(title, ...(what.values ?? [])))];
     if (text) parts.push(el('p', {}, text));
     if (more) parts.push(el('p', {}, t(more)));
-    if (action) parts.push(el('button', { type: 'button', test: 'notice-action', on: { click: action.run } }, t(action.word)));
+    if (action) {
+      const on = { click: action.run };
+      parts.push(el('button', { type: 'button', test: 'notice-action', on }, t(action.word)));
+    }
     this.#notice.replaceChildren(...parts);
     this.#notice.classList.toggle('bad', Boolean(bad));
     this.#notice.hidden = false;

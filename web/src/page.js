@@ -92,8 +92,8 @@ function build(scene, source, notices, stage) {
   side.append(panels.node);
   fill(side);
   return {
-    scene, source, notices, stage, outbox, model, eye, picker, target, push, ghosts, overlay, selection, transport, viewBar,
-    menu, panels, joints, plots: new Plots(byTest('plots'), byTest('figures')),
+    scene, source, notices, stage, outbox, model, eye, picker, target, push, ghosts, overlay, selection, transport,
+    viewBar, menu, panels, joints, plots: new Plots(byTest('plots'), byTest('figures')),
     pointer: new PointerHub(stage.canvas, eye, [push, target, ghosts]), help: new Help(), layout: new Layout(),
     triad: new Triad(byTest('triad'), eye), last: { frame: null },
     /** Light and shadow for all that is shown. */
@@ -104,7 +104,8 @@ function build(scene, source, notices, stage) {
   };
 }
 
-function wireControls({ outbox, stage, scene, notices, pointer, picker, ghosts, selection, transport, eye, viewBar, help, layout }, options) {
+function wireControls(page, options) {
+  const { outbox, stage, scene, notices, pointer, picker, ghosts, selection, transport, eye } = page;
   const act = {
     target: () => options.can_target && outbox.send({ type: 'target' }),
     screenshot: () => saveScreenshot(stage, scene.name, notices),
@@ -115,13 +116,14 @@ function wireControls({ outbox, stage, scene, notices, pointer, picker, ghosts, 
   byTest('screenshot').addEventListener('click', act.screenshot);
   pointer.onClick = (where) => ghosts.click(where);
   pointer.onDouble = ({ x, y }) => selection.take(picker.geomAt(x, y));
-  listenToKeys({ transport, eye, viewBar, help, layout, act });
+  listenToKeys({ transport, eye, viewBar: page.viewBar, help: page.help, layout: page.layout, act });
 }
 
 function listenToSource(page, source) {
   const { overlay, plots, panels, target, notices } = page;
   const status = byTest('status');
   source.on('hello', ({ can_control: may }) => {
+    target.renew();
     enable(page, may);
     if (!may) notices.say(t('read_only'));
   });

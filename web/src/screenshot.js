@@ -2,7 +2,11 @@
 import { el } from './dom.js';
 import { t } from './words.js';
 
-/** @param {import('./stage.js').Stage} stage @param {string} name  of the model @param {import('./notices.js').Notices} notices */
+/**
+ * @param {import('./stage.js').Stage} stage
+ * @param {string} name  of the model
+ * @param {import('./notices.js').Notices} notices
+ */
 export async function saveScreenshot(stage, name, notices) {
   const picture = await stage.picture();
   if (!picture) {

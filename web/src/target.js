@@ -42,6 +42,12 @@ export class Target {
     return this.#drag !== null;
   }
 
+  /** A connection begins: the next message says where the numbers stand. */
+  renew() {
+    this.release();
+    this.number = 0;
+  }
+
   /** What the server says about it: an answer to an older drag does not move it. */
   take(message) {
     this.shown = message.shown;

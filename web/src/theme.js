@@ -2,6 +2,10 @@
 import { Emitter } from './emitter.js';
 import { recall, remember } from './settings.js';
 
+/** Of texts that are drawn. */
+export const FONTS =
+  'system-ui, -apple-system, "Segoe UI", "PingFang SC", "Microsoft YaHei", "Noto Sans CJK SC", sans-serif';
+
 const PALETTES = {
   light: {
     skyTop: '#a9bfd6', skyBottom: '#f1f4f7', floor: '#c6cfd9', line: '#97a3b1',

@@ -53,7 +53,8 @@ export class Triad {
     const plus = sign === '+';
     const line = plus ? svg('line', { x1: 0, y1: 0, stroke: COLORS[axis], 'stroke-width': 2.5 }) : null;
     const disc = svg('circle', {
-      r: plus ? 8.5 : 5.5, fill: COLORS[axis], 'fill-opacity': plus ? 1 : 0.28, stroke: COLORS[axis], 'stroke-width': 1.2,
+      r: plus ? 8.5 : 5.5, fill: COLORS[axis], 'fill-opacity': plus ? 1 : 0.28,
+      stroke: COLORS[axis], 'stroke-width': 1.2,
     });
     const go = () => this.#eye.face(...FACING[name]);
     const knob = svg('g', {
