@@ -139,8 +139,7 @@ class Meshes {
  public:
   Meshes(const mjModel& m, std::vector<DrawnMesh>& out) : m_(m), out_(out) {}
   int place_of(int type, int data) {
-    const auto [found, is_new] =
-        places_.try_emplace({type, data}, static_cast<int>(out_.size()));
+    const auto [found, is_new] = places_.try_emplace({type, data}, static_cast<int>(out_.size()));
     if (is_new) {
       out_.push_back(type == mjGEOM_HFIELD ? height_field_of(m_, data) : mesh_of(m_, data));
     }

@@ -16,9 +16,9 @@ namespace mjarm {
 /// MuJoCo. Numbers of bodies, geoms and joints are those of the compiled model.
 
 struct DrawnBody {
-  std::string name = {};  ///< "body 7" where the model has none
+  std::string name = {};                           ///< "body 7" where the model has none
   Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();  ///< [m] centre of mass in the body
-  bool moves = false;  ///< false for the world and what is fixed to it
+  bool moves = false;                              ///< false for the world and what is fixed to it
 };
 
 enum class DrawnShape {
@@ -37,8 +37,8 @@ struct DrawnGeom {
   std::string name = {};  ///< empty where the model has none
   int group = 0;          ///< 0 to 5; 0 to 2 are drawn at first
   DrawnShape shape = DrawnShape::sphere;
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< [m] see DrawnShape; 0 what is not used
-  Pose X_BG = {};                                  ///< in its body
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();     ///< [m] see DrawnShape; 0 what is not used
+  Pose X_BG = {};                                     ///< in its body
   std::array<float, 4> rgba = {0.5F, 0.5F, 0.5F, 1};  ///< of the material, in the mean of a texture
   int mesh = -1;                                      ///< place in `DrawnModel::meshes`
 };
@@ -59,9 +59,9 @@ struct DrawnCamera {
 
 /// A joint of one degree of freedom.
 struct DrawnJoint {
-  int dof = -1;           ///< row of qvel
-  int qpos = -1;          ///< place in qpos
-  std::string name = {};  ///< "joint 7" where the model has none
+  int dof = -1;                                             ///< row of qvel
+  int qpos = -1;                                            ///< place in qpos
+  std::string name = {};                                    ///< "joint 7" where the model has none
   double lower = -std::numeric_limits<double>::infinity();  ///< [rad or m]
   double upper = std::numeric_limits<double>::infinity();   ///< [rad or m]
   bool angle = true;                                        ///< radians, else metres

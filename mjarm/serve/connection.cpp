@@ -25,8 +25,7 @@ constexpr std::size_t kMaxHeader = 8 * 1024;  // [bytes] of a request
 /// A connection of HTTP, which may become a page.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Hub& hub, tcp::socket socket)
-      : hub_(hub), counted_(hub), stream_(std::move(socket)) {}
+  Connection(Hub& hub, tcp::socket socket) : hub_(hub), counted_(hub), stream_(std::move(socket)) {}
 
   void read() {
     parser_.emplace();
@@ -46,7 +45,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
         error == http::error::end_of_stream || error == http::error::partial_message) {
       return close();
     }
-    const bool is_long = error == http::error::header_limit || error == http::error::buffer_overflow;
+    const bool is_long =
+        error == http::error::header_limit || error == http::error::buffer_overflow;
     keep_alive_ = false;
     is_head_ = false;
     answer_ = hub_.site.refusal(is_long ? 431 : 400);

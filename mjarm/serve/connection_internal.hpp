@@ -35,8 +35,7 @@ struct Hub {
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 
   void refresh() {
-    feed.refresh(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    feed.refresh(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 };
 

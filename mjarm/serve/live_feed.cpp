@@ -41,8 +41,8 @@ void LiveFeed::take_frame() {
   if (!link_.frames.take(frame_)) return;
   if (!poses_.set(frame_.snapshot)) return;  // of another model: nothing that could be shown
   has_frame_ = true;
-  for (const LiveKind kind : {LiveKind::frame, LiveKind::overlay, LiveKind::plots, LiveKind::panels,
-                              LiveKind::status}) {
+  for (const LiveKind kind :
+       {LiveKind::frame, LiveKind::overlay, LiveKind::plots, LiveKind::panels, LiveKind::status}) {
     mark(kind);
   }
 }

@@ -31,14 +31,15 @@ struct LiveMessage {
 
 /// What a page holds with the mouse; it is let go of where the page vanishes.
 struct PageHold {
-  int pushed_body = -1;                        ///< -1 = none
+  int pushed_body = -1;                       ///< -1 = none
   std::optional<view::TargetDrag> drag = {};  ///< that has not ended
 };
 
 /// What lies between a simulation and the pages that show it: takes the newest frame from its link
-/// and makes messages of it, each no oftener than the protocol says and only where it changed; reads
-/// what pages send and hands it on. Holds one message of each kind, however many pages there are and
-/// however slowly they read. In the thread of the server; the simulation never waits for it.
+/// and makes messages of it, each no oftener than the protocol says and only where it changed;
+/// reads what pages send and hands it on. Holds one message of each kind, however many pages there
+/// are and however slowly they read. In the thread of the server; the simulation never waits for
+/// it.
 class LiveFeed {
  public:
   /// All outlive this.

@@ -16,7 +16,7 @@
 /// finite number is left out.
 namespace mjarm::serve {
 
-inline constexpr std::size_t kMaxSeriesPoints = 2000;      ///< of a curve; longer ones are thinned
+inline constexpr std::size_t kMaxSeriesPoints = 2000;     ///< of a curve; longer ones are thinned
 inline constexpr std::size_t kMaxOverlayPoints = 20'000;  ///< of lines and segments, likewise
 
 /// A frame, binary: how the bodies stand.

@@ -1,5 +1,3 @@
-#include "mjarm/serve/live_page_internal.hpp"
-
 #include <array>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -10,6 +8,7 @@
 
 #include "mjarm/core/messages/serve.hpp"
 #include "mjarm/serve/live_messages.hpp"
+#include "mjarm/serve/live_page_internal.hpp"
 
 namespace mjarm::serve {
 namespace {
@@ -42,8 +41,9 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
     ErrorCode ignored;
     beast::get_lowest_layer(socket_).socket().set_option(
         net::socket_base::send_buffer_size(kSendBuffer), ignored);
-    socket_.set_option(websocket::stream_base::timeout{
-        clock_seconds(hub_.options.request_seconds), clock_seconds(hub_.options.silent_seconds), true});
+    socket_.set_option(websocket::stream_base::timeout{clock_seconds(hub_.options.request_seconds),
+                                                       clock_seconds(hub_.options.silent_seconds),
+                                                       true});
     socket_.set_option(websocket::stream_base::decorator(
         [headers = answer.headers](websocket::response_type& response) {
           for (const auto& [name, value] : headers) {
@@ -88,9 +88,8 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
   void use() {
     const auto bytes = in_.cdata();
     const std::string_view text_of_page(static_cast<const char*>(bytes.data()), bytes.size());
-    const Result<void> done = socket_.got_text()
-                                  ? hub_.feed.handle(text_of_page, hold_)
-                                  : fail(Errc::bad_input, text(msg::serve_binary));
+    const Result<void> done = socket_.got_text() ? hub_.feed.handle(text_of_page, hold_)
+                                                 : fail(Errc::bad_input, text(msg::serve_binary));
     in_.consume(in_.size());
     if (!done) refuse(done.error().what);
     read();

@@ -122,7 +122,9 @@ void add(JsonWriter& json, const render::OverlayGhost& ghost, BodyPoses& poses) 
   json.member("item", -1).member("value", 0).end_object();
 }
 
-std::size_t stride_of(std::size_t points) { return (points + kMaxOverlayPoints - 1) / kMaxOverlayPoints; }
+std::size_t stride_of(std::size_t points) {
+  return (points + kMaxOverlayPoints - 1) / kMaxOverlayPoints;
+}
 
 /// Of more shapes of a kind than are drawn, every n-th.
 template <class Shape>

@@ -36,8 +36,8 @@ class Client {
   explicit Client(int port) : port_(port) {
     auto& stream = boost::beast::get_lowest_layer(socket_);
     ErrorCode error;
-    stream.socket().connect({boost::asio::ip::make_address("127.0.0.1"),
-                             static_cast<std::uint16_t>(port)}, error);
+    stream.socket().connect(
+        {boost::asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(port)}, error);
     EXPECT_FALSE(error) << error.message();
   }
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
@@ -61,8 +61,7 @@ class Client {
     parser.body_limit(boost::none);
     if (finish([&](auto done) { http::async_read(stream, buffer, parser, done); })) return {};
     const auto& got = parser.get();
-    return {static_cast<int>(got.result_int()), got.body(),
-            std::string(got[http::field::etag]),
+    return {static_cast<int>(got.result_int()), got.body(), std::string(got[http::field::etag]),
             std::string(got["Content-Security-Policy"]),
             std::string(got[http::field::content_length])};
   }
@@ -74,9 +73,8 @@ class Client {
     socket_.set_option(websocket::stream_base::decorator([origin](websocket::request_type& asked) {
       if (!origin.empty()) asked.set(boost::beast::http::field::origin, origin);
     }));
-    return finish([&](auto done) {
-      socket_.async_handshake(named.empty() ? host() : named, target, done);
-    });
+    return finish(
+        [&](auto done) { socket_.async_handshake(named.empty() ? host() : named, target, done); });
   }
   ErrorCode send(const std::string& text, bool is_text = true) {
     socket_.text(is_text);

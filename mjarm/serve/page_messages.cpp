@@ -263,9 +263,9 @@ Result<PageMessage> read_drag(const JsonValue& object, const PageScene& scene) {
 
 using Read = Result<PageMessage> (*)(const JsonValue&, const PageScene&);
 constexpr std::pair<std::string_view, Read> kTypes[] = {
-    {"pause", read_pause}, {"step", read_step},       {"speed", read_speed},
-    {"reset", read_reset}, {"push", read_push},       {"release", read_release},
-    {"select", read_select}, {"joint", read_joint},   {"panel", read_panel},
+    {"pause", read_pause},   {"step", read_step},   {"speed", read_speed},
+    {"reset", read_reset},   {"push", read_push},   {"release", read_release},
+    {"select", read_select}, {"joint", read_joint}, {"panel", read_panel},
     {"target", read_target}, {"drag", read_drag},
 };
 

@@ -23,7 +23,7 @@ inline constexpr int kMaxPageSteps = 1000;                 ///< of one message, 
 struct PageScene {
   const DrawnModel& model;
   const SceneFacts& facts;
-  const BodyPoses& poses;                         ///< as the page sees them, or nearly
+  const BodyPoses& poses;                           ///< as the page sees them, or nearly
   std::span<const view::PanelSection> panels = {};  ///< as the page sees them, or nearly
 };
 

@@ -69,8 +69,8 @@ TEST_F(FromPage, SimpleEventsAreRead) {
 
 TEST_F(FromPage, ASliderIsTheJointOfThatName) {
   const ArmJoint& joint = robot_.arm.joints[2];
-  const auto moved = event<view::JointEvent>(
-      R"({"type":"joint","dof":)" + std::to_string(joint.dof) + R"(,"value":0.5})");
+  const auto moved = event<view::JointEvent>(R"({"type":"joint","dof":)" +
+                                             std::to_string(joint.dof) + R"(,"value":0.5})");
   EXPECT_EQ(moved.dof, joint.dof);
   EXPECT_EQ(moved.joint, joint.name);
   EXPECT_EQ(moved.value, 0.5);
@@ -127,17 +127,20 @@ TEST_F(FromPage, ASelectionHasNamesAndNumbersOfTheModel) {
       std::to_string(drawn_.geoms.size() - 1) + R"(,"point":[1,2,3]})");
   EXPECT_EQ(chosen.geom, geom.id);
   EXPECT_EQ(chosen.body_name, drawn_.bodies[static_cast<std::size_t>(geom.body)].name);
-  EXPECT_EQ(event<view::SelectEvent>(
-                R"({"type":"select","body":-1,"geom":-1,"point":[0,0,0]})").body, -1);
+  EXPECT_EQ(
+      event<view::SelectEvent>(R"({"type":"select","body":-1,"geom":-1,"point":[0,0,0]})").body,
+      -1);
   refused(R"({"type":"select","body":0,"geom":)" + std::to_string(drawn_.geoms.size()) +
-              R"(,"point":[0,0,0]})", "geom");
+              R"(,"point":[0,0,0]})",
+          "geom");
   refused(R"({"type":"select","body":999,"geom":-1,"point":[0,0,0]})", "body");
 }
 
 TEST_F(FromPage, ValuesOfPanelsAreWithinTheirItem) {
   const auto used = [this](int id, const std::string& value) {
     return event<view::PanelEvent>(R"({"type":"panel","id":)" + std::to_string(id) +
-                                   R"(,"value":)" + value + "}").value;
+                                   R"(,"value":)" + value + "}")
+        .value;
   };
   const auto wrong = [this](int id, const std::string& value) {
     refused(R"({"type":"panel","id":)" + std::to_string(id) + R"(,"value":)" + value + "}", "");
@@ -201,8 +204,8 @@ TEST_F(FromPage, ChangedTextsNeverDoHarm) {
       R"({"type":"panel","id":5,"value":2})",
       R"({"type":"joint","dof":2,"value":-0.25})",
   };
-  const std::string pieces[] = {"1e308", "-", "[", "]", "{", "}", "\"", ":", ",", "\\u0000",
-                                "null",  "9", ".", "\xff", "e", "true"};
+  const std::string pieces[] = {"1e308", "-",       "[",    "]", "{", "}",    "\"", ":",
+                                ",",     "\\u0000", "null", "9", ".", "\xff", "e",  "true"};
   Rng rng(3);
   int understood = 0;
   for (int i = 0; i < 10'000; ++i) {

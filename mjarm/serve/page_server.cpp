@@ -30,8 +30,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick{16};
 constexpr milliseconds kIdleTick{100};  // while there are no pages
 constexpr milliseconds kFarewell{500};
-constexpr int kPortsTried = 100;     // for a hint at a free one
-constexpr double kAllIsDue = 1e18;   // [s] later than any interval of messages
+constexpr int kPortsTried = 100;    // for a hint at a free one
+constexpr double kAllIsDue = 1e18;  // [s] later than any interval of messages
 
 ErrorCode listen_at(tcp::acceptor& acceptor, const tcp::endpoint& at) {
   ErrorCode error;
@@ -81,7 +81,7 @@ struct PageServer::Impl {
   net::io_context io{1};
   tcp::acceptor acceptor{io};
   net::steady_timer ticker{io};
-  net::steady_timer pause{io};     ///< after a connection could not be taken
+  net::steady_timer pause{io};  ///< after a connection could not be taken
   net::steady_timer farewell{io};
   int port = 0;
   bool is_stopping = false;  ///< of the server's thread
@@ -194,8 +194,7 @@ PageServer::~PageServer() = default;
 PageServer::PageServer(PageServer&&) noexcept = default;
 PageServer& PageServer::operator=(PageServer&&) noexcept = default;
 
-Result<PageServer> PageServer::start(PageSite& site, LiveFeed& feed,
-                                     const ServerOptions& options) {
+Result<PageServer> PageServer::start(PageSite& site, LiveFeed& feed, const ServerOptions& options) {
   auto impl = std::make_unique<Impl>(site, feed, options);
   if (Result<void> started = impl->start(); !started) return fail(std::move(started.error()));
   return PageServer(std::move(impl));

@@ -49,7 +49,9 @@ class Server : public ::testing::Test {
     server_->stop("over");
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
   }
-  static std::string path(const std::string& name) { return "/" + std::string(kSecret) + "/" + name; }
+  static std::string path(const std::string& name) {
+    return "/" + std::string(kSecret) + "/" + name;
+  }
   std::unique_ptr<Client> client() { return std::make_unique<Client>(server_->port()); }
   /// A page that has been said hello to.
   std::unique_ptr<Client> page() {
@@ -96,7 +98,8 @@ TEST_F(Server, GivesTheSceneOverOneConnection) {
   EXPECT_EQ(head.status, 200);
   EXPECT_TRUE(head.body.empty());
   EXPECT_EQ(head.length, std::to_string(scene.body.size()));
-  EXPECT_EQ(browser->request(path("scene.json"), "GET", {{"If-None-Match", scene.etag}}).status, 304);
+  EXPECT_EQ(browser->request(path("scene.json"), "GET", {{"If-None-Match", scene.etag}}).status,
+            304);
   EXPECT_EQ(browser->request(path("mesh/0")).body, mesh_bytes(drawn_.meshes[0]));
   EXPECT_EQ(browser->request(path("nothing")).status, 404);
   EXPECT_EQ(browser->request("/scene.json").status, 404);
@@ -107,14 +110,17 @@ TEST_F(Server, GivesTheSceneOverOneConnection) {
 }
 
 TEST_F(Server, NonsenseIsAnsweredOrDropped) {
-  const std::string nonsense[] = {
-      "\r\n\r\n", "GET\r\n\r\n", "\x16\x03\x01\x02", "GET / HTTP/9.9\r\n\r\n",
-      "GET / HTTP/1.1\r\nHost\r\n\r\n", "GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n",
-      "GET " + std::string(100'000, 'a') + " HTTP/1.1\r\n\r\n",
-      "GET / HTTP/1.1\r\nX: " + std::string(100'000, 'a') + "\r\n\r\n",
-      "POST / HTTP/1.1\r\nContent-Length: 999999999999\r\n\r\n",
-      "POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n",
-      "POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n"};
+  const std::string nonsense[] = {"\r\n\r\n",
+                                  "GET\r\n\r\n",
+                                  "\x16\x03\x01\x02",
+                                  "GET / HTTP/9.9\r\n\r\n",
+                                  "GET / HTTP/1.1\r\nHost\r\n\r\n",
+                                  "GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n",
+                                  "GET " + std::string(100'000, 'a') + " HTTP/1.1\r\n\r\n",
+                                  "GET / HTTP/1.1\r\nX: " + std::string(100'000, 'a') + "\r\n\r\n",
+                                  "POST / HTTP/1.1\r\nContent-Length: 999999999999\r\n\r\n",
+                                  "POST / HTTP/1.1\r\nContent-Length: -1\r\n\r\n",
+                                  "POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n"};
   for (int round = 0; round < 3; ++round) {
     for (const std::string& bytes : nonsense) {
       auto rude = client();
@@ -165,8 +171,8 @@ TEST_F(Server, WhatTheUserDoesArrives) {
   auto user = page();
   ASSERT_TRUE(user->receive("frame"));
   EXPECT_FALSE(user->send(R"({"type":"joint","dof":1,"value":-0.5})"));
-  EXPECT_FALSE(user->send(
-      R"({"type":"drag","pos":[0.1,0.2,0.3],"quat":[1,0,0,0],"held":true,"number":4})"));
+  EXPECT_FALSE(
+      user->send(R"({"type":"drag","pos":[0.1,0.2,0.3],"quat":[1,0,0,0],"held":true,"number":4})"));
   ASSERT_TRUE(until([this] { return target_.drags.size() == 1; }));
   const auto events = link_.events.take();
   ASSERT_EQ(events.size(), 1U);
@@ -234,7 +240,7 @@ TEST_F(Server, WhoDoesNotReadHoldsNobodyUp) {
   auto sleeper = page();
   auto awake = page();
   const std::size_t before = memory_in_use();
-  // Half a gigabyte of frames for each, were they all sent.
+  // A megabyte and more in each overlay.
   int seen = 0;
   double last = 0;
   for (int i = 1; i <= 200; ++i) {
@@ -295,8 +301,8 @@ TEST_F(Server, ATakenPortIsOneLineWithAFreeOne) {
   EXPECT_THAT(second.error().what, HasSubstr(std::to_string(server_->port())));
   EXPECT_THAT(second.error().what, HasSubstr("--port "));
   EXPECT_EQ(second.error().what.find('\n'), std::string::npos);
-  for (const ServerOptions& wrong :
-       {ServerOptions{.address = "nowhere"}, ServerOptions{.port = 65536}, ServerOptions{.port = -1}}) {
+  for (const ServerOptions& wrong : {ServerOptions{.address = "nowhere"},
+                                     ServerOptions{.port = 65536}, ServerOptions{.port = -1}}) {
     const Result<PageServer> none = PageServer::start(site, feed_, wrong);
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, Errc::usage);
@@ -362,8 +368,8 @@ TEST(ShowInPage, PagesChangeNothingInTheSimulation) {
 TEST(ShowInPage, EndsAfterItsTime) {
   const Model model = mjarm::testing::shipped("car");
   bool closed = false;
-  const Result<void> shown = show_in_page(
-      model, "test", {.camera = {}}, {.seconds = 0.1}, [&](view::ViewLink& link) {
+  const Result<void> shown =
+      show_in_page(model, "test", {.camera = {}}, {.seconds = 0.1}, [&](view::ViewLink& link) {
         while (!link.closed) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         closed = true;
       });

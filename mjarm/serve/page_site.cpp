@@ -94,8 +94,7 @@ std::optional<fs::path> page_folder() {
 PageSite::PageSite(std::string token, std::string address)
     : token_(std::move(token)), address_(std::move(address)) {}
 
-void PageSite::add(const std::string& path, std::string body, const char* type,
-                   const char* cache) {
+void PageSite::add(const std::string& path, std::string body, const char* type, const char* cache) {
   std::string etag = "\"" + sha256(body).substr(0, 32) + "\"";
   files_[path] = {std::make_shared<const std::string>(std::move(body)), type, std::move(etag),
                   cache};

@@ -47,9 +47,9 @@ TEST_F(Site, GivesItsFilesAndNothingElse) {
   EXPECT_EQ(header(get("/page.js"), "Content-Type"), "text/javascript; charset=utf-8");
   EXPECT_EQ(header(get("/scene.json"), "Content-Type"), "application/json");
   EXPECT_EQ(get("/mesh/0").status, 200);
-  for (const char* path :
-       {"/page.css", "/secret.txt", "/../secret.txt", "/%2e%2e/secret.txt", "/./page.js", "//",
-        "/mesh/99999", "/mesh/-1", "/mesh/", "/mesh/0/", "/PAGE.JS", "/page.js/", "/index.html\\"}) {
+  for (const char* path : {"/page.css", "/secret.txt", "/../secret.txt", "/%2e%2e/secret.txt",
+                           "/./page.js", "//", "/mesh/99999", "/mesh/-1", "/mesh/", "/mesh/0/",
+                           "/PAGE.JS", "/page.js/", "/index.html\\"}) {
     EXPECT_EQ(get(path).status, 404) << path;
   }
 }
@@ -99,10 +99,10 @@ TEST_F(Site, ForOthersANumberNamesItAndNothingElse) {
   EXPECT_EQ(status("[fe80::1]:8000"), 200);
   EXPECT_EQ(status("evil.example:8000"), 403);
   EXPECT_EQ(status("1.2.3.4.evil:8000"), 403);
-  EXPECT_NE(header(open.answer({.target = target, .host = "192.168.0.7:8000"}),
-                   "Content-Security-Policy")
-                .find("ws://192.168.0.7:8000"),
-            std::string::npos);
+  EXPECT_NE(
+      header(open.answer({.target = target, .host = "192.168.0.7:8000"}), "Content-Security-Policy")
+          .find("ws://192.168.0.7:8000"),
+      std::string::npos);
   EXPECT_TRUE(is_loopback("127.0.0.1") && is_loopback("::1"));
   EXPECT_FALSE(is_loopback("0.0.0.0") || is_loopback("127.evil") || is_loopback("10.0.0.1"));
 }

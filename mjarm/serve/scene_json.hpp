@@ -11,17 +11,17 @@ namespace mjarm::serve {
 
 /// What a page shows besides the model, and what the application lets the user do.
 struct SceneFacts {
-  std::string title = {};           ///< of the page
-  std::string name = {};            ///< of the model
+  std::string title = {};  ///< of the page
+  std::string name = {};   ///< of the model
   Language language = Language::english;
-  render::CameraView view = {};     ///< where the page looks from at first
-  int nq = 0;                       ///< size of qpos
-  bool can_step = true;             ///< the application follows StepEvent
-  bool can_reset = true;            ///< ... and ResetEvent
-  bool can_push = true;             ///< ... and PushEvent
-  bool can_target = false;          ///< ... and TargetEvent and drags of the target
-  bool turns = true;                ///< the target has rings
-  std::vector<int> jog_dofs = {};   ///< ... and JointEvent of these dofs
+  render::CameraView view = {};    ///< where the page looks from at first
+  int nq = 0;                      ///< size of qpos
+  bool can_step = true;            ///< the application follows StepEvent
+  bool can_reset = true;           ///< ... and ResetEvent
+  bool can_push = true;            ///< ... and PushEvent
+  bool can_target = false;         ///< ... and TargetEvent and drags of the target
+  bool turns = true;               ///< the target has rings
+  std::vector<int> jog_dofs = {};  ///< ... and JointEvent of these dofs
 };
 
 /// The sliders of a page: the joints of `model` at `facts.jog_dofs`, in the order of the model.

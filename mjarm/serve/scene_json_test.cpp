@@ -12,8 +12,10 @@ namespace mjarm::serve {
 namespace {
 
 SceneFacts facts_of(const Model& model) {
-  SceneFacts facts{.title = "mjarm \"test\"", .name = std::string(model.name()),
-                   .view = render::default_view(model), .nq = model.nq()};
+  SceneFacts facts{.title = "mjarm \"test\"",
+                   .name = std::string(model.name()),
+                   .view = render::default_view(model),
+                   .nq = model.nq()};
   for (int dof = 0; dof < model.nv(); ++dof) facts.jog_dofs.push_back(dof);
   return facts;
 }
@@ -45,9 +47,11 @@ TEST_P(SceneJson, SaysWhatMuJoCoHas) {
     const auto pos = number_list(geoms[i], "pos", 3);
     const auto quat = number_list(geoms[i], "quat", 4);
     ASSERT_TRUE(pos && quat);
-    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR((*pos)[k], m.geom_pos[3 * id + static_cast<int>(k)], 1e-9);
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR((*pos)[k], m.geom_pos[3 * id + static_cast<int>(k)], 1e-9);
     double dot = 0;
-    for (std::size_t k = 0; k < 4; ++k) dot += (*quat)[k] * m.geom_quat[4 * id + static_cast<int>(k)];
+    for (std::size_t k = 0; k < 4; ++k)
+      dot += (*quat)[k] * m.geom_quat[4 * id + static_cast<int>(k)];
     EXPECT_NEAR(std::abs(dot), 1, 1e-9);
     const bool is_mesh = m.geom_type[id] == mjGEOM_MESH;
     EXPECT_EQ(geoms[i].find("kind")->string() == "mesh", is_mesh);

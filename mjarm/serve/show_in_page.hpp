@@ -33,9 +33,9 @@ struct PageOptions {
                                         const PageOptions& options,
                                         const std::function<void(view::ViewLink&)>& simulate);
 
-/// A page in the place of each window that work asks for: `view::run_beside(page_shower(...), work)`
-/// instead of `view::run_beside_windows(...)`. One window after the other has its page, at the same
-/// address unless `options.server.port` is 0.
+/// A page in the place of each window that work asks for: `view::run_beside(page_shower(...),
+/// work)` instead of `view::run_beside_windows(...)`. One window after the other has its page, at
+/// the same address unless `options.server.port` is 0.
 [[nodiscard]] view::Shower page_shower(const PageOptions& options);
 
 }  // namespace mjarm::serve

@@ -67,17 +67,17 @@ Result<void> show_window(const ShowOrder& order) {
 }
 
 void show(const Shower& shower, RemoteWindow::Order& order) {
-  const Result<void> shown = shower(
-      {.model = order.model,
-       .title = order.title,
-       .options = order.options,
-       .link = order.link,
-       .opened =
-           [&order](Result<void> result) {
-             if (!result) order.link.closed = true;
-             order.opened.set_value(std::move(result));
-           },
-       .ended = [&order] { return order.close_wanted.load() || interrupted(); }});
+  const Result<void> shown =
+      shower({.model = order.model,
+              .title = order.title,
+              .options = order.options,
+              .link = order.link,
+              .opened =
+                  [&order](Result<void> result) {
+                    if (!result) order.link.closed = true;
+                    order.opened.set_value(std::move(result));
+                  },
+              .ended = [&order] { return order.close_wanted.load() || interrupted(); }});
   // The work sees a closed window, and ends as it does then.
   order.link.closed = true;
   if (!shown) log_warning(shown.error().what);
