@@ -51,6 +51,7 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
           }
         }));
     socket_.read_message_max(kMaxPageMessage);
+    socket_.auto_fragment(false);  // else a long message goes out in pieces of 4 KiB
     socket_.async_accept(request, [self = shared_from_this()](ErrorCode error) {
       if (!error) self->begin();
     });

@@ -145,12 +145,11 @@ void PageServer::Impl::accept() {
       });
       return;
     }
-    if (hub.connections < hub.options.max_connections) {
-      ErrorCode ignored;
-      socket.set_option(tcp::no_delay(true), ignored);
-      take_connection(hub, std::move(socket));
-    }
     accept();
+    if (hub.connections >= hub.options.max_connections) return;
+    ErrorCode ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    take_connection(hub, std::move(socket));
   });
 }
 
@@ -158,9 +157,9 @@ void PageServer::Impl::tick() {
   ticker.expires_after(hub.pages.empty() ? kIdleTick : kTick);
   ticker.async_wait([this](ErrorCode error) {
     if (error || is_stopping) return;
+    tick();
     if (!hub.pages.empty()) hub.refresh();
     for (const auto& page : std::set(hub.pages)) page->tick();
-    tick();
   });
 }
 
