@@ -10,6 +10,7 @@ install(TARGETS mjarm-bench OPTIONAL)  # `./dev` builds it when it is asked for 
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/models"
         OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/programs" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/web/dist/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/page" OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/bench/peers" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/bench")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 

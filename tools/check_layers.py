@@ -24,7 +24,7 @@ ALLOWED = {
     "execution": "core model kinematics collision path planning trajectory control sim",
     "program": "core model kinematics collision path planning trajectory control sim execution",
     "view": "core model sim render",
-    "serve": "core model sim",
+    "serve": "core model sim render view",
     "rl": "core model kinematics control sim",
     "install": "core model",
     "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception",

@@ -4,7 +4,7 @@
 # `--lang zh-CN`: fonts-wqy-microhei is the smallest (1.6 MB to fetch, fonts-noto-cjk 57) and depends
 # on nothing. Optional ones: not every release has them, and nothing asks for them alone.
 run_packages="g++ cmake ninja-build pkgconf python3-pip unzip libeigen3-dev libexpected-dev
-  libfmt-dev libspdlog-dev nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libcli11-dev
+  libfmt-dev libspdlog-dev libboost-dev nlohmann-json3-dev libyaml-cpp-dev libtinyxml2-dev libcli11-dev
   libpng-dev libcairo2-dev libfontconfig-dev libglfw3-dev libegl-dev libgl-dev libopengl-dev
   libgl1-mesa-dri ca-certificates libcurl4-openssl-dev libssl-dev zlib1g-dev fonts-dejavu-core
   fonts-wqy-microhei"

@@ -18,14 +18,17 @@ namespace mjarm::session {
 ///     void step();                          // one of them
 ///     void fill(ViewFrame& frame);          // what there is to be seen
 ///     bool take_drags();                    // optional: whether something was dragged
+///
+/// @param words  language of what the frames say; a page has the fonts for any, a window may not.
 template <class World>
-void simulate_world(World& world, view::ViewLink& link) {
+void simulate_world(World& world, view::ViewLink& link,
+                    Language words = render::picture_language()) {
   view::ViewFrame frame;
   bool changed = true;
   const auto offer = [&] {
     if (!changed || !link.frames.is_empty()) return;
     changed = false;
-    const LanguageScope drawn(render::picture_language());
+    const LanguageScope drawn(words);
     world.fill(frame);
     link.frames.post(frame);
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -54,9 +55,14 @@ class Queue {
     full_.store(false, std::memory_order_release);
     return std::exchange(values_, {});
   }
+  /// Values that nobody took yet: who pushes what strangers send can wait for room.
+  [[nodiscard]] std::size_t size() const {
+    const std::scoped_lock lock(mutex_);
+    return values_.size();
+  }
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::vector<T> values_;
   std::atomic<bool> full_{false};
 };

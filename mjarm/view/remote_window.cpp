@@ -56,24 +56,36 @@ class Desk {
 /// A process has one main thread, and so one desk at most.
 std::atomic<Desk*> the_desk{nullptr};
 
-void serve(RemoteWindow::Order& order) {
+Result<void> show_window(const ShowOrder& order) {
   Result<Window> window = Window::open(order.model, order.title, order.options);
   if (!window) {
-    order.link.closed = true;
-    order.opened.set_value(fail(std::move(window.error())));
-    return;
+    order.opened(fail(std::move(window.error())));
+    return {};
   }
-  order.opened.set_value({});
-  const Result<void> drawn = draw_until_closed(
-      *window, order.link, [&order] { return order.close_wanted.load() || interrupted(); });
+  order.opened({});
+  return draw_until_closed(*window, order.link, order.ended);
+}
+
+void show(const Shower& shower, RemoteWindow::Order& order) {
+  const Result<void> shown =
+      shower({.model = order.model,
+              .title = order.title,
+              .options = order.options,
+              .link = order.link,
+              .opened =
+                  [&order](Result<void> result) {
+                    if (!result) order.link.closed = true;
+                    order.opened.set_value(std::move(result));
+                  },
+              .ended = [&order] { return order.close_wanted.load() || interrupted(); }});
   // The work sees a closed window, and ends as it does then.
-  if (!drawn) log_warning(drawn.error().what);
+  order.link.closed = true;
+  if (!shown) log_warning(shown.error().what);
 }
 
 }  // namespace
 
-void run_beside_windows(bool headless, const std::function<void()>& work) {
-  if (headless || !has_display()) return work();
+void run_beside(const Shower& shower, const std::function<void()>& work) {
   Desk desk;
   the_desk = &desk;
   std::thread worker;
@@ -87,11 +99,16 @@ void run_beside_windows(bool headless, const std::function<void()>& work) {
     return work();
   }
   while (const std::shared_ptr<RemoteWindow::Order> order = desk.next()) {
-    serve(*order);
+    show(shower, *order);
     order->gone.set_value();
   }
   worker.join();
   the_desk = nullptr;
+}
+
+void run_beside_windows(bool headless, const std::function<void()>& work) {
+  if (headless || !has_display()) return work();
+  run_beside(show_window, work);
 }
 
 bool RemoteWindow::is_possible() noexcept { return the_desk != nullptr; }

@@ -13,6 +13,23 @@
 
 namespace mjarm::view {
 
+/// What shows a model in the place of a window, and how it answers whoever asked for it.
+struct ShowOrder {
+  const Model& model;
+  const std::string& title;
+  const WindowOptions& options;
+  ViewLink& link;
+  std::function<void(Result<void>)> opened;  ///< called once: it is to be seen, or why it is not
+  std::function<bool()> ended;               ///< true once it is to go
+};
+/// Shows an order until it is to go, or the user closes it. Called from the main thread.
+/// @return what went wrong while it was shown.
+using Shower = std::function<Result<void>(const ShowOrder& order)>;
+
+/// Runs `work` in a thread of its own, while this one, the main thread, shows with `shower` the
+/// windows that it asks for: a page in the place of a window. Returns when `work` is through.
+void run_beside(const Shower& shower, const std::function<void()>& work);
+
 /// Runs `work` in a thread of its own, while this one, the main thread, opens the windows that it
 /// asks for and draws them. Returns when `work` is through.
 /// @param headless  `work` runs in this thread, and there are no windows; so it is without a

@@ -8,13 +8,11 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "apps/mjarm/commands/render_options.hpp"
+#include "apps/mjarm/commands/seen_robot.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/language_scope.hpp"
-#include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/text_width.hpp"
-#include "mjarm/core/units.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/session/free_sim.hpp"
 #include "mjarm/session/robot_session.hpp"
@@ -28,38 +26,11 @@
 namespace mjarm::app {
 namespace {
 
-using session::FreeSim;
-
 struct Options {
   RobotChoice robot;
   std::string size, camera, quality, seconds, out;
   bool passive = false, paused = false, stats = false;
 };
-
-struct Loaded {
-  Model model;
-  std::optional<Arm> arm;
-};
-
-/// Any model can be looked at; one without an arm has nothing to hold.
-Result<Loaded> load(const Options& options) {
-  if (options.robot.robot.empty()) return fail(Errc::usage, text(msg::view_which));
-  Result<Model> model = load_model(options.robot);
-  if (!model) return fail(std::move(model.error()));
-  tell_warnings(*model);
-  Result<Arm> arm = find_arm(*model, {.tip = options.robot.tip});
-  if (!arm && !options.robot.tip.empty()) return fail(std::move(arm.error()));
-  Loaded loaded{std::move(*model), std::nullopt};
-  if (arm) loaded.arm = std::move(*arm);
-  return loaded;
-}
-
-Result<FreeSim> make_sim(const Loaded& loaded, bool passive) {
-  Result<FreeSim> sim = FreeSim::create(loaded.model, loaded.arm, passive);
-  if (sim || sim.error().code != Errc::not_available) return sim;
-  log_info(text(msg::view_not_held, sim.error().what));
-  return FreeSim::create(loaded.model, loaded.arm, true);
-}
 
 /// @param out  with what the user has no say in.
 Result<view::WindowOptions> window_options(const Options& options, view::WindowOptions out) {
@@ -80,23 +51,6 @@ Result<view::WindowOptions> window_options(const Options& options, view::WindowO
   return out;
 }
 
-/// Where nobody says otherwise the window has a view of its own.
-Result<void> set_camera(const Options& options, const Model& model, view::WindowOptions& out) {
-  if (options.camera.empty()) return {};
-  Result<render::Camera> camera = choose_camera(model, options.camera);
-  if (!camera) return fail(std::move(camera.error()));
-  out.camera = std::move(*camera);
-  return {};
-}
-
-Result<double> seconds_of(const Options& options) {
-  if (options.seconds.empty()) return 0;
-  Result<double> seconds = parse_quantity(options.seconds, Quantity::time);
-  if (!seconds) return fail(in_option("--seconds", seconds.error()));
-  if (!(*seconds > 0)) return fail(Errc::usage, text(msg::view_bad_seconds, options.seconds));
-  return seconds;
-}
-
 /// Tells how the window was drawn, where that was asked for.
 Result<int> told(const Options& options, const Result<view::ViewStats>& stats) {
   if (!stats) return fail(stats.error());
@@ -109,16 +63,16 @@ Result<int> told(const Options& options, const Result<view::ViewStats>& stats) {
 }
 
 Result<int> run(const Options& options) {
-  const Result<double> seconds = seconds_of(options);
+  const Result<double> seconds = parse_show_seconds(options.seconds);
   if (!seconds) return fail(seconds.error());
-  const Result<Loaded> loaded = load(options);
+  const Result<SeenRobot> loaded = load_seen_robot(options.robot, msg::view_which);
   if (!loaded) return fail(loaded.error());
-  Result<FreeSim> sim = make_sim(*loaded, options.passive);
+  Result<session::FreeSim> sim = make_free_sim(*loaded, options.passive);
   if (!sim) return fail(std::move(sim.error()));
   Result<view::WindowOptions> chosen =
       window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
-  if (auto set = set_camera(options, loaded->model, *chosen); !set) return fail(set.error());
+  if (auto set = set_camera(options.camera, loaded->model, *chosen); !set) return fail(set.error());
   catch_interrupts();
   if (options.paused) sim->handle(view::PauseEvent{true});
   session::RobotSession view(loaded->model, loaded->arm, *sim);
@@ -136,7 +90,7 @@ Result<int> run(const Options& options) {
 
 /// A program brings its robot and tool along, and holds it.
 Result<int> run_program(const Options& options) {
-  const Result<double> seconds = seconds_of(options);
+  const Result<double> seconds = parse_show_seconds(options.seconds);
   if (!seconds) return fail(seconds.error());
   const RobotChoice& robot = options.robot;
   if (options.passive || !robot.tip.empty()) {
@@ -148,7 +102,8 @@ Result<int> run_program(const Options& options) {
   const Result<program::LoadedProgram> loaded = program::load_sound_program(
       robot.robot, interrupted, load_options(robot), session::see_scene);
   if (!loaded) return fail(loaded.error());
-  if (auto set = set_camera(options, loaded->robot.model, *window); !set) return fail(set.error());
+  if (auto set = set_camera(options.camera, loaded->robot.model, *window); !set)
+    return fail(set.error());
   return told(options, session::view_program(*loaded, *window, {*seconds}));
 }
 

@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/run_program.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace mjarm::app {
+namespace {
+
+support::ProgramResult serve(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "serve");
+  return support::run_program(MJARM_PROGRAM, arguments,
+                              {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+}
+
+TEST(ServeCommand, RefusesWhatMakesNoSense) {
+  const auto refused = [](const std::vector<std::string>& arguments, const char* part) {
+    const support::ProgramResult result = serve(arguments);
+    EXPECT_EQ(result.exit_code, 2) << part;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+    EXPECT_EQ(support::lines_of(result.err).size(), 1U) << result.err;
+    EXPECT_TRUE(result.out.empty()) << result.out;
+  };
+  refused({}, "mjarm serve FILE");
+  refused({"ur5"}, "ur5e");
+  refused({"ur5e", "--port", "65536"}, "65535");
+  refused({"ur5e", "--port", "-1"}, "--port");
+  refused({"ur5e", "--port", "http"}, "--port");
+  refused({"ur5e", "--seconds", "-1"}, "--seconds");
+  refused({"ur5e", "--camera", "nose"}, "nose");
+}
+
+/// The one line of a server that ran for a moment.
+std::string address_of(const std::vector<std::string>& arguments) {
+  const support::ProgramResult result = serve(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::vector<std::string> lines = support::lines_of(result.out);
+  EXPECT_EQ(lines.size(), 1U) << result.out;
+  return lines.empty() ? std::string() : lines.front();
+}
+
+TEST(ServeCommand, WithoutADisplayPrintsAnAddressThatIsNewEachTime) {
+  const std::string first = address_of({"ur5e", "--seconds", "100ms"});
+  EXPECT_TRUE(first.starts_with("http://127.0.0.1:")) << first;
+  EXPECT_NE(first.find("Ctrl-C"), std::string::npos);
+  const std::string address = first.substr(0, first.find(' '));
+  EXPECT_EQ(address.size() - address.find('/', 7), 34U) << address;
+  const std::string second = address_of({"car", "--seconds", "100ms", "--paused"});
+  EXPECT_NE(second.substr(second.find('/', 7), 33), address.substr(address.find('/', 7), 33));
+}
+
+TEST(ServeCommand, ServesAProgramToo) {
+  const support::TempFolder folder;
+  const std::string program =
+      folder.write("move.yaml", "robot: ur5e\nprogram:\n  - movej: {joints: home}\n").string();
+  EXPECT_TRUE(address_of({program, "--seconds", "100ms"}).starts_with("http://127.0.0.1:"));
+  const support::ProgramResult passive = serve({program, "--passive"});
+  EXPECT_EQ(passive.exit_code, 2);
+}
+
+TEST(ServeCommand, WarnsWhereOthersGetIn) {
+  const support::ProgramResult result =
+      serve({"ur5e", "--seconds", "100ms", "--address", "0.0.0.0"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("0.0.0.0 lets everybody"), std::string::npos) << result.err;
+  EXPECT_EQ(serve({"ur5e", "--address", "example.org"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace mjarm::app

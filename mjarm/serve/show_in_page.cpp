@@ -1,0 +1,120 @@
+#include "mjarm/serve/show_in_page.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "mjarm/core/log.hpp"
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/messages/serve.hpp"
+#include "mjarm/core/os.hpp"
+#include "mjarm/core/os_random.hpp"
+#include "mjarm/render/scene.hpp"
+
+namespace mjarm::serve {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kLook{20};  // between two looks whether it is over
+constexpr std::size_t kTokenBytes = 16;
+
+/// Where the page looks from at first: as a window would.
+Result<render::CameraView> first_view(const Model& model, const render::Camera& camera) {
+  if (!camera.view && camera.name.empty()) return render::default_view(model);
+  render::Scene scene(model, render::RenderQuality::low);
+  if (Result<void> set = scene.set_camera(camera); !set) return fail(std::move(set.error()));
+  return scene.view();
+}
+
+/// Everything a page needs, as long as it is served.
+class ServedScene {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<ServedScene>> create(
+      const Model& model, const std::string& title, const view::WindowOptions& window,
+      const PageOptions& options, view::ViewLink& link) {
+    Result<render::CameraView> view = first_view(model, window.camera);
+    if (!view) return fail(std::move(view.error()));
+    Result<std::string> token = secret_hex(kTokenBytes);
+    if (!token) return fail(std::move(token.error()));
+    SceneFacts facts{.title = title,
+                     .name = std::string(model.name()),
+                     .language = language(),
+                     .view = *view,
+                     .nq = model.nq(),
+                     .can_step = window.can_step,
+                     .can_reset = window.can_reset,
+                     .can_push = window.can_push,
+                     .can_target = window.can_target && options.target != nullptr,
+                     .turns = options.turns,
+                     .jog_dofs = window.jog_dofs};
+    std::unique_ptr<ServedScene> scene(
+        new ServedScene(model, std::move(facts), std::move(*token), window, options, link));
+    Result<PageServer> server = PageServer::start(scene->site_, scene->feed_, options.server);
+    if (!server) return fail(std::move(server.error()));
+    scene->server_.emplace(std::move(*server));
+    if (options.on_open) options.on_open(scene->site_.url());
+    return scene;
+  }
+  void stop(const std::string& why) { server_->stop(why); }
+
+ private:
+  ServedScene(const Model& model, SceneFacts facts, std::string token,
+              const view::WindowOptions& window, const PageOptions& options, view::ViewLink& link)
+      : drawn_(drawn_model(model)),
+        facts_(std::move(facts)),
+        site_(std::move(token), options.server.address),
+        feed_(model, drawn_, facts_, link, options.target, window.paused) {
+    site_.add_scene(drawn_, facts_);
+    if (!site_.add_page(page_folder().value_or(""))) log_warning(text(msg::serve_no_page));
+    if (drawn_.left_out > 0) log_info(text(msg::serve_left_out, drawn_.left_out));
+    if (!is_loopback(options.server.address)) {
+      log_warning(text(msg::serve_not_alone, options.server.address));
+    }
+  }
+
+  DrawnModel drawn_;
+  SceneFacts facts_;
+  PageSite site_;
+  LiveFeed feed_;
+  std::optional<PageServer> server_;  ///< last: it uses all of them
+};
+
+}  // namespace
+
+Result<void> show_in_page(const Model& model, const std::string& title,
+                          const view::WindowOptions& window, const PageOptions& options,
+                          const std::function<void(view::ViewLink&)>& simulate) {
+  view::ViewLink link;
+  const auto served = ServedScene::create(model, title, window, options, link);
+  if (!served) return fail(served.error());
+  const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
+  std::atomic<bool> is_through{false};
+  std::thread worker([&] {
+    simulate(link);
+    is_through = true;
+  });
+  while (!interrupted() && !is_through && !(options.seconds > 0 && Clock::now() >= end)) {
+    std::this_thread::sleep_for(kLook);
+  }
+  link.closed = true;
+  worker.join();
+  (*served)->stop(text(msg::serve_over));
+  return {};
+}
+
+view::Shower page_shower(const PageOptions& options) {
+  return [options](const view::ShowOrder& order) -> Result<void> {
+    const auto served =
+        ServedScene::create(order.model, order.title, order.options, options, order.link);
+    order.opened(served ? Result<void>() : fail(served.error()));
+    if (!served) return {};  // whoever asked was told
+    while (!order.ended()) std::this_thread::sleep_for(kLook);
+    (*served)->stop(text(msg::serve_over));
+    return {};
+  };
+}
+
+}  // namespace mjarm::serve
