@@ -130,6 +130,7 @@ build_counted() { (build "$@"); }
 run_tests() {
   check "layers" check_layers
   check "format" check_format
+  check "page" build_page
   check "build" build_counted "$1" all
   if ((failed == 0)) || [[ -x $root/build/$1/bin/core_test ]]; then
     check "headers stand alone" check_headers "$1"
