@@ -33,6 +33,7 @@ std::size_t memory_in_use() {
 class Server : public ::testing::Test {
  protected:
   void SetUp() override {
+    drawn_.meshes.push_back({{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}});
     site_.add_scene(drawn_, facts_);
     (void)site_.add_page("");
     start({});
@@ -290,7 +291,13 @@ TEST_F(Server, AFloodIsReadNoFasterThanTheSimulationFollows) {
   (void)link_.events.take();
   EXPECT_TRUE(until([this] { return link_.events.size() > 0; }));  // and goes on
   done = true;
+  std::atomic<bool> through{false};
+  std::thread reader([&] {
+    while (!through) (void)link_.events.take();
+  });
   flood.join();
+  through = true;
+  reader.join();
 }
 
 TEST_F(Server, ATakenPortIsOneLineWithAFreeOne) {
