@@ -68,7 +68,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                       .if_none_match = word(http::field::if_none_match),
                       .upgrade = websocket::is_upgrade(request)};
     if (request.count(http::field::origin) > 0) {
-      asked.origin = std::string(word(http::field::origin));
+      asked.origin = word(http::field::origin);
     }
     answer_ = hub_.site.answer(asked);
     if (answer_.is_live) {

@@ -22,6 +22,8 @@ class LivePage {
   virtual void tick() = 0;
   /// Sends what there is, then the last message, and closes the connection.
   virtual void say_bye(std::shared_ptr<const std::string> bye) = 0;
+  /// Ends the connection as it is.
+  virtual void cut() = 0;
 };
 
 /// What the connections of one server have in common.

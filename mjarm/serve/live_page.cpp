@@ -66,6 +66,7 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
     bye_ = std::move(bye);
     pump();
   }
+  void cut() override { beast::get_lowest_layer(socket_).close(); }
 
  private:
   void begin() {

@@ -177,7 +177,10 @@ void PageServer::Impl::say_bye(const std::string& why) {
 
 /// Ends as soon as all pages are gone, and after a while in any case.
 void PageServer::Impl::wait_for_pages(Clock::time_point end) {
-  if (hub.page_count == 0 || Clock::now() >= end) return io.stop();
+  if (hub.page_count == 0 || Clock::now() >= end) {
+    for (const auto& page : hub.pages) page->cut();
+    return io.stop();
+  }
   farewell.expires_after(milliseconds(5));
   farewell.async_wait([this, end](ErrorCode) { wait_for_pages(end); });
 }

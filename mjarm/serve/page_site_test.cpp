@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "mjarm/model/shipped_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::serve {
@@ -16,8 +15,7 @@ class Site : public ::testing::Test {
     folder_.write("index.html", "<!doctype html>");
     folder_.write("page.js", "export {};");
     folder_.write("secret.txt", "secret");
-    const Model model = mjarm::testing::shipped("ur5e");
-    site_.add_scene(drawn_model(model), {.nq = model.nq()});
+    site_.add_scene({.meshes = {{{0, 0, 0}, {0, 0, 0}}}}, {});
     EXPECT_TRUE(site_.add_page(folder_.path()));
     site_.set_port(8000);
   }

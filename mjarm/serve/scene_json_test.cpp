@@ -56,7 +56,9 @@ TEST_P(SceneJson, SaysWhatMuJoCoHas) {
     const bool is_mesh = m.geom_type[id] == mjGEOM_MESH;
     EXPECT_EQ(geoms[i].find("kind")->string() == "mesh", is_mesh);
     EXPECT_EQ(geoms[i].contains("mesh"), is_mesh);
-    if (is_mesh) EXPECT_LT(geoms[i].find("mesh")->whole(), drawn.meshes.size());
+    if (is_mesh) {
+      EXPECT_LT(geoms[i].find("mesh")->whole(), drawn.meshes.size());
+    }
   }
 }
 
@@ -90,6 +92,33 @@ TEST(SceneMeshes, AreBytesOfTheirVerticesAndTriangles) {
   std::memcpy(&y, bytes.data() + 8 + 7 * 4, sizeof(y));
   EXPECT_EQ(y, 1.5F);
   EXPECT_EQ(bytes.substr(8 + 9 * 4 + 8), std::string("\2\0\0\0", 4));
+}
+
+TEST(DrawnModels, AMeshIsWhereItsFileHasIt) {
+  // MuJoCo moves the vertices into a frame at the centre of mass, and the geom with it.
+  const Result<Model> model = Model::from_mjcf(R"(<mujoco><asset>
+    <mesh name="wedge" vertex="0 0 0  1 0 0  0 2 0  0 0 3"/></asset><worldbody>
+    <geom type="mesh" mesh="wedge" pos="5 0 0"/><geom type="mesh" mesh="wedge"/>
+    </worldbody></mujoco>)");
+  ASSERT_TRUE(model) << model.error().what;
+  const DrawnModel drawn = drawn_model(*model);
+  ASSERT_EQ(drawn.geoms.size(), 2U);
+  ASSERT_EQ(drawn.meshes.size(), 1U);  // once for both
+  const DrawnMesh& mesh = drawn.meshes[0];
+  EXPECT_EQ(mesh.corners.size(), 12U);
+  Eigen::Vector3d low(9, 9, 9), high(-9, -9, -9);
+  for (std::size_t i = 0; i < mesh.xyz.size(); i += 3) {
+    const Eigen::Vector3d p =
+        drawn.geoms[0].X_BG * Eigen::Vector3d(mesh.xyz[i], mesh.xyz[i + 1], mesh.xyz[i + 2]);
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  EXPECT_NEAR((low - Eigen::Vector3d(5, 0, 0)).norm(), 0, 1e-5);
+  EXPECT_NEAR((high - Eigen::Vector3d(6, 2, 3)).norm(), 0, 1e-5);
+  SceneFacts facts;
+  const JsonObject scene = scene_of(scene_json(drawn, facts));
+  EXPECT_EQ((*scene->find("geoms"))[1].find("mesh")->whole(), 0U);
+  EXPECT_EQ((*scene->find("meshes"))[0].find("triangles")->whole(), 4U);
 }
 
 TEST(DrawnModels, HeightFieldsPlanesTexturesAndJoints) {
