@@ -75,7 +75,7 @@ TEST(BenchPick, MeasuresWhatIsSeenByTagAndByShape) {
 
 TEST(BenchPick, MeasuresWhatIsHeldAndDropsItWithoutFriction) {
   const json bench =
-      bench_json({"bench", "pick", "--set", "creep", "--robot", "panda", "--hold", "0.3"});
+      bench_json({"bench", "pick", "--set", "creep", "--robot", "panda", "--hold", "1"});
   ASSERT_EQ(bench.at("creep").size(), 9u);
   int own_steps = 0;
   for (const json& one : bench.at("creep")) {
