@@ -25,7 +25,7 @@ std::string name_or_number(const mjModel& m, int type, int id, const char* kind)
   return name.empty() ? kind + (" " + std::to_string(id)) : name;
 }
 
-Pose pose_of(const mjtNum* pos, const mjtNum* quat) {
+Pose drawn_pose(const mjtNum* pos, const mjtNum* quat) {
   return {Eigen::Map<const Vector3d>(pos),
           to_matrix(Quat(quat[0], quat[1], quat[2], quat[3]).normalized())};
 }
@@ -178,7 +178,7 @@ void add_geoms(const mjModel& m, DrawnModel& out) {
                    .name = name_of(m, mjOBJ_GEOM, i),
                    .group = std::clamp(m.geom_group[i], 0, mjNGROUP - 1),
                    .shape = *shape,
-                   .X_BG = pose_of(m.geom_pos + 3 * i, m.geom_quat + 4 * i),
+                   .X_BG = drawn_pose(m.geom_pos + 3 * i, m.geom_quat + 4 * i),
                    .rgba = rgba};
     std::copy_n(m.geom_size + 3 * i, sizes_of(*shape), geom.size.data());
     if (*shape == DrawnShape::mesh) geom.mesh = meshes.place_of(m.geom_type[i], m.geom_dataid[i]);
@@ -190,7 +190,7 @@ void add_cameras(const mjModel& m, DrawnModel& out) {
   for (int i = 0; i < m.ncam; ++i) {
     out.cameras.push_back({.name = name_of(m, mjOBJ_CAMERA, i),
                            .body = m.cam_bodyid[i],
-                           .X_BC = pose_of(m.cam_pos + 3 * i, m.cam_quat + 4 * i),
+                           .X_BC = drawn_pose(m.cam_pos + 3 * i, m.cam_quat + 4 * i),
                            .fovy = m.cam_fovy[i] * std::numbers::pi / 180});
   }
 }
