@@ -3,6 +3,8 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -30,7 +32,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void read() {
     parser_.emplace();
     parser_->header_limit(kMaxHeader);
-    parser_->body_limit(boost::none);  // bodies are not read at all
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // none is read
     stream_.expires_after(clock_seconds(hub_.options.request_seconds));
     http::async_read_header(stream_, in_, *parser_,
                             [self = shared_from_this()](ErrorCode error, std::size_t) {
@@ -41,6 +43,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
  private:
   /// A request that cannot be read is answered where somebody is there, and its connection closed.
   void refuse(ErrorCode error) {
+    if (parser_->is_header_done()) return answer();  // a body, which nobody reads
     if (error.category() != http::make_error_code(http::error::end_of_stream).category() ||
         error == http::error::end_of_stream || error == http::error::partial_message) {
       return close();

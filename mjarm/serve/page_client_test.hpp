@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mjarm/core/json.hpp"
 
@@ -45,7 +46,8 @@ class Client {
   Tcp::socket& raw() { return boost::beast::get_lowest_layer(socket_).socket(); }
 
   Answer request(const std::string& target, const std::string& method = "GET",
-                 std::vector<std::pair<std::string, std::string>> headers = {}) {
+                 std::vector<std::pair<std::string, std::string>> headers = {},
+                 const std::string& body = {}) {
     namespace http = boost::beast::http;
     http::request<http::string_body> asked;
     asked.method_string(method);
@@ -53,6 +55,8 @@ class Client {
     asked.version(11);
     asked.set(http::field::host, host());
     for (const auto& [name, value] : headers) asked.set(name, value);
+    asked.body() = body;
+    if (!body.empty()) asked.prepare_payload();
     http::response_parser<http::string_body> parser;
     parser.skip(method == "HEAD");
     boost::beast::flat_buffer buffer;

@@ -108,6 +108,8 @@ TEST_F(Server, GivesTheSceneOverOneConnection) {
   EXPECT_EQ(browser->request(path("scene.json"), "GET", {{"Host", "evil.example"}}).status, 403);
   EXPECT_EQ(browser->request(path("scene.json"), "GET", {{"Origin", "http://evil"}}).status, 403);
   EXPECT_EQ(browser->request(path("scene.json"), "POST").status, 405);
+  EXPECT_EQ(browser->request(path("scene.json"), "POST", {}, "x=1").status, 405);
+  EXPECT_EQ(browser->request(path("scene.json")).status, 0);  // with its body unread
 }
 
 TEST_F(Server, NonsenseIsAnsweredOrDropped) {

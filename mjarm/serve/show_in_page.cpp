@@ -55,12 +55,21 @@ class ServedScene {
     Result<PageServer> server = PageServer::start(scene->site_, scene->feed_, options.server);
     if (!server) return fail(std::move(server.error()));
     scene->server_.emplace(std::move(*server));
-    if (options.on_open) options.on_open(scene->site_.url());
+    scene->tell(options);
     return scene;
   }
   void stop(const std::string& why) { server_->stop(why); }
 
  private:
+  /// What a user wants to know about a server that runs.
+  void tell(const PageOptions& options) const {
+    if (!has_page_) log_warning(text(msg::serve_no_page));
+    if (drawn_.left_out > 0) log_info(text(msg::serve_left_out, drawn_.left_out));
+    if (!is_loopback(options.server.address)) {
+      log_warning(text(msg::serve_not_alone, options.server.address));
+    }
+    if (options.on_open) options.on_open(site_.url());
+  }
   ServedScene(const Model& model, SceneFacts facts, std::string token,
               const view::WindowOptions& window, const PageOptions& options, view::ViewLink& link)
       : drawn_(drawn_model(model)),
@@ -68,17 +77,14 @@ class ServedScene {
         site_(std::move(token), options.server.address),
         feed_(model, drawn_, facts_, link, options.target, window.paused) {
     site_.add_scene(drawn_, facts_);
-    if (!site_.add_page(page_folder().value_or(""))) log_warning(text(msg::serve_no_page));
-    if (drawn_.left_out > 0) log_info(text(msg::serve_left_out, drawn_.left_out));
-    if (!is_loopback(options.server.address)) {
-      log_warning(text(msg::serve_not_alone, options.server.address));
-    }
+    has_page_ = site_.add_page(page_folder().value_or(""));
   }
 
   DrawnModel drawn_;
   SceneFacts facts_;
   PageSite site_;
   LiveFeed feed_;
+  bool has_page_ = false;
   std::optional<PageServer> server_;  ///< last: it uses all of them
 };
 
