@@ -1,26 +1,14 @@
 #include <algorithm>
-#include <cmath>
 
+#include "mjarm/core/finite.hpp"
 #include "mjarm/render/ghost_internal.hpp"
+#include "mjarm/sim/raw_state.hpp"
 
 namespace mjarm::render {
 namespace {
 
-constexpr double kSamePlace = 1e-6;  ///< [m], and for entries of rotation matrices
-
 bool is_usable(const OverlayGhost& ghost) {
-  return ghost.qpos.size() == ghost.qpos_index.size() &&
-         std::ranges::all_of(ghost.qpos, [](double value) { return std::isfinite(value); });
-}
-
-bool moved(const mjModel& m, const mjData& a, const mjData& b, int geom) {
-  const int body = m.geom_bodyid[geom];
-  const auto differ = [](const mjtNum* x, const mjtNum* y, int count) {
-    return !std::equal(x, x + count, y,
-                       [](mjtNum s, mjtNum t) { return std::abs(s - t) < kSamePlace; });
-  };
-  return differ(a.xpos + 3 * body, b.xpos + 3 * body, 3) ||
-         differ(a.xmat + 9 * body, b.xmat + 9 * body, 9);
+  return ghost.qpos.size() == ghost.qpos_index.size() && all_finite(ghost.qpos);
 }
 
 /// Geoms only: no labels, frames, sites or anything that would need forces.
@@ -70,21 +58,15 @@ void Ghosts::draw(std::span<const OverlayGhost> ghosts, const mjvOption& option,
 void Ghosts::draw_one(const OverlayGhost& ghost, const mjvOption& option, const mjData& d,
                       mjvScene& scene) {
   if (!d_) d_.reset(mj_makeData(m_));
-  std::copy_n(d.qpos, m_->nq, d_->qpos);
-  std::copy_n(d.mocap_pos, 3 * m_->nmocap, d_->mocap_pos);
-  std::copy_n(d.mocap_quat, 4 * m_->nmocap, d_->mocap_quat);
-  for (std::size_t i = 0; i < ghost.qpos.size(); ++i) {
-    const int index = ghost.qpos_index[i];
-    if (index >= 0 && index < m_->nq) d_->qpos[index] = ghost.qpos[i];
-  }
-  mj_kinematics(m_, d_.get());
+  raw::place_otherwise(*m_, d, ghost.qpos_index, ghost.qpos, *d_);
   const mjvOption plain = only_geoms(option);
   const int first = scene.ngeom;
   mjv_addGeoms(m_, d_.get(), &plain, nullptr, mjCAT_DYNAMIC, &scene);
   int kept = first;
   for (int i = first; i < scene.ngeom; ++i) {
     mjvGeom& geom = scene.geoms[i];
-    if (geom.objtype != mjOBJ_GEOM || !moved(*m_, *d_, d, geom.objid)) continue;
+    if (geom.objtype != mjOBJ_GEOM) continue;
+    if (raw::same_place(*d_, d, m_->geom_bodyid[geom.objid])) continue;
     tint(geom, ghost.color);
     lift(geom, scene.camera[0]);
     if (kept != i) scene.geoms[kept] = geom;

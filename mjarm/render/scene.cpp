@@ -12,6 +12,7 @@
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/render/ghost_internal.hpp"
 #include "mjarm/render/overlay_internal.hpp"
+#include "mjarm/sim/raw_state.hpp"
 
 namespace mjarm::render {
 namespace {
@@ -182,13 +183,9 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Result<void> Scene::set_state(const Snapshot& snapshot) {
-  const int size = mj_stateSize(&impl_->m, mjSTATE_INTEGRATION);
-  if (snapshot.state.empty()) {
-    mj_resetData(&impl_->m, impl_->d.get());
-  } else if (static_cast<int>(snapshot.state.size()) == size) {
-    mj_setState(&impl_->m, impl_->d.get(), snapshot.state.data(), mjSTATE_INTEGRATION);
-  } else {
-    return fail(Errc::bad_input, text(msg::render_bad_snapshot, snapshot.state.size(), size));
+  if (!raw::set_state_or_start(impl_->m, snapshot, *impl_->d)) {
+    return fail(Errc::bad_input, text(msg::render_bad_snapshot, snapshot.state.size(),
+                                      mj_stateSize(&impl_->m, mjSTATE_INTEGRATION)));
   }
   impl_->update_positions();
   return {};

@@ -1,20 +1,12 @@
 #include "mjarm/sim/body_poses.hpp"
 
-#include <algorithm>
-#include <cmath>
-
+#include "mjarm/core/finite.hpp"
 #include "mjarm/core/messages/sim.hpp"
 #include "mjarm/sim/raw_internal.hpp"
+#include "mjarm/sim/raw_state.hpp"
 
 namespace mjarm {
 namespace {
-
-constexpr double kSamePlace = 1e-6;  ///< [m], and for entries of rotation matrices
-
-bool same_numbers(const mjtNum* a, const mjtNum* b, int count) {
-  return std::equal(a, a + count, b,
-                    [](mjtNum x, mjtNum y) { return std::abs(x - y) < kSamePlace; });
-}
 
 Pose pose_in(const mjData& d, int body) {
   return {Eigen::Map<const Eigen::Vector3d>(d.xpos + 3 * body),
@@ -39,13 +31,9 @@ BodyPoses::BodyPoses(BodyPoses&&) noexcept = default;
 BodyPoses& BodyPoses::operator=(BodyPoses&&) noexcept = default;
 
 Result<void> BodyPoses::set(const Snapshot& snapshot) {
-  const int size = mj_stateSize(&impl_->m, mjSTATE_INTEGRATION);
-  if (snapshot.state.empty()) {
-    mj_resetData(&impl_->m, impl_->d.get());
-  } else if (static_cast<int>(snapshot.state.size()) == size) {
-    mj_setState(&impl_->m, impl_->d.get(), snapshot.state.data(), mjSTATE_INTEGRATION);
-  } else {
-    return fail(Errc::bad_input, text(msg::sim_other_snapshot, snapshot.state.size(), size));
+  if (!raw::set_state_or_start(impl_->m, snapshot, *impl_->d)) {
+    return fail(Errc::bad_input, text(msg::sim_other_snapshot, snapshot.state.size(),
+                                      mj_stateSize(&impl_->m, mjSTATE_INTEGRATION)));
   }
   mj_kinematics(&impl_->m, impl_->d.get());
   return {};
@@ -65,26 +53,15 @@ std::span<const double> BodyPoses::qpos() const noexcept {
 
 std::vector<BodyPoses::Moved> BodyPoses::moved(std::span<const int> index,
                                                std::span<const double> values) {
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (index.size() != values.size() || !std::ranges::all_of(values, finite)) return {};
+  if (index.size() != values.size() || !all_finite(values)) return {};
   const mjModel& m = impl_->m;
   const mjData& d = *impl_->d;
   if (!impl_->other) impl_->other.reset(mj_makeData(&m));
   mjData& other = *impl_->other;
-  std::copy_n(d.qpos, m.nq, other.qpos);
-  std::copy_n(d.mocap_pos, 3 * m.nmocap, other.mocap_pos);
-  std::copy_n(d.mocap_quat, 4 * m.nmocap, other.mocap_quat);
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    if (index[i] >= 0 && index[i] < m.nq) other.qpos[index[i]] = values[i];
-  }
-  mj_kinematics(&m, &other);
+  raw::place_otherwise(m, d, index, values, other);
   std::vector<Moved> out;
   for (int body = 1; body < m.nbody; ++body) {
-    if (same_numbers(other.xpos + 3 * body, d.xpos + 3 * body, 3) &&
-        same_numbers(other.xmat + 9 * body, d.xmat + 9 * body, 9)) {
-      continue;
-    }
-    out.push_back({body, pose_in(other, body)});
+    if (!raw::same_place(other, d, body)) out.push_back({body, pose_in(other, body)});
   }
   return out;
 }

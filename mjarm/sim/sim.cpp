@@ -16,6 +16,7 @@
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/sim/holding_internal.hpp"
 #include "mjarm/sim/raw_internal.hpp"
+#include "mjarm/sim/raw_state.hpp"
 
 namespace mjarm {
 namespace {
@@ -186,11 +187,10 @@ void Sim::set_state(std::span<const double> qpos, std::span<const double> qvel) 
 
 Result<void> Sim::restore(const Snapshot& snapshot) {
   const mjModel& m = impl_->m();
-  const int size = mj_stateSize(&m, mjSTATE_INTEGRATION);
-  if (static_cast<int>(snapshot.state.size()) != size) {
-    return fail(Errc::bad_input, text(msg::sim_other_snapshot, snapshot.state.size(), size));
+  if (!raw::set_state(m, snapshot, impl_->d())) {
+    return fail(Errc::bad_input, text(msg::sim_other_snapshot, snapshot.state.size(),
+                                      mj_stateSize(&m, mjSTATE_INTEGRATION)));
   }
-  mj_setState(&m, &impl_->d(), snapshot.state.data(), mjSTATE_INTEGRATION);
   impl_->stand();
   if (impl_->holding && !snapshot.place.empty()) impl_->holding->stand(snapshot.place);
   return {};
