@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/model/mesh_table_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -103,10 +104,9 @@ std::array<float, 4> color_of(const mjModel& m, int geom,
 
 DrawnMesh mesh_of(const mjModel& m, int mesh) {
   DrawnMesh out;
-  const float* vertices = m.mesh_vert + 3 * static_cast<std::ptrdiff_t>(m.mesh_vertadr[mesh]);
-  out.xyz.assign(vertices, vertices + 3 * static_cast<std::ptrdiff_t>(m.mesh_vertnum[mesh]));
-  const int* faces = m.mesh_face + 3 * static_cast<std::ptrdiff_t>(m.mesh_faceadr[mesh]);
-  out.corners.assign(faces, faces + 3 * static_cast<std::ptrdiff_t>(m.mesh_facenum[mesh]));
+  const MeshTable table(m, mesh);
+  out.xyz.assign(table.vertices, table.vertices + 3 * std::ptrdiff_t{table.vertex_count});
+  out.corners.assign(table.faces, table.faces + 3 * std::ptrdiff_t{table.face_count});
   return out;
 }
 

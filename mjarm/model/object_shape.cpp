@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/mesh_table_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -11,17 +12,11 @@ using Eigen::Vector3d;
 
 /// The convex hull of a mesh, in which form it collides; the mesh itself where it has none.
 void add_hull(const mjModel* m, int mesh, ShapePart& part) {
-  const float* vertices = m->mesh_vert + 3 * m->mesh_vertadr[mesh];
-  const auto vertex = [&](int k) {
-    return Vector3d(vertices[3 * k], vertices[3 * k + 1], vertices[3 * k + 2]);
-  };
+  const MeshTable table(*m, mesh);
   const int at = m->mesh_graphadr[mesh];
   if (at < 0) {
-    const int* faces = m->mesh_face + 3 * m->mesh_faceadr[mesh];
-    for (int k = 0; k < m->mesh_vertnum[mesh]; ++k) part.vertices.push_back(vertex(k));
-    for (int f = 0; f < m->mesh_facenum[mesh]; ++f) {
-      part.faces.push_back({faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]});
-    }
+    for (int k = 0; k < table.vertex_count; ++k) part.vertices.push_back(table.vertex(k));
+    for (int f = 0; f < table.face_count; ++f) part.faces.push_back(table.face(f));
     return;
   }
   // numvert, numface, vert_edgeadr, vert_globalid, edge_localid, face_globalid.
@@ -29,10 +24,10 @@ void add_hull(const mjModel* m, int mesh, ShapePart& part) {
   const int count = graph[0], faces = graph[1];
   const int* global = graph + 2 + count;
   const int* face = graph + 2 + 2 * count + count + 3 * faces;
-  std::vector<int> local(static_cast<std::size_t>(m->mesh_vertnum[mesh]), 0);
+  std::vector<int> local(static_cast<std::size_t>(table.vertex_count), 0);
   for (int k = 0; k < count; ++k) {
     local[static_cast<std::size_t>(global[k])] = k;
-    part.vertices.push_back(vertex(global[k]));
+    part.vertices.push_back(table.vertex(global[k]));
   }
   for (int f = 0; f < faces; ++f) {
     std::array<int, 3> corners{};

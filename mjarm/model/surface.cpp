@@ -12,6 +12,7 @@
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/model/mesh_table_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -64,14 +65,9 @@ Surface round_surface(double radius, double half_straight) {
 
 Surface mesh_surface(const mjModel& m, int mesh) {
   Surface out;
-  const float* vertices = m.mesh_vert + 3 * m.mesh_vertadr[mesh];
-  for (int i = 0; i < m.mesh_vertnum[mesh]; ++i) {
-    out.vertices.emplace_back(vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]);
-  }
-  const int* faces = m.mesh_face + 3 * m.mesh_faceadr[mesh];
-  for (int i = 0; i < m.mesh_facenum[mesh]; ++i) {
-    out.triangles.push_back({faces[3 * i], faces[3 * i + 1], faces[3 * i + 2]});
-  }
+  const MeshTable table(m, mesh);
+  for (int i = 0; i < table.vertex_count; ++i) out.vertices.push_back(table.vertex(i));
+  for (int i = 0; i < table.face_count; ++i) out.triangles.push_back(table.face(i));
   return out;
 }
 
