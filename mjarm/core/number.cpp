@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "mjarm/core/hex.hpp"
 #include "mjarm/core/utf8.hpp"
 
 namespace mjarm {
@@ -11,10 +12,8 @@ namespace {
 
 /// A control character, up to U+00FF.
 void append_code(std::string& out, char code) {
-  constexpr char kHex[] = "0123456789abcdef";
   out += "\\u00";
-  out += kHex[(code >> 4) & 0xF];
-  out += kHex[code & 0xF];
+  append_hex(out, static_cast<unsigned char>(code));
 }
 
 void append_escaped(std::string& out, char c) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "mjarm/core/hex.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 
@@ -20,12 +21,7 @@ Result<std::string> secret_hex(std::size_t bytes) {
   if (got != static_cast<ssize_t>(bytes)) {
     return fail(Errc::system, text(msg::core_no_random, system_message(errno)));
   }
-  std::string digits;
-  for (std::size_t i = 0; i < bytes; ++i) {
-    digits += "0123456789abcdef"[drawn[i] >> 4];
-    digits += "0123456789abcdef"[drawn[i] & 15];
-  }
-  return digits;
+  return hex({drawn, bytes});
 }
 
 bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/hex.hpp"
 
 namespace mjarm {
 namespace {
@@ -18,16 +19,11 @@ class Sha256 {
     EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
   }
   void add(std::string_view piece) { EVP_DigestUpdate(context_.get(), piece.data(), piece.size()); }
-  [[nodiscard]] std::string hex() {
-    constexpr char kDigits[] = "0123456789abcdef";
+  [[nodiscard]] std::string digits() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned int size = 0;
     EVP_DigestFinal_ex(context_.get(), digest.data(), &size);
-    std::string out;
-    for (unsigned int i = 0; i < size; ++i) {
-      out += {kDigits[digest[i] >> 4U], kDigits[digest[i] & 15U]};
-    }
-    return out;
+    return hex({digest.data(), size});
   }
 
  private:
@@ -39,7 +35,7 @@ class Sha256 {
 std::string sha256(std::string_view content) {
   Sha256 hash;
   hash.add(content);
-  return hash.hex();
+  return hash.digits();
 }
 
 /// Piece by piece, as files may be large.
@@ -54,7 +50,7 @@ Result<std::string> sha256_of_file(const std::filesystem::path& file) {
   }
   // Why a file cannot be read is told by read_file().
   if (!open || std::ferror(open.get()) != 0) return read_file(file).map(sha256);
-  return hash.hex();
+  return hash.digits();
 }
 
 }  // namespace mjarm

@@ -1,5 +1,7 @@
 #include "mjarm/core/utf8.hpp"
 
+#include "mjarm/core/hex.hpp"
+
 namespace mjarm {
 
 std::size_t utf8_length(std::string_view text) noexcept {
@@ -28,7 +30,6 @@ bool is_utf8(std::string_view text) noexcept {
 }
 
 std::string printable(std::string_view text) {
-  constexpr char kDigits[] = "0123456789abcdef";
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
@@ -38,10 +39,8 @@ std::string printable(std::string_view text) {
     if (lead == '\n' || lead == '\r' || lead == '\t') {
       out += ' ';
     } else if (length == 0 || lead < 0x20 || lead == 0x7F || c1) {
-      const auto code = c1 ? static_cast<unsigned char>(text[1]) : lead;
       out += "\\x";
-      out += kDigits[code >> 4];
-      out += kDigits[code & 0xF];
+      append_hex(out, c1 ? static_cast<unsigned char>(text[1]) : lead);
     } else {
       out += text.substr(0, length);
     }

@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "mjarm/core/hex.hpp"
 #include "mjarm/render/canvas_internal.hpp"
 
 namespace mjarm::canvas {
@@ -24,9 +25,7 @@ std::string pair_of(const Point& p) { return coordinate(p.x) + "," + coordinate(
 std::string hex(const render::Rgba& color) {
   std::string text = "#";
   for (const float part : {color.r, color.g, color.b}) {
-    const int level = static_cast<int>(std::lround(std::clamp(part, 0.0F, 1.0F) * 255));
-    text += "0123456789abcdef"[level / 16];
-    text += "0123456789abcdef"[level % 16];
+    append_hex(text, static_cast<unsigned char>(std::lround(std::clamp(part, 0.0F, 1.0F) * 255)));
   }
   return text;
 }
