@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mjarm/core/number.hpp"
+#include "mjarm/core/rotation.hpp"
 
 namespace mjarm {
 namespace {
@@ -95,6 +96,11 @@ JsonWriter& JsonWriter::value(std::span<const std::string> words) {
   list();
   for (const std::string& word : words) value(word);
   return end_list();
+}
+
+JsonWriter& JsonWriter::pose_members(const Pose& X) {
+  const Quat q = to_quat(X.R);
+  return member("pos", X.p).member("quat", Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
 }
 
 JsonWriter& JsonWriter::member_us(std::string_view name, double us) {

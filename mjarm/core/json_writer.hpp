@@ -14,6 +14,8 @@
 
 namespace mjarm {
 
+struct Pose;
+
 /// Appends JSON to a text piece by piece, commas by itself: for answers that come by the thousand.
 /// `JsonWriter(out).object().member("ok", true).member("q", q).end_object()` appends
 /// `{"ok":true,"q":[...]}`. Numbers are as `append_number` writes them. What is opened has to be
@@ -58,6 +60,8 @@ class JsonWriter {
   JsonWriter& member(std::string_view name, const Value& of_it) {
     return key(name).value(of_it);
   }
+  /// Members `"pos":[3]` [m] and `"quat":[4]` (w, x, y, z), as pose_of() reads them.
+  JsonWriter& pose_members(const Pose& X);
   /// How long something took, to a tenth of a microsecond.
   JsonWriter& member_us(std::string_view name, double us);
 

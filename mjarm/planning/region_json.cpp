@@ -5,19 +5,12 @@
 
 #include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/messages/planning.hpp"
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/planning/region_json_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
-void append_pose(JsonWriter& json, const char* key, const Pose& X) {
-  const Quat q = to_quat(X.R);
-  json.key(key).object().member("pos", X.p);
-  json.member("quat", Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())).end_object();
-}
 
 void append_bound(JsonWriter& json, double value) {
   if (std::isfinite(value)) {
@@ -56,8 +49,8 @@ Result<void> read_bounds(const JsonValue& entry, const char* key, double side, T
 
 void append_kept_region(JsonWriter& json, const TaskRegion& region, const RegionRoom& room) {
   json.object();
-  append_pose(json, "frame", region.X_WR);
-  append_pose(json, "tool", region.X_FT);
+  json.key("frame").object().pose_members(region.X_WR).end_object();
+  json.key("tool").object().pose_members(region.X_FT).end_object();
   std::array<TurnBounds, 3> turns{};
   for (int k = 0; k < 3; ++k) turns[static_cast<std::size_t>(k)] = turn_bounds(region, k);
   json.key("min").list();

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mjarm/core/json_writer.hpp"
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/serve/byte_order_internal.hpp"
 #include "mjarm/serve/json_parts_internal.hpp"
 
@@ -162,12 +161,9 @@ std::string target_message(const view::TargetLook& look, bool turns) {
   JsonWriter json(out);
   const bool finite = look.X_WT.p.allFinite() && look.X_WT.R.allFinite();
   const Pose X_WT = finite ? look.X_WT : Pose{};
-  const Quat q = to_quat(X_WT.R);
   json.object().member("type", "target").member("shown", look.shown && finite);
   // Whole: what a page drags on from is where the target is, to the last digit.
-  json.member("pos", X_WT.p).key("quat").list();
-  for (const double part : {q.w(), q.x(), q.y(), q.z()}) json.value(part);
-  json.end_list().key("axes");
+  json.pose_members(X_WT).key("axes");
   if (look.R_WG && look.R_WG->allFinite()) {
     json.list();
     for (int row = 0; row < 3; ++row) {

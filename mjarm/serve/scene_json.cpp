@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mjarm/core/json_writer.hpp"
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/serve/byte_order_internal.hpp"
 
 namespace mjarm::serve {
@@ -30,12 +29,6 @@ const char* word_of(DrawnShape shape) {
   return "mesh";
 }
 
-void add_pose(JsonWriter& json, const Pose& X) {
-  const Quat q = to_quat(X.R);
-  json.member("pos", X.p).key("quat").list().value(q.w()).value(q.x()).value(q.y()).value(q.z());
-  json.end_list();
-}
-
 void add_options(JsonWriter& json, const DrawnModel& model, const SceneFacts& facts) {
   json.key("options").object();
   json.member("can_step", facts.can_step).member("can_reset", facts.can_reset);
@@ -52,8 +45,7 @@ void add_options(JsonWriter& json, const DrawnModel& model, const SceneFacts& fa
 void add_geom(JsonWriter& json, const DrawnGeom& geom) {
   json.line_break().object().member("body", geom.body).member("name", geom.name);
   json.member("group", geom.group).member("kind", word_of(geom.shape)).member("size", geom.size);
-  add_pose(json, geom.X_BG);
-  json.key("rgba").list();
+  json.pose_members(geom.X_BG).key("rgba").list();
   for (const float part : geom.rgba) json.value(std::round(1e4 * part) / 1e4);
   json.end_list();
   if (geom.shape == DrawnShape::mesh) json.member("mesh", geom.mesh);
@@ -93,8 +85,7 @@ std::string scene_json(const DrawnModel& model, const SceneFacts& facts) {
   json.end_list().key("cameras").list();
   for (const DrawnCamera& camera : model.cameras) {
     json.object().member("name", camera.name).member("body", camera.body);
-    add_pose(json, camera.X_BC);
-    json.member("fovy", camera.fovy).end_object();
+    json.pose_members(camera.X_BC).member("fovy", camera.fovy).end_object();
   }
   json.end_list();
   add_view(json, facts.view);

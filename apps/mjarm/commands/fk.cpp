@@ -11,7 +11,6 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/json_writer.hpp"
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/model/joint_values.hpp"
 
 namespace mjarm::app {
@@ -25,13 +24,7 @@ struct FkOptions {
 
 /// `{"pos":[3],"quat":[4]}`
 void append_pose(std::string& out, const Pose& X_WT) {
-  const Quat q = to_quat(X_WT.R);
-  const double wxyz[] = {q.w(), q.x(), q.y(), q.z()};
-  JsonWriter(out)
-      .object()
-      .member("pos", X_WT.p)
-      .member("quat", std::span<const double>(wxyz))
-      .end_object();
+  JsonWriter(out).object().pose_members(X_WT).end_object();
 }
 
 Result<int> answer_one(const Arm& arm, const FkOptions& options) {
