@@ -11,6 +11,7 @@
 #include "mjarm/trajectory/extremal_internal.hpp"
 #include "mjarm/trajectory/kept_limits_internal.hpp"
 #include "mjarm/trajectory/recovery_internal.hpp"
+#include "mjarm/trajectory/sound_state_internal.hpp"
 
 namespace mjarm {
 namespace {
@@ -21,11 +22,6 @@ using detail::OneJoint;
 using detail::Recovery;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-
-bool is_sound(const JointState& state, Eigen::Index dof) {
-  return state.q.size() == dof && state.v.size() == dof && state.a.size() == dof &&
-         state.q.allFinite() && state.v.allFinite() && state.a.allFinite();
-}
 
 /// Two motions of one joint laid over another, with weights that add up to 1. The limits are
 /// convex, so what keeps them twice keeps them in between.
@@ -140,7 +136,7 @@ class Movers {
   std::optional<PointToPointFailure> set(const JointState& start, const JointState& end,
                                          const JointLimits& limits) noexcept {
     dof_ = static_cast<int>(start.q.size());
-    if (dof_ == 0 || !is_sound(start, dof_) || !is_sound(end, dof_)) {
+    if (!is_sound(start, dof_) || !is_sound(end, dof_)) {
       return PointToPointFailure{PointToPointErrc::bad_states, 0};
     }
     if (limits.velocity.size() != dof_ || limits.acceleration.size() != dof_ ||

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "mjarm/core/messages/trajectory.hpp"
+#include "mjarm/trajectory/sound_state_internal.hpp"
 
 namespace mjarm {
 
@@ -20,13 +21,8 @@ namespace {
 
 constexpr double kJoined = 1e-9;  // [rad or m] between the end of a leg and the start of the next
 
-bool sound(const JointState& state, Eigen::Index dof) {
-  return dof > 0 && state.q.size() == dof && state.v.size() == dof && state.a.size() == dof &&
-         state.q.allFinite() && state.v.allFinite() && state.a.allFinite();
-}
-
-bool sound(const Trajectory::Knot& knot, Eigen::Index dof) {
-  return sound(knot.state, dof) && knot.a_after.size() == dof && knot.a_after.allFinite();
+bool is_sound(const Trajectory::Knot& knot, Eigen::Index dof) {
+  return is_sound(knot.state, dof) && knot.a_after.size() == dof && knot.a_after.allFinite();
 }
 
 /// Writes the coefficients of the quintic from `from`, with acceleration `a`
@@ -71,7 +67,7 @@ Result<Trajectory> Trajectory::from_knots(const std::vector<double>& times,
   Trajectory trajectory;
   Knot from = knot(0);
   const Eigen::Index dof = from.state.q.size();
-  if (!sound(from, dof)) return bad();
+  if (!is_sound(from, dof)) return bad();
   const auto stride = static_cast<std::size_t>(6 * dof);
   trajectory.starts_.assign(times.begin(), times.end() - 1);
   trajectory.c_.resize(trajectory.starts_.size() * stride);
@@ -79,7 +75,7 @@ Result<Trajectory> Trajectory::from_knots(const std::vector<double>& times,
   for (std::size_t i = 1; i < times.size(); ++i) {
     const double h = times[i] - times[i - 1];
     Knot to = knot(i);
-    if (!sound(to, dof) || !std::isfinite(times[i]) || !(h > 0)) return bad();
+    if (!is_sound(to, dof) || !std::isfinite(times[i]) || !(h > 0)) return bad();
     fit_quintic(from.state, from.a_after, to.state, h, &trajectory.c_[(i - 1) * stride]);
     from = std::move(to);
   }
@@ -92,7 +88,7 @@ Result<Trajectory> Trajectory::from_jerks(const JointState& start,
                                           std::span<const double> durations,
                                           std::span<const JointVec> jerks, const JointState& end) {
   const Eigen::Index dof = start.q.size();
-  bool good = durations.size() == jerks.size() && sound(start, dof) && sound(end, dof);
+  bool good = durations.size() == jerks.size() && is_sound(start, dof) && is_sound(end, dof);
   for (std::size_t i = 0; good && i < durations.size(); ++i) {
     good = std::isfinite(durations[i]) && durations[i] >= 0 && jerks[i].size() == dof &&
            jerks[i].allFinite();
