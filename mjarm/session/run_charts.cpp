@@ -11,12 +11,12 @@
 #include "mjarm/core/messages/run_charts.hpp"
 #include "mjarm/core/messages/show.hpp"
 #include "mjarm/render/fonts.hpp"
+#include "mjarm/session/chart_stride_internal.hpp"
 
 namespace mjarm::session {
 namespace {
 
 constexpr double kShareOfTolerance = 0.05;  ///< that an error has to reach to be seen below it
-constexpr std::size_t kMaxPoints = 2000;    // a curve; more than that no page can show
 
 /// The rows of all runs to be drawn, with a gap (null) between runs.
 using Rows = std::vector<const RecordRow*>;
@@ -25,7 +25,7 @@ using Value = std::function<double(const RecordRow& row)>;
 Rows rows_to_draw(std::span<const MeasuredRun> runs) {
   std::size_t count = 0;
   for (const MeasuredRun& run : runs) count += run.rows.size();
-  const std::size_t stride = std::max<std::size_t>(1, count / kMaxPoints);
+  const std::size_t stride = chart_stride(count);
   Rows rows;
   for (const MeasuredRun& run : runs) {
     if (!rows.empty()) rows.push_back(nullptr);

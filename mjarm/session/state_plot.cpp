@@ -5,13 +5,13 @@
 
 #include "mjarm/core/messages/run_charts.hpp"
 #include "mjarm/core/messages/show.hpp"
+#include "mjarm/session/chart_stride_internal.hpp"
 #include "mjarm/session/model_run_output.hpp"
 
 namespace mjarm::session {
 namespace {
 
-constexpr std::size_t kMaxCurves = 8;          // as many colours as can be told apart
-constexpr std::size_t kMaxCurvePoints = 2000;  // of a curve
+constexpr std::size_t kMaxCurves = 8;  // as many colours as can be told apart
 
 /// One number of the log over time.
 struct StateCurve {
@@ -22,7 +22,7 @@ struct StateCurve {
 
 StateCurve curve_of(const StateLog& log, std::size_t column, const std::string& label) {
   StateCurve curve{.line = {.label = label}};
-  const std::size_t stride = std::max<std::size_t>(1, log.size() / kMaxCurvePoints);
+  const std::size_t stride = chart_stride(log.size());
   for (std::size_t i = 0; i < log.size(); ++i) {
     if (i % stride != 0 && i + 1 != log.size()) continue;
     curve.line.x.push_back(log.row(i)[0]);
