@@ -15,13 +15,6 @@
 namespace mjarm::serve {
 namespace {
 
-namespace net = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
-namespace websocket = boost::beast::websocket;
-using tcp = net::ip::tcp;
-using ErrorCode = boost::system::error_code;
-
 constexpr std::size_t kMaxHeader = 8 * 1024;  // [bytes] of a request
 
 /// A connection of HTTP, which may become a page.

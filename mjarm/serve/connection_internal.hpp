@@ -14,6 +14,10 @@
 /// What the sources of the server share of its connections; all of it belongs to its thread.
 namespace mjarm::serve {
 
+namespace net = boost::asio;
+using tcp = net::ip::tcp;
+using ErrorCode = boost::system::error_code;
+
 /// A page that is connected to /live.
 class LivePage {
  public:
@@ -59,6 +63,6 @@ class Counted {
 }
 
 /// Answers what comes over `socket` until it is closed; it may become a page.
-void take_connection(Hub& hub, boost::asio::ip::tcp::socket socket);
+void take_connection(Hub& hub, tcp::socket socket);
 
 }  // namespace mjarm::serve

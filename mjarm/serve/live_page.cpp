@@ -13,13 +13,6 @@
 namespace mjarm::serve {
 namespace {
 
-namespace net = boost::asio;
-namespace beast = boost::beast;
-namespace http = boost::beast::http;
-namespace websocket = boost::beast::websocket;
-using tcp = net::ip::tcp;
-using ErrorCode = boost::system::error_code;
-
 constexpr int kSendBuffer = 64 * 1024;  // [bytes] the system keeps for a slow page
 constexpr int kMaxRefused = 100;        // messages of a page; then it is dropped
 constexpr int kMessagesATick = 64;      // of a page that are read

@@ -21,9 +21,6 @@
 namespace mjarm::serve {
 namespace {
 
-namespace net = boost::asio;
-using tcp = net::ip::tcp;
-using ErrorCode = boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
