@@ -6,8 +6,10 @@
 #include "apps/mjarm/commands/render_options.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/view.hpp"
+#include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "mjarm/session/see_scene.hpp"
 
 namespace mjarm::app {
 
@@ -21,6 +23,15 @@ Result<SeenRobot> load_seen_robot(const RobotChoice& choice, Msg which) {
   SeenRobot seen{std::move(*model), std::nullopt};
   if (arm) seen.arm = std::move(*arm);
   return seen;
+}
+
+Result<program::LoadedProgram> load_seen_program(const RobotChoice& choice, bool passive) {
+  if (passive || !choice.tip.empty()) {
+    return fail(Errc::usage, text(msg::view_not_for_programs, choice.robot));
+  }
+  catch_interrupts();
+  return program::load_sound_program(choice.robot, interrupted, load_options(choice),
+                                     session::see_scene);
 }
 
 Result<session::FreeSim> make_free_sim(const SeenRobot& seen, bool passive) {

@@ -7,6 +7,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
+#include "mjarm/program/load_program.hpp"
 #include "mjarm/session/free_sim.hpp"
 #include "mjarm/view/window.hpp"
 
@@ -22,6 +23,12 @@ struct SeenRobot {
 /// Loads it and logs what was odd about it.
 /// @param which  what is said where no model is named.
 [[nodiscard]] Result<SeenRobot> load_seen_robot(const RobotChoice& choice, Msg which);
+
+/// Loads a program and checks it; an interrupt ends that. It brings its robot and tool along, and
+/// holds it.
+/// @return an error of usage where the choice names a tip or nothing is to be held (`passive`).
+[[nodiscard]] Result<program::LoadedProgram> load_seen_program(const RobotChoice& choice,
+                                                               bool passive);
 
 /// Its simulation; an arm whose actuators cannot hold it is not held, and the log says why.
 [[nodiscard]] Result<session::FreeSim> make_free_sim(const SeenRobot& seen, bool passive);

@@ -16,7 +16,6 @@
 #include "mjarm/serve/show_in_page.hpp"
 #include "mjarm/session/program_player.hpp"
 #include "mjarm/session/robot_session.hpp"
-#include "mjarm/session/see_scene.hpp"
 #include "mjarm/session/simulate_world.hpp"
 
 namespace mjarm::app {
@@ -77,17 +76,10 @@ Result<int> run(const Options& options) {
       [&world](view::ViewLink& link) { session::simulate_world(world, link, language()); }));
 }
 
-/// A program brings its robot and tool along, and holds it.
 Result<int> run_program(const Options& options) {
   const Result<serve::PageOptions> page = page_options(options);
   if (!page) return fail(page.error());
-  const RobotChoice& robot = options.robot;
-  if (options.passive || !robot.tip.empty()) {
-    return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
-  }
-  catch_interrupts();
-  const Result<program::LoadedProgram> loaded = program::load_sound_program(
-      robot.robot, interrupted, load_options(robot), session::see_scene);
+  const Result<program::LoadedProgram> loaded = load_seen_program(options.robot, options.passive);
   if (!loaded) return fail(loaded.error());
   view::WindowOptions window{.paused = options.paused};
   if (auto set = set_camera(options.camera, loaded->robot.model, window); !set) {

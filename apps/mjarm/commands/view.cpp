@@ -16,7 +16,6 @@
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/session/free_sim.hpp"
 #include "mjarm/session/robot_session.hpp"
-#include "mjarm/session/see_scene.hpp"
 #include "mjarm/session/show_program.hpp"
 #include "mjarm/session/simulate_world.hpp"
 #include "mjarm/view/controls.hpp"
@@ -88,19 +87,12 @@ Result<int> run(const Options& options) {
                   [&view](view::ViewLink& link) { session::simulate_world(view, link); }));
 }
 
-/// A program brings its robot and tool along, and holds it.
 Result<int> run_program(const Options& options) {
   const Result<double> seconds = parse_show_seconds(options.seconds);
   if (!seconds) return fail(seconds.error());
-  const RobotChoice& robot = options.robot;
-  if (options.passive || !robot.tip.empty()) {
-    return fail(Errc::usage, text(msg::view_not_for_programs, robot.robot));
-  }
   Result<view::WindowOptions> window = window_options(options, {});
   if (!window) return fail(window.error());
-  catch_interrupts();
-  const Result<program::LoadedProgram> loaded = program::load_sound_program(
-      robot.robot, interrupted, load_options(robot), session::see_scene);
+  const Result<program::LoadedProgram> loaded = load_seen_program(options.robot, options.passive);
   if (!loaded) return fail(loaded.error());
   if (auto set = set_camera(options.camera, loaded->robot.model, *window); !set)
     return fail(set.error());
