@@ -34,9 +34,9 @@ class View {
  public:
   /// None where `object` has no such numbers, or ones that may not be written.
   static std::optional<View> of(nanobind::handle object) {
+    if (!PyObject_CheckBuffer(object.ptr())) return std::nullopt;
     auto buffer = std::make_unique<Py_buffer>();
     const int flags = PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | (std::is_const_v<T> ? 0 : PyBUF_WRITABLE);
-    if (!PyObject_CheckBuffer(object.ptr())) return std::nullopt;
     if (PyObject_GetBuffer(object.ptr(), buffer.get(), flags) != 0) {
       PyErr_Clear();
       return std::nullopt;
