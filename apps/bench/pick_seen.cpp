@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "apps/bench/suite.hpp"
 #include "apps/mjarm/cli/table.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/perception/look_table.hpp"
 #include "mjarm/perception/tag_detector.hpp"
 
@@ -21,7 +21,6 @@ namespace {
 
 namespace look_table = perception::look_table;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array kShapes{look_table::kBox, look_table::kCan, look_table::kStep};
 
 /// What it is known by, and at which noise, in words.
@@ -127,7 +126,7 @@ std::string median_and_max(const std::vector<double>& values, double unit) {
 
 }  // namespace
 
-double SeenErrors::rotation_goal() const { return by_tag ? kDegree : 2 * kDegree; }
+double SeenErrors::rotation_goal() const { return by_tag ? kRadPerDeg : 2 * kRadPerDeg; }
 
 Result<std::vector<SeenErrors>> measure_seen(const SceneNumbers& placements, std::uint64_t seed) {
   constexpr std::array kSigmas = {render::RgbdOptions{}.depth_sigma, 0.0};
@@ -163,7 +162,7 @@ std::string seen_table(std::span<const SeenErrors> errors) {
   for (const SeenErrors& one : errors) {
     rows.push_back({one.object, way_of(one), noise_of(one),
                     fmt::format("{}/{}", one.position.size(), one.placements),
-                    median_and_max(one.position, 1e-3), median_and_max(one.rotation, kDegree),
+                    median_and_max(one.position, 1e-3), median_and_max(one.rotation, kRadPerDeg),
                     fmt::format("{:g} mm, {:g} deg", 1e3 * one.position_goal(),
                                 in_degrees(one.rotation_goal())),
                     std::to_string(one.wrong.size())});

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -25,8 +24,6 @@ namespace {
 
 using detail::GeomGap;
 using detail::GeomIds;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Eigen::Vector3d vector(const mjtNum* v) { return {v[0], v[1], v[2]}; }
 

@@ -2,7 +2,6 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <set>
@@ -11,6 +10,7 @@
 
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/collision/exact_gaps_internal.hpp"
+#include "mjarm/core/finite.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/find_arm.hpp"
 
@@ -123,7 +123,6 @@ void expect_same_overlaps(const Shipped& robot, std::uint64_t seed) {
 /// What a checker remembers of the last look: its verdicts are those of one that never looked
 /// before, and its bounds hold, along ways that come near to things and into them.
 void expect_memory_holds(const Shipped& robot, std::uint64_t seed) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const ExactOptions told{.skip_neighbours = true};
   ExactChecker walking(robot.model, robot.arm), fresh(robot.model, robot.arm, {.margin = 0});
   ExactChecker bounded(robot.model, robot.arm, told), looking(robot.model, robot.arm, told);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "mjarm/collision/mesh_internal.hpp"
 #include "mjarm/collision/solid_scene_internal.hpp"
+#include "mjarm/core/finite.hpp"
 
 namespace mjarm {
 namespace {
@@ -15,7 +15,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kBallsOfLink = 2;
-constexpr double kBoundless = std::numeric_limits<double>::infinity();
 
 /// Adds the largest ball of a link, and the largest of those whose centre is outside of it.
 void add_largest(std::vector<LinkBall> of_link, std::vector<LinkBall>& out) {
@@ -63,7 +62,7 @@ class PieceMaker {
     whole({cylinder.radius, cylinder.radius, cylinder.half_length});
   }
   void operator()(const HalfSpaceShape&) const {
-    const Vector3d all = Vector3d::Constant(kBoundless);
+    const Vector3d all = Vector3d::Constant(kInfinity);
     add({-all, all, index_,
          [this_ = &obstacle_](const Vector3d& p, double) { return distance(*this_, p); }});
   }
@@ -84,14 +83,14 @@ class PieceMaker {
         nearest = p - beyond * plane.head<3>();
       }
       constexpr double kRounding = 1e-9;  // [m]
-      return distance(*this_, this_->X_WO * nearest) <= kRounding ? farthest : kBoundless;
+      return distance(*this_, this_->X_WO * nearest) <= kRounding ? farthest : kInfinity;
     };
     add({box.low, box.high, index_, to});
   }
   /// Triangles alone: what is inside of a solid cannot be reached without passing them.
   void operator()(const MeshShape& mesh) const {
     for (const std::array<int, 3>& face : mesh.faces) {
-      Vector3d low = Vector3d::Constant(kBoundless), high = -low;
+      Vector3d low = Vector3d::Constant(kInfinity), high = -low;
       for (const int i : face) {
         const Vector3d p = obstacle_.X_WO * corner(mesh, i);
         low = low.cwiseMin(p);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace mjarm {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// False where one is infinite or no number.
 [[nodiscard]] inline bool all_finite(std::span<const double> values) noexcept {

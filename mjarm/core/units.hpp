@@ -18,9 +18,13 @@ enum class Quantity {
   speed,   ///< m/s (default), cm/s, mm/s
 };
 
+inline constexpr double kRadPerDeg = std::numbers::pi / 180;
+inline constexpr double kDegPerRad = 180 / std::numbers::pi;
+inline constexpr double kFullTurn = 2 * std::numbers::pi;  ///< [rad]
+
 /// What is taken without a unit at most: more was meant in degrees or millimetres.
-inline constexpr double kMaxBareAngle = 2 * std::numbers::pi + 0.01;  ///< [rad] a turn, rounded
-inline constexpr double kMaxBareLength = 10;                          ///< [m]
+inline constexpr double kMaxBareAngle = kFullTurn + 0.01;  ///< [rad] a turn, rounded
+inline constexpr double kMaxBareLength = 10;               ///< [m]
 
 /// A number as it was written.
 struct WrittenNumber {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mjarm/core/linear_algebra.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/axis_chain_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
@@ -112,13 +113,12 @@ DistanceRange distance_across(const Eigen::Vector3d& u, const Eigen::Vector3d& v
   const double C = -2 * (u.dot(v) - along);
   const double S = -2 * u.dot(a.cross(v));
   const double amplitude = std::hypot(C, S);
-  constexpr double turn = 2 * std::numbers::pi;
   const double peak = std::atan2(S, C);
   const auto meets = [&](double angle) {
-    return angle + turn * std::ceil((lower - angle) / turn) <= upper;
+    return angle + kFullTurn * std::ceil((lower - angle) / kFullTurn) <= upper;
   };
   const auto value = [&](double angle) { return k + C * std::cos(angle) + S * std::sin(angle); };
-  const bool full = !(upper - lower < turn);
+  const bool full = !(upper - lower < kFullTurn);
   const auto ends = full ? std::pair{k, k} : std::minmax({value(lower), value(upper)});
   const double high = full || meets(peak) ? k + amplitude : ends.second;
   const double low = full || meets(peak + std::numbers::pi) ? k - amplitude : ends.first;

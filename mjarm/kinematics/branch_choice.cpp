@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/branch_choice_internal.hpp"
 #include "mjarm/kinematics/trig_internal.hpp"
 
 namespace mjarm::detail {
 namespace {
 
-constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr double kAtLimit = 1e-6;  // [rad] so little beyond a limit is rounding: the joint is put
                                    // on it and the tool's error tells
 constexpr double kExact = 1e-10;   // [m and rad] larger errors are polished away
@@ -20,14 +19,14 @@ double wind(const Chain& chain, int i, double q, double q_near) noexcept {
   const double lower = chain.lower[k];
   const double upper = chain.upper[k];
   if (chain.full_turn[k]) {
-    q += kWholeTurn * nearest_whole((q_near - q) * (1 / kWholeTurn));
-    if (q > upper) q -= kWholeTurn;
-    if (q < lower) q += kWholeTurn;
+    q += kFullTurn * nearest_whole((q_near - q) * (1 / kFullTurn));
+    if (q > upper) q -= kFullTurn;
+    if (q < lower) q += kFullTurn;
     // A range of exactly one revolution leaves a rounding error at its ends.
     return std::min(std::max(q, lower), upper);
   }
   const double middle = 0.5 * (lower + upper);
-  return q + kWholeTurn * nearest_whole((middle - q) * (1 / kWholeTurn));
+  return q + kFullTurn * nearest_whole((middle - q) * (1 / kFullTurn));
 }
 
 /// Angle of R^T R_goal [rad].

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/trig_internal.hpp"
 
 namespace mjarm {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// A rotation that carries z to the unit vector `axis`; exact for the axes of the frame.
 Eigen::Matrix3d frame_with_z(const Eigen::Vector3d& axis) {
@@ -36,7 +34,7 @@ Chain::Chain(const Arm& arm) {
     slide[i] = joint.type == JointType::slide;
     lower[i] = arm.limits.lower[i];
     upper[i] = arm.limits.upper[i];
-    full_turn[i] = !slide[i] && upper[i] - lower[i] >= kTurn - 1e-12;
+    full_turn[i] = !slide[i] && upper[i] - lower[i] >= kFullTurn - 1e-12;
   }
   X_JT = {R_before.transpose() * arm.X_JT.p, R_before.transpose() * arm.X_JT.R};
 }
@@ -67,9 +65,9 @@ Pose Chain::fk(const double* q) const noexcept {
 
 double nearest_winding(const Chain& chain, int i, double q, double q_near) noexcept {
   if (!chain.full_turn[i]) return q;
-  q += kTurn * std::round((q_near - q) / kTurn);
-  if (q > chain.upper[i]) q -= kTurn;
-  if (q < chain.lower[i]) q += kTurn;
+  q += kFullTurn * std::round((q_near - q) / kFullTurn);
+  if (q > chain.upper[i]) q -= kFullTurn;
+  if (q < chain.lower[i]) q += kFullTurn;
   // A range of exactly one revolution leaves a rounding error at its ends.
   return std::min(std::max(q, chain.lower[i]), chain.upper[i]);
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/branch_choice_internal.hpp"
 
 namespace mjarm {
@@ -12,8 +12,6 @@ namespace {
 
 using detail::IkGoal;
 using detail::nearness;
-
-constexpr double kWinding = 2 * std::numbers::pi;
 
 double distance(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
@@ -70,9 +68,9 @@ void expand(const Chain& chain, const IkSolution& solution, std::size_t max,
     const auto k = static_cast<std::size_t>(i);
     if (!chain.full_turn[k] || !std::isfinite(chain.upper[k] - chain.lower[k])) continue;
     const double q = solution.q[i];
-    const double first = q - kWinding * std::floor((q - chain.lower[k]) / kWinding);
+    const double first = q - kFullTurn * std::floor((q - chain.lower[k]) / kFullTurn);
     const std::size_t count = qs.size();
-    for (double other = first; other <= chain.upper[k] && qs.size() < max; other += kWinding) {
+    for (double other = first; other <= chain.upper[k] && qs.size() < max; other += kFullTurn) {
       if (std::abs(other - q) < 1) continue;  // the winding that is there already
       for (std::size_t j = 0; j < count && qs.size() < max; ++j) {
         qs.push_back(qs[j]);

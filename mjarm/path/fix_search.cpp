@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "mjarm/core/units.hpp"
 #include "mjarm/path/fix_search_internal.hpp"
 
 namespace mjarm::detail {
@@ -89,14 +89,13 @@ std::optional<PathFix> FixSearch::shift(double reach) {
 }
 
 std::optional<PathFix> FixSearch::tilt() {
-  constexpr double kDegree = std::numbers::pi / 180;
   probed_ = solved_ = 0;
   for (int degrees = 5; degrees <= 180; degrees += degrees < 60 ? 5 : 15) {
     for (int axis = 2; axis >= (degrees > 60 ? 2 : 0); --axis) {
       for (const int way : {1, -1}) {
         PathFix fix;
         fix.kind = FixKind::tilt;
-        fix.change.tilt[axis] = way * degrees * kDegree;
+        fix.change.tilt[axis] = way * degrees * kRadPerDeg;
         if (mends(fix.change)) return fix;
       }
     }

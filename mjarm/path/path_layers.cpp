@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "mjarm/core/finite.hpp"
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 #include "mjarm/path/path_layers_internal.hpp"
@@ -17,8 +18,6 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSame = 1e-3;        // [rad or m] nearer answers are one
 constexpr double kSameOfMany = 0.05;  // [rad] likewise for samples of a redundant arm
 // What leaves enough room: at these a track is half tight.
@@ -59,9 +58,9 @@ std::optional<JointVec> placed(const Chain& chain, const JointVec& q, const Join
     double& value = out[k];
     value = q[i];
     if (!chain.slide[k]) {
-      value += kTurn * std::round((q_near[i] - value) / kTurn);
-      if (value > chain.upper[k] + kRounding) value -= kTurn;
-      if (value < chain.lower[k] - kRounding) value += kTurn;
+      value += kFullTurn * std::round((q_near[i] - value) / kFullTurn);
+      if (value > chain.upper[k] + kRounding) value -= kFullTurn;
+      if (value < chain.lower[k] - kRounding) value += kFullTurn;
     }
     if (!(value >= chain.lower[k] - kRounding && value <= chain.upper[k] + kRounding)) {
       return std::nullopt;
@@ -78,7 +77,7 @@ bool same_place(const Chain& chain, const JointVec& a, const JointVec& b) {
   for (int i = 0; i < chain.dof; ++i) {
     const double d = a[i] - b[i];
     const bool slide = chain.slide[static_cast<std::size_t>(i)];
-    if (std::abs(slide ? d : std::remainder(d, kTurn)) > kRounding) return false;
+    if (std::abs(slide ? d : std::remainder(d, kFullTurn)) > kRounding) return false;
   }
   return true;
 }
@@ -180,7 +179,7 @@ std::vector<Pose> PathLayers::allowed(const Pose& X_WT) const {
   const double tol = options_.orientation_tol;
   if (tol == 0) return out;
   for (int k = 0; k < 8; ++k) {
-    const double way = k * kTurn / 8;
+    const double way = k * kFullTurn / 8;
     const Eigen::Vector3d tilt(tol * std::cos(way), tol * std::sin(way), 0);
     out.push_back({X_WT.p, X_WT.R * rotation_exp(tilt)});
   }

@@ -1,8 +1,8 @@
 #include "mjarm/path/path_measures.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "mjarm/core/finite.hpp"
 #include "mjarm/kinematics/link_chain.hpp"
 
 namespace mjarm {
@@ -31,7 +31,6 @@ class SingularWalk {
 
 PathMeasures measure_path(const Arm& arm, std::span<const JointVec> q,
                           const ClearanceCheck& clearance, const StopCheck& stop) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const LinkChain chain{Chain(arm)};
   PathMeasures out{{kInfinity, 0}, {kInfinity, 0}, {kInfinity, 0}, {kInfinity, 0}};
   SingularWalk singular;

@@ -3,17 +3,15 @@
 #include <mujoco/mujoco.h>
 
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/render/clear_view.hpp"
 
 namespace mjarm::render {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180;
 
 Result<void> check_number(const char* name, double value, bool positive) {
   if (std::isfinite(value) && (!positive || value > 0)) return {};

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include "mjarm/core/messages/render.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/render/ghost_internal.hpp"
 #include "mjarm/render/overlay_internal.hpp"
@@ -16,8 +16,6 @@
 
 namespace mjarm::render {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct DeleteData {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -97,8 +95,8 @@ mjvCamera free_camera(const CameraView& view) {
   camera.type = mjCAMERA_FREE;
   Eigen::Map<Eigen::Vector3d>(camera.lookat) = view.lookat_W;
   camera.distance = view.distance;
-  camera.azimuth = view.azimuth / kDegree;
-  camera.elevation = view.elevation / kDegree;
+  camera.azimuth = view.azimuth / kRadPerDeg;
+  camera.elevation = view.elevation / kRadPerDeg;
   return camera;
 }
 
@@ -208,8 +206,8 @@ CameraView Scene::view() const {
   if (camera.type != mjCAMERA_FIXED) {
     return {.lookat_W = Eigen::Map<const Eigen::Vector3d>(camera.lookat),
             .distance = camera.distance,
-            .azimuth = camera.azimuth * kDegree,
-            .elevation = camera.elevation * kDegree};
+            .azimuth = camera.azimuth * kRadPerDeg,
+            .elevation = camera.elevation * kRadPerDeg};
   }
   using Eigen::Vector3d;
   const Vector3d p_WC = Eigen::Map<const Vector3d>(impl_->d->cam_xpos + 3 * camera.fixedcamid);

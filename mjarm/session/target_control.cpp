@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <utility>
 
 #include "mjarm/core/messages/panels.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
 namespace mjarm::session {
@@ -28,7 +28,6 @@ enum TargetItem {
 
 constexpr double kMoveSteps[] = {0.001, 0.01, 0.05};  ///< [m]
 constexpr double kTurnSteps[] = {1, 5, 15};           ///< [deg]
-constexpr double kDeg = std::numbers::pi / 180;
 constexpr const char* kJogAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
 constexpr float kGhostAlpha = 0.3F;
 
@@ -52,7 +51,7 @@ Msg word_of(TargetGrade grade) {
 std::string pair_of(double length, double angle) {
   const auto shown = [](double value) { return std::round(10 * value) / 10 + 0.0; };
   char line[48];
-  std::snprintf(line, sizeof(line), "%.1f %.1f", shown(1e3 * length), shown(angle / kDeg));
+  std::snprintf(line, sizeof(line), "%.1f %.1f", shown(1e3 * length), shown(angle / kRadPerDeg));
   return line;
 }
 
@@ -107,7 +106,7 @@ bool TargetControl::take_drags() {
 
 void TargetControl::jog(int button) {
   const int axis = button / 2;
-  const double step = axis < 3 ? kMoveSteps[move_step_] : kDeg * kTurnSteps[turn_step_];
+  const double step = axis < 3 ? kMoveSteps[move_step_] : kRadPerDeg * kTurnSteps[turn_step_];
   (void)target_.jog(static_cast<JogFrame>(frame_), axis, button % 2 == 0 ? -step : step);
   changed();
 }

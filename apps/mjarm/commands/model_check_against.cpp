@@ -9,6 +9,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/text_width.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/compare.hpp"
 #include "mjarm/model/robot.hpp"
 
@@ -16,7 +17,6 @@ namespace mjarm::app {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 /// Descriptions that agree this well are the same [m], [rad].
 constexpr double kSame = 1e-9;
 /// Parts of a cause below this are rounding [m], [rad].
@@ -53,7 +53,7 @@ std::string move_text(const Cause& cause) {
   Eigen::Vector3d axis = cause.turn.normalized();
   if (half && axis.sum() < 0) axis = -axis;
   const std::string turned =
-      text(msg::app_against_turned, kDegrees * cause.turn.norm(), axis_text(axis));
+      text(msg::app_against_turned, kDegPerRad * cause.turn.norm(), axis_text(axis));
   return moves ? text(msg::app_against_moved_and_turned, moved, turned) : turned;
 }
 
@@ -81,7 +81,7 @@ std::string cause_text(const Cause& cause, const Robot& first, const Robot& seco
       return text(msg::app_against_sign, joint(cause.joint).name);
     case CauseCode::zero_offset: {
       const bool hinge = joint(cause.joint).type == JointType::hinge;
-      const double value = cause.offset * (hinge ? kDegrees : 1000);
+      const double value = cause.offset * (hinge ? kDegPerRad : 1000);
       return text(msg::app_against_zero, joint(cause.joint).name,
                   rounded(value) + (hinge ? " deg" : " mm"));
     }
@@ -120,7 +120,7 @@ std::string to_text(const Comparison& comparison, const std::vector<FigureDiffer
     for (const double value : comparison.q) q += (q.empty() ? "" : ", ") + rounded(value);
     result += "  " +
               text(msg::app_against_worst, 1000 * comparison.position,
-                   kDegrees * comparison.rotation, configurations) +
+                   kDegPerRad * comparison.rotation, configurations) +
               "\n  " + padded(text(msg::app_against_at), width) + q + "\n";
     std::string label = padded(text(msg::app_against_why), width);
     for (const Cause& cause : comparison.causes) {
@@ -206,7 +206,7 @@ Result<int> check_against(const fs::path& file, const fs::path& other, const Che
   print_lines(words);
   if (std::max(comparison->position, comparison->rotation) <= kSame) return 0;
   return fail(Errc::impossible, text(msg::app_against_differ, other.string(), file.string(),
-                                     1000 * comparison->position, kDegrees * comparison->rotation,
+                                     1000 * comparison->position, kDegPerRad * comparison->rotation,
                                      all_causes(*comparison, *first, *second)));
 }
 

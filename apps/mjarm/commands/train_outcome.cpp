@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/messages/train.hpp"
+#include "mjarm/core/units.hpp"
 
 namespace mjarm::app {
-namespace {
-
-constexpr double kDegPerRad = 180 / std::numbers::pi;
-
-}  // namespace
 
 std::string in_words(const rl::Evaluation& evaluation) {
   return text(msg::train_outcome, 100 * evaluation.within_5cm, 100 * evaluation.within_2cm,

@@ -1,5 +1,3 @@
-#include <numbers>
-
 #include "apps/mjarm/demos/comparison.hpp"
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
@@ -7,6 +5,7 @@
 #include "apps/mjarm/demos/tutorial.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/render/fonts.hpp"
 
 namespace mjarm::app {
@@ -14,7 +13,6 @@ namespace {
 
 constexpr double kFlipSpeed = 0.25;  // [m/s]
 constexpr double kFlipStep = 0.5;    // [rad] between poses 2 mm apart
-constexpr double kFlipDegrees = 180 / std::numbers::pi;
 
 Pose flip_pose(double x) { return {{x, -0.4, 0.5}, tool_down()}; }
 
@@ -29,7 +27,7 @@ void tell_naive(const NaiveMotion& naive, const MeasuredRun& run, const Arm& arm
                     {"naive_joint_step", naive.flip->jump},
                     {"naive_path_error_max", off}};
     log_info(text(msg::demo_flip_naive, 100 * naive.flip->fraction, joint,
-                  kFlipDegrees * naive.flip->jump, 1e3 * off));
+                  kDegPerRad * naive.flip->jump, 1e3 * off));
   } else if (naive.fraction < 1) {
     report.facts = {{"naive_reason", "stops"}, {"naive_fraction", naive.fraction}};
     log_info(text(msg::demo_flip_stops, 100 * naive.fraction));

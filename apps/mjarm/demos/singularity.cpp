@@ -10,6 +10,7 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/path/path_fix.hpp"
 #include "mjarm/path/solve_curve.hpp"
 #include "mjarm/render/fonts.hpp"
@@ -19,12 +20,11 @@ namespace {
 
 constexpr double kSpeed = 0.25;  // [m/s]
 constexpr double kShare = 0.9;   // of the joint limits: a margin for the controller
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// The tool points along the line, 2 degrees below it: half way its axis all but meets that of the
 /// wrist's first joint.
 Pose pose_at(double x) {
-  return {{x, -0.45, 0.45}, rotation_exp({0, std::numbers::pi / 2 + 2 * kDegree, 0})};
+  return {{x, -0.45, 0.45}, rotation_exp({0, std::numbers::pi / 2 + 2 * kRadPerDeg, 0})};
 }
 
 Result<Curve> line_with(const PathChange& change) {
@@ -71,7 +71,7 @@ Result<std::optional<MeasuredRun>> run_tilted(session::Stage& stage, const IkSol
   report.facts.push_back({"tilt", angle});
   report.facts.push_back({"tilted_peak_joint_speed", peak});
   log_info(
-      text(msg::demo_singularity_tilted, angle / kDegree, peak, motion->trajectory.duration()));
+      text(msg::demo_singularity_tilted, angle / kRadPerDeg, peak, motion->trajectory.duration()));
   return std::optional(std::move(*run));
 }
 
