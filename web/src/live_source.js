@@ -1,12 +1,15 @@
 // A running `mjarm serve`: scene and meshes by HTTP, the rest over one WebSocket.
-import { Source } from './source.js';
+import { Emitter } from './emitter.js';
 import { readFrame } from './frame.js';
 
 const FIRST_PAUSE = 250; // [ms]
 const LONGEST_PAUSE = 3000; // [ms]
 const TEXTS = new Set(['hello', 'overlay', 'plots', 'panels', 'status', 'target', 'error', 'bye']);
 
-export class LiveSource extends Source {
+/** Is a {@link import('./source.js').Source}. */
+export class LiveSource extends Emitter {
+  /** @type {import('./source.js').Connection} */
+  connection = 'connecting';
   #base;
   #sceneText = '';
   #scene = null;
@@ -31,7 +34,7 @@ export class LiveSource extends Source {
         this.#pause = FIRST_PAUSE;
         return this.#scene;
       } catch {
-        this.setConnection('lost');
+        this.#setConnection('lost');
         await this.#sleep();
       }
     }
@@ -64,6 +67,12 @@ export class LiveSource extends Source {
     if (this.#socket?.readyState !== WebSocket.OPEN) return false;
     this.#socket.send(JSON.stringify(message));
     return true;
+  }
+
+  #setConnection(connection) {
+    if (connection === this.connection) return;
+    this.connection = connection;
+    this.emit('connection', connection);
   }
 
   async #fetchScene() {
@@ -104,9 +113,9 @@ export class LiveSource extends Source {
     const message = JSON.parse(data);
     if (message.type === 'hello') {
       this.#pause = FIRST_PAUSE;
-      this.setConnection('open');
+      this.#setConnection('open');
     }
-    if (message.type === 'bye') this.setConnection('over');
+    if (message.type === 'bye') this.#setConnection('over');
     if (TEXTS.has(message.type)) this.emit(message.type, message);
   }
 
@@ -114,7 +123,7 @@ export class LiveSource extends Source {
     if (socket !== this.#socket) return;
     this.#socket = null;
     if (!this.#started || this.connection === 'over') return;
-    this.setConnection('lost');
+    this.#setConnection('lost');
     for (;;) {
       await this.#sleep();
       try {
