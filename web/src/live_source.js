@@ -52,7 +52,6 @@ export class LiveSource extends Emitter {
   }
 
   retry() {
-    if (this.connection !== 'lost') return;
     this.#pause = FIRST_PAUSE;
     this.#wake?.();
   }
@@ -81,7 +80,7 @@ export class LiveSource extends Emitter {
     return answer.text();
   }
 
-  /** Waits for the pause, which is longer the next time, or until `retry`. */
+  /** Waits for the pause, which is longer the next time, or until `retry`; for that alone once the run is over. */
   #sleep() {
     return new Promise((resolve) => {
       const done = () => {
@@ -90,7 +89,7 @@ export class LiveSource extends Emitter {
         resolve();
       };
       this.#wake = done;
-      this.#timer = setTimeout(done, this.#pause);
+      if (this.connection !== 'over') this.#timer = setTimeout(done, this.#pause);
       this.#pause = Math.min(2 * this.#pause, LONGEST_PAUSE);
     });
   }
@@ -122,8 +121,8 @@ export class LiveSource extends Emitter {
   async #lost(socket) {
     if (socket !== this.#socket) return;
     this.#socket = null;
-    if (!this.#started || this.connection === 'over') return;
-    this.#setConnection('lost');
+    if (!this.#started) return;
+    if (this.connection !== 'over') this.#setConnection('lost');
     for (;;) {
       await this.#sleep();
       try {

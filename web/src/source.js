@@ -13,7 +13,7 @@
 
 /**
  * How the page stands to what it shows: `connecting` at first, `open`, `lost` (it tries again),
- * `over` (the run has ended; the last frame stays).
+ * `over` (the run has ended; the last frame stays, and it tries again only where it is asked to).
  * @typedef {'connecting'|'open'|'lost'|'over'} Connection
  */
 
