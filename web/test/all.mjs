@@ -7,12 +7,16 @@ if (missing) test('the page in a browser', { skip: missing });
 else await declare();
 
 async function declare() {
-  const [{ Session }, ...parts] = await Promise.all([
-    './session.mjs', './transport_test.mjs', './joints_test.mjs', './target_test.mjs', './panels_test.mjs', './scene_test.mjs',
-    './looks_test.mjs', './phone_test.mjs', './program_test.mjs', './connection_test.mjs',
-  ].map((path) => import(path)));
-  const { testTransport, testJoints, testTarget, testPanels, testScene, testLooks, testPhone, testProgram, testConnection } =
-    Object.assign({}, ...parts);
+  const { Session } = await import('./session.mjs');
+  const { testTransport } = await import('./transport_test.mjs');
+  const { testJoints } = await import('./joints_test.mjs');
+  const { testTarget } = await import('./target_test.mjs');
+  const { testPanels } = await import('./panels_test.mjs');
+  const { testScene } = await import('./scene_test.mjs');
+  const { testLooks } = await import('./looks_test.mjs');
+  const { testPhone } = await import('./phone_test.mjs');
+  const { testProgram } = await import('./program_test.mjs');
+  const { testConnection } = await import('./connection_test.mjs');
 
   /** Tests that share a program and a page. */
   const beside = (name, args, suites) => describe(name, () => {

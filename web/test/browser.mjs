@@ -5,7 +5,8 @@ import { delimiter, join } from 'node:path';
 const NAMES = ['chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable'];
 /** The processor draws; the page round the scene without OpenGL, which takes a tenth of the time. */
 const DRAWN_BY_PROCESSOR = [
-  '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-gpu-compositing',
+  '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
+  '--disable-gpu-compositing',
 ];
 const LONG = 30000; // [ms] until something must have happened
 const LOADING = 60000; // [ms]

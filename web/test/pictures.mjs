@@ -32,7 +32,7 @@ async function arrange(session) {
   }
   use(ITEM.follow, 0);
   const [x, y, z] = witness.target.pos;
-  await dragMouse(page, [await session.pixel([x, y, z]), await session.pixel([x + 0.18, y, z + 0.08])]);
+  await dragMouse(page, [await session.pixel([x, y, z]), await session.pixel([x + 0.44, y, z + 0.16])]);
   await witness.until('a ghost', () => witness.overlay.includes('ghost'));
   await byTest(page, 'side').evaluate((node) => node.scrollTo(0, 0));
   await page.mouse.move(5, 5);

@@ -9,8 +9,8 @@ const FIRST_LINE = 20000; // [ms] until it says its address
 
 function findProgram() {
   if (process.env.MJARM_PROGRAM) return process.env.MJARM_PROGRAM;
-  const built = ['dev', 'release'].map((preset) => fileURLToPath(new URL(`../../build/${preset}/bin/mjarm`, import.meta.url)));
-  return built.find((path) => existsSync(path)) ?? 'mjarm';
+  const inBuild = (preset) => fileURLToPath(new URL(`../../build/${preset}/bin/mjarm`, import.meta.url));
+  return ['dev', 'release'].map(inBuild).find((path) => existsSync(path)) ?? 'mjarm';
 }
 const MJARM = findProgram();
 const ENVIRONMENT = { ...process.env, LC_ALL: 'C.UTF-8', LANGUAGE: '' };
