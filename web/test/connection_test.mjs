@@ -2,7 +2,7 @@
 import { deepStrictEqual, ok, strictEqual } from 'node:assert/strict';
 import { randomBytes } from 'node:crypto';
 import { after, before, test } from 'node:test';
-import { byTest, openPage, untilPage } from './browser.mjs';
+import { byTest, untilPage } from './browser.mjs';
 import { freePort, Program } from './program.mjs';
 import { Session } from './session.mjs';
 
