@@ -106,6 +106,18 @@ run_pytest() {
   [[ ! -e $build/pytest.xml ]] || count_results "$build/pytest.xml"
 }
 
+# run_page_tests PRESET: the page in a browser.
+run_page_tests() {
+  local results=$root/build/$1/page.xml code=0
+  say "check: page in a browser ..."
+  test_page "$1" "$results" || code=$?
+  case $code in
+    0) count_results "$results" ;;
+    77) skipped=$((skipped + 1)) && echo "SKIPPED: page in a browser: Node 18, or what npm fetches, is not there" ;;
+    *) failed=$((failed + 1)) && echo "FAILED: page in a browser (see above)" ;;
+  esac
+}
+
 run_wheel() {
   local results=$root/build/wheel/pytest.xml
   rm -rf "$root/dist"
@@ -142,6 +154,7 @@ run_tests() {
   if ((failed == 0)) || [[ -x $root/build/$1/bin/core_test ]]; then
     check "headers stand alone" check_headers "$1"
     run_ctest "$1"
+    run_page_tests "$1"
     run_pytest "$1"
   fi
   finish

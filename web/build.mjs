@@ -5,6 +5,7 @@ import { fileURLToPath } from 'node:url';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 const dist = `${here}dist`;
+const common = { absWorkingDir: here, outdir: dist, bundle: true, minify: true, charset: 'utf8', logLevel: 'info' };
 
 /** The licences of what is bundled, which go along with it. */
 async function licences(names) {
@@ -15,26 +16,12 @@ async function licences(names) {
 await rm(dist, { recursive: true, force: true });
 await mkdir(dist, { recursive: true });
 await build({
-  absWorkingDir: here,
+  ...common,
   entryPoints: { page: 'src/main.js' },
-  outdir: dist,
-  bundle: true,
-  minify: true,
   format: 'esm',
   target: 'es2022',
-  charset: 'utf8',
   legalComments: 'none',
   footer: { js: await licences(['three', 'uplot']) },
-  logLevel: 'info',
 });
-await build({
-  absWorkingDir: here,
-  entryPoints: { page: 'page.css' },
-  outdir: dist,
-  bundle: true,
-  minify: true,
-  charset: 'utf8',
-  footer: { css: await licences(['uplot']) },
-  logLevel: 'info',
-});
+await build({ ...common, entryPoints: { page: 'page.css' }, footer: { css: await licences(['uplot']) } });
 await copyFile(`${here}index.html`, `${dist}/index.html`);

@@ -21,6 +21,15 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLook{20};  // between two looks whether it is over
 constexpr std::size_t kTokenBytes = 16;
 
+Result<std::string> token_of(const PageOptions& options) {
+  if (options.token.empty()) return secret_hex(kTokenBytes);
+  if (options.token.size() != 2 * kTokenBytes ||
+      options.token.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    return fail(Errc::usage, text(msg::serve_bad_token, 2 * kTokenBytes));
+  }
+  return options.token;
+}
+
 /// Where the page looks from at first: as a window would.
 Result<render::CameraView> first_view(const Model& model, const render::Camera& camera) {
   if (!camera.view && camera.name.empty()) return render::default_view(model);
@@ -37,7 +46,7 @@ class ServedScene {
       const PageOptions& options, view::ViewLink& link) {
     Result<render::CameraView> view = first_view(model, window.camera);
     if (!view) return fail(std::move(view.error()));
-    Result<std::string> token = secret_hex(kTokenBytes);
+    Result<std::string> token = token_of(options);
     if (!token) return fail(std::move(token.error()));
     SceneFacts facts{.title = title,
                      .name = std::string(model.name()),

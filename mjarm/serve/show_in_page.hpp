@@ -16,6 +16,9 @@ namespace mjarm::serve {
 /// How a page is served. Every default is usable as is.
 struct PageOptions {
   ServerOptions server = {};
+  /// Names the folder of the page: 32 lower-case hexadecimal digits, which only who may come in
+  /// knows. Empty = new ones of the operating system.
+  std::string token = {};
   double seconds = 0;                  ///< [s] ends by itself after so long; 0 = never
   view::TargetLink* target = nullptr;  ///< of the tool; none = there is no target
   bool turns = true;                   ///< the target has rings
@@ -27,7 +30,8 @@ struct PageOptions {
 /// Ctrl-C (`interrupted()`) or `options.seconds`; then `link.closed` is set and `simulate` has to
 /// return. As `view::show_in_window`, and with the same options as far as a page has them: pause,
 /// camera, and what the application lets the user do.
-/// @return what `PageServer::start` says; bad_input for a camera the model does not have.
+/// @return what `PageServer::start` says; bad_input for a camera the model does not have; usage for
+///         a token that is none.
 [[nodiscard]] Result<void> show_in_page(const Model& model, const std::string& title,
                                         const view::WindowOptions& window,
                                         const PageOptions& options,
@@ -35,7 +39,7 @@ struct PageOptions {
 
 /// A page in the place of each window that work asks for: `view::run_beside(page_shower(...),
 /// work)` instead of `view::run_beside_windows(...)`. One window after the other has its page, at
-/// the same address unless `options.server.port` is 0.
+/// the same address where the options name port and token.
 [[nodiscard]] view::Shower page_shower(const PageOptions& options);
 
 }  // namespace mjarm::serve

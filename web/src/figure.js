@@ -44,7 +44,8 @@ export class Figure {
     this.#values = series.map(() => el('span', { class: 'value' }));
     this.#tip.replaceChildren(...series.map(
       (one, index) => el('div', {}, swatch(one), el('span', {}, one.name), this.#values[index])));
-    this.#caption.replaceChildren(el('strong', {}, title), ...series.map((one, index) => this.#key(one, index)));
+    const keys = series.map((one, index) => (one.name === '' ? null : this.#key(one, index)));
+    this.#caption.replaceChildren(el('strong', {}, title), ...keys.filter(Boolean));
     const { clientWidth: width, clientHeight: height } = this.#place;
     if (width < 20 || height < 20) {
       this.#chart = null; // it comes with its first size

@@ -1,12 +1,15 @@
 // A running `mjarm serve`: scene and meshes by HTTP, the rest over one WebSocket.
-import { Source } from './source.js';
+import { Emitter } from './emitter.js';
 import { readFrame } from './frame.js';
 
 const FIRST_PAUSE = 250; // [ms]
 const LONGEST_PAUSE = 3000; // [ms]
 const TEXTS = new Set(['hello', 'overlay', 'plots', 'panels', 'status', 'target', 'error', 'bye']);
 
-export class LiveSource extends Source {
+/** Is a {@link import('./source.js').Source}. */
+export class LiveSource extends Emitter {
+  /** @type {import('./source.js').Connection} */
+  connection = 'connecting';
   #base;
   #sceneText = '';
   #scene = null;
@@ -31,7 +34,7 @@ export class LiveSource extends Source {
         this.#pause = FIRST_PAUSE;
         return this.#scene;
       } catch {
-        this.setConnection('lost');
+        this.#setConnection('lost');
         await this.#sleep();
       }
     }
@@ -49,7 +52,6 @@ export class LiveSource extends Source {
   }
 
   retry() {
-    if (this.connection !== 'lost') return;
     this.#pause = FIRST_PAUSE;
     this.#wake?.();
   }
@@ -66,13 +68,19 @@ export class LiveSource extends Source {
     return true;
   }
 
+  #setConnection(connection) {
+    if (connection === this.connection) return;
+    this.connection = connection;
+    this.emit('connection', connection);
+  }
+
   async #fetchScene() {
     const answer = await fetch(new URL('scene.json', this.#base), { cache: 'no-cache' });
     if (!answer.ok) throw new Error(`scene.json: ${answer.status}`);
     return answer.text();
   }
 
-  /** Waits for the pause, which is longer the next time, or until `retry`. */
+  /** Waits for the pause, which is longer the next time, or until `retry`; for that alone once the run is over. */
   #sleep() {
     return new Promise((resolve) => {
       const done = () => {
@@ -81,7 +89,7 @@ export class LiveSource extends Source {
         resolve();
       };
       this.#wake = done;
-      this.#timer = setTimeout(done, this.#pause);
+      if (this.connection !== 'over') this.#timer = setTimeout(done, this.#pause);
       this.#pause = Math.min(2 * this.#pause, LONGEST_PAUSE);
     });
   }
@@ -104,17 +112,17 @@ export class LiveSource extends Source {
     const message = JSON.parse(data);
     if (message.type === 'hello') {
       this.#pause = FIRST_PAUSE;
-      this.setConnection('open');
+      this.#setConnection('open');
     }
-    if (message.type === 'bye') this.setConnection('over');
+    if (message.type === 'bye') this.#setConnection('over');
     if (TEXTS.has(message.type)) this.emit(message.type, message);
   }
 
   async #lost(socket) {
     if (socket !== this.#socket) return;
     this.#socket = null;
-    if (!this.#started || this.connection === 'over') return;
-    this.setConnection('lost');
+    if (!this.#started) return;
+    if (this.connection !== 'over') this.#setConnection('lost');
     for (;;) {
       await this.#sleep();
       try {

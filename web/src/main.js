@@ -14,7 +14,8 @@ async function main() {
   const notices = new Notices();
   const source = new LiveSource(new URL('.', window.location.href));
   source.on('connection', (connection) => showConnection(connection, source, notices));
-  source.on('bye', ({ what }) => notices.show({ title: 'over', more: 'over_more', text: what }));
+  const again = { word: 'retry', run: () => source.retry() };
+  source.on('bye', ({ what }) => notices.show({ title: 'over', more: 'over_more', text: what, action: again }));
   source.on('error', ({ what }) => notices.say(t('refused', what), true));
   source.on('replaced', () => window.location.reload());
   for (const event of ['online', 'pageshow']) window.addEventListener(event, () => source.retry());

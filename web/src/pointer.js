@@ -77,7 +77,7 @@ export class PointerHub {
 
   #press(event) {
     event.preventDefault();
-    this.#canvas.focus({ preventScroll: true });
+    this.#canvas.focus({ preventScroll: true, focusVisible: false });
     this.#canvas.setPointerCapture(event.pointerId);
     const pointer = this.#read(event);
     this.#down.set(event.pointerId, { ...pointer, startX: pointer.x, startY: pointer.y, moved: false });

@@ -1,5 +1,5 @@
-// Where the page has its data from. Everything else of the page knows this interface alone.
-import { Emitter } from './emitter.js';
+// Where the page has its data from: an interface, which live_source.js fulfils. Everything else of
+// the page knows this alone.
 
 /**
  * One moment of the world.
@@ -13,53 +13,27 @@ import { Emitter } from './emitter.js';
 
 /**
  * How the page stands to what it shows: `connecting` at first, `open`, `lost` (it tries again),
- * `over` (the run has ended; the last frame stays).
+ * `over` (the run has ended; the last frame stays, and it tries again only where it is asked to).
  * @typedef {'connecting'|'open'|'lost'|'over'} Connection
+ */
+
+/**
+ * @typedef {object} SourceParts
+ * @property {Connection} connection
+ * @property {() => Promise<object>} scene  once it is to be had
+ * @property {(index: number) => Promise<ArrayBuffer>} mesh  the bytes of a mesh of the scene
+ * @property {() => void} start  begins to tell
+ * @property {() => void} retry  does not wait for the next try
+ * @property {() => Frame|null} takeFrame  the newest one that was not taken yet
+ * @property {(message: {type: string}) => boolean} send  what the user did; false where it is lost,
+ *     as there is no connection
  */
 
 /**
  * Events (`on`): `hello`, `overlay`, `plots`, `panels`, `status`, `target`, `error`, `bye` with the
  * message of that type; `connection` with a {@link Connection}; `replaced` where what is shown is
  * another scene from now on, so that the page has to begin anew.
+ * @typedef {import('./emitter.js').Emitter & SourceParts} Source
  */
-export class Source extends Emitter {
-  /** @type {Connection} */
-  connection = 'connecting';
 
-  /** The scene, once it is to be had. @returns {Promise<object>} */
-  async scene() {
-    throw new Error('not implemented');
-  }
-
-  /** The bytes of a mesh of the scene. @param {number} index @returns {Promise<ArrayBuffer>} */
-  async mesh(index) {
-    throw new Error(`not implemented: mesh ${index}`);
-  }
-
-  /** Begins to tell. */
-  start() {}
-
-  /** Does not wait for the next try. */
-  retry() {}
-
-  /** The newest frame that was not taken yet, else null. @returns {Frame|null} */
-  takeFrame() {
-    return null;
-  }
-
-  /**
-   * What the user did; lost where there is no connection.
-   * @param {{type: string}} message
-   * @returns {boolean} whether it went off
-   */
-  send(message) {
-    return Boolean(message) && false;
-  }
-
-  /** @param {Connection} connection */
-  setConnection(connection) {
-    if (connection === this.connection) return;
-    this.connection = connection;
-    this.emit('connection', connection);
-  }
-}
+export {};

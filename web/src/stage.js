@@ -7,6 +7,7 @@ import {
 const SUN = new Vector3(0.45, -0.55, 1).normalize(); // where the light comes from
 const SLOW = 60; // [ms] a picture, on average
 const SLOW_COUNT = 25; // pictures
+const PROCESSOR_PACE = 45; // [ms] from picture to picture where the processor draws: it has the simulation to do, too
 
 export class Stage {
   scene = new Scene();
@@ -20,6 +21,7 @@ export class Stage {
   #sky = new HemisphereLight(0xffffff, 0x8890a0, 1);
   #fill = new DirectionalLight(0xffffff, 0.5);
   #pace = { last: 0, sum: 0, count: 0 };
+  #drawn = 0; // [ms] when
   #ratio = Math.min(window.devicePixelRatio || 1, 2);
   /** Called once where drawing turns out to be slow. */
   onSlow = null;
@@ -93,7 +95,7 @@ export class Stage {
 
   /** No shadows, no more pixels than the page has. */
   setLow() {
-    this.#ratio = 1;
+    this.#ratio = Math.min(1, this.#ratio);
     this.onSlow = null;
     this.setShadows(false);
     this.#resize();
@@ -105,7 +107,9 @@ export class Stage {
       this.#pace.last = 0;
       return;
     }
+    if (this.isSoftware && now - this.#drawn < PROCESSOR_PACE) return;
     this.#dirty = false;
+    this.#drawn = now;
     this.#render();
     this.#watchPace(now);
   }

@@ -36,6 +36,7 @@ void tell_address(const std::string& url) {
 Result<serve::PageOptions> page_options(const Options& options) {
   serve::PageOptions page;
   page.on_open = tell_address;
+  page.token = environment("MJARM_SERVE_TOKEN").value_or("");  // arguments are seen by everybody
   if (!options.address.empty()) page.server.address = options.address;
   if (!options.port.empty()) {
     const Result<std::uint64_t> port = parse_whole("--port", options.port);

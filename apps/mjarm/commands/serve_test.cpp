@@ -10,10 +10,11 @@
 namespace mjarm::app {
 namespace {
 
-support::ProgramResult serve(std::vector<std::string> arguments) {
+support::ProgramResult serve(std::vector<std::string> arguments, const std::string& token = {}) {
   arguments.insert(arguments.begin(), "serve");
-  return support::run_program(MJARM_PROGRAM, arguments,
-                              {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+  return support::run_program(
+      MJARM_PROGRAM, arguments,
+      {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}, {"MJARM_SERVE_TOKEN", token}}});
 }
 
 TEST(ServeCommand, RefusesWhatMakesNoSense) {
@@ -50,6 +51,21 @@ TEST(ServeCommand, WithoutADisplayPrintsAnAddressThatIsNewEachTime) {
   EXPECT_EQ(address.size() - address.find('/', 7), 34U) << address;
   const std::string second = address_of({"car", "--seconds", "100ms", "--paused"});
   EXPECT_NE(second.substr(second.find('/', 7), 33), address.substr(address.find('/', 7), 33));
+}
+
+TEST(ServeCommand, IsAtTheSameAddressAgainWhereItsSecretIsGiven) {
+  const std::string token = "00112233445566778899aabbccddeeff";
+  const support::ProgramResult result = serve({"car", "--seconds", "100ms"}, token);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("/" + token + "/ "), std::string::npos) << result.out;
+  for (const std::string& bad : {token.substr(1), token + "0", token.substr(1) + "A",
+                                 token.substr(1) + "/", std::string("secret")}) {
+    const support::ProgramResult refused = serve({"car", "--seconds", "100ms"}, bad);
+    EXPECT_EQ(refused.exit_code, 2) << bad;
+    EXPECT_NE(refused.err.find("MJARM_SERVE_TOKEN"), std::string::npos) << refused.err;
+    EXPECT_EQ(refused.err.find(bad), std::string::npos) << "a secret is told";
+    EXPECT_TRUE(refused.out.empty()) << refused.out;
+  }
 }
 
 TEST(ServeCommand, ServesAProgramToo) {
