@@ -51,12 +51,9 @@ void write_bodies(JsonWriter& json, const Model& model, const Arm& arm) {
   json.end_list();
 }
 
-}  // namespace
-
-std::string arm_json(const Model& model, const Arm& arm) {
-  std::string out;
-  JsonWriter json(out);
-  json.object().member("name", arm.name).key("joints").list();
+/// All but the bodies.
+void write_arm(JsonWriter& json, const Arm& arm) {
+  json.member("name", arm.name).key("joints").list();
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
     json.line_break().object().member("name", joint.name);
@@ -65,7 +62,23 @@ std::string arm_json(const Model& model, const Arm& arm) {
     json.member("lower", arm.limits.lower[i]).member("upper", arm.limits.upper[i]).end_object();
   }
   json.end_list().line_break().member("X_JT", frame(arm.X_JT)).member("home", arm.home);
+}
+
+}  // namespace
+
+std::string arm_json(const Model& model, const Arm& arm) {
+  std::string out;
+  JsonWriter json(out);
+  write_arm(json.object(), arm);
   write_bodies(json, model, arm);
+  json.end_object();
+  return out;
+}
+
+std::string arm_json(const Arm& arm) {
+  std::string out;
+  JsonWriter json(out);
+  write_arm(json.object(), arm);
   json.end_object();
   return out;
 }

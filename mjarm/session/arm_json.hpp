@@ -15,5 +15,7 @@ namespace mjarm::session {
 /// moves it, and X_JB as x y z [m], w x y z: those of a gripper as the model starts.
 /// @param arm  of `model`
 [[nodiscard]] std::string arm_json(const Model& model, const Arm& arm);
+/// The same without bodies.
+[[nodiscard]] std::string arm_json(const Arm& arm);
 
 }  // namespace mjarm::session
