@@ -34,8 +34,8 @@ struct TargetContact {
   /// What is_free() is about; none where that cannot be told.
   std::function<std::optional<CollisionReport>(std::span<const double> q)> look = {};
 };
-/// By an exact checker, which copies share. Contact counts where the arm is free of it at home; else
-/// nothing could be reached. `arm` must come from `model`.
+/// By an exact checker, which copies share. Contact counts where the arm is free of it at home;
+/// else nothing could be reached. `arm` must come from `model`.
 [[nodiscard]] TargetContact exact_contact(const Model& model, const Arm& arm);
 
 /// A target for a tool that the arm is to follow: it is led from pose to pose in small steps, so

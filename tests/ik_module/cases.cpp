@@ -1,5 +1,5 @@
-// What the program says, for the module of the page to say the same: writes one JSON list of arms, of
-// each its data and questions with their answers.
+// What the program says, for the module of the page to say the same: writes one JSON list of arms,
+// of each its data and questions with their answers.
 //
 //     ik_module_cases FILE
 #include <algorithm>
@@ -62,9 +62,10 @@ class Cases {
 
   void write_all() {
     const IkSolver ik(arm_, {.task = task_for(arm_)});
-    // No answer goes over into another without a jump.
-    const bool alone = ik.six_axis() || ik.seven_axis() || (arm_.dof() == 6);
-    json_.member("alone", alone).key("fk").list();
+    // With six joints no answer goes over into another.
+    json_.member("alone", arm_.dof() == 6);
+    json_.member("closed", ik.six_axis() || ik.seven_axis());
+    json_.key("fk").list();
     for (int i = 0; i < kPoses / 3; ++i) write_fk();
     json_.end_list().key("solve").list();
     for (int i = 0; i < kPoses; ++i) write_solve(ik, i);

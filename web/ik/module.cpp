@@ -1,5 +1,6 @@
-// The kinematics of one arm for a page without a server: what web/src/arm_ik.js calls. Numbers go in
-// and come out in one array, texts in one more; a pose is x y z [m] and w x y z of its quaternion.
+// The kinematics of one arm for a page without a server: what web/src/arm_ik.js calls. Numbers go
+// in and come out in one array, texts in one more; a pose is x y z [m] and w x y z of its
+// quaternion.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -26,7 +27,7 @@ using namespace mjarm;
 
 constexpr int kMaxAnswers = 256;  ///< of ik_all
 
-std::array<double, kMaxAnswers * (kMaxDof + 2)> numbers_{};
+std::array<double, kMaxAnswers*(kMaxDof + 2)> numbers_{};
 std::string text_;
 
 /// Reads numbers_ from its beginning, or fills it.
@@ -147,8 +148,8 @@ MJARM_EXPORT(word) void ik_word(int list, int index) {
   if (list == 2) text_ = grade_name(index);
 }
 
-/// In: of each joint whether it is a slide, X_PJ as a frame, its axis, both limits; X_JT as a frame;
-/// the home position. Text: the name of the arm, then those of the joints, a line each.
+/// In: of each joint whether it is a slide, X_PJ as a frame, its axis, both limits; X_JT as a
+/// frame; the home position. Text: the name of the arm, then those of the joints, a line each.
 /// @return false where there are no joints or too many.
 MJARM_EXPORT(make_arm) bool ik_make_arm(int dof) {
   parts_.reset();
@@ -242,9 +243,10 @@ MJARM_EXPORT(solve_all) int ik_solve_all() {
   return static_cast<int>(answers->size());
 }
 
-// The target that is dragged. Each of these leaves its state in the numbers: pose, goal, grade, room
-// [rad or m], the joint that it belongs to, the smallest singular value, the kind of singularity,
-// whether there is a jump and where to, whether there is a failure and which. Text: its line.
+// The target that is dragged. Each of these leaves its state in the numbers: pose, goal, grade,
+// room [rad or m], the joint that it belongs to, the smallest singular value, the kind of
+// singularity, whether there is a jump and where to, whether there is a failure and which. Text:
+// its line.
 
 MJARM_EXPORT(target_state) void ik_target_state() { write_state(parts_->target); }
 /// In: q.
