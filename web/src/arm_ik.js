@@ -46,12 +46,14 @@ const GRADES = 2;
 const FRAMES = ['world', 'tool', 'base'];
 const ROOM = 4608; // numbers that the module takes at once
 
-/** The few calls of a system that its libraries may make: there is none. */
+const NO_SYSTEM = 52; // ENOSYS of WASI
+
+/** The few calls of a system that its libraries may make, as for the environment: there is none. */
 function imports(module) {
   const out = {};
   for (const { module: from, name } of WebAssembly.Module.imports(module)) {
     out[from] ??= {};
-    out[from][name] = () => 0;
+    out[from][name] = () => NO_SYSTEM;
   }
   return out;
 }
