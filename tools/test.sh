@@ -153,6 +153,7 @@ run_tests() {
   check "build" build_counted "$1" all
   if ((failed == 0)) || [[ -x $root/build/$1/bin/core_test ]]; then
     check "headers stand alone" check_headers "$1"
+    check "kinematics of the page" check_ik_module "$1"
     run_ctest "$1"
     run_page_tests "$1"
     run_pytest "$1"

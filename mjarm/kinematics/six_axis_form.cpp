@@ -96,7 +96,9 @@ std::optional<SixAxis> SixAxis::recognise(const Chain& chain) {
   if (chain.dof != 6 || std::find(slide.begin(), slide.end(), true) != slide.end()) return {};
   Lines lines(chain);
   SixAxis form;
-  const auto [p_C, gap] = lines.last_meeting();
+  const std::pair<Vector3d, double> meeting = lines.last_meeting();
+  const Vector3d& p_C = meeting.first;  // no structured binding: clang 14 lets no lambda capture it
+  const double gap = meeting.second;
   const double skew = lines.align(2, 1);
   if (skew > kAngleDefect || gap > kPlaceDefect) return {};
   form.parallel_ = lines.h[3].cross(lines.h[1]).norm() <= kAngleDefect;

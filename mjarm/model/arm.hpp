@@ -118,8 +118,8 @@ struct Arm {
 
   [[nodiscard]] int dof() const { return static_cast<int>(joints.size()); }
   [[nodiscard]] bool overlap_by_design(ModelGeom a, ModelGeom b) const {
-    return std::ranges::any_of(overlapping,
-                               [&](const DesignOverlap& pair) { return pair.is_of(a, b); });
+    return std::any_of(overlapping.begin(), overlapping.end(),
+                       [&](const DesignOverlap& pair) { return pair.is_of(a, b); });
   }
 };
 

@@ -25,30 +25,12 @@ constexpr double kSampleJoint = 0.02;  ///< [rad or m] between samples of a stra
 constexpr double kNearlySingular =
     0.01;  ///< smallest singular value that is not another branch yet
 
-/// Contact counts where the arm is free of it at home; else nothing could be reached.
-std::optional<ExactChecker> checker_of(const Model& model, const Arm& arm) {
-  ExactChecker checker(model, arm, {.margin = 0});
-  if (!checker.is_free(as_span(arm.home))) return std::nullopt;
-  return checker;
+IkOptions near_options(IkTask task, const TargetContact& contact) {
+  return {.restarts = 0, .task = task, .max_step = kStepJoint, .valid = contact.is_free};
 }
 
-IkOptions options_of(IkTask task, const std::optional<ExactChecker>& checker) {
-  IkOptions options{.task = task};
-  if (checker) options.valid = checker->predicate();
-  return options;
-}
-
-IkOptions near_options(IkTask task, const std::optional<ExactChecker>& checker) {
-  IkOptions options = options_of(task, checker);
-  options.max_step = kStepJoint;
-  options.restarts = 0;
-  return options;
-}
-
-IkOptions any_options(IkTask task, const std::optional<ExactChecker>& checker) {
-  IkOptions options = options_of(task, checker);
-  options.restarts = 20;
-  return options;
+IkOptions any_options(IkTask task, const TargetContact& contact) {
+  return {.restarts = 20, .task = task, .valid = contact.is_free};
 }
 
 int steps_between(const Pose& from, const Pose& to, bool turns) {
@@ -74,14 +56,11 @@ std::string_view unit_of(const Arm& arm, int joint) {
 
 }  // namespace
 
-ToolTarget::ToolTarget(const Model& model, const Arm& arm)
-    : ToolTarget(arm, checker_of(model, arm)) {}
-
-ToolTarget::ToolTarget(const Arm& arm, std::optional<ExactChecker> checker)
+ToolTarget::ToolTarget(const Arm& arm, TargetContact contact)
     : task_(task_for(arm)),
-      checker_(std::move(checker)),
-      near_(arm, near_options(task_, checker_)),
-      any_(arm, any_options(task_, checker_)) {
+      contact_(std::move(contact)),
+      near_(arm, near_options(task_, contact_)),
+      any_(arm, any_options(task_, contact_)) {
   set_goal(arm.home);
 }
 
@@ -128,7 +107,7 @@ bool ToolTarget::is_connected(const JointVec& from, const JointVec& to) {
     const JointVec q = from + (static_cast<double>(i) / samples) * (to - from);
     if (smallest_singular_value(fk_jacobian(arm(), as_span(q)).J_W) < kNearlySingular) return false;
     // What touches already at the beginning may leave.
-    if (i > 0 && checker_ && !checker_->is_free(as_span(q))) return false;
+    if (i > 0 && contact_.is_free && !contact_.is_free(as_span(q))) return false;
   }
   return true;
 }
@@ -225,9 +204,9 @@ std::string ToolTarget::jump_line(const JointVec& to) const {
 ToolTarget::Standing ToolTarget::refuse(IkFailure failure) {
   Standing out = rate();
   out.grade = TargetGrade::unreachable;
-  if (failure.code == IkErrc::collision && checker_) {
-    Result<CollisionReport> report = checker_->check(as_span(failure.best.q));
-    if (report && !report->free) out.contact = std::move(*report);
+  if (failure.code == IkErrc::collision && contact_.look) {
+    out.contact = contact_.look(as_span(failure.best.q));
+    if (out.contact && out.contact->free) out.contact.reset();
   }
   out.failure = std::move(failure);
   return out;

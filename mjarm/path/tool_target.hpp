@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "mjarm/collision/exact.hpp"
@@ -25,13 +27,26 @@ enum class TargetGrade {
 /// frame at 0: for a robot that stands turned, those of its own foot.
 enum class JogFrame { world, tool, base };
 
+/// What a target asks about contact of the arm at `q`, shape (dof,) [rad or m]. Empty functions:
+/// contact does not count.
+struct TargetContact {
+  std::function<bool(std::span<const double> q)> is_free = {};
+  /// What is_free() is about; none where that cannot be told.
+  std::function<std::optional<CollisionReport>(std::span<const double> q)> look = {};
+};
+/// By an exact checker, which copies share. Contact counts where the arm is free of it at home;
+/// else nothing could be reached. `arm` must come from `model`.
+[[nodiscard]] TargetContact exact_contact(const Model& model, const Arm& arm);
+
 /// A target for a tool that the arm is to follow: it is led from pose to pose in small steps, so
 /// that the joints never jump, without contact (unless the arm stands in contact at home). Six
 /// joints and more take position and orientation, fewer the position alone. Knows no window.
 class ToolTarget {
  public:
-  /// The target is where the tool is at home. `arm` must come from `model`.
-  ToolTarget(const Model& model, const Arm& arm);
+  /// The target is where the tool is at home.
+  explicit ToolTarget(const Arm& arm, TargetContact contact = {});
+  /// With exact_contact(). `arm` must come from `model`.
+  ToolTarget(const Model& model, const Arm& arm) : ToolTarget(arm, exact_contact(model, arm)) {}
 
   /// The target is where the tool is at `q`, shape (dof,) [rad or m].
   void set_goal(const JointVec& q);
@@ -84,7 +99,6 @@ class ToolTarget {
     std::optional<CollisionReport> contact = {};  ///< of the best attempt, where that touches
     std::optional<JointVec> jump = {};
   };
-  ToolTarget(const Arm& arm, std::optional<ExactChecker> checker);
   [[nodiscard]] bool lead(const Pose& X_to);
   void turn_with_tool();
   [[nodiscard]] bool is_connected(const JointVec& from, const JointVec& to);
@@ -94,9 +108,9 @@ class ToolTarget {
   [[nodiscard]] std::string jump_line(const JointVec& to) const;
 
   IkTask task_;
-  std::optional<ExactChecker> checker_;  ///< none where contact does not count
-  IkSolver near_;                        ///< answers next to the last one
-  IkSolver any_;                         ///< any answer, and the reasons
+  TargetContact contact_;
+  IkSolver near_;  ///< answers next to the last one
+  IkSolver any_;   ///< any answer, and the reasons
   Pose X_WT_;
   JointVec goal_;
   Standing standing_;

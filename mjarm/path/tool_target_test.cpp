@@ -69,6 +69,25 @@ TEST(ToolTarget, BeginsWellAtHome) {
   }
 }
 
+TEST(ToolTarget, WithoutAModelContactDoesNotCount) {
+  const TestArm robot = shipped_arm("ur5e");
+  const IkSolver judge(robot.arm);
+  Rng rng(7);
+  int touching = 0;
+  for (int i = 0; i < 100; ++i) {
+    ToolTarget target(robot.arm);
+    ToolTarget careful(robot.model, robot.arm);
+    const Eigen::Vector3d p(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1.2));
+    const Pose X_WT{p, rotation_exp({rng.uniform(-2, 2), 0, rng.uniform(-2, 2)})};
+    target.move_to(X_WT);
+    careful.move_to(X_WT);
+    const bool has_answer = judge.solve(X_WT, as_span(robot.arm.home)).has_value();
+    ASSERT_EQ(target.grade() != TargetGrade::unreachable, has_answer) << target.line();
+    touching += has_answer && careful.failure() ? 1 : 0;
+  }
+  EXPECT_GT(touching, 0);
+}
+
 /// The arm's solver from home is the judge; it knows nothing of ways.
 TEST(ToolTarget, RandomPosesAgreeWithTheSolver) {
   const TestArm robot = shipped_arm("ur5e");
