@@ -1,6 +1,7 @@
 // Good models are passed in silence: no error and no warning.
 #include "tests/planted_faults.hpp"
 
+#include "tests/support/rounds.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/test_data.hpp"
 
@@ -33,6 +34,7 @@ TEST(GoodModels, OursArePassedInSilence) {
 }
 
 TEST(GoodModels, MenagerieIsPassedInSilence) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   MJARM_TEST_FILE(ur5e, "menagerie/universal_robots_ur5e.tar.xz");
   MJARM_TEST_FILE(panda, "menagerie/franka_emika_panda.tar.xz");
   const support::TempFolder folder;

@@ -74,6 +74,7 @@ TEST(BenchPick, MeasuresWhatIsSeenByTagAndByShape) {
 }
 
 TEST(BenchPick, MeasuresWhatIsHeldAndDropsItWithoutFriction) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   const json bench =
       bench_json({"bench", "pick", "--set", "creep", "--robot", "panda", "--hold", "1"});
   ASSERT_EQ(bench.at("creep").size(), 9u);

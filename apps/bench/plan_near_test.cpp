@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "apps/bench/runs_test.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -64,6 +65,7 @@ TEST(BenchPlanNear, EveryGoalIsReachedByAPathWithoutContact) {
 }
 
 TEST(BenchPlanNear, TheSameSeedGivesTheSameProblemsAndAnotherOthers) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   const support::TempFolder folder;
   const json bench = near_json(folder, kFew, {"--no-timing"});
   const json paths = our_paths(folder);

@@ -10,6 +10,7 @@
 
 #include "apps/bench/runs_test.hpp"
 #include "mjarm/core/text_width.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -210,6 +211,7 @@ class OneCore {
 };
 
 TEST(BenchReports, TheSameBytesForAnyNumberOfThreadsAndAgain) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   const Data data;
   const auto plan = [&](const char* out) {
     const auto folder = (data.folder.path() / out).string();

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "apps/bench/runs_test.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -32,6 +33,7 @@ std::string everywhere(const std::string& distance, int goals = 200) {
 }
 
 TEST(BenchRl, EverySeedIsTrainedAndJudged) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   const support::TempFolder folder;
   const json bench = bench_json(one_iteration(folder, {"--seeds", "2", "--no-timing"}));
   const json& run = run_of(bench, "mjarm", "tutorial");

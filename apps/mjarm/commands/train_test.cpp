@@ -5,6 +5,7 @@
 
 #include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/os_child_input.hpp"
+#include "tests/support/rounds.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -123,6 +124,7 @@ TEST(Train, LeavesAPolicyThatEvalTries) {
 }
 
 TEST(Train, FilmsWhatWasLearned) {
+  if (!testing::is_long()) GTEST_SKIP() << testing::kLongOnly;
   if (find_program("ffmpeg").empty()) GTEST_SKIP() << "no ffmpeg (apt-get install ffmpeg)";
   const support::TempFolder folder;
   std::string brief = kSmall;  // pictures take most of its time where the processor draws them
