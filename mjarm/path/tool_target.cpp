@@ -9,6 +9,7 @@
 #include "mjarm/core/messages/target.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/ik_all.hpp"
 
 namespace mjarm {
 namespace {
@@ -22,6 +23,7 @@ constexpr double kShortestPart = 64;   ///< parts of a step at an edge
 constexpr double kNearLimit = 0.1;     ///< [rad or m]
 constexpr double kSameBranch = 1;      ///< [rad or m] at most, to an answer beyond a gap
 constexpr double kSampleJoint = 0.02;  ///< [rad or m] between samples of a straight joint motion
+constexpr int kPostureStarts = 30;     ///< of an arm without a closed form
 constexpr double kNearlySingular =
     0.01;  ///< smallest singular value that is not another branch yet
 
@@ -166,8 +168,20 @@ bool ToolTarget::jog(JogFrame frame, int axis, double amount) {
 }
 
 void ToolTarget::take_jump() {
-  if (!jump()) return;
-  goal_ = *jump();
+  if (jump()) take_posture(*jump());
+}
+
+std::vector<JointVec> ToolTarget::postures(int max) const {
+  std::vector<JointVec> out;
+  const auto answers =
+      solve_all(any_, X_WT_, as_span(goal_), {.starts = kPostureStarts, .max = max});
+  if (!answers) return out;
+  for (const IkSolution& answer : *answers) out.push_back(answer.q);
+  return out;
+}
+
+void ToolTarget::take_posture(const JointVec& q) {
+  goal_ = JointVec(q);
   standing_ = rate();
   refused_.reset();
   turn_with_tool();

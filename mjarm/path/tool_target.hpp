@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/kinematics/ik.hpp"
@@ -61,6 +62,16 @@ class ToolTarget {
   bool jog(JogFrame frame, int axis, double amount);
   /// Takes the answer that needs a jump as the goal; nothing where there is none.
   void take_jump();
+  /// The postures that reach the target without contact, the nearest to the goal first (the goal
+  /// itself is one of them where it does): all branches of a closed form, else those that random
+  /// starts find; samples for a redundant arm. Takes microseconds in closed form, milliseconds
+  /// else.
+  /// @param max  so many at most, > 0.
+  [[nodiscard]] std::vector<JointVec> postures(int max) const;
+  /// Takes a posture that reaches the target as the goal.
+  void take_posture(const JointVec& q);
+  /// Which gives any answer, and the reasons.
+  [[nodiscard]] const IkSolver& solver() const noexcept { return any_; }
 
   /// X_WT as it was asked for.
   [[nodiscard]] const Pose& pose() const noexcept { return X_WT_; }

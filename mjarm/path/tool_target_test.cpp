@@ -222,6 +222,33 @@ TEST(ToolTarget, AJumpIsShownAndTakenOnlyWhenAsked) {
   EXPECT_FALSE(target.jump());
 }
 
+/// Each reaches the target, none is another, the goal is the first; one that is taken is the goal.
+TEST(ToolTarget, PosturesAllReachTheTargetAndAreTaken) {
+  for (const char* name : {"ur5e", "panda"}) {
+    const TestArm robot = shipped_arm(name);
+    ToolTarget target(robot.model, robot.arm);
+    target.move_to(moved(target.pose(), {0.02, 0.03, -0.05}));
+    const std::vector<JointVec> postures = target.postures(8);
+    ASSERT_GE(postures.size(), 3U) << name;
+    EXPECT_LT(largest(postures.front() - target.goal()), 1e-6);
+    for (std::size_t i = 0; i < postures.size(); ++i) {
+      expect_same(fk(robot.arm, as_span(postures[i])), target.pose());
+      for (std::size_t j = 0; j < i; ++j) EXPECT_GT(largest(postures[i] - postures[j]), 1e-3);
+    }
+    EXPECT_EQ(target.postures(2).size(), 2U);
+    target.take_posture(postures.back());
+    EXPECT_TRUE(target.is_reached());
+    EXPECT_EQ(target.goal(), postures.back());
+  }
+}
+
+TEST(ToolTarget, OutOfReachThereAreNoPostures) {
+  const TestArm robot = shipped_arm("ur5e");
+  ToolTarget target(robot.model, robot.arm);
+  target.move_to(moved(target.pose(), {3, 0, 0}));
+  EXPECT_TRUE(target.postures(8).empty());
+}
+
 TEST(ToolTarget, ANearSingularityIsSaid) {
   const TestArm robot = shipped_arm("ur5e");
   ToolTarget target(robot.model, robot.arm);

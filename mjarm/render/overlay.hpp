@@ -93,6 +93,8 @@ struct OverlayGhost {
   std::vector<int> qpos_index = {};  ///< shape (n,), places in the model's qpos; others are ignored
   std::vector<double> qpos = {};     ///< shape (n,) [rad or m] values there
   Rgba color = {0.30F, 0.75F, 0.45F, 0.35F};
+  int item = -1;     ///< of a panel, which a click on the ghost uses where it can be clicked on
+  double value = 0;  ///< ... with this value
 };
 
 /// A text at a point of the world. The font of the renderer knows ASCII only; other characters are

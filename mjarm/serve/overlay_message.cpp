@@ -119,7 +119,7 @@ void add(JsonWriter& json, const render::OverlayGhost& ghost, BodyPoses& poses) 
   }
   json.end_list();
   add_color(json, ghost.color);
-  json.member("item", -1).member("value", 0).end_object();
+  json.member("item", ghost.item).member("value", ghost.value).end_object();
 }
 
 std::size_t stride_of(std::size_t points) {

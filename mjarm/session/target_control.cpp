@@ -8,6 +8,7 @@
 #include "mjarm/core/messages/panels.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/kinematics/branch.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
 
 namespace mjarm::session {
@@ -23,13 +24,19 @@ enum TargetItem {
   kMoveItem,
   kTurnItem,
   kTextItem,
+  kPosturesItem,
+  kPostureItem,     ///< of them, by its place
   kJogItem = 1100,  ///< - x, + x, - y, ... + rz
 };
 
 constexpr double kMoveSteps[] = {0.001, 0.01, 0.05};  ///< [m]
 constexpr double kTurnSteps[] = {1, 5, 15};           ///< [deg]
 constexpr const char* kJogAxes[] = {"x", "y", "z", "rx", "ry", "rz"};
+constexpr double kSamePosture = 1e-3;  // [rad or m]
 constexpr float kGhostAlpha = 0.3F;
+constexpr render::Rgba kPosture = {0.35F, 0.50F, 0.85F, 0.16F};
+constexpr int kMaxShownPostures =
+    static_cast<int>(render::kMaxGhosts) - 1;  // beside that of the goal
 
 Msg word_of(TargetGrade grade) {
   switch (grade) {
@@ -55,6 +62,20 @@ std::string pair_of(double length, double angle) {
   return line;
 }
 
+/// Which way an arm is bent, in the words of the command line; empty where that is not known.
+std::string bend(const IkSolver& ik, const JointVec& q) {
+  const Branch branch = branch_of(ik, as_span(q));
+  std::string out;
+  for (int part = 0; part < Branch::kParts; ++part) {
+    const auto place = static_cast<std::size_t>(part);
+    if (branch.way[place] < 0) continue;
+    if (!out.empty()) out += ", ";
+    out += std::string(branch_parts()[place]) + " " +
+           std::string(branch_ways(part)[static_cast<std::size_t>(branch.way[place])]);
+  }
+  return out;
+}
+
 }  // namespace
 
 render::Rgba color_of(TargetGrade grade) noexcept {
@@ -71,6 +92,12 @@ TargetControl::TargetControl(const Model& model, const Arm& arm, FreeSim& sim)
 void TargetControl::restart() {
   sent_ = sim_.goal();
   target_.set_goal(sent_);
+  find_postures();
+}
+
+void TargetControl::find_postures() {
+  postures_.clear();
+  if (shows_postures_ && shown_) postures_ = target_.postures(kMaxShownPostures + 1);
 }
 
 void TargetControl::follow_sim() {
@@ -83,13 +110,14 @@ void TargetControl::send() {
 }
 
 void TargetControl::changed() {
+  find_postures();
   if (follow_) send();
 }
 
 void TargetControl::toggle() {
   shown_ = !shown_;
   held_ = false;
-  if (shown_) restart();
+  shown_ ? restart() : find_postures();
 }
 
 bool TargetControl::take_drags() {
@@ -127,6 +155,15 @@ bool TargetControl::handle(const view::PanelEvent& event) {
       return true;
     case kBackItem:
       restart();
+      return true;
+    case kPosturesItem:
+      shows_postures_ = event.value != 0;
+      find_postures();
+      return true;
+    case kPostureItem:
+      if (chosen < 0 || chosen >= static_cast<int>(postures_.size())) return true;
+      target_.take_posture(postures_[static_cast<std::size_t>(chosen)]);
+      send();
       return true;
     case kFrameItem:
       frame_ = std::clamp(chosen, 0, 2);
@@ -171,10 +208,22 @@ view::PanelSection TargetControl::target_section() const {
            {kFollowItem, text(msg::panel_follow), view::PanelCheckbox{follow_}},
            {kGoItem, text(msg::panel_go), view::PanelButton{}},
            {kBackItem, text(msg::panel_back), view::PanelButton{}},
+           {kPosturesItem, text(msg::panel_postures), view::PanelCheckbox{shows_postures_}},
            {kTextItem, text(msg::panel_state), view::PanelText{text(word_of(target_.grade()))}},
            {kTextItem, text(msg::panel_room), view::PanelText{room}},
            {kTextItem, text(msg::panel_of_joint), view::PanelText{joint}},
            {kTextItem, text(msg::panel_singular_value), view::PanelText{singular}}}};
+}
+
+view::PanelSection TargetControl::posture_section() const {
+  view::PanelList list{.lines = {}, .current = -1};
+  for (std::size_t i = 0; i < postures_.size(); ++i) {
+    if ((postures_[i] - target_.goal()).cwiseAbs().maxCoeff() < kSamePosture) {
+      list.current = static_cast<int>(i);
+    }
+    list.lines.push_back(std::to_string(i + 1) + "  " + bend(target_.solver(), postures_[i]));
+  }
+  return {text(msg::panel_postures), {{kPostureItem, text(msg::panel_postures), std::move(list)}}};
 }
 
 view::PanelSection TargetControl::tool_section() const {
@@ -207,10 +256,19 @@ view::PanelSection TargetControl::tool_section() const {
 
 void TargetControl::add_sections(std::vector<view::PanelSection>& sections) const {
   sections.push_back(target_section());
+  if (!postures_.empty()) sections.push_back(posture_section());
   sections.push_back(tool_section());
 }
 
 void TargetControl::add_ghost(render::Overlay& overlay, bool always) const {
+  for (std::size_t i = 0; i < postures_.size(); ++i) {
+    if ((postures_[i] - target_.goal()).cwiseAbs().maxCoeff() < kSamePosture) continue;
+    render::OverlayGhost& posture =
+        overlay.ghosts.emplace_back(render::ghost_of(target_.arm(), as_span(postures_[i])));
+    posture.color = kPosture;
+    posture.item = kPostureItem;
+    posture.value = static_cast<double>(i);
+  }
   const JointVec& q = target_.jump() ? *target_.jump() : target_.goal();
   const bool waits = shown_ && (q - sim_.goal()).cwiseAbs().maxCoeff() > 1e-9;
   if (!always && !held_ && !waits) return;

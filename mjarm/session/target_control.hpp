@@ -39,7 +39,8 @@ class TargetControl {
   void post_look();
   void add_sections(std::vector<view::PanelSection>& sections) const;
   /// Appends the robot as it would stand, in the colour of the target's state: while the target is
-  /// dragged, while the arm is not sent there, or `always`.
+  /// dragged, while the arm is not sent there, or `always`; and, where they are shown, the other
+  /// postures, each of which a click takes.
   void add_ghost(render::Overlay& overlay, bool always) const;
   /// One line in the language in use; empty while the target is not shown.
   [[nodiscard]] std::string line() const;
@@ -48,13 +49,18 @@ class TargetControl {
   void jog(int button);
   void changed();
   void send();
+  /// Looks for the postures anew, where they are shown and the target is another one.
+  void find_postures();
   [[nodiscard]] view::PanelSection target_section() const;
+  [[nodiscard]] view::PanelSection posture_section() const;
   [[nodiscard]] view::PanelSection tool_section() const;
 
   FreeSim& sim_;
   ToolTarget target_;
   view::TargetLink link_;
-  JointVec sent_;  ///< the goal of the simulation as it was last seen
+  JointVec sent_;                   ///< the goal of the simulation as it was last seen
+  std::vector<JointVec> postures_;  ///< that reach the target, where they are shown
+  bool shows_postures_ = false;
   bool shown_ = true;
   bool follow_ = true;
   bool held_ = false;  ///< the mouse holds a handle

@@ -124,6 +124,59 @@ TEST_F(Control, AJogThatCannotBeLeavesTheArm) {
   EXPECT_NE(sim_.goal(), before);
 }
 
+/// Every other posture is a ghost that a click takes; the arm goes there.
+TEST_F(Control, OtherPosturesAreGhostsToBeClickedOn) {
+  render::Overlay none;
+  control_.add_ghost(none, false);
+  EXPECT_TRUE(none.ghosts.empty());
+  use("All postures");
+  render::Overlay overlay;
+  control_.add_ghost(overlay, false);
+  ASSERT_GE(overlay.ghosts.size(), 2U);
+  EXPECT_LE(overlay.ghosts.size(), render::kMaxGhosts);
+  const Pose before = goal_pose();
+  for (const render::OverlayGhost& ghost : overlay.ghosts) {
+    ASSERT_TRUE(control_.handle({ghost.item, ghost.value}));
+    EXPECT_EQ(std::vector<double>(sim_.goal().begin(), sim_.goal().end()), ghost.qpos);
+    EXPECT_LT((goal_pose().p - before.p).norm(), 1e-6);
+  }
+  EXPECT_TRUE(control_.handle({overlay.ghosts.front().item, 99}));
+  EXPECT_TRUE(control_.handle({overlay.ghosts.front().item, -1}));
+  EXPECT_EQ(std::vector<double>(sim_.goal().begin(), sim_.goal().end()),
+            overlay.ghosts.back().qpos);
+}
+
+TEST_F(Control, PosturesAreListedInWords) {
+  use("All postures");
+  std::vector<view::PanelSection> sections;
+  control_.add_sections(sections);
+  ASSERT_EQ(sections.size(), 3U);
+  const auto& list = std::get<view::PanelList>(sections[1].items.at(0).what);
+  ASSERT_GE(list.lines.size(), 3U);
+  EXPECT_EQ(list.current, 0);
+  EXPECT_THAT(list.lines[0], HasSubstr("shoulder "));
+  EXPECT_THAT(list.lines[0], HasSubstr(", elbow "));
+  EXPECT_NE(list.lines[0].substr(1), list.lines[1].substr(1));
+}
+
+TEST_F(Control, PosturesGoAlongWithTheTarget) {
+  use("All postures");
+  drag({0, 0, 0.05});
+  render::Overlay overlay;
+  control_.add_ghost(overlay, false);
+  ASSERT_GE(overlay.ghosts.size(), 2U);
+  for (const render::OverlayGhost& ghost : overlay.ghosts) {
+    EXPECT_LT((fk(robot_.arm, ghost.qpos).p - control_.target().pose().p).norm(), 1e-6);
+  }
+  use("All postures", 0);
+  render::Overlay off;
+  control_.add_ghost(off, false);
+  EXPECT_LE(off.ghosts.size(), 1U);
+  std::vector<view::PanelSection> sections;
+  control_.add_sections(sections);
+  EXPECT_EQ(sections.size(), 2U);
+}
+
 TEST_F(Control, ChoicesOutOfRangeAreClampedAndOtherItemsLeftAlone) {
   use("Move by", 99);
   use("Frame", -7);

@@ -79,6 +79,31 @@ export function testTarget(session) {
     ok(angle(reached.quat, quat) < 0.01, `it is turned by ${angle(reached.quat, quat)} rad`);
   });
 
+  test('every posture is a ghost, and the arm goes to the one that is clicked on', async () => {
+    const { witness, page } = session;
+    await session.check('All postures', true, 'Target');
+    const isGhost = ({ kind, item }) => kind === 'ghost' && item >= 0;
+    const ghosts = await witness.until('the ghosts', () => {
+      const found = witness.latest.overlay.items.filter(isGhost);
+      return found.length >= 3 ? found : null;
+    });
+    await page.waitForFunction((count) => window.mjarm.overlay.filter((kind) => kind === 'ghost').length >= count, ghosts.length);
+    const elbow = witness.scene.bodies.indexOf('forearm_link');
+    const placeOf = (ghost) => ghost.bodies.find(([body]) => body === elbow)?.slice(1, 4);
+    const stands = witness.frame.bodies[elbow].slice(0, 3);
+    const farthest = ghosts.filter(placeOf).sort((a, b) => distance(placeOf(b), stands) - distance(placeOf(a), stands))[0];
+    await page.mouse.click(...await session.pixel(placeOf(farthest)));
+    await witness.until('the arm to leave', () => distance(witness.frame.bodies[elbow].slice(0, 3), stands) > 0.1);
+    await witness.standing();
+    const there = witness.frame.bodies[elbow].slice(0, 3);
+    const nearest = Math.min(...ghosts.filter(placeOf).map((ghost) => distance(placeOf(ghost), there)));
+    ok(nearest < MILLIMETRE, `the elbow is ${nearest} m from where a ghost had it`);
+    const reached = await askMjarm('fk', '--robot', 'ur5e', `--q=${witness.frame.qpos.join(',')}`);
+    ok(distance(reached.pos, witness.target.pos) < MILLIMETRE, 'the tool is where it was');
+    await session.check('All postures', false, 'Target');
+    await witness.until('no ghosts', () => !witness.latest.overlay.items.some(isGhost));
+  });
+
   test('the arm follows while the ball is held', async () => {
     const { witness, page } = session;
     const [x, y] = await session.pixel(witness.target.pos);
