@@ -29,7 +29,8 @@ check_ik_module() {
   local build=$root/build/$1 why
   why=$(ik_module_lacks)
   [[ -z $why ]] || { say "$why" && return 77; }
+  find_node || return 77
   build_ik_module || return
   MJARM_SIMD=baseline "$build/bin/ik_module_cases" "$build/ik_module_cases.json" &&
-    node "$root/tests/ik_module/compare.mjs" "$root/web/dist/ik.wasm" "$build/ik_module_cases.json"
+    "$node" "$root/tests/ik_module/compare.mjs" "$root/web/dist/ik.wasm" "$build/ik_module_cases.json"
 }

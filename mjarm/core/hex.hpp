@@ -1,7 +1,7 @@
 #pragma once
 
-#include <span>
 #include <string>
+#include <string_view>
 
 namespace mjarm {
 
@@ -13,9 +13,9 @@ inline void append_hex(std::string& out, unsigned char byte) {
 }
 
 /// The digits of all bytes, one after the other.
-[[nodiscard]] inline std::string hex(std::span<const unsigned char> bytes) {
+[[nodiscard]] inline std::string hex(std::string_view bytes) {
   std::string out;
-  for (const unsigned char byte : bytes) append_hex(out, byte);
+  for (const char byte : bytes) append_hex(out, static_cast<unsigned char>(byte));
   return out;
 }
 

@@ -12,7 +12,7 @@
 namespace mjarm {
 
 Result<std::string> secret_hex(std::size_t bytes) {
-  unsigned char drawn[256];
+  char drawn[256];
   bytes = std::clamp<std::size_t>(bytes, 1, sizeof(drawn));
   // So few come at once or not at all; a signal may come first.
   ssize_t got = -1;

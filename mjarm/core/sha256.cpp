@@ -19,11 +19,12 @@ class Sha256 {
     EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
   }
   void add(std::string_view piece) { EVP_DigestUpdate(context_.get(), piece.data(), piece.size()); }
-  [[nodiscard]] std::string digits() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  [[nodiscard]] std::string bytes() {
+    std::string digest(EVP_MAX_MD_SIZE, '\0');
     unsigned int size = 0;
-    EVP_DigestFinal_ex(context_.get(), digest.data(), &size);
-    return hex({digest.data(), size});
+    EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), &size);
+    digest.resize(size);
+    return digest;
   }
 
  private:
@@ -35,7 +36,13 @@ class Sha256 {
 std::string sha256(std::string_view content) {
   Sha256 hash;
   hash.add(content);
-  return hash.digits();
+  return hex(hash.bytes());
+}
+
+std::string sha256_bytes(std::string_view content) {
+  Sha256 hash;
+  hash.add(content);
+  return hash.bytes();
 }
 
 /// Piece by piece, as files may be large.
@@ -50,7 +57,7 @@ Result<std::string> sha256_of_file(const std::filesystem::path& file) {
   }
   // Why a file cannot be read is told by read_file().
   if (!open || std::ferror(open.get()) != 0) return read_file(file).map(sha256);
-  return hash.digits();
+  return hex(hash.bytes());
 }
 
 }  // namespace mjarm

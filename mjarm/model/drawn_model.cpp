@@ -156,6 +156,7 @@ void add_bodies(const mjModel& m, DrawnModel& out) {
   for (int i = 0; i < m.nbody; ++i) {
     out.bodies.push_back({.name = name_or_number(m, mjOBJ_BODY, i, "body"),
                           .p_BC = Eigen::Map<const Vector3d>(m.body_ipos + 3 * i),
+                          .mass = m.body_mass[i],
                           .moves = m.body_weldid[i] != 0});
   }
 }

@@ -18,6 +18,7 @@ namespace mjarm {
 struct DrawnBody {
   std::string name = {};                           ///< "body 7" where the model has none
   Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();  ///< [m] centre of mass in the body
+  double mass = 0;                                 ///< [kg]
   bool moves = false;                              ///< false for the world and what is fixed to it
 };
 

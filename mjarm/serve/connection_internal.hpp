@@ -33,7 +33,7 @@ class LivePage {
 /// What the connections of one server have in common.
 struct Hub {
   PageSite& site;
-  LiveFeed& feed;
+  LiveFeed* feed;  ///< none: there are no pages that live
   ServerOptions options;
   std::atomic<int> page_count{0};  ///< with those that are shaking hands
   int connections = 0;
@@ -41,7 +41,8 @@ struct Hub {
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 
   void refresh() {
-    feed.refresh(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    if (feed == nullptr) return;
+    feed->refresh(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 };
 

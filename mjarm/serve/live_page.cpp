@@ -23,7 +23,7 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
     ++hub_.page_count;
   }
   ~Page() override {
-    hub_.feed.let_go(hold_);
+    hub_.feed->let_go(hold_);
     --hub_.page_count;
   }
   Page(const Page&) = delete;
@@ -72,7 +72,7 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
 
   void read() {
     // What a page sends waits in its own connection while the simulation has enough to read.
-    waits_ = allowed_ <= 0 || !hub_.feed.has_room();
+    waits_ = allowed_ <= 0 || !hub_.feed->has_room();
     if (waits_ || is_refused() || is_gone_) return;
     --allowed_;
     socket_.async_read(in_, [self = shared_from_this()](ErrorCode error, std::size_t) {
@@ -83,7 +83,7 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
   void use() {
     const auto bytes = in_.cdata();
     const std::string_view text_of_page(static_cast<const char*>(bytes.data()), bytes.size());
-    const Result<void> done = socket_.got_text() ? hub_.feed.handle(text_of_page, hold_)
+    const Result<void> done = socket_.got_text() ? hub_.feed->handle(text_of_page, hold_)
                                                  : fail(Errc::bad_input, text(msg::serve_binary));
     in_.consume(in_.size());
     if (!done) refuse(done.error().what);
@@ -99,7 +99,7 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
   /// The page is gone; what is still under way ends by itself.
   void leave() {
     hub_.pages.erase(shared_from_this());
-    hub_.feed.let_go(hold_);
+    hub_.feed->let_go(hold_);
     is_gone_ = true;
     beast::get_lowest_layer(socket_).close();
   }
@@ -116,7 +116,7 @@ class Page final : public LivePage, public std::enable_shared_from_this<Page> {
     for (std::size_t i = 0; i < kLiveKinds && !is_refused(); ++i) {
       turn_ = (turn_ + 1) % kLiveKinds;
       const auto kind = static_cast<LiveKind>(turn_);
-      const LiveMessage& message = hub_.feed.message(kind);
+      const LiveMessage& message = hub_.feed->message(kind);
       if (message.version == sent_[turn_]) continue;
       sent_[turn_] = message.version;
       is_text = kind != LiveKind::frame;

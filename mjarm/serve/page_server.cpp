@@ -56,7 +56,7 @@ int free_port_after(net::io_context& io, tcp::endpoint at, int port) {
 }  // namespace
 
 struct PageServer::Impl {
-  Impl(PageSite& site, LiveFeed& feed, const ServerOptions& options)
+  Impl(PageSite& site, LiveFeed* feed, const ServerOptions& options)
       : hub{.site = site, .feed = feed, .options = options} {}
   ~Impl() {
     stop({});
@@ -166,7 +166,7 @@ void PageServer::Impl::say_bye(const std::string& why) {
   acceptor.close(ignored);
   ticker.cancel();
   pause.cancel();
-  hub.feed.refresh(kAllIsDue);
+  if (hub.feed != nullptr) hub.feed->refresh(kAllIsDue);
   const auto bye = std::make_shared<const std::string>(bye_message(why));
   for (const auto& page : std::set(hub.pages)) page->say_bye(bye);
   wait_for_pages(Clock::now() + kFarewell);
@@ -193,7 +193,7 @@ PageServer::~PageServer() = default;
 PageServer::PageServer(PageServer&&) noexcept = default;
 PageServer& PageServer::operator=(PageServer&&) noexcept = default;
 
-Result<PageServer> PageServer::start(PageSite& site, LiveFeed& feed, const ServerOptions& options) {
+Result<PageServer> PageServer::start(PageSite& site, LiveFeed* feed, const ServerOptions& options) {
   auto impl = std::make_unique<Impl>(site, feed, options);
   if (Result<void> started = impl->start(); !started) return fail(std::move(started.error()));
   return PageServer(std::move(impl));

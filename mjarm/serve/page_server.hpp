@@ -27,10 +27,11 @@ struct ServerOptions {
 class PageServer {
  public:
   /// Listens, and answers from now on.
-  /// @param site, feed  used by the thread of the server alone from now on; they outlive this.
+  /// @param site  used by the thread of the server alone from now on, as the feed; outlives this.
+  /// @param feed  none where the site has nothing that lives (`PageSite::add_scene`).
   /// @return usage for an address that is no number or a port that is none; impossible with a port
   ///         that is free where this one is taken; system where the system refuses.
-  [[nodiscard]] static Result<PageServer> start(PageSite& site, LiveFeed& feed,
+  [[nodiscard]] static Result<PageServer> start(PageSite& site, LiveFeed* feed,
                                                 const ServerOptions& options = {});
   /// As `stop`.
   ~PageServer();

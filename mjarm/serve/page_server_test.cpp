@@ -40,7 +40,7 @@ class Server : public ::testing::Test {
   }
   void start(const ServerOptions& options) {
     server_.reset();
-    Result<PageServer> server = PageServer::start(site_, feed_, options);
+    Result<PageServer> server = PageServer::start(site_, &feed_, options);
     ASSERT_TRUE(server) << server.error().what;
     server_ = std::make_unique<PageServer>(std::move(*server));
   }
@@ -305,7 +305,7 @@ TEST_F(Server, AFloodIsReadNoFasterThanTheSimulationFollows) {
 
 TEST_F(Server, ATakenPortIsOneLineWithAFreeOne) {
   PageSite site(kSecret, "127.0.0.1");
-  const Result<PageServer> second = PageServer::start(site, feed_, {.port = server_->port()});
+  const Result<PageServer> second = PageServer::start(site, &feed_, {.port = server_->port()});
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code, Errc::impossible);
   EXPECT_THAT(second.error().what, HasSubstr(std::to_string(server_->port())));
@@ -313,10 +313,26 @@ TEST_F(Server, ATakenPortIsOneLineWithAFreeOne) {
   EXPECT_EQ(second.error().what.find('\n'), std::string::npos);
   for (const ServerOptions& wrong : {ServerOptions{.address = "nowhere"},
                                      ServerOptions{.port = 65536}, ServerOptions{.port = -1}}) {
-    const Result<PageServer> none = PageServer::start(site, feed_, wrong);
+    const Result<PageServer> none = PageServer::start(site, &feed_, wrong);
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, Errc::usage);
   }
+}
+
+/// A recorded run is a page and nothing that lives; what it may do it says itself.
+TEST(RecordedSite, IsOnePage) {
+  PageSite site(kSecret, "127.0.0.1");
+  site.add_run("<!doctype html>run");
+  Result<PageServer> server = PageServer::start(site, nullptr, {});
+  ASSERT_TRUE(server) << server.error().what;
+  const std::string root = "/" + std::string(kSecret) + "/";
+  const Answer page = Client(server->port()).request(root);
+  EXPECT_EQ(page.body, "<!doctype html>run");
+  EXPECT_EQ(page.policy, "frame-ancestors 'none'");
+  EXPECT_TRUE(Client(server->port()).open(root + "live"));
+  EXPECT_EQ(Client(server->port()).request(root + "scene.json").status, 404);
+  EXPECT_EQ(Client(server->port()).request("/").status, 404);
+  server->stop("over");
 }
 
 TEST_F(Server, AtTheEndThePageIsTold) {

@@ -116,7 +116,13 @@ bool PageSite::add_page(const fs::path& folder) {
   return whole;
 }
 
+void PageSite::add_run(std::string html) {
+  add("", std::move(html), kPageFiles[0].type, kAskAgain);
+  files_[""].has_policy = true;
+}
+
 void PageSite::add_scene(const DrawnModel& model, const SceneFacts& facts) {
+  lives_ = true;
   add("scene.json", scene_json(model, facts), "application/json", kAskAgain);
   for (std::size_t i = 0; i < model.meshes.size(); ++i) {
     add("mesh/" + std::to_string(i), mesh_bytes(model.meshes[i]), "application/octet-stream",
@@ -161,6 +167,7 @@ SiteAnswer PageSite::refusal(int status) const {
 
 SiteAnswer PageSite::answer_found(const SiteRequest& request, const File& file) const {
   SiteAnswer out{.headers = common_headers(request.host, port_), .body = file.body};
+  if (file.has_policy) out.headers.front().second = "frame-ancestors 'none'";
   out.headers.emplace_back("ETag", file.etag);
   out.headers.emplace_back("Cache-Control", file.cache);
   out.headers.emplace_back("Content-Type", file.type);
@@ -186,7 +193,7 @@ SiteAnswer PageSite::answer(const SiteRequest& request) const {
   }
   path.remove_prefix(end + 1);
   const auto file = files_.find(path);
-  const bool is_live = path == "live";
+  const bool is_live = lives_ && path == "live";
   if (!is_live && file == files_.end()) return say(404, "Not found", request.host);
   if (request.method != "GET" && (request.method != "HEAD" || is_live)) {
     return say(405, "Method not allowed", request.host);

@@ -49,7 +49,9 @@ class PageSite {
   /// Adds index.html, page.js and page.css from `folder`, as far as they are there.
   /// @return false where index.html or page.js is not; then the site says so in its place.
   bool add_page(const std::filesystem::path& folder);
-  /// Adds scene.json and the meshes.
+  /// Adds the page of a recorded run (`run_page`) as it is: what it may do it says itself.
+  void add_run(std::string html);
+  /// Adds scene.json and the meshes, and what lives: /live.
   void add_scene(const DrawnModel& model, const SceneFacts& facts);
   /// Where it listens, once that is known.
   void set_port(int port) noexcept { port_ = port; }
@@ -66,6 +68,7 @@ class PageSite {
     std::string type;
     std::string etag;
     std::string cache;
+    bool has_policy = false;  ///< of its own
   };
   void add(const std::string& path, std::string body, const char* type, const char* cache);
   [[nodiscard]] bool is_host(std::string_view host) const;
@@ -75,6 +78,7 @@ class PageSite {
   std::string token_;
   std::string address_;
   int port_ = 0;
+  bool lives_ = false;
   std::map<std::string, File, std::less<>> files_;
 };
 

@@ -75,6 +75,8 @@ std::string scene_json(const DrawnModel& model, const SceneFacts& facts) {
   add_options(json, model, facts);
   json.key("bodies").list();
   for (const DrawnBody& body : model.bodies) json.value(body.name);
+  json.end_list().key("masses").list();
+  for (const DrawnBody& body : model.bodies) json.value(body.moves ? body.mass : 0);
   json.end_list().key("geoms").list();
   for (const DrawnGeom& geom : model.geoms) add_geom(json, geom);
   json.end_list().key("meshes").list();

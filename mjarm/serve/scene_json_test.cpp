@@ -38,6 +38,11 @@ TEST_P(SceneJson, SaysWhatMuJoCoHas) {
   EXPECT_EQ(scene->find("title")->string(), "mjarm \"test\"");
   EXPECT_EQ(scene->find("nq")->whole(), static_cast<std::uint64_t>(m.nq));
   EXPECT_EQ(scene->find("bodies")->size(), static_cast<std::size_t>(m.nbody));
+  ASSERT_EQ(scene->find("masses")->size(), static_cast<std::size_t>(m.nbody));
+  for (int body = 0; body < m.nbody; ++body) {
+    const double mass = (*scene->find("masses"))[static_cast<std::size_t>(body)].number();
+    EXPECT_EQ(mass, m.body_weldid[body] != 0 ? m.body_mass[body] : 0);
+  }
   EXPECT_EQ(scene->find("cameras")->size(), static_cast<std::size_t>(m.ncam));
   const JsonValue& geoms = *scene->find("geoms");
   ASSERT_EQ(geoms.size(), drawn.geoms.size());

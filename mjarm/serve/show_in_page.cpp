@@ -12,7 +12,7 @@
 #include "mjarm/core/messages/serve.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_random.hpp"
-#include "mjarm/render/scene.hpp"
+#include "mjarm/serve/first_view_internal.hpp"
 
 namespace mjarm::serve {
 namespace {
@@ -30,12 +30,20 @@ Result<std::string> token_of(const PageOptions& options) {
   return options.token;
 }
 
-/// Where the page looks from at first: as a window would.
-Result<render::CameraView> first_view(const Model& model, const render::Camera& camera) {
-  if (!camera.view && camera.name.empty()) return render::default_view(model);
-  render::Scene scene(model, render::RenderQuality::low);
-  if (Result<void> set = scene.set_camera(camera); !set) return fail(std::move(set.error()));
-  return scene.view();
+void tell_address(const PageSite& site, const PageOptions& options) {
+  if (!is_loopback(options.server.address)) {
+    log_warning(text(msg::serve_not_alone, options.server.address));
+  }
+  if (options.on_open) options.on_open(site.url());
+}
+
+/// Until Ctrl-C, the end of the time, or `is_through`.
+template <class IsThrough>
+void wait_for_end(const PageOptions& options, const IsThrough& is_through) {
+  const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
+  while (!interrupted() && !is_through() && !(options.seconds > 0 && Clock::now() >= end)) {
+    std::this_thread::sleep_for(kLook);
+  }
 }
 
 /// Everything a page needs, as long as it is served.
@@ -61,12 +69,13 @@ class ServedScene {
                      .jog_dofs = window.jog_dofs};
     std::unique_ptr<ServedScene> scene(
         new ServedScene(model, std::move(facts), std::move(*token), window, options, link));
-    Result<PageServer> server = PageServer::start(scene->site_, scene->feed_, options.server);
+    Result<PageServer> server = PageServer::start(scene->site_, &scene->feed_, options.server);
     if (!server) return fail(std::move(server.error()));
     scene->server_.emplace(std::move(*server));
     scene->tell(options);
     return scene;
   }
+  [[nodiscard]] int pages() const { return server_->pages(); }
   void stop(const std::string& why) { server_->stop(why); }
 
  private:
@@ -74,10 +83,7 @@ class ServedScene {
   void tell(const PageOptions& options) const {
     if (!has_page_) log_warning(text(msg::serve_no_page));
     if (drawn_.left_out > 0) log_info(text(msg::serve_left_out, drawn_.left_out));
-    if (!is_loopback(options.server.address)) {
-      log_warning(text(msg::serve_not_alone, options.server.address));
-    }
-    if (options.on_open) options.on_open(site_.url());
+    tell_address(site_, options);
   }
   ServedScene(const Model& model, SceneFacts facts, std::string token,
               const view::WindowOptions& window, const PageOptions& options, view::ViewLink& link)
@@ -105,18 +111,28 @@ Result<void> show_in_page(const Model& model, const std::string& title,
   view::ViewLink link;
   const auto served = ServedScene::create(model, title, window, options, link);
   if (!served) return fail(served.error());
-  const auto end = Clock::now() + std::chrono::duration<double>(options.seconds);
   std::atomic<bool> is_through{false};
   std::thread worker([&] {
     simulate(link);
     is_through = true;
   });
-  while (!interrupted() && !is_through && !(options.seconds > 0 && Clock::now() >= end)) {
-    std::this_thread::sleep_for(kLook);
-  }
+  wait_for_end(options, [&is_through] { return is_through.load(); });
   link.closed = true;
   worker.join();
   (*served)->stop(text(msg::serve_over));
+  return {};
+}
+
+Result<void> show_run_page(std::string html, const PageOptions& options) {
+  Result<std::string> token = token_of(options);
+  if (!token) return fail(std::move(token.error()));
+  PageSite site(std::move(*token), options.server.address);
+  site.add_run(std::move(html));
+  Result<PageServer> server = PageServer::start(site, nullptr, options.server);
+  if (!server) return fail(std::move(server.error()));
+  tell_address(site, options);
+  wait_for_end(options, [] { return false; });
+  server->stop(text(msg::serve_over));
   return {};
 }
 
@@ -124,6 +140,10 @@ view::Shower page_shower(const PageOptions& options) {
   return [options](const view::ShowOrder& order) -> Result<void> {
     const auto served =
         ServedScene::create(order.model, order.title, order.options, options, order.link);
+    if (served && options.waits) {
+      log_info(text(msg::serve_waits));
+      while ((*served)->pages() == 0 && !order.ended()) std::this_thread::sleep_for(kLook);
+    }
     order.opened(served ? Result<void>() : fail(served.error()));
     if (!served) return {};  // whoever asked was told
     while (!order.ended()) std::this_thread::sleep_for(kLook);

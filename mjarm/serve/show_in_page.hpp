@@ -22,6 +22,7 @@ struct PageOptions {
   double seconds = 0;                  ///< [s] ends by itself after so long; 0 = never
   view::TargetLink* target = nullptr;  ///< of the tool; none = there is no target
   bool turns = true;                   ///< the target has rings
+  bool waits = false;                  ///< `page_shower`: what is shown begins once somebody looks
   /// Called with the address to be opened, once the server answers; may be empty.
   std::function<void(const std::string& url)> on_open = {};
 };
@@ -36,6 +37,10 @@ struct PageOptions {
                                         const view::WindowOptions& window,
                                         const PageOptions& options,
                                         const std::function<void(view::ViewLink&)>& simulate);
+
+/// Serves the page of a recorded run (`run_page`) until Ctrl-C or `options.seconds`.
+/// @return what `PageServer::start` says.
+[[nodiscard]] Result<void> show_run_page(std::string html, const PageOptions& options);
 
 /// A page in the place of each window that work asks for: `view::run_beside(page_shower(...),
 /// work)` instead of `view::run_beside_windows(...)`. One window after the other has its page, at

@@ -57,6 +57,7 @@ void write_arm(JsonWriter& json, const Arm& arm) {
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joints[static_cast<std::size_t>(i)];
     json.line_break().object().member("name", joint.name);
+    json.member("qpos", joint.qpos).member("dof", joint.dof);
     json.member("type", joint.type == JointType::slide ? "slide" : "hinge");
     json.member("X_PJ", frame(joint.X_PJ)).member("axis", joint.axis);
     json.member("lower", arm.limits.lower[i]).member("upper", arm.limits.upper[i]).end_object();
@@ -65,6 +66,12 @@ void write_arm(JsonWriter& json, const Arm& arm) {
 }
 
 }  // namespace
+
+std::vector<int> dofs_of(const Arm& arm) {
+  std::vector<int> out;
+  for (const ArmJoint& joint : arm.joints) out.push_back(joint.dof);
+  return out;
+}
 
 std::string arm_json(const Model& model, const Arm& arm) {
   std::string out;

@@ -10,6 +10,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/fonts.hpp"
 #include "mjarm/render/overlay_shapes.hpp"
+#include "mjarm/session/arm_json.hpp"
 
 namespace mjarm::session {
 namespace {
@@ -79,6 +80,7 @@ bool RunShow::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   if (interrupted()) return false;
   trail_.add(p_WT);
   if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
+  if (record_ && filming_ && record_->is_due(sim.time())) record_->add(sim.snapshot());
   if (!window_) return true;
   history_.add(sim.snapshot());
   // A rehearsal has a clock that begins anew.
@@ -96,6 +98,32 @@ bool RunShow::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
     if (due_ == 0) std::this_thread::sleep_for(kRest);
   }
   return true;
+}
+
+void RunShow::record(const Sim& sim, const Arm* arm) {
+  record_.emplace(sim.model());
+  record_->add(sim.snapshot());
+  if (arm == nullptr) return;
+  arm_ = arm_json(sim.model(), *arm);
+  dofs_ = dofs_of(*arm);
+}
+
+Result<void> RunShow::end_record(const Model& model, const Snapshot& last, const RunOutput& output,
+                                 const view::RunKeeper& keep) {
+  if (!record_) return {};
+  if (filming_) record_->add(last);
+  view::RecordedRun run{.model = model,
+                        .title = "mjarm " + output.report.name,
+                        .bodies = *record_,
+                        .overlay = output.overlay,
+                        .line = output.plot.note,
+                        .camera = output.camera,
+                        .arm = arm_,
+                        .dofs = dofs_};
+  for (const render::PlotPanel& panel : output.plot.panels) {
+    run.plots.push_back(view::live_plot(panel));
+  }
+  return keep(run);
 }
 
 Result<void> RunShow::film(const Model& model, const std::filesystem::path& file,

@@ -10,11 +10,14 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/trail.hpp"
+#include "mjarm/session/run_output.hpp"
 #include "mjarm/session/run_video.hpp"
+#include "mjarm/sim/body_record.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/view/history.hpp"
 #include "mjarm/view/live_plot.hpp"
 #include "mjarm/view/playback.hpp"
+#include "mjarm/view/recorded_run.hpp"
 #include "mjarm/view/remote_window.hpp"
 #include "mjarm/view/thinned_record.hpp"
 #include "mjarm/view/view_link.hpp"
@@ -58,6 +61,13 @@ class RunShow {
   [[nodiscard]] Result<void> end_film();
   [[nodiscard]] bool is_filming() const { return video_.has_value(); }
 
+  /// From now on it is recorded how the bodies stand, first as they stand in `sim`.
+  /// @param arm  whose tool may be led by hand afterwards; none = none may.
+  void record(const Sim& sim, const Arm* arm = nullptr);
+  /// Hands over what was recorded, if anything was, `last` at its end.
+  [[nodiscard]] Result<void> end_record(const Model& model, const Snapshot& last,
+                                        const RunOutput& output, const view::RunKeeper& keep);
+
   /// Lets the user push the bodies of `sim`, which outlives this.
   void let_push(Sim& sim) { pushed_ = &sim; }
 
@@ -90,6 +100,9 @@ class RunShow {
   view::ViewFrame frame_;  ///< memory that is used again
   bool filming_ = true;
   std::optional<VideoOfRun> video_;
+  std::optional<BodyRecord> record_;
+  std::string arm_;        ///< `arm_json` of what is recorded
+  std::vector<int> dofs_;  ///< ... and of its joints
   render::Trail trail_{{.max_points = 10000, .pen = render::Pen::up}};
   render::Overlay planned_;
   std::optional<render::OverlaySphere> goal_;

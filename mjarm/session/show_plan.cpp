@@ -12,6 +12,7 @@
 #include "mjarm/core/progress.hpp"
 #include "mjarm/execution/motion_clock.hpp"
 #include "mjarm/render/fonts.hpp"
+#include "mjarm/session/arm_json.hpp"
 #include "mjarm/session/plan_player.hpp"
 #include "mjarm/session/plan_view.hpp"
 #include "mjarm/session/run_video.hpp"
@@ -93,6 +94,31 @@ Result<std::string> draw_film(const PictureOptions& options, const PlanSubject& 
   return video->summary();
 }
 
+/// The same to be played.
+Result<void> record(const PlanShow& show, const PlanSubject& subject, PlanDrawing& drawing) {
+  const Result<render::Camera> camera = camera_of(show, subject, drawing);
+  if (!camera) return fail(camera.error());
+  BodyRecord bodies(subject.model);
+  const double length = drawing.way().length();
+  const auto moments = static_cast<int>(std::ceil(length / kFilmSpeed / BodyRecord::kInterval)) + 1;
+  for (int i = 0; i < moments; ++i) {
+    const double time = i * BodyRecord::kInterval;
+    Snapshot now = standing(subject, drawing.way().at(std::min(length, kFilmSpeed * time)));
+    now.time = time;
+    bodies.add(now);
+  }
+  PlanLayers layers = picture_layers();
+  layers.spheres = layers.pair = false;  // they go with the arm
+  const PlanLook look = drawing.look(drawing.way().at(0));
+  return show.record({.model = subject.model,
+                      .title = "mjarm plan " + subject.title,
+                      .bodies = bodies,
+                      .overlay = drawing.overlay(layers, look),
+                      .camera = *camera,
+                      .arm = arm_json(subject.model, subject.arm),
+                      .dofs = dofs_of(subject.arm)});
+}
+
 Result<void> show_in_file(const PlanShow& show, const PlanSubject& subject, PlanDrawing& drawing) {
   PictureOptions options = *show.picture;
   options.legend = legend_of(options.video, drawing.has_spheres());
@@ -128,7 +154,7 @@ Result<void> show_in_a_window(const PlanShow& show, const PlanSubject& subject,
 }  // namespace
 
 Result<void> show_plan(const PlanShow& show, const PlanSubject& subject) {
-  if (!show.picture && !has_display()) {
+  if (!show.picture && !show.record && !has_display()) {
     return fail(Errc::impossible, text(msg::show_plan_no_display));
   }
   PlanDrawing drawing(subject);
@@ -139,6 +165,7 @@ Result<void> show_plan(const PlanShow& show, const PlanSubject& subject) {
     log_info(edges == 1 ? text(msg::show_plan_straight, place)
                         : text(msg::show_plan_tightest, edges, place));
   }
+  if (show.record) return record(show, subject, drawing);
   return show.picture ? show_in_file(show, subject, drawing)
                       : show_in_a_window(show, subject, drawing);
 }

@@ -7,14 +7,16 @@
 #include "mjarm/planning/problem_file.hpp"
 #include "mjarm/session/picture.hpp"
 #include "mjarm/session/plan_drawing.hpp"
+#include "mjarm/view/recorded_run.hpp"
 
 namespace mjarm::session {
 
-/// How a plan is shown. Without a picture, in a window.
+/// How a plan is shown. Without a picture and without a record, in a window.
 struct PlanShow {
   std::optional<PictureOptions> picture = {};
-  int width = 1280;  ///< [px] of the window
-  int height = 800;  ///< [px] of the window
+  view::RunKeeper record = {};  ///< of the arm going along it
+  int width = 1280;             ///< [px] of the window
+  int height = 800;             ///< [px] of the window
   /// The camera for the model that is shown; empty = chosen for the path.
   std::function<Result<render::Camera>(const Model&)> camera = {};
   std::optional<render::RenderQuality> quality = {};

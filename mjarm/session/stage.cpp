@@ -78,6 +78,8 @@ bool Stage::show_step(const Sim& sim) {
 }
 
 Result<void> Stage::begin_film() {
+  if (options_.record && !is_recorded_) show_.record(run_.sim(), &robot_.arm);
+  is_recorded_ = true;
   if (!options_.video || show_.is_filming()) return {};
   return show_.film(robot_.model, options_.out / kVideoFile, camera());
 }
@@ -139,6 +141,8 @@ Result<Report> Stage::write(Report report, render::Plot plot) {
   auto written = run_.recorder().write_csv(options_.out / "log.csv").and_then([&] {
     return write_output(options_.out, robot_.model, run_.sim().snapshot(), output);
   });
+  if (written)
+    written = show_.end_record(robot_.model, run_.sim().snapshot(), output, options_.record);
   if (written) written = show_.end_film();
   if (!written) return fail(std::move(written.error()));
   // Before a window it is the user who takes the time.

@@ -26,6 +26,7 @@ struct StageOptions {
   std::filesystem::path out;           ///< folder of all files written
   bool headless = false;               ///< no window even where there is a display
   bool video = false;                  ///< writes video.mp4 as well
+  view::RunKeeper record;              ///< of the run, recorded; empty = it is not
   bool timing = true;                  ///< wall-clock fields in the report
   Replace replace = {};                ///< what stands in the folder
   double seconds = 0;                  ///< [s] most simulated time, 0 = as long as the motion takes
@@ -104,6 +105,7 @@ class Stage {
   std::string control_;
   std::optional<MotionOutline> outline_;
   std::function<void()> tick_;
+  bool is_recorded_ = false;
   double wall_seconds_ = 0;
 };
 

@@ -20,16 +20,3 @@ function upright(geometry) {
 export function geometryOf(geom) {
   return MAKERS[geom.kind]?.(geom.size) ?? null;
 }
-
-/** Roughly the volume [m^3] of a geom, for a guess at its mass. */
-export function volumeOf({ kind, size: [x, y, z] }) {
-  switch (kind) {
-    case 'sphere': return 4.19 * x ** 3;
-    case 'capsule': return 6.28 * x * x * y + 4.19 * x ** 3;
-    case 'cylinder': return 6.28 * x * x * y;
-    case 'ellipsoid': return 4.19 * x * y * z;
-    case 'box': return 8 * x * y * z;
-    case 'mesh': return 4 * x * y * z;
-    default: return 0;
-  }
-}

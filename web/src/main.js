@@ -1,6 +1,7 @@
 // The page: what there is, and what tells whom.
 import { LiveSource } from './live_source.js';
 import { startPage } from './page.js';
+import { RecordedSource } from './recorded_source.js';
 import { recall } from './settings.js';
 import { theme } from './theme.js';
 import { setLanguage, t } from './words.js';
@@ -12,7 +13,7 @@ async function main() {
   theme.start();
   setLanguage(recall('language') ?? navigator.language);
   const notices = new Notices();
-  const source = new LiveSource(new URL('.', window.location.href));
+  const source = recordedHere() ?? new LiveSource(new URL('.', window.location.href));
   source.on('connection', (connection) => showConnection(connection, source, notices));
   const again = { word: 'retry', run: () => source.retry() };
   source.on('bye', ({ what }) => notices.show({ title: 'over', more: 'over_more', text: what, action: again }));
@@ -29,6 +30,14 @@ async function main() {
     return;
   }
   startPage(scene, source, notices);
+}
+
+/** The run that is in this file; null where there is none. */
+function recordedHere() {
+  const run = document.getElementById('run');
+  if (!run) return null;
+  const packed = (name) => document.getElementById(name)?.textContent ?? null;
+  return new RecordedSource(JSON.parse(run.textContent), { run: packed('run-bytes'), ik: packed('ik-bytes') });
 }
 
 function showConnection(connection, source, notices) {

@@ -1,6 +1,6 @@
 // The bodies and their geoms.
 import { Box3, BufferGeometry, Group, Mesh, Quaternion, Sphere, Vector3 } from 'three';
-import { geometryOf, volumeOf } from './geometry.js';
+import { geometryOf } from './geometry.js';
 import { readMesh } from './mesh_file.js';
 import { FloorLook } from './floor.js';
 import { litUp, Paints } from './paint.js';
@@ -137,12 +137,9 @@ export class Model {
     this.#stage.changed();
   }
 
-  /** Roughly the mass of a body [kg], guessed by the size of its shapes. */
+  /** Mass of a body [kg]; 0 where it cannot move. */
   massOf(body) {
-    const volume = this.#scene.geoms
-      .filter((geom) => geom.body === body)
-      .reduce((largest, geom) => Math.max(largest, volumeOf(geom)), 0);
-    return 1000 * volume;
+    return this.#scene.masses[body] ?? 0;
   }
 
   /** A ball round all that is shown, planes left out. @returns {Sphere} */

@@ -41,7 +41,7 @@ export class Push {
   begin(pointer) {
     if (!this.enabled || !(pointer.ctrl || pointer.long) || pointer.button !== 0) return false;
     const hit = this.#picker.geomAt(pointer.x, pointer.y);
-    if (!hit || hit.body <= 0) return false;
+    if (!hit || this.#model.massOf(hit.body) <= 0) return false;
     const { p, q } = this.#model.bodyPose(hit.body);
     const local = hit.point.clone().sub(p).applyQuaternion(q.clone().invert());
     const stiffness = Math.max(SOFTEST, Math.min(HARDEST, PER_KILOGRAM * this.#model.massOf(hit.body)));

@@ -1,5 +1,5 @@
-// Where the page has its data from: an interface, which live_source.js fulfils. Everything else of
-// the page knows this alone.
+// Where the page has its data from: an interface, which live_source.js and recorded_source.js fulfil.
+// Everything else of the page knows this alone.
 
 /**
  * One moment of the world.

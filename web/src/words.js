@@ -52,6 +52,9 @@ const WORDS = {
   no_plots: ['No plots are on.', '没有打开的曲线图。'],
   sheet: ['Size of the panel', '面板大小'],
   plot_height: ['Height of the plots', '曲线图高度'],
+  recording: ['Recording', '回放'],
+  postures: ['All postures', '所有姿态'],
+  go: ['Go', '前往'],
   of_end: ['{0} of {1} s', '{0} / {1} s'],
 
   // Settings.

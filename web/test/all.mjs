@@ -17,6 +17,7 @@ async function declare() {
   const { testPhone } = await import('./phone_test.mjs');
   const { testProgram } = await import('./program_test.mjs');
   const { testConnection } = await import('./connection_test.mjs');
+  const { testRecorded } = await import('./recorded_test.mjs');
 
   /** Tests that share a program and a page. */
   const beside = (name, args, suites) => describe(name, () => {
@@ -33,5 +34,6 @@ async function declare() {
     beside('robot', ['ur5e'], [testTransport, testJoints, testTarget, testPanels, testScene, testLooks, testPhone]);
     beside('program', ['speeds'], [testProgram]);
     describe('connection', testConnection);
+    describe('recorded run', testRecorded);
   });
 }

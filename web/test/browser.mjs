@@ -47,11 +47,12 @@ export function closeBrowser() {
  * @param {boolean} [options.phone]
  * @param {number} [options.scale]  pixels of the device a pixel; few are drawn in less time
  * @param {Object<string, string>} [options.settings]  remembered from earlier visits
+ * @param {boolean} [options.offline]  there is no network
  */
-export async function openPage(url, { size = [800, 480], theme = 'light', phone = false, scale = 0.5, settings = {} } = {}) {
+export async function openPage(url, { size = [800, 480], theme = 'light', phone = false, scale = 0.5, settings = {}, offline = false } = {}) {
   const context = await browser.newContext({
     viewport: { width: size[0], height: size[1] }, colorScheme: theme, reducedMotion: 'reduce', deviceScaleFactor: scale,
-    hasTouch: phone, isMobile: phone,
+    hasTouch: phone, isMobile: phone, offline,
   });
   const page = await context.newPage();
   page.setDefaultTimeout(LONG);

@@ -21,6 +21,11 @@ export async function askMjarm(...args) {
   return JSON.parse(stdout);
 }
 
+/** Runs `mjarm ARGS` to its end, which has to be good. @param {...string} args */
+export async function runMjarm(...args) {
+  await promisify(execFile)(MJARM, args, { env: ENVIRONMENT });
+}
+
 /** A port that was free a moment ago. @returns {Promise<number>} */
 export function freePort() {
   return new Promise((resolve, reject) => {

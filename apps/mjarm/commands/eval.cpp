@@ -3,6 +3,7 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
@@ -11,7 +12,6 @@
 #include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/units.hpp"
-#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -20,6 +20,7 @@ struct Options {
   std::string file, out, episodes = "200", least_success = "0.9";
   TaskArguments task{.task = "reach"};
   bool view = false, video = false, no_timing = false;
+  RunPageArguments pages;
   Replace replace;
 };
 
@@ -59,13 +60,16 @@ Result<int> run(const Options& options) {
   session::StageOptions chosen;
   chosen.out = options.out.empty() ? std::filesystem::path("mjarm-out") / "eval"
                                    : std::filesystem::path(options.out);
-  chosen.headless = !options.view;
+  const Result<RunPages> pages = read_run_pages(options.pages, false);
+  if (!pages) return fail(pages.error());
+  chosen.headless = !options.view && !pages->page;
+  chosen.record = pages->record;
   chosen.video = options.video;
   chosen.timing = !options.no_timing;
   chosen.replace = options.replace;
   catch_interrupts();
-  const Result<PolicyOutcome> outcome =
-      view::beside_windows(chosen.headless, [&] { return run_policy(*loaded, trial, chosen); });
+  const Result<PolicyOutcome> outcome = beside_what_shows(
+      *pages, chosen.headless, [&] { return run_policy(*loaded, trial, chosen); });
   if (!outcome) return fail(outcome.error());
   std::printf("%s", evaluation_table(outcome->evaluation).c_str());
   return conclude(outcome->report, chosen.out);
@@ -80,6 +84,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--least-success", options->least_success, msg::train_option_least, "SHARE");
   add_flag(app, "--view", options->view, msg::train_option_view);
   add_flag(app, "--video", options->video, msg::demo_option_video);
+  add_run_page_options(app, options->pages);
   add_option(app, "--out", options->out, msg::demo_option_out, "DIR");
   add_overwrite_option(app, options->replace);
   add_flag(app, "--no-timing", options->no_timing, msg::demo_option_no_timing);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/commands/render_options.hpp"
 #include "apps/mjarm/messages/plan_show.hpp"
 #include "mjarm/core/messages/view.hpp"
@@ -26,6 +27,7 @@ Result<void> check_lone_options(const PlanShowArguments& arguments) {
 
 void add_plan_show_options(CLI::App& app, PlanShowArguments& arguments) {
   add_option(app, "--picture", arguments.picture, msg::plan_show_option_picture, "F.png|mp4|gif");
+  add_option(app, "--html", arguments.html, msg::plan_show_option_html, "FILE.html");
   add_flag(app, "--view", arguments.view, msg::plan_show_option_view);
   add_option(app, "--size", arguments.size, msg::plan_show_option_size, "WxH");
   add_option(app, "--camera", arguments.camera, msg::plan_show_option_camera, "C");
@@ -38,7 +40,7 @@ Result<std::optional<session::PlanShow>> read_plan_show(const PlanShowArguments&
     if (Result<void> none = check_lone_options(arguments); !none) return fail(none.error());
     return std::nullopt;
   }
-  if (arguments.view && !arguments.picture.empty()) {
+  if (arguments.view + !arguments.picture.empty() + !arguments.html.empty() > 1) {
     return fail(Errc::usage, text(msg::plan_show_both));
   }
   session::PlanShow out;
@@ -46,6 +48,17 @@ Result<std::optional<session::PlanShow>> read_plan_show(const PlanShowArguments&
     out.camera = [words = arguments.camera](const Model& model) {
       return choose_camera(model, words);
     };
+  }
+  if (!arguments.html.empty()) {
+    for (const auto& [name, value] : {std::pair{"--size", &arguments.size},
+                                      {"--quality", &arguments.quality},
+                                      {"--seconds", &arguments.seconds}}) {
+      if (!value->empty()) return fail(Errc::usage, text(msg::plan_show_alone, name));
+    }
+    Result<RunPages> pages = read_run_pages({.html = arguments.html}, false);
+    if (!pages) return fail(std::move(pages.error()));
+    out.record = std::move(pages->record);
+    return out;
   }
   // Sizes and qualities are read as those of pictures.
   const std::string file = arguments.view ? "window.png" : arguments.picture;

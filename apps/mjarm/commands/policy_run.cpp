@@ -177,6 +177,7 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
     auto filming = show->film(*model, options.out / session::kVideoFile, {});
     if (!filming) return fail(std::move(filming.error()));
   }
+  if (options.record) show->record(player->sim(), &player->arm());
   Result<Played> played = play(*player, trial, *show);
   if (!played) return fail(std::move(played.error()));
   Report report = report_of(trial, *model, loaded.task, *evaluation, *played);
@@ -187,6 +188,9 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
       write_file(options.out / "log.csv", played->csv)
           .and_then([&] {
             return session::write_output(options.out, *model, player->sim().snapshot(), output);
+          })
+          .and_then([&] {
+            return show->end_record(*model, player->sim().snapshot(), output, options.record);
           })
           .and_then([&] { return show->end_film(); });
   if (!written) return fail(std::move(written.error()));

@@ -5,6 +5,7 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/commands/program_run.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/messages/app.hpp"
@@ -12,7 +13,6 @@
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/session/see_scene.hpp"
-#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -21,6 +21,7 @@ struct Options {
   std::string file, out, control, tolerance, max_duration = "3600";
   RobotChoice robot;  // that the program names: how its files are read
   bool headless = false, video = false, no_timing = false;
+  RunPageArguments pages;
   Replace replace;
 };
 
@@ -64,6 +65,9 @@ Result<int> run(const Options& options) {
   if (!longest) return fail(longest.error());
   Result<session::StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
+  const Result<RunPages> pages = read_run_pages(options.pages, options.headless);
+  if (!pages) return fail(pages.error());
+  chosen->record = pages->record;
   const Result<LongResult> free = LongResult::begin(chosen->out, chosen->replace);
   if (!free) return fail(free.error());  // before it is planned
   catch_interrupts();
@@ -77,8 +81,8 @@ Result<int> run(const Options& options) {
   }
   if (chosen->control) loaded->program.control = chosen->control;
   if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
-  const Result<Report> report = view::beside_windows(
-      chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
+  const Result<Report> report = beside_what_shows(
+      *pages, chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
   if (!report) return fail(report.error());
   return conclude(*report, chosen->out);
 }
@@ -90,6 +94,7 @@ Run setup(CLI::App& app) {
   add_overwrite_option(app, options->replace);
   add_flag(app, "--headless", options->headless, msg::demo_option_headless);
   add_flag(app, "--video", options->video, msg::demo_option_video);
+  add_run_page_options(app, options->pages);
   add_option(app, "--control", options->control, msg::demo_option_control, "MODE");
   add_option(app, "--tolerance", options->tolerance, msg::motion_program_option_tolerance,
              "LENGTH");

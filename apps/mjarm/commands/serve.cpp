@@ -1,15 +1,16 @@
 #include "mjarm/core/messages/serve.hpp"
 
-#include <cstdint>
-#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
-#include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/commands/seen_robot.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/program/load_program.hpp"
@@ -21,32 +22,21 @@
 namespace mjarm::app {
 namespace {
 
+constexpr std::size_t kMaxRecording = std::size_t{256} << 20;  // [bytes]
+
 struct Options {
   RobotChoice robot;
-  std::string address, port, camera, seconds;
+  ServeArguments serve;
+  std::string camera, seconds, replay;
   bool passive = false, paused = false;
 };
 
-/// Where a browser finds the page, as one line that is there at once, whoever reads it.
-void tell_address(const std::string& url) {
-  std::printf("%s\n", text(msg::serve_open, url).c_str());
-  std::fflush(stdout);
-}
-
 Result<serve::PageOptions> page_options(const Options& options) {
-  serve::PageOptions page;
-  page.on_open = tell_address;
-  page.token = environment("MJARM_SERVE_TOKEN").value_or("");  // arguments are seen by everybody
-  if (!options.address.empty()) page.server.address = options.address;
-  if (!options.port.empty()) {
-    const Result<std::uint64_t> port = parse_whole("--port", options.port);
-    if (!port) return fail(port.error());
-    if (*port > 65535) return fail(Errc::usage, text(msg::serve_bad_port, *port));
-    page.server.port = static_cast<int>(*port);
-  }
+  Result<serve::PageOptions> page = read_serve_options(options.serve);
+  if (!page) return page;
   const Result<double> seconds = parse_show_seconds(options.seconds);
   if (!seconds) return fail(seconds.error());
-  page.seconds = *seconds;
+  page->seconds = *seconds;
   return page;
 }
 
@@ -94,18 +84,52 @@ Result<int> run_program(const Options& options) {
       [&player](view::ViewLink& link) { session::simulate_world(*player, link, language()); }));
 }
 
+/// The page of a recorded run: the file, or the only one in the folder.
+Result<std::filesystem::path> recorded_page(const std::filesystem::path& where) {
+  std::error_code code;
+  if (!std::filesystem::is_directory(where, code)) return where;
+  std::vector<std::filesystem::path> pages;
+  for (const auto& entry : std::filesystem::directory_iterator(where, code)) {
+    if (entry.path().extension() == ".html") pages.push_back(entry.path());
+  }
+  if (pages.size() == 1) return pages.front();
+  const Msg& why = pages.empty() ? msg::serve_no_recording : msg::serve_many_recordings;
+  return fail(Errc::bad_input, text(why, where.string(), where.string()));
+}
+
+Result<int> replay(const Options& options) {
+  if (!options.robot.robot.empty()) {
+    return fail(Errc::usage, text(msg::app_exclusive_options, "FILE", "--replay"));
+  }
+  if (options.passive || options.paused || !options.camera.empty() || !options.robot.tip.empty()) {
+    return fail(Errc::usage, text(msg::serve_replay_alone));
+  }
+  const Result<serve::PageOptions> page = page_options(options);
+  if (!page) return fail(page.error());
+  const Result<std::filesystem::path> file = recorded_page(options.replay);
+  if (!file) return fail(file.error());
+  Result<std::string> html = read_file(*file, kMaxRecording);
+  if (!html) return fail(std::move(html.error()));
+  if (html->find("id=\"run-bytes\"") == std::string::npos) {
+    return fail(Errc::bad_input, text(msg::serve_not_recorded, file->string()));
+  }
+  catch_interrupts();
+  return done(serve::show_run_page(std::move(*html), *page));
+}
+
 Run setup(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_option(app, "file", options->robot.robot, msg::view_file, "FILE");
   add_option(app, "--tip", options->robot.tip, msg::app_option_tip, "FRAME");
   add_load_options(app, options->robot);
-  add_option(app, "--port", options->port, msg::serve_option_port, "PORT");
-  add_option(app, "--address", options->address, msg::serve_option_address, "ADDRESS");
+  add_serve_options(app, options->serve);
   add_flag(app, "--passive", options->passive, msg::view_option_passive);
   add_flag(app, "--paused", options->paused, msg::view_option_paused);
+  add_option(app, "--replay", options->replay, msg::serve_option_replay, "DIR|FILE.html");
   add_option(app, "--camera", options->camera, msg::view_option_camera, "CAMERA");
   add_option(app, "--seconds", options->seconds, msg::serve_option_seconds, "S");
   return [options] {
+    if (!options->replay.empty()) return replay(*options);
     return program::is_program(options->robot.robot) ? run_program(*options) : run(*options);
   };
 }

@@ -32,6 +32,15 @@ TEST(ServeCommand, RefusesWhatMakesNoSense) {
   refused({"ur5e", "--port", "http"}, "--port");
   refused({"ur5e", "--seconds", "-1"}, "--seconds");
   refused({"ur5e", "--camera", "nose"}, "nose");
+  const support::TempFolder folder;
+  const std::string here = folder.path().string();
+  refused({"--replay", here}, "--html");
+  refused({"ur5e", "--replay", here}, "--replay");
+  refused({"--replay", here, "--paused"}, "--replay");
+  refused({"--replay", here + "/none.html"}, "none.html");
+  refused({"--replay", folder.write("a.html", "<html>").string()}, "a.html");
+  folder.write("b.html", "<html>");
+  refused({"--replay", here}, "several");
 }
 
 /// The one line of a server that ran for a moment.
@@ -75,6 +84,41 @@ TEST(ServeCommand, ServesAProgramToo) {
   EXPECT_TRUE(address_of({program, "--seconds", "100ms"}).starts_with("http://127.0.0.1:"));
   const support::ProgramResult passive = serve({program, "--passive"});
   EXPECT_EQ(passive.exit_code, 2);
+}
+
+/// One file that is played without anybody; the folder it is in is enough to serve it.
+TEST(ServeCommand, ARunIsRecordedAndServedAgain) {
+  const support::TempFolder folder;
+  const std::string html = (folder.path() / "kept" / "run.html").string();
+  const std::string out = (folder.path() / "out").string();
+  const auto run = support::run_program(
+      MJARM_PROGRAM, {"run", "movel", "--headless", "--out", out, "--html", html});
+  if (run.err.find("./dev page") != std::string::npos) GTEST_SKIP() << run.err;
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("run.html"), std::string::npos) << run.err;
+  EXPECT_LT(folder.read("kept/run.html").size(), std::size_t{4} << 20);
+  const std::string kept = (folder.path() / "kept").string();
+  EXPECT_TRUE(address_of({"--replay", kept, "--seconds", "100ms"}).starts_with("http://127.0.0.1"));
+  // The run itself is the same as without.
+  const std::string plain = (folder.path() / "plain").string();
+  ASSERT_EQ(
+      support::run_program(MJARM_PROGRAM, {"run", "movel", "--headless", "--out", plain}).exit_code,
+      0);
+  EXPECT_EQ(folder.read("out/log.csv"), folder.read("plain/log.csv"));
+}
+
+TEST(ServeCommand, OptionsOfPagesThatWouldDoNothingAreRefused) {
+  const auto refused = [](const std::vector<std::string>& arguments, const char* part) {
+    const auto result = support::run_program(MJARM_PROGRAM, arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+  };
+  refused({"run", "movel", "--serve", "--headless"}, "--headless");
+  refused({"demo", "ellipse", "--port", "8000"}, "--serve");
+  refused({"demo", "ellipse", "--html", "run.png"}, ".html");
+  refused({"train", "reach", "--port", "8000"}, "--serve");
+  refused({"plan", "--robot", "ur5e", "--goal", "0,0,0,0,0,0", "--html", "a.html", "--view"},
+          "--html");
 }
 
 TEST(ServeCommand, WarnsWhereOthersGetIn) {

@@ -8,16 +8,19 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_curve.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
+#include "apps/mjarm/commands/train_page.hpp"
 #include "apps/mjarm/commands/train_processes.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/rl.hpp"
+#include "mjarm/core/messages/serve.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/progress.hpp"
@@ -33,7 +36,8 @@ struct Options {
   TaskArguments task;
   std::string config, resume, out, steps, seeds = "1";
   Replace replace;
-  bool print_config = false, no_timing = false, video = false;
+  bool print_config = false, no_timing = false, video = false, serve = false;
+  std::string port;
 };
 
 void add_fact(JsonDoc& doc, const Fact& fact) {
@@ -159,6 +163,12 @@ Result<int> train_seeds(const Options& options, const Model& model,
   if (!ranks) return fail(std::move(ranks.error()));
   const bool first = *ranks == nullptr || (*ranks)->rank() == 0;
   std::vector<TrainedSeed> runs;
+  std::unique_ptr<TrainPage> page;
+  if (first && options.serve) {
+    Result<std::unique_ptr<TrainPage>> opened = TrainPage::open(model, wanted.task);
+    if (!opened) return fail(std::move(opened.error()));
+    page = std::move(*opened);
+  }
   for (std::uint64_t i = 0; first && i < seeds; ++i) {
     const auto folder = folder_of(options, seeds, wanted.ppo.seed + i);
     if (auto fine = check_overwriting(options, folder); !fine) return fail(std::move(fine.error()));
@@ -170,6 +180,7 @@ Result<int> train_seeds(const Options& options, const Model& model,
     std::optional<Result<OutputFolder>> held;  // by the first of several processes, for all
     if (first) held = OutputFolder::open(folder, replacing(options, folder));
     if (held && !*held) return fail(std::move(held->error()));
+    if (page) page->follow(folder);
     Result<TrainedSeed> trained = train(model, chosen, folder, options.resume, ranks->get());
     if (!trained) return fail(std::move(trained.error()));
     if (first) {
@@ -233,8 +244,12 @@ Result<int> run(const Options& options) {
   }
   const Result<Model> model = rl::reach_model(chosen->task);
   if (!model) return fail(model.error());
+  const Result<RunPages> pages =
+      read_run_pages({.serve = options.serve, .port = options.port, .html = {}}, false, false);
+  if (!pages) return fail(pages.error());
   catch_interrupts();
-  return train_seeds(options, *model, *chosen, *seeds);
+  return beside_what_shows(*pages, true,
+                           [&] { return train_seeds(options, *model, *chosen, *seeds); });
 }
 
 Run setup(CLI::App& app) {
@@ -248,6 +263,8 @@ Run setup(CLI::App& app) {
   add_option(app, "--seeds", options->seeds, msg::train_option_seeds, "N");
   add_flag(app, "--overwrite", options->replace.overwrite, msg::train_option_overwrite);
   add_flag(app, "--video", options->video, msg::train_option_video);
+  add_flag(app, "--serve", options->serve, msg::train_option_serve);
+  add_option(app, "--port", options->port, msg::serve_option_port, "PORT");
   add_flag(app, "--print-config", options->print_config, msg::train_option_print_config);
   add_flag(app, "--no-timing", options->no_timing, msg::train_option_no_timing);
   return [options] { return run(*options); };

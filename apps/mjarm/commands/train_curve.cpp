@@ -11,7 +11,6 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/render/fonts.hpp"
-#include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -94,11 +93,10 @@ std::string seeds_table(const std::vector<TrainedSeed>& runs) {
   return markdown_table(rows);
 }
 
-Result<void> draw_curve(const std::filesystem::path& folder) {
+Result<render::Plot> curve_plot(const std::filesystem::path& folder) {
   const Result<std::string> csv = read_file(folder / rl::Training::kProgress);
   if (!csv) return fail(csv.error());
   const Columns table = read_columns(*csv);
-  const LanguageScope drawn(render::picture_language());
   render::PlotPanel success{.title = text(msg::train_plot_success),
                             .x_label = text(msg::train_plot_steps),
                             .y_label = text(msg::train_plot_share)};
@@ -123,10 +121,15 @@ Result<void> draw_curve(const std::filesystem::path& folder) {
                            .y_label = text(msg::train_plot_std)};
   spread.lines.push_back(line_of(table, "mean_std", 1, {}));
   spread.y_from_zero = true;
-  return render::save_plot(
-      {.title = text(msg::train_plot_title),
-       .panels = {std::move(success), std::move(reward), std::move(distance), std::move(spread)}},
-      folder / "curve");
+  return render::Plot{
+      .title = text(msg::train_plot_title),
+      .panels = {std::move(success), std::move(reward), std::move(distance), std::move(spread)}};
+}
+
+Result<void> draw_curve(const std::filesystem::path& folder) {
+  const LanguageScope drawn(render::picture_language());
+  return curve_plot(folder).and_then(
+      [&folder](const render::Plot& plot) { return render::save_plot(plot, folder / "curve"); });
 }
 
 }  // namespace mjarm::app

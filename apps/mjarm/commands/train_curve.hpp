@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mjarm/core/result.hpp"
+#include "mjarm/render/plot.hpp"
 #include "mjarm/rl/training.hpp"
 
 namespace mjarm::app {
@@ -24,8 +25,10 @@ struct TrainedSeed {
 /// One line a seed; with several, the median of each column below.
 [[nodiscard]] std::string seeds_table(const std::vector<TrainedSeed>& runs);
 
-/// Draws `curve.svg` and `curve.png` from the `progress.csv` in the same folder: success and return
-/// over steps.
+/// Success and return over steps, of the `progress.csv` in a folder.
+[[nodiscard]] Result<render::Plot> curve_plot(const std::filesystem::path& folder);
+
+/// Draws `curve.svg` and `curve.png` from the `progress.csv` in the same folder.
 [[nodiscard]] Result<void> draw_curve(const std::filesystem::path& folder);
 
 }  // namespace mjarm::app

@@ -151,6 +151,7 @@ Result<Report> run_car(const DemoOptions& options) {
   Result<session::RunShow> show = session::RunShow::open(*model, "mjarm car", options.headless);
   if (!show) return fail(std::move(show.error()));
   show->set_pen(render::Pen::down);
+  if (options.record) show->record(sim);
   if (options.video) {
     auto filming =
         show->film(*model, options.out / session::kVideoFile, session::default_camera(*model));
@@ -171,6 +172,9 @@ Result<Report> run_car(const DemoOptions& options) {
   auto written = write_file(options.out / "log.csv", to_csv(drive))
                      .and_then([&] {
                        return session::write_output(options.out, *model, sim.snapshot(), output);
+                     })
+                     .and_then([&] {
+                       return show->end_record(*model, sim.snapshot(), output, options.record);
                      })
                      .and_then([&] { return show->end_film(); });
   if (!written) return fail(std::move(written.error()));

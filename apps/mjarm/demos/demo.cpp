@@ -12,7 +12,6 @@
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/messages/train.hpp"
 #include "mjarm/core/os.hpp"
-#include "mjarm/view/remote_window.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -24,11 +23,14 @@ void list_demos() {
 }
 
 Result<int> run_demo(const Demo& demo, const DemoArguments& arguments) {
-  const Result<DemoOptions> options = read_demo_options(demo, arguments);
+  Result<DemoOptions> options = read_demo_options(demo, arguments);
   if (!options) return fail(options.error());
+  const Result<RunPages> pages = read_run_pages(arguments.pages, options->headless);
+  if (!pages) return fail(pages.error());
+  options->record = pages->record;
   catch_interrupts();
   const Result<Report> report =
-      view::beside_windows(options->headless, [&] { return demo.run(*options); });
+      beside_what_shows(*pages, options->headless, [&] { return demo.run(*options); });
   if (!report) return fail(report.error());
   return conclude(*report, options->out);
 }

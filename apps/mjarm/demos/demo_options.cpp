@@ -196,6 +196,7 @@ void add_demo_options(CLI::App& app, unsigned uses, DemoArguments& arguments) {
       add_option(app, option.name, arguments.*std::get<2>(option.value), option.help, option.type);
     }
   }
+  add_run_page_options(app, arguments.pages);
   add_overwrite_option(app, arguments.replace);
 }
 

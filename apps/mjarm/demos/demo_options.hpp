@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 
 namespace mjarm::app {
@@ -16,6 +17,7 @@ struct DemoArguments {
   std::vector<std::string> package_paths, allow;
   bool headless = false, meshes = false, guide = false, video = false, no_timing = false,
        allow_outside = false;
+  RunPageArguments pages;
   Replace replace;
 };
 

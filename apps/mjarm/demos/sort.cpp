@@ -114,6 +114,7 @@ class SortDemo {
   }
 
   Result<Report> run() {
+    if (options_.record) show_.record(sim_, &robot_.arm);
     if (options_.video) {
       auto filming = show_.film(robot_.model, options_.out / session::kVideoFile,
                                 session::default_camera(robot_.model));
@@ -248,6 +249,9 @@ class SortDemo {
         recorder_.write_csv(options_.out / "log.csv")
             .and_then([&] {
               return session::write_output(options_.out, robot_.model, sim_.snapshot(), output);
+            })
+            .and_then([&] {
+              return show_.end_record(robot_.model, sim_.snapshot(), output, options_.record);
             })
             .and_then([&] { return show_.end_film(); });
     if (!written) return fail(std::move(written.error()));
