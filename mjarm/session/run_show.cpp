@@ -102,7 +102,6 @@ bool RunShow::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
 
 void RunShow::record(const Sim& sim, const Arm* arm) {
   record_.emplace(sim.model());
-  record_->add(sim.snapshot());
   if (arm == nullptr) return;
   arm_ = arm_json(sim.model(), *arm);
   dofs_ = dofs_of(*arm);

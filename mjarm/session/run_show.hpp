@@ -61,7 +61,7 @@ class RunShow {
   [[nodiscard]] Result<void> end_film();
   [[nodiscard]] bool is_filming() const { return video_.has_value(); }
 
-  /// From now on it is recorded how the bodies stand, first as they stand in `sim`.
+  /// From the next step on it is recorded how the bodies of `sim` stand.
   /// @param arm  whose tool may be led by hand afterwards; none = none may.
   void record(const Sim& sim, const Arm* arm = nullptr);
   /// Hands over what was recorded, if anything was, `last` at its end.
