@@ -5,6 +5,7 @@
 
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/panels.hpp"
+#include "mjarm/session/arm_json.hpp"
 #include "mjarm/session/max_moments.hpp"
 
 namespace mjarm::session {
@@ -91,10 +92,7 @@ std::string FreeSim::status() const {
 }
 
 std::vector<int> FreeSim::jog_dofs() const {
-  std::vector<int> dofs;
-  if (!controller_) return dofs;
-  for (const ArmJoint& joint : arm_->joints) dofs.push_back(joint.dof);
-  return dofs;
+  return controller_ ? dofs_of(*arm_) : std::vector<int>();
 }
 
 void FreeSim::set_goal(const JointVec& q) {

@@ -64,6 +64,7 @@ class RunShow {
   /// From the next step on it is recorded how the bodies of `sim` stand.
   /// @param arm  whose tool may be led by hand afterwards; none = none may.
   void record(const Sim& sim, const Arm* arm = nullptr);
+  [[nodiscard]] bool is_recording() const { return record_.has_value(); }
   /// Hands over what was recorded, if anything was, `last` at its end.
   [[nodiscard]] Result<void> end_record(const Model& model, const Snapshot& last,
                                         const RunOutput& output, const view::RunKeeper& keep);

@@ -78,8 +78,7 @@ bool Stage::show_step(const Sim& sim) {
 }
 
 Result<void> Stage::begin_film() {
-  if (options_.record && !is_recorded_) show_.record(run_.sim(), &robot_.arm);
-  is_recorded_ = true;
+  if (options_.record && !show_.is_recording()) show_.record(run_.sim(), &robot_.arm);
   if (!options_.video || show_.is_filming()) return {};
   return show_.film(robot_.model, options_.out / kVideoFile, camera());
 }

@@ -105,7 +105,6 @@ class Stage {
   std::string control_;
   std::optional<MotionOutline> outline_;
   std::function<void()> tick_;
-  bool is_recorded_ = false;
   double wall_seconds_ = 0;
 };
 

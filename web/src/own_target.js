@@ -31,7 +31,7 @@ export class OwnTarget {
   /** The arm is where the recording has it. @param {Float64Array|Float32Array} qpos */
   follow(qpos) {
     this.q = null;
-    this.#take(this.#ik.setGoal(this.#arm.joints.map((joint) => qpos[joint.qpos])));
+    if (this.#shown) this.#take(this.#ik.setGoal(this.#arm.joints.map((joint) => qpos[joint.qpos])));
   }
 
   /** Does what the user asked for. @returns {boolean} whether it was about the arm */

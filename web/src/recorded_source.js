@@ -60,7 +60,6 @@ export class RecordedSource extends Emitter {
     this.emit('connection', this.connection);
     this.emit('hello', { can_control: true });
     this.emit('plots', this.#run.plots);
-    this.#target?.follow(this.#here().qpos);
     onLanguage(() => {
       this.#ik?.setLanguage(language());
       this.#tell();
