@@ -49,7 +49,8 @@ TEST(FastApart, NeverFreeWhereWristsCollide) {
 TEST(FastApart, ProvedEdgesOfWristsAreFree) {
   Rng rng(32);
   int proved = 0;
-  for (int i = 0; i < testing::rounds(200, 5000); ++i) {
+  const int wrists = testing::rounds(200, 5000, 20);
+  for (int i = 0; i < wrists; ++i) {
     const Arm arm = i % 2 == 0 ? testing::panda() : testing::ur5e();
     const SphereSet set = random_wrist(arm, rng);
     const auto checker = FastChecker::create(FastRobot::create(arm, set).value(), {}).value();
@@ -64,7 +65,7 @@ TEST(FastApart, ProvedEdgesOfWristsAreFree) {
       }
     }
   }
-  EXPECT_GT(proved, 50);
+  EXPECT_GT(proved, wrists / 4);
 }
 
 }  // namespace

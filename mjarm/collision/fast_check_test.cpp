@@ -37,7 +37,8 @@ TEST(FastChecker, NeverFreeWhereRandomRobotsCollide) {
 TEST(FastChecker, AllAreFreeWhereEachIs) {
   Rng rng(15);
   int free_lists = 0, blocked_lists = 0;
-  for (int round = 0; round < 300; ++round) {
+  const int worlds = testing::rounds(300, 300, 30);
+  for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::random_arm(1 + round % 9, rng);
     const FastRobot robot = FastRobot::create(arm, testing::random_spheres(arm, rng)).value();
     const Obstacles world = testing::random_world(rng, static_cast<int>(rng.below(4)));
@@ -54,14 +55,15 @@ TEST(FastChecker, AllAreFreeWhereEachIs) {
       }
     }
   }
-  EXPECT_GT(free_lists, 2000);
-  EXPECT_GT(blocked_lists, 2000);
+  EXPECT_GT(free_lists, worlds * 6);
+  EXPECT_GT(blocked_lists, worlds * 6);
 }
 
 TEST(FastChecker, LargeAndFarSolidsStaySafe) {
   Rng rng(12);
   Tally tally;
-  for (int round = 0; round < 60; ++round) {
+  const int worlds = testing::rounds(60, 60, 8);
+  for (int round = 0; round < worlds; ++round) {
     const Arm arm = testing::panda();
     const SphereSet set = testing::random_spheres(arm, rng);
     Obstacles world;
@@ -77,8 +79,8 @@ TEST(FastChecker, LargeAndFarSolidsStaySafe) {
     compare(arm, set, world, kLevels[round % 3], rng, 200, tally, {.extent = 4 * size});
     if (::testing::Test::HasFatalFailure()) return;
   }
-  EXPECT_GT(tally.free, 1000);
-  EXPECT_GT(tally.blocked, 1000);
+  EXPECT_GT(tally.free, worlds * 16);
+  EXPECT_GT(tally.blocked, worlds * 16);
 }
 
 TEST(FastChecker, WhatIsAskedDoesNotDependOnNeighboursOrRuns) {
@@ -200,12 +202,12 @@ TEST(FastChecker, RandomStatesOfThePublicProblems) {
     const testing::PlanningProblems all = testing::read_problems(file);
     Rng rng(15);
     Tally tally;
+    const int states = testing::rounds(120, 30'000, 6);
     for (std::size_t i = 0; i < all.problems.size(); i += 10) {
-      compare(all.arm, all.set, all.problems[i].obstacles, kLevels[i / 10 % 3], rng,
-              testing::rounds(120, 30'000), tally);
+      compare(all.arm, all.set, all.problems[i].obstacles, kLevels[i / 10 % 3], rng, states, tally);
     }
-    EXPECT_GT(tally.free, 500);
-    EXPECT_GT(tally.blocked, 500);
+    EXPECT_GT(tally.free, states * 4);
+    EXPECT_GT(tally.blocked, states * 4);
   }
 }
 

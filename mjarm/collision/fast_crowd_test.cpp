@@ -140,7 +140,7 @@ TEST(FastCrowd, NearestObstacleIsNamed) {
   for (int round = 0; round < 12; ++round) {
     const Obstacles world = crowded_world(rng, round % 3 == 0 ? 3 : 100, 2, 200);
     const auto checker = FastChecker::create(robot, world, kLevels[round % 3]).value();
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < testing::rounds(40, 40, 3); ++i) {
       const JointVec q = testing::random_q(arm, rng);
       const SphereClearance found = checker.clearance(as_span(q));
       const double truth = testing::true_clearance(arm, set, world, as_span(q), true);

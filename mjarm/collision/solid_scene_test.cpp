@@ -120,11 +120,11 @@ void expect_both(const SolidTally& tally) {
 void compare_solids(const CoveredRobot& robot, std::uint64_t seed) {
   Rng rng(seed);
   SolidTally states, edges, beside;
-  compare_states(robot, 0.03, testing::rounds(5'000, 1'000'000), rng, states);
+  compare_states(robot, 0.03, testing::rounds(5'000, 1'000'000, 1'000), rng, states);
   ASSERT_FALSE(::testing::Test::HasFatalFailure());
-  compare_edges(robot, 0.03, testing::rounds(200, 100'000), rng, edges);
+  compare_edges(robot, 0.03, testing::rounds(200, 100'000, 60), rng, edges);
   ASSERT_FALSE(::testing::Test::HasFatalFailure());
-  compare_beside(robot, 0.03, testing::rounds(300, 100'000), rng, beside);
+  compare_beside(robot, 0.03, testing::rounds(300, 100'000, 60), rng, beside);
   expect_both(states);
   expect_both(edges);
   expect_both(beside);
@@ -137,10 +137,10 @@ TEST(SolidScene, RandomTreesAsMujocoSeesThem) {
   const support::TempFolder folder;
   Rng rng(403);
   SolidTally states, edges;
-  for (int round = 0; round < testing::rounds(25, 400); ++round) {
+  for (int round = 0; round < testing::rounds(25, 400, 5); ++round) {
     const CoveredRobot robot =
         testing::covered_file(folder.write("tree.xml", testing::random_tree(rng)), "tip");
-    compare_states(robot, 0.05, testing::rounds(400, 2'500), rng, states);
+    compare_states(robot, 0.05, testing::rounds(400, 2'500, 100), rng, states);
     ASSERT_FALSE(HasFatalFailure()) << "round " << round;
     compare_edges(robot, 0.05, testing::rounds(20, 250), rng, edges);
     ASSERT_FALSE(HasFatalFailure()) << "round " << round;

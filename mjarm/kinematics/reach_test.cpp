@@ -30,13 +30,13 @@ void expect_nothing_excluded(const Arm& arm, int rounds, Rng& rng) {
 
 TEST(Reach, NeverExcludesWhatTheUr5eReaches) {
   Rng rng(21);
-  expect_nothing_excluded(ur5e(), 100000, rng);
+  expect_nothing_excluded(ur5e(), testing::rounds(100'000, 100'000, 10'000), rng);
   expect_nothing_excluded(ur5e(true), 10000, rng);
 }
 
 TEST(Reach, NeverExcludesWhatThePandaReaches) {
   Rng rng(22);
-  expect_nothing_excluded(panda(), 100000, rng);
+  expect_nothing_excluded(panda(), testing::rounds(100'000, 100'000, 10'000), rng);
 }
 
 TEST(Reach, NeverExcludesWhatRandomArmsReach) {
