@@ -5,6 +5,7 @@
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/axis_chain_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/kinematics/long_tests_test.hpp"
 
 namespace mjarm {
 namespace {
