@@ -98,7 +98,7 @@ Scene random_scene(int dof, int obstacles, bool thin, Rng& rng) {
 TEST(VerifyEdge, AgreesWithDenseSamples) {
   Rng rng(41);
   VerifyTally tally;
-  const int scenes = testing::rounds(50, 5000, 10);
+  const int scenes = testing::rounds(50, 5000, 15);
   for (int round = 0; round < scenes; ++round) {
     const Scene scene = random_scene(1 + round % 7, 3, round % 2 == 0, rng);
     for (int k = 0; k < 10; ++k) {

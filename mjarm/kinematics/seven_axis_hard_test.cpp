@@ -20,7 +20,7 @@ using testing::random_q;
 
 constexpr double kDoubt = 1e-6;  // [rad] the sweep is not believed to be more exact than this
 
-int negatives(int many) { return testing::rounds(many / 5, many, 6); }
+int negatives(int many) { return testing::rounds(many / 5, many, 10); }
 
 /// Draws poses until `count` of them have no answer by the sweep, and compares what the solver says
 /// of all of them. Returns the reasons given.
