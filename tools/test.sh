@@ -121,6 +121,7 @@ run_page_tests() {
 run_wheel() {
   local results=$root/build/wheel/pytest.xml
   rm -rf "$root/dist"
+  build_whole_page || say "the wheel has no page for 'mjarm serve' and --html"
   for python3 in $(pythons_of_wheels); do
     check "$("$python3" --version)" configure_wheel
     ((failed)) || check "build" build_counted wheel mjarm_python mjarm_python_stub

@@ -51,6 +51,16 @@ def test_imports_nothing_that_is_not_needed():
     assert not loaded & {"scipy", "matplotlib", "torch", "gymnasium", "mujoco", "pandas"}
 
 
+def test_a_run_as_a_page(tmp_path):
+    page = pathlib.Path(mjarm.__file__).parent / "share" / "mjarm" / "page" / "index.html"
+    if not page.exists():
+        pytest.skip("the wheel was built without the page: it takes Node")
+    done = program("run", "movel", "--headless", "--out", str(tmp_path / "out"), "--html", str(tmp_path / "run.html"))
+    assert done.returncode == 0, done.stderr
+    text = (tmp_path / "run.html").read_text(encoding="utf-8")
+    assert "Content-Security-Policy" in text and 100_000 < len(text) < 4_000_000
+
+
 def test_a_notebook_shows_progress():
     code = "import sys, types; sys.modules['ipykernel'] = types.ModuleType('ipykernel'); import mjarm; r = mjarm.Robot('ur5e'); " \
            "r.simulate(r.time([r.home + 0.5 * (-1) ** i for i in range(60)], share=0.3))"
