@@ -56,7 +56,7 @@ if(MJARM_SANITIZE)
   endif()
   if(MJARM_SANITIZE MATCHES "thread" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Boost.Asio has fences, which this sanitizer does not follow; what it hands over is locked besides.
-    set(MJARM_ASIO_OPTIONS -Wno-tsan)
+    target_compile_options(mjarm_options INTERFACE -Wno-tsan)
   endif()
   if(MJARM_SANITIZE MATCHES "undefined")
     target_compile_options(mjarm_options INTERFACE -fno-sanitize-recover=undefined)
