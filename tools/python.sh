@@ -68,6 +68,13 @@ build_wheel() {
   return $code
 }
 
+# pack_wheels FOLDER: by a better compressor than Python's, which every pip can read. They stay within 12 MB.
+pack_wheels() {
+  set_up_packages advancecomp
+  if command -v advzip >/dev/null; then quiet advzip --recompress --shrink-normal "$1"/*.whl || return; fi
+  [[ -z $(find "$1" -name '*.whl' -size +12000000c) ]] || { say "larger than 12 MB: $(ls -s --block-size=1 "$1"/*.whl)" && return 1; }
+}
+
 # test_wheel FOLDER RESULTS: runs the tests of the wheel in there, where nothing else of mjarm is found, nor a compiler.
 test_wheel() {
   local results=$2

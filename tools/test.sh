@@ -126,6 +126,7 @@ run_wheel() {
     check "$("$python3" --version)" configure_wheel
     ((failed)) || check "build" build_counted wheel mjarm_python mjarm_python_stub
     ((failed)) || check "wheel" build_wheel wheel "$root/dist"
+    ((failed)) || check "wheel: at most 12 MB" pack_wheels "$root/dist"
     ((failed)) || check "wheel: installed" test_wheel "$root/dist" "$results"
     ((failed)) && break
     count_results "$results"
