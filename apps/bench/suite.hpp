@@ -121,19 +121,13 @@ void in_rounds(int rounds, std::size_t count, Progress& progress, const Call& ca
   }
 }
 
-/// Adds the runs of the peers by `run_peers()`, where they are wanted, to ours, and judges all.
+/// Judges all runs, ours and those of the peers.
 /// @param result  names the robot.
 /// @param judge   fills cells and details of a run; gives how many of its answers are wrong.
 /// @param wrong   says how many of mjarm are.
-template <class Run, class RunPeers, class Judge>
-Result<BenchResult> compare(const std::string& peers, BenchResult result, std::vector<Run> runs,
-                            const RunPeers& run_peers, const Judge& judge, Msg wrong) {
-  if (interrupted()) return fail(stopped());
-  if (wants_peers(peers, result.robot)) {
-    Result<std::vector<Run>> theirs = run_peers();
-    if (!theirs) return fail(std::move(theirs.error()));
-    std::ranges::move(*theirs, std::back_inserter(runs));
-  }
+template <class Run, class Judge>
+Result<BenchResult> judged(BenchResult result, std::vector<Run> runs, const Judge& judge,
+                           Msg wrong) {
   int count = 0;
   for (Run& run : runs) {
     const Result<int> bad = judge(run);
@@ -143,6 +137,20 @@ Result<BenchResult> compare(const std::string& peers, BenchResult result, std::v
   }
   if (count > 0) result.wrong = text(wrong, result.robot, count);
   return result;
+}
+
+/// Adds the runs of the peers by `run_peers()`, where they are wanted, to ours, and judges all.
+/// @param result, judge, wrong  as `judged()` has them.
+template <class Run, class RunPeers, class Judge>
+Result<BenchResult> compare(const std::string& peers, BenchResult result, std::vector<Run> runs,
+                            const RunPeers& run_peers, const Judge& judge, Msg wrong) {
+  if (interrupted()) return fail(stopped());
+  if (wants_peers(peers, result.robot)) {
+    Result<std::vector<Run>> theirs = run_peers();
+    if (!theirs) return fail(std::move(theirs.error()));
+    std::ranges::move(*theirs, std::back_inserter(runs));
+  }
+  return judged(std::move(result), std::move(runs), judge, wrong);
 }
 
 }  // namespace mjarm::app

@@ -81,9 +81,10 @@ def child(peers, run, job_file, name):
 def parent(peers, job_file, answer_file):
     environment = os.environ | {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
     with open(job_file, encoding="utf-8") as file:
-        limit = json.load(file).get("seconds", LIMIT)
+        job = json.load(file)
+    limit = job.get("seconds", LIMIT)
     with open(answer_file, "w", encoding="utf-8") as file:
-        for name in peers:
+        for name in job.get("peers") or peers:
             command = [sys.executable, os.path.abspath(sys.argv[0]), "--peer", name, job_file]
             try:
                 done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=limit)
@@ -96,7 +97,7 @@ def parent(peers, job_file, answer_file):
 
 
 def start(peers, run):
-    """Runs the script: all peers, or the one that its own arguments name.
+    """Runs the script: all peers, those that the job names, or the one that its own arguments name.
 
     peers: name -> (maker, package); run(job, name, maker, row) gives the answers of one peer, `row` being
     what all of them have in common.

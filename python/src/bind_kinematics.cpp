@@ -115,6 +115,10 @@ nb::object ik_all(const BoundRobot& robot, nb::handle pose, nb::handle seed, boo
   return array(rows, robot.dof());
 }
 
+/// Poses whose answers are held at a time: those of 100,000 are 40 MB, which take longer to be
+/// fetched from the system than an eighth of the solving.
+constexpr std::size_t kBlock = 8192;
+
 nb::tuple ik_batch(const BoundRobot& robot, nb::handle poses, nb::handle seed, int threads) {
   const std::vector<Pose> X_WT = poses_of(poses, "poses");
   const auto dof = static_cast<std::size_t>(robot.dof());
@@ -130,14 +134,20 @@ nb::tuple ik_batch(const BoundRobot& robot, nb::handle poses, nb::handle seed, i
   const NewArray<bool> ok({X_WT.size()});
   {
     const nb::gil_scoped_release free;
-    const auto answers = solve_batch(robot.ik, X_WT, seeds, {.threads = threads});
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      ok.data[i] = answers[i].has_value();
-      double* const row = q.data + i * dof;
-      if (answers[i]) {
-        std::copy(answers[i]->q.begin(), answers[i]->q.end(), row);
-      } else {
-        std::fill_n(row, dof, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t from = 0; from < X_WT.size(); from += kBlock) {
+      const std::size_t count = std::min(kBlock, X_WT.size() - from);
+      const std::span<const double> begin(seeds);
+      const auto answers = solve_batch(robot.ik, std::span(X_WT).subspan(from, count),
+                                       one_each ? begin.subspan(from * dof, count * dof) : begin,
+                                       {.threads = threads});
+      for (std::size_t i = 0; i < count; ++i) {
+        ok.data[from + i] = answers[i].has_value();
+        double* const row = q.data + (from + i) * dof;
+        if (answers[i]) {
+          std::copy(answers[i]->q.begin(), answers[i]->q.end(), row);
+        } else {
+          std::fill_n(row, dof, std::numeric_limits<double>::quiet_NaN());
+        }
       }
     }
   }

@@ -147,6 +147,7 @@ std::vector<Pose> poses_of(nb::handle value, const char* name) {
     return out;
   }
   const Reals matrices = reals(value, name, {-1, 4, 4});
+  out.reserve(matrices.shape(0));
   for (std::size_t i = 0; i < matrices.shape(0); ++i) {
     out.push_back(pose_of_matrix(matrices.data() + 16 * i, name));
   }
