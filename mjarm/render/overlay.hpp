@@ -40,6 +40,9 @@ struct OverlayLine {
   Rgba color = {0.85F, 0.15F, 0.15F, 1};
   double dash = 0;  ///< [m] length of a dash and of the gap after it; 0 = not dashed
   LineLook look = LineLook::automatic;
+  /// [s] shape (n,), ascending: when the line came to each point; a page that plays what is over
+  /// draws it so far. Empty = all of it is there all the time.
+  std::vector<double> times = {};
 };
 
 /// Many separate straight pieces of one kind (the edges of a search tree), in the world frame W.

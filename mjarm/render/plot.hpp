@@ -81,6 +81,7 @@ struct PlotPanel {
   bool equal_aspect = false;  ///< one unit is equally long on both axes (tool paths)
   bool legend = true;         ///< shown where a curve or band has a label
   bool y_from_zero = false;   ///< the y axis begins at 0 (errors, speeds)
+  bool over_time = false;     ///< x is the time of the run [s]: a page marks what is shown
   bool x_log = false;         ///< equal ratios are equally long; what is not > 0 is left out
   bool y_log = false;         ///< the same of the y axis
   std::optional<PlotRange> x_range = {};  ///< default: fits the data

@@ -26,11 +26,11 @@ void Trail::keep(const Spot& spot) {
   begin_ = (begin_ + 1) % ring_.size();
 }
 
-void Trail::add(const Eigen::Vector3d& p_W) {
+void Trail::add(const Eigen::Vector3d& p_W, std::optional<double> time) {
   if (!p_W.allFinite() || options_.pen == Pen::up) return;
   const bool begins = ring_.empty() || lifted_;
   lifted_ = false;
-  newest_ = {p_W, options_.pen, begins};
+  newest_ = {p_W, options_.pen, begins, time};
   if (!begins) {
     const Spot& last = ring_[(begin_ + ring_.size() - 1) % ring_.size()];
     if ((last.p_W - p_W).norm() < options_.spacing) return;
@@ -52,7 +52,7 @@ std::vector<Trail::Spot> Trail::spots() const {
   all.insert(all.end(), middle, ring_.end());
   all.insert(all.end(), ring_.begin(), middle);
   if (newest_ && !all.empty() && all.back().p_W != newest_->p_W) {
-    all.push_back({newest_->p_W, newest_->pen, false});
+    all.push_back({newest_->p_W, newest_->pen, false, newest_->time});
   }
   return all;
 }
@@ -64,6 +64,11 @@ std::vector<Eigen::Vector3d> Trail::points() const {
 }
 
 void Trail::draw(Overlay& overlay) const {
+  const auto lead_to = [&overlay](const Spot& spot) {
+    OverlayLine& line = overlay.lines.back();
+    line.points_W.push_back(spot.p_W);
+    if (spot.time) line.times.push_back(*spot.time);
+  };
   const std::vector<Spot> way = spots();
   double since = options_.ball_spacing;  // the first point has a ball
   for (std::size_t i = 0; i < way.size(); ++i) {
@@ -82,9 +87,9 @@ void Trail::draw(Overlay& overlay) const {
       line.width = down ? options_.width : options_.travel_width;
       line.color = down ? options_.color : options_.travel_color;
       line.look = options_.look;
-      if (!begins) line.points_W.push_back(way[i - 1].p_W);
+      if (!begins) lead_to(way[i - 1]);
     }
-    overlay.lines.back().points_W.push_back(spot.p_W);
+    lead_to(spot);
   }
 }
 

@@ -40,7 +40,8 @@ class Trail {
   /// From now on the trail goes on so; where the pen was up there is a gap.
   void set_pen(Pen pen);
   /// The point is now at `p_W` [m]. The trail always reaches there; what is not finite is ignored.
-  void add(const Eigen::Vector3d& p_W);
+  /// @param time  [s] what its line is told of it (`OverlayLine::times`): all points or none.
+  void add(const Eigen::Vector3d& p_W, std::optional<double> time = {});
   void clear();
   /// From now on as balls, or as a line again.
   void set_balls(bool balls) { options_.balls = balls; }
@@ -56,6 +57,7 @@ class Trail {
     Eigen::Vector3d p_W;
     Pen pen;      ///< that drew what leads here
     bool begins;  ///< nothing leads here
+    std::optional<double> time;
   };
   void keep(const Spot& spot);
   /// What is kept, the oldest first, and the newest point given.

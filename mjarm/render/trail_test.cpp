@@ -61,6 +61,25 @@ TEST(Trail, IsALineOrBalls) {
   }
 }
 
+/// A page that plays what is over needs to know when the trail came where.
+TEST(Trail, TellsWhenItCameToEachPoint) {
+  Trail trail({.spacing = 0.0015});
+  for (int i = 0; i <= 100; ++i) {
+    if (i == 50) trail.set_pen(Pen::travel);
+    trail.add({0.001 * i, 0, 0}, 0.1 * i);
+  }
+  Overlay overlay;
+  trail.draw(overlay);
+  ASSERT_EQ(overlay.lines.size(), 2U);
+  for (const OverlayLine& line : overlay.lines) {
+    ASSERT_EQ(line.times.size(), line.points_W.size());
+    for (std::size_t i = 0; i < line.times.size(); ++i) {
+      EXPECT_NEAR(line.times[i], 100 * line.points_W[i].x(), 1e-9);
+    }
+  }
+  EXPECT_EQ(overlay.lines[0].times.back(), overlay.lines[1].times.front());
+}
+
 /// Two strokes with the pen up between them are two lines; a joint move between them is pale and
 /// thin, and meets both.
 TEST(Trail, ThePenLeavesGapsAndPaleWays) {

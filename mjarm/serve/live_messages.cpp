@@ -126,6 +126,7 @@ std::string plots_message(std::span<const view::LivePlot> plots) {
   for (const view::LivePlot& plot : plots) {
     json.object().member("title", plot.title).member("x_label", plot.x_label);
     json.member("equal_aspect", plot.equal_aspect).member("y_from_zero", plot.y_from_zero);
+    json.member("over_time", plot.over_time);
     json.key("series").list();
     for (const view::LiveSeries& series : plot.series) add_series(json, series);
     json.end_list().end_object();

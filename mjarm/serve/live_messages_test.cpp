@@ -75,6 +75,22 @@ TEST(OverlayMessage, LeavesOutWhatIsNoNumber) {
   EXPECT_EQ(items[2].find("ends")->size(), 2U);
 }
 
+TEST(OverlayMessage, TellsWhenALineCameToItsPoints) {
+  const Model model = mjarm::testing::shipped("ur5e");
+  BodyPoses poses(model);
+  render::Overlay overlay;
+  const std::vector<Eigen::Vector3d> points = {{0, 0, 0}, {kNaN, 0, 0}, {1, 0, 0}};
+  overlay.lines = {{.points_W = points, .times = {0.5, 1, 1.5}},
+                   {.points_W = points, .times = {1}}};
+  const JsonObject message = message_of(overlay_message(overlay, poses));
+  const JsonValue& items = *message->find("items");
+  const JsonValue* const times = items[0].find("times");
+  ASSERT_NE(times, nullptr);
+  ASSERT_EQ(times->size(), 2U);
+  EXPECT_EQ((*times)[1].number(), 1.5);
+  EXPECT_EQ(items[1].find("times"), nullptr);  // not one a point
+}
+
 TEST(OverlayMessage, AGhostIsWhereItsJointsPutIt) {
   const auto robot = mjarm::testing::shipped_arm("ur5e");
   BodyPoses poses(robot.model);

@@ -82,14 +82,24 @@ void add(JsonWriter& json, const render::OverlayCapsule& capsule) {
 /// Every n-th point, and the last.
 void add(JsonWriter& json, const render::OverlayLine& line, std::size_t stride) {
   std::vector<Vector3d> points;
+  std::vector<double> times;
+  const bool has_times = line.times.size() == line.points_W.size();
   for (std::size_t i = 0; i < line.points_W.size(); ++i) {
     const bool is_kept = i % stride == 0 || i + 1 == line.points_W.size();
-    if (is_kept && is_finite(line.points_W[i])) points.push_back(line.points_W[i]);
+    if (!is_kept || !is_finite(line.points_W[i])) continue;
+    points.push_back(line.points_W[i]);
+    if (has_times) times.push_back(line.times[i]);
   }
   if (points.size() < 2 || !are_finite({line.width, line.dash})) return;
   open_item(json, "line").key("points").list();
   for (const Vector3d& point : points) add_point(json, point);
-  json.end_list().member("width", shortened(line.width));
+  json.end_list();
+  if (has_times) {
+    json.key("times").list();
+    for (const double time : times) json.value(shortened(time));
+    json.end_list();
+  }
+  json.member("width", shortened(line.width));
   add_color(json, line.color);
   json.member("dash", shortened(line.dash)).end_object();
 }

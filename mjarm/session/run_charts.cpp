@@ -51,6 +51,7 @@ render::PlotPanel over_time(Msg title, const std::string& unit) {
   render::PlotPanel panel;
   panel.title = text(title);
   panel.x_label = text(msg::run_chart_time);
+  panel.over_time = true;
   panel.y_label = unit;
   return panel;
 }

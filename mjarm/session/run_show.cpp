@@ -78,9 +78,9 @@ std::vector<view::LivePlot> RunShow::plots() const {
 
 bool RunShow::step(const Sim& sim, const Eigen::Vector3d& p_WT) {
   if (interrupted()) return false;
-  trail_.add(p_WT);
-  if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
   if (record_ && filming_ && record_->is_due(sim.time())) record_->add(sim.snapshot());
+  trail_.add(p_WT, record_ ? std::optional(record_->time_at(sim.time())) : std::nullopt);
+  if (video_ && filming_ && video_->is_due(sim) && !video_->step(sim, overlay())) return false;
   if (!window_) return true;
   history_.add(sim.snapshot());
   // A rehearsal has a clock that begins anew.

@@ -63,6 +63,7 @@ void add_panel(render::Plot& plot, const StateLog& log, const std::vector<StateC
   }
   keep_the_liveliest(curves);
   render::PlotPanel panel{.title = text(title), .x_label = text(msg::run_chart_time)};
+  panel.over_time = true;
   panel.y_label = unit != nullptr ? unit : "";
   for (StateCurve& curve : curves) panel.lines.push_back(std::move(curve.line));
   plot.panels.push_back(std::move(panel));

@@ -31,6 +31,8 @@ class BodyRecord {
   [[nodiscard]] bool empty() const noexcept { return moments_.empty(); }
   [[nodiscard]] int bodies() const noexcept { return poses_.size(); }
   [[nodiscard]] double time(std::size_t i) const { return moments_[i].time; }  ///< [s] ascending
+  /// [s] of the record, where the clock of the simulation has `time` since the last moment kept.
+  [[nodiscard]] double time_at(double time) const noexcept { return offset_ + time; }
   /// shape (nq,)
   [[nodiscard]] std::span<const double> qpos(std::size_t i) const { return moments_[i].qpos; }
   /// [m] shape (3 n,), in the world

@@ -25,6 +25,7 @@ struct LivePlot {
   std::vector<LiveSeries> series = {};
   bool equal_aspect = false;  ///< one unit is equally long on both axes
   bool y_from_zero = false;   ///< the y axis begins at 0 (errors)
+  bool over_time = false;     ///< x is the time of a run that is over [s]: what is shown is marked
   bool operator==(const LivePlot&) const = default;
 };
 

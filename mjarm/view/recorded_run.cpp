@@ -14,7 +14,8 @@ LivePlot live_plot(const render::PlotPanel& panel) {
                .x_label = panel.x_label,
                .series = {},
                .equal_aspect = panel.equal_aspect,
-               .y_from_zero = panel.y_from_zero};
+               .y_from_zero = panel.y_from_zero,
+               .over_time = panel.over_time};
   if (!panel.y_label.empty() && panel.y_label != panel.title) out.title += ", " + panel.y_label;
   int next = 0;
   for (const render::PlotLine& line : panel.lines) {

@@ -1,5 +1,6 @@
 // Charts by uPlot: values over one common axis, or places in a plane.
 import uPlot from 'uplot';
+import { el } from './dom.js';
 import { inkOf } from './figure.js';
 import { FONTS, theme } from './theme.js';
 import { isOrdered, joined } from './chart_data.js';
@@ -18,7 +19,9 @@ export function makeChart(place, plot, size, onRead) {
   const state = { series: plot.series };
   const options = plane ? planeOptions(plot, state) : overOptions(plot, onRead);
   const data = () => (plane ? planeData(state.series) : joined(state.series));
+  const now = el('div', { class: 'now', test: 'now', hidden: true });
   const chart = new uPlot({ ...options, ...size, legend: { show: false }, axes: axesOf(plot) }, data(), place);
+  chart.over.append(now);
   if (plane) chart.setData(data()); // now that the size of the plane is known
   return {
     setSeries(series) {
@@ -28,6 +31,12 @@ export function makeChart(place, plot, size, onRead) {
     setSize(wanted) {
       chart.setSize(wanted);
       if (plane) chart.setData(data());
+    },
+    /** What is shown in the scene, in plots over its time. */
+    setTime(time) {
+      const left = plot.over_time && !plane ? chart.valToPos(time, 'x') : NaN;
+      now.hidden = !(left >= 0 && left <= chart.over.clientWidth);
+      now.style.left = `${left}px`;
     },
     setShown: (index, shown) => chart.setSeries(index + 1, { show: shown }),
     dispose: () => chart.destroy(),

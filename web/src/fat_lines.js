@@ -28,7 +28,7 @@ export class FatLines {
    * @param {{rgba: number[], width: number, dash?: number}} look
    */
   set(count, at, { rgba, width, dash = 0 }) {
-    if (count > this.#room) this.#grow(count);
+    if (!this.#ends || count > this.#room) this.#grow(count);
     const [ends, lengths] = [this.#ends.array, this.#lengths.array];
     let way = 0;
     for (let i = 0; i < count; ++i) {

@@ -13,6 +13,7 @@ export class Figure {
   #tip = el('div', { class: 'tip', hidden: true });
   #values = [];
   #hidden = new Set();
+  #time = null;
 
   /** @param {string} test */
   constructor(test) {
@@ -31,6 +32,12 @@ export class Figure {
     } else {
       this.#chart.setSeries(plot.series);
     }
+  }
+
+  /** @param {number} time  [s] of what the scene shows */
+  setTime(time) {
+    this.#time = time;
+    this.#chart?.setTime(time);
   }
 
   dispose() {
@@ -54,13 +61,15 @@ export class Figure {
     this.#chart = makeChart(this.#place, this.#plot, { width, height }, (values, share) => this.#read(values, share));
     this.#place.append(this.#tip);
     for (const index of this.#hidden) this.#chart.setShown(index, false);
+    if (this.#time !== null) this.#chart.setTime(this.#time);
   }
 
   #fit() {
     const { clientWidth: width, clientHeight: height } = this.#place;
     if (!this.#plot || width < 20 || height < 20) return;
-    if (this.#chart) this.#chart.setSize({ width, height });
-    else this.#build();
+    if (!this.#chart) this.#build();
+    this.#chart?.setSize({ width, height });
+    if (this.#time !== null) this.#chart?.setTime(this.#time);
   }
 
   /** Name of a series, which switches it on and off. */

@@ -200,6 +200,7 @@ function run(page, source) {
       moved = model.pose(frame.bodies);
       transport.show(frame);
       joints?.show(frame.qpos);
+      plots.setTime(frame.time);
       selection.update();
       if (first) page.seeAll();
     }

@@ -30,6 +30,11 @@ export class Plots {
     this.#show();
   }
 
+  /** @param {number} time  [s] of what the scene shows */
+  setTime(time) {
+    for (const figure of this.#figures) figure.setTime(time);
+  }
+
   /** Anew, in the colours of the page. */
   refresh() {
     this.#show();

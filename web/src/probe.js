@@ -21,6 +21,8 @@ export function exposeProbe({ source, stage, eye, model, target, overlay, select
       return { shown, pos: p.toArray(), quat: [q.w, q.x, q.y, q.z], number, held, rgba: [...rgba] };
     },
     get overlay() { return overlay.items.map((item) => item.kind); },
+    /** How many points each line has. */
+    get lines() { return overlay.items.flatMap((item) => (item.kind === 'line' ? [item.points.length] : [])); },
     get selected() { return selection.body; },
     get groups() { return model.groups; },
     get camera() {

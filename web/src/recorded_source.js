@@ -10,6 +10,13 @@ import { language, onLanguage, t } from './words.js';
 const TIMELINE = 0; // number of its panel item
 const END = 1e-9; // [s]
 
+/** A line that grows with the time, up to a time; anything else as it is. */
+function soFar(item, time) {
+  if (!item.times) return item;
+  const later = item.times.findIndex((at) => at > time + END);
+  return later < 0 ? item : { ...item, points: item.points.slice(0, later) };
+}
+
 /** Is a {@link import('./source.js').Source}. */
 export class RecordedSource extends Emitter {
   /** @type {import('./source.js').Connection} */
@@ -131,8 +138,9 @@ export class RecordedSource extends Emitter {
     const { overlay, status } = this.#run;
     if (this.#target) sections.push(this.#target.section());
     const ghosts = this.#target?.ghosts() ?? [];
+    const items = overlay.items.map((item) => soFar(item, this.#time));
     this.#say('panels', { sections });
-    this.#say('overlay', { items: [...overlay.items, ...ghosts] }, ghosts);
+    this.#say('overlay', { items: [...items, ...ghosts] }, [ghosts, items.map((item) => item.points?.length)]);
     this.#say('status', { line: this.#target?.line() || status.line });
     if (this.#target) this.#say('target', this.#target.look());
   }

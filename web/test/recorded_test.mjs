@@ -79,6 +79,23 @@ export function testRecorded() {
     }
   });
 
+  test('the trail grows with the time, and the plots mark it', async () => {
+    const end = (await rows()).at(-1)[0];
+    const now = byTest(page, 'now');
+    const seen = [];
+    for (const share of [0.2, 0.6, 1]) {
+      await scrub(share * end);
+      await page.waitForFunction((time) => Math.abs(window.mjarm.time - time) < 1e-9, share * end);
+      const marks = await now.evaluateAll((all) => all.filter((mark) => !mark.hidden).map(
+        (mark) => mark.offsetLeft / mark.parentElement.clientWidth));
+      ok(marks.length > 0, 'no plot has a mark');
+      seen.push({ points: await probe(() => window.mjarm.lines.reduce((all, points) => all + points, 0)), mark: marks[0] });
+    }
+    const [begin, middle, whole] = seen;
+    ok(begin.points < middle.points && middle.points < whole.points, JSON.stringify(seen));
+    ok(begin.mark < middle.mark && middle.mark < whole.mark && whole.mark > 0.9, JSON.stringify(seen));
+  });
+
   test('its target is dragged; the joints are those of the program', async (context) => {
     if (!(await readFile(join(folder, 'run.html'), 'utf8')).includes('id="ik-bytes"')) {
       context.skip('the page was built without its kinematics');

@@ -103,7 +103,8 @@ render::Plot plot_of(const Drive& drive) {
   path.lines.push_back(std::move(line));
   render::PlotPanel torque{.title = text(msg::demo_plot_sensors),
                            .x_label = text(msg::run_chart_time),
-                           .y_label = "N m"};
+                           .y_label = "N m",
+                           .over_time = true};
   torque.lines.push_back({.x = drive.time, .y = drive.left, .label = "left_torque"});
   torque.lines.push_back({.x = drive.time, .y = drive.right, .label = "right_torque"});
   return {.title = "car", .panels = {std::move(path), std::move(torque)}};
