@@ -15,5 +15,11 @@ TEST(MujocoLibrary, TellsWhatIsLoaded) {
   EXPECT_TRUE(std::filesystem::exists(library.file));
 }
 
+TEST(MujocoLibrary, FitsWithinItsSeries) {
+  EXPECT_TRUE((MujocoLibrary{"4.0.0", "4.0.1", {}}.fits()));
+  EXPECT_FALSE((MujocoLibrary{"4.1.0", "4.0.1", {}}.fits()));
+  EXPECT_FALSE((MujocoLibrary{"14.0.1", "4.0.1", {}}.fits()));
+}
+
 }  // namespace
 }  // namespace mjarm

@@ -11,6 +11,7 @@ NB_MODULE(_core, m) {
   using namespace mjarm;
   namespace nb = nanobind;
   m.attr("__doc__") = "The C++ part of mjarm; use the package `mjarm`.";
+  m.attr("__version__") = MJARM_VERSION;
   m.def(
       "mujoco_version", [] { return mujoco_library().version; },
       "The version of the MuJoCo library in use, such as \"4.0.1\".");

@@ -1,5 +1,6 @@
 """The package as it is installed: one MuJoCo, quick to import, a program, and no way to crash it."""
 
+import importlib.metadata
 import json
 import os
 import pathlib
@@ -75,12 +76,18 @@ def test_types_are_told():
     assert stub.with_name("py.typed").exists()
 
 
+def test_tells_its_version():
+    assert mjarm.__version__ == importlib.metadata.version("mjarm")
+
+
 def test_the_program_is_the_same(tmp_path):
     done = program("ik", "--robot", "ur5e", "--pos", "-0.13,0.6,0.1", "--euler", "3.14,0,1.57", "--no-timing")
     assert done.returncode == 0, done.stderr
     q = mjarm.Robot("ur5e").ik(mjarm.Pose([-0.13, 0.6, 0.1], euler=[3.14, 0, 1.57])).q
     assert json.loads(done.stdout)["q"] == q.tolist()  # to the last bit
     assert program("no_such_command").returncode == 2
+    done = program("doctor")  # which MuJoCo is there (4.0.0 with the package mujoco) is no fault
+    assert done.returncode == 0, done.stdout + done.stderr
     done = program("demo", "ellipse", "--headless", "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "out" / "report.json").stat().st_size > 100

@@ -55,7 +55,7 @@ void look_at_mujoco(Findings& findings) {
   add(findings, "mujoco", "MuJoCo", library.version,
       library.version + "  " + library.file.string());
   findings.facts.set("mujoco_library", library.file.string());
-  if (library.version != library.built_against) {
+  if (!library.fits()) {
     findings.problems.push_back(text(msg::app_doctor_other_mujoco, library.built_against,
                                      library.version, library.file.string()));
   }
