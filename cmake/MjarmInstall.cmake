@@ -32,3 +32,4 @@ install(FILES "${PROJECT_BINARY_DIR}/mjarmConfig.cmake"
               "${PROJECT_BINARY_DIR}/mjarmConfigVersion.cmake" cmake/FindMuJoCo.cmake
               cmake/FindOMPL.cmake cmake/FindAprilTag.cmake
         DESTINATION "${config_dir}")
+include(MjarmPackage)

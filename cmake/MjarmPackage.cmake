@@ -1,0 +1,23 @@
+# What `cpack` makes in dist/: a Debian package and a tarball of what `cmake --install` installs.
+set(CPACK_PACKAGE_NAME "${PROJECT_NAME}")
+set(CPACK_PACKAGE_VENDOR "mjarm")
+set(CPACK_PACKAGE_CONTACT "mjarm <noreply@mjarm.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_PACKAGE_DIRECTORY "${PROJECT_SOURCE_DIR}/dist")
+set(CPACK_GENERATOR DEB TGZ)
+set(CPACK_STRIP_FILES ON)
+string(TOLOWER "${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}" system)
+set(CPACK_PACKAGE_FILE_NAME "${PROJECT_NAME}-${PROJECT_VERSION}-${system}")
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+get_filename_component(mujoco_folder "${MuJoCo_LIBRARY}" DIRECTORY)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${mujoco_folder}")
+# Found when they are wanted, not linked: one that draws without a display, what fetches meshes.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1, libcurl4 | libcurl4t64")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, libegl1, libgl1-mesa-dri, fonts-dejavu-core, fonts-noto-cjk | fonts-wqy-microhei")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg, cmake, g++, libeigen3-dev, libexpected-dev")
+set(CPACK_PROJECT_CONFIG_FILE "${PROJECT_SOURCE_DIR}/cmake/MjarmPackagePlaces.cmake")
+include(CPack)

@@ -1,0 +1,39 @@
+# Part of ./dev: the packages. Sourced after test.sh, never run.
+
+# The packages of the release build, into dist/.
+make_packages() {
+  set_up_packages dpkg-dev file
+  build_page || say "the packages go without the page"
+  (build release all) && rm -f "$root"/dist/mjarm*.{deb,tar.gz} && quiet cpack --config "$root/build/release/CPackConfig.cmake" &&
+    ls -l "$root"/dist/mjarm*.{deb,tar.gz} >&2
+}
+
+# in_bare COMMAND...: in the bare system, with nothing of this one.
+in_bare() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$bare" "$@"; }
+
+# How a new user meets the package: a system with nothing in it, one line to install, the first picture, one line to be rid of it.
+try_packages() {
+  local bare uri suite left
+  ((EUID == 0)) && command -v debootstrap >/dev/null ||
+    { say "trying the packages needs root and debootstrap" && return 77; }
+  suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
+  uri=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -n 1)
+  bare=$(mktemp -d)
+  trap 'rm -rf "$bare"' RETURN
+  quiet debootstrap --variant=minbase "$suite" "$bare" "$uri" || return
+  cp /etc/apt/apt.conf.d/* "$bare/etc/apt/apt.conf.d/"  # how this machine reaches its packages
+  cp "$root"/dist/mjarm*.deb "$root"/dist/mjarm*.tar.gz "$bare/root/"
+  quiet in_bare sh -c 'apt-get install -y --no-install-recommends /root/mjarm*.deb' || return
+  in_bare mjarm --version >&2 && quiet in_bare mjarm demo ellipse --headless --out /root/out &&
+    [[ -s $bare/root/out/picture.png ]] || return
+  # The libraries it needs stay, so the tarball runs as well.
+  quiet in_bare sh -c 'cd /root && tar xzf mjarm*.tar.gz && dpkg --purge mjarm && mjarm-*/bin/mjarm ik --robot ur5e --pos -0.13,0.6,0.1' || return
+  left=$(find "$bare" -xdev -path "$bare/root" -prune -o \( -name '*mjarm*' -o -name 'libmujoco*' \) -print)
+  [[ -z $left ]] || { say "left behind: $left" && return 1; }
+}
+
+run_package() {
+  check "packages: made" make_packages
+  ((failed)) || check "packages: installed, used and removed on a bare system" try_packages
+  finish
+}
