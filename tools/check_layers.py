@@ -40,6 +40,7 @@ MUJOCO = [
     "mjarm/render/*.cpp", "mjarm/render/*_internal.hpp",
     "mjarm/view/*.cpp", "mjarm/view/*_internal.hpp",
     "*_test.cpp", "*_test.hpp", "*_bench.cpp",
+    "examples/learn/03_*.cpp",  # it is about MuJoCo's own model and data
 ]
 
 # Where the operating system may be called directly.

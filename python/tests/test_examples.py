@@ -6,15 +6,18 @@ import sys
 
 import pytest
 
-EXAMPLES = sorted((pathlib.Path(__file__).parents[1] / "examples").glob("[0-9][0-9]_*.py"))
+FOLDER = pathlib.Path(__file__).parents[1] / "examples"
+EXAMPLES = sorted(FOLDER.glob("[0-9][0-9]_*.py"))
+LESSONS = sorted(FOLDER.glob("learn/[0-9][0-9]_*.py"))
 
 
 def test_they_mirror_those_in_cpp():
     cpp = pathlib.Path(__file__).parents[2] / "examples"
     assert [file.stem for file in EXAMPLES][:15] == sorted(file.stem for file in cpp.glob("[0-9][0-9]_*.cpp"))
+    assert [file.stem for file in LESSONS] == sorted(file.stem for file in cpp.glob("learn/[0-9][0-9]_*.cpp"))
 
 
-@pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", [*EXAMPLES, *LESSONS], ids=lambda file: file.stem)
 def test_it_runs(file, tmp_path):
     assert len(file.read_text(encoding="utf-8").splitlines()) <= 40
     done = subprocess.run([sys.executable, str(file)], capture_output=True, text=True, timeout=300, cwd=tmp_path)
