@@ -221,6 +221,7 @@ void bind_outcome(nb::module_& m) {
   nb::class_<BoundPath>(m, "Path", "Joint values along a path of the tool, as far as it goes.")
       .def_prop_ro(
           "ok", [](const BoundPath& p) { return !p.failure; }, "Whether it goes to its end.")
+      .def("__bool__", [](const BoundPath& p) { return !p.failure; })
       .def_prop_ro(
           "q", [](const BoundPath& p) { return array(p.had.q, p.dof); },
           nb::sig("def q(self) -> Array"),

@@ -59,7 +59,8 @@ NoAnswer other_branches(const IkSolver& ik, const Branch& wanted,
     words.insert(describe(branch_of(ik, as_span(answer.q))));
   }
   std::string listed;
-  for (const std::string& word : words) listed += (listed.empty() ? "" : "; ") + word;
+  for (const std::string& word : words)
+    listed += (listed.empty() ? "" : text(msg::app_semicolon)) + word;
   return {"no_branch", text(msg::kinematics_branch_missing, describe(wanted), listed),
           answers.front().q};
 }
