@@ -5,7 +5,7 @@ Usage: check_pages.py [--program MJARM] [--python PYTHON] [--root FOLDER] [--sec
 Each page has a folder of its own, empty for those of docs/learn; else with the folders of the project in it. Commands of sh share one shell, blocks
 of python one process. `./dev ARGS` is `mjarm ARGS` here. A block of text that follows at once quotes what was printed: its lines in their order, `...`
 for anything left out, numbers within 1 % or one unit of their last digit. A command may end with another exit code than 0 where a line of what it printed is
-quoted, or where it says so: `# exit code 1`. Before a block, `<!-- not run: REASON -->` leaves it out and `<!-- up to 300 s -->` gives it more time.
+quoted, or where it says so: `# exit code 1` (in a row of a table, `<!-- exit code 1 -->`). Before a block, `<!-- not run: REASON -->` leaves it out and `<!-- up to 300 s -->` gives it more time.
 --tables: the commands in the cells of tables as well. Both languages of a page have to run the same. The last line counts.
 """
 
@@ -121,8 +121,9 @@ def table_commands(text):
     for number, line in enumerate(text.splitlines(), 1):
         if line.startswith("|"):
             for code in re.findall(r"`((?:\./dev|mjarm) [^`]+)`", line):
-                found.setdefault(code, number)
-    return [Command(number, code, reason_to_skip(code) or reason_in_table(code)) for code, number in found.items()]
+                said = re.search(r"<!-- (exit code \d+) -->", line)
+                found.setdefault(code, Command(number, f"{code}  # {said.group(1)}" if said else code, reason_to_skip(code) or reason_in_table(code)))
+    return list(found.values())
 
 
 def reason_in_table(command):

@@ -33,6 +33,11 @@ PARTS = [
     ({"en": "Reference", "zh-CN": "参考"}, ["commands/index", "docs/conventions", "docs/troubleshooting", "messages", "models/README", "docs/benchmarks"]),
     ({"en": "Project", "zh-CN": "项目"}, ["docs/architecture", "CONTRIBUTING", "web/README", "docs/roadmap", "CHANGELOG"]),
 ]
+ENGLISH_ONLY = {
+    "docs/programs": "运动程序", "docs/planning": "避障规划", "docs/viewing": "窗口", "docs/learning": "强化学习", "docs/python": "Python 参考手册",
+    "docs/conventions": "约定", "models/README": "模型", "docs/benchmarks": "基准测试", "docs/architecture": "架构", "CONTRIBUTING": "参与开发",
+    "web/README": "浏览器页面的源码", "docs/roadmap": "路线图", "CHANGELOG": "更新记录",
+}
 WORDS = {
     "en": {"commands": "Commands", "commands_text": "What the program says about itself: `mjarm COMMAND --help`.",
            "messages": "Messages", "messages_text": "All that the library and the program may say, by topic; `{}` stands for what a message is about. "
@@ -44,21 +49,25 @@ WORDS = {
 }
 
 
-def pages():
-    """The pages that are in the site, in the order of its parts: 'docs/planning' and the like."""
-    for _, names in PARTS:
-        for name in names:
-            if name.endswith("*"):
-                found = sorted(ROOT.glob(name + ".md"))
-                yield from (file.relative_to(ROOT).as_posix()[:-3] for file in found if ".zh-CN." not in file.name)
-            elif (ROOT / f"{name}.md").exists():
-                yield name
+def pages(names=tuple(name for _, part in PARTS for name in part)):
+    """The pages of the project that have these names, in their order."""
+    found = [file.relative_to(ROOT).as_posix()[:-3] for name in names for file in sorted(ROOT.glob(f"{name}.md"))]
+    return [name for name in found if not name.endswith(".zh-CN")]
+
+
+def has_own(name, language):
+    return language == "en" or (ROOT / f"{name}.{language}.md").exists()
 
 
 def source_of(name, language):
     """The file of a page in that language, else the English one."""
-    own = ROOT / f"{name}.{language}.md"
-    return own if own.exists() else ROOT / f"{name}.md"
+    return ROOT / (f"{name}.{language}.md" if language != "en" and has_own(name, language) else f"{name}.md")
+
+
+def without_blanks_in_chinese(text):
+    """A line that ends in Chinese goes on in the next one; a browser would show a blank there."""
+    wide = r"[\u3000-\u303f\u4e00-\u9fff\uff00-\uffef]"
+    return re.sub(rf"(?<!\n)(?<={wide})\n(?={wide})|(?<={wide})\n(?=[`\[*]*{wide})", "", text)
 
 
 class Stage:
@@ -80,8 +89,8 @@ class Stage:
         out = [line.replace("```mermaid", "```text") if line.startswith("```") else line for line in text.splitlines()]
         for number, _ in check_links.prose(text):
             out[number - 1] = self.with_links(out[number - 1], file, name)
-        if file.name.endswith(f".{self.language}.md") or self.language == "en":
-            return "\n".join(out) + "\n"
+        if has_own(name, self.language):
+            return without_blanks_in_chinese("\n".join(out)) + "\n"
         return "\n".join([*out[:1], "", WORDS[self.language]["only"], *out[1:]]) + "\n"
 
     def with_links(self, line, file, name):
@@ -107,7 +116,7 @@ class Stage:
         page = page.removesuffix(".zh-CN")
         if there.suffix == ".md" and page in self.names:
             staged = "index" if page == "README" else page
-            if language == self.language or not source_of(page, self.language).name.endswith(f".{self.language}.md"):
+            if language == self.language or not has_own(page, self.language):
                 return f"[{words}]({up}{staged}.md{anchor})"
             return f'<a href="{up}../{language}/{staged}.html{urllib.parse.quote(anchor, safe="#%")}">{words}</a>'
         return f'<a href="{up}../{self.copied(there)}">{words}</a>'
@@ -144,13 +153,16 @@ class Stage:
             return f'<a href="{pathlib.PurePosixPath(self.copied(there)).name}">{there.name}</a>'
         return there.name
 
+    def entry(self, page):
+        """A page in the list of pages; one without Chinese has a Chinese name there all the same."""
+        return f"{ENGLISH_ONLY[page]}（英文） <{page}>" if self.language != "en" and page in ENGLISH_ONLY and not has_own(page, self.language) else page
+
     def index(self):
         """README, with the list of all pages."""
         self.names.update(("commands/index", "messages", "api/index"))
         out = [self.page("README")]
         for captions, names in PARTS:
-            listed = [one for name in names for one in ([page for page in pages() if re.fullmatch(name.replace("*", ".*"), page)] or
-                                                        ([name] if name in self.names else []))]
+            listed = [self.entry(page) for name in names for page in pages([name]) or [name] if page in self.names]
             out.append("\n".join(["```{toctree}", ":hidden:", f":caption: {captions[self.language]}", "", *listed, "```", ""]))
         return "\n".join(out)
 
@@ -275,6 +287,16 @@ def build(language, program, work, out):
         sys.exit(f"site: Sphinx found faults in the pages in {language}")
 
 
+def take_in_styles(static):
+    """Debian's theme imports a style from where a web server of Debian has it: it goes into the site."""
+    def style(found):
+        file = pathlib.Path("/usr/share") / found.group(1)
+        return file.read_text(encoding="utf-8") if file.exists() else ""
+
+    for file in static.rglob("*.css"):
+        file.write_text(re.sub(r"@import url\(/([\w./-]+)\);", style, file.read_text(encoding="utf-8")), encoding="utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", required=True)
@@ -287,7 +309,7 @@ def main():
         folder.mkdir(parents=True)
     for language in LANGUAGES:
         build(language, options.program, work, out)
-        shutil.rmtree(out / language / ".doctrees", ignore_errors=True)
+        take_in_styles(out / language / "_static")
     shutil.copyfile(HERE / "start.html", out / "index.html")
     shutil.rmtree(work)
     faults = list(link_faults(out))

@@ -40,7 +40,9 @@ def items(text):
         counted = without_literals(line)
         depth += sum(counted.count(one) for one in "({[") - sum(counted.count(one) for one in ")}]")
         end = counted.rstrip()
-        if depth == 0 and (end.endswith(";") or (end.endswith("}") and not begins_type("\n".join(code)))):
+        if re.fullmatch(r"(class|struct|enum class) \w+;", end):  # named here, declared elsewhere
+            comment, code = [], []
+        elif depth == 0 and (end.endswith(";") or (end.endswith("}") and not begins_type("\n".join(code)))):
             found.append((comment, code))
             comment, code = [], []
     return found
@@ -72,7 +74,8 @@ def prose(comment):
         elif back:
             out += ["", f"- *returns* {back.group(1)}"]
         else:
-            out.append(("  " if out and out[-1].startswith(("- ", "  ")) and text else "") + re.sub(r"^@(brief|file)\s*", "", text))
+            goes_on = any(line.startswith(("- `", "- *returns*")) for line in out) and not text.startswith("- ")
+            out.append(("  " if goes_on and text else "") + text)
     text = "\n".join(out)
     # What is no code in markdown must not become some: names with underscores, brackets and stars.
     return re.sub(r"(`[^`]*`)|([<>*_\[\]$#|])", lambda one: one.group(1) or "\\" + one.group(2), text)
