@@ -149,7 +149,7 @@ def reason_to_skip(text):
                 return "measures the machine"
             if first == "models" and "install" in rest:
                 return "fetches from the network"
-            if first in ("view", "teleop") or "--view" in rest:
+            if (first in ("view", "teleop") or "--view" in rest) and "--seconds" not in rest:
                 return "opens a window"
             if (first == "serve" or "--serve" in rest) and "--seconds" not in rest:
                 return "runs until it is closed"

@@ -197,12 +197,15 @@ def command_pages(stage, program):
                                              "```{toctree}\n:maxdepth: 1\n", *commands, "```\n"]))
 
 
+def message_files():
+    return [*(ROOT / "mjarm/core/messages").glob("*.inc"), *(ROOT / "apps/mjarm/messages").glob("*.inc")]
+
+
 def messages():
     """(topic, [(English, Chinese)]) of the catalogue of messages."""
-    files = [*(ROOT / "mjarm/core/messages").glob("*.inc"), *(ROOT / "apps/mjarm/messages").glob("*.inc")]
     string = r'((?:"(?:\\.|[^"\\])*"\s*)+)'
-    for file in sorted(files, key=lambda file: file.stem):
-        found = re.findall(rf"MJARM_MSG\(\s*\w+\s*,\s*{string},\s*{string}\)", file.read_text(encoding="utf-8"))
+    for file in sorted(message_files(), key=lambda file: file.stem):
+        found = re.findall(rf"MJARM_MSG\(\s*\w+\s*,\s*{string},\s*{string}\)", text)
         yield file.stem, [tuple(joined(one) for one in pair) for pair in found]
 
 
@@ -281,7 +284,7 @@ def build(language, program, work, out):
     else:
         api_link(stage)
     environment = os.environ | {"MJARM_SITE_LANGUAGE": language, "PYTHONDONTWRITEBYTECODE": "1", "LC_ALL": "C.UTF-8"}
-    code = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q", "-c", str(HERE), "-d", str(work / f"{language}.trees"),
+    code = subprocess.run([sys.executable, "-m", "sphinx", "-b", "html", "-W", "--keep-going", "-q", "-c", str(HERE), "-d", str(work / f"{language}.trees"),
                            str(stage.work), str(out / language)], env=environment).returncode
     if code:
         sys.exit(f"site: Sphinx found faults in the pages in {language}")

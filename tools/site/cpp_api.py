@@ -56,7 +56,7 @@ def declaration(code):
     """Without bodies of functions and without what is private."""
     text = "\n".join(code)
     if begins_type(text):
-        text = re.sub(r"\n private:.*?(?=\n(?: public:|\};))", "", text, flags=re.S)
+        text = re.sub(r"\n private:.*?(?=\n(?: public:|\};))", "", text, flags=re.S).replace("\n\n};", "\n};")
     else:
         text = re.sub(r"\)([^{};]*?)\s*\{.*\}\s*$", r")\1;", text, flags=re.S) if "(" in text.split("{")[0] and "{" in text else text
     return text
@@ -65,20 +65,20 @@ def declaration(code):
 def prose(comment):
     """What a comment says, in markdown."""
     out = []
-    for line in comment:
-        text = re.sub(r"^///?<?\s?", "", line)
+    # What is no code in markdown must not become some: names with underscores, brackets and stars.
+    escaped = re.sub(r"(`[^`]*`)|([<>*_\[\]$#|])", lambda one: one.group(1) or "\\" + one.group(2),
+                     "\n".join(re.sub(r"^///?<?\s?", "", line) for line in comment))
+    for text in escaped.splitlines():
         named = re.match(r"@(param|tparam)(?:\[\w+\])?\s+(\S+)\s*(.*)", text)
         back = re.match(r"@(?:return|returns)\s*(.*)", text)
         if named:
-            out += ["", f"- `{named.group(2)}` — {named.group(3)}"]
+            out += ["", "- `{}` — {}".format(named.group(2).replace("\\", ""), named.group(3))]
         elif back:
             out += ["", f"- *returns* {back.group(1)}"]
         else:
             goes_on = any(line.startswith(("- `", "- *returns*")) for line in out) and not text.startswith("- ")
             out.append(("  " if goes_on and text else "") + text)
-    text = "\n".join(out)
-    # What is no code in markdown must not become some: names with underscores, brackets and stars.
-    return re.sub(r"(`[^`]*`)|([<>*_\[\]$#|])", lambda one: one.group(1) or "\\" + one.group(2), text)
+    return "\n".join(out)
 
 
 def name_of(code):
@@ -106,7 +106,7 @@ def header_section(path, text):
     """One header: what each declaration is for, and how it is written. Overloads with one comment stay together."""
     out, shown, groups = [f"## {path.removeprefix('mjarm/')}\n", f"```cpp\n#include <{path}>\n```\n"], "", []
     for comment, code in items(text):
-        if comment or not groups or begins_type("\n".join(code)):
+        if comment or not groups or begins_type("\n".join(code)) or begins_type("\n".join(groups[-1][1][0])):
             groups.append((comment, [code]))
         else:
             groups[-1][1].append(code)
