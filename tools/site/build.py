@@ -205,6 +205,7 @@ def messages():
     """(topic, [(English, Chinese)]) of the catalogue of messages."""
     string = r'((?:"(?:\\.|[^"\\])*"\s*)+)'
     for file in sorted(message_files(), key=lambda file: file.stem):
+        text = re.sub(r"^\s*//.*$", "", file.read_text(encoding="utf-8"), flags=re.M)
         found = re.findall(rf"MJARM_MSG\(\s*\w+\s*,\s*{string},\s*{string}\)", text)
         yield file.stem, [tuple(joined(one) for one in pair) for pair in found]
 
