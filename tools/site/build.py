@@ -38,6 +38,11 @@ ENGLISH_ONLY = {
     "docs/conventions": "约定", "models/README": "模型", "docs/benchmarks": "基准测试", "docs/architecture": "架构", "CONTRIBUTING": "参与开发",
     "web/README": "浏览器页面的源码", "docs/roadmap": "路线图", "CHANGELOG": "更新记录",
 }
+THEME_IN_CHINESE = {
+    r"(>\s*)On this page(\s*<)": r"\1本页内容\2", r"(>\s*)Next(\s*<)": r"\1下一页\2", r"(>\s*)Previous(\s*<)": r"\1上一页\2", r"(>\s*)Home(\s*<)": r"\1首页\2",
+    r"Back to top": "回到顶部", r"(>\s*)Made with": r"\1制作工具：", r"Search finished, found \$\{resultCount\} page\(s\) matching the search query\.":
+    "共找到 ${resultCount} 个页面。",
+}
 WORDS = {
     "en": {"commands": "Commands", "commands_text": "What the program says about itself: `mjarm COMMAND --help`.",
            "messages": "Messages", "messages_text": "All that the library and the program may say, by topic; `{}` stands for what a message is about. "
@@ -179,22 +184,25 @@ def words_of_section(text, heading):
 
 
 def command_pages(stage, program):
-    """What each command says about itself, a page a command."""
+    """What each command says about itself, a page a command; returns all of it."""
     words, language = WORDS[stage.language], stage.language
-    commands = words_of_section(ask(program, language, "--help"), "Commands:|命令：")
+    said = [ask(program, language, "--help")]
+    commands = words_of_section(said[0], "Commands:|命令：")
     assert len(commands) > 15, commands
     for command in commands:
         text = ask(program, language, command, "--help")
+        said.append(text)
         out = [f"# mjarm {command}\n", f"```text\n{text.rstrip()}\n```\n"]
         more = words_of_section(text, "Commands:|命令：")
         if command == "demo":
             more = [line.split()[0] for line in ask(program, language, "demo").splitlines() if line[:1].isalpha()]
         for one in more:
-            out += [f"## mjarm {command} {one}\n", f"```text\n{ask(program, language, command, one, '--help').rstrip()}\n```\n"]
+            said.append(ask(program, language, command, one, "--help"))
+            out += [f"## mjarm {command} {one}\n", f"```text\n{said[-1].rstrip()}\n```\n"]
         stage.write(f"commands/{command}", "\n".join(out))
-    top = ask(program, language, "--help").rstrip()
-    stage.write("commands/index", "\n".join([f"# {words['commands']}\n", words["commands_text"] + "\n", f"```text\n{top}\n```\n",
+    stage.write("commands/index", "\n".join([f"# {words['commands']}\n", words["commands_text"] + "\n", f"```text\n{said[0].rstrip()}\n```\n",
                                              "```{toctree}\n:maxdepth: 1\n", *commands, "```\n"]))
+    return "\n".join(said)
 
 
 def message_files():
@@ -215,12 +223,13 @@ def joined(literals):
     return re.sub(r"\\(.)", lambda one: {"n": "\n", "t": " "}.get(one.group(1), one.group(1)), text)
 
 
-def message_page(stage):
+def message_page(stage, helps):
+    """All messages but those that explain commands, which the pages of commands show."""
     words = WORDS[stage.language]
     out = [f"# {words['messages']}\n", words["messages_text"] + "\n"]
     for topic, pairs in messages():
         lines = [pair[stage.language != "en"].rstrip() for pair in pairs]
-        lines = [line for line in lines if len(line) > 15 or (stage.language != "en" and len(line) > 6)]  # not words of labels
+        lines = [line for line in lines if line not in helps and len(line) > (15 if stage.language == "en" else 6)]  # nor words of labels
         if lines:
             out += [f"## {topic}\n", "```text", *lines, "```\n"]
     stage.write("messages", "\n".join(out).replace("\n\n\n", "\n\n"))
@@ -278,8 +287,7 @@ def build(language, program, work, out):
     stage.write("index", stage.index())
     for name in pages():
         stage.write(name, stage.page(name))
-    command_pages(stage, program)
-    message_page(stage)
+    message_page(stage, command_pages(stage, program))
     if language == "en":
         cpp_api.write_pages(ROOT, stage.work / "api", list(check_layers.ALLOWED))
     else:
@@ -289,6 +297,15 @@ def build(language, program, work, out):
                            str(stage.work), str(out / language)], env=environment).returncode
     if code:
         sys.exit(f"site: Sphinx found faults in the pages in {language}")
+
+
+def in_chinese(folder):
+    """The few words of the theme that have no translation."""
+    for file in [*folder.rglob("*.html"), folder / "_static/searchtools.js"]:
+        text = file.read_text(encoding="utf-8")
+        for english, chinese in THEME_IN_CHINESE.items():
+            text = re.sub(english, chinese, text)
+        file.write_text(text, encoding="utf-8")
 
 
 def take_in_styles(static):
@@ -314,6 +331,7 @@ def main():
     for language in LANGUAGES:
         build(language, options.program, work, out)
         take_in_styles(out / language / "_static")
+    in_chinese(out / "zh-CN")
     shutil.copyfile(HERE / "start.html", out / "index.html")
     shutil.rmtree(work)
     faults = list(link_faults(out))
