@@ -5,7 +5,8 @@ Usage: check_pages.py [--program MJARM] [--python PYTHON] [--root FOLDER] [--sec
 Each page has a folder of its own, empty for those of docs/learn; else with the folders of the project in it. Commands of sh share one shell, blocks
 of python one process. `./dev ARGS` is `mjarm ARGS` here. A block of text that follows at once quotes what was printed: its lines in their order, `...`
 for anything left out, numbers within 1 % or one unit of their last digit. A command may end with another exit code than 0 where a line of what it printed is
-quoted, or where it says so: `# exit code 1` (in a row of a table, `<!-- exit code 1 -->`). Before a block, `<!-- not run: REASON -->` leaves it out and `<!-- up to 300 s -->` gives it more time.
+quoted, or where it says so: `# exit code 1` (in a row of a table, `<!-- exit code 1 -->`). Before a block, `<!-- not run: REASON -->` leaves it out and
+`<!-- up to 300 s -->` gives it more time.
 --tables: the commands in the cells of tables as well. Both languages of a page have to run the same. The last line counts.
 """
 
@@ -50,12 +51,18 @@ for line in requests:
 
 @dataclasses.dataclass
 class Block:
-    kind: str                # sh, python or text
+    kind: str                # sh, python, text, or that of a file
     line: int                # of its first line, from 1
     lines: list[str]
     follows: bool = False    # nothing but blank lines since the block before
     skip: str = ""           # why it is not run
     seconds: float = 0       # its own limit, or 0
+
+    @property
+    def file(self):
+        """The file that the reader saves it as, by its first line: `# own.yaml`, `<!-- own.xml -->`."""
+        named = re.fullmatch(r"(?:#|//|<!--)\s*([\w-]+\.\w+)\s*(?:-->)?\s*", self.lines[0]) if self.lines else None
+        return named.group(1) if named else ""
 
 
 @dataclasses.dataclass
@@ -81,7 +88,7 @@ def blocks_of(text):
             block.skip = skip.group(1) if skip else ""
             block.seconds = float(more.group(1)) if more else 0
         elif end is not None and line.strip() == end:
-            if block.kind in ("sh", "python", "text"):
+            if block.kind in ("sh", "python", "text") or block.file:
                 blocks.append(block)
             end, note, follows = None, "", block.kind in ("sh", "python")
         elif end is not None:
@@ -297,7 +304,7 @@ def twin_fault(page, other):
     """(line, what) where the page in the other language does not run the same, or None."""
     a, b = ([block for block in blocks_of(one.read_text(encoding="utf-8")) if block.kind != "text"] for one in (page, other))
     for one, two in zip(a, b):
-        if one.kind != two.kind or not (same_sh if one.kind == "sh" else same_python)(one, two):
+        if (one.kind, one.file) != (two.kind, two.file) or not (same_python if one.kind == "python" else same_sh)(one, two):
             return two.line, f"this block is not that of line {one.line} in {page.name}"
     if len(a) != len(b):
         return 1, f"{len(b)} blocks are run here, {len(a)} in {page.name}"
@@ -363,16 +370,18 @@ class Checker:
             shell = Session(["bash", "--noprofile", "--norc"], wrap_sh, folder, environment)
             python = Session([str(self.options.python), "-u", "-c", DRIVER], wrap_python, folder, environment)
             try:
-                self.run_blocks(page, blocks_of(text), shell, python)
+                self.run_blocks(page, blocks_of(text), folder, shell, python)
                 if self.options.tables:
                     self.run_tables(page, text, shell)
             finally:
                 shell.close()
                 python.close()
 
-    def run_blocks(self, page, blocks, shell, python):
+    def run_blocks(self, page, blocks, folder, shell, python):
         for block, after in zip(blocks, [*blocks[1:], None]):
-            if block.kind == "text":
+            if block.file:
+                (folder / block.file).write_text("\n".join(block.lines) + "\n", encoding="utf-8")
+            if block.kind not in ("sh", "python"):
                 continue
             quoted = after if after and after.kind == "text" and after.follows else None
             if block.kind == "sh":

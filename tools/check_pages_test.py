@@ -73,6 +73,14 @@ class CheckPagesTest(unittest.TestCase):
         self.assertIn("nearest:  pos  -0.134  0.492 0.488", found)
         self.assert_counts("```sh\nmjarm fk\n```\nwords\n```text\nsomething else\n```\n", "1 passed, 0 failed, 0 skipped")
 
+    def test_files_that_the_reader_saves(self):
+        text = "```yaml\n# own.yaml\nrobot: a  # b\n```\n```xml\n<!-- own.xml -->\n<a/>\n```\n```xml\n<!-- what it is -->\n```\n```sh\ncat own.yaml own.xml\n```\n"
+        self.assert_counts(text + "```text\n# own.yaml\nrobot: a  # b\n<a/>\n```\n", "2 passed, 0 failed, 0 skipped")
+        self.write("docs/a.zh-CN.md", text.replace("# b", "# 乙"))
+        self.assert_counts(text, "2 passed, 0 failed, 0 skipped")
+        self.write("docs/a.zh-CN.md", text.replace("robot: a", "robot: b"))
+        self.assert_counts(text, "1 passed, 1 failed, 0 skipped")
+
     def test_exit_codes(self):
         self.assert_counts("```sh\nmjarm ik\n```\n", "0 passed, 1 failed, 0 skipped")
         self.assert_counts("```sh\nmjarm fk\nmjarm ik\n```\n```text\nout of reach by 0.25 m\n```\n", "3 passed, 0 failed, 0 skipped")

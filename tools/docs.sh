@@ -59,7 +59,7 @@ count_pages() {
   local lines
   say "check: pages ..."
   lines=$(python3 -B "$root/tools/check_pages.py" --program "$root/build/dev/bin/mjarm" --python "$environment/bin/python" \
-    --seconds 300 "$@" | tee /dev/stderr) || true
+    --seconds 300 "$@" | tee >(cat >&2)) || true
   if [[ $(tail -n 1 <<<"$lines") =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed,\ ([0-9]+)\ skipped$ ]]; then
     passed=$((passed + BASH_REMATCH[1])) failed=$((failed + BASH_REMATCH[2])) skipped=$((skipped + BASH_REMATCH[3]))
   else

@@ -228,7 +228,7 @@ def message_page(stage, helps):
     words = WORDS[stage.language]
     out = [f"# {words['messages']}\n", words["messages_text"] + "\n"]
     for topic, pairs in messages():
-        lines = [pair[stage.language != "en"].rstrip() for pair in pairs]
+        lines = [line.replace("{{", "{").replace("}}", "}").rstrip() for pair in pairs for line in pair[stage.language != "en"].split("\n")]
         lines = [line for line in lines if line not in helps and len(line) > (15 if stage.language == "en" else 6)]  # nor words of labels
         if lines:
             out += [f"## {topic}\n", "```text", *lines, "```\n"]

@@ -46,7 +46,7 @@ class Solver {
   int secret_ = 0;
 };
 
-inline constexpr double kPi = 3;
+inline constexpr double kPi = std::numbers::pi_v<double>(3);
 
 }  // namespace mjarm
 """
@@ -58,7 +58,7 @@ class CppTest(unittest.TestCase):
         self.assertEqual(re.findall(r"^### `(.*)`$", page, re.M), ["Why", "name", "twice", "Solver", "kPi"])
         self.assertIn('The word: "far", a\\_b \\<x\\>.\n\n- `why` — the reason,\n    in short.\n\n- *returns* never empty.\n', page)
         self.assertIn("inline T twice(T a);\nfloat twice(float a);\n", page)
-        self.assertIn("inline constexpr double kPi = 3;", page)
+        self.assertIn("inline constexpr double kPi = std::numbers::pi_v<double>(3);", page)
         for gone in ("secret_", "class Other", "A remark", "return a"):
             self.assertNotIn(gone, page)
         self.assertEqual(cpp_api.header_section("mjarm/core/none.hpp", "#pragma once\nnamespace mjarm {\nclass A;\n}\n"), "")

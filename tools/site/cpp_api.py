@@ -83,6 +83,9 @@ def prose(comment):
 
 def name_of(code):
     text = without_template(" ".join(line.strip() for line in code if not line.strip().startswith("//")))
+    value = re.match(r"[^({=]*?(\w+)\s*=[^=]", text)
+    if value and not re.match(r"using\b|enum\b|struct\b|class\b|.*\boperator\b", text):
+        return value.group(1)
     for pattern in (r"(?:class|struct|union|enum class|enum)\s+(?:\[\[\w+\]\]\s*|alignas\([^)]*\)\s*)?([\w:]+)", r"using\s+(\w+)\s*=", r"(operator\s*[^\s(]+)\s*\(",
                     r"([\w:~]+)\s*\(", r"([\w:]+)\s*(?:\[.*?\])?\s*(?:=|\{|;)"):
         found = re.search(pattern, re.sub(r"\[\[.*?\]\]\s*", "", text)) if "enum" not in pattern else re.match(pattern, text)
