@@ -37,7 +37,7 @@ printf '#!/bin/sh\ntouch %s/apt-called\n' "$work" | tee "$work/bin/apt-get" >"$w
 chmod +x "$work/bin/"*
 sleep 0.01
 touch "$work/mjarm/mjarm/new.cpp"
-for arguments in "--no-install" "--no-install fk" "--no-install test"; do
+for arguments in "--no-install" "--no-install fk" "--no-install test" "--no-install docs"; do
   code=0
   answer=$(PATH="$work/bin:$PATH" "$work/mjarm/dev" $arguments 2>&1) || code=$?
   [[ $code == 1 ]] || fail "$arguments: exit code $code: $answer"

@@ -21,6 +21,8 @@ sources() {
 
 check_layers() { python3 "$root/tools/check_layers.py" "$root"; }
 
+check_links() { python3 -B "$root/tools/check_links.py" "$root"; }
+
 check_format() {
   local tool found
   tool=$(clang_tool clang-format) || return 77
@@ -150,6 +152,7 @@ build_counted() { (build "$@"); }
 
 run_tests() {
   check "layers" check_layers
+  check "links" check_links
   check "format" check_format
   check "page" check_page
   check "build" build_counted "$1" all
@@ -181,6 +184,7 @@ run_long() {
 
 run_checks_only() {
   check "layers" check_layers
+  check "links" check_links
   check "format" check_format
   check "headers stand alone" check_headers dev
   finish

@@ -1,0 +1,125 @@
+"""Tests of what the site is made of; they need no Sphinx. Run: python3 tools/site/build_test.py"""
+
+import pathlib
+import re
+import tempfile
+import unittest
+
+import build
+import check_layers
+import check_links
+import cpp_api
+
+HEADER = """#pragma once
+
+#include <span>
+
+namespace mjarm {
+
+class Other;
+
+/// Why not.
+enum class Why {
+  far,   ///< too far
+};
+/// The word: "far", a_b <x>.
+/// @param why  the reason,
+///   in short.
+/// @return never empty.
+[[nodiscard]] std::string_view name(Why why) noexcept;
+
+// A remark.
+
+/// Twice as much.
+template <typename T>
+inline T twice(T a) {
+  return a + a;  // "}"
+}
+float twice(float a);
+
+/// A solver.
+class Solver {
+ public:
+  void solve();
+
+ private:
+  int secret_ = 0;
+};
+
+inline constexpr double kPi = std::numbers::pi_v<double>(3);
+
+}  // namespace mjarm
+"""
+
+
+class CppTest(unittest.TestCase):
+    def test_a_header(self):
+        page = cpp_api.header_section("mjarm/core/why.hpp", HEADER)
+        self.assertEqual(re.findall(r"^### `(.*)`$", page, re.M), ["Why", "name", "twice", "Solver", "kPi"])
+        self.assertIn('The word: "far", a\\_b \\<x\\>.\n\n- `why` — the reason,\n    in short.\n\n- *returns* never empty.\n', page)
+        self.assertIn("inline T twice(T a);\nfloat twice(float a);\n", page)
+        self.assertIn("inline constexpr double kPi = std::numbers::pi_v<double>(3);", page)
+        for gone in ("secret_", "class Other", "A remark", "return a"):
+            self.assertNotIn(gone, page)
+        self.assertEqual(cpp_api.header_section("mjarm/core/none.hpp", "#pragma once\nnamespace mjarm {\nclass A;\n}\n"), "")
+
+    def test_nothing_of_a_public_header_is_lost(self):
+        for room in check_layers.ALLOWED:
+            self.assertIn(room, cpp_api.TEXTS)
+            for file in cpp_api.public_headers(build.ROOT, room):
+                text = file.read_text(encoding="utf-8")
+                section = cpp_api.header_section("x.hpp", text)
+                for name in re.findall(r"^(?:struct|enum class|class) (?:\[\[\w+\]\] )?(\w+)[^;]*\{", text, re.M):
+                    self.assertRegex(section, rf"(?:struct|class) (?:\[\[\w+\]\] )?{name}\b", f"{file}: {name}")
+
+
+class PagesTest(unittest.TestCase):
+    def stage(self, language, out="/nowhere"):
+        return build.Stage(language, pathlib.Path("/nowhere"), pathlib.Path(out))
+
+    def link(self, language, page, target):
+        name = page.removesuffix(".md").removesuffix(".zh-CN")
+        return self.stage(language).with_links(f"see [it]({target}).", build.ROOT / page, name)
+
+    def test_links_between_the_languages(self):
+        self.assertEqual(self.link("en", "docs/serve.md", "planning.md#x"), "see [it](../docs/planning.md#x).")
+        self.assertEqual(self.link("en", "docs/serve.md", "serve.zh-CN.md"), 'see <a href="../../zh-CN/docs/serve.html">it</a>.')
+        self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "serve.md"), 'see <a href="../../en/docs/serve.html">it</a>.')
+        self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "perception.zh-CN.md"), "see [it](../docs/perception.md).")
+        self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "planning.md"), "see [it](../docs/planning.md).")  # there is no other
+        self.assertEqual(self.link("en", "docs/serve.md", "../README.md"), "see [it](../index.md).")
+
+    def test_links_to_files(self):
+        with tempfile.TemporaryDirectory() as out:
+            stage = self.stage("en", out)
+            line = stage.with_links("see [it](../examples/01_forward_kinematics.cpp), `[x](y)`", build.ROOT / "docs/serve.md", "docs/serve")
+            self.assertEqual(line, 'see <a href="../../files/examples/01_forward_kinematics.cpp.txt">it</a>, `[x](y)`')
+            self.assertTrue((pathlib.Path(out) / "files/examples/01_forward_kinematics.cpp.txt").is_file())
+            self.assertIn("files/examples/index.html", stage.with_links("[all](../examples/)", build.ROOT / "docs/serve.md", "docs/serve"))
+
+    def test_chinese_goes_on_without_a_blank(self):
+        self.assertEqual(build.without_blanks_in_chinese("甲\n乙，\n丙\n\n丁\n`a`\n- 戊"), "甲乙，丙\n\n丁\n`a`\n- 戊")
+
+    def test_every_page_is_in_the_site(self):
+        found = {page.relative_to(build.ROOT).as_posix()[:-3] for page in check_links.pages_of(build.ROOT) if ".zh-CN." not in page.name}
+        self.assertEqual(sorted(found - {"README"}), sorted(build.pages()))
+
+    def test_messages_come_whole(self):
+        topics = dict(build.messages())
+        self.assertIn(("{}: no such file", "{}：文件不存在"), topics["core"])
+        count = sum(file.read_text(encoding="utf-8").count("\nMJARM_MSG(") for file in build.message_files())
+        self.assertEqual(sum(len(pairs) for pairs in topics.values()), count)
+
+    def test_links_of_the_site_are_followed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder).resolve()
+            (out / "a.html").write_text('<a href="b.html#x"></a><a href="b.html#y"></a><a href="c.html"></a><a href="https://example.org"></a>'
+                                        '<script src="https://example.org/a.js"></script><img src="d.png">')
+            (out / "b.html").write_text('<p id="x">')
+            (out / "s.css").write_text("a { background: url(//example.org/a.png); }")
+            self.assertEqual(sorted(build.link_faults(out)), ["a.html: b.html#y: no such anchor", "a.html: c.html: no such file", "a.html: d.png: no such file",
+                                                              "a.html: loads https://example.org/a.js", "s.css: loads from elsewhere"])
+
+
+if __name__ == "__main__":
+    unittest.main()
