@@ -126,6 +126,8 @@ class CheckPagesTest(unittest.TestCase):
     def test_both_languages_run_the_same(self):
         text = "```sh\nmjarm say hello  # greet\n```\n```python\n# one\nprint(f\"{1 + 1} points\", 'x')\n```\n"
         good = "```sh\nmjarm say 你好  # 问好\n```\n```python\nprint(f\"共 {1 + 1} 个点\", 'x')\n```\n"
+        own = good.replace("```python\n", "```python\nmjarm.set_language('zh')\n").replace("你好", "你好 --lang zh-CN")
+        self.assertIsNone(check_pages.twin_fault(self.write("docs/b.md", text), self.write("docs/b.zh-CN.md", own)))
         for other, failed in ((good, 0), (good.replace("1 + 1", "1 + 2"), 1), (good.replace("'x'", "'y'"), 1), (good.replace("say", "fk"), 1),
                               ("```sh\nmjarm say 你好\n```\n", 1), (good.replace("```python", "```sh\nmjarm fk\n```\n```python"), 1)):
             self.write("docs/a.zh-CN.md", other)
