@@ -117,6 +117,7 @@ class CheckPagesTest(unittest.TestCase):
         text = "| `./dev fk` | `./dev NAME --help`, `mjarm ik` |\n| `./dev ik --robot my_arm.urdf` | `mjarm fk` |\n`./dev ik`\n"
         self.assert_counts(text, "0 passed, 0 failed, 0 skipped")
         self.assert_counts(text, "2 passed, 1 failed, 2 skipped", options=["--tables"])
+        self.assert_counts("| `mjarm ik` | <!-- exit code 1 --> |\n| `mjarm fk` | <!-- exit code 1 --> |\n", "1 passed, 1 failed, 0 skipped", options=["--tables"])
 
     def test_the_reader_has_no_display_and_a_language(self):
         text = "```sh\nmjarm say\n```\n```text\n{} no display\n```\n"
