@@ -30,7 +30,7 @@ build_site() {
 }
 
 run_pages() {
-  local pages=("$@") readme=() others=() page counts
+  local pages=("$@") readme=() others=() page
   if ((${#pages[@]} == 0)); then pages=("$root"/README*.md "$root"/docs/*.md "$root"/docs/learn/*.md "$root"/python/README*.md); fi
   for page in "${pages[@]}"; do
     case $page in
@@ -43,8 +43,10 @@ run_pages() {
   check "build" build_counted dev all
   ((failed)) || check "wheel" build_wheel dev "$root/build/dev/wheel.pages"
   ((failed)) || check "wheel: installed" install_for_pages
-  if ((failed == 0 && ${#readme[@]})); then count_pages --tables "${readme[@]}"; fi
-  if ((failed == 0 || ${#readme[@]})) && ((${#others[@]})) && [[ -n ${environment:-} ]]; then count_pages "${others[@]}"; fi
+  if ((failed == 0)); then
+    ((${#readme[@]} == 0)) || count_pages --tables "${readme[@]}"
+    ((${#others[@]} == 0)) || count_pages "${others[@]}"
+  fi
   finish
 }
 
