@@ -70,13 +70,13 @@ std::string python_of(const Exercise& exercise) {
 }
 
 /// `words` as a JSON string.
-std::string quoted(std::string_view words) { return JsonDoc(words).line(); }
+std::string json_string(std::string_view words) { return JsonDoc(words).line(); }
 
 std::string task_line(const Exercise& exercise, const PythonTask& task) {
-  std::string line = "{\"file\":" + quoted(exercise.file) +
-                     ",\"function\":" + quoted(task.function) + ",\"robot\":" + quoted(task.robot) +
-                     ",\"call\":" + quoted(task.call) +
-                     ",\"seconds\":" + std::to_string(kPythonSeconds) + ",\"cases\":[";
+  std::string line =
+      "{\"file\":" + json_string(exercise.file) + ",\"function\":" + json_string(task.function) +
+      ",\"robot\":" + json_string(task.robot) + ",\"call\":" + json_string(task.call) +
+      ",\"seconds\":" + std::to_string(kPythonSeconds) + ",\"cases\":[";
   for (std::size_t i = 0; i < task.cases.size(); ++i) line += (i > 0 ? "," : "") + task.cases[i];
   return line + "]}\n";
 }

@@ -14,7 +14,7 @@ struct PythonTask {
   std::string function;  ///< its name in the reader's file
   std::string robot;     ///< name or path of the robot that it gets
   std::string call;      ///< Python: `function`, `robot` and one `case` to what it returns
-  std::vector<std::string> cases;  ///< JSON, one a call
+  std::vector<std::string> cases = {};  ///< JSON, one a call
 };
 
 /// What came of one call.

@@ -19,7 +19,7 @@ using Rows = std::vector<std::vector<double>>;
 
 constexpr double kPlanEnds = 1e-3;  // [rad, L2]
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
+double joint_distance(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return std::sqrt(sum);
@@ -27,7 +27,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 
 double length_of(const Rows& rows) {
   double length = 0;
-  for (std::size_t i = 1; i < rows.size(); ++i) length += distance(rows[i - 1], rows[i]);
+  for (std::size_t i = 1; i < rows.size(); ++i) length += joint_distance(rows[i - 1], rows[i]);
   return length;
 }
 
@@ -76,11 +76,13 @@ Result<bool> judge_path(const WallTask& task, const PythonCase& answer, bool bac
     return false;
   }
   const Rows& rows = answer.rows;
-  const double first = distance(rows.front(), back ? task.goal : task.start);
-  const double last = distance(rows.back(), back ? task.start : task.goal);
+  const double first = joint_distance(rows.front(), back ? task.goal : task.start);
+  const double last = joint_distance(rows.back(), back ? task.start : task.goal);
   if (first > kPlanEnds) out.wrong(way + text(msg::learn_rrt_begins, first));
   if (last > kPlanEnds) out.wrong(way + text(msg::learn_rrt_ends, last));
-  const GivenPath path{.id = "plan", .rows = rows};
+  GivenPath path;
+  path.id = "plan";
+  path.rows = rows;
   const Result<PathVerdict> verdict = verify_path(task.robot, {}, path, {.stop = interrupted});
   if (!verdict) {
     out.wrong(way + verdict.error().what);
