@@ -1,6 +1,6 @@
 #include "apps/mjarm/messages/learn.hpp"
 
-#include <cstdlib>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -85,25 +85,26 @@ const char* name_of(LearnLine::Kind kind) {
 /// One line a finding; the last one is the verdict, on standard error where all is not right.
 Result<int> tell(const LearnReport& report, std::size_t number, const Exercise& exercise,
                  bool json) {
-  const LearnLine* const wrong = report.first_wrong();
+  const std::size_t wrong = report.wrong_count();
   std::vector<JsonDoc> docs;
   std::string lines;
   for (const LearnLine& line : report.lines()) {
     docs.push_back({{"kind", name_of(line.kind)}, {"what", line.what}});
     lines += text(word_of(line.kind), line.what) + '\n';
   }
-  if (wrong == nullptr) lines += text(msg::learn_all_right, number) + '\n';
+  if (wrong == 0) lines += text(msg::learn_all_right, number) + '\n';
   print_lines(json ? JsonDoc{{"page", number},
                              {"file", exercise.file},
-                             {"ok", wrong == nullptr},
+                             {"ok", wrong == 0},
                              {"findings", std::move(docs)}}
                          .document()
                    : lines);
-  if (wrong == nullptr) return 0;
+  std::fflush(stdout);  // the verdict comes last
+  if (wrong == 0) return 0;
   return fail(Errc::impossible,
               exercise.file.empty()
-                  ? text(msg::learn_not_right_yet, number, wrong->what)
-                  : text(msg::learn_file_not_right_yet, exercise.file, number, wrong->what));
+                  ? text(msg::learn_not_right_yet, number, wrong)
+                  : text(msg::learn_file_not_right_yet, exercise.file, number, wrong));
 }
 
 /// Pages with other exercises take no robot and no Python.

@@ -1,10 +1,12 @@
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "apps/mjarm/learn/exercise.hpp"
 #include "apps/mjarm/messages/learn.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/model/check.hpp"
 #include "mjarm/model/describe.hpp"
 #include "mjarm/model/dynamics.hpp"
@@ -16,6 +18,8 @@ namespace {
 constexpr double kBoxSeconds = 1, kBoxHalfWay = 0.5;  // [s]
 constexpr int kMaxBoxSteps = 200000;
 constexpr double kNoTorque = 1e-9;  // share of the weight: [m] of lever
+
+constexpr double kSmallTilt = 3.15;  // [deg] no turn in radians is read as more
 
 /// What the box did.
 struct BoxFall {
@@ -109,6 +113,13 @@ void judge_free(const BoxFall& fall, LearnReport& out) {
   }
 }
 
+/// A tilt that most likely was meant in radians and read in degrees.
+void tell_small_tilt(const Model& model, int body, LearnReport& out) {
+  const Eigen::Matrix3d R = Sim(model).body_pose(body).R;
+  const double tilt = angle_between(R, Eigen::Matrix3d::Identity()) * 180 / std::numbers::pi;
+  if (tilt > 1e-6 && tilt < kSmallTilt) out.note(text(msg::learn_box_small_tilt, tilt));
+}
+
 /// Angles that are most likely meant in the other unit.
 Result<void> tell_angles(const std::string& file, LearnReport& out) {
   const Result<CheckReport> report = check_model(file);
@@ -156,6 +167,7 @@ Result<LearnReport> check_box(const Exercise& exercise) {
       out.note(text(msg::learn_box_joints, joints.size(), fall->z_start, fall->z_end));
     }
   }
+  tell_small_tilt(*model, body, out);
   if (Result<void> told = tell_angles(exercise.file, out); !told) return fail(told.error());
   return out;
 }

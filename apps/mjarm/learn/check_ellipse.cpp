@@ -13,7 +13,9 @@ namespace {
 Result<bool> is_shipped_ellipse(const JsonValue& report) {
   Result<program::Program> shipped = demo_program("ellipse");
   if (!shipped) return fail(shipped.error());
-  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*shipped), {});
+  DemoOptions options;
+  options.robot.robot = "ur5e";
+  const Result<program::LoadedProgram> loaded = plan_demo(std::move(*shipped), options);
   if (!loaded) return fail(loaded.error());
   const double duration = loaded->plan.duration();
   return std::abs(number_in(report, "cycle_time") - duration) < 1e-6 * duration;

@@ -82,6 +82,19 @@ bool is_euler_way(const Rotations& way) {
   return true;
 }
 
+/// Whether the four numbers went evenly from one end to the other, and were normalised.
+bool is_nlerp_way(const Rotations& way) {
+  const Quat begin = to_quat(way.front());
+  Quat end = to_quat(way.back());
+  if (begin.dot(end) < 0) end.coeffs() = -end.coeffs();
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(way.size() - 1);
+    const Quat between(begin.coeffs() + t * (end.coeffs() - begin.coeffs()));
+    if (!(angle_between(way[i], to_matrix(between)) < kSameTurn)) return false;
+  }
+  return true;
+}
+
 void judge_ends(const std::vector<Wxyz>& quats, const Rotations& way, LearnReport& out) {
   const Eigen::Matrix3d begin = from_euler(kTurnBegin), end = from_euler(kTurnEnd);
   if (has_ends(way, begin, end)) {
@@ -116,6 +129,7 @@ void judge_way(const Rotations& way, LearnReport& out) {
     if (is_euler_way(way)) out.note(text(msg::learn_turn_euler));
   } else if (longest - shortest > kSameTurn) {
     out.wrong(text(msg::learn_turn_uneven, degrees(shortest), degrees(longest)));
+    if (is_nlerp_way(way)) out.note(text(msg::learn_turn_nlerp));
   } else {
     out.right(text(msg::learn_turn_right, degrees(least), degrees(least / steps)));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,12 +36,11 @@ class LearnReport {
   void note(std::string what) { lines_.push_back({LearnLine::Kind::note, std::move(what)}); }
 
   [[nodiscard]] const std::vector<LearnLine>& lines() const { return lines_; }
-  /// The first that is wrong; null where all is right.
-  [[nodiscard]] const LearnLine* first_wrong() const {
-    for (const LearnLine& line : lines_) {
-      if (line.kind == LearnLine::Kind::wrong) return &line;
-    }
-    return nullptr;
+  /// How many are wrong; 0 where all is right.
+  [[nodiscard]] std::size_t wrong_count() const {
+    std::size_t count = 0;
+    for (const LearnLine& line : lines_) count += line.kind == LearnLine::Kind::wrong;
+    return count;
   }
 
  private:
