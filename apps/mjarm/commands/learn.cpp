@@ -143,8 +143,8 @@ Result<int> check(const Options& options) {
   const Result<LearnReport> report = page.check(exercise);
   if (!report) {
     Error error = report.error();
-    // That a file cannot be read is no answer to the question whether it is right.
-    if (error.code == Errc::impossible) error.code = Errc::bad_input;
+    // What cannot be looked at is not wrong: exit code 2.
+    if (error.code != Errc::usage) error.code = Errc::bad_input;
     return fail(error);
   }
   return tell(*report, index, exercise, options.json);

@@ -127,7 +127,7 @@ void tell_plan(const program::LoadedProgram& loaded, LearnReport& out) {
   }
   const MoveMeasures* tightest = nullptr;
   for (const PlannedMove& move : plan.moves) {
-    if (!move.measures) continue;
+    if (move.word != "plan" || !move.measures) continue;  // things lie where they are picked
     if (tightest == nullptr || move.measures->clearance < tightest->clearance) {
       tightest = &*move.measures;
     }

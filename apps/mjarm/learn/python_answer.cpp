@@ -10,7 +10,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr int kPythonSeconds = 60;
+constexpr int kPythonSeconds = 60;  // of the clock
 constexpr std::string_view kPythonAnswer = "mjarm-learn-answer ";
 constexpr std::string_view kPythonAnswerEnd = " mjarm-learn-end";
 
@@ -22,7 +22,8 @@ task = json.loads(sys.stdin.readline())
 faulthandler.dump_traceback_later(task["seconds"], exit=True)
 file = task["file"]
 sys.path.insert(0, os.path.dirname(os.path.abspath(file)))
-os.environ.setdefault("MPLBACKEND", "Agg")
+for name, value in ("MPLBACKEND", "Agg"), ("OMP_NUM_THREADS", "1"), ("OPENBLAS_NUM_THREADS", "1"):
+    os.environ.setdefault(name, value)
 import mjarm, numpy
 names = {"__name__": "exercise", "__file__": file}
 with open(file, "rb") as opened:

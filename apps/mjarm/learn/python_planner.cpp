@@ -17,6 +17,7 @@ namespace {
 
 using Rows = std::vector<std::vector<double>>;
 
+constexpr const char* kWallScene = "universal_robots_ur5e/wall.xml";
 constexpr double kPlanEnds = 1e-3;  // [rad, L2]
 
 double joint_distance(const std::vector<double>& a, const std::vector<double>& b) {
@@ -40,7 +41,7 @@ struct WallTask {
 };
 
 Result<WallTask> wall_task() {
-  Result<Robot> robot = load_robot({.robot = "universal_robots_ur5e/wall.xml", .looks = false});
+  Result<Robot> robot = load_robot({.robot = kWallScene, .looks = false});
   if (!robot) return fail(robot.error());
   WallTask task{std::move(*robot), {1.9084, -1.2456, 1.9905, -2.3157, -1.5708, 3.4792}, {}};
   Result<PlanningWorld> world = PlanningWorld::create(task.robot);
@@ -107,7 +108,7 @@ Result<LearnReport> check_python_planner(const Exercise& exercise) {
   const Result<std::vector<PythonCase>> answers = ask_python(
       exercise,
       {.function = "plan",
-       .robot = std::filesystem::absolute(wall->robot.model.file()).string(),
+       .robot = kWallScene,
        .call = "function(robot, numpy.array(case[\"start\"]), numpy.array(case[\"goal\"]))",
        .cases = {case_line(wall->start, wall->goal), case_line(wall->goal, wall->start)}});
   if (!answers) return fail(answers.error());
