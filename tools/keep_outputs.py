@@ -33,7 +33,7 @@ import zlib
 # leaves out --time-budget, `bench plan --set anytime` and commands interrupted; `train` says its time unless --quiet keeps it still.
 CASES = r"""
 mjarm @lang (|demo|doctor|model|model info|model tree|model check|model export|models|models install|fk|ik|path|plan|verify|time|check|run|export|render|view
- |workspace|train|eval|bench|bench ik|bench path|bench plan|bench time|bench control|bench pick|bench sim|bench rl) --help
+ |workspace|train|eval|learn|learn check|bench|bench ik|bench path|bench plan|bench time|bench control|bench pick|bench sim|bench rl) --help
 (LANG=zh_CN.UTF-8|LC_ALL=zh_TW.UTF-8|LANG=de_DE.UTF-8|LANG=zh LC_ALL=C) mjarm (-h|nonsense|--lang=en nonsense|--lang|--lang zh-TV --help|--version)
 mjarm @lang (docter|xyzzyxyzzy|''|model|model inof|model info|model tree ur5e panda|fk --robto ur5e|models|bench|bench ki|verify|path|time|workspace
  |fk --robot=ur5e --qq=1|fk --no-timing|fk --robot|fk --robot ur5e --robot panda|fk --robot ur5e|--vrebose doctor|plan|train|demo elipse|run|run elipse

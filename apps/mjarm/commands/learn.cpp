@@ -32,15 +32,19 @@ std::string page_file(const LearnPage& page) {
   return std::string(page.name) + (language() == Language::chinese ? ".zh-CN.md" : ".md");
 }
 
-/// The folder of the pages where they came along, else the one in a clone.
+/// The folder of the pages: above that of the models, as in a clone; else its name in one.
 fs::path page_folder() {
+  const fs::path inside = fs::path("docs") / "learn";
   const Result<fs::path> scene = find_model_file("ur5e");
+  if (!scene) return inside;
   std::error_code unknown;
-  if (scene) {
-    const fs::path beside = scene->parent_path().parent_path().parent_path() / "docs" / "learn";
-    if (fs::exists(beside / page_file(learn_pages().front()), unknown)) return beside;
+  for (fs::path above = scene->parent_path(); above.has_relative_path();
+       above = above.parent_path()) {
+    const fs::path folder = above / inside;
+    const std::string first = std::string(learn_pages().front().name) + ".md";
+    if (fs::exists(folder / first, unknown)) return folder;
   }
-  return fs::path("docs") / "learn";
+  return inside;
 }
 
 Result<int> list_pages(const Options& options) {
@@ -110,7 +114,7 @@ Result<int> tell(const LearnReport& report, std::size_t number, const Exercise& 
 /// Pages with other exercises take no robot and no Python.
 Result<void> fits(const Options& options, std::size_t number) {
   const bool robot = number == 3 || number == 5, python = number >= 8;
-  if (!robot && !options.robot.robot.empty()) {
+  if (!robot && !(options.robot.robot.empty() && options.robot.tip.empty())) {
     return fail(Errc::usage, text(msg::learn_not_for, "--robot", "3, 5"));
   }
   if (!python && !options.python.empty()) {

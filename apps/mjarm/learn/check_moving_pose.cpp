@@ -33,7 +33,7 @@ double largest_difference(std::span<const double> a, std::span<const double> b) 
 
 Result<LearnReport> check_moving_pose(const Exercise& exercise) {
   RobotChoice choice = exercise.robot;
-  if (choice.robot.empty()) choice = {.robot = "ur5e", .looks = false};
+  if (choice.robot.empty()) choice.robot = "ur5e";
   const Result<Robot> robot = load_robot(choice);
   if (!robot) return fail(robot.error());
   const Arm& arm = robot->arm;

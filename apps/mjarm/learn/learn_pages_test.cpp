@@ -23,6 +23,18 @@ TEST_F(Learn, ListsNinePages) {
   EXPECT_EQ(json::parse(run({"--json"}).out).at("pages").size(), 9u);
 }
 
+TEST_F(Learn, SaysWhereThePagesAre) {
+  std::filesystem::create_directories(folder_.path() / "docs" / "learn");
+  folder_.write("docs/learn/01_set_up.md", "# 1. Set up\n");
+  std::filesystem::create_directory_symlink(MJARM_MODELS, folder_.path() / "models");
+  support::RunOptions options;
+  options.environment = {{"MJARM_MODELS", (folder_.path() / "models").string()}};
+  const auto result = mjarm({"learn"}, options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find((folder_.path() / "docs" / "learn").string() + ":"), std::string::npos)
+      << result.out;
+}
+
 TEST_F(Learn, UsageIsToldInOneLine) {
   expect_refused(run({"check"}), "1 to 9");
   expect_refused(run({"check", "0"}), "1 to 9");
@@ -80,7 +92,7 @@ TEST_F(Learn, Page1LooksAtTheEllipse) {
     return check("1", "mine");
   };
   expect_refused(check("1", "mine"), "holds no report.json");
-  expect_right(with({}), "0.096 um, 100.0 %");
+  expect_right(with(json::object()), "0.096 um, 100.0 %");
   expect_right(with({{"speed_dips", {{{"least", 0.1}, {"joint", "elbow"}, {"limit", "jerk"}}}}}),
                "0.1 m/s, because elbow is at its limit of jerk");
   expect_wrong(with({{"name", "movel"}}), "report of movel");

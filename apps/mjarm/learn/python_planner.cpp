@@ -68,13 +68,11 @@ std::string misshapen(const PythonCase& answer, std::size_t dof) {
   return {};
 }
 
-/// @return whether it is a path from the start to the goal that touches nothing.
-Result<bool> judge_path(const WallTask& task, const PythonCase& answer, bool back,
-                        LearnReport& out) {
+void judge_path(const WallTask& task, const PythonCase& answer, bool back, LearnReport& out) {
   const std::string way = text(back ? msg::learn_rrt_back : msg::learn_rrt_there);
   if (const std::string why = misshapen(answer, task.start.size()); !why.empty()) {
     out.wrong(way + why);
-    return false;
+    return;
   }
   const Rows& rows = answer.rows;
   const double first = joint_distance(rows.front(), back ? task.goal : task.start);
@@ -87,13 +85,12 @@ Result<bool> judge_path(const WallTask& task, const PythonCase& answer, bool bac
   const Result<PathVerdict> verdict = verify_path(task.robot, {}, path, {.stop = interrupted});
   if (!verdict) {
     out.wrong(way + verdict.error().what);
-    return false;
+    return;
   }
-  for (const PathFault& fault : verdict->faults) out.wrong(way + fault.what);
-  if (!verdict->faults.empty()) out.note(text(msg::learn_rrt_between));
-  if (first > kPlanEnds || last > kPlanEnds || !verdict->faults.empty()) return false;
+  // MuJoCo finds the same place once more.
+  if (!verdict->faults.empty()) out.wrong(way + verdict->faults.front().what);
+  if (first > kPlanEnds || last > kPlanEnds || !verdict->faults.empty()) return;
   out.right(way + text(msg::learn_rrt_free, rows.size() - 1, length_of(rows)));
-  return true;
 }
 
 std::string case_line(const std::vector<double>& start, const std::vector<double>& goal) {
@@ -113,10 +110,9 @@ Result<LearnReport> check_python_planner(const Exercise& exercise) {
        .cases = {case_line(wall->start, wall->goal), case_line(wall->goal, wall->start)}});
   if (!answers) return fail(answers.error());
   LearnReport out;
-  const Result<bool> there = judge_path(*wall, (*answers)[0], false, out);
-  const Result<bool> back = judge_path(*wall, (*answers)[1], true, out);
-  if (!there) return fail(there.error());
-  if (!back) return fail(back.error());
+  judge_path(*wall, (*answers)[0], false, out);
+  judge_path(*wall, (*answers)[1], true, out);
+  if (out.wrong_count() > 0) out.note(text(msg::learn_rrt_between));
   out.note(text(msg::learn_rrt_ours, wall->edges, wall->cost));
   return out;
 }
