@@ -214,7 +214,7 @@ TEST(Help, OfTheProgramNamesEveryCommandOnce) {
   const Words lines = section(help_of_words({}), "Commands:");
   for (const char* name : {"demo",   "doctor", "model",  "models",    "fk",    "ik",     "path",
                            "plan",   "time",   "verify", "check",     "run",   "export", "sim",
-                           "render", "view",   "serve",  "workspace", "train", "eval"}) {
+                           "render", "view",   "serve",  "workspace", "train", "eval",   "learn"}) {
     const auto is_it = [&](const std::string& line) { return first_word(line) == name; };
     EXPECT_EQ(std::ranges::count_if(lines, is_it), 1) << name;
   }

@@ -9,6 +9,11 @@
 namespace mjarm::app {
 namespace {
 
+bool has_number(const JsonValue& object, std::string_view key) {
+  const JsonValue* const value = object.find(key);
+  return value != nullptr && value->is_number();
+}
+
 /// Whether it took as long as the ellipse that comes with the demo takes.
 Result<bool> is_shipped_ellipse(const JsonValue& report) {
   Result<program::Program> shipped = demo_program("ellipse");
@@ -61,6 +66,9 @@ Result<LearnReport> check_ellipse(const Exercise& exercise) {
                    word_in(report, "detail")));
     out.note(text(msg::learn_ellipse_smaller));
     return out;
+  }
+  if (!has_number(report, "cycle_time") || !has_number(report, "path_error_max")) {
+    return fail(Errc::bad_input, text(msg::learn_no_demo_report, file));
   }
   const Result<bool> shipped = is_shipped_ellipse(report);
   if (!shipped) return fail(shipped.error());

@@ -102,6 +102,7 @@ TEST_F(Learn, Page1LooksAtTheEllipse) {
   ASSERT_TRUE(shipped) << shipped.error().what;
   expect_wrong(with({{"cycle_time", shipped->plan.duration()}}), "comes with the demo");
   expect_refused(with({{"ok", "yes"}}), "no report of a demo");
+  expect_refused(with({{"cycle_time", "long"}}), "no report of a demo");
   folder_.write("mine/report.json", "[1]");
   expect_refused(check("1", "mine"), "report.json");
 }

@@ -128,6 +128,7 @@ TEST_F(LearnPython, Page8CountsWhatASolverSolves) {
   expect_wrong(none, "solved 0 of 100");
   EXPECT_NE(none.out.find("ZeroDivisionError"), std::string::npos) << none.out;
   expect_wrong(with("def least_squares(robot, goal, q):\n    return 'six'\n"), "solved 0 of 100");
+  expect_wrong(with("def least_squares(robot, goal, q):\n    raise SystemExit(3)\n"), "solved 0");
   expect_refused(with("def other(robot):\n    pass\n"), "no function least_squares");
   expect_refused(with("def least_squares(robot\n"), "SyntaxError");
 }

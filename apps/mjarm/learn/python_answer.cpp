@@ -6,6 +6,7 @@
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/os_child_input.hpp"
 #include "mjarm/core/trim.hpp"
+#include "mjarm/core/utf8.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -54,7 +55,7 @@ out = []
 for case in task["cases"]:
     try:
         value = call(function, robot, case, count)
-    except Exception as why:
+    except (Exception, SystemExit) as why:
         out.append({"refused": f"{type(why).__name__}: {why}"[:120]})
         continue
     try:
@@ -90,7 +91,8 @@ std::string last_words(std::string_view said) {
     if (const std::string_view line = trimmed(said.substr(0, end)); !line.empty()) last = line;
     said.remove_prefix(std::min(end + 1, said.size()));
   }
-  return std::string(last);
+  constexpr std::size_t kMaxWords = 300;  // [bytes]
+  return printable(last.substr(0, kMaxWords));
 }
 
 Error python_failed(const Exercise& exercise, const std::string& said) {
