@@ -47,6 +47,9 @@ class SummaryTest(unittest.TestCase):
         self.assertEqual(self.lines_of(PYTEST),
                          ["SKIPPED: 1 (waits): no display", "FAILED: fails", "FAILED: breaks", "1 2 1"])
 
+    def test_colours_of_a_terminal_are_left_out(self):
+        self.assertEqual(self.lines_of(PYTEST.replace("assert 1", "\x1b[2massert 1\x1b[22m"))[-1], "1 2 1")
+
     def test_counts_names_and_reasons(self):
         lines = self.lines_of(RESULTS)
         self.assertEqual(lines[-1], "1 1 3")
