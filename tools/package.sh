@@ -8,19 +8,17 @@ make_packages() {
     ls -l "$root"/dist/mjarm*.{deb,tar.gz} >&2
 }
 
-# in_bare COMMAND...: in the bare system, with nothing of this one.
-in_bare() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive chroot "$bare" "$@"; }
+# in_bare COMMAND...: in the bare system, with nothing of this one; programs find themselves by /proc.
+in_bare() {
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+    unshare --mount --pid --fork --root="$bare" --mount-proc "$@"
+}
 
 # How a new user meets the package: a system with nothing in it, one line to install, the first picture, one line to be rid of it.
-try_packages() {
-  local bare uri suite left
-  ((EUID == 0)) && command -v debootstrap >/dev/null ||
-    { say "trying the packages needs root and debootstrap" && return 77; }
-  suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
-  uri=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | head -n 1)
-  bare=$(mktemp -d)
-  trap 'rm -rf "$bare"' RETURN
-  quiet debootstrap --variant=minbase "$suite" "$bare" "$uri" || return
+use_packages() {
+  local left
+  quiet debootstrap --variant=minbase "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$bare" \
+    "$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | sed q)" || return
   cp /etc/apt/apt.conf.d/* "$bare/etc/apt/apt.conf.d/"  # how this machine reaches its packages
   cp "$root"/dist/mjarm*.deb "$root"/dist/mjarm*.tar.gz "$bare/root/"
   quiet in_bare sh -c 'apt-get install -y --no-install-recommends /root/mjarm*.deb' || return
@@ -30,6 +28,16 @@ try_packages() {
   quiet in_bare sh -c 'cd /root && tar xzf mjarm*.tar.gz && dpkg --purge mjarm && mjarm-*/bin/mjarm ik --robot ur5e --pos -0.13,0.6,0.1' || return
   left=$(find "$bare" -xdev -path "$bare/root" -prune -o \( -name '*mjarm*' -o -name 'libmujoco*' \) -print)
   [[ -z $left ]] || { say "left behind: $left" && return 1; }
+}
+
+try_packages() {
+  local bare code=0
+  ((EUID == 0)) && command -v debootstrap >/dev/null ||
+    { say "trying the packages needs root and debootstrap" && return 77; }
+  bare=$(mktemp -d)
+  use_packages || code=$?
+  rm -rf --one-file-system "$bare"
+  return "$code"
 }
 
 run_package() {
