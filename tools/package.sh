@@ -25,7 +25,7 @@ use_packages() {
   in_bare mjarm --version >&2 && quiet in_bare mjarm demo ellipse --headless --out /root/out &&
     [[ -s $bare/root/out/picture.png ]] || return
   # The libraries it needs stay, so the tarball runs as well.
-  quiet in_bare sh -c 'cd /root && tar xzf mjarm*.tar.gz && dpkg --purge mjarm && mjarm-*/bin/mjarm ik --robot ur5e --pos -0.13,0.6,0.1' || return
+  quiet in_bare sh -c 'cd /root && tar xzf mjarm*.tar.gz && dpkg --purge mjarm && mjarm-*/bin/mjarm ik --robot ur5e --pos -0.13,0.6,0.1 --euler 180deg,0,90deg' || return
   left=$(find "$bare" -xdev -path "$bare/root" -prune -o \( -name '*mjarm*' -o -name 'libmujoco*' \) -print)
   [[ -z $left ]] || { say "left behind: $left" && return 1; }
 }
