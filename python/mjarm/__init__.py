@@ -11,7 +11,8 @@ from . import _library, _notebook
 
 _library.load()
 
-from ._core import (  # noqa: E402 (the library comes first)
+from . import _core  # noqa: E402 (the library comes first)
+from ._core import (  # noqa: E402
     BoardTag,
     Camera,
     CollisionReport,
@@ -52,7 +53,6 @@ from ._core import (  # noqa: E402 (the library comes first)
     UnknownObject,
     Window,
     Workspace,
-    __version__ as __version__,
     calibrate_hand_eye,
     find_tags,
     language,
@@ -64,6 +64,8 @@ from ._core import (  # noqa: E402 (the library comes first)
     view,
 )
 from .errors import BadInput, Error, Impossible, NoPath, NoPick, NotAvailable, SystemFault, Unreachable, Usage  # noqa: E402
+
+__version__: str = getattr(_core, "__version__")  # stubs have no such names
 
 __all__ = [
     "BadInput",
