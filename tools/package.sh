@@ -10,7 +10,7 @@ make_packages() {
 
 # in_bare COMMAND...: in the bare system, with nothing of this one; programs find themselves by /proc.
 in_bare() {
-  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/try LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     unshare --mount --pid --fork --root="$bare" --mount-proc "$@"
 }
 
@@ -20,13 +20,14 @@ use_packages() {
   quiet debootstrap --variant=minbase "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$bare" \
     "$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | sed q)" || return
   cp /etc/apt/apt.conf.d/* "$bare/etc/apt/apt.conf.d/"  # how this machine reaches its packages
-  cp "$root"/dist/mjarm*.deb "$root"/dist/mjarm*.tar.gz "$bare/root/"
-  quiet in_bare sh -c 'apt-get install -y --no-install-recommends /root/mjarm*.deb' || return
-  in_bare mjarm --version >&2 && quiet in_bare mjarm demo ellipse --headless --out /root/out &&
-    [[ -s $bare/root/out/picture.png ]] || return
+  mkdir "$bare/try"
+  cp "$root"/dist/mjarm*.deb "$root"/dist/mjarm*.tar.gz "$bare/try/"
+  quiet in_bare sh -c 'apt-get install -y --no-install-recommends /try/mjarm*.deb' || return
+  in_bare mjarm --version >&2 && quiet in_bare mjarm demo ellipse --headless --out /try/out &&
+    [[ -s $bare/try/out/picture.png ]] || return
   # The libraries it needs stay, so the tarball runs as well.
-  quiet in_bare sh -c 'cd /root && tar xzf mjarm*.tar.gz && dpkg --purge mjarm && mjarm-*/bin/mjarm ik --robot ur5e --pos -0.13,0.6,0.1 --euler 180deg,0,90deg' || return
-  left=$(find "$bare" -xdev -path "$bare/root" -prune -o \( -name '*mjarm*' -o -name 'libmujoco*' \) -print)
+  quiet in_bare sh -c 'cd /try && tar xzf mjarm*.tar.gz && dpkg --purge mjarm && mjarm-*/bin/mjarm ik --robot ur5e --pos -0.13,0.6,0.1 --euler 180deg,0,90deg' || return
+  left=$(find "$bare" -xdev -path "$bare/try" -prune -o \( -name '*mjarm*' -o -name 'libmujoco*' \) -print)
   [[ -z $left ]] || { say "left behind: $left" && return 1; }
 }
 

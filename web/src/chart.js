@@ -34,7 +34,8 @@ export function makeChart(place, plot, size, onRead) {
     },
     /** What is shown in the scene, in plots over its time. */
     setTime(time) {
-      const left = plot.over_time && !plane ? chart.valToPos(time, 'x') : NaN;
+      if (!plot.over_time || plane) return;
+      const left = chart.valToPos(time, 'x');
       now.hidden = !(left >= 0 && left <= chart.over.clientWidth);
       now.style.left = `${left}px`;
     },

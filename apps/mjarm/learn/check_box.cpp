@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -7,6 +6,7 @@
 #include "apps/mjarm/messages/learn.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/units.hpp"
 #include "mjarm/model/check.hpp"
 #include "mjarm/model/describe.hpp"
 #include "mjarm/model/dynamics.hpp"
@@ -116,7 +116,7 @@ void judge_free(const BoxFall& fall, LearnReport& out) {
 /// A tilt that most likely was meant in radians and read in degrees.
 void tell_small_tilt(const Model& model, int body, LearnReport& out) {
   const Eigen::Matrix3d R = Sim(model).body_pose(body).R;
-  const double tilt = angle_between(R, Eigen::Matrix3d::Identity()) * 180 / std::numbers::pi;
+  const double tilt = angle_between(R, Eigen::Matrix3d::Identity()) * kDegPerRad;
   if (tilt > 1e-6 && tilt < kSmallTilt) out.note(text(msg::learn_box_small_tilt, tilt));
 }
 

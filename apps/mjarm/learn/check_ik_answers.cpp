@@ -143,9 +143,7 @@ LearnReport tell_counts(const AnswerCounts& counts, std::size_t lines) {
 }  // namespace
 
 Result<LearnReport> check_ik_answers(const Exercise& exercise) {
-  RobotChoice choice = exercise.robot;
-  if (choice.robot.empty()) choice.robot = "panda";
-  const Result<Robot> robot = load_robot(choice);
+  const Result<Robot> robot = robot_of(exercise, "panda");
   if (!robot) return fail(robot.error());
   const Result<std::vector<IkAnswer>> answers = read_answers(exercise.file, robot->arm);
   if (!answers) return fail(answers.error());

@@ -32,9 +32,7 @@ double largest_difference(std::span<const double> a, std::span<const double> b) 
 }  // namespace
 
 Result<LearnReport> check_moving_pose(const Exercise& exercise) {
-  RobotChoice choice = exercise.robot;
-  if (choice.robot.empty()) choice.robot = "ur5e";
-  const Result<Robot> robot = load_robot(choice);
+  const Result<Robot> robot = robot_of(exercise, "ur5e");
   if (!robot) return fail(robot.error());
   const Arm& arm = robot->arm;
   const Result<JsonObject> object = read_json_file(exercise.file);

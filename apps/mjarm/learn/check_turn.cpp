@@ -7,6 +7,7 @@
 #include "apps/mjarm/messages/learn.hpp"
 #include "mjarm/core/line_reader.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/units.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kUnitQuat = 1e-6;
 const Eigen::Vector3d kTurnBegin(std::numbers::pi, 0, 0);
 const Eigen::Vector3d kTurnEnd(std::numbers::pi, std::numbers::pi / 3, std::numbers::pi / 2);
 
-double degrees(double angle) { return angle * 180 / std::numbers::pi; }
+double degrees(double angle) { return angle * kDegPerRad; }
 
 /// Angles about axes that turn along, x first.
 Eigen::Matrix3d about_moving_axes(const Eigen::Vector3d& euler) {

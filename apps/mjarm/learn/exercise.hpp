@@ -21,6 +21,13 @@ struct Exercise {
   std::string python = "";  ///< program that runs files of Python; empty: that of PATH
 };
 
+/// The robot that the reader named, else that of the page.
+[[nodiscard]] inline Result<Robot> robot_of(const Exercise& exercise, const char* page) {
+  RobotChoice choice = exercise.robot;
+  if (choice.robot.empty()) choice.robot = page;
+  return load_robot(choice);
+}
+
 /// One line about an exercise.
 struct LearnLine {
   enum class Kind { right, wrong, note };
