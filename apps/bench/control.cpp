@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/bench/calligraphy.hpp"
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/mjarm/cli/robot.hpp"
@@ -17,6 +18,7 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/collision/exact.hpp"
 #include "mjarm/control/controller.hpp"
+#include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -242,6 +244,41 @@ std::string to_table(const std::vector<RestResult>& rests, const std::vector<Lap
   return out + markdown_table(rows);
 }
 
+std::string to_table(const std::vector<SheetResult>& sheets) {
+  std::vector<std::vector<std::string>> rows{
+      {text(msg::control_suite_sheet), text(msg::control_suite_characters),
+       text(msg::control_suite_strokes), text(msg::control_suite_missed),
+       text(msg::control_suite_ink), "rms mm", text(msg::control_suite_force),
+       text(msg::control_suite_landing)}};
+  for (const SheetResult& one : sheets) {
+    std::string sheet = fmt::format("{:.1f} deg", one.sheet.tilt * 180 / std::numbers::pi);
+    if (one.sheet.payload > 0) sheet += fmt::format(", {:g} kg", one.sheet.payload);
+    rows.push_back({std::move(sheet), std::to_string(one.characters), std::to_string(one.strokes),
+                    std::to_string(one.missed), fmt::format("{:.3f}", 1e3 * one.ink_max),
+                    fmt::format("{:.3f}", 1e3 * one.ink_rms),
+                    fmt::format("{:.3f} .. {:.3f}", one.least, one.most),
+                    fmt::format("{:.2f}", one.landing)});
+  }
+  return "\n" + markdown_table(rows);
+}
+
+std::vector<JsonDoc> to_docs(const std::vector<SheetResult>& sheets) {
+  std::vector<JsonDoc> docs;
+  for (const SheetResult& one : sheets) {
+    docs.push_back({{"tilt", one.sheet.tilt},
+                    {"payload", one.sheet.payload},
+                    {"characters", one.characters},
+                    {"strokes", one.strokes},
+                    {"missed", one.missed},
+                    {"ink_max", one.ink_max},
+                    {"ink_rms", one.ink_rms},
+                    {"force_min", one.least},
+                    {"force_max", one.most},
+                    {"force_landing", one.landing}});
+  }
+  return docs;
+}
+
 JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
                 const std::vector<LapRun>& runs, bool timing) {
   std::vector<JsonDoc> rest_docs, lap_docs;
@@ -276,17 +313,21 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
 
 struct ControlWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
-  std::string poses = "100";
+  std::string poses = "100", characters = "100";
 };
 
 Result<int> run_control(const ControlWords& options) {
   constexpr int kMaxPoses = 100'000;
   const Result<int> poses = parse_count("--poses", options.poses, kMaxPoses);
   if (!poses) return fail(poses.error());
+  const Result<int> characters = parse_count("--characters", options.characters, kCharacters);
+  if (!characters) return fail(characters.error());
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
   std::vector<LapRun> runs = laps();
-  Progress progress(text(msg::control_suite_progress), std::size(kModes) + runs.size());
+  const int written = *characters * sheet_count();
+  Progress progress(text(msg::control_suite_progress),
+                    std::size(kModes) + runs.size() + static_cast<std::size_t>(written));
   std::vector<RestResult> rests;
   for (const ControlMode mode : kModes) {
     const auto rest = rest_errors(robot->model, robot->arm, mode, *poses);
@@ -300,10 +341,20 @@ Result<int> run_control(const ControlWords& options) {
     run.result = *lap;
     progress.advance();
   }
+  std::vector<SheetResult> sheets;
+  if (auto done = write_characters(*characters, [&] { progress.advance(); })) {
+    sheets = std::move(*done);
+  } else if (done.error().code == Errc::not_available) {
+    log_info(done.error().what);
+  } else {
+    return fail(std::move(done.error()));
+  }
   const bool timing = !options.no_timing;
-  const std::string out = options.json ? to_json(*robot, rests, runs, timing).document()
-                                       : to_table(rests, runs, timing);
-  std::fputs(out.c_str(), stdout);
+  JsonDoc doc = to_json(*robot, rests, runs, timing);
+  if (!sheets.empty()) doc.set("calligraphy", to_docs(sheets));
+  const std::string table =
+      to_table(rests, runs, timing) + (sheets.empty() ? "" : to_table(sheets));
+  std::fputs((options.json ? doc.document() : table).c_str(), stdout);
   return 0;
 }
 
@@ -315,6 +366,8 @@ Command control_suite() {
             auto options = std::make_shared<ControlWords>();
             add_robot_options(app, options->robot);
             add_option(app, "--poses", options->poses, msg::control_suite_option_poses, "N");
+            add_option(app, "--characters", options->characters,
+                       msg::control_suite_option_characters, "N");
             add_report_options(app, *options);
             return [options] { return run_control(*options); };
           }};

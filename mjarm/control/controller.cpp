@@ -114,6 +114,8 @@ struct Controller::Impl {
   StepInverse inverse;
   LinkChain links;
   JointVec sum;  // [rad s or m s] of the errors
+  std::optional<AxialPush> push = {};
+  double axial_offset = 0;
 
   using State = std::span<const double>;
 
@@ -131,8 +133,9 @@ struct Controller::Impl {
         break;
     }
     const double h = inverse.timestep();
-    ImpedanceState x{JointVec(arm.dof()), JointVec(arm.dof()), reference.now,
-                     reference.velocity(h)};
+    ImpedanceState x{
+        JointVec(arm.dof()), JointVec(arm.dof()), reference.now, reference.velocity(h), push,
+        axial_offset};
     for (int i = 0; i < arm.dof(); ++i) {
       x.q[i] = qpos[arm.joints[i].qpos];
       x.v[i] = qvel[arm.joints[i].dof];
@@ -212,6 +215,11 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
   // Behind a limit the error is no sign of a load, and a sum of it would overshoot.
   if (impl_->options.integral > 0 && !limited) impl_->gather(qpos, reference.now);
   return limited;
+}
+
+void Controller::set_axial(std::optional<AxialPush> push, double offset) {
+  impl_->push = push;
+  impl_->axial_offset = offset;
 }
 
 void Controller::restart() { impl_->sum.setZero(); }

@@ -60,6 +60,11 @@ class Controller {
   bool command(std::span<const double> qpos, std::span<const double> qvel,
                const StepReference& reference, std::span<double> ctrl);
 
+  /// Of the steps that come, in tool_impedance alone: along its z axis the tool is pushed, or goes
+  /// on as told.
+  /// @param offset  [m] along z, from where the reference puts the tool to where it shall be.
+  void set_axial(std::optional<AxialPush> push, double offset);
+
   /// Forgets what the integral has gathered.
   void restart();
 

@@ -22,13 +22,13 @@ struct ToolModes {
 
 /// Every mode of (inertia, K) gets the damping ratio: D = 2 ratio W sqrt(S) W^T, where inertia =
 /// mobility^-1 = W W^T and K = W S W^T.
-ToolModes tool_modes(const Matrix6& mobility, const Vector6& stiffness, double ratio) {
+ToolModes tool_modes(const Matrix6& mobility, const Matrix6& stiffness, double ratio) {
   const SymmetricEigen at = symmetric_eigen(mobility);
   const Vector6 roots = at.values.cwiseMax(kLeastMobility).cwiseSqrt();
   const Matrix6 E = at.vectors;
   const Matrix6 root = E * roots.cwiseInverse().asDiagonal() * E.transpose();  // inertia^(1/2)
   const Matrix6 back = E * roots.asDiagonal() * E.transpose();                 // its inverse
-  const Matrix6 K = back * stiffness.asDiagonal() * back;
+  const Matrix6 K = back * stiffness * back;
   const SymmetricEigen modes = symmetric_eigen(K);
   const Matrix6 W = root * modes.vectors;
   const Vector6 rates = modes.values.cwiseMax(0.0).cwiseSqrt();
@@ -52,13 +52,21 @@ JointVec tool_spring(const Impedance& impedance, const ImpedanceState& state,
   const PerForce per_force = solve_symmetric(mass, J.transpose());  // M^-1 J^T
   const Matrix6 mobility = J * per_force + kLeastMobility * Matrix6::Identity();
 
-  Vector6 stiffness, error;
-  stiffness << Eigen::Vector3d::Constant(impedance.tool_stiffness),
+  const Eigen::Vector3d z = wanted.R.col(2);
+  Matrix6 stiffness = Matrix6::Zero();
+  stiffness.diagonal() << Eigen::Vector3d::Constant(impedance.tool_stiffness),
       Eigen::Vector3d::Constant(impedance.tool_turn_stiffness);
-  error << wanted.p - at.X_WT.p, rotation_log(wanted.R * at.X_WT.R.transpose());
+  if (state.push) stiffness.topLeftCorner<3, 3>() -= impedance.tool_stiffness * z * z.transpose();
+  Vector6 error;
+  error << wanted.p + state.axial_offset * z - at.X_WT.p,
+      rotation_log(wanted.R * at.X_WT.R.transpose());
   const ToolModes modes = tool_modes(mobility, stiffness, impedance.damping_ratio);
   const JointVec v_error = state.v_ref - state.v;
-  const Vector6 force = stiffness.cwiseProduct(error) + modes.damping * (J * v_error);
+  Vector6 force = stiffness * error + modes.damping * (J * v_error);
+  if (state.push) {
+    const double speed = z.dot((J * state.v).head<3>());
+    force.head<3>() += (state.push->force - state.push->damping * speed) * z;
+  }
   const JointVec torque = J.transpose() * force;
   if (state.q.size() <= 6) return torque;
 

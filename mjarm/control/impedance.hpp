@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "mjarm/control/reference.hpp"
@@ -20,10 +21,19 @@ struct Impedance {
   double damping_ratio = 1;  ///< of all springs, >= 0; 1 = critical
 };
 
+/// How the tool behaves along its own z axis in the place of its spring: as if pushed by `force`
+/// and braked against the world.
+struct AxialPush {
+  double force = 0;    ///< [N] along z
+  double damping = 0;  ///< [N s/m] >= 0, against any speed along z
+};
+
 /// Where the arm is and shall be, all shape (dof,).
 struct ImpedanceState {
-  JointVec q, v;          ///< [rad or m], [rad/s or m/s]
-  JointVec q_ref, v_ref;  ///< likewise
+  JointVec q, v;                       ///< [rad or m], [rad/s or m/s]
+  JointVec q_ref, v_ref;               ///< likewise
+  std::optional<AxialPush> push = {};  ///< of the tool, in place of its spring along z
+  double axial_offset = 0;  ///< [m] along z, from where q_ref puts the tool to where it shall be
 };
 
 /// Torque of a spring and a damper at each joint, (dof,) [N m or N]. Each damper is made for the
@@ -37,7 +47,8 @@ struct ImpedanceState {
 /// diagonalisation of the stiffness and the inertia that the tool feels (A. Albu-Schaeffer et al.,
 /// IEEE/RSJ IROS 2003); near singularities, where that inertia has no bound, it is kept finite.
 /// Joints to spare are held by posture_stiffness through the null space of the transposed
-/// Jacobian's dynamically consistent inverse.
+/// Jacobian's dynamically consistent inverse. A push leaves the tool free along its z axis, with
+/// its own force and damper there (M. Raibert, J. Craig, ASME J. Dynamic Systems 103 (1981) 126).
 [[nodiscard]] JointVec tool_spring(const Impedance& impedance, const ImpedanceState& state,
                                    const Eigen::MatrixXd& mass, const LinkChain& links);
 

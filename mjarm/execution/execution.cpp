@@ -28,15 +28,23 @@ Result<Execution> Execution::create(const Model& model, const MotionPlan& plan,
       return fail(Errc::not_available, text(msg::execution_no_gripper));
     }
   }
-  Result<Controller> controller = Controller::create(model, arm, options.control);
+  Result<std::optional<Presser>> presser = Presser::create(model, plan, options.control);
+  if (!presser) return fail(std::move(presser.error()));
+  ControlOptions stiffness;
+  if (*presser) stiffness.impedance = Presser::kImpedance;
+  Result<Controller> controller = Controller::create(model, arm, options.control, stiffness);
   if (!controller) return fail(std::move(controller.error()));
-  return Execution(model, plan, std::move(*controller), options);
+  Execution execution(model, plan, std::move(*controller), options);
+  execution.presser_ = std::move(*presser);
+  return execution;
 }
 
 void Execution::restart() {
   controller_.restart();
+  controller_.set_axial(std::nullopt, 0);
   clock_.restart();
   stepper_.reset();
+  if (presser_) presser_->restart();
   motions_.clear();
   watch_.restart();
   grip_.reset();
@@ -65,6 +73,10 @@ void Execution::end_motion(const Sim& sim) {
 }
 
 MotionClock::Step Execution::next(Sim& sim) {
+  const bool begun = !motions_.empty();
+  if (presser_ && begun && presser_->look(sim, loaded_ ? *loaded_ : controller_, clock_)) {
+    return {.reference = hold(as_span(clock_.q_ref())), .motion = clock_.motion(), .moves = true};
+  }
   MotionClock::Step step = clock_.next();
   if (step.close) {
     const Gripper& gripper = *plan_->arms.front().gripper;
@@ -128,7 +140,7 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
   if (auto stepped = stepper_->step(sim, controller, step.reference, options_.recorder); !stepped) {
     return stepped;
   }
-  watch_.look(sim, step.motion);
+  watch_.look(sim, step.motion, presser_ && presser_->is_down());
   if (step.ends) {
     const std::size_t all = plan_->moves.size();
     if (step.motion + 1 == all) watch_.look(sim, all);
@@ -154,6 +166,11 @@ Result<FollowOutcome> Execution::run_to_end(Sim& sim, const AfterStep& after_ste
 JointVec Execution::error(const Sim& sim) const {
   if (!stepper_) return JointVec::Zero(plan_->arms.front().dof());
   return stepper_->error(sim);
+}
+
+MotionPart Execution::part() const {
+  if (presser_) return presser_->writes() ? MotionPart::work : MotionPart::approach;
+  return motions_.empty() ? MotionPart::approach : plan_->part(motions_.back().move);
 }
 
 FollowOutcome Execution::outcome() const {

@@ -10,6 +10,7 @@
 #include "mjarm/execution/motion_clock.hpp"
 #include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/execution/object_watch.hpp"
+#include "mjarm/execution/presser.hpp"
 #include "mjarm/sim/recorder.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/sim/stepper.hpp"
@@ -73,6 +74,8 @@ class Execution {
   [[nodiscard]] const MotionPlan& plan() const { return *plan_; }
   [[nodiscard]] const MotionClock& clock() const { return clock_; }
   [[nodiscard]] State state() const { return clock_.state(); }
+  /// What the motion is that was begun last; of a tool that presses, work only while it does.
+  [[nodiscard]] MotionPart part() const;
   /// The motions that were begun since the start, in order.
   [[nodiscard]] const std::vector<ExecutedMotion>& motions() const { return motions_; }
   /// What all of them did together; its first contact is one that the plan does not know.
@@ -80,6 +83,8 @@ class Execution {
   /// (dof,) [rad or m] How far the joints are from the reference of the last step; zeros before the
   /// first.
   [[nodiscard]] JointVec error(const Sim& sim) const;
+  /// Of a plan that presses the tool on something.
+  [[nodiscard]] const std::optional<Presser>& presser() const { return presser_; }
   /// What became of the objects of the scene.
   [[nodiscard]] std::vector<ObservedObject> objects() const { return watch_.objects(); }
 
@@ -107,6 +112,7 @@ class Execution {
   std::optional<Controller> loaded_;  ///< of what is carried now, as far as that is known
   double load_ = 0;                   ///< [kg] of that
   MotionClock clock_;
+  std::optional<Presser> presser_;
   std::optional<Stepper> stepper_;
   std::vector<ExecutedMotion> motions_;
   ObjectWatch watch_;

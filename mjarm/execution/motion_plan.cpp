@@ -28,7 +28,11 @@ JointVec MotionPlan::q_end() const {
 }
 
 MotionPart MotionPlan::part(std::size_t move) const {
-  const auto has_way = [](const PlannedMove& one) { return one.curve || !one.corners.empty(); };
+  const auto presses = [](const PlannedMove& one) { return one.press.has_value(); };
+  const bool any_presses = std::ranges::any_of(moves, presses);
+  const auto has_way = [&](const PlannedMove& one) {
+    return any_presses ? presses(one) : one.curve || !one.corners.empty();
+  };
   if (moves[move].is_approach()) return MotionPart::approach;
   if (has_way(moves[move]) || std::ranges::none_of(moves, has_way)) return MotionPart::work;
   return MotionPart::travel;

@@ -26,6 +26,13 @@ struct MoveMeasures {
   double manipulability = 0;  ///< the least, see manipulability()
 };
 
+/// A tool that presses on something along its own z axis all through a motion: a pen on paper. The
+/// motion itself is that of the tool above it; see Presser.
+struct ToolPress {
+  double force = 1;     ///< [N] > 0
+  double reach = 0.04;  ///< [m] > 0 that the tool goes along z at most until it meets something
+};
+
 /// A tool pose that a motion was given.
 struct PlannedPoint {
   Pose X_WT;
@@ -53,6 +60,7 @@ struct PlannedMove {
   std::vector<std::size_t> passed = {};  ///< of `corners`, by index: goals that are met on the way
   std::optional<double> stopping = {};   ///< [s] what it would take to stop at every corner
   bool passes = false;                   ///< ends moving, as the next one begins: no stop
+  std::optional<ToolPress> press = {};   ///< needs tool_impedance and a force sensor
   std::optional<bool> close = {};        ///< the gripper closes or opens at its beginning
   std::vector<AttachedBody> attached = {};    ///< to the first arm's tool, at its end
   std::vector<SpeedDip> dips = {};            ///< where the tool is slower than asked
@@ -62,7 +70,8 @@ struct PlannedMove {
 };
 
 /// What a motion is for whoever looks at the tool: on its way to where a curve begins; a joint move
-/// between the curves of a plan, as with a pen that is lifted; or what the plan is about.
+/// between the curves of a plan, or any between those that press, as with a pen that is lifted; or
+/// what the plan is about.
 enum class MotionPart { approach, travel, work };
 
 /// Motions that follow each other, from rest to rest but where one passes into the next: what an

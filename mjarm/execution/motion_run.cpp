@@ -1,6 +1,8 @@
 #include "mjarm/execution/motion_run.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
@@ -59,16 +61,21 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
   Result<Execution> execution =
       Execution::create(model_, plan, {.control = mode, .rest = rest, .recorder = &recorder_});
   if (!execution) return fail(std::move(execution.error()));
-  const Result<FollowOutcome> outcome = execution->run_to_end(sim_, [&](const Sim& sim) {
-    return !after_step_ || after_step_(sim, plan.part(execution->motions().back().move));
-  });
+  const Result<FollowOutcome> outcome = execution->run_to_end(
+      sim_, [&](const Sim& sim) { return !after_step_ || after_step_(sim, execution->part()); });
   if (!outcome) return fail(outcome.error());
   objects_ = execution->objects();
+  if (const std::optional<Presser>& presser = execution->presser()) {
+    ink_.insert(ink_.end(), presser->ink().begin(), presser->ink().end());
+    strokes_.insert(strokes_.end(), presser->strokes().begin(), presser->strokes().end());
+  }
   for (const ExecutedMotion& motion : execution->motions()) {
     const PlannedMove& move = plan.moves[motion.move];
     add(motion.outcome);
     if (move.is_approach()) continue;
-    add_span(move.curve ? &*move.curve : nullptr, motion.from, motion.to,
+    // A tool that presses is off its curves on purpose; its strokes are looked at by themselves.
+    const bool to_measure = move.curve && !execution->presser();
+    add_span(to_measure ? &*move.curve : nullptr, motion.from, motion.to,
              tool_in_tool(plan, move.tool));
   }
   return {};
@@ -150,8 +157,41 @@ Report MotionRun::report(const MotionPlan& plan, std::span<const MeasuredRun> ru
     out.static_error = pose_error(fk(arm, as_span(plan.q_end())), sim_.tool(arm));
   }
   out = report(runs, tolerance, std::move(out));
+  look_at_strokes(tolerance, out);
   look_at_contacts(out);
   return out;
+}
+
+/// How near the ink is to the strokes, and how hard the tool pressed.
+void MotionRun::look_at_strokes(double tolerance, Report& report) const {
+  if (strokes_.empty()) return;
+  double off = 0, squares = 0, landing = 0;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const InkPoint& point : ink_) {
+    off = std::max(off, point.off);
+    squares += point.off * point.off;
+  }
+  for (const PressedStroke& stroke : strokes_) {
+    landing = std::max(landing, stroke.landing);
+    if (!stroke.touched) continue;
+    least = std::min(least, stroke.least);
+    most = std::max(most, stroke.most);
+  }
+  const double count = static_cast<double>(std::max<std::size_t>(1, ink_.size()));
+  report.facts.push_back(
+      {"ink", std::map<std::string, double>{{"max", off},
+                                            {"rms", std::sqrt(squares / count)},
+                                            {"force_min", ink_.empty() ? 0 : least},
+                                            {"force_max", most},
+                                            {"force_landing", landing}}});
+  const auto missed = std::ranges::find(strokes_, false, &PressedStroke::touched);
+  if (!report.ok || (missed == strokes_.end() && off <= tolerance)) return;
+  report.ok = false;
+  const bool met = missed == strokes_.end();
+  report.reason = met ? "path_error" : "nothing_met";
+  report.detail =
+      met ? text(msg::execution_off_path, 1e3 * off, 1e3 * tolerance, 100.0)
+          : text(msg::execution_press_nothing, missed - strokes_.begin() + 1, strokes_.size());
 }
 
 /// What went wrong beside the path says more about it than how far off the arm was.

@@ -55,6 +55,9 @@ class MotionRun {
   [[nodiscard]] const Sim& sim() const { return sim_; }
   [[nodiscard]] const Arm& arm() const { return arm_; }
   [[nodiscard]] const Recorder& recorder() const { return recorder_; }
+  /// Of the strokes of plans that pressed the tool on something, in order.
+  [[nodiscard]] const std::vector<InkPoint>& ink() const { return ink_; }
+  [[nodiscard]] const std::vector<PressedStroke>& strokes() const { return strokes_; }
   /// What was done so far, all together.
   [[nodiscard]] const FollowOutcome& outcome() const { return total_; }
   /// Something ended the run: the user, or a waypoint that was never reached.
@@ -81,6 +84,7 @@ class MotionRun {
   void add(const FollowOutcome& outcome);
   [[nodiscard]] std::string why_off() const;
   void look_at_contacts(Report& report) const;
+  void look_at_strokes(double tolerance, Report& report) const;
 
   Model model_;
   Arm arm_;
@@ -91,6 +95,8 @@ class MotionRun {
   FollowOutcome total_;
   std::vector<MeasuredSpan> spans_;
   std::vector<ObservedObject> objects_;  ///< of the last plan
+  std::vector<InkPoint> ink_;
+  std::vector<PressedStroke> strokes_;
   std::string end_reason_, end_detail_;
 };
 

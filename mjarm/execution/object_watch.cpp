@@ -68,7 +68,7 @@ ObjectWatch::Turn ObjectWatch::turn_at(const Track& track, std::size_t move) {
   return {move > 0 ? track.attached[move - 1] : nullptr, track.attached[std::min(move, count - 1)]};
 }
 
-void ObjectWatch::look(const Sim& sim, std::size_t move) {
+void ObjectWatch::look(const Sim& sim, std::size_t move, bool presses) {
   for (std::size_t i = 0; !begun_ && i < tracks_.size(); ++i) {
     tracks_[i].X_WB_first = tracks_[i].X_WB_plan = sim.body_pose(bodies_.objects[i].body);
   }
@@ -78,7 +78,9 @@ void ObjectWatch::look(const Sim& sim, std::size_t move) {
   };
   for (const Contact& contact : sim.contacts()) {
     if (contact.body1 < 0 || contact.body2 < 0) continue;
-    if (!is_planned(contact) && !first_contact_) first_contact_ = TimedContact{contact, sim.time()};
+    if (!is_planned(contact, presses) && !first_contact_) {
+      first_contact_ = TimedContact{contact, sim.time()};
+    }
     const int a = object_of(contact.body1), b = object_of(contact.body2);
     if (a >= 0) {
       note_object(static_cast<std::size_t>(a), contact.body2, contact.second, sim.time(), move);
@@ -119,10 +121,10 @@ void ObjectWatch::compare(const Sim& sim, std::size_t move, std::size_t object) 
   if (!seen.at && (off > max_off || turned > max_turn)) seen.at = sim.time();
 }
 
-/// Contacts of the hand with itself and with what it carries at some time, of links that the arm
-/// does not move against each other, what overlaps by design, and all that the arm has no part in.
-/// Of what is carried the end tells, when it is known what it was put on.
-bool ObjectWatch::is_planned(const Contact& contact) const {
+/// Contacts of a tool that presses, of the hand with itself and with what it carries at some time,
+/// of links that the arm does not move against each other, what overlaps by design, and all that
+/// the arm has no part in. Of what is carried the end tells, when it is known what it was put on.
+bool ObjectWatch::is_planned(const Contact& contact, bool presses) const {
   const auto role = [&](int body) { return bodies_.role[static_cast<std::size_t>(body)]; };
   const auto is_arm = [](BodyRole r) { return r == BodyRole::link || r == BodyRole::hand; };
   const BodyRole a = role(contact.body1), b = role(contact.body2);
@@ -130,6 +132,9 @@ bool ObjectWatch::is_planned(const Contact& contact) const {
   if (is_by_design(plan_->arms.front(), contact)) return true;
   const auto moved_by = [&](int body) { return bodies_.moved_by[static_cast<std::size_t>(body)]; };
   if (a == b && moved_by(contact.body1) == moved_by(contact.body2)) return true;
+  const int last = plan_->arms.front().dof();
+  if (presses && (moved_by(contact.body1) == last) != (moved_by(contact.body2) == last))
+    return true;
   const auto carried = [&](int body) {
     const int object = bodies_.object_of[static_cast<std::size_t>(body)];
     return object >= 0 && tracks_[static_cast<std::size_t>(object)].seen.carried;

@@ -57,7 +57,8 @@ class ObjectWatch {
   /// Forgets what was seen.
   void restart();
   /// After each step of motion `move`, and in the end with the number of all motions.
-  void look(const Sim& sim, std::size_t move);
+  /// @param presses  the tool presses on something, as it should.
+  void look(const Sim& sim, std::size_t move, bool presses = false);
 
   /// The first contact of the arm, or of what it carries, that the plan does not know.
   [[nodiscard]] const std::optional<TimedContact>& first_contact() const { return first_contact_; }
@@ -88,7 +89,7 @@ class ObjectWatch {
   void compare(const Sim& sim, std::size_t move, std::size_t object);
   void note_object(std::size_t object, int other_body, const std::string& other, double time,
                    std::size_t move);
-  [[nodiscard]] bool is_planned(const Contact& contact) const;
+  [[nodiscard]] bool is_planned(const Contact& contact, bool presses) const;
 
   const MotionPlan* plan_;
   SceneBodies bodies_;

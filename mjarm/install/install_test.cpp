@@ -40,10 +40,10 @@ class Install : public ::testing::Test {
   }
   Result<void> install() { return install_meshes(data, package.set, kScene, index, from); }
   fs::path target() { return mesh_folder(data, package.set); }
-  MeshState state() { return check_meshes(target(), package.set, kScene); }
+  InstallState state() { return check_meshes(target(), package.set, kScene); }
   /// Whole, and nothing else in the data folder.
   void expect_installed() {
-    EXPECT_EQ(state().kind, MeshState::Kind::whole) << state().problem;
+    EXPECT_EQ(state().kind, InstallState::Kind::whole) << state().problem;
     EXPECT_FALSE(fs::exists(data / "unfinished"));
     std::size_t files = 0;
     for (const auto& entry : fs::recursive_directory_iterator(data))
@@ -118,7 +118,7 @@ TEST_F(Install, WhatTheIndexListsMustBeTheKnownWheel) {
   EXPECT_NE(none.error().what.find(package.set.wheel), std::string::npos) << none.error().what;
   server.serve("/simple/toy-world/", {.body = "", .status = 404});
   EXPECT_EQ(install().error().code, Errc::not_available);
-  EXPECT_EQ(state().kind, MeshState::Kind::absent);
+  EXPECT_EQ(state().kind, InstallState::Kind::absent);
   EXPECT_FALSE(fs::exists(data / "unfinished"));
 }
 
@@ -128,7 +128,7 @@ TEST_F(Install, AFlippedByteInTheWheelIsAnError) {
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Errc::not_available);
   EXPECT_NE(result.error().what.find("b.obj"), std::string::npos) << result.error().what;
-  EXPECT_EQ(state().kind, MeshState::Kind::absent);
+  EXPECT_EQ(state().kind, InstallState::Kind::absent);
   // Once the server is well again, so is the install.
   serve({.body = package.wheel});
   ASSERT_TRUE(install());
@@ -187,8 +187,8 @@ TEST_F(Install, SurvivesBeingKilledAtAnyMoment) {
     for (int kills = 0; kills < 3; ++kills) {
       install_and_kill(server, bytes / 3, pause, [&] { return install(); });
       // At no moment is there a half model under its name.
-      const MeshState::Kind kind = state().kind;
-      ASSERT_TRUE(kind == MeshState::Kind::absent || kind == MeshState::Kind::whole);
+      const InstallState::Kind kind = state().kind;
+      ASSERT_TRUE(kind == InstallState::Kind::absent || kind == InstallState::Kind::whole);
     }
     ASSERT_TRUE(install());
     expect_installed();
@@ -209,16 +209,16 @@ TEST_F(Install, KilledWhileReplacingItMends) {
 TEST_F(Install, SeesWhatChangedAfterwards) {
   ASSERT_TRUE(install());
   flip(target() / "assets" / "c.stl", 39999);
-  EXPECT_EQ(state().kind, MeshState::Kind::damaged);
+  EXPECT_EQ(state().kind, InstallState::Kind::damaged);
   EXPECT_NE(state().problem.find("c.stl"), std::string::npos);
   ASSERT_TRUE(install());
   expect_installed();
   fs::remove(target() / "assets" / "a.obj");
-  EXPECT_EQ(state().kind, MeshState::Kind::damaged);
+  EXPECT_EQ(state().kind, InstallState::Kind::damaged);
   ASSERT_TRUE(install());
   expect_installed();
   flip(target() / "scene.xml", 3);
-  EXPECT_EQ(state().kind, MeshState::Kind::outdated);
+  EXPECT_EQ(state().kind, InstallState::Kind::outdated);
   ASSERT_TRUE(install());
   expect_installed();
 }
@@ -256,7 +256,7 @@ TEST_F(Install, AFullDiskIsOneClearLine) {
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 7) << what;
   EXPECT_NE(what.find("cannot be written"), std::string::npos) << what;
-  EXPECT_EQ(state().kind, MeshState::Kind::absent);
+  EXPECT_EQ(state().kind, InstallState::Kind::absent);
   ASSERT_TRUE(install());
   expect_installed();
 }

@@ -2,6 +2,7 @@
 
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/core/user_data.hpp"
 #include "mjarm/install/mesh_scene_internal.hpp"
 #include "mjarm/model/model.hpp"
 
@@ -38,12 +39,12 @@ Result<fs::path> find_mesh_scene(const std::string& robot) {
   const Result<Installed> installed = look_up(**set);
   if (!installed) return fail(installed.error());
   switch (installed->state.kind) {
-    case MeshState::Kind::whole:
+    case InstallState::Kind::whole:
       return installed->folder / "scene.xml";
-    case MeshState::Kind::absent:
+    case InstallState::Kind::absent:
       return fail(Errc::not_available, text(msg::install_not_installed, robot));
-    case MeshState::Kind::damaged:
-    case MeshState::Kind::outdated:
+    case InstallState::Kind::damaged:
+    case InstallState::Kind::outdated:
       break;
   }
   return fail(Errc::not_available, text(msg::install_mend, installed->state.problem, robot));

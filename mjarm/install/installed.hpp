@@ -14,7 +14,7 @@ struct Installed {
   std::filesystem::path data;    ///< data folder of mjarm
   std::filesystem::path folder;  ///< of these meshes
   std::string scene;             ///< what `scene.xml` in it must say
-  MeshState state;
+  InstallState state;
 };
 
 /// Looks at every file. @return an error where the shipped model cannot be found or read.

@@ -5,24 +5,19 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/install.hpp"
-#include "mjarm/core/os.hpp"
 #include "mjarm/core/sha256.hpp"
+#include "mjarm/install/stage_internal.hpp"
 
 namespace mjarm::install {
 
 namespace fs = std::filesystem;
 
-Result<fs::path> data_folder() {
-  if (const auto data = user_folder("XDG_DATA_HOME", ".local/share")) return *data / "mjarm";
-  return fail(Errc::system, text(msg::install_no_home));
-}
-
 fs::path mesh_folder(const fs::path& data, const MeshSet& set) {
   return data / "models" / set.folder;
 }
 
-MeshState check_meshes(const fs::path& folder, const MeshSet& set, const std::string& scene) {
-  using Kind = MeshState::Kind;
+InstallState check_meshes(const fs::path& folder, const MeshSet& set, const std::string& scene) {
+  using Kind = InstallState::Kind;
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return {};
   for (const MeshFile& mesh : set.files) {
@@ -44,20 +39,7 @@ MeshState check_meshes(const fs::path& folder, const MeshSet& set, const std::st
 }
 
 Result<bool> remove_meshes(const fs::path& data, const MeshSet& set) {
-  bool any = false;
-  for (const fs::path& folder : {mesh_folder(data, set), data / "unfinished" / set.folder}) {
-    std::error_code code;
-    any |= fs::remove_all(folder, code) > 0;
-    if (code) {
-      return fail(Errc::system, text(msg::core_cannot_write, folder.string(), code.message()));
-    }
-  }
-  // Folders that are empty now go as well; not the data folder, which others may wait to lock.
-  for (const fs::path& folder : {data / "models", data / "unfinished"}) {
-    std::error_code ignored;
-    fs::remove(folder, ignored);
-  }
-  return any;
+  return remove_installed(data, mesh_folder(data, set), set.folder);
 }
 
 }  // namespace mjarm::install

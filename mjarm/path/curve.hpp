@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -37,7 +38,8 @@ class Curve {
   /// The same with a blend of its own for each inner point.
   [[nodiscard]] static Result<Curve> polyline(std::span<const Pose> points,
                                               std::span<const double> blends);
-  /// Legs one after another, each from line() or arc() (or circle(), where it is whole). Corners
+  /// Legs one after another, each from line(), arc() (or circle(), where it is whole) or spline(),
+  /// whose corners stay sharp. Corners
   /// between them are rounded as those of a polyline: the tool leaves its legs only within
   /// `blends`[i] [m] of way from the corner between legs i and i + 1 and stays that near to it;
   /// direction, curvature and rate of turn are continuous. Of an arc a corner takes a quarter of
@@ -65,7 +67,10 @@ class Curve {
   /// Practical Guide to Splines (1978) ch. 4); between two rotations a cubic in the rotation
   /// vector, whose rates are those of the spline through the mean rates, so the rate of turn is
   /// continuous. Fails where the curve would stop and turn back.
-  [[nodiscard]] static Result<Curve> spline(std::span<const Pose> poses);
+  /// @param corner  [rad] where the chords turn by more, the curve has a corner: a spline ends and
+  ///                another begins; pi: nowhere.
+  [[nodiscard]] static Result<Curve> spline(std::span<const Pose> poses,
+                                            double corner = std::numbers::pi);
 
   [[nodiscard]] double length() const noexcept;  ///< [m]
   [[nodiscard]] double turn() const noexcept;    ///< [rad] sum of the turns between the given poses

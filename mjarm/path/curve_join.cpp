@@ -131,6 +131,7 @@ void add_rest(const CurveLeg& leg, double front, double back, std::vector<CurveP
 /// corners want more of a leg than there is.
 std::vector<double> radii_of(std::span<const CurveLeg> legs, std::span<const double> blends) {
   const auto max_of = [](const CurveLeg& leg) {
+    if (leg.front().bend || leg.back().bend) return 0.0;  // of a spline
     return leg.front().round ? 0.5 * std::numbers::pi * leg.front().a
                              : std::numeric_limits<double>::infinity();
   };
@@ -152,7 +153,8 @@ std::vector<double> radii_of(std::span<const CurveLeg> legs, std::span<const dou
 /// Whether a curve is one leg.
 bool is_leg(const std::vector<CurvePiece>& pieces) {
   const auto round = [](const CurvePiece& piece) { return piece.round && piece.a == piece.b; };
-  return std::ranges::all_of(pieces, round) ||
+  const auto bent = [](const CurvePiece& piece) { return piece.bend.has_value(); };
+  return std::ranges::all_of(pieces, round) || std::ranges::all_of(pieces, bent) ||
          (pieces.size() == 1 && !pieces[0].round && !pieces[0].bend);
 }
 

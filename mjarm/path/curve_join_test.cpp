@@ -274,6 +274,23 @@ TEST(JoinedCurve, OneLegIsItself) {
   EXPECT_THAT(curve.breaks(), ::testing::IsEmpty());
 }
 
+TEST(JoinedCurve, SplinesAreJoinedAsTheyAreAndTheirCornersStaySharp) {
+  const Pose a = at_point(0, 0, 0), b = at_point(1, 0, 0), c = at_point(1, 1, 0),
+             d = at_point(0, 1.5, 0.2), e = at_point(0, 2, 0);
+  const Curve line = *Curve::line(a, b), last = *Curve::line(d, e);
+  const Curve spline = *Curve::spline(std::vector<Pose>{b, c, d});
+  const Curve curve =
+      *Curve::joined(std::vector<Curve>{line, spline, last}, std::vector<double>{0.1, 0.1});
+  EXPECT_NEAR(curve.length(), line.length() + spline.length() + last.length(), 1e-12);
+  ASSERT_EQ(curve.corners().size(), 4U);
+  EXPECT_NEAR(curve.corners()[1], 1, 1e-12);
+  EXPECT_NEAR(curve.corners()[2], 1 + spline.length(), 1e-12);
+  for (int i = 0; i <= 20; ++i) {
+    const double s = spline.end() * i / 20;
+    EXPECT_LT((curve.at(1 + s).p - spline.at(s).p).norm(), 1e-12);
+  }
+}
+
 TEST(JoinedCurve, SaysWhatCannotBeJoined) {
   const Pose a = at_point(0, 0, 0), b = at_point(1, 0, 0), c = at_point(1, 1, 0);
   const Curve first = *Curve::line(a, b), second = *Curve::line(b, c);
@@ -291,8 +308,8 @@ TEST(JoinedCurve, SaysWhatCannotBeJoined) {
   EXPECT_THAT(error({first, turned}, {0.1}), ::testing::HasSubstr("where leg 0 ends"));
   const Curve broken = *Curve::polyline(std::vector<Pose>{b, c, a});
   EXPECT_THAT(error({first, broken}, {0.1}), ::testing::HasSubstr("only straight lines"));
-  const Curve spline = *Curve::spline(std::vector<Pose>{b, c, a});
-  EXPECT_THAT(error({first, spline}, {0.1}), ::testing::HasSubstr("only straight lines"));
+  const Curve oval = *Curve::ellipse({b.p, 0.2, 0.1, Vec::UnitZ(), Eigen::Matrix3d::Identity()});
+  EXPECT_THAT(error({first, oval}, {0.1}), ::testing::HasSubstr("only straight lines"));
   EXPECT_EQ(error({first, second}, {0.1}), "none");
 }
 

@@ -129,6 +129,27 @@ TEST(Spline, RefusesWhatHasNoSmoothCurve) {
   EXPECT_EQ(complaint({at(0), at(1), at(0.5, 0.1)}), "none");
 }
 
+TEST(Spline, KeepsTheCornersItIsAskedToKeep) {
+  const auto at = [](double x, double y) {
+    return Pose{Vec(x, y, 0), Eigen::Matrix3d::Identity()};
+  };
+  // Bends by about 27, 90 and 27 degrees.
+  const std::vector<Pose> poses = {at(0, 0), at(2, 0), at(4, 1), at(3, 3), at(3, 5)};
+  const Curve all = *Curve::spline(poses), kept = *Curve::spline(poses, 1.0);
+  EXPECT_EQ(all.corners().size(), 2U);
+  ASSERT_EQ(kept.corners().size(), 3U);
+  EXPECT_LT((kept.at(kept.corners()[1]).p - poses[2].p).norm(), 1e-12);
+  const Curve first = *Curve::spline(std::span(poses).first(3)),
+              second = *Curve::spline(std::span(poses).last(3));
+  for (int i = 0; i <= 10; ++i) {
+    const double s = i / 10.0;
+    EXPECT_LT((kept.at(s * first.end()).p - first.at(s * first.end()).p).norm(), 1e-12);
+    EXPECT_LT((kept.at(first.end() + s * second.end()).p - second.at(s * second.end()).p).norm(),
+              1e-12);
+  }
+  EXPECT_EQ(Curve::spline(poses, 0.1)->corners().size(), 5U);
+}
+
 TEST(Spline, TakesAHundredThousandPoses) {
   Rng rng(3);
   const std::vector<Pose> poses = wander(rng, 100000, 0.1);

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
 
 #include "mjarm/core/messages/path.hpp"
+#include "mjarm/core/utf8.hpp"
+#include "mjarm/path/hanzi.hpp"
 
 namespace mjarm {
 namespace {
@@ -57,7 +61,9 @@ constexpr Glyph kGlyphs[] = {
     {'9', "022040626749290706244466"},
 };
 
-const Glyph* find_glyph(char c) {
+const Glyph* find_glyph(std::string_view character) {
+  if (character.size() != 1) return nullptr;
+  const char c = character[0];
   const char letter = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   for (const Glyph& glyph : kGlyphs) {
     if (glyph.letter == letter) return &glyph;
@@ -65,29 +71,58 @@ const Glyph* find_glyph(char c) {
   return nullptr;
 }
 
-/// The character that begins at `at`, all its bytes where it is UTF-8.
-std::string character_at(std::string_view text, std::size_t at) {
-  std::size_t end = at + 1;
-  while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) ++end;
-  return std::string(text.substr(at, end - at));
+/// The characters of `text`, bytes that are no UTF-8 one by one.
+std::vector<std::string> characters_of(std::string_view text) {
+  std::vector<std::string> out;
+  while (!text.empty()) {
+    const std::size_t length = std::max<std::size_t>(utf8_length(text), 1);
+    out.emplace_back(text.substr(0, length));
+    text.remove_prefix(length);
+  }
+  return out;
 }
 
-/// Adds the strokes of `glyph`, moved by `x` on the grid; returns its width.
-double add_glyph(std::vector<Stroke>& strokes, const Glyph& glyph, double x, double scale) {
-  double width = 0;
-  strokes.emplace_back();
+constexpr std::string_view kWideSpace = "\xE3\x80\x80";  // U+3000, as wide as a Chinese character
+
+/// The strokes of one character, the lower left corner of its place at (0, 0).
+struct Written {
+  std::vector<Stroke> strokes;
+  double advance = 0;  ///< to where the next one begins
+};
+
+Written written(const Glyph& glyph, double height) {
+  const double scale = height / kHeight;
+  Written out{{{}}, 0};
   for (const char* c = glyph.strokes; *c != '\0';) {
     if (*c == ' ') {
-      strokes.emplace_back();
+      out.strokes.emplace_back();
       ++c;
       continue;
     }
     const double column = c[0] - '0', row = c[1] - '0';
-    strokes.back().emplace_back((x + column) * scale, row * scale);
-    width = std::max(width, column);
+    out.strokes.back().points.emplace_back(column * scale, row * scale);
+    out.advance = std::max(out.advance, (column + kGap) * scale);
     c += 2;
   }
-  return width;
+  return out;
+}
+
+Written written(std::vector<Stroke> square, double height) {
+  for (Stroke& stroke : square) {
+    for (Eigen::Vector2d& p : stroke.points) p *= height;
+  }
+  return {std::move(square), height};
+}
+
+/// Of the characters that are no letters.
+Result<std::map<std::string, std::vector<Stroke>>> fetched(const std::set<std::string>& others) {
+  if (others.empty()) return {};
+  const Result<std::filesystem::path> file = hanzi_file();
+  std::error_code ignored;
+  if (file && std::filesystem::exists(*file, ignored)) return hanzi_strokes(*file, others);
+  const auto chinese = std::ranges::find_if(others, [](const auto& c) { return c.size() > 2; });
+  if (chinese == others.end()) return {};
+  return fail(Errc::not_available, text(msg::path_hanzi_not_installed, *chinese));
 }
 
 }  // namespace
@@ -96,18 +131,33 @@ Result<std::vector<Stroke>> letter_strokes(std::string_view text, double height)
   if (!std::isfinite(height) || height <= 0) {
     return fail(Errc::bad_input, mjarm::text(msg::path_letter_height, height));
   }
+  const std::vector<std::string> characters = characters_of(text);
+  const auto is_blank = [](const std::string& c) { return c == " " || c == kWideSpace; };
+  std::set<std::string> others;
+  for (const std::string& c : characters) {
+    if (!is_blank(c) && find_glyph(c) == nullptr) others.insert(c);
+  }
+  const auto known = fetched(others);
+  if (!known) return fail(known.error());
+
   std::vector<Stroke> strokes;
   double x = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == ' ') {
-      x += kSpace + kGap;
+  for (const std::string& c : characters) {
+    if (is_blank(c)) {
+      x += c == " " ? (kSpace + kGap) * height / kHeight : height;
       continue;
     }
-    const Glyph* glyph = find_glyph(text[i]);
-    if (glyph == nullptr) {
-      return fail(Errc::bad_input, mjarm::text(msg::path_letter_unknown, character_at(text, i)));
+    const Glyph* glyph = find_glyph(c);
+    const auto other = known->find(c);
+    if (glyph == nullptr && other == known->end()) {
+      return fail(Errc::bad_input, mjarm::text(msg::path_letter_unknown, printable(c)));
     }
-    x += add_glyph(strokes, *glyph, x, height / kHeight) + kGap;
+    Written one = glyph != nullptr ? written(*glyph, height) : written(other->second, height);
+    for (Stroke& stroke : one.strokes) {
+      for (Eigen::Vector2d& p : stroke.points) p.x() += x;
+      strokes.push_back(std::move(stroke));
+    }
+    x += one.advance;
   }
   if (strokes.empty()) {
     return fail(Errc::bad_input, mjarm::text(msg::path_letters_empty, std::string(text)));

@@ -17,14 +17,15 @@ TEST(Letters, EveryLetterFillsItsHeight) {
     ASSERT_TRUE(strokes.has_value()) << *c;
     double low = 1, high = 0, left = 1, right = 0;
     for (const Stroke& stroke : *strokes) {
-      ASSERT_GE(stroke.size(), 2U) << *c;
-      for (std::size_t i = 0; i < stroke.size(); ++i) {
-        low = std::min(low, stroke[i].y());
-        high = std::max(high, stroke[i].y());
-        left = std::min(left, stroke[i].x());
-        right = std::max(right, stroke[i].x());
+      const std::vector<Eigen::Vector2d>& points = stroke.points;
+      ASSERT_GE(points.size(), 2U) << *c;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        low = std::min(low, points[i].y());
+        high = std::max(high, points[i].y());
+        left = std::min(left, points[i].x());
+        right = std::max(right, points[i].x());
         if (i == 0) continue;
-        EXPECT_GT((stroke[i] - stroke[i - 1]).norm(), 0.02) << *c;
+        EXPECT_GT((points[i] - points[i - 1]).norm(), 0.02) << *c;
       }
     }
     EXPECT_NEAR(low, 0, 1e-12) << *c;
@@ -38,12 +39,12 @@ TEST(Letters, LGoesDownThenRightAndZHasThreeStrokes) {
   const auto l = letter_strokes("L", 0.9);
   ASSERT_TRUE(l.has_value());
   ASSERT_EQ(l->size(), 1U);
-  EXPECT_THAT(l->front(), ::testing::SizeIs(3));
-  EXPECT_LT(l->front()[1].y(), l->front()[0].y());
-  EXPECT_GT(l->front()[2].x(), l->front()[1].x());
+  EXPECT_THAT(l->front().points, ::testing::SizeIs(3));
+  EXPECT_LT(l->front().points[1].y(), l->front().points[0].y());
+  EXPECT_GT(l->front().points[2].x(), l->front().points[1].x());
   const auto z = letter_strokes("z", 0.9);
   ASSERT_TRUE(z.has_value());
-  EXPECT_THAT(z->front(), ::testing::SizeIs(4));
+  EXPECT_THAT(z->front().points, ::testing::SizeIs(4));
 }
 
 TEST(Letters, StandSideBySide) {
@@ -51,7 +52,8 @@ TEST(Letters, StandSideBySide) {
   const auto many = letter_strokes("LI I", 0.1);
   ASSERT_TRUE(one && many);
   ASSERT_EQ(many->size(), 3U);
-  const double l_right = (*many)[0][2].x(), i_x = (*many)[1][0].x(), last_x = (*many)[2][0].x();
+  const double l_right = (*many)[0].points[2].x(), i_x = (*many)[1].points[0].x(),
+               last_x = (*many)[2].points[0].x();
   EXPECT_GT(i_x, l_right + 0.01);
   EXPECT_GT(last_x, i_x + 0.04);
 }

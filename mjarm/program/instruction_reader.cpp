@@ -136,13 +136,9 @@ Instruction::What read_circle(const YamlNode& node, const NamedThings& named) {
   return ellipse_of(fields, "circle", "radius", "radius");
 }
 
-Instruction::What read_polyline(const YamlNode& node, const NamedThings& named) {
-  const Fields fields(node, "polyline",
-                      {"points", "euler", "quat", "matrix", "frame", "speed", "blend"},
-                      named.faults);
-  DrawPolyline out;
-  out.speed = speed_of(fields);
-  out.blend = fields.not_negative("blend", Quantity::length);
+/// `points`: positions with one rotation for all, or poses.
+std::vector<ProgramPose> points_of(const Fields& fields, const NamedThings& named) {
+  std::vector<ProgramPose> out;
   const YamlNode& points = fields.need("points");
   const std::string what = fields.named("points");
   if (points.kind != YamlNode::Kind::list || points.items.size() < 2) {
@@ -152,11 +148,33 @@ Instruction::What read_polyline(const YamlNode& node, const NamedThings& named) 
   for (const YamlNode& point : points.items) {
     const bool bare = point.kind == YamlNode::Kind::list;
     if (bare && !R) R = fields.rotation();
-    out.points.push_back(or_noted(fields.faults(), ProgramPose{}, [&]() -> ProgramPose {
+    out.push_back(or_noted(fields.faults(), ProgramPose{}, [&]() -> ProgramPose {
       if (!bare) return pose_of(point, what, named);
       return {{vector_of(point, what, Quantity::length), *R}, fields.frame()};
     }));
   }
+  return out;
+}
+
+Instruction::What read_polyline(const YamlNode& node, const NamedThings& named) {
+  const Fields fields(node, "polyline",
+                      {"points", "euler", "quat", "matrix", "frame", "speed", "blend"},
+                      named.faults);
+  DrawPolyline out;
+  out.speed = speed_of(fields);
+  out.blend = fields.not_negative("blend", Quantity::length);
+  out.points = points_of(fields, named);
+  return out;
+}
+
+Instruction::What read_spline(const YamlNode& node, const NamedThings& named) {
+  const Fields fields(node, "spline",
+                      {"points", "euler", "quat", "matrix", "frame", "speed", "corner"},
+                      named.faults);
+  DrawSpline out;
+  out.speed = speed_of(fields);
+  out.corner = fields.positive("corner", Quantity::angle).value_or(out.corner);
+  out.points = points_of(fields, named);
   return out;
 }
 
@@ -178,14 +196,15 @@ Eigen::Matrix3d plane_of(const Fields& fields) {
 }
 
 Instruction::What read_text(const YamlNode& node, const NamedThings& named) {
-  const Fields fields(
-      node, "text",
-      {"text", "pos", "right", "up", "height", "lift", "euler", "quat", "matrix", "frame", "speed"},
-      named.faults);
+  const Fields fields(node, "text",
+                      {"text", "pos", "right", "up", "height", "lift", "press", "euler", "quat",
+                       "matrix", "frame", "speed"},
+                      named.faults);
   DrawText out;
   out.plane.frame = fields.frame();
   out.height = fields.positive("height", Quantity::length).value_or(out.height);
   out.lift = fields.positive("lift", Quantity::length).value_or(out.lift);
+  out.press = fields.positive("press", Quantity::number);
   out.speed = speed_of(fields);
   out.plane.X_FT.R = or_noted(fields.faults(), out.plane.X_FT.R, [&] { return plane_of(fields); });
   out.text = fields.take("text", out.text, text_of);
@@ -276,12 +295,13 @@ struct Word {
   const char* word;
   Instruction::What (*read)(const YamlNode& node, const NamedThings& named);
 };
-constexpr std::array<Word, 15> kWords{{{"movej", read_movej},
+constexpr std::array<Word, 16> kWords{{{"movej", read_movej},
                                        {"movel", read_movel},
                                        {"movec", read_movec},
                                        {"ellipse", read_ellipse},
                                        {"circle", read_circle},
                                        {"polyline", read_polyline},
+                                       {"spline", read_spline},
                                        {"text", read_text},
                                        {"wait", read_wait},
                                        {"set", read_set},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
@@ -76,11 +77,23 @@ struct DrawPolyline {
   std::optional<double> blend = {};  ///< [m] >= 0 of every corner
 };
 
-/// Straight strokes of letters; between them the tool is lifted against its own z axis.
+/// A smooth curve through points, at least two: Curve::spline().
+struct DrawSpline {
+  std::vector<ProgramPose> points;
+  double corner =
+      std::numbers::pi;  ///< [rad] > 0: where it turns by more from chord to chord it has a corner
+  std::optional<double> speed = {};
+};
+
+/// Strokes of letters and Chinese characters; between them the tool is lifted against its own z
+/// axis.
 struct DrawText {
   std::string text;
   double height = 0.1;  ///< [m] of a letter, > 0
   double lift = 0.02;   ///< [m] > 0
+  /// [N] > 0: the tool moves `lift` above the plane and is pressed on what lies under it, stroke by
+  /// stroke (ToolPress).
+  std::optional<double> press = {};
   /// The plane: x to the right, y up, the first letter begins at its origin.
   ProgramPose plane = {};
   Eigen::Matrix3d R_FT = Eigen::Matrix3d::Identity();  ///< of the tool, in the plane's frame
@@ -140,8 +153,8 @@ struct Repeat {
 
 /// One sentence of a program.
 struct Instruction {
-  using What = std::variant<MoveJ, MoveL, MoveC, DrawEllipse, DrawPolyline, DrawText, Wait, Set,
-                            PlanMove, Grip, Look, Pick, Place, Repeat>;
+  using What = std::variant<MoveJ, MoveL, MoveC, DrawEllipse, DrawPolyline, DrawSpline, DrawText,
+                            Wait, Set, PlanMove, Grip, Look, Pick, Place, Repeat>;
   What what;
   FilePlace place = {};
 };

@@ -9,8 +9,8 @@
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/joint_values.hpp"
 #include "mjarm/path/ellipse.hpp"
-#include "mjarm/path/letters.hpp"
 #include "mjarm/program/program_steps_internal.hpp"
+#include "mjarm/program/write_text_internal.hpp"
 
 namespace mjarm::program::detail {
 namespace {
@@ -77,7 +77,12 @@ class StepWriter {
     ++noted_;
     const FilePlace place = fault.place.line > 0 ? fault.place : instruction.place;
     add_fault(out_.faults, {place, std::string(word(instruction)), fault.reason, fault.what,
-                            fault.reason == "too_long" ? Errc::impossible : Errc::bad_input});
+                            code_of(fault.reason)});
+  }
+
+  static Errc code_of(const std::string& reason) {
+    const bool sound = reason == "too_long" || reason == "not_available";
+    return sound ? Errc::impossible : Errc::bad_input;
   }
 
   [[nodiscard]] Step begun(Step::Kind kind, const Instruction& instruction,
@@ -257,25 +262,50 @@ class StepWriter {
     push(std::move(step));
   }
 
-  void add(const DrawText& what, const Instruction& instruction) {
+  void add(const DrawSpline& what, const Instruction& instruction) {
     Step step = begun(Step::Kind::curve, instruction, what.speed);
-    const auto strokes =
-        value_or_fault(letter_strokes(what.text, what.height), step.place, "bad_input");
-    const Pose X_WP = world(what.plane);
-    const Eigen::Matrix3d R = frame(what.plane.frame).R * what.R_FT;
-    const Eigen::Vector3d lifted = -what.lift * R.col(2);
     std::vector<Pose> points;
-    for (const Stroke& stroke : strokes) {
-      points.push_back({X_WP * on_plane(stroke.front()) + lifted, R});
-      for (const Eigen::Vector2d& p : stroke) points.push_back({X_WP * on_plane(p), R});
-      points.push_back({X_WP * on_plane(stroke.back()) + lifted, R});
-    }
-    step.curve = value_or_fault(Curve::polyline(points), step.place, "bad_input");
-    step.points = std::move(points);
+    for (const ProgramPose& point : what.points) points.push_back(world(point));
+    step.curve = value_or_fault(Curve::spline(points, what.corner), step.place, "bad_input");
     push(std::move(step));
   }
 
-  static Eigen::Vector3d on_plane(const Eigen::Vector2d& p) { return {p.x(), p.y(), 0}; }
+  void add(const DrawText& what, const Instruction& instruction) {
+    const Pose X_WP = world(what.plane);
+    const Eigen::Matrix3d R = frame(what.plane.frame).R * what.R_FT;
+    if (what.press) return press(what, X_WP, R, instruction);
+    Step step = begun(Step::Kind::curve, instruction, what.speed);
+    WrittenText written = value_or_text_fault(write_text(what, X_WP, R), step.place);
+    step.curve = std::move(written.curve);
+    step.points = std::move(written.corners);
+    push(std::move(step));
+  }
+
+  /// A stroke at a time, each from where a straight way above the text leads.
+  void press(const DrawText& what, const Pose& X_WP, const Eigen::Matrix3d& R,
+             const Instruction& instruction) {
+    constexpr double kDeeper = 2;  // times the lift: where nothing is met the stroke is given up
+    bool first = true;
+    for (Curve& curve : value_or_text_fault(lifted_strokes(what, X_WP, R), instruction.place)) {
+      if (!first) {
+        Step travel = begun(Step::Kind::line, instruction);
+        travel.X_WT = curve.at(0);
+        push(std::move(travel));
+      }
+      first = false;
+      Step step = begun(Step::Kind::curve, instruction, what.speed);
+      step.curve = std::move(curve);
+      step.press = ToolPress{.force = *what.press, .reach = kDeeper * what.lift};
+      push(std::move(step));
+    }
+  }
+
+  template <class T>
+  static T value_or_text_fault(Result<T> written, FilePlace place) {
+    if (written) return std::move(*written);
+    const bool fetchable = written.error().code == Errc::not_available;
+    throw StepFault{place, fetchable ? "not_available" : "bad_input", written.error().what};
+  }
 
   void add(const Wait& what, const Instruction& instruction) {
     Step step = begun(Step::Kind::wait, instruction);

@@ -33,6 +33,7 @@ struct Step {
   Branch branch = {};               ///< pose, curve, plan: of the answer that is chosen
   /// pose, curve, plan: nobody gave joint values from which the nearest answer would be meant.
   bool is_free = false;
+  std::optional<ToolPress> press = {};   ///< curve
   double seconds = 0;                    ///< wait
   std::optional<double> clearance = {};  ///< [m] plan: what is asked
   bool close = false;                    ///< grip

@@ -1,6 +1,13 @@
 #include "mjarm/program/step_motion_internal.hpp"
 
 namespace mjarm::program::detail {
+namespace {
+
+/// [m/s^2] Of a tool that presses: on something that is tilted, what is faster changes the force by
+/// the arm's inertia.
+constexpr double kPressAccel = 0.1;
+
+}  // namespace
 
 bool same_pose(const Pose& a, const Pose& b) {
   constexpr double kSame = 1e-9;
@@ -26,6 +33,7 @@ MotionOptions motion_options(std::span<const Step> steps, const Curve& curve, do
   const auto speed_of = [&](const Step& step) { return step.speed > 0 ? step.speed : tool_speed; };
   const double first = speed_of(steps.front());
   options.timing.tool_speed = first;
+  if (steps.front().press) options.timing.tool_accel = kPressAccel;
   bool keep = steps.front().keep_speed, alike = true;
   for (std::size_t k = 1; k < steps.size(); ++k) {
     const double speed = speed_of(steps[k]);

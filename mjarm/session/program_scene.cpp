@@ -17,9 +17,26 @@ render::Pen pen_of(MotionPart part) {
 }
 
 void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan) {
+  // A tool that presses is not where its motion is: add_ink() shows where it was.
+  const auto presses = [](const PlannedMove& move) { return move.press.has_value(); };
+  if (std::ranges::any_of(plan.moves, presses)) return;
   for (const PlannedMove& move : plan.moves) {
     if (!move.curve && move.corners.empty()) continue;
     render::add_planned_path(overlay, planned_tool_path(move, plan.arms[move.tool]));
+  }
+}
+
+void add_ink(render::Overlay& overlay, std::span<const InkPoint> ink) {
+  constexpr double kWidth = 0.002, kApart = 5e-4;  // [m]
+  constexpr render::Rgba kBlack = {0.08F, 0.08F, 0.10F, 1};
+  std::size_t move = 0;
+  for (const InkPoint& point : ink) {
+    if (overlay.lines.empty() || &point == ink.data() || point.move != move) {
+      overlay.lines.push_back({.width = kWidth, .color = kBlack});
+    }
+    move = point.move;
+    std::vector<Eigen::Vector3d>& line = overlay.lines.back().points_W;
+    if (line.empty() || (point.X_WT.p - line.back()).norm() > kApart) line.push_back(point.X_WT.p);
   }
 }
 

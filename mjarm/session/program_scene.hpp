@@ -17,6 +17,9 @@ namespace mjarm::session {
 /// Draws where a plan leads the tool: along its curves, and round what stands in the way.
 void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan);
 
+/// Draws what a tool that was pressed on something left there.
+void add_ink(render::Overlay& overlay, std::span<const InkPoint> ink);
+
 /// What a window shows of a program besides the arm: planned paths, the trail of the tool, the goal
 /// of a motion, figures.
 class ProgramScene {

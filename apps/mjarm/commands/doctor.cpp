@@ -154,9 +154,9 @@ void look_at_meshes(Findings& findings) {
   for (const install::MeshSet& set : install::mesh_sets()) {
     known += (known.empty() ? "" : ", ") + set.robot;
     const Result<install::Installed> meshes = install::look_up(set);
-    if (!meshes || meshes->state.kind == install::MeshState::Kind::absent) continue;
-    const install::MeshState& state = meshes->state;
-    const bool whole = state.kind == install::MeshState::Kind::whole;
+    if (!meshes || meshes->state.kind == install::InstallState::Kind::absent) continue;
+    const install::InstallState& state = meshes->state;
+    const bool whole = state.kind == install::InstallState::Kind::whole;
     found.push_back({{"robot", set.robot}, {"whole", whole}, {"folder", meshes->folder.string()}});
     shown += (shown.empty() ? "" : ", ") +
              (whole ? set.robot : text(msg::install_mend, state.problem, set.robot));

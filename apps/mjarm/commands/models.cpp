@@ -11,7 +11,10 @@
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/install.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/text_width.hpp"
+#include "mjarm/core/user_data.hpp"
+#include "mjarm/install/hanzi_package.hpp"
 #include "mjarm/install/install.hpp"
 #include "mjarm/install/installed.hpp"
 
@@ -26,57 +29,104 @@ struct Options {
   bool list = false, remove = false, json = false;
 };
 
-/// The meshes named, each once; all where none is named.
-Result<std::vector<const install::MeshSet*>> chosen(const Options& options) {
+constexpr const char* kHanzi = "hanzi";
+
+/// What was named, each once; the meshes of all robots where nothing is, and to be listed strokes
+/// as well.
+struct Chosen {
   std::vector<const install::MeshSet*> sets;
+  bool hanzi = false;
+};
+
+Result<Chosen> chosen(const Options& options) {
+  Chosen out;
+  out.hanzi = options.names.empty() && options.list;
+  std::vector<std::string> known;
   for (const install::MeshSet& set : install::mesh_sets()) {
-    if (options.names.empty()) sets.push_back(&set);
+    known.push_back(set.robot);
+    if (options.names.empty()) out.sets.push_back(&set);
   }
+  known.emplace_back(kHanzi);
   for (const std::string& name : options.names) {
-    const Result<const install::MeshSet*> set = install::find_mesh_set(name);
-    if (!set) return fail(set.error());
-    if (std::find(sets.begin(), sets.end(), *set) == sets.end()) sets.push_back(*set);
+    if (std::ranges::find(known, name) == known.end()) {
+      return fail(Errc::usage,
+                  text(msg::models_unknown, name, listed(known)) + did_you_mean(name, known));
+    }
+    if (name == kHanzi) {
+      out.hanzi = true;
+      continue;
+    }
+    const install::MeshSet* set = install::find_mesh_set(name).value();
+    if (std::ranges::find(out.sets, set) == out.sets.end()) out.sets.push_back(set);
   }
-  return sets;
+  return out;
 }
 
-std::string_view name(install::MeshState::Kind kind) {
+std::string_view name(install::InstallState::Kind kind) {
   constexpr std::string_view kNames[] = {"absent", "damaged", "outdated", "whole"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::string words(install::MeshState::Kind kind) {
+std::string words(install::InstallState::Kind kind) {
   constexpr Msg kWords[] = {msg::models_state_absent, msg::models_state_damaged,
                             msg::models_state_outdated, msg::models_state_whole};
   return text(kWords[static_cast<std::size_t>(kind)]);
 }
 
-Result<int> run_list(const std::vector<const install::MeshSet*>& sets, bool json) {
+/// What is installed, as it is shown and written.
+struct Listing {
   std::vector<JsonDoc> entries;
-  std::string lines, worst;
-  for (const install::MeshSet* set : sets) {
-    const Result<install::Installed> found = install::look_up(*set);
-    if (!found) return fail(found.error());
-    const install::MeshState& state = found->state;
-    entries.push_back({{"robot", set->robot},
-                       {"state", name(state.kind)},
-                       {"folder", found->folder.string()},
-                       {"meshes", set->files.size()},
-                       {"licence", set->licence},
-                       {"problem", state.problem}});
-    lines += padded(set->robot, 8) + padded(words(state.kind), 16) + found->folder.string() + "\n";
+  std::string lines;
+  std::string worst;  ///< the first fault
+
+  void add(const std::string& what, const install::InstallState& state, const fs::path& folder,
+           JsonDoc entry) {
+    entries.push_back(std::move(entry));
+    lines += padded(what, 8) + padded(words(state.kind), 16) + folder.string() + "\n";
     if (worst.empty() && !state.problem.empty()) {
-      worst = text(msg::install_mend, state.problem, set->robot);
+      worst = text(msg::install_mend, state.problem, what);
     }
   }
-  std::fputs((json ? JsonDoc(std::move(entries)).document() : lines).c_str(), stdout);
-  if (worst.empty()) return 0;
-  log_error(worst);
+};
+
+Result<int> run_list(const Chosen& what, bool json) {
+  Listing listing;
+  for (const install::MeshSet* set : what.sets) {
+    const Result<install::Installed> found = install::look_up(*set);
+    if (!found) return fail(found.error());
+    const install::InstallState& state = found->state;
+    listing.add(set->robot, state, found->folder,
+                {{"robot", set->robot},
+                 {"state", name(state.kind)},
+                 {"folder", found->folder.string()},
+                 {"meshes", set->files.size()},
+                 {"licence", set->licence},
+                 {"problem", state.problem}});
+  }
+  if (what.hanzi) {
+    const Result<fs::path> data = data_folder();
+    if (!data) return fail(data.error());
+    const install::HanziPackage package;
+    const install::InstallState state = install::check_hanzi(*data, package);
+    const fs::path folder = install::hanzi_folder(*data);
+    listing.add(kHanzi, state, folder,
+                {{"strokes", kHanzi},
+                 {"state", name(state.kind)},
+                 {"folder", folder.string()},
+                 {"characters", package.characters},
+                 {"licence", package.licence},
+                 {"problem", state.problem}});
+  }
+  const std::string shown =
+      json ? JsonDoc(std::move(listing.entries)).document() : std::move(listing.lines);
+  std::fputs(shown.c_str(), stdout);
+  if (listing.worst.empty()) return 0;
+  log_error(listing.worst);
   return 1;
 }
 
-Result<int> run_remove(const std::vector<const install::MeshSet*>& sets) {
-  const Result<fs::path> data = install::data_folder();
+Result<int> run_remove(const Chosen& what) {
+  const Result<fs::path> data = data_folder();
   if (!data) return fail(data.error());
   std::error_code ignored;
   const bool any_there = fs::exists(*data, ignored);
@@ -86,12 +136,19 @@ Result<int> run_remove(const std::vector<const install::MeshSet*>& sets) {
     if (!locked) return fail(std::move(locked.error()));
     lock.emplace(std::move(*locked));
   }
-  for (const install::MeshSet* set : sets) {
-    const Result<bool> removed =
-        any_there ? install::remove_meshes(*data, *set) : Result<bool>(false);
+  const auto say = [](const std::string& name, const Result<bool>& removed) -> Result<void> {
     if (!removed) return fail(removed.error());
     const Msg said = *removed ? msg::models_removed : msg::models_nothing_to_remove;
-    std::printf("%s\n", text(said, set->robot).c_str());
+    std::printf("%s\n", text(said, name).c_str());
+    return {};
+  };
+  for (const install::MeshSet* set : what.sets) {
+    const auto removed = any_there ? install::remove_meshes(*data, *set) : Result<bool>(false);
+    if (auto said = say(set->robot, removed); !said) return fail(said.error());
+  }
+  if (what.hanzi) {
+    const auto removed = any_there ? install::remove_hanzi(*data) : Result<bool>(false);
+    if (auto said = say(kHanzi, removed); !said) return fail(said.error());
   }
   return 0;
 }
@@ -113,7 +170,7 @@ Result<void> install_one(const install::MeshSet& set, const install::IndexSettin
                          const std::string& from) {
   const Result<install::Installed> before = install::look_up(set);
   if (!before) return fail(before.error());
-  if (before->state.kind == install::MeshState::Kind::whole) {
+  if (before->state.kind == install::InstallState::Kind::whole) {
     std::printf("%s\n", text(msg::models_already, set.robot, before->folder.string()).c_str());
     return {};
   }
@@ -128,16 +185,36 @@ Result<void> install_one(const install::MeshSet& set, const install::IndexSettin
   return {};
 }
 
-Result<int> run_install(const std::vector<const install::MeshSet*>& sets, const Options& options) {
+Result<void> install_strokes(const fs::path& data, const install::HttpOptions& http,
+                             const std::string& from) {
+  const install::HanziPackage package;
+  const install::InstallState before = install::check_hanzi(data, package);
+  const std::string folder = install::hanzi_folder(data).string();
+  if (before.kind == install::InstallState::Kind::whole) {
+    std::printf("%s\n", text(msg::models_already, kHanzi, folder).c_str());
+    return {};
+  }
+  if (!before.problem.empty()) log_info(text(msg::models_mending, before.problem));
+  if (auto done = install::install_hanzi(data, http, from, package); !done) return done;
+  std::printf("%s\n", text(msg::models_hanzi_done, package.characters, package.project,
+                           package.licence, folder)
+                          .c_str());
+  return {};
+}
+
+Result<int> run_install(const Chosen& what, const Options& options) {
   const install::IndexSettings index = install::index_settings();
   const Result<std::string> from = address_of(options.from);
   if (!from) return fail(from.error());
-  const Result<fs::path> data = install::data_folder();
+  const Result<fs::path> data = data_folder();
   if (!data) return fail(data.error());
   const Result<FolderLock> lock = install::lock_data_folder(*data);
   if (!lock) return fail(lock.error());
-  for (const install::MeshSet* set : sets) {
+  for (const install::MeshSet* set : what.sets) {
     if (auto done = install_one(*set, index, *from); !done) return fail(std::move(done.error()));
+  }
+  if (what.hanzi) {
+    if (auto done = install_strokes(*data, index.http, *from); !done) return fail(done.error());
   }
   return 0;
 }
@@ -148,11 +225,11 @@ Result<int> run(const Options& options) {
   if (*first != '\0' && ((options.list && options.remove) || !options.from.empty())) {
     return fail(Errc::usage, text(msg::app_exclusive_options, first, second));
   }
-  const Result<std::vector<const install::MeshSet*>> sets = chosen(options);
-  if (!sets) return fail(sets.error());
-  if (options.list) return run_list(*sets, options.json);
-  if (options.remove) return run_remove(*sets);
-  return run_install(*sets, options);
+  const Result<Chosen> what = chosen(options);
+  if (!what) return fail(what.error());
+  if (options.list) return run_list(*what, options.json);
+  if (options.remove) return run_remove(*what);
+  return run_install(*what, options);
 }
 
 Run setup(CLI::App& app) {

@@ -27,6 +27,9 @@ Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loa
   auto done = stage.move([&](MotionRun& run) { return run.execute(plan, mode); });
   if (!done) return fail(std::move(done.error()));
   stage.set_tick({});
+  render::Overlay ink;
+  session::add_ink(ink, stage.run().ink());
+  stage.show().add(ink);
   const std::vector<MeasuredRun> runs = stage.run().measured_runs();
   return stage.finish(stage.run().report(plan, runs, tolerance, std::move(begun)), tolerance, runs);
 }

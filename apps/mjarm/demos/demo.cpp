@@ -89,6 +89,9 @@ std::span<const Demo> demos() {
        kDriven | kUseText | kUsePlane | kUseOrientation,
        "  mjarm demo letters --text HELLO\n"
        "  mjarm demo letters --text LZ --center 0,-0.45,0.3 --normal 0,0,1 --height 10cm"},
+      {"calligraphy", msg::demo_about_calligraphy, run_calligraphy, kUseText | kUseSeconds,
+       "  mjarm demo calligraphy --text 永字八法\n"
+       "  mjarm demo calligraphy --text MJARM --height 6cm"},
       {"singularity", msg::demo_about_singularity, run_singularity, kDriven,
        "  mjarm demo singularity --headless"},
       {"flip", msg::demo_about_flip, run_flip, kDriven, "  mjarm demo flip --headless"},

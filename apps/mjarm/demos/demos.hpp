@@ -88,6 +88,7 @@ Result<Report> run_movej(const DemoOptions& options);
 Result<Report> run_movel(const DemoOptions& options);
 Result<Report> run_ellipse(const DemoOptions& options);
 Result<Report> run_letters(const DemoOptions& options);
+Result<Report> run_calligraphy(const DemoOptions& options);
 Result<Report> run_singularity(const DemoOptions& options);
 Result<Report> run_flip(const DemoOptions& options);
 Result<Report> run_avoid(const DemoOptions& options);

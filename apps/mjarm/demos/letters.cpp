@@ -30,26 +30,28 @@ WritingPlane plane_of(const Eigen::Vector3d& normal) {
 }
 
 /// The text centred, unless the user gives its place upright in front of the arm, and smaller where
-/// it would get too wide and no height is asked for; one polyline a stroke.
+/// it would get too wide and no height is asked for; one curve a stroke.
 Result<program::Program> written(const DemoValues& values) {
   const auto flat = letter_strokes(values.text.empty() ? "LZ" : values.text, 1);
   if (!flat) return fail(flat.error());
   double width = 0;
-  for (const Stroke& points : *flat) {
-    for (const Eigen::Vector2d& p : points) width = std::max(width, p.x());
+  for (const Stroke& stroke : *flat) {
+    for (const Eigen::Vector2d& p : stroke.points) width = std::max(width, p.x());
   }
   const double scale = values.height.value_or(std::min(kHeight, kWidest / std::max(width, 1e-9)));
   const auto [right, up] = plane_of(values.normal.value_or(kNormal));
   const Eigen::Vector3d foot = values.center ? *values.center - scale / 2 * up : kFoot;
   program::Program program;
   program.name = "letters";
-  for (const Stroke& points : *flat) {
-    program::DrawPolyline stroke;
-    for (const Eigen::Vector2d& p : points) {
+  for (const Stroke& stroke : *flat) {
+    std::vector<program::ProgramPose> points;
+    for (const Eigen::Vector2d& p : stroke.points) {
       const Eigen::Vector3d p_W = foot + scale * ((p.x() - width / 2) * right + p.y() * up);
-      stroke.points.push_back({{p_W, values.R.value_or(tool_down())}});
+      points.push_back({{p_W, values.R.value_or(tool_down())}});
     }
-    program.instructions.push_back({std::move(stroke)});
+    program.instructions.push_back(
+        stroke.smooth ? program::Instruction{program::DrawSpline{std::move(points), kStrokeCorner}}
+                      : program::Instruction{program::DrawPolyline{std::move(points)}});
   }
   return program;
 }
