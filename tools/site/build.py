@@ -34,8 +34,8 @@ PARTS = [
     ({"en": "Project", "zh-CN": "项目"}, ["docs/architecture", "CONTRIBUTING", "web/README", "docs/roadmap", "CHANGELOG"]),
 ]
 ENGLISH_ONLY = {
-    "docs/programs": "运动程序", "docs/planning": "避障规划", "docs/viewing": "窗口", "docs/learning": "强化学习", "docs/python": "Python 参考手册",
-    "docs/conventions": "约定", "models/README": "模型", "docs/benchmarks": "基准测试", "docs/architecture": "架构", "CONTRIBUTING": "参与开发",
+    "docs/planning": "避障规划", "docs/viewing": "窗口", "docs/python": "Python 参考手册",
+    "models/README": "模型", "docs/benchmarks": "基准测试", "docs/architecture": "架构", "CONTRIBUTING": "参与开发",
     "web/README": "浏览器页面的源码", "docs/roadmap": "路线图", "CHANGELOG": "更新记录",
 }
 THEME_IN_CHINESE = {
