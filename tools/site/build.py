@@ -34,7 +34,7 @@ PARTS = [
     ({"en": "Project", "zh-CN": "项目"}, ["docs/architecture", "CONTRIBUTING", "web/README", "docs/roadmap", "CHANGELOG"]),
 ]
 ENGLISH_ONLY = {
-    "docs/planning": "避障规划", "docs/viewing": "窗口", "docs/python": "Python 参考手册",
+    "docs/python": "Python 参考手册",
     "models/README": "模型", "docs/benchmarks": "基准测试", "docs/architecture": "架构", "CONTRIBUTING": "参与开发",
     "web/README": "浏览器页面的源码", "docs/roadmap": "路线图", "CHANGELOG": "更新记录",
 }
