@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 
 #include "mjarm/execution/motion_run.hpp"
@@ -56,18 +54,6 @@ struct Written {
     const Result<void> done = run.execute(plan, ControlMode::tool_impedance);
     EXPECT_TRUE(done.has_value()) << done.error().what;
     report = run.report(plan, run.measured_runs(), 5e-4);
-    if (std::getenv("PRESS_DEBUG")) {
-      double last = 0;
-      for (const InkPoint& p : run.ink()) {
-        if (p.time - last < 0.02 && std::abs(p.force - 1) < 0.15) continue;
-        last = p.time;
-        std::printf("%zu %.3f f=%.3f off=%.3f mm z=%.4f\n", p.move, p.time, p.force, 1e3 * p.off,
-                    p.X_WT.p.z());
-      }
-      for (const PressedStroke& s : run.strokes())
-        std::printf("stroke %zu touched %d landing %.2f %.3f..%.3f depth %.4f\n", s.move, s.touched,
-                    s.landing, s.least, s.most, s.depth);
-    }
   }
   [[nodiscard]] double fact(const std::string& key) const {
     for (const Fact& one : report.facts) {
