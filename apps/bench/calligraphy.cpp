@@ -24,7 +24,7 @@ constexpr std::string_view kCommon =
     "理心她本前开但因只从想实";
 constexpr double kHeight = 0.06;                   // [m] of a character
 constexpr double kForce = 1;                       // [N]
-constexpr double kSpeed = 0.04;                    // [m/s]
+constexpr double kSpeed = 0.02;                    // [m/s]
 const Eigen::Vector3d kCorner(-0.03, -0.5, 0.08);  // [m] lower left of a character on the sheet
 
 constexpr double kDegree = std::numbers::pi / 180;

@@ -134,8 +134,8 @@ struct Controller::Impl {
     }
     const double h = inverse.timestep();
     ImpedanceState x{
-        JointVec(arm.dof()), JointVec(arm.dof()), reference.now, reference.velocity(h), push,
-        axial_offset};
+        JointVec(arm.dof()), JointVec(arm.dof()),    reference.now, reference.velocity(h), push,
+        axial_offset,        inverse.implicit_mass()};
     for (int i = 0; i < arm.dof(); ++i) {
       x.q[i] = qpos[arm.joints[i].qpos];
       x.v[i] = qvel[arm.joints[i].dof];

@@ -35,6 +35,22 @@ ToolModes tool_modes(const Matrix6& mobility, const Matrix6& stiffness, double r
   return {root * root, 2 * ratio * W * rates.asDiagonal() * W.transpose()};
 }
 
+/// Force of a push along `z`: its own, less what `force` of the springs and what pushes from
+/// outside would move the tool along z together.
+double push_along(const Eigen::Vector3d& z, Vector6 force, const ImpedanceState& state,
+                  const Eigen::MatrixXd& mass, const Jacobian& J) {
+  const AxialPush& push = *state.push;
+  Eigen::MatrixXd moved = mass;
+  if (state.implicit_mass.size() > 0) moved.diagonal() += state.implicit_mass;
+  const PerForce per_force = solve_symmetric(moved, J.transpose());
+  force.head<3>() += push.across_W - z.dot(push.across_W) * z;
+  const Eigen::Matrix<double, 3, 6> mobility = J.topRows<3>() * per_force;
+  const double along = z.dot(mobility * force);
+  const double own = z.dot(mobility.leftCols<3>() * z);
+  return push.force - push.damping * z.dot((J * state.v).head<3>()) -
+         along / (own + kLeastMobility);
+}
+
 }  // namespace
 
 JointVec joint_spring(const Impedance& impedance, const ImpedanceState& state,
@@ -63,10 +79,7 @@ JointVec tool_spring(const Impedance& impedance, const ImpedanceState& state,
   const ToolModes modes = tool_modes(mobility, stiffness, impedance.damping_ratio);
   const JointVec v_error = state.v_ref - state.v;
   Vector6 force = stiffness * error + modes.damping * (J * v_error);
-  if (state.push) {
-    const double speed = z.dot((J * state.v).head<3>());
-    force.head<3>() += (state.push->force - state.push->damping * speed) * z;
-  }
+  if (state.push) force.head<3>() += push_along(z, force, state, mass, J) * z;
   const JointVec torque = J.transpose() * force;
   if (state.q.size() <= 6) return torque;
 

@@ -26,6 +26,9 @@ struct Impedance {
 struct AxialPush {
   double force = 0;    ///< [N] along z
   double damping = 0;  ///< [N s/m] >= 0, against any speed along z
+  /// [N] What pushes the tool from outside across its z axis, in the world, as far as it is known:
+  /// friction. What it and the spring have left over would move a bent arm along z as well.
+  Eigen::Vector3d across_W = Eigen::Vector3d::Zero();
 };
 
 /// Where the arm is and shall be, all shape (dof,).
@@ -34,6 +37,8 @@ struct ImpedanceState {
   JointVec q_ref, v_ref;               ///< likewise
   std::optional<AxialPush> push = {};  ///< of the tool, in place of its spring along z
   double axial_offset = 0;  ///< [m] along z, from where q_ref puts the tool to where it shall be
+  /// (dof,) [kg m^2 or kg] what the integrator adds to the diagonal of the mass matrix; for a push.
+  JointVec implicit_mass = {};
 };
 
 /// Torque of a spring and a damper at each joint, (dof,) [N m or N]. Each damper is made for the

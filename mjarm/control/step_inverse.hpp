@@ -35,6 +35,8 @@ class StepInverse {
   /// Joint torque that keeps the arm still at `qpos` against gravity and springs, (dof,).
   [[nodiscard]] JointVec holding_torque(std::span<const double> qpos);
 
+  /// (dof,) [kg m^2 or kg] What the integrator adds to the diagonal of the mass matrix.
+  [[nodiscard]] const JointVec& implicit_mass() const noexcept { return mass_; }
   /// The arm's part of the mass matrix, (dof, dof) [kg m^2].
   [[nodiscard]] Eigen::MatrixXd mass_matrix(std::span<const double> qpos);
 

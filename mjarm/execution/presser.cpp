@@ -59,8 +59,9 @@ void Presser::enter(Phase phase) {
   calm_ = 0;
 }
 
-double Presser::force(const Sim& sim) const {
-  return sensor_.force(sim.sensor_data()).z() - weight_;
+/// In the tool frame, without what hangs on the sensor.
+Eigen::Vector3d Presser::force(const Sim& sim) const {
+  return sensor_.force(sim.sensor_data()) - weight_;
 }
 
 bool Presser::begins_stroke(const MotionClock& clock) const {
@@ -68,15 +69,18 @@ bool Presser::begins_stroke(const MotionClock& clock) const {
          clock.motion() != last_move_;
 }
 
-void Presser::weigh(const Sim& sim, const MotionClock& clock) {
+void Presser::weigh(const Sim& sim, const MotionClock& clock, double depth) {
   const int count = static_cast<int>(kWeigh / timestep_);
   if (steps_ == 0) {
     move_ = clock.motion();
-    weight_ = integral_ = 0;
+    weight_.setZero();
     strokes_.push_back({.move = move_});
   }
-  if (steps_ >= count / 2) weight_ += sensor_.force(sim.sensor_data()).z() / (count - count / 2);
-  if (++steps_ == count) enter(Phase::seek);
+  if (steps_ >= count / 2) weight_ += sensor_.force(sim.sensor_data()) / (count - count / 2);
+  if (++steps_ < count) return;
+  // What the spring carries is a load that the controller does not know.
+  integral_ = std::clamp(-kImpedance.tool_stiffness * depth, -kMostIntegral, kMostIntegral);
+  enter(Phase::seek);
 }
 
 /// Goes down, the faster the farther it is above where the stroke before met something.
@@ -88,24 +92,33 @@ AxialPush Presser::seek(const Pose& X_WT, double depth) const {
     const bool far = depth < last_->depth - kSlowDepth - kSlowTilt * beside;
     if (far) speed = kSeekFast;
   }
-  return {.force = kSeekDamping * speed, .damping = kSeekDamping};
+  return {.force = kSeekDamping * speed + integral_, .damping = kSeekDamping};
 }
 
-AxialPush Presser::push(double wanted, double measured) {
-  integral_ = std::clamp(integral_ + kIntegral * timestep_ * (wanted - measured), -kMostIntegral,
-                         kMostIntegral);
-  return {.force = wanted + integral_, .damping = kDamping};
+AxialPush Presser::push(const Pose& X_WT, double wanted, const Eigen::Vector3d& measured) {
+  integral_ = std::clamp(integral_ + kIntegral * timestep_ * (wanted - measured.z()),
+                         -kMostIntegral, kMostIntegral);
+  const Eigen::Vector3d across(-measured.x(), -measured.y(), 0);
+  return {.force = wanted + integral_, .damping = kDamping, .across_W = X_WT.R * across};
+}
+
+/// The spring begins with the force that the push had.
+void Presser::begin_lift(double depth) {
+  lift_from_ = depth + integral_ / kImpedance.tool_stiffness;
+  enter(Phase::lift);
 }
 
 bool Presser::look(const Sim& sim, Controller& controller, const MotionClock& clock) {
   if (phase_ == Phase::above && begins_stroke(clock)) enter(Phase::weigh);
   if (phase_ == Phase::above) return false;
   const Pose X_ref = fk(links_, as_span(clock.q_ref())), X_WT = sim.tool(plan_->arms.front());
-  const double depth = X_ref.R.col(2).dot(X_WT.p - X_ref.p), measured = force(sim);
+  const double depth = X_ref.R.col(2).dot(X_WT.p - X_ref.p);
   if (phase_ == Phase::weigh) {
-    weigh(sim, clock);
+    weigh(sim, clock, depth);
     return true;
   }
+  const Eigen::Vector3d force_T = force(sim);
+  const double measured = force_T.z();
   const PlannedMove& move = plan_->moves[move_];
   const ToolPress& press = *move.press;
   PressedStroke& stroke = strokes_.back();
@@ -117,8 +130,7 @@ bool Presser::look(const Sim& sim, Controller& controller, const MotionClock& cl
         last_ = LastTouch{X_WT, depth};
         enter(Phase::settle);
       } else if (depth > press.reach || ++steps_ * timestep_ > 2 * press.reach / kSeekSlow) {
-        lift_from_ = depth;
-        enter(Phase::lift);
+        begin_lift(depth);
       }
       controller.set_axial(seek(X_WT, depth), 0);
       return true;
@@ -127,7 +139,7 @@ bool Presser::look(const Sim& sim, Controller& controller, const MotionClock& cl
       const bool right = std::abs(measured - press.force) < kRight * press.force;
       calm_ = right ? calm_ + timestep_ : 0;
       ++steps_;
-      controller.set_axial(push(press.force, measured), 0);
+      controller.set_axial(push(X_WT, press.force, force_T), 0);
       if (calm_ < kCalm && steps_ * timestep_ < kPatience) return true;
       enter(Phase::write);
       stroke.least = stroke.most = measured;
@@ -138,15 +150,14 @@ bool Presser::look(const Sim& sim, Controller& controller, const MotionClock& cl
           {move_, sim.time(), X_WT, (X_WT.p - X_ref.p - depth * X_ref.R.col(2)).norm(), measured});
       stroke.least = std::min(stroke.least, measured);
       stroke.most = std::max(stroke.most, measured);
-      controller.set_axial(push(press.force, measured), 0);
+      controller.set_axial(push(X_WT, press.force, force_T), 0);
       if (clock.motion() == move_ && clock.time() < move.trajectory.duration()) return false;
-      lift_from_ = depth;
-      enter(Phase::lift);
+      begin_lift(depth);
       return true;
     default:
       break;
   }
-  // The spring takes the tool over where it is, and up along a cubic.
+  // The spring takes the tool up along a cubic.
   const double share = std::min(1.0, ++steps_ * timestep_ / kLift);
   controller.set_axial(std::nullopt, lift_from_ * (1 - share * share * (3 - 2 * share)));
   if (share < 1) return true;

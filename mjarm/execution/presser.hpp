@@ -68,25 +68,26 @@ class Presser {
   enum class Phase { above, weigh, seek, settle, write, lift };
 
   Presser(const Model& model, const MotionPlan& plan, ForceSensor sensor);
-  [[nodiscard]] double force(const Sim& sim) const;
+  [[nodiscard]] Eigen::Vector3d force(const Sim& sim) const;
   void enter(Phase phase);
+  void begin_lift(double depth);
   [[nodiscard]] bool begins_stroke(const MotionClock& clock) const;
-  void weigh(const Sim& sim, const MotionClock& clock);
+  void weigh(const Sim& sim, const MotionClock& clock, double depth);
   [[nodiscard]] AxialPush seek(const Pose& X_WT, double depth) const;
-  [[nodiscard]] AxialPush push(double wanted, double measured);
+  [[nodiscard]] AxialPush push(const Pose& X_WT, double wanted, const Eigen::Vector3d& measured);
 
   const MotionPlan* plan_;
   ForceSensor sensor_;
   LinkChain links_;
   double timestep_;
   Phase phase_ = Phase::above;
-  int steps_ = 0;                         ///< in this phase
-  std::size_t move_ = 0;                  ///< the stroke
-  std::optional<std::size_t> last_move_;  ///< the stroke before
-  double weight_ = 0;                     ///< [N] along z, of what hangs on the sensor
-  double integral_ = 0;                   ///< [N]
-  double calm_ = 0;                       ///< [s] that the force has been right for
-  double lift_from_ = 0;                  ///< [m]
+  int steps_ = 0;                                     ///< in this phase
+  std::size_t move_ = 0;                              ///< the stroke
+  std::optional<std::size_t> last_move_;              ///< the stroke before
+  Eigen::Vector3d weight_ = Eigen::Vector3d::Zero();  ///< [N] of what hangs on the sensor
+  double integral_ = 0;   ///< [N] along z: what the controller does not know of
+  double calm_ = 0;       ///< [s] that the force has been right for
+  double lift_from_ = 0;  ///< [m]
   struct LastTouch {
     Pose X_WT;
     double depth = 0;

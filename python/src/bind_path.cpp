@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "mjarm/collision/exact.hpp"
@@ -155,9 +156,14 @@ void bind_curve(nb::module_& m) {
           "A circular arc.")
       .def_static(
           "spline",
-          [](nb::handle poses) { return value_of(Curve::spline(poses_of(poses, "poses"))); },
-          nb::arg("poses"), nb::sig("def spline(poses: PosesLike) -> Curve"),
-          "A smooth curve through all poses.")
+          [](nb::handle poses, std::optional<double> corner) {
+            return value_of(
+                Curve::spline(poses_of(poses, "poses"), corner.value_or(std::numbers::pi)));
+          },
+          nb::arg("poses"), nb::kw_only(), nb::arg("corner").none() = nb::none(),
+          nb::sig("def spline(poses: PosesLike, *, corner: float | None = None) -> Curve"),
+          "A smooth curve through all poses; where it turns by more than `corner` [rad] from chord "
+          "to chord it has a corner.")
       .def_static("ellipse", &ellipse, nb::arg("center"), nb::arg("a"), nb::arg("b"),
                   nb::arg("normal").none() = nb::none(), nb::kw_only(),
                   nb::arg("euler").none() = nb::none(), nb::arg("quat").none() = nb::none(),

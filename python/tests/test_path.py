@@ -69,3 +69,12 @@ def test_a_path_that_stops_says_why_and_how_to_mend_it(robot):
 def test_what_is_no_way_to_follow(robot, words):
     with pytest.raises(mjarm.BadInput):
         robot.line(robot.fk(robot.home), mjarm.Pose([0.1, 0.5, 0.5]), **words)
+
+
+def test_a_spline_keeps_the_corners_it_is_asked_to():
+    poses = [[0, 0, 0], [0.2, 0, 0], [0.4, 0.1, 0], [0.3, 0.3, 0], [0.3, 0.5, 0]]
+    poses = [mjarm.Pose(p) for p in poses]
+    smooth, kept = mjarm.Curve.spline(poses), mjarm.Curve.spline(poses, corner=1.0)
+    parts = mjarm.Curve.spline(poses[:3]).length + mjarm.Curve.spline(poses[2:]).length
+    assert kept.length == pytest.approx(parts, abs=1e-12)
+    assert abs(smooth.length - kept.length) > 1e-4

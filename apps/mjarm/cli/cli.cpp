@@ -10,6 +10,7 @@
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
+#include "apps/mjarm/cli/version.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/core.hpp"
@@ -105,7 +106,7 @@ int run_parsed(const CLI::App& app, const GlobalOptions& global,
   if (global.quiet) set_log_level(LogLevel::error);
   if (global.verbose) set_log_level(LogLevel::debug);
   if (global.version) {
-    std::printf("mjarm %s\n", MJARM_VERSION);
+    std::printf("%s\n", version_line().c_str());
     return finish(0);
   }
   for (const auto& [command, run] : runs) {

@@ -16,6 +16,7 @@ TEST(CommandLine, VersionAndHelp) {
   const auto version = mjarm({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.out.rfind("mjarm ", 0), 0u);
+  EXPECT_NE(version.out.find(" (MuJoCo "), std::string::npos) << version.out;
   EXPECT_EQ(version.err, "");
   for (const char* option : {"--help", "-h"}) {
     const auto help = mjarm({option});

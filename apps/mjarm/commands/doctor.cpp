@@ -7,6 +7,7 @@
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/print.hpp"
+#include "apps/mjarm/cli/version.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/models.hpp"
 #include "apps/mjarm/messages/render_command.hpp"
@@ -40,14 +41,6 @@ void add(Findings& findings, const char* key, const std::string& label, JsonDoc 
          const std::string& shown) {
   findings.facts.set(key, std::move(value));
   findings.lines += padded(label, 14) + shown + "\n";
-}
-
-const char* compiler() {
-#if defined(__clang__)
-  return "clang " __clang_version__;
-#else
-  return "g++ " __VERSION__;
-#endif
 }
 
 void look_at_mujoco(Findings& findings) {

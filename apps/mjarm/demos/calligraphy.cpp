@@ -17,7 +17,7 @@ namespace {
 const Eigen::Vector3d kPaper(0, -0.47, 0.08);  // [m] middle of the sheet in calligraphy.xml
 constexpr double kInkHeight = 0.12, kSheetWidth = 0.36;  // [m] of a letter, and of all
 constexpr double kPenForce = 1;                          // [N]
-constexpr double kPenSpeed = 0.04;                       // [m/s]
+constexpr double kPenSpeed = 0.02;                       // [m/s]
 
 /// What is written where nothing is asked for: characters, once they are installed.
 std::string default_text() {
