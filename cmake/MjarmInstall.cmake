@@ -15,9 +15,15 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/bench/peers" DESTINATION "${CMAKE_INSTA
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # MuJoCo goes along, with its licences, so that the installed tree is complete.
-file(REAL_PATH "${MuJoCo_LIBRARY}" mujoco_file)
-install(PROGRAMS "${mujoco_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-        RENAME "libmujoco.so.${MuJoCo_VERSION}")
+if(WIN32)
+  install(PROGRAMS "${MuJoCo_DLL}" DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  install(FILES "${MuJoCo_LIBRARY}" DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  file(COPY "${MuJoCo_DLL}" DESTINATION "${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")  # programs look beside themselves
+else()
+  file(REAL_PATH "${MuJoCo_LIBRARY}" mujoco_file)
+  install(PROGRAMS "${mujoco_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+          RENAME "libmujoco.so.${MuJoCo_VERSION}")
+endif()
 install(DIRECTORY "${MuJoCo_INCLUDE_DIR}/mujoco" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 file(GLOB mujoco_licences "${MUJOCO_ROOT}/LICENSE*"
      "${MUJOCO_ROOT}/../mujoco_core-*.dist-info/licenses/LICENSE*")
