@@ -1,8 +1,9 @@
 """Compares two texts whose numbers may differ a little.
 
 Usage: compare_numbers.py ONE OTHER [--within 1e-9] [--ignore KEY]...
-Words must be equal and numbers as near as that, absolute or relative to the larger. A line that holds an ignored KEY
-(a measured time) is not compared. Prints the largest difference, or the first line that differs; exit code 1 then.
+Words must be equal and numbers as near as that, absolute or relative to the larger; in a table the quaternions
+(columns that end in qw, qx, qy, qz) may have either sign. A line that holds an ignored KEY (a measured time) is not
+compared. Prints the largest difference, or the first line that differs; exit code 1 then.
 """
 
 import argparse
@@ -24,10 +25,26 @@ def lines_of(text, ignored):
             for line in text.split("\n") if not any(key in line for key in ignored)]
 
 
+def turned_alike(one, other):
+    """Lines of `other`, a table, with the signs that the quaternions of `one` have: q and -q are one rotation."""
+    header = one[0].split(",")
+    starts = [i for i, name in enumerate(header) if name.endswith(" qw")]
+    lines = other[:1]
+    for a, b in zip(one[1:], other[1:]):
+        x, y = a.split(","), b.split(",")
+        for i in starts if len(x) == len(y) == len(header) else ():
+            if sum(float(x[k]) * float(y[k]) for k in range(i, i + 4)) < 0:
+                y[i:i + 4] = [repr(-float(value)) for value in y[i:i + 4]]
+        lines.append(",".join(y))
+    return lines + other[len(lines):]
+
+
 def compare(one, other, within, ignored=()):
     """The largest difference of numbers, and the first fault as a line or None."""
     largest = 0.0
     first, second = lines_of(one, ignored), lines_of(other, ignored)
+    if " qw," in first[0]:
+        second = turned_alike(first, second)
     if len(first) != len(second):
         return largest, f"{len(first)} lines and {len(second)} lines"
     for number, (a, b) in enumerate(zip(first, second), 1):

@@ -21,6 +21,11 @@ class CompareNumbers(unittest.TestCase):
     def test_large_numbers_are_compared_relatively(self):
         self.assertIsNone(compare("1000000000", "1000000000.5", 1e-9)[1])
 
+    def test_a_quaternion_may_have_either_sign(self):
+        table = "t,tool qw,tool qx,tool qy,tool qz\n0,0.0,1.0,0.0,0.0\n"
+        self.assertIsNone(compare(table, table.replace("1.0", "-1.0"), 1e-9)[1])
+        self.assertIsNotNone(compare(table, table.replace("1.0", "0.9"), 1e-9)[1])
+
     def test_measured_times_and_ways_to_write_a_path_do_not_count(self):
         self.assertIsNone(compare('"rtf": 1\nout/log.csv', '"rtf": 200\r\nout\\log.csv', 1e-9, ['"rtf"'])[1])
 

@@ -10,7 +10,8 @@ build_windows() {
 
 # A zip that is unpacked and run: program, MuJoCo, models, page.
 make_zip() {
-  (build_windows mjarm mjarm-bench) || return
+  build_page || say "the zip goes without the page"
+  (build_windows mjarm) || return
   rm -f "$root"/dist/mjarm-*-windows-*.zip
   quiet cpack --config "$windows_build/CPackConfig.cmake" && ls -l "$root"/dist/mjarm-*-windows-*.zip >&2
 }
@@ -28,10 +29,11 @@ linux_mjarm() { (cd "$tried/linux 试" && "$release/bin/mjarm" "$@"); }
 # One server for all programs: each would start its own otherwise.
 start_wine() {
   wine_home=$tried/wine
+  mkdir -p "$wine_home"
+  WINEPREFIX=$wine_home wineserver -p600
   quiet in_wine wineboot -i
   # A font that has Chinese characters, as every Windows has one.
   cp /usr/share/fonts/truetype/wqy/wqy-microhei.ttc "$wine_home/drive_c/windows/Fonts/" 2>/dev/null || true
-  WINEPREFIX=$wine_home wineserver -p600
 }
 stop_wine() { WINEPREFIX=$wine_home wineserver -k || true; }
 

@@ -58,9 +58,19 @@ copy_headers() {
     cp /usr/x86_64-w64-mingw32/lib/libz.a "$windows/lib/"
 }
 
+# Words that go along with what is linked into the program.
+copy_licences() {
+  local package
+  for package in libcairo2-dev libpixman-1-dev libfmt-dev libspdlog-dev libtinyxml2-dev libyaml-cpp-dev libglfw3-dev \
+    libpng-dev libz-mingw-w64-dev libeigen3-dev libexpected-dev nlohmann-json3-dev libcli11-dev libboost-dev \
+    gcc-mingw-w64-base mingw-w64-common; do
+    install -D -m 644 "/usr/share/doc/$package/copyright" "$windows/licences/$package.txt" || return
+  done
+}
+
 build_libraries() {
   local from=$1
-  copy_headers &&
+  copy_headers && copy_licences &&
     with_cmake "$from"/fmt* -DFMT_TEST=OFF -DFMT_DOC=OFF &&
     with_cmake "$from"/spdlog* -DSPDLOG_FMT_EXTERNAL=ON -DSPDLOG_BUILD_EXAMPLE=OFF -DSPDLOG_BUILD_TESTS=OFF &&
     with_cmake "$from"/tinyxml2* -Dtinyxml2_BUILD_TESTING=OFF &&

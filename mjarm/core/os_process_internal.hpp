@@ -11,7 +11,8 @@ namespace mjarm {
 /// A handle of Windows that is closed with this object; null is none.
 class Handle {
  public:
-  explicit Handle(void* handle = nullptr) : handle_(handle) {}
+  Handle() = default;
+  explicit Handle(void* handle) : handle_(handle) {}
   ~Handle() { close(); }
   Handle(Handle&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
   Handle& operator=(Handle&& other) noexcept {
@@ -23,7 +24,7 @@ class Handle {
   explicit operator bool() const { return handle_ != nullptr; }
 
  private:
-  void* handle_;
+  void* handle_ = nullptr;
 };
 
 /// The two ends of a pipe; none where there are no more.
