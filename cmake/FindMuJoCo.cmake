@@ -41,6 +41,10 @@ endif()
 find_library(MuJoCo_LIBRARY NAMES libmujoco.so.${MuJoCo_VERSION} mujoco HINTS "${MUJOCO_ROOT}"
              PATH_SUFFIXES . lib NO_DEFAULT_PATH)
 mark_as_advanced(MuJoCo_INCLUDE_DIR MuJoCo_LIBRARY)
+if(WIN32)  # what was found is what one links against
+  find_file(MuJoCo_DLL mujoco.dll HINTS "${MUJOCO_ROOT}" PATH_SUFFIXES . bin NO_DEFAULT_PATH REQUIRED)
+  mark_as_advanced(MuJoCo_DLL)
+endif()
 
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(
@@ -50,8 +54,11 @@ find_package_handle_standard_args(
 
 if(MuJoCo_FOUND AND NOT TARGET MuJoCo::mujoco)
   add_library(MuJoCo::mujoco SHARED IMPORTED)
-  set_target_properties(
-    MuJoCo::mujoco PROPERTIES IMPORTED_LOCATION "${MuJoCo_LIBRARY}"
-                              IMPORTED_SONAME "libmujoco.so.${MuJoCo_VERSION}"
-                              INTERFACE_INCLUDE_DIRECTORIES "${MuJoCo_INCLUDE_DIR}")
+  set_target_properties(MuJoCo::mujoco PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${MuJoCo_INCLUDE_DIR}")
+  if(WIN32)
+    set_target_properties(MuJoCo::mujoco PROPERTIES IMPORTED_LOCATION "${MuJoCo_DLL}" IMPORTED_IMPLIB "${MuJoCo_LIBRARY}")
+  else()
+    set_target_properties(MuJoCo::mujoco PROPERTIES IMPORTED_LOCATION "${MuJoCo_LIBRARY}"
+                                                    IMPORTED_SONAME "libmujoco.so.${MuJoCo_VERSION}")
+  endif()
 endif()

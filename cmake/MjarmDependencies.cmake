@@ -9,16 +9,22 @@ find_package(yaml-cpp REQUIRED)
 find_package(tinyxml2 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(PNG REQUIRED)
-find_package(CURL 7.85 REQUIRED)
-find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(ZLIB REQUIRED)
 find_package(glfw3 3.3 REQUIRED)
-find_package(OpenGL REQUIRED COMPONENTS EGL OpenGL)
-find_package(Boost 1.74 CONFIG REQUIRED)  # headers: Asio, Beast
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
-pkg_check_modules(FONTCONFIG REQUIRED IMPORTED_TARGET fontconfig)
+if(WIN32)
+  find_path(CURL_INCLUDE_DIRS curl/curl.h REQUIRED)  # the library is loaded when something is fetched
+  find_package(Boost 1.74 REQUIRED)  # headers: Asio, Beast
+  pkg_check_modules(PIXMAN REQUIRED IMPORTED_TARGET pixman-1)
+else()
+  find_package(CURL 7.85 REQUIRED)
+  find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+  find_package(OpenGL REQUIRED COMPONENTS EGL OpenGL)
+  find_package(Boost 1.74 CONFIG REQUIRED)  # headers: Asio, Beast
+  pkg_check_modules(FONTCONFIG REQUIRED IMPORTED_TARGET fontconfig)
+endif()
 
 if(MJARM_MPI)
   find_package(MPI REQUIRED COMPONENTS CXX)

@@ -3,8 +3,10 @@ include(CMakePackageConfigHelpers)
 
 get_property(rooms GLOBAL PROPERTY mjarm_rooms)
 list(TRANSFORM rooms PREPEND mjarm_)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)  # what programs are built with, as against what is run
 install(TARGETS ${rooms} EXPORT mjarmTargets FILE_SET HEADERS FILE_SET lists)
 install(TARGETS mjarm_all EXPORT mjarmTargets)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 install(TARGETS mjarm)
 install(TARGETS mjarm-bench OPTIONAL)  # `./dev` builds it when it is asked for first
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/models"
@@ -15,14 +17,24 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/bench/peers" DESTINATION "${CMAKE_INSTA
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # MuJoCo goes along, with its licences, so that the installed tree is complete.
-file(REAL_PATH "${MuJoCo_LIBRARY}" mujoco_file)
-install(PROGRAMS "${mujoco_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-        RENAME "libmujoco.so.${MuJoCo_VERSION}")
-install(DIRECTORY "${MuJoCo_INCLUDE_DIR}/mujoco" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+if(WIN32)
+  install(PROGRAMS "${MuJoCo_DLL}" DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  install(FILES "${MuJoCo_LIBRARY}" DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
+  file(COPY "${MuJoCo_DLL}" DESTINATION "${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")  # programs look beside themselves
+else()
+  file(REAL_PATH "${MuJoCo_LIBRARY}" mujoco_file)
+  install(PROGRAMS "${mujoco_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+          RENAME "libmujoco.so.${MuJoCo_VERSION}")
+endif()
+install(DIRECTORY "${MuJoCo_INCLUDE_DIR}/mujoco" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development)
 file(GLOB mujoco_licences "${MUJOCO_ROOT}/LICENSE*"
      "${MUJOCO_ROOT}/../mujoco_core-*.dist-info/licenses/LICENSE*")
 install(FILES ${mujoco_licences} DESTINATION "${CMAKE_INSTALL_DOCDIR}/mujoco")
+if(MJARM_LICENCES)  # of libraries that are linked into the program
+  install(DIRECTORY "${MJARM_LICENCES}/" DESTINATION "${CMAKE_INSTALL_DOCDIR}/licences")
+endif()
 
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/mjarm")
 install(EXPORT mjarmTargets NAMESPACE mjarm:: DESTINATION "${config_dir}")
 configure_package_config_file(cmake/mjarmConfig.cmake.in mjarmConfig.cmake

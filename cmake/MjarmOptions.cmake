@@ -30,6 +30,9 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # other files can see.
   target_compile_options(mjarm_options INTERFACE -Wno-subobject-linkage)
 endif()
+if(WIN32)
+  target_compile_definitions(mjarm_options INTERFACE NOMINMAX WIN32_LEAN_AND_MEAN _WIN32_WINNT=0x0A00)
+endif()
 if(MJARM_WARNINGS_AS_ERRORS)
   target_compile_options(mjarm_options INTERFACE -Werror)
 endif()
@@ -37,7 +40,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # These depend on what the optimiser sees, so they differ between releases of the compiler: news
   # for developers, who are not stopped by them, and noise for everybody else.
   set(silence "-Wno-")
-  if(MJARM_WARNINGS_AS_ERRORS)
+  if(WIN32)
+  target_compile_definitions(mjarm_options INTERFACE NOMINMAX WIN32_LEAN_AND_MEAN _WIN32_WINNT=0x0A00)
+endif()
+if(MJARM_WARNINGS_AS_ERRORS)
     set(silence "-Wno-error=")
   endif()
   foreach(warning maybe-uninitialized array-bounds stringop-overflow stringop-overread nonnull

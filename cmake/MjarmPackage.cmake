@@ -1,4 +1,4 @@
-# What `cpack` makes in dist/: a Debian package and a tarball of what `cmake --install` installs.
+# What `cpack` makes in dist/: a Debian package and a tarball of what `cmake --install` installs; for Windows a zip.
 set(CPACK_PACKAGE_NAME "${PROJECT_NAME}")
 set(CPACK_PACKAGE_VENDOR "mjarm")
 set(CPACK_PACKAGE_CONTACT "mjarm <noreply@mjarm.invalid>")
@@ -6,6 +6,10 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_PACKAGE_DIRECTORY "${PROJECT_SOURCE_DIR}/dist")
 set(CPACK_GENERATOR DEB TGZ)
+if(WIN32)  # the program alone: what it is built with would need all libraries that it holds
+  set(CPACK_GENERATOR ZIP)
+  set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};program;/")
+endif()
 set(CPACK_STRIP_FILES ON)
 string(TOLOWER "${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}" system)
 set(CPACK_PACKAGE_FILE_NAME "${PROJECT_NAME}-${PROJECT_VERSION}-${system}")

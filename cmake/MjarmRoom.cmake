@@ -4,6 +4,7 @@
 #   NAME_internal.hpp   header of this room only: neither installed nor checked
 #   simd/NAME.hpp       what the kernels of all rooms share: neither installed nor checked
 #   NAME.cpp            source; NAME_avx2.cpp and NAME_avx512.cpp get their flags, on x86-64 only
+#   NAME_linux.cpp, NAME_windows.cpp   on that system only
 #   NAME_test.cpp       into ROOM_test (GoogleTest)
 #   NAME_bench.cpp      into ROOM_bench (google-benchmark, where found)
 #
@@ -20,6 +21,7 @@ function(mjarm_room room)
   file(GLOB benches CONFIGURE_DEPENDS *_bench.cpp)
   list(FILTER headers EXCLUDE REGEX "_(internal|test)\\.hpp$")
   list(REMOVE_ITEM sources ${tests} ${benches})
+  mjarm_system_sources(sources)
   mjarm_simd_flags(sources)
   if(NOT sources)
     file(CONFIGURE OUTPUT empty.cpp CONTENT "")
@@ -80,6 +82,20 @@ function(mjarm_all_messages target)
   file(CONFIGURE OUTPUT all_messages.inc CONTENT "${lists}")
   target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}")
   target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/all_messages_test.cpp")
+endfunction()
+
+# Drops what is for another system. Headers of Windows define short names, so no other source may share a unit with them.
+function(mjarm_system_sources list_name)
+  set(files ${${list_name}})
+  if(WIN32)
+    list(FILTER files EXCLUDE REGEX "_linux\\.cpp$")
+    set(windows ${files})
+    list(FILTER windows INCLUDE REGEX "_windows\\.cpp$")
+    set_source_files_properties(${windows} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+  else()
+    list(FILTER files EXCLUDE REGEX "_windows\\.cpp$")
+  endif()
+  set(${list_name} ${files} PARENT_SCOPE)
 endfunction()
 
 # Sets the flags of the kernels for wider registers, and drops them where the machine has none.

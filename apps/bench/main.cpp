@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   using namespace mjarm;
   open_standard_streams();
   UserCache::leave_alone();  // a first plan is to be one
-  std::vector<std::string> arguments(argv + (argc > 0), argv + argc);
+  std::vector<std::string> arguments = program_arguments(argc, argv);
   const std::size_t word = app::command_word(arguments);
   if (word == arguments.size() || arguments[word] != "bench") {
     arguments.insert(arguments.begin(), "bench");

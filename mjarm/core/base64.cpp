@@ -1,15 +1,25 @@
 #include "mjarm/core/base64.hpp"
 
-#include <openssl/evp.h>
+#include <cstdint>
 
 namespace mjarm {
 
+/// RFC 4648, section 4.
 std::string base64(std::string_view bytes) {
-  std::string out(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // with the NUL that is written, too
-  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()),
-                                   reinterpret_cast<const unsigned char*>(bytes.data()),
-                                   static_cast<int>(bytes.size()));
-  out.resize(static_cast<std::size_t>(size));
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve(4 * ((bytes.size() + 2) / 3));
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t three = 0;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      three = (three << 8) | (k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool beyond = i + k > bytes.size();  // k digits hold less than k bytes
+      out += beyond ? '=' : kDigits[(three >> (18 - 6 * k)) & 63U];
+    }
+  }
   return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_file.hpp"
 
 namespace mjarm {
 namespace fs = std::filesystem;
@@ -51,7 +52,7 @@ Result<std::string> read_file(const fs::path& path, std::size_t max_bytes) {
   if (status.type() == fs::file_type::directory) {
     return fail(Errc::bad_input, text(msg::core_is_a_folder, path.string()));
   }
-  std::FILE* file = std::fopen(path.c_str(), "rb");
+  std::FILE* file = open_file(path, "rb");
   if (file == nullptr) {
     return fail(Errc::bad_input, text(msg::core_cannot_read, path.string(), system_message(errno)));
   }
@@ -110,9 +111,9 @@ Result<AtomicFile> AtomicFile::create(const fs::path& path) {
     // A link keeps pointing where it does: its target is what gets replaced.
     file.target_ = target_of(path);
     file.temporary_ = temporary_name(file.target_);
-    file.file_ = std::fopen(file.temporary_.c_str(), "wbx");
+    file.file_ = open_file(file.temporary_, "wbx");
   } else {
-    file.file_ = std::fopen(path.c_str(), "wb");
+    file.file_ = open_file(path, "wb");
   }
   if (file.file_ == nullptr) {
     const int code = errno;

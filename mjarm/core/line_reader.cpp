@@ -9,6 +9,7 @@
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/run.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_file.hpp"
 
 namespace mjarm {
 namespace {
@@ -37,7 +38,7 @@ Result<LineReader> LineReader::open(const std::string& path, std::size_t longest
   if (type == std::filesystem::file_type::directory) {
     return fail(Errc::bad_input, text(msg::core_is_a_folder, path));
   }
-  reader.file_.reset(std::fopen(path.c_str(), "rb"));
+  reader.file_.reset(open_file(path, "rb"));
   if (reader.file_ == nullptr) {
     return fail(Errc::bad_input, text(msg::core_cannot_read, path, system_message(errno)));
   }

@@ -13,7 +13,7 @@ std::vector<fs::path> share_folders() {
   // Looked for once: that takes the program loader's lock, which no thread should hold when another
   // one copies the process (`run_in_child`).
   static const fs::path self = library_of(reinterpret_cast<const void*>(&share_folder));
-  static const fs::path mujoco = loaded_library("libmujoco");
+  static const fs::path mujoco = loaded_library("mujoco");
   std::vector<fs::path> folders;
   const Result<fs::path> program = executable_path();
   if (program) {

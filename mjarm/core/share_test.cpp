@@ -20,21 +20,19 @@ std::string mapped_files() {
 
 TEST(LoadedLibrary, IsTheFileThatIsMapped) {
   ASSERT_NE(mj_versionString(), nullptr);  // so that this test is linked to MuJoCo
-  const std::filesystem::path file = loaded_library("libmujoco");
+  const std::filesystem::path file = loaded_library("mujoco");
   ASSERT_TRUE(file.is_absolute()) << file;
   EXPECT_NE(mapped_files().find(file.string()), std::string::npos) << file;
 }
 
-TEST(LoadedLibrary, IsEmptyWhereThereIsNone) {
-  EXPECT_TRUE(loaded_library("libnosuchthing").empty());
-}
+TEST(LoadedLibrary, IsEmptyWhereThereIsNone) { EXPECT_TRUE(loaded_library("nosuchthing").empty()); }
 
 TEST(ShareFolders, AreThatOfTheProgramAndThatBesideMujoco) {
   const auto folders = share_folders();
   ASSERT_EQ(folders.size(), 2U);
   const auto program = std::filesystem::canonical("/proc/self/exe").parent_path();
   EXPECT_EQ(folders[0], program.parent_path() / "share" / "mjarm");
-  const auto library = loaded_library("libmujoco").parent_path();
+  const auto library = loaded_library("mujoco").parent_path();
   EXPECT_EQ(folders[1], library.parent_path() / "share" / "mjarm");
   EXPECT_EQ(share_folder().value(), folders[0]);  // the build tree has it
 }

@@ -5,7 +5,11 @@
 namespace mjarm::install {
 namespace {
 
+#if defined(_WIN32)
+constexpr const char* kLibrary = "libcurl-x64.dll";
+#else
 constexpr const char* kLibrary = "libcurl.so.4";
+#endif
 
 template <class Function>
 void find(void* library, const char* name, Function& function) {

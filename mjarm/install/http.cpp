@@ -14,6 +14,7 @@
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_file.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/install/curl_internal.hpp"
 
@@ -206,7 +207,7 @@ std::uint64_t size_of(const std::filesystem::path& file) {
 /// One try to append the rest of `range` to `file`.
 Outcome append_rest(const std::string& url, ByteRange range, const std::filesystem::path& file,
                     const HttpOptions& options, Progress& progress) {
-  const std::unique_ptr<std::FILE, CloseFile> stream(std::fopen(file.c_str(), "ab"));
+  const std::unique_ptr<std::FILE, CloseFile> stream(open_file(file, "ab"));
   std::optional<Error> refused;
   const auto refuse = [&](int code) {
     refused =
@@ -295,7 +296,8 @@ std::string without_password(const std::string& text) {
 
 std::string file_url(const std::filesystem::path& file) {
   Url url("file:///");
-  url.set(CURLUPART_PATH, std::filesystem::absolute(file).c_str(), CURLU_URLENCODE);
+  url.set(CURLUPART_PATH, std::filesystem::absolute(file).generic_string().c_str(),
+          CURLU_URLENCODE);
   return url.whole();
 }
 

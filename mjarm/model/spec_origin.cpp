@@ -36,9 +36,9 @@ MjSpecPtr SpecOrigin::parse(std::string& error) const {
   StandIns stand_ins;
   const MujocoOutcome outcome = call_mujoco([&] {
     stand_ins.add(files_);
-    parsed = urdf.empty()
-                 ? mj_parseXML(model_.file().c_str(), stand_ins.get(), words, kSpecErrorSize)
-                 : mj_parseXMLString(urdf.c_str(), nullptr, words, kSpecErrorSize);
+    parsed = urdf.empty() ? mj_parseXML(model_.file().string().c_str(), stand_ins.get(), words,
+                                        kSpecErrorSize)
+                          : mj_parseXMLString(urdf.c_str(), nullptr, words, kSpecErrorSize);
   });
   MjSpecPtr spec(parsed);
   if (outcome.failed || spec == nullptr) {

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -37,7 +38,12 @@ std::string element(const char* list, std::size_t i) {
 
 /// The whole file; gzipped ones are unpacked.
 Result<std::string> unpacked(const std::string& path) {
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
+#if defined(_WIN32)
+  const gzFile opened = gzopen_w(std::filesystem::path(path).c_str(), "rb");
+#else
+  const gzFile opened = gzopen(path.c_str(), "rb");
+#endif
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(opened, gzclose);
   if (!file) return bad(msg::planning_file_cannot_open, path);
   std::string out;
   std::string block(std::size_t{1} << 16, '\0');

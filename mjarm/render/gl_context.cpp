@@ -19,8 +19,6 @@ constexpr unsigned kGlExtensions = 0x1F03;  // GL_EXTENSIONS
 constexpr int kNone = -1;
 std::atomic<int> claimed_kind{kNone};
 
-const char* name_of(GlKind kind) { return kind == GlKind::egl ? "EGL" : "OSMesa"; }
-
 std::optional<GlKind> claimed() {
   const int kind = claimed_kind.load();
   if (kind == kNone) return std::nullopt;
@@ -51,10 +49,6 @@ Result<std::unique_ptr<GlContext::Impl>> attempt(GlKind kind) {
   return made;
 }
 
-std::string advice(GlKind kind, const std::string& reason) {
-  return text(kind == GlKind::egl ? msg::render_no_egl : msg::render_no_osmesa, reason);
-}
-
 /// The kinds to try, in order.
 std::vector<GlKind> wanted_kinds(GlChoice choice) {
   if (choice == GlChoice::egl) return {GlKind::egl};
@@ -62,7 +56,7 @@ std::vector<GlKind> wanted_kinds(GlChoice choice) {
   if (const std::optional<GlKind> kind = claimed()) return {*kind};
   if (environment("MUJOCO_GL") == "osmesa") return {GlKind::osmesa};
   if (environment("MUJOCO_GL") == "egl") return {GlKind::egl};
-  return {GlKind::egl, GlKind::osmesa};
+  return gl_kinds();
 }
 
 }  // namespace
@@ -81,7 +75,7 @@ Result<GlContext> GlContext::create(GlChoice choice) {
   for (const GlKind kind : kinds) {
     Result<std::unique_ptr<Impl>> context = attempt(kind);
     if (!context) {
-      reasons.push_back(advice(kind, context.error().what));
+      reasons.push_back(gl_advice(kind, context.error().what));
       continue;
     }
     if (Result<void> claim = claim_gl(kind); !claim) return fail(std::move(claim.error()));
@@ -114,7 +108,7 @@ bool GlContext::is_software() const noexcept {
 
 std::vector<GlBackend> probe_gl_backends() {
   std::vector<GlBackend> found;
-  for (const GlKind kind : {GlKind::egl, GlKind::osmesa}) {
+  for (const GlKind kind : gl_kinds()) {
     GlBackend backend{.kind = kind, .name = name_of(kind)};
     const Result<std::unique_ptr<GlContext::Impl>> context = attempt(kind);
     backend.works = context.has_value();
@@ -122,7 +116,7 @@ std::vector<GlBackend> probe_gl_backends() {
       backend.renderer = (*context)->renderer;
       backend.version = (*context)->version;
     } else {
-      backend.reason = advice(kind, context.error().what);
+      backend.reason = gl_advice(kind, context.error().what);
     }
     found.push_back(std::move(backend));
   }

@@ -10,8 +10,8 @@ namespace mjarm::render {
 
 /// The ways to draw without a window.
 enum class GlKind {
-  egl,     ///< the GPU or Mesa's llvmpipe, without a display
-  osmesa,  ///< software only
+  egl,     ///< the GPU or Mesa's llvmpipe, without a display; on Windows WGL by a hidden window
+  osmesa,  ///< software only; not on Windows
 };
 
 /// Which way to take. MuJoCo binds its OpenGL functions once, so the first kind that was used in a
@@ -61,7 +61,7 @@ class GlContext {
 /// One way to draw without a window, tried out.
 struct GlBackend {
   GlKind kind = GlKind::egl;
-  std::string name = {};  ///< "EGL" or "OSMesa"
+  std::string name = {};  ///< "EGL", "OSMesa" or "WGL"
   bool works = false;
   std::string renderer = {};  ///< GL_RENDERER where it works
   std::string version = {};   ///< GL_VERSION where it works

@@ -26,4 +26,11 @@ struct GlContext::Impl {
 [[nodiscard]] Result<std::unique_ptr<GlContext::Impl>> make_egl_context();
 [[nodiscard]] Result<std::unique_ptr<GlContext::Impl>> make_osmesa_context();
 
+/// What this system has, in order of preference.
+[[nodiscard]] std::vector<GlKind> gl_kinds();
+/// What its users call it: EGL, OSMesa, WGL.
+[[nodiscard]] const char* name_of(GlKind kind);
+/// Why a kind does not work, and what helps.
+[[nodiscard]] std::string gl_advice(GlKind kind, const std::string& reason);
+
 }  // namespace mjarm::render

@@ -13,6 +13,7 @@
 #include "mjarm/core/messages/policy_file.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_file.hpp"
 #include "mjarm/rl/crc32c_internal.hpp"
 #include "mjarm/rl/protobuf_writer_internal.hpp"
 
@@ -120,7 +121,7 @@ Result<GrowingFile> GrowingFile::open(const fs::path& path, std::uintmax_t keep)
   std::error_code error;
   if (keep > 0) fs::resize_file(path, keep, error);
   if (error) return fail(log_error(path, error.message()));
-  grown.file_.reset(std::fopen(path.c_str(), keep > 0 ? "ab" : "wb"));
+  grown.file_.reset(open_file(path, keep > 0 ? "ab" : "wb"));
   if (!grown.file_) return fail(log_error(path, system_message(errno)));
   return grown;
 }

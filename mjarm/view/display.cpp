@@ -8,8 +8,10 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/view/display_internal.hpp"
 
+#if defined(__linux__)
 /// From GLFW/glfw3native.h, which would bring in all of X11: the X11 display, or null on others.
 extern "C" void* glfwGetX11Display(void);
+#endif
 
 namespace mjarm::view {
 namespace {
@@ -25,6 +27,9 @@ std::string last_glfw_error() {
   return description == nullptr ? std::string() : std::string(description);
 }
 
+#if !defined(__linux__)
+void survive_loss_of_x11() {}
+#else
 /// Xlib ends the process when its connection breaks, unless it is told what to do instead.
 void survive_loss_of_x11() {
   void* display = glfwGetX11Display();
@@ -41,6 +46,7 @@ void survive_loss_of_x11() {
   set_handler([](void*) { return 0; });  // the default prints
   set_exit_handler(display, [](void*, void*) { lost = true; }, nullptr);
 }
+#endif
 
 /// What OpenGL says about itself in the current context.
 std::string gl_string(unsigned name) {

@@ -1,4 +1,6 @@
 #include <GL/gl.h>
+// After gl.h.
+#include <GL/glext.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +25,7 @@ bool is_ascii(std::string_view text) noexcept {
 struct GlyphFont::Gl {
   unsigned texture = 0;
   decltype(&glGenTextures) gen_textures = nullptr;
-  decltype(&glActiveTexture) active_texture = nullptr;
+  PFNGLACTIVETEXTUREPROC active_texture = nullptr;
   decltype(&glBindTexture) bind_texture = nullptr;
   decltype(&glTexParameteri) tex_parameter = nullptr;
   decltype(&glTexImage2D) tex_image = nullptr;

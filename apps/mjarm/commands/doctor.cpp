@@ -56,7 +56,7 @@ void look_at_mujoco(Findings& findings) {
 
 void look_at_machine(Findings& findings) {
   const OperatingSystem system = operating_system();
-  const Msg said = system.is_wsl ? msg::app_doctor_wsl : msg::app_doctor_linux_only;
+  const Msg said = system.is_wsl ? msg::app_doctor_wsl : msg::app_doctor_no_mac;
   add(findings, "system", text(msg::app_doctor_system), system.name, text(said, system.name));
   const std::string simd(name(simd_level()));
   add(findings, "compiler", text(msg::app_doctor_compiler), compiler(), compiler());

@@ -33,7 +33,7 @@ std::string grade_word(Grade grade) {
 /// `ur5e.xml:71`, the file as seen from the folder of the main one.
 std::string short_place(const Finding& finding, const fs::path& folder) {
   fs::path file = fs::path(finding.file).lexically_relative(folder);
-  if (file.empty() || file.native().starts_with("../../..")) file = finding.file;
+  if (file.empty() || file.generic_string().starts_with("../../..")) file = finding.file;
   return finding.line > 0 ? file.string() + ":" + std::to_string(finding.line) : file.string();
 }
 

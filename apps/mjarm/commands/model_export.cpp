@@ -48,7 +48,7 @@ Result<int> run_export(const Model& model, const ExportOptions& options) {
   if (auto written = write_file(out, exported->content); !written) return fail(written.error());
   result->made();
   for (const std::string& note : exported->notes) log_warning(note);
-  std::printf("%s\n", out.c_str());
+  std::printf("%s\n", out.string().c_str());
   return 0;
 }
 

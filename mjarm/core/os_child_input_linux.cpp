@@ -1,5 +1,3 @@
-#include "mjarm/core/os_child_input.hpp"
-
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
@@ -19,6 +17,7 @@
 
 #include "mjarm/core/messages/run.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_child_input.hpp"
 
 namespace mjarm {
 namespace {

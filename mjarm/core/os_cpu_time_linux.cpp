@@ -1,8 +1,8 @@
-#include "mjarm/core/os_cpu_time.hpp"
-
 #include <sys/resource.h>
 
 #include <initializer_list>
+
+#include "mjarm/core/os_cpu_time.hpp"
 
 namespace mjarm {
 

@@ -1,6 +1,6 @@
-#include "mjarm/core/os_file_note.hpp"
-
 #include <sys/xattr.h>
+
+#include "mjarm/core/os_file_note.hpp"
 
 namespace mjarm {
 namespace {

@@ -1,5 +1,3 @@
-#include "mjarm/core/os_lock.hpp"
-
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -12,6 +10,7 @@
 
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_lock.hpp"
 
 namespace mjarm {
 

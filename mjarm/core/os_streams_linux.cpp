@@ -1,9 +1,9 @@
-#include "mjarm/core/os_streams.hpp"
-
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+
+#include "mjarm/core/os_streams.hpp"
 
 namespace mjarm {
 
@@ -15,6 +15,10 @@ void open_standard_streams() noexcept {
     ::dup2(opened, stream);
     ::close(opened);
   }
+}
+
+std::vector<std::string> program_arguments(int argc, const char* const* argv) {
+  return {argv + (argc > 0), argv + argc};
 }
 
 }  // namespace mjarm

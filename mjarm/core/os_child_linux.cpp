@@ -1,5 +1,3 @@
-#include "mjarm/core/os_child.hpp"
-
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
@@ -18,6 +16,7 @@
 
 #include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_child.hpp"
 
 namespace mjarm {
 namespace {

@@ -1,15 +1,15 @@
-#include "mjarm/core/os_libraries.hpp"
-
 #include <link.h>
 
 #include <string>
 #include <system_error>
 
+#include "mjarm/core/os_libraries.hpp"
+
 namespace mjarm {
 namespace {
 
 struct Search {
-  std::string_view stem;
+  std::string stem;
   std::string found = {};
 };
 
@@ -26,7 +26,7 @@ int look_at(dl_phdr_info* library, std::size_t, void* wanted) {
 }  // namespace
 
 std::filesystem::path loaded_library(std::string_view stem) {
-  Search search{.stem = stem};
+  Search search{.stem = "lib" + std::string(stem)};
   ::dl_iterate_phdr(look_at, &search);
   if (search.found.empty()) return {};
   std::error_code error;

@@ -1,5 +1,3 @@
-#include "mjarm/core/os_program.hpp"
-
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -9,6 +7,7 @@
 
 #include "mjarm/core/messages/run.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/os_program.hpp"
 
 namespace mjarm {
 
