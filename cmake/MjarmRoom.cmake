@@ -4,7 +4,7 @@
 #   NAME_internal.hpp   header of this room only: neither installed nor checked
 #   simd/NAME.hpp       what the kernels of all rooms share: neither installed nor checked
 #   NAME.cpp            source; NAME_avx2.cpp and NAME_avx512.cpp get their flags, on x86-64 only
-#   NAME_linux.cpp, NAME_windows.cpp   on that system only
+#   NAME_linux.cpp, NAME_windows.cpp, NAME_linux_test.cpp ...   on that system only
 #   NAME_test.cpp       into ROOM_test (GoogleTest)
 #   NAME_bench.cpp      into ROOM_bench (google-benchmark, where found)
 #
@@ -22,6 +22,7 @@ function(mjarm_room room)
   list(FILTER headers EXCLUDE REGEX "_(internal|test)\\.hpp$")
   list(REMOVE_ITEM sources ${tests} ${benches})
   mjarm_system_sources(sources)
+  mjarm_system_sources(tests)
   mjarm_simd_flags(sources)
   if(NOT sources)
     file(CONFIGURE OUTPUT empty.cpp CONTENT "")
@@ -65,6 +66,9 @@ function(mjarm_tests target)
     target_sources(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support/keep_libraries.cpp")
   endif()
   target_compile_options(${target} PRIVATE ${MJARM_TEST_FLAGS})
+  if(WIN32)
+    target_compile_options(${target} PRIVATE -include "${PROJECT_SOURCE_DIR}/tests/support/windows_names.hpp")
+  endif()
   target_link_libraries(${target} PRIVATE ${arg_LINK} mjarm_options mjarm_testing MuJoCo::mujoco
                                           GTest::gtest_main GTest::gmock)
   if(MJARM_PRECOMPILE)
@@ -88,12 +92,12 @@ endfunction()
 function(mjarm_system_sources list_name)
   set(files ${${list_name}})
   if(WIN32)
-    list(FILTER files EXCLUDE REGEX "_linux\\.cpp$")
+    list(FILTER files EXCLUDE REGEX "_linux(_test)?\\.cpp$")
     set(windows ${files})
     list(FILTER windows INCLUDE REGEX "_windows\\.cpp$")
     set_source_files_properties(${windows} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   else()
-    list(FILTER files EXCLUDE REGEX "_windows\\.cpp$")
+    list(FILTER files EXCLUDE REGEX "_windows(_test)?\\.cpp$")
   endif()
   set(${list_name} ${files} PARENT_SCOPE)
 endfunction()

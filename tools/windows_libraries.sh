@@ -6,7 +6,7 @@
 windows=$deps/windows
 windows_mujoco=$windows/mujoco-core-4.0.1
 windows_packages="g++-mingw-w64-x86-64-posix mingw-w64-tools libz-mingw-w64-dev xz-utils dpkg-dev zip"
-windows_sources="cairo fmtlib glfw3 libpng1.6 pixman spdlog tinyxml2 yaml-cpp"
+windows_sources="cairo fmtlib glfw3 googletest libpng1.6 pixman spdlog tinyxml2 yaml-cpp"
 
 # fetch_sources FOLDER: the sources of Debian, unpacked there, each in a folder that begins with its name.
 fetch_sources() {
@@ -75,6 +75,7 @@ build_libraries() {
     with_cmake "$from"/spdlog* -DSPDLOG_FMT_EXTERNAL=ON -DSPDLOG_BUILD_EXAMPLE=OFF -DSPDLOG_BUILD_TESTS=OFF &&
     with_cmake "$from"/tinyxml2* -Dtinyxml2_BUILD_TESTING=OFF &&
     with_cmake "$from"/yaml-cpp* -DYAML_CPP_BUILD_TESTS=OFF -DYAML_CPP_BUILD_TOOLS=OFF -DYAML_CPP_BUILD_CONTRIB=OFF &&
+    with_cmake "$from"/googletest* &&
     with_cmake "$from"/glfw* -DGLFW_BUILD_EXAMPLES=OFF -DGLFW_BUILD_TESTS=OFF -DGLFW_BUILD_DOCS=OFF &&
     with_cmake "$from"/libpng* -DPNG_SHARED=OFF -DPNG_TESTS=OFF &&
     with_configure "$from"/pixman* --disable-gtk --disable-libpng --disable-openmp &&

@@ -12,7 +12,9 @@ namespace {
 
 class LineReaderTest : public ::testing::Test {
  protected:
-  std::string file(const std::string& content) { return folder_.write("in.jsonl", content); }
+  std::string file(const std::string& content) {
+    return folder_.write("in.jsonl", content).string();
+  }
 
   support::TempFolder folder_;
 };

@@ -1,7 +1,9 @@
 #include "mjarm/core/long_result.hpp"
 
 #include <gmock/gmock.h>
+#if !defined(_WIN32)
 #include <unistd.h>
+#endif
 
 #include <string>
 

@@ -57,7 +57,7 @@ class Listener {
 
   /// Sets how it ended where it may not go on.
   bool has_enough() {
-    const double seconds = child_.cpu_seconds();
+    const double seconds = child_.cpu_seconds() - before_;
     if (seconds - used_ > kWakes) {
       used_ = seconds;
       idle_looks_ = 0;
@@ -78,7 +78,8 @@ class Listener {
   const Process& child_;
   const Handle& pipe_;
   ChildLimits limits_;
-  double used_ = 0;  ///< [s] computing time of the child when it last went on
+  double before_ = child_.cpu_seconds();  ///< [s] Wine gives the time of this process
+  double used_ = 0;                       ///< [s] computing time of the child when it last went on
   int idle_looks_ = 0;
   ChildResult result_;
 };

@@ -79,6 +79,7 @@ TEST(Os, SmallFactsAreSane) {
   EXPECT_EQ(system_message(ENOSPC), "No space left on device");
 }
 
+#if !defined(_WIN32)
 TEST(OsDeathTest, SecondInterruptEndsTheProgram) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(
@@ -92,6 +93,7 @@ TEST(OsDeathTest, SecondInterruptEndsTheProgram) {
       },
       ::testing::KilledBySignal(SIGINT), "");
 }
+#endif
 
 TEST(Cpu, LevelHasAName) {
   EXPECT_FALSE(name(simd_level()).empty());

@@ -53,7 +53,7 @@ constexpr const char* kScene = R"(<mujoco><asset>
 class CompileCacheTest : public ::testing::Test {
  protected:
   CompileCacheTest() {
-    ::setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);
+    ::setenv("XDG_CACHE_HOME", (folder_.path() / "cache").string().c_str(), 1);
     ::setenv("MJARM_CACHE", "on", 1);
     scene_ = folder_.write("model/scene.xml", kScene);
     for (const char* name : {"contact", "mass", "size", "looks"}) write(name, 0.1F);

@@ -276,7 +276,7 @@ TEST(Export, BinaryIsMujocosOwn) {
   const TempFolder folder;
   const Model model = load(find_model_file("panda").value());
   const auto file = folder.write("panda.mjb", mjb(model));
-  mjModel* again = mj_loadModel(file.c_str(), nullptr);
+  mjModel* again = mj_loadModel(file.string().c_str(), nullptr);
   ASSERT_NE(again, nullptr);
   EXPECT_EQ(again->nq, model.nq());
   mj_deleteModel(again);

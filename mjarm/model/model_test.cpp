@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <link.h>
 #include <mujoco/mujoco.h>
+#if defined(__linux__)
+#include <link.h>
+#endif
 
 #include <array>
 #include <chrono>
@@ -367,6 +369,7 @@ TEST(Model, ManyThreadsLoadGoodAndBadFilesAtOnce) {
   for (const std::string& told : wrong) EXPECT_EQ(told, "");
 }
 
+#if defined(__linux__)
 TEST(Model, LoadsAlthoughAnotherThreadHoldsTheProgramLoadersLock) {
   if (support::kSanitized) GTEST_SKIP() << "files are not read in a copy of the process";
   const support::TempFolder folder;
@@ -391,6 +394,7 @@ TEST(Model, LoadsAlthoughAnotherThreadHoldsTheProgramLoadersLock) {
   ASSERT_FALSE(model);
   EXPECT_EQ(model.error().what, told);
 }
+#endif
 
 TEST(ShippedModels, AreFoundByNameAndByEnvironment) {
   for (const char* name : {"car", "hello", "panda", "ur5e", "ur5e_gripper"}) {

@@ -3,15 +3,26 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <stdexcept>
 
 namespace mjarm::support {
 
+#if defined(_WIN32)
+TempFolder::TempFolder() {
+  std::random_device random;
+  do {
+    const std::string name = "mjarm-test-" + std::to_string(random());
+    path_ = std::filesystem::temp_directory_path() / name;
+  } while (!std::filesystem::create_directory(path_));
+}
+#else
 TempFolder::TempFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "mjarm-test-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make " + pattern);
   path_ = pattern;
 }
+#endif
 
 TempFolder::~TempFolder() {
   std::error_code ignored;

@@ -16,7 +16,7 @@ std::optional<std::filesystem::path> test_data_file(const std::string& name) {
 
 std::string read_data(const std::filesystem::path& file) {
   // zlib reads plain files as they are.
-  const gzFile input = gzopen(file.c_str(), "rb");
+  const gzFile input = gzopen(file.string().c_str(), "rb");
   if (input == nullptr) throw std::runtime_error("cannot open " + file.string());
   std::string content;
   char buffer[65536];
