@@ -8,7 +8,7 @@
 namespace mjarm {
 namespace {
 
-constexpr double kWeigh = 0.05;                        // [s] the second half of which is measured
+constexpr double kWeigh = 0.3;                         // [s] the second half of which is measured
 constexpr double kSeekDamping = 150;                   // [N s/m]
 constexpr double kSeekSlow = 0.005, kSeekFast = 0.03;  // [m/s]
 /// [m] before the depth of the stroke before, and so much more for each metre beside it, the tool
@@ -74,12 +74,16 @@ void Presser::weigh(const Sim& sim, const MotionClock& clock, double depth) {
   if (steps_ == 0) {
     move_ = clock.motion();
     weight_.setZero();
+    integral_ = 0;
     strokes_.push_back({.move = move_});
   }
-  if (steps_ >= count / 2) weight_ += sensor_.force(sim.sensor_data()) / (count - count / 2);
+  if (steps_ >= count / 2) {
+    weight_ += sensor_.force(sim.sensor_data()) / (count - count / 2);
+    // What the spring carries is a load that the controller does not know.
+    integral_ -= kImpedance.tool_stiffness * depth / (count - count / 2);
+  }
   if (++steps_ < count) return;
-  // What the spring carries is a load that the controller does not know.
-  integral_ = std::clamp(-kImpedance.tool_stiffness * depth, -kMostIntegral, kMostIntegral);
+  integral_ = std::clamp(integral_, -kMostIntegral, kMostIntegral);
   enter(Phase::seek);
 }
 

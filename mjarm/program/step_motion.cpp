@@ -1,11 +1,41 @@
+#include <algorithm>
+#include <cmath>
+
 #include "mjarm/program/step_motion_internal.hpp"
 
 namespace mjarm::program::detail {
 namespace {
 
-/// [m/s^2] Of a tool that presses: on something that is tilted, what is faster changes the force by
-/// the arm's inertia.
+/// [m/s^2] Of a tool that presses, along its way and across it: what is faster changes the force by
+/// the arm's inertia, the more so on something that is tilted.
 constexpr double kPressAccel = 0.1;
+
+/// [m/s] At most `speed`, and less in bends, a little before and behind them as well.
+std::vector<SpeedFrom> speeds_in_bends(const Curve& curve, double speed) {
+  constexpr double kStep = 2e-4;  // [m] between places
+  constexpr int kAround = 2;      // places
+  const auto count = static_cast<int>(std::clamp(std::ceil(curve.end() / kStep), 4.0, 1e5));
+  const double step = curve.end() / count;
+  std::vector<double> most(static_cast<std::size_t>(count) + 1, speed);
+  for (int i = 1; i < count; ++i) {
+    const Eigen::Vector3d before = curve.at((i - 1) * step).p, here = curve.at(i * step).p,
+                          after = curve.at((i + 1) * step).p;
+    const double bend = (after - 2 * here + before).norm() / (step * step);  // [1/m]
+    most[static_cast<std::size_t>(i)] = std::min(speed, std::sqrt(kPressAccel / (bend + 1e-9)));
+  }
+  std::vector<SpeedFrom> out;
+  for (int i = 0; i <= count; ++i) {
+    double least = speed;
+    for (int k = std::max(0, i - kAround); k <= std::min(count, i + kAround); ++k) {
+      least = std::min(least, most[static_cast<std::size_t>(k)]);
+    }
+    constexpr double kChange = 0.1;  // of the speed before
+    if (out.empty() || std::abs(least - out.back().speed) > kChange * out.back().speed) {
+      out.push_back({i * step, least});
+    }
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -33,7 +63,11 @@ MotionOptions motion_options(std::span<const Step> steps, const Curve& curve, do
   const auto speed_of = [&](const Step& step) { return step.speed > 0 ? step.speed : tool_speed; };
   const double first = speed_of(steps.front());
   options.timing.tool_speed = first;
-  if (steps.front().press) options.timing.tool_accel = kPressAccel;
+  if (steps.front().press) {
+    options.timing.tool_accel = kPressAccel;
+    options.timing.tool_speeds = speeds_in_bends(curve, first);
+    return options;
+  }
   bool keep = steps.front().keep_speed, alike = true;
   for (std::size_t k = 1; k < steps.size(); ++k) {
     const double speed = speed_of(steps[k]);
