@@ -16,9 +16,9 @@ make_zip() {
   quiet cpack --config "$windows_build/CPackConfig.cmake" && ls -l "$root"/dist/mjarm-*-windows-*.zip >&2
 }
 
-# Wine with a prefix of its own; quiet, and with nothing that asks for Mono or a browser.
+# Wine with a prefix of its own; quiet, and with nothing that asks for Mono or a browser, or waits in a debugger.
 in_wine() {
-  WINEPREFIX=$wine_home WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml,winemenubuilder.exe=" LC_ALL=C.UTF-8 \
+  WINEPREFIX=$wine_home WINEDEBUG=-all WINEDLLOVERRIDES="mscoree,mshtml,winemenubuilder.exe,winedbg.exe=" LC_ALL=C.UTF-8 \
     timeout "${patience:-300}" /usr/lib/wine/wine64 "$@"
 }
 
@@ -98,10 +98,12 @@ unpack_zip() {
 # The tests of rooms that need no window.
 room_tests() {
   local room=$1
-  (build_windows "${room}_test") && in_wine "$windows_build/bin/${room}_test.exe" --gtest_brief=1
+  (build_windows mjarm "${room}_test") &&
+    MJARM_CACHE=off patience=900 in_wine "$windows_build/bin/${room}_test.exe" --gtest_brief=1
 }
 
 try_windows() {
+  local room
   set_up_packages wine wine64 xvfb unzip
   up_to_date mjarm || (build release mjarm)
   unpack_zip || { check "zip: unpacked" false && return; }
@@ -117,6 +119,9 @@ try_windows() {
   check "wine: run" same_run run table
   check "wine: model of somebody, Chinese path" unknown_model
   check "wine: a window" opens_a_window
+  for room in core model kinematics path trajectory control; do
+    check "wine: tests of $room" room_tests "$room"
+  done
   stop_wine
   rm -rf "$tried"
 }

@@ -80,6 +80,7 @@ TEST(File, AbandonedWriteKeepsTheOldFile) {
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
+#if defined(__linux__)
 TEST(File, KeepsPermissionsAndLinks) {
   const support::TempFolder folder;
   const fs::path file = folder.write("real", "old");
@@ -90,6 +91,7 @@ TEST(File, KeepsPermissionsAndLinks) {
   EXPECT_EQ(folder.read("real"), "new");
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
+#endif
 
 TEST(File, WriteErrorsNameThePath) {
   const support::TempFolder folder;

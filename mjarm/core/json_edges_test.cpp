@@ -204,7 +204,8 @@ TEST(JsonEdges, DocumentsAreGrownFromNothingAndCopiesGoTheirOwnWay) {
   doc = JsonDoc{{"inner", std::move(copy)}};
   EXPECT_EQ(doc.line(), R"({"inner":{"a":2,"b":[]}})");
   EXPECT_EQ(JsonDoc(std::size_t{18446744073709551615ULL}).line(), "18446744073709551615");
-  EXPECT_EQ(JsonDoc(std::numeric_limits<long>::min()).line(), "-9223372036854775808");
+  constexpr long kLeast = std::numeric_limits<long>::min();
+  EXPECT_EQ(JsonDoc(kLeast).line(), std::to_string(kLeast));
 }
 
 TEST(JsonNul, IsNoEndOfTheText) {

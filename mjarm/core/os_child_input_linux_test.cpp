@@ -1,10 +1,9 @@
-#include "mjarm/core/os_child_input.hpp"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <cstdlib>
 
+#include "mjarm/core/os_child_input.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {

@@ -1,5 +1,3 @@
-#include "mjarm/core/os_child.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -10,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "mjarm/core/os_child.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/temp_folder.hpp"
 

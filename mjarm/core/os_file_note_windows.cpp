@@ -11,6 +11,19 @@ std::wstring stream(const std::filesystem::path& path, const std::string& name) 
   return path.wstring() + L":mjarm." + utf16(name);
 }
 
+/// Else a file of that name would be made.
+bool keeps_streams(const std::filesystem::path& path) {
+  const HANDLE handle =
+      CreateFileW(path.c_str(), 0, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
+                  OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, nullptr);
+  if (handle == INVALID_HANDLE_VALUE) return false;
+  DWORD flags = 0;
+  const bool known = GetVolumeInformationByHandleW(handle, nullptr, 0, nullptr, nullptr, &flags,
+                                                   nullptr, 0) != FALSE;
+  CloseHandle(handle);
+  return known && (flags & FILE_NAMED_STREAMS) != 0;
+}
+
 HANDLE open(const std::wstring& name, DWORD access, DWORD how) {
   return CreateFileW(name.c_str(), access, FILE_SHARE_READ, nullptr, how,
                      FILE_FLAG_BACKUP_SEMANTICS, nullptr);
@@ -20,7 +33,7 @@ HANDLE open(const std::wstring& name, DWORD access, DWORD how) {
 
 void set_file_note(const std::filesystem::path& path, const std::string& name,
                    const std::string& note) noexcept {
-  if (GetFileAttributesW(path.c_str()) == INVALID_FILE_ATTRIBUTES) return;  // would be made
+  if (!keeps_streams(path)) return;
   const HANDLE handle = open(stream(path, name), GENERIC_WRITE, CREATE_ALWAYS);
   if (handle == INVALID_HANDLE_VALUE) return;
   DWORD written = 0;
@@ -30,6 +43,7 @@ void set_file_note(const std::filesystem::path& path, const std::string& name,
 
 std::optional<std::string> file_note(const std::filesystem::path& path, const std::string& name) {
   constexpr DWORD kLongest = 256;
+  if (!keeps_streams(path)) return std::nullopt;
   const HANDLE handle = open(stream(path, name), GENERIC_READ, OPEN_EXISTING);
   if (handle == INVALID_HANDLE_VALUE) return std::nullopt;
   std::string note(kLongest, '\0');
@@ -42,7 +56,7 @@ std::optional<std::string> file_note(const std::filesystem::path& path, const st
 }
 
 void remove_file_note(const std::filesystem::path& path, const std::string& name) noexcept {
-  DeleteFileW(stream(path, name).c_str());
+  if (keeps_streams(path)) DeleteFileW(stream(path, name).c_str());
 }
 
 }  // namespace mjarm

@@ -1,11 +1,10 @@
-#include "mjarm/core/os_lock.hpp"
-
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 
+#include "mjarm/core/os_lock.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {

@@ -11,6 +11,11 @@ namespace {
 /// As CommandLineToArgvW and the C libraries take it apart again.
 void add_quoted(std::string& line, const std::string& word) {
   if (!line.empty()) line += ' ';
+  // cmd.exe has rules of its own, and takes only what needs none.
+  if (!word.empty() && word.find_first_of(" \t\n\"") == std::string::npos) {
+    line += word;
+    return;
+  }
   line += '"';
   std::size_t backslashes = 0;
   for (const char c : word) {

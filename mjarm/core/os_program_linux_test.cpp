@@ -1,7 +1,6 @@
-#include "mjarm/core/os_program.hpp"
-
 #include <gtest/gtest.h>
 
+#include "mjarm/core/os_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {

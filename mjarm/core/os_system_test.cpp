@@ -7,6 +7,7 @@
 namespace mjarm {
 namespace {
 
+#if defined(__linux__)
 TEST(OsSystem, IsWhatTheKernelSays) {
   std::string release;
   std::ifstream("/proc/sys/kernel/osrelease") >> release;
@@ -15,6 +16,7 @@ TEST(OsSystem, IsWhatTheKernelSays) {
   EXPECT_TRUE(system.name.starts_with("Linux " + release + " ")) << system.name;
   EXPECT_EQ(system.is_wsl, is_wsl_release(release));
 }
+#endif
 
 TEST(OsSystem, KnowsTheKernelsOfWsl) {
   EXPECT_TRUE(is_wsl_release("5.15.153.1-microsoft-standard-WSL2"));

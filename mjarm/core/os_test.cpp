@@ -59,6 +59,7 @@ TEST(Os, LocaleIsTheFirstThatIsSet) {
   EXPECT_EQ(language_of_locale(), Language::english);
 }
 
+#if defined(__linux__)
 TEST(Os, DisplayIsAnnouncedByTheEnvironment) {
   Environment env;
   env.unset("DISPLAY");
@@ -69,6 +70,7 @@ TEST(Os, DisplayIsAnnouncedByTheEnvironment) {
   env.set("DISPLAY", ":0");
   EXPECT_TRUE(has_display());
 }
+#endif
 
 TEST(Os, SmallFactsAreSane) {
   EXPECT_GE(core_count(), 1);

@@ -1,5 +1,3 @@
-#include "mjarm/core/output_folder.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,6 +7,7 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/language_scope.hpp"
+#include "mjarm/core/output_folder.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {

@@ -18,15 +18,18 @@ std::string mapped_files() {
   return {std::istreambuf_iterator<char>(maps), {}};
 }
 
+#if defined(__linux__)
 TEST(LoadedLibrary, IsTheFileThatIsMapped) {
   ASSERT_NE(mj_versionString(), nullptr);  // so that this test is linked to MuJoCo
   const std::filesystem::path file = loaded_library("mujoco");
   ASSERT_TRUE(file.is_absolute()) << file;
   EXPECT_NE(mapped_files().find(file.string()), std::string::npos) << file;
 }
+#endif
 
 TEST(LoadedLibrary, IsEmptyWhereThereIsNone) { EXPECT_TRUE(loaded_library("nosuchthing").empty()); }
 
+#if defined(__linux__)
 TEST(ShareFolders, AreThatOfTheProgramAndThatBesideMujoco) {
   const auto folders = share_folders();
   ASSERT_EQ(folders.size(), 2U);
@@ -36,6 +39,7 @@ TEST(ShareFolders, AreThatOfTheProgramAndThatBesideMujoco) {
   EXPECT_EQ(folders[1], library.parent_path() / "share" / "mjarm");
   EXPECT_EQ(share_folder().value(), folders[0]);  // the build tree has it
 }
+#endif
 
 }  // namespace
 }  // namespace mjarm

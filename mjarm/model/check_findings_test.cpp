@@ -145,6 +145,7 @@ TEST(CtrlRange, OfAServoBehindATurnedGearIsSound) {
   }
 }
 
+#if defined(__linux__)
 TEST(NotLoadable, NamesTheLineAlsoInAFolderThatLooksLikeOne) {
   const support::TempFolder folder;
   const auto file = folder.write(
@@ -156,6 +157,7 @@ TEST(NotLoadable, NamesTheLineAlsoInAFolderThatLooksLikeOne) {
   EXPECT_EQ(report->findings[0].file, file.string());
   EXPECT_EQ(report->findings[0].line, 4);
 }
+#endif
 
 }  // namespace
 }  // namespace mjarm

@@ -44,7 +44,7 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
   const fs::path relative =
       file.lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal());
   const bool inside = !relative.empty() && *relative.begin() != "..";
-  return (inside ? relative : file.lexically_normal()).string();
+  return (inside ? relative : file.lexically_normal()).generic_string();
 }
 
 Result<ExportFormat> export_format(std::string_view word) {

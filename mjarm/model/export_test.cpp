@@ -268,7 +268,7 @@ TEST(Export, MeshesStayInPlace) {
   }
   const auto elsewhere = export_model(model, ExportFormat::mjcf, folder.path() / "elsewhere");
   ASSERT_TRUE(elsewhere) << elsewhere.error().what;
-  EXPECT_THAT(elsewhere->content, HasSubstr((folder.path() / "in/meshes/t.stl").string()));
+  EXPECT_THAT(elsewhere->content, HasSubstr((folder.path() / "in/meshes/t.stl").generic_string()));
   EXPECT_THAT(elsewhere->notes, ::testing::Contains(HasSubstr("stay where they are")));
 }
 

@@ -15,6 +15,7 @@
 #include <future>
 #include <thread>
 
+#include "mjarm/core/path_list.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -214,7 +215,8 @@ TEST(Model, MeshesAreFoundBesideTheFileAndInPackages) {
       "option, package");
   EXPECT_FALSE(load("else/c.urdf", in_package));
   {
-    const Environment ros("ROS_PACKAGE_PATH", "/nowhere:" + (folder.path() / "ws").string());
+    const Environment ros("ROS_PACKAGE_PATH", std::string("/nowhere") + kPathListSeparator +
+                                                  (folder.path() / "ws").string());
     check(load("else/c.urdf", in_package), "ROS_PACKAGE_PATH");
   }
   {

@@ -52,6 +52,7 @@ TEST(OwnScene, MayIncludeAnyShippedModelInSeveralWays) {
         std::string("../../x/../franka_emika_panda/panda.xml"),
         (models() / "franka_emika_panda/panda.xml").string(),
         relative + "/franka_emika_panda/panda.xml"}) {
+    if (relative.empty() && way.starts_with('/')) continue;  // on another drive
     const fs::path file = folder.write(
         "in/cell.xml", "<mujoco model='cell'><include file='" + way +
                            "'/><worldbody><body name='part' pos='0.5 0 0.1'><freejoint/><geom "

@@ -6,6 +6,7 @@
 #include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/path_list.hpp"
 #include "mjarm/model/preflight_internal.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
@@ -23,7 +24,7 @@ std::vector<fs::path> split_paths(const std::optional<std::string>& list) {
   std::vector<fs::path> paths;
   if (!list) return paths;
   for (std::size_t begin = 0; begin <= list->size();) {
-    const std::size_t end = std::min(list->find(':', begin), list->size());
+    const std::size_t end = std::min(list->find(kPathListSeparator, begin), list->size());
     if (end > begin) paths.emplace_back(list->substr(begin, end - begin));
     begin = end + 1;
   }
@@ -164,7 +165,7 @@ Result<void> resolve_meshes(const fs::path& file, XMLElement& robot, const LoadO
         if (auto fault = asset_fault(*path, "mesh", name)) {
           return fail(urdf_error(file, *mesh, *fault));
         }
-        mesh->SetAttribute("filename", path->c_str());
+        mesh->SetAttribute("filename", path->generic_string().c_str());
       }
     }
   }

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "mjarm/core/os.hpp"
+#include "mjarm/core/path_list.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
 namespace mjarm {
@@ -14,7 +15,7 @@ std::vector<fs::path> folders_in(const std::string& variable) {
   std::vector<fs::path> folders;
   const std::string list = environment(variable).value_or("");
   for (std::size_t begin = 0; begin < list.size();) {
-    const std::size_t end = std::min(list.find(':', begin), list.size());
+    const std::size_t end = std::min(list.find(kPathListSeparator, begin), list.size());
     if (end > begin) folders.emplace_back(list.substr(begin, end - begin));
     begin = end + 1;
   }
