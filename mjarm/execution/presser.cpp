@@ -99,11 +99,12 @@ AxialPush Presser::seek(const Pose& X_WT, double depth) const {
   return {.force = kSeekDamping * speed + integral_, .damping = kSeekDamping};
 }
 
-AxialPush Presser::push(const Pose& X_WT, double wanted, const Eigen::Vector3d& measured) {
+AxialPush Presser::push(const Pose& X_WT, double wanted, const Eigen::Vector3d& measured,
+                        double damping) {
   integral_ = std::clamp(integral_ + kIntegral * timestep_ * (wanted - measured.z()),
                          -kMostIntegral, kMostIntegral);
   const Eigen::Vector3d across(-measured.x(), -measured.y(), 0);
-  return {.force = wanted + integral_, .damping = kDamping, .across_W = X_WT.R * across};
+  return {.force = wanted + integral_, .damping = damping, .across_W = X_WT.R * across};
 }
 
 /// The spring begins with the force that the push had.
@@ -143,7 +144,7 @@ bool Presser::look(const Sim& sim, Controller& controller, const MotionClock& cl
       const bool right = std::abs(measured - press.force) < kRight * press.force;
       calm_ = right ? calm_ + timestep_ : 0;
       ++steps_;
-      controller.set_axial(push(X_WT, press.force, force_T), 0);
+      controller.set_axial(push(X_WT, press.force, force_T, kSeekDamping), 0);
       if (calm_ < kCalm && steps_ * timestep_ < kPatience) return true;
       enter(Phase::write);
       stroke.least = stroke.most = measured;
@@ -154,7 +155,7 @@ bool Presser::look(const Sim& sim, Controller& controller, const MotionClock& cl
           {move_, sim.time(), X_WT, (X_WT.p - X_ref.p - depth * X_ref.R.col(2)).norm(), measured});
       stroke.least = std::min(stroke.least, measured);
       stroke.most = std::max(stroke.most, measured);
-      controller.set_axial(push(X_WT, press.force, force_T), 0);
+      controller.set_axial(push(X_WT, press.force, force_T, kDamping), 0);
       if (clock.motion() == move_ && clock.time() < move.trajectory.duration()) return false;
       begin_lift(depth);
       return true;

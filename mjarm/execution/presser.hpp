@@ -74,7 +74,8 @@ class Presser {
   [[nodiscard]] bool begins_stroke(const MotionClock& clock) const;
   void weigh(const Sim& sim, const MotionClock& clock, double depth);
   [[nodiscard]] AxialPush seek(const Pose& X_WT, double depth) const;
-  [[nodiscard]] AxialPush push(const Pose& X_WT, double wanted, const Eigen::Vector3d& measured);
+  [[nodiscard]] AxialPush push(const Pose& X_WT, double wanted, const Eigen::Vector3d& measured,
+                               double damping);
 
   const MotionPlan* plan_;
   ForceSensor sensor_;

@@ -252,7 +252,8 @@ void StepPlanner::await(Attempt& attempt, std::size_t left) {
     if (motion) {
       PlannedMove& move = attempt.moves[one.move];
       move.trajectory = std::move(motion->trajectory);
-      move.dips = std::move(motion->dips);
+      // A tool that presses slows down in its bends as it is.
+      if (!move.press) move.dips = std::move(motion->dips);
       move.measures = std::move(measures);
       continue;
     }
