@@ -234,7 +234,8 @@ TEST(ProgramSettings, CharactersAreWrittenInSmoothStrokesOnceTheyAreInstalled) {
   EXPECT_LT((move.curve->at(0).p - lifted.p).norm(), 1e-9);
   // Down, a smooth bend up to a corner of 90 degrees and more, up, to the I, down, along it, up.
   EXPECT_EQ(move.curve->corners().size(), 9U);
-  for (const Eigen::Vector2d& p : letter_strokes("上", 0.06)->front().points) {
+  const std::vector<Stroke> strokes = letter_strokes("上", 0.06).value();
+  for (const Eigen::Vector2d& p : strokes.front().points) {
     EXPECT_LT(move.curve->nearest(Vector3d(-0.05 - p.y(), -0.45 + p.x(), 0.3)).distance, 1e-9);
   }
   kept.empty() ? ::unsetenv("XDG_DATA_HOME") : ::setenv("XDG_DATA_HOME", kept.c_str(), 1);
