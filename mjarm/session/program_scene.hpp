@@ -1,8 +1,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "mjarm/execution/presser.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/trail.hpp"
