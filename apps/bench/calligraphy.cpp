@@ -8,11 +8,12 @@
 
 #include "apps/bench/suite.hpp"
 #include "apps/mjarm/cli/usage.hpp"
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/core/utf8.hpp"
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/path/letters.hpp"
+#include "mjarm/program/load_program.hpp"
 #include "mjarm/program/program_plan.hpp"
+#include "mjarm/program/program_reader.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -23,25 +24,18 @@ constexpr std::string_view kCommon =
     "年过发后作里用道行所然家种事成方多经么去法学如都同现当没动面起看定天分还进好小部其些主样"
     "理心她本前开但因只从想实";
 constexpr double kHeight = 0.06;                   // [m] of a character
-constexpr double kForce = 1;                       // [N]
-constexpr double kSpeed = 0.02;                    // [m/s]
 const Eigen::Vector3d kCorner(-0.03, -0.5, 0.08);  // [m] lower left of a character on the sheet
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr Sheet kSheets[] = {{0, 0}, {2.5 * kDegree, 0}, {5 * kDegree, 0}, {5 * kDegree, 0.3}};
 
-program::Program writing(const std::string& text) {
-  program::DrawText what{.text = text,
-                         .height = kHeight,
-                         .press = kForce,
-                         .plane = {.X_FT = {kCorner, Eigen::Matrix3d::Identity()}},
-                         .R_FT = from_euler({std::numbers::pi, 0, 0}),
-                         .speed = kSpeed};
-  program::Program program;
-  program.scene = "universal_robots_ur5e/calligraphy.xml";
-  program.tool = "pen_tcp";
-  program.settings.branch = parse_branch("elbow=up").value();  // above the sheet
-  program.instructions.push_back({std::move(what)});
+/// The shipped program with another text, up to its end.
+program::Program writing(program::Program program, const std::string& text) {
+  auto& what = std::get<program::DrawText>(program.instructions.front().what);
+  what.text = text;
+  what.height = kHeight;
+  what.plane.X_FT.p = kCorner;
+  program.instructions.erase(program.instructions.begin() + 1, program.instructions.end());
   return program;
 }
 
@@ -92,7 +86,11 @@ Result<void> write_one(const Robot& robot, const Model& world, const MotionPlan&
 int sheet_count() { return static_cast<int>(std::size(kSheets)); }
 
 Result<std::vector<SheetResult>> write_characters(int count, const std::function<void()>& advance) {
-  const Result<Robot> robot = program::load_program_robot(writing(""), "");
+  const auto shipped = program::find_shipped_program("calligraphy").and_then([](const auto& file) {
+    return program::read_program(file);
+  });
+  if (!shipped) return fail(shipped.error());
+  const Result<Robot> robot = program::load_program_robot(*shipped, "");
   if (!robot) return fail(robot.error());
   std::vector<SheetResult> out;
   std::vector<Model> worlds;
@@ -114,7 +112,7 @@ Result<std::vector<SheetResult>> write_characters(int count, const std::function
     const std::string character(left.substr(0, bytes));
     left.remove_prefix(bytes);
     const program::ProgramPlan plan =
-        program::plan_program(robot->model, robot->arm, writing(character));
+        program::plan_program(robot->model, robot->arm, writing(*shipped, character));
     if (!plan.ok()) return fail(plan.faults.front().code, plan.faults.front().what);
     for (std::size_t k = 0; k < out.size(); ++k) {
       if (auto done = write_one(*robot, worlds[k], plan, out[k], points[k]); !done) {

@@ -41,7 +41,7 @@ Result<Execution> Execution::create(const Model& model, const MotionPlan& plan,
 
 void Execution::restart() {
   controller_.restart();
-  controller_.set_axial(std::nullopt, 0);
+  controller().set_axial(std::nullopt, 0);
   clock_.restart();
   stepper_.reset();
   if (presser_) presser_->restart();
@@ -74,7 +74,7 @@ void Execution::end_motion(const Sim& sim) {
 
 MotionClock::Step Execution::next(Sim& sim) {
   const bool begun = !motions_.empty();
-  if (presser_ && begun && presser_->look(sim, loaded_ ? *loaded_ : controller_, clock_)) {
+  if (presser_ && begun && presser_->look(sim, controller(), clock_)) {
     return {.reference = hold(as_span(clock_.q_ref())), .motion = clock_.motion(), .moves = true};
   }
   MotionClock::Step step = clock_.next();
@@ -136,8 +136,8 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
   }
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
   if (step.begins && motions_.size() == 1) watch_.look(sim, step.motion);
-  Controller& controller = loaded_ ? *loaded_ : controller_;
-  if (auto stepped = stepper_->step(sim, controller, step.reference, options_.recorder); !stepped) {
+  if (auto stepped = stepper_->step(sim, controller(), step.reference, options_.recorder);
+      !stepped) {
     return stepped;
   }
   watch_.look(sim, step.motion, presser_ && presser_->is_down());

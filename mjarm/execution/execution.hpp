@@ -95,6 +95,8 @@ class Execution {
   [[nodiscard]] MotionClock::Step next(Sim& sim);
   [[nodiscard]] Result<void> make_step(Sim& sim, const MotionClock::Step& step);
   void move_gripper(Sim& sim);
+  /// Of what is carried now, or of the empty hand.
+  [[nodiscard]] Controller& controller() { return loaded_ ? *loaded_ : controller_; }
   void take_load(const Model& model, std::size_t move);
   void begin_motion(Sim& sim, std::size_t move, double from);
   void end_motion(const Sim& sim);

@@ -27,11 +27,14 @@ JointVec MotionPlan::q_end() const {
   return last.at(last.duration()).q;
 }
 
+bool MotionPlan::presses() const {
+  return std::ranges::any_of(moves, [](const PlannedMove& one) { return one.press.has_value(); });
+}
+
 MotionPart MotionPlan::part(std::size_t move) const {
-  const auto presses = [](const PlannedMove& one) { return one.press.has_value(); };
-  const bool any_presses = std::ranges::any_of(moves, presses);
+  const bool pressing = presses();
   const auto has_way = [&](const PlannedMove& one) {
-    return any_presses ? presses(one) : one.curve || !one.corners.empty();
+    return pressing ? one.press.has_value() : one.curve || !one.corners.empty();
   };
   if (moves[move].is_approach()) return MotionPart::approach;
   if (has_way(moves[move]) || std::ranges::none_of(moves, has_way)) return MotionPart::work;

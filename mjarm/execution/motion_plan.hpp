@@ -85,6 +85,7 @@ struct MotionPlan {
   [[nodiscard]] static MotionPlan of(const Arm& arm, Trajectory trajectory);
   [[nodiscard]] double duration() const;  ///< [s] of all moves
   [[nodiscard]] JointVec q_end() const;   ///< [rad or m] (dof,) where it ends
+  [[nodiscard]] bool presses() const;     ///< one of the motions does: PlannedMove::press
   /// Of the motion with that index.
   [[nodiscard]] MotionPart part(std::size_t move) const;
 };

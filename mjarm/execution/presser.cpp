@@ -27,8 +27,7 @@ constexpr double kLift = 0.3;         // [s]
 
 Result<std::optional<Presser>> Presser::create(const Model& model, const MotionPlan& plan,
                                                ControlMode control) {
-  const auto presses = [](const PlannedMove& move) { return move.press.has_value(); };
-  if (std::ranges::none_of(plan.moves, presses)) return std::nullopt;
+  if (!plan.presses()) return std::nullopt;
   if (control != ControlMode::tool_impedance) {
     return fail(Errc::usage, text(msg::execution_press_control, name(control)));
   }

@@ -12,6 +12,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/sha256.hpp"
 #include "mjarm/core/trim.hpp"
+#include "mjarm/install/inflate_internal.hpp"
 #include "mjarm/install/npm_archive_internal.hpp"
 #include "mjarm/install/stage_internal.hpp"
 
@@ -60,17 +61,18 @@ Result<Kept> kept_of(const fs::path& archive, const HanziPackage& package) {
   constexpr std::size_t kMost = std::size_t{1} << 28;
   Kept kept;
   std::map<std::string, std::string, std::less<>> lines;
-  for_each_file(gunzipped(*packed, kMost), [&](std::string_view name, std::string_view content) {
-    constexpr std::string_view kTop = "package/", kEnd = ".json";
-    if (!name.starts_with(kTop)) return;
-    name.remove_prefix(kTop.size());
-    if (name == package.licence_file) kept.licence = content;
-    if (!name.ends_with(kEnd)) return;
-    name.remove_suffix(kEnd.size());
-    if (std::string line = strokes_of(content); !line.empty()) {
-      lines.emplace(name, std::move(line));
-    }
-  });
+  for_each_file(inflated(*packed, Packing::gzip, kMost),
+                [&](std::string_view name, std::string_view content) {
+                  constexpr std::string_view kTop = "package/", kEnd = ".json";
+                  if (!name.starts_with(kTop)) return;
+                  name.remove_prefix(kTop.size());
+                  if (name == package.licence_file) kept.licence = content;
+                  if (!name.ends_with(kEnd)) return;
+                  name.remove_suffix(kEnd.size());
+                  if (std::string line = strokes_of(content); !line.empty()) {
+                    lines.emplace(name, std::move(line));
+                  }
+                });
   for (const auto& [character, line] : lines) kept.strokes += character + " " + line + "\n";
   if (kept.licence.empty() || sha256(kept.strokes) != package.strokes_sha256) return damaged();
   return kept;

@@ -24,10 +24,10 @@ inline std::string random_bytes(Rng& rng, std::size_t size, std::uint64_t values
   return bytes;
 }
 
-/// `content` as a zip file holds it.
-inline std::string deflated(const std::string& content) {
+/// `content` as a zip file holds it; as gzip makes it with 16 + MAX_WBITS.
+inline std::string deflated(const std::string& content, int window = -MAX_WBITS) {
   z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
+  deflateInit2(&stream, 6, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY);
   std::string packed(deflateBound(&stream, content.size()), '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
   stream.avail_in = static_cast<uInt>(content.size());

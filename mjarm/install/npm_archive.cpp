@@ -1,5 +1,3 @@
-#include <zlib.h>
-
 #include <algorithm>
 #include <charconv>
 
@@ -15,26 +13,6 @@ std::string_view field(std::string_view header, std::size_t at, std::size_t widt
 }
 
 }  // namespace
-
-std::string gunzipped(std::string_view packed, std::size_t most) {
-  z_stream stream{};
-  if (inflateInit2(&stream, 16 + MAX_WBITS) != Z_OK) return {};
-  // zlib does not change what it reads.
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-  stream.avail_in = static_cast<uInt>(packed.size());
-  std::string content;
-  int state = Z_OK;
-  while (state == Z_OK && content.size() < most) {
-    const std::size_t done = content.size();
-    content.resize(std::min(most, std::max<std::size_t>(2 * done, std::size_t{1} << 20)));
-    stream.next_out = reinterpret_cast<Bytef*>(content.data() + done);
-    stream.avail_out = static_cast<uInt>(content.size() - done);
-    state = inflate(&stream, Z_NO_FLUSH);
-    content.resize(content.size() - stream.avail_out);
-  }
-  inflateEnd(&stream);
-  return state == Z_STREAM_END ? content : std::string();
-}
 
 void for_each_file(
     std::string_view tar,

@@ -6,9 +6,6 @@
 
 namespace mjarm::install {
 
-/// The bytes that gzip packed in `packed`; empty where they are damaged, or are more than `most`.
-[[nodiscard]] std::string gunzipped(std::string_view packed, std::size_t most);
-
 /// Calls `take` with the name and the content of every file of a tar archive (ustar, as npm writes
 /// it), up to the first header that is none.
 void for_each_file(

@@ -18,8 +18,7 @@ render::Pen pen_of(MotionPart part) {
 
 void add_planned_paths(render::Overlay& overlay, const MotionPlan& plan) {
   // A tool that presses is not where its motion is: add_ink() shows where it was.
-  const auto presses = [](const PlannedMove& move) { return move.press.has_value(); };
-  if (std::ranges::any_of(plan.moves, presses)) return;
+  if (plan.presses()) return;
   for (const PlannedMove& move : plan.moves) {
     if (!move.curve && move.corners.empty()) continue;
     render::add_planned_path(overlay, planned_tool_path(move, plan.arms[move.tool]));

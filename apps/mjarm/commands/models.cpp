@@ -1,6 +1,7 @@
 #include "apps/mjarm/messages/models.hpp"
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -166,40 +167,44 @@ Result<std::string> address_of(const std::string& from) {
   return install::file_url(from);
 }
 
-Result<void> install_one(const install::MeshSet& set, const install::IndexSettings& index,
-                         const std::string& from) {
-  const Result<install::Installed> before = install::look_up(set);
-  if (!before) return fail(before.error());
-  if (before->state.kind == install::InstallState::Kind::whole) {
-    std::printf("%s\n", text(msg::models_already, set.robot, before->folder.string()).c_str());
+/// What is there and whole stays as it is.
+/// @param install  gives the line that is said then.
+Result<void> install_one(const std::string& name, const install::InstallState& before,
+                         const fs::path& folder,
+                         const std::function<Result<std::string>()>& install) {
+  if (before.kind == install::InstallState::Kind::whole) {
+    std::printf("%s\n", text(msg::models_already, name, folder.string()).c_str());
     return {};
   }
-  if (!before->state.problem.empty()) {
-    log_info(text(msg::models_mending, before->state.problem));
-  }
-  if (auto done = install::install_meshes(before->data, set, before->scene, index, from); !done)
-    return done;
-  std::printf("%s\n", text(msg::models_done, set.robot, set.files.size(), set.licence,
-                           before->folder.string())
-                          .c_str());
+  if (!before.problem.empty()) log_info(text(msg::models_mending, before.problem));
+  const Result<std::string> done = install();
+  if (!done) return fail(done.error());
+  std::printf("%s\n", done->c_str());
   return {};
+}
+
+Result<void> install_robot(const install::MeshSet& set, const install::IndexSettings& index,
+                           const std::string& from) {
+  const Result<install::Installed> before = install::look_up(set);
+  if (!before) return fail(before.error());
+  return install_one(set.robot, before->state, before->folder, [&] {
+    return install::install_meshes(before->data, set, before->scene, index, from).transform([&] {
+      return text(msg::models_done, set.robot, set.files.size(), set.licence,
+                  before->folder.string());
+    });
+  });
 }
 
 Result<void> install_strokes(const fs::path& data, const install::HttpOptions& http,
                              const std::string& from) {
   const install::HanziPackage package;
-  const install::InstallState before = install::check_hanzi(data, package);
-  const std::string folder = install::hanzi_folder(data).string();
-  if (before.kind == install::InstallState::Kind::whole) {
-    std::printf("%s\n", text(msg::models_already, kHanzi, folder).c_str());
-    return {};
-  }
-  if (!before.problem.empty()) log_info(text(msg::models_mending, before.problem));
-  if (auto done = install::install_hanzi(data, http, from, package); !done) return done;
-  std::printf("%s\n", text(msg::models_hanzi_done, package.characters, package.project,
-                           package.licence, folder)
-                          .c_str());
-  return {};
+  const fs::path folder = install::hanzi_folder(data);
+  return install_one(kHanzi, install::check_hanzi(data, package), folder, [&] {
+    return install::install_hanzi(data, http, from, package).transform([&] {
+      return text(msg::models_hanzi_done, package.characters, package.project, package.licence,
+                  folder.string());
+    });
+  });
 }
 
 Result<int> run_install(const Chosen& what, const Options& options) {
@@ -211,7 +216,7 @@ Result<int> run_install(const Chosen& what, const Options& options) {
   const Result<FolderLock> lock = install::lock_data_folder(*data);
   if (!lock) return fail(lock.error());
   for (const install::MeshSet* set : what.sets) {
-    if (auto done = install_one(*set, index, *from); !done) return fail(std::move(done.error()));
+    if (auto done = install_robot(*set, index, *from); !done) return fail(std::move(done.error()));
   }
   if (what.hanzi) {
     if (auto done = install_strokes(*data, index.http, *from); !done) return fail(done.error());

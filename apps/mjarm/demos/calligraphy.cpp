@@ -4,7 +4,6 @@
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/demos/tutorial.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/os.hpp"
@@ -16,26 +15,26 @@ namespace {
 
 const Eigen::Vector3d kPaper(0, -0.47, 0.08);  // [m] middle of the sheet in calligraphy.xml
 constexpr double kInkHeight = 0.12, kSheetWidth = 0.36;  // [m] of a letter, and of all
-constexpr double kPenForce = 1;                          // [N]
-constexpr double kPenSpeed = 0.02;                       // [m/s]
 
-/// What is written where nothing is asked for: characters, once they are installed.
-std::string default_text() {
+/// What is written where nothing is asked for: a character once they are installed, else the
+/// letters of the shipped program.
+std::string default_text(const std::string& letters) {
   const Result<std::filesystem::path> file = hanzi_file();
   std::error_code ignored;
   if (file && std::filesystem::exists(*file, ignored)) return "永";
-  constexpr const char* kLetters = "ARM";
-  log_info(text(msg::demo_calligraphy_letters, kLetters));
-  return kLetters;
+  log_info(text(msg::demo_calligraphy_letters, letters));
+  return letters;
 }
 
-/// The text in the middle of the sheet, as if it lay level, smaller where it would get too wide and
-/// no height is asked for.
+/// The shipped program with the text in the middle of the sheet, as if it lay level, smaller where
+/// it would get too wide and no height is asked for.
 Result<program::Program> sheet(const DemoValues& values) {
-  program::DrawText what{.text = values.text.empty() ? default_text() : values.text,
-                         .press = kPenForce,
-                         .R_FT = tool_down(),
-                         .speed = kPenSpeed};
+  Result<program::Program> program = demo_program("calligraphy");
+  if (!program) return program;
+  // What the user wants stands on no line of the program.
+  for (program::Instruction& instruction : program->instructions) instruction.place = {};
+  auto& what = std::get<program::DrawText>(program->instructions.front().what);
+  what.text = values.text.empty() ? default_text(what.text) : values.text;
   const auto flat = letter_strokes(what.text, 1);
   if (!flat) return fail(flat.error());
   double left = 1e9, right = -1e9;
@@ -48,14 +47,6 @@ Result<program::Program> sheet(const DemoValues& values) {
   what.height =
       values.height.value_or(std::min(kInkHeight, kSheetWidth / std::max(right - left, 1e-9)));
   what.plane.X_FT.p = kPaper - what.height * Eigen::Vector3d((left + right) / 2, 0.5, 0);
-  program::Program program;
-  program.name = "calligraphy";
-  program.scene = "universal_robots_ur5e/calligraphy.xml";
-  program.tool = "pen_tcp";
-  program.control = ControlMode::tool_impedance;
-  program.settings.branch = parse_branch("elbow=up").value();  // above the sheet
-  program.instructions.push_back({std::move(what)});
-  program.instructions.push_back({program::MoveJ{program::JointValues{}}});
   return program;
 }
 
