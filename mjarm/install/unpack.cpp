@@ -24,7 +24,8 @@ Result<void> unpack(const fs::path& part, std::uint64_t offset, const MeshSet& s
     if (at + mesh.packed > bytes->size()) return fail(damaged(part, mesh.name));
     const std::string content =
         inflated(std::string_view(*bytes).substr(at, mesh.packed), Packing::deflate, mesh.size);
-    if (sha256(content) != mesh.sha256) return fail(damaged(part, mesh.name));
+    const bool right = content.size() == mesh.size && sha256(content) == mesh.sha256;
+    if (!right) return fail(damaged(part, mesh.name));
     if (auto done = sink(mesh, content); !done) return done;
   }
   return {};
