@@ -75,7 +75,10 @@ void Execution::end_motion(const Sim& sim) {
 MotionClock::Step Execution::next(Sim& sim) {
   const bool begun = !motions_.empty();
   if (presser_ && begun && presser_->look(sim, controller(), clock_)) {
-    return {.reference = hold(as_span(clock_.q_ref())), .motion = clock_.motion(), .moves = true};
+    return {.reference = hold(as_span(clock_.q_ref())),
+            .motion = clock_.motion(),
+            .moves = true,
+            .waits = true};
   }
   MotionClock::Step step = clock_.next();
   if (step.close) {
@@ -141,6 +144,7 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
     return stepped;
   }
   watch_.look(sim, step.motion, presser_ && presser_->is_down());
+  if (step.waits) take_measures(sim);
   if (step.ends) {
     const std::size_t all = plan_->moves.size();
     if (step.motion + 1 == all) watch_.look(sim, all);

@@ -48,6 +48,7 @@ class MotionClock {
     bool begins = false;             ///< it is the first one of that motion
     bool passes = false;             ///< and the motion before was passed without a stop
     bool ends = false;               ///< it is the last one
+    bool waits = false;              ///< the plan waits: what was begun last goes on at its end
     std::optional<bool> close = {};  ///< the gripper closes or opens at its beginning
   };
   /// The step that comes.

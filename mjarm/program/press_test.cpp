@@ -87,6 +87,8 @@ TEST(Press, InkIsOnTheStrokesAndTheForceIsRight) {
   EXPECT_LT(level.fact("force_max"), 1.1);
   EXPECT_GT(level.run.ink().size(), 1000U);
   EXPECT_NEAR(level.run.strokes()[0].depth, 0.02, 1e-3);
+  // All of it counts, the pen's way down as well.
+  EXPECT_NEAR(level.report.duration, level.run.sim().time(), 1e-6);
 }
 
 TEST(Press, ATiltThatThePlanDoesNotKnowChangesNeither) {

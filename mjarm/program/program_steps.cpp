@@ -277,6 +277,7 @@ class StepWriter {
     Step step = begun(Step::Kind::curve, instruction, what.speed);
     WrittenText written = value_or_text_fault(write_text(what, X_WP, R), step.place);
     step.curve = std::move(written.curve);
+    step.right_W = X_WP.R.col(0);
     step.points = std::move(written.corners);
     push(std::move(step));
   }
@@ -295,6 +296,7 @@ class StepWriter {
       first = false;
       Step step = begun(Step::Kind::curve, instruction, what.speed);
       step.curve = std::move(curve);
+      step.right_W = X_WP.R.col(0);
       step.press = ToolPress{.force = *what.press, .reach = kDeeper * what.lift};
       push(std::move(step));
     }

@@ -34,6 +34,7 @@ struct Step {
   /// pose, curve, plan: nobody gave joint values from which the nearest answer would be meant.
   bool is_free = false;
   std::optional<ToolPress> press = {};   ///< curve
+  std::optional<Eigen::Vector3d> right_W = {};  ///< of a text: the way it is read
   double seconds = 0;                    ///< wait
   std::optional<double> clearance = {};  ///< [m] plan: what is asked
   bool close = false;                    ///< grip

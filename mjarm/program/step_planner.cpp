@@ -361,6 +361,7 @@ Attempt StepPlanner::along(std::size_t i, const Stand& at, const Curve& curve, b
   }
   move.curve = curve;
   move.press = step.press;
+  move.right_W = step.right_W;
   for (const Pose& X_WT : step.points) move.points.push_back({X_WT, step.place});
   out.at.q = path->q.back();
   out.moves.push_back(std::move(move));

@@ -14,8 +14,10 @@ using Eigen::Vector3d;
 
 constexpr mjtByte kShownGroups[mjNGROUP] = {1, 1, 1, 0, 0, 0};
 constexpr int kHeadings = 24;
-constexpr double kElevations[] = {-0.22, -0.45};  // [rad]
+constexpr double kElevations[] = {-0.22, -0.45, -0.85};  // [rad] the last one on what is read
 constexpr std::size_t kMaxMarks = 80;             // that are looked for
+constexpr double kLevel = 0.3;                    // what is read lies at least so much across
+constexpr double kReading = 2;                    // how much half a turn from there costs
 constexpr double kTouching = 0.012;               // [m] in front of a mark does not hide it
 
 /// The places of a model's parts in some state.
@@ -139,6 +141,9 @@ double spread(std::span<const Vector3d> marks_W, const CameraView& view) {
          (view.distance * view.distance);
 }
 
+/// Where `right_W` points to the right in the picture.
+double reading_azimuth(const Vector3d& right_W) { return std::atan2(right_W.x(), -right_W.y()); }
+
 double turned(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)); }
 
 }  // namespace
@@ -160,16 +165,17 @@ std::vector<FramedBall> moving_parts(const Model& model, std::span<const Snapsho
 }
 
 CameraView clear_view(const Model& model, const ViewSubject& subject, double aspect) {
-  const CameraView own = default_view(model);
+  const bool read = subject.right_W && subject.right_W->head<2>().norm() > kLevel;
+  const double heading = read ? reading_azimuth(*subject.right_W) : default_view(model).azimuth;
   const std::vector<Vector3d> marks_W = thinned(subject.marks_W);
   struct Candidate {
     CameraView view;
     double seen = 1, spread = 0;
   };
   std::vector<Candidate> all;
-  for (const double elevation : kElevations) {
+  for (const double elevation : std::span(kElevations).first(read ? 3 : 2)) {
     for (int i = 0; i < kHeadings; ++i) {
-      const double azimuth = own.azimuth + 2 * std::numbers::pi * i / kHeadings;
+      const double azimuth = heading + 2 * std::numbers::pi * i / kHeadings;
       Candidate& one = all.emplace_back();
       one.view = framing_view(model, subject.balls, {azimuth, elevation, aspect});
       if (marks_W.size() > 1) one.spread = spread(marks_W, one.view);
@@ -190,7 +196,7 @@ CameraView clear_view(const Model& model, const ViewSubject& subject, double asp
   for (const Candidate& one : all) widest = std::max(widest, one.spread);
   const auto worth = [&](const Candidate& one) {
     return 2 * one.seen + 0.5 * std::sqrt(one.spread / widest) -
-           0.15 * turned(one.view.azimuth, own.azimuth) / std::numbers::pi;
+           (read ? kReading : 0.15) * turned(one.view.azimuth, heading) / std::numbers::pi;
   };
   return std::ranges::max_element(all, {}, worth)->view;
 }

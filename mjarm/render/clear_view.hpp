@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,11 +22,14 @@ struct ViewSubject {
   std::vector<FramedBall> balls;
   std::vector<Eigen::Vector3d> marks_W;  ///< [m] what was drawn with the tool
   std::vector<Snapshot> moments;         ///< when it has to be seen; none = nothing hides
+  /// Of marks that are read, such as letters: from left to right, a unit vector.
+  std::optional<Eigen::Vector3d> right_W = {};
 };
 
 /// A free camera with all of it in the picture. Of the headings all round it takes the one from
 /// which the model hides least of the marks, and from which they do not lie edge-on; of equally
-/// good ones that nearest to the model's own.
+/// good ones that nearest to the model's own, or to where the marks are read from; then it may also
+/// look down more steeply.
 /// @param aspect  width of the picture by its height, > 0.
 [[nodiscard]] CameraView clear_view(const Model& model, const ViewSubject& subject, double aspect);
 

@@ -73,8 +73,6 @@ TEST(ClearView, PartsAreThoseThatMoveAndWhatIsInTheirReach) {
   EXPECT_LT((high - Eigen::Vector3d(0.35, 0.05, 0.83)).norm(), 0.01) << high.transpose();
 }
 
-/// Something was written behind a wide shield, as it looks from the model's own heading: the view
-/// goes round the shield, faces the plane that was written on, and holds all of it.
 TEST(ClearView, AModelWithoutLooksIsSeenFromSomewhere) {
   // Nothing but one point to be seen: the camera stands on it, and no ray leads from there to it.
   const Model model = Model::from_mjcf(R"(<mujoco><worldbody><body><joint/>
@@ -85,6 +83,8 @@ TEST(ClearView, AModelWithoutLooksIsSeenFromSomewhere) {
   EXPECT_GT(view.distance, 0);
 }
 
+/// Something was written behind a wide shield, as it looks from the model's own heading: the view
+/// goes round the shield, faces the plane that was written on, and holds all of it.
 TEST(ClearView, GoesRoundWhatHides) {
   constexpr const char* kShield = R"(<mujoco>
     <visual><global azimuth="90"/></visual><statistic center="0 0 0" extent="1"/>
@@ -113,6 +113,28 @@ TEST(ClearView, GoesRoundWhatHides) {
   EXPECT_GT(std::abs((eye - view.lookat_W).normalized().y()), 0.5) << "not edge-on";
   for (const FramedBall& ball : subject.balls) {
     EXPECT_LT(place_in(model, view, ball.p_W, 1.5).cwiseAbs().maxCoeff(), 1);
+  }
+}
+
+/// What lies flat is looked at from above, and from where it is read, whichever way that is.
+TEST(ClearView, ATextIsSeenAsItIsRead) {
+  const Model model = Model::from_mjcf(kHall).value();
+  for (const double turn : {0.3, 2.0, -1.5}) {
+    const Eigen::Vector3d right(std::cos(turn), std::sin(turn), 0), up(-right.y(), right.x(), 0);
+    ViewSubject subject{.right_W = right};
+    subject.moments.resize(1);
+    subject.balls = moving_parts(model, subject.moments);
+    for (int i = 0; i < 40; ++i) {
+      subject.marks_W.push_back(0.6 * right + 0.1 * (std::cos(i) * right + std::sin(i) * up));
+      subject.balls.push_back({subject.marks_W.back(), 0});
+    }
+    const CameraView view = clear_view(model, subject, 1.5);
+    EXPECT_LT(view.elevation, -0.6);
+    const Eigen::Vector3d middle = 0.6 * right;
+    const auto place = [&](const Eigen::Vector3d& p_W) { return place_in(model, view, p_W, 1.5); };
+    const Eigen::Vector2d across = place(middle + 0.1 * right) - place(middle);
+    EXPECT_GT(across.x(), 2 * std::abs(across.y())) << turn;
+    EXPECT_GT((place(middle + 0.1 * up) - place(middle)).y(), 0) << turn;
   }
 }
 

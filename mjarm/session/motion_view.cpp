@@ -27,6 +27,7 @@ MotionOutline outline_of(const MotionPlan& plan, double until) {
     }
     begin += duration;
     if (plan.part(i) != MotionPart::work) continue;
+    if (!out.right_W) out.right_W = move.right_W;
     for (const Pose& X_WT : planned_tool_path(move, plan.arms[move.tool])) {
       out.marks_W.push_back(X_WT.p);
     }
@@ -56,7 +57,8 @@ render::CameraView motion_view(const Model& model, const Arm& arm, const MotionO
     sim.place(arm, as_span(outline.postures[i]));
     moments.push_back(sim.snapshot());
   }
-  render::ViewSubject subject{render::moving_parts(model, moments), outline.marks_W, {}};
+  render::ViewSubject subject{
+      render::moving_parts(model, moments), outline.marks_W, {}, outline.right_W};
   for (const Eigen::Vector3d& p_W : outline.marks_W) subject.balls.push_back({p_W, 0});
   if (!moments.empty()) subject.moments.push_back(moments.back());
   if (film && !moments.empty()) {

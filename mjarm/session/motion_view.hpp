@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "mjarm/execution/motion_plan.hpp"
@@ -10,10 +12,11 @@
 namespace mjarm::session {
 
 /// What a camera has to know of a motion: some postures on its way, the last one at its end, and
-/// where the tool works [m].
+/// where the tool works [m]; and of a text the way it is read, a unit vector.
 struct MotionOutline {
   std::vector<JointVec> postures = {};
   std::vector<Eigen::Vector3d> marks_W = {};
+  std::optional<Eigen::Vector3d> right_W = {};
 };
 /// @param until  [s] since the beginning, when it is left.
 [[nodiscard]] MotionOutline outline_of(const MotionPlan& plan,

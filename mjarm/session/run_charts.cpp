@@ -92,6 +92,69 @@ render::PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
   return panel;
 }
 
+/// Points of ink to be drawn; null where the pen was lifted.
+using Ink = std::vector<const InkPoint*>;
+
+Ink ink_to_draw(std::span<const InkPoint> all) {
+  const std::size_t stride = chart_stride(all.size());
+  Ink ink;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool begins = i == 0 || all[i].move != all[i - 1].move;
+    const bool ends = i + 1 == all.size() || all[i + 1].move != all[i].move;
+    if (begins && !ink.empty()) ink.push_back(nullptr);
+    if (begins || ends || i % stride == 0) ink.push_back(&all[i]);
+  }
+  return ink;
+}
+
+std::vector<double> ink_column(const Ink& ink,
+                               const std::function<double(const InkPoint& point)>& value) {
+  std::vector<double> out;
+  for (const InkPoint* point : ink) {
+    out.push_back(point != nullptr ? value(*point) : std::numeric_limits<double>::quiet_NaN());
+  }
+  return out;
+}
+
+std::vector<double> ink_times(const Ink& ink) {
+  return ink_column(ink, [](const InkPoint& point) { return point.time; });
+}
+
+/// From where the pen looks at the sheet along an axis of the world, about.
+render::PlotPanel ink_panel(const Ink& ink) {
+  static constexpr const char* kAxes[] = {"x [m]", "y [m]", "z [m]"};
+  int along = 0;
+  ink.front()->X_WT.R.col(2).cwiseAbs().maxCoeff(&along);
+  const int x = along == 0 ? 1 : 0, y = along == 2 ? 1 : 2;
+  render::PlotPanel panel;
+  panel.title = text(msg::run_chart_ink);
+  panel.x_label = kAxes[x];
+  panel.y_label = kAxes[y];
+  panel.equal_aspect = true;
+  const auto place = [&](int axis) {
+    return ink_column(ink, [axis](const InkPoint& point) { return point.X_WT.p[axis]; });
+  };
+  panel.lines.push_back({.x = place(x), .y = place(y)});
+  return panel;
+}
+
+render::PlotPanel ink_error_panel(const Ink& ink) {
+  render::PlotPanel panel = over_time(msg::run_chart_ink_error, "mm");
+  panel.y_from_zero = true;
+  panel.lines.push_back(
+      {.x = ink_times(ink),
+       .y = ink_column(ink, [](const InkPoint& point) { return 1e3 * point.off; })});
+  return panel;
+}
+
+render::PlotPanel force_panel(const Ink& ink) {
+  render::PlotPanel panel = over_time(msg::run_chart_force, "N");
+  panel.lines.push_back({.x = ink_times(ink), .y = ink_column(ink, [](const InkPoint& point) {
+                           return point.force;
+                         })});
+  return panel;
+}
+
 }  // namespace
 
 render::PlotPanel front_panel(std::span<const MeasuredRun> runs) {
@@ -194,9 +257,15 @@ render::Plot motion_plot(const std::string& title, const Arm& arm,
 }
 
 render::Plot run_plot(const std::string& name, const std::string& control, const Report& report,
-                      const Arm& arm, std::span<const MeasuredRun> runs, double tolerance) {
+                      const Arm& arm, const RunRecord& record, double tolerance) {
   const LanguageScope drawn(render::picture_language());
-  render::Plot plot = motion_plot(name, arm, runs, tolerance);
+  render::Plot plot = motion_plot(name, arm, record.runs, tolerance);
+  if (!record.ink.empty()) {
+    const Ink ink = ink_to_draw(record.ink);
+    plot.panels[1] = ink_panel(ink);
+    plot.panels[2] = force_panel(ink);
+    plot.panels[4] = ink_error_panel(ink);
+  }
   if (report.path_error) {
     plot.note = text(msg::show_plot_note, control, 1e3 * report.path_error->max,
                      1e3 * report.path_error->rms, 100 * report.done);

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
 namespace mjarm::session {
 namespace {
 
@@ -44,6 +48,39 @@ TEST(RunCharts, RunsAreNotJoined) {
     EXPECT_FALSE(value > 2) << value;
   }
   EXPECT_GE(gaps, 1);
+}
+
+/// Of a pen that pressed: its ink, its force and how far it was off, stroke by stroke.
+TEST(RunCharts, APenShowsItsInkAndItsForce) {
+  Arm arm;
+  arm.joints.resize(1);
+  arm.limits = JointLimits{JointVec::Constant(1, -1), JointVec::Constant(1, 1),
+                           JointVec::Constant(1, 1),  JointVec::Constant(1, 1),
+                           JointVec::Constant(1, 1),  JointVec::Constant(1, 1)};
+  const MeasuredRun run;
+  std::vector<InkPoint> ink;
+  for (int i = 0; i < 200; ++i) {
+    InkPoint& point = ink.emplace_back();
+    point.move = i < 100 ? 1 : 3;
+    point.time = 0.01 * i;
+    point.X_WT.p = {0.001 * i, 0.3, 0.5};
+    point.X_WT.R = Eigen::AngleAxisd(-1.5, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    point.off = 1e-5 * i;
+    point.force = 1 + 1e-3 * i;
+  }
+  const render::Plot plot = run_plot("pen", "tool_impedance", {}, arm, {{&run, 1}, ink}, 5e-4);
+  ASSERT_EQ(plot.panels.size(), 8U);
+  const auto panel = std::ranges::find(plot.panels, "force of the pen", &render::PlotPanel::title);
+  ASSERT_NE(panel, plot.panels.end());
+  const std::vector<double>& force = panel->lines.at(0).y;
+  EXPECT_EQ(std::ranges::count_if(force, [](double y) { return std::isnan(y); }), 1) << "two strokes";
+  EXPECT_DOUBLE_EQ(force.front(), 1);
+  EXPECT_DOUBLE_EQ(force.back(), 1.199);
+  // The sheet stands, so that it is seen from the front.
+  const auto drawn = std::ranges::find(plot.panels, "ink", &render::PlotPanel::title);
+  ASSERT_NE(drawn, plot.panels.end());
+  EXPECT_EQ(drawn->y_label, "z [m]");
+  EXPECT_DOUBLE_EQ(drawn->lines.at(0).y.back(), 0.5);
 }
 
 }  // namespace

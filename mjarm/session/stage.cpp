@@ -125,7 +125,7 @@ Result<Report> Stage::finish(Report begun, double tolerance) {
 }
 
 Result<Report> Stage::finish(Report report, double tolerance, std::span<const MeasuredRun> runs) {
-  render::Plot plot = run_plot(name_, control_, report, robot_.arm, runs, tolerance);
+  render::Plot plot = run_plot(name_, control_, report, robot_.arm, {runs, run_.ink()}, tolerance);
   return write(std::move(report), std::move(plot));
 }
 

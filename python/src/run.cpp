@@ -42,7 +42,8 @@ Result<std::unique_ptr<BoundRun>> BoundRun::execute(program::LoadedProgram loade
 }
 
 render::Plot BoundRun::plot() const {
-  return session::run_plot(report_.name, report_.control, report_, loaded_.robot.arm, measured_,
+  return session::run_plot(report_.name, report_.control, report_, loaded_.robot.arm,
+                           {measured_, run_.ink()},
                            choice_.tolerance);
 }
 

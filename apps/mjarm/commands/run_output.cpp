@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <numbers>
+#include <string>
+#include <string_view>
 #include <variant>
 
 #include "apps/mjarm/messages/demo.hpp"
@@ -12,10 +15,11 @@ namespace mjarm::app {
 
 namespace {
 
-/// Share of the goals met, of a run that has goals.
-const double* success_of(const Report& report) {
-  const auto fact = std::ranges::find(report.facts, "success", &Fact::name);
-  return fact == report.facts.end() ? nullptr : std::get_if<double>(&fact->value);
+/// A figure, or figures, that not every run has; null where this one has not.
+template <class Value>
+const Value* fact_of(const Report& report, std::string_view name) {
+  const auto fact = std::ranges::find(report.facts, name, &Fact::name);
+  return fact == report.facts.end() ? nullptr : std::get_if<Value>(&fact->value);
 }
 
 }  // namespace
@@ -23,10 +27,14 @@ const double* success_of(const Report& report) {
 int conclude(const Report& report, const std::filesystem::path& out) {
   if (!report.ok) {
     log_error(text(msg::demo_not_ok, report.name, report.reason, report.detail));
-  } else if (const double* success = success_of(report); success && report.static_error) {
+  } else if (const auto* success = fact_of<double>(report, "success");
+             success && report.static_error) {
     // A policy meets many goals; its report's static error is that of the worst of them.
     log_info(
         text(msg::demo_ok_goals, report.name, 100 * *success, 1e3 * report.static_error->position));
+  } else if (const auto* ink = fact_of<std::map<std::string, double>>(report, "ink")) {
+    log_info(text(msg::demo_ok_ink, report.name, 1e3 * ink->at("max"), ink->at("force_min"),
+                  ink->at("force_max")));
   } else if (report.path_error) {
     log_info(text(msg::demo_ok_path, report.name, 1e3 * report.path_error->max,
                   1e3 * report.path_error->rms, 100 * report.done));
