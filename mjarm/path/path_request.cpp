@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/path.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/joint_values.hpp"
@@ -19,7 +20,7 @@ constexpr std::size_t kMaxPoses = 200'000;  // as many as a curve has waypoints 
 
 /// `place: ` before what is wrong there.
 Error at(const std::string& place, Error error) {
-  error.what = place + ": " + error.what;
+  error.what = text(msg::core_at_place, place, error.what);
   return error;
 }
 

@@ -7,6 +7,7 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/planning/planning_world.hpp"
@@ -78,7 +79,8 @@ Result<void> read_certificates(const JsonValue& list, GivenPath& out) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     Result<GivenCertificate> entry = certificate_of(list[i]);
     if (!entry) {
-      return fail(Errc::bad_input, indexed("certificate", i) + ": " + entry.error().what);
+      return fail(Errc::bad_input,
+                  text(msg::core_at_place, indexed("certificate", i), entry.error().what));
     }
     out.certificate->push_back(std::move(*entry));
   }
@@ -178,7 +180,8 @@ Result<std::vector<GivenPath>> read_plan_file(const std::string& path, std::size
   const Result<std::string> content = read_file(path, kMaxPlanFile);
   if (!content) return fail(content.error());
   const Result<JsonObject> object = parse_json_object(*content);
-  if (!object) return fail(object.error().code, path + ": " + object.error().what);
+  if (!object)
+    return fail(object.error().code, text(msg::core_at_place, path, object.error().what));
   std::vector<GivenPath> out;
   for (const JsonValue& entry : **object) {
     GivenPath given;
