@@ -198,7 +198,7 @@ TEST(ProgramWords, TheSameFaultIsToldInChineseAtTheSamePlace) {
   EXPECT_EQ(refusal(with_instruction("movel: {pos: [0, 0, 0]}")),
             "p.yaml:3:12：movel：缺少工具姿态：euler、quat 或 matrix");
   EXPECT_EQ(refusal(with_instruction("set: {speed: 0}")),
-            "p.yaml:3:18：set：speed：须大于 0 且不超过 100，得到 0");
+            "p.yaml:3:18：set：speed：应大于 0 且不超过 100，而不是 0");
 }
 
 TEST(ProgramWords, NamesAreAnyTextAndOnlyThoseBeforeThemAreKnown) {
