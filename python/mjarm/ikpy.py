@@ -177,7 +177,7 @@ def _walk(urdf_file: str | os.PathLike[str], elements: list[str]) -> tuple[str, 
     try:
         root = ElementTree.parse(urdf_file).getroot()
     except (OSError, ElementTree.ParseError) as error:
-        raise BadInput(f"{os.fspath(urdf_file)}: {error}") from None
+        raise _bad(f"{os.fspath(urdf_file)}: {error}", f"{os.fspath(urdf_file)}：{error}") from None
     known = [link.get("name") for link in root.findall("link")]
     if elements[0] not in known:
         names = ", ".join(map(str, known))
