@@ -148,11 +148,8 @@ constexpr std::array<Type, 5> kTypes{{{"poses", read_poses},
 
 Result<const Type*> type_of(const JsonValue& object) {
   std::vector<std::string> names;
-  std::string all;
-  for (const Type& type : kTypes) {
-    names.emplace_back(type.name);
-    all += (all.empty() ? "" : ", ") + names.back();
-  }
+  for (const Type& type : kTypes) names.emplace_back(type.name);
+  const std::string all = listed(names);
   const JsonValue* const member = object.find("type");
   if (member == nullptr || !member->is_string()) {
     return fail(Errc::bad_input, text(msg::path_request_no_type, all));
