@@ -5,6 +5,7 @@
 #include "apps/bench/suite.hpp"
 #include "apps/mjarm/cli/cli.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/os_streams.hpp"
 #include "mjarm/core/user_cache.hpp"
@@ -25,7 +26,7 @@ Run setup(CLI::App& bench) {
     std::string names;
     for (const auto& [app, run] : suites) {
       if (is_called(*app)) return run();
-      names += (names.empty() ? "" : ", ") + name_of(*app);
+      names += (names.empty() ? "" : text(msg::core_comma)) + name_of(*app);
     }
     return fail(Errc::usage, text(msg::app_no_subcommand, "mjarm bench", names));
   };

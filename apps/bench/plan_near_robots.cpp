@@ -6,6 +6,7 @@
 #include "apps/bench/robots.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_program.hpp"
 
@@ -22,7 +23,8 @@ Result<fs::path> copy_shipped(const std::string& robot, const fs::path& folder) 
   if (!scene) return fail(scene.error());
   std::error_code failed;
   fs::copy(scene->parent_path(), folder, fs::copy_options::recursive, failed);
-  if (failed) return fail(Errc::system, folder.string() + ": " + failed.message());
+  if (failed)
+    return fail(Errc::system, text(msg::core_at_place, folder.string(), failed.message()));
   return folder;
 }
 

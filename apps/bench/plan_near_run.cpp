@@ -4,6 +4,7 @@
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/plan_near.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/execution/path_motion.hpp"
 #include "mjarm/planning/planning_world.hpp"
@@ -54,7 +55,8 @@ SolvedProblem solve_near(PlanningWorld& world, const NearSet& set, std::size_t i
   solved.us = watch.us();
   if (!path) {
     // The first plan of a scene is made twice: once it is told.
-    if (with_motion) log_warning(set.robot.name + ", " + problem.id + ": " + path.error().what);
+    if (with_motion)
+      log_warning(text(msg::core_at_place, set.robot.name + ", " + problem.id, path.error().what));
     return solved;
   }
   for (const JointVec& q : path->q) solved.path.emplace_back(q.data(), q.data() + q.size());

@@ -102,9 +102,8 @@ Result<ControlMode> control_mode(std::string_view word) {
     if (kNames[i] == word) return static_cast<ControlMode>(i);
   }
   const std::vector<std::string> words(kNames.begin(), kNames.end());
-  std::string list;
-  for (const std::string& known : words) list += (list.empty() ? "" : ", ") + known;
-  return fail(Errc::usage, text(msg::control_unknown_mode, word, list) + did_you_mean(word, words));
+  return fail(Errc::usage,
+              text(msg::control_unknown_mode, word, listed(words)) + did_you_mean(word, words));
 }
 
 struct Controller::Impl {

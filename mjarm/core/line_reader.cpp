@@ -53,7 +53,8 @@ Result<bool> LineReader::read_line() {
     if (c == '\n') return true;
     if (current_.size() >= longest_) {
       ++line_;
-      return fail(Errc::bad_input, place() + ": " + text(msg::core_line_too_long, longest_));
+      return fail(Errc::bad_input,
+                  text(msg::core_at_place, place(), text(msg::core_line_too_long, longest_)));
     }
     current_.push_back(static_cast<char>(c));
   }
@@ -99,7 +100,9 @@ Result<void> read_json_lines(const std::filesystem::path& file, std::size_t long
     if (!*line) return {};
     const auto taken =
         parse_json_object(**line).and_then([&](const JsonObject& object) { return take(*object); });
-    if (!taken) return fail(taken.error().code, reader->place() + ": " + taken.error().what);
+    if (!taken)
+      return fail(taken.error().code,
+                  text(msg::core_at_place, reader->place(), taken.error().what));
   }
 }
 

@@ -152,7 +152,7 @@ std::optional<std::string> nearest_word(std::string_view word, std::span<const s
 
 std::string listed(std::span<const std::string> words) {
   std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) list += (list.empty() ? "" : text(msg::core_comma)) + word;
   return list;
 }
 

@@ -17,7 +17,7 @@ namespace mjarm {
 [[nodiscard]] std::optional<std::string> nearest_word(std::string_view word,
                                                       std::span<const std::string> known);
 
-/// `a, b, c`: words in a message.
+/// `a, b, c`: words in a message, parted as the language in use parts them.
 [[nodiscard]] std::string listed(std::span<const std::string> words);
 
 /// ` (did you mean "NAME"?)` in the language in use, or nothing where no known word is near.

@@ -151,6 +151,7 @@ TEST(TextEdges, TheNearestWordIsOneThatNoOtherIsNearerTo) {
   EXPECT_EQ(listed({}), "");
   EXPECT_EQ(listed(std::vector<std::string>{"a", "b c", ""}), "a, b c, ");
   const LanguageScope chinese(Language::chinese);
+  EXPECT_EQ(listed(std::vector<std::string>{"a", "b c"}), "a、b c");
   EXPECT_EQ(did_you_mean("hme", std::vector<std::string>{"home"}), "（您是否想输入“home”？）");
 }
 

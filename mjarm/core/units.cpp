@@ -44,7 +44,7 @@ std::string list(std::span<const Quantity> quantities) {
   std::string result;
   for (const Quantity quantity : quantities) {
     for (const Unit& unit : units_of(quantity)) {
-      if (!result.empty()) result += ", ";
+      if (!result.empty()) result += text(msg::core_comma);
       result += unit.suffix;
     }
   }

@@ -185,7 +185,7 @@ std::string fault_of(std::string_view words) {
 std::string at_place(std::string_view name, FilePlace place, std::string_view what) {
   std::string out(name);
   if (place.line > 0) out += ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
-  return out.append(out.empty() ? "" : ": ").append(what);
+  return out.empty() ? std::string(what) : text(msg::core_at_place, out, what);
 }
 
 Result<YamlNode, YamlFault> read_yaml(const std::string& content) {

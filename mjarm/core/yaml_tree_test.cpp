@@ -65,7 +65,7 @@ TEST(YamlTree, FaultsHaveAPlaceInBothLanguages) {
   EXPECT_THAT(error_of(std::string(33, '[') + std::string(33, ']')), HasSubstr("32 levels"));
   EXPECT_EQ(error_of(std::string(32, '[') + std::string(32, ']')), "none");
   const LanguageScope chinese(Language::chinese);
-  EXPECT_THAT(error_of("a: 1\na: 2"), HasSubstr("f.yaml:2:1: “a”重复出现"));
+  EXPECT_THAT(error_of("a: 1\na: 2"), HasSubstr("f.yaml:2:1：“a”重复出现"));
 }
 
 /// Whatever the library finds wrong is said in our words, and where.

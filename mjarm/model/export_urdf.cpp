@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/model.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
@@ -29,12 +30,6 @@ std::string numbers(std::initializer_list<double> values) {
 std::string numbers(const Eigen::Vector3d& v) { return numbers({v.x(), v.y(), v.z()}); }
 
 bool is_identity(const Pose& X) { return X.p.isZero(0) && X.R.isIdentity(0); }
-
-std::string join(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all;
-}
 
 /// Writes one URDF, link by link.
 class UrdfWriter {
@@ -313,12 +308,12 @@ class UrdfWriter {
 
   [[nodiscard]] std::vector<std::string> notes() const {
     std::vector<std::string> all;
-    if (!lost_.empty()) all.push_back(text(msg::model_urdf_lost, join(lost_)));
-    if (!standard_.empty()) all.push_back(text(msg::model_urdf_standard, join(standard_)));
+    if (!lost_.empty()) all.push_back(text(msg::model_urdf_lost, listed(lost_)));
+    if (!standard_.empty()) all.push_back(text(msg::model_urdf_standard, listed(standard_)));
     if (!between_.empty()) {
-      all.push_back(text(msg::model_urdf_between, number(kTinyMass), join(between_)));
+      all.push_back(text(msg::model_urdf_between, number(kTinyMass), listed(between_)));
     }
-    if (!renamed_.empty()) all.push_back(text(msg::model_urdf_renamed, join(renamed_)));
+    if (!renamed_.empty()) all.push_back(text(msg::model_urdf_renamed, listed(renamed_)));
     if (files_stay_) all.push_back(text(msg::model_files_stay));
     return all;
   }

@@ -1,6 +1,7 @@
 #include <set>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/design_overlaps_internal.hpp"
 #include "mjarm/model/load_internal.hpp"
@@ -69,7 +70,8 @@ Result<LoadedModel> without_constant_contacts(const XmlSources& files, const Loa
   const BodyPairs apart = always_touching(loaded.model.get());
   if (apart.empty()) return loaded;
   std::string words;
-  for (const auto& [a, b] : apart) words += (words.empty() ? "" : ", ") + a + " - " + b;
+  for (const auto& [a, b] : apart)
+    words += (words.empty() ? "" : text(msg::core_comma)) + a + " - " + b;
   const std::string& file = files.documents().front()->name;
   warnings.push_back(text(msg::model_always_touching, file, words));
   return compile_document(files, options, document, apart);

@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -104,7 +105,7 @@ Result<fs::path> find_model_file(std::string_view name_or_path) {
   if (entry != kShipped.end()) {
     std::string places;
     for (const fs::path& folder : model_folders()) {
-      places += (places.empty() ? "" : ", ") + folder.string();
+      places += (places.empty() ? "" : text(msg::core_comma)) + folder.string();
     }
     return fail(Errc::not_available,
                 text(msg::model_not_shipped, name_or_path, entry->file, places));
@@ -115,10 +116,8 @@ Result<fs::path> find_model_file(std::string_view name_or_path) {
   }
   std::vector<std::string> names;
   for (const Entry& known : kShipped) names.emplace_back(known.name);
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return fail(Errc::bad_input,
-              text(msg::model_unknown, name_or_path, did_you_mean(name_or_path, names), list));
+  return fail(Errc::bad_input, text(msg::model_unknown, name_or_path,
+                                    did_you_mean(name_or_path, names), listed(names)));
 }
 
 }  // namespace mjarm

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "mjarm/core/linear_algebra.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/urdf_internal.hpp"
 
@@ -52,7 +53,7 @@ void mend_inertia(const fs::path& file, XMLElement& robot, std::vector<std::stri
         entry("ixz"), entry("iyz"), entry("izz");
     if (symmetric_eigen(I).values[0] > 0) continue;
     for (const char* name : {"ixy", "ixz", "iyz"}) given->SetAttribute(name, "0");
-    mended += (mended.empty() ? "" : ", ") + std::string(link->Attribute("name"));
+    mended += (mended.empty() ? "" : text(msg::core_comma)) + std::string(link->Attribute("name"));
   }
   if (!mended.empty()) {
     warnings.push_back(text(msg::model_mended_inertia, file.string(), mended));
@@ -80,14 +81,14 @@ void give_mass(const fs::path& file, XMLElement& robot, std::vector<std::string>
       const XMLElement& link = *links.at(rigid[i]);
       const bool guessed = link.FirstChildElement("inertial") == nullptr &&
                            link.FirstChildElement("collision") != nullptr;
-      if (guessed) guesses += (guesses.empty() ? "" : ", ") + rigid[i];
+      if (guessed) guesses += (guesses.empty() ? "" : text(msg::core_comma)) + rigid[i];
       heavy = heavy || guessed || has_inertia(link);
       const auto [begin, end] = fixed_to.equal_range(rigid[i]);
       for (auto child = begin; child != end; ++child) rigid.push_back(child->second);
     }
     if (heavy) continue;
     set_tiny_inertia(*links.at(moved));
-    traces += (traces.empty() ? "" : ", ") + moved;
+    traces += (traces.empty() ? "" : text(msg::core_comma)) + moved;
   }
   const std::string name = file.string();
   if (!traces.empty()) warnings.push_back(text(msg::model_no_inertia, name, traces, kTinyMass));

@@ -5,6 +5,7 @@
 
 #include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/path_list.hpp"
 #include "mjarm/model/preflight_internal.hpp"
@@ -128,9 +129,7 @@ struct LeftOut {
   /// One line for people, where there is anything to tell.
   void warn(Msg words, const fs::path& file, std::vector<std::string>& warnings) const {
     if (names.empty()) return;
-    std::string all;
-    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-    warnings.push_back(text(words, file.string(), line, all));
+    warnings.push_back(text(words, file.string(), line, listed(names)));
   }
 };
 

@@ -2,6 +2,7 @@
 #include <string_view>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/guard.hpp"
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/load_internal.hpp"
@@ -40,7 +41,7 @@ Error xml_error(const std::string& name, const tinyxml2::XMLDocument& document) 
   // "Error=... ErrorID=14 (0xe) Line number=2: XMLElement name=body"
   const std::string full = document.ErrorStr();
   if (const std::size_t at = full.find("XMLElement name="); at != std::string::npos) {
-    detail = "<" + full.substr(at + 16) + ">: " + detail;
+    detail = text(msg::core_at_place, "<" + full.substr(at + 16) + ">", detail);
   }
   return {Errc::bad_input, text(msg::model_not_xml, name, document.ErrorLineNum(), detail)};
 }

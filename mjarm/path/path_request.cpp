@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/path.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/joint_values.hpp"
@@ -19,7 +20,7 @@ constexpr std::size_t kMaxPoses = 200'000;  // as many as a curve has waypoints 
 
 /// `place: ` before what is wrong there.
 Error at(const std::string& place, Error error) {
-  error.what = place + ": " + error.what;
+  error.what = text(msg::core_at_place, place, error.what);
   return error;
 }
 
@@ -147,11 +148,8 @@ constexpr std::array<Type, 5> kTypes{{{"poses", read_poses},
 
 Result<const Type*> type_of(const JsonValue& object) {
   std::vector<std::string> names;
-  std::string all;
-  for (const Type& type : kTypes) {
-    names.emplace_back(type.name);
-    all += (all.empty() ? "" : ", ") + names.back();
-  }
+  for (const Type& type : kTypes) names.emplace_back(type.name);
+  const std::string all = listed(names);
   const JsonValue* const member = object.find("type");
   if (member == nullptr || !member->is_string()) {
     return fail(Errc::bad_input, text(msg::path_request_no_type, all));

@@ -7,6 +7,7 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/planning/planning_world.hpp"
@@ -78,7 +79,8 @@ Result<void> read_certificates(const JsonValue& list, GivenPath& out) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     Result<GivenCertificate> entry = certificate_of(list[i]);
     if (!entry) {
-      return fail(Errc::bad_input, indexed("certificate", i) + ": " + entry.error().what);
+      return fail(Errc::bad_input,
+                  text(msg::core_at_place, indexed("certificate", i), entry.error().what));
     }
     out.certificate->push_back(std::move(*entry));
   }
@@ -86,25 +88,27 @@ Result<void> read_certificates(const JsonValue& list, GivenPath& out) {
 }
 
 Result<void> read_tilt(const JsonValue& entry, GivenPath& out) {
-  if (!entry.is_object()) return fail(Errc::bad_input, "tilt: " + text(msg::json_no_object));
+  if (!entry.is_object())
+    return fail(Errc::bad_input, text(msg::core_at_place, "tilt", text(msg::json_no_object)));
   GivenTilt tilt;
   const std::pair<const char*, double*> numbers[] = {{"limit", &tilt.limit},
                                                      {"largest", &tilt.largest}};
   for (const auto& [key, target] : numbers) {
     const Result<double> value = number_at(entry, key);
-    if (!value) return fail(value.error().code, "tilt: " + value.error().what);
+    if (!value)
+      return fail(value.error().code, text(msg::core_at_place, "tilt", value.error().what));
     *target = *value;
   }
   const std::pair<const char*, std::vector<double>*> members[] = {{"tool", &tilt.tool},
                                                                   {"world", &tilt.world}};
   for (const auto& [key, target] : members) {
     Result<std::vector<double>> axis = number_list(entry, key, 3);
-    if (!axis) return fail(axis.error().code, "tilt: " + axis.error().what);
+    if (!axis) return fail(axis.error().code, text(msg::core_at_place, "tilt", axis.error().what));
     *target = std::move(*axis);
   }
   constexpr std::string_view kKnown[] = {"limit", "largest", "tool", "world"};
   const Result<void> fine = check_keys(entry, kKnown);
-  if (!fine) return fail(fine.error().code, "tilt: " + fine.error().what);
+  if (!fine) return fail(fine.error().code, text(msg::core_at_place, "tilt", fine.error().what));
   const auto is_unit = [](const std::vector<double>& v) {
     return std::abs(std::hypot(v[0], v[1], v[2]) - 1) < kUnitSlack;
   };
@@ -165,7 +169,8 @@ Result<void> read_entry(const JsonValue& entry, std::size_t dof, GivenPath& out)
   }
   if (const JsonValue* const within = entry.find("within"); within != nullptr) {
     Result<GivenRegion> region = detail::read_kept_region(*within);
-    if (!region) return fail(region.error().code, "within: " + region.error().what);
+    if (!region)
+      return fail(region.error().code, text(msg::core_at_place, "within", region.error().what));
     out.within = std::move(*region);
   }
   const JsonValue* const certificate = entry.find("certificate");
@@ -178,7 +183,8 @@ Result<std::vector<GivenPath>> read_plan_file(const std::string& path, std::size
   const Result<std::string> content = read_file(path, kMaxPlanFile);
   if (!content) return fail(content.error());
   const Result<JsonObject> object = parse_json_object(*content);
-  if (!object) return fail(object.error().code, path + ": " + object.error().what);
+  if (!object)
+    return fail(object.error().code, text(msg::core_at_place, path, object.error().what));
   std::vector<GivenPath> out;
   for (const JsonValue& entry : **object) {
     GivenPath given;

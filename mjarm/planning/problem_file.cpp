@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mjarm/core/json.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
@@ -28,7 +29,7 @@ tl::unexpected<Error> bad(const Msg& message, const Values&... values) {
 
 /// `place: ` before what is wrong there.
 Error at(const std::string& place, Error error) {
-  error.what = place + ": " + error.what;
+  error.what = text(msg::core_at_place, place, error.what);
   return error;
 }
 

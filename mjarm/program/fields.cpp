@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
@@ -169,7 +170,9 @@ void Fields::miss(std::initializer_list<std::string_view> keys, const std::strin
   throw ReadFault{place, misspelt ? std::string() : what};
 }
 
-std::string Fields::named(std::string_view key) const { return what_ + ": " + std::string(key); }
+std::string Fields::named(std::string_view key) const {
+  return text(msg::core_at_place, what_, key);
+}
 
 std::optional<double> Fields::positive(std::string_view key, Quantity quantity, double max) const {
   const YamlNode* node = find(key);

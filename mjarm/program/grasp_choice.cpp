@@ -75,11 +75,10 @@ Result<void, PickFailure> GraspChoice::look() {
   if (object == bodies.objects.end()) {
     std::vector<std::string> names;
     for (const SceneObject& one : bodies.objects) names.push_back(one.name);
-    std::string list;
-    for (const std::string& one : names) list += (list.empty() ? "" : ", ") + one;
-    return failure(PickErrc::no_object, text(msg::pick_no_object, task_.object,
-                                             list.empty() ? "" : text(msg::pick_objects, list)) +
-                                            did_you_mean(task_.object, names));
+    return failure(PickErrc::no_object,
+                   text(msg::pick_no_object, task_.object,
+                        names.empty() ? "" : text(msg::pick_objects, listed(names))) +
+                       did_you_mean(task_.object, names));
   }
   sort_bodies(bodies);
   if (!scene_.attached.empty()) {

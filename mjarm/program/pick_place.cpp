@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/program/grasp_choice_internal.hpp"
 
@@ -118,7 +119,8 @@ class PickPlanner {
     if (farthest == nullptr) return failure(PickErrc::no_object, choice_.task().object);
     std::string list;
     for (const auto& [code, count] : counts) {
-      list += (list.empty() ? "" : ", ") + text(msg::pick_count, count, std::string(name(code)));
+      list += (list.empty() ? "" : text(msg::core_comma)) +
+              text(msg::pick_count, count, std::string(name(code)));
     }
     std::string what =
         text(msg::pick_none, choice_.dropped().size(), choice_.task().object, list, farthest->what);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/program/fields_internal.hpp"
 
@@ -36,8 +37,8 @@ std::map<std::string, ProgramPose> read_frames(const Fields& fields) {
     // A frame that cannot be read is known all the same to those who name it.
     frames[name.text] = or_noted(faults, ProgramPose{}, [&]() -> ProgramPose {
       if (name.text == "world") throw ReadFault{name.place, text(msg::program_world_is_taken)};
-      const Fields frame(node, "frames: " + name.text, {"pos", "euler", "quat", "matrix", "frame"},
-                         faults);
+      const Fields frame(node, text(msg::core_at_place, "frames", name.text),
+                         {"pos", "euler", "quat", "matrix", "frame"}, faults);
       const Eigen::Vector3d p = frame.vector("pos", Quantity::length);
       return {{p, frame.rotation()}, frame.frame()};
     });
@@ -52,13 +53,13 @@ NamedThings read_names(const Fields& fields) {
   named.postures["home"] = {};
   each_of(fields, "poses", [&](const YamlNode& name, const YamlNode& node) {
     ProgramPose pose = or_noted(named.faults, ProgramPose{}, [&] {
-      return detail::pose_of(node, "poses: " + name.text, named);
+      return detail::pose_of(node, text(msg::core_at_place, "poses", name.text), named);
     });
     named.poses.emplace(name.text, std::move(pose));
   });
   each_of(fields, "postures", [&](const YamlNode& name, const YamlNode& node) {
     named.postures[name.text] = or_noted(named.faults, JointValues{}, [&] {
-      return detail::joints_of(node, "postures: " + name.text, named);
+      return detail::joints_of(node, text(msg::core_at_place, "postures", name.text), named);
     });
   });
   return named;

@@ -194,11 +194,11 @@ TEST(ProgramWords, FaultsInNestedRepeatsHaveTheirOwnLine) {
 TEST(ProgramWords, TheSameFaultIsToldInChineseAtTheSamePlace) {
   const LanguageScope chinese(Language::chinese);
   EXPECT_EQ(refusal(with_instruction("movell: {}")),
-            "p.yaml:3:5: 没有名为“movell”的指令（您是否想输入“movel”？）");
+            "p.yaml:3:5：没有名为“movell”的指令（您是否想输入“movel”？）");
   EXPECT_EQ(refusal(with_instruction("movel: {pos: [0, 0, 0]}")),
-            "p.yaml:3:12: movel：缺少工具姿态：euler、quat 或 matrix");
+            "p.yaml:3:12：movel：缺少工具姿态：euler、quat 或 matrix");
   EXPECT_EQ(refusal(with_instruction("set: {speed: 0}")),
-            "p.yaml:3:18: set: speed：须大于 0 且不超过 100，得到 0");
+            "p.yaml:3:18：set：speed：应大于 0 且不超过 100，而不是 0");
 }
 
 TEST(ProgramWords, NamesAreAnyTextAndOnlyThoseBeforeThemAreKnown) {

@@ -70,9 +70,7 @@ Result<void> check_camera(const Model& model, const Camera& camera) {
   if (camera.name.empty()) return {};
   if (mj_name2id(model.raw(), mjOBJ_CAMERA, camera.name.c_str()) >= 0) return {};
   const std::vector<std::string> names = camera_names(model);
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  if (list.empty()) list = text(msg::render_none);
+  const std::string list = names.empty() ? text(msg::render_none) : listed(names);
   return fail(Errc::bad_input, text(msg::render_no_camera, model.file().string(), camera.name,
                                     did_you_mean(camera.name, names), list));
 }

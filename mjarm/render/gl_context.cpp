@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/render.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/render/gl_context_internal.hpp"
@@ -85,7 +86,7 @@ Result<GlContext> GlContext::create(GlChoice choice) {
   if (kinds.size() == 2) {
     return fail(Errc::not_available, text(msg::render_no_gl, reasons[0], reasons[1]));
   }
-  return fail(Errc::not_available, std::string(name_of(kinds[0])) + ": " + reasons[0]);
+  return fail(Errc::not_available, text(msg::core_at_place, name_of(kinds[0]), reasons[0]));
 }
 
 GlContext::GlContext(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/rl/option_table_internal.hpp"
@@ -224,7 +225,8 @@ Result<void> Training::resume(const std::filesystem::path& checkpoint) {
   Result<std::optional<Evaluation>> last = stored(*set, kLastEvaluation);
   for (const auto* evaluation : {&best, &last}) {
     if (*evaluation) continue;
-    return fail(evaluation->error().code, checkpoint.string() + ": " + evaluation->error().what);
+    return fail(evaluation->error().code,
+                text(msg::core_at_place, checkpoint.string(), evaluation->error().what));
   }
   if (auto restored = state_->trainer->restore(*set); !restored) return restored;
   state_->best = std::move(*best);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
@@ -74,7 +75,7 @@ std::string take_number(const std::string& key, const YamlNode& node,
   if (!good) {
     const Msg expected =
         std::is_integral_v<T> ? msg::rl_config_no_integer : msg::rl_config_no_number;
-    return key + ": " + text(expected, in_words(range));
+    return text(msg::core_at_place, key, text(expected, in_words(range)));
   }
   if (std::string fault = range_fault(key, range, static_cast<double>(read)); !fault.empty()) {
     return fault;
@@ -86,7 +87,8 @@ std::string take_number(const std::string& key, const YamlNode& node,
 template <class T>
 std::string take_number(const std::string& key, const YamlNode& node,
                         const detail::OptionRange& range, std::vector<T>& value) {
-  if (node.kind != YamlNode::Kind::list) return key + ": " + text(msg::rl_config_no_list);
+  if (node.kind != YamlNode::Kind::list)
+    return text(msg::core_at_place, key, text(msg::rl_config_no_list));
   std::vector<T> list(node.items.size());
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (std::string fault = take_number(key, node.items[i], range, list[i]); !fault.empty()) {
@@ -102,7 +104,7 @@ std::string take_word(const std::string& key, const YamlNode& node, T& value) {
   const std::vector<std::string> known = words<T>();
   const auto found = std::find(known.begin(), known.end(), node.text);
   if (node.kind != YamlNode::Kind::scalar || found == known.end()) {
-    return key + ": " + text(msg::rl_config_no_word, listed(known)) +
+    return text(msg::core_at_place, key, text(msg::rl_config_no_word, listed(known))) +
            did_you_mean(node.text, known);
   }
   value = static_cast<T>(found - known.begin());

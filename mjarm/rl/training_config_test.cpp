@@ -93,7 +93,8 @@ TEST(TrainingConfig, AnEmptyTextHasNoKeys) {
 
 TEST(TrainingConfig, FaultsAreToldInTheLanguageInUse) {
   const LanguageScope chinese(Language::chinese);
-  EXPECT_THAT(error_of("ppo: {epochs: x}"), HasSubstr("epochs: 应为整数，且为1 到 1e+06 之间的数"));
+  EXPECT_THAT(error_of("ppo: {epochs: x}"),
+              HasSubstr("epochs：应为整数（介于 1 与 1e+06 之间的数）"));
 }
 
 /// One number of a configuration, as the table of options has it.

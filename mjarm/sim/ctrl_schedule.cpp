@@ -7,6 +7,7 @@
 
 #include "mjarm/core/csv.hpp"
 #include "mjarm/core/line_reader.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/sim.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/number.hpp"
@@ -38,7 +39,7 @@ Result<void> check_value(const Model& model, int actuator, const std::string& na
 }
 
 Error at(const LineReader& reader, const std::string& what) {
-  return {Errc::bad_input, reader.place() + ": " + what};
+  return {Errc::bad_input, text(msg::core_at_place, reader.place(), what)};
 }
 
 /// `ctrl left [rad]` -> `left`; names in a header.

@@ -29,12 +29,6 @@ std::vector<std::string> keyframe_names(const mjModel& m) {
   return names;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all.empty() ? "-" : all;
-}
-
 /// Adds the pair, or deepens it where it is already there.
 void add_contact(std::vector<Contact>& all, Contact contact) {
   for (Contact& known : all) {
@@ -135,9 +129,9 @@ Result<void> Sim::reset(std::string_view keyframe) {
     const int key = mj_name2id(&m, mjOBJ_KEY, std::string(keyframe).c_str());
     if (key < 0) {
       const auto names = keyframe_names(m);
-      return fail(Errc::bad_input,
-                  text(msg::sim_no_keyframe, model().file().string(), keyframe, joined(names)) +
-                      did_you_mean(keyframe, names));
+      return fail(Errc::bad_input, text(msg::sim_no_keyframe, model().file().string(), keyframe,
+                                        names.empty() ? "-" : listed(names)) +
+                                       did_you_mean(keyframe, names));
     }
     impl_->reset_to(key);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mjarm/core/json.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/json.hpp"
 #include "mjarm/core/messages/trajectory.hpp"
 #include "mjarm/trajectory/kept_limits_internal.hpp"
@@ -40,7 +41,8 @@ Result<JointLimits> limits_of(const JsonValue& file) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::string key(1, "vaj"[k]);
     Result<JointVec> list = joints_of(*limits, key, static_cast<Eigen::Index>(dof));
-    if (!list) return fail(list.error().code, "limits: " + list.error().what);
+    if (!list)
+      return fail(list.error().code, text(msg::core_at_place, "limits", list.error().what));
     if (!(list->minCoeff() > 0)) {
       return fail(Errc::bad_input, text(msg::trajectory_cases_bad_limit, key));
     }
@@ -48,7 +50,7 @@ Result<JointLimits> limits_of(const JsonValue& file) {
   }
   constexpr std::string_view kKnown[] = {"v", "a", "j"};
   const Result<void> fine = check_keys(*limits, kKnown);
-  if (!fine) return fail(fine.error().code, "limits: " + fine.error().what);
+  if (!fine) return fail(fine.error().code, text(msg::core_at_place, "limits", fine.error().what));
   return unbounded(values[0], values[1], values[2]);
 }
 

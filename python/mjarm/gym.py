@@ -22,14 +22,15 @@ except ModuleNotFoundError as missing:
 import numpy as np
 from gymnasium.vector.utils import batch_space
 
-from ._core import ReachBatch
+from ._core import ReachBatch, language
 
 ID = "mjarm/Reach-v0"
 
 
 def _check(render_mode: str | None) -> None:
     if render_mode not in (None, "rgb_array"):
-        raise ValueError(f"render_mode: expected None or rgb_array, not {render_mode!r}")
+        raise ValueError(f"render_mode：应为 None 或 rgb_array，而不是 {render_mode!r}" if language() == "zh"
+                         else f"render_mode: expected None or rgb_array, not {render_mode!r}")
 
 
 def _spaces(batch: ReachBatch) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:

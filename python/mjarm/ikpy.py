@@ -76,7 +76,7 @@ class Chain:
         """
         del symbolic
         if base_element_type != "link":
-            raise _bad('base_element_type: only "link" is known here', 'base_element_type：这里只支持 "link"')
+            raise _bad('base_element_type: only "link" is known here', 'base_element_type：这里只支持“link”')
         base, joints, tip = _walk(urdf_file, list(base_elements or ["base_link"]))
         robot = Robot(urdf_file, tip=tip, looks=False)
         moving = [name for name, kind in joints if kind != "fixed"]
@@ -119,7 +119,7 @@ class Chain:
         """
         if target_position is None:
             raise _bad("target_position: expected a place [m]; a turn alone is not known here",
-                       "target_position：应给出位置（米）；这里不支持只给姿态")
+                       "target_position：应给出位置（m）；这里不支持只给姿态")
         target = np.eye(4)
         target[:3, 3] = target_position
         if orientation_mode == "all":
@@ -177,12 +177,12 @@ def _walk(urdf_file: str | os.PathLike[str], elements: list[str]) -> tuple[str, 
     try:
         root = ElementTree.parse(urdf_file).getroot()
     except (OSError, ElementTree.ParseError) as error:
-        raise BadInput(f"{os.fspath(urdf_file)}: {error}") from None
+        raise _bad(f"{os.fspath(urdf_file)}: {error}", f"{os.fspath(urdf_file)}：{error}") from None
     known = [link.get("name") for link in root.findall("link")]
     if elements[0] not in known:
         names = ", ".join(map(str, known))
         raise _bad(f'{os.fspath(urdf_file)}: no link "{elements[0]}"; name one with base_elements: {names}',
-                   f'{os.fspath(urdf_file)}：没有连杆 "{elements[0]}"；请用 base_elements 指定其中之一：{names}')
+                   f'{os.fspath(urdf_file)}：没有连杆“{elements[0]}”；请用 base_elements 指定其中之一：{names}')
     base = link = elements[0]
     wanted = elements[1:]
     joints: list[tuple[str, str]] = []
@@ -192,7 +192,7 @@ def _walk(urdf_file: str | os.PathLike[str], elements: list[str]) -> tuple[str, 
             leaving = [j for j in leaving if j.get("name") == wanted[0]]
             if not leaving:
                 raise _bad(f'{os.fspath(urdf_file)}: no joint "{wanted[0]}" leaves {link}',
-                           f'{os.fspath(urdf_file)}：{link} 之后没有关节 "{wanted[0]}"')
+                           f'{os.fspath(urdf_file)}：{link} 之后没有关节“{wanted[0]}”')
             wanted = wanted[2:]
         if not leaving:
             break

@@ -96,7 +96,7 @@ def test_the_program_is_the_same(tmp_path):
 def test_speaks_chinese():
     code = "import mjarm; mjarm.set_language('zh')\ntry: mjarm.Robot('ur5e').ik(mjarm.Pose([2, 0, 0]))\n" \
            "except mjarm.Unreachable as e: print(e)"
-    assert "够不着" in python(code, PYTHONIOENCODING="utf-8").stdout
+    assert "超出可达范围" in python(code, PYTHONIOENCODING="utf-8").stdout
     with pytest.raises(mjarm.BadInput):
         mjarm.set_language("xx")
     before = mjarm.language()

@@ -109,7 +109,8 @@ Result<BatchResult> run_batch(const BatchOptions& options, const std::string& la
     answer_block(answer, options.threads, lines);
     for (const Line& line : lines) {
       if (!line.done)
-        return fail(line.done.error().code, line.place + ": " + line.done.error().what);
+        return fail(line.done.error().code,
+                    text(msg::core_at_place, line.place, line.done.error().what));
       if (*line.done && result.failed++ == 0) {
         result.first_failure = line.place;
         result.first_why = **line.done;

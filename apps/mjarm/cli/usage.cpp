@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/mjarm/messages/app.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/model/joint_values.hpp"
 
@@ -97,7 +98,7 @@ Result<PixelSize> parse_size(const std::string& option, std::string_view value) 
 }
 
 Error in_option(const std::string& option, Error error) {
-  error.what = option + ": " + error.what;
+  error.what = text(msg::core_at_place, option, error.what);
   return error;
 }
 

@@ -14,6 +14,7 @@
 #include "mjarm/core/cpu.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/install.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/os_child_input.hpp"
@@ -133,7 +134,7 @@ void look_at_models(Findings& findings) {
       continue;
     }
     found.push_back({{"name", shipped.name}, {"file", shipped.file.string()}});
-    names += (names.empty() ? "" : ", ") + shipped.name;
+    names += (names.empty() ? "" : text(msg::core_comma)) + shipped.name;
   }
   if (found.empty()) findings.problems.push_back(text(msg::app_doctor_no_models));
   add(findings, "models", text(msg::app_doctor_models), std::move(found),
@@ -145,13 +146,13 @@ void look_at_meshes(Findings& findings) {
   std::vector<JsonDoc> found;
   std::string shown, known;
   for (const install::MeshSet& set : install::mesh_sets()) {
-    known += (known.empty() ? "" : ", ") + set.robot;
+    known += (known.empty() ? "" : text(msg::core_comma)) + set.robot;
     const Result<install::Installed> meshes = install::look_up(set);
     if (!meshes || meshes->state.kind == install::InstallState::Kind::absent) continue;
     const install::InstallState& state = meshes->state;
     const bool whole = state.kind == install::InstallState::Kind::whole;
     found.push_back({{"robot", set.robot}, {"whole", whole}, {"folder", meshes->folder.string()}});
-    shown += (shown.empty() ? "" : ", ") +
+    shown += (shown.empty() ? "" : text(msg::core_comma)) +
              (whole ? set.robot : text(msg::install_mend, state.problem, set.robot));
   }
   add(findings, "meshes", text(msg::models_doctor), std::move(found),

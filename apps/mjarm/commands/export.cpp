@@ -10,6 +10,7 @@
 #include "apps/mjarm/messages/motion_program.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/long_result.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/program/urscript.hpp"
@@ -48,7 +49,8 @@ Result<int> run(const Options& options) {
   if (!loaded) return fail(loaded.error());
   const Result<std::string> script = program::to_urscript(loaded->program, loaded->robot,
                                                           loaded->plan, {.version = MJARM_VERSION});
-  if (!script) return fail(script.error().code, options.file + ": " + script.error().what);
+  if (!script)
+    return fail(script.error().code, text(msg::core_at_place, options.file, script.error().what));
   if (options.out.empty()) {
     std::fwrite(script->data(), 1, script->size(), stdout);
     return 0;

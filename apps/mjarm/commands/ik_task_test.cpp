@@ -168,7 +168,7 @@ TEST(IkTask, BadWordsAreRefusedInOneLine) {
     EXPECT_EQ(result.out, "");
   }
   const auto chinese = ik(goal, {"--task", "axes", "--lang", "zh-CN"});
-  EXPECT_NE(chinese.err.find("应为以下之一：pose, position, axis"), std::string::npos)
+  EXPECT_NE(chinese.err.find("应为以下之一：pose、position、axis"), std::string::npos)
       << chinese.err;
   const auto alone =
       ik({"--robot", "panda", "--task", "axis", "--in", "-"}, {}, given("{\"pos\":[0.4,0,0.5]}\n"));

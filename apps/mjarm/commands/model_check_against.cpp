@@ -8,6 +8,7 @@
 #include "apps/mjarm/commands/model_check.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/compare.hpp"
@@ -59,7 +60,8 @@ std::string move_text(const Cause& cause) {
 
 std::string names_of(const Arm& arm) {
   std::string names;
-  for (const ArmJoint& joint : arm.joints) names += (names.empty() ? "" : ", ") + joint.name;
+  for (const ArmJoint& joint : arm.joints)
+    names += (names.empty() ? "" : text(msg::core_comma)) + joint.name;
   return names;
 }
 

@@ -19,6 +19,7 @@
 #include "apps/mjarm/messages/plan_show.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/planning.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
@@ -190,7 +191,8 @@ Result<int> run(const Options& options) {
                 text(msg::plan_show_one, options.batch.in, file->problems.size(), first));
   }
   const Result<FastRobot> robot = FastRobot::create(file->arm, file->spheres);
-  if (!robot) return fail(robot.error().code, options.batch.in + ": " + robot.error().what);
+  if (!robot)
+    return fail(robot.error().code, text(msg::core_at_place, options.batch.in, robot.error().what));
   return answer_all(*file, *robot, *plan, *threads, options, *output, *show);
 }
 

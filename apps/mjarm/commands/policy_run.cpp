@@ -11,6 +11,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/output_folder.hpp"
@@ -156,7 +157,8 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
   Result<PolicyPlayer> player =
       PolicyPlayer::create(*model, loaded.task, loaded.policy, trial.seed);
   if (!player) {
-    return fail(player.error().code, loaded.file.string() + ": " + player.error().what);
+    return fail(player.error().code,
+                text(msg::core_at_place, loaded.file.string(), player.error().what));
   }
   const Result<OutputFolder> folder = OutputFolder::open(options.out, options.replace);
   if (!folder) return fail(folder.error());
@@ -164,7 +166,8 @@ Result<PolicyOutcome> run_policy(const rl::TrainedPolicy& loaded, const PolicyTr
   auto evaluation = judged(*model, loaded, trial);
   if (!evaluation) {
     if (interrupted()) return fail(evaluation.error());
-    return fail(evaluation.error().code, loaded.file.string() + ": " + evaluation.error().what);
+    return fail(evaluation.error().code,
+                text(msg::core_at_place, loaded.file.string(), evaluation.error().what));
   }
   const double seconds = 1e-6 * watch.us();
   log_info(in_words(*evaluation));

@@ -6,6 +6,7 @@
 
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/messages/motion_program.hpp"
+#include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -47,10 +48,9 @@ std::vector<std::string> held_names(const PlannedMove& move) {
 
 /// What the gripper holds once it has closed.
 std::string grip_line(const PlannedMove& move) {
-  std::string names;
-  for (const std::string& name : held_names(move)) names += (names.empty() ? "" : ", ") + name;
+  const std::vector<std::string> names = held_names(move);
   if (names.empty()) return text(msg::motion_program_holds_nothing, move.place.line) + "\n";
-  return text(msg::motion_program_holds, move.place.line, names) + "\n";
+  return text(msg::motion_program_holds, move.place.line, listed(names)) + "\n";
 }
 
 JsonDoc move_json(const program::ProgramPlan& plan, const PlannedMove& move) {

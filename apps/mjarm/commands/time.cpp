@@ -13,6 +13,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
@@ -135,7 +136,8 @@ Result<int> answer_all(Job job, const Options& options) {
   const Result<std::string> content = read_file(options.batch.in, kLargest);
   if (!content) return fail(content.error());
   Result<TimeCases> cases = read_time_cases(*content, job.problem);
-  if (!cases) return fail(cases.error().code, options.batch.in + ": " + cases.error().what);
+  if (!cases)
+    return fail(cases.error().code, text(msg::core_at_place, options.batch.in, cases.error().what));
   if (job.torque.dynamics && job.limits.torque.size() != cases->limits.velocity.size()) {
     return fail(Errc::usage, text(msg::app_time_torque_joints, job.limits.torque.size(),
                                   options.batch.in, cases->limits.velocity.size()));

@@ -21,6 +21,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
@@ -193,7 +194,7 @@ std::string report_text(const std::vector<Job>& jobs) {
   std::string out;
   for (const Job& job : jobs) {
     for (const PathFault& fault : job.verdict->faults) {
-      out += printable(job.id + ": " + fault.what) + '\n';
+      out += printable(text(msg::core_at_place, job.id, fault.what)) + '\n';
     }
   }
   std::vector<std::vector<std::string>> table{

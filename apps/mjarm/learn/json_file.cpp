@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/messages/core.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -30,7 +31,7 @@ Result<JsonObject> read_json_file(const std::string& file) {
   if (object) return std::move(*object);
   JsonFailure failure = object.error();
   const std::string line = line_at(*content, failure);
-  return fail(Errc::bad_input, file + line + ": " + describe(failure));
+  return fail(Errc::bad_input, text(msg::core_at_place, file + line, describe(failure)));
 }
 
 double number_in(const JsonValue& object, std::string_view key) {
@@ -44,7 +45,7 @@ std::string word_in(const JsonValue& object, std::string_view key) {
 }
 
 Error in_file(const std::string& file, const Error& error) {
-  return {error.code, file + ": " + error.what};
+  return {error.code, text(msg::core_at_place, file, error.what)};
 }
 
 }  // namespace mjarm::app
