@@ -12,6 +12,12 @@ install(TARGETS mjarm-bench OPTIONAL)  # `./dev` builds it when it is asked for 
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/models"
         OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/programs" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm")
+# The pages, with the pictures and programs that they link to, beside each other as in a clone.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm" PATTERN roadmap.md EXCLUDE)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/learn" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/examples")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/examples" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/python")
+file(GLOB python_pages "${PROJECT_SOURCE_DIR}/python/README*.md")
+install(FILES ${python_pages} DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/python")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/web/dist/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/page" OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/bench/peers" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/bench")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")

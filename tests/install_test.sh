@@ -49,3 +49,11 @@ mv "$work/once more" "$prefix"
 ldd "$prefix/bin/mjarm" | grep -F "$prefix/" | grep libmujoco
 place=$("$prefix/bin/mjarm" fk --robot ur5e --in - <<<'{"q":[-1.5708,-1.5708,1.5708,-1.5708,-1.5708,0]}')
 grep -q '"pos":\[-0.13' <<<"$place" || { echo "installed mjarm: fk says $place" && exit 1; }
+
+# So are the pages to learn from, with what they link to.
+page=$("$prefix/bin/mjarm" learn --json | sed -n 's/.*"file": *"\([^"]*01_set_up.md\)".*/\1/p')
+[[ $page == "$prefix"/* && -e $page ]] || { echo "installed mjarm: learn names the page \"$page\"" && exit 1; }
+cd "$(dirname "$page")"
+for link in $(grep -oh '](\.\./[^)#]*' ./*.md | cut -c3- | sort -u); do
+  [[ -e $link ]] || { echo "installed pages link to $link, which is not there" && exit 1; }
+done

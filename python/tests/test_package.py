@@ -93,6 +93,15 @@ def test_the_program_is_the_same(tmp_path):
     assert (tmp_path / "out" / "report.json").stat().st_size > 100
 
 
+def test_has_the_pages_to_learn_from():
+    done = program("learn", "--json")
+    pages = [pathlib.Path(page["file"]) for page in json.loads(done.stdout)["pages"]]
+    assert len(pages) == 9
+    for page in pages:
+        links = re.findall(r"\]\((\.\./[^)#]+)", page.read_text())
+        assert [link for link in links if not (page.parent / link).exists()] == []
+
+
 def test_speaks_chinese():
     code = "import mjarm; mjarm.set_language('zh')\ntry: mjarm.Robot('ur5e').ik(mjarm.Pose([2, 0, 0]))\n" \
            "except mjarm.Unreachable as e: print(e)"
