@@ -2,6 +2,7 @@
 #include <set>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/kinematics.hpp"
 #include "mjarm/kinematics/branch.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
@@ -56,7 +57,8 @@ Result<Answers, NoAnswer> AnswerChoice::among(const Step& step, std::vector<Join
     });
     if (answers.empty()) {
       std::string listed;
-      for (const std::string& other : others) listed += (listed.empty() ? "" : "; ") + other;
+      for (const std::string& other : others)
+        listed += (listed.empty() ? "" : text(msg::core_semicolon)) + other;
       return tl::unexpected(NoAnswer{
           "no_branch", text(msg::kinematics_branch_missing, describe(step.branch), listed)});
     }

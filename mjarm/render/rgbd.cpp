@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/render.hpp"
 #include "mjarm/render/offscreen.hpp"
 
@@ -51,9 +52,10 @@ Result<void> check_options(const RgbdOptions& options) {
   }
   if (!(options.nearest > 0) || !(options.farthest > options.nearest) ||
       !finite(options.farthest)) {
+    const std::string comma = text(msg::core_comma);
     return fail(Errc::bad_input,
-                text(msg::render_rgbd_range, "nearest, farthest",
-                     std::to_string(options.nearest) + ", " + std::to_string(options.farthest),
+                text(msg::render_rgbd_range, "nearest" + comma + "farthest",
+                     std::to_string(options.nearest) + comma + std::to_string(options.farthest),
                      text(msg::render_rgbd_ranges)));
   }
   return {};

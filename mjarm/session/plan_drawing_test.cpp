@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "mjarm/collision/cover.hpp"
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/render/framing.hpp"
@@ -124,6 +125,10 @@ TEST_F(WallPlan, TheTightestPlaceIsToldByName) {
   const std::string line = pair_line(*look.pair);
   EXPECT_NE(line.find(" - "), std::string::npos) << line;
   EXPECT_NE(line.find(" mm"), std::string::npos) << line;
+  {
+    const LanguageScope chinese(Language::chinese);
+    EXPECT_NE(pair_line(*look.pair).find("："), std::string::npos) << pair_line(*look.pair);
+  }
   if (look.obstacle_pair) {
     EXPECT_GE(look.obstacle_pair->distance, look.pair->distance);
   }

@@ -1,9 +1,11 @@
 #include "mjarm/session/plan_look.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 #include <variant>
+
+#include "mjarm/core/messages/core.hpp"
+#include "mjarm/core/messages/panels.hpp"
 
 namespace mjarm::session {
 namespace {
@@ -50,9 +52,7 @@ const std::string& word_of(const std::string& geom, const std::string& body) {
 }  // namespace
 
 std::string pair_line(const NearPair& pair) {
-  char distance[40];
-  std::snprintf(distance, sizeof(distance), ": %.1f mm", 1e3 * pair.distance);
-  return pair.names + distance;
+  return text(msg::core_at_place, pair.names, text(msg::panel_mm, 1e3 * pair.distance));
 }
 
 PlanLooker::PlanLooker(const PlanSubject& subject)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/panels.hpp"
 
 namespace mjarm::session {
@@ -159,7 +160,8 @@ void PlanPlayer::fill(view::ViewFrame& frame) {
   frame.overlay = drawing_->overlay(layers_, look);
   frame.panels = panels(look);
   frame.status = look.pair ? pair_line(*look.pair) : std::string();
-  if (look.obstacle_pair) frame.status += "; " + pair_line(*look.obstacle_pair);
+  if (look.obstacle_pair)
+    frame.status += text(msg::core_semicolon) + pair_line(*look.obstacle_pair);
 }
 
 }  // namespace mjarm::session

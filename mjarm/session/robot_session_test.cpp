@@ -211,6 +211,7 @@ TEST_F(RobotInView, ThePanelsSpeakTheLanguageInUse) {
     for (const view::PanelItem& item : section.items) {
       ++items;
       EXPECT_TRUE(is_translated(item.name)) << item.name;
+      EXPECT_EQ(item.name.find(", "), std::string::npos) << item.name;
       if (const auto* line = std::get_if<view::PanelText>(&item.what)) {
         EXPECT_TRUE(is_translated(line->value)) << line->value;
       } else if (const auto* choice = std::get_if<view::PanelChoice>(&item.what)) {

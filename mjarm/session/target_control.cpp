@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/panels.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/units.hpp"
@@ -69,7 +70,7 @@ std::string bend(const IkSolver& ik, const JointVec& q) {
   for (int part = 0; part < Branch::kParts; ++part) {
     const auto place = static_cast<std::size_t>(part);
     if (branch.way[place] < 0) continue;
-    if (!out.empty()) out += ", ";
+    if (!out.empty()) out += text(msg::core_comma);
     out += std::string(branch_parts()[place]) + " " +
            std::string(branch_ways(part)[static_cast<std::size_t>(branch.way[place])]);
   }
@@ -248,7 +249,8 @@ view::PanelSection TargetControl::tool_section() const {
   const Pose& X_WT = target_.pose();
   const Eigen::Vector3d euler = to_euler(X_WT.R);
   for (int i = 0; i < 3; ++i) {
-    const std::string name = std::string(kJogAxes[i]) + " [mm], " + kJogAxes[3 + i] + " [deg]";
+    const std::string name =
+        std::string(kJogAxes[i]) + " [mm]" + text(msg::core_comma) + kJogAxes[3 + i] + " [deg]";
     section.items.push_back({kTextItem, name, view::PanelText{pair_of(X_WT.p[i], euler[i])}});
   }
   return section;

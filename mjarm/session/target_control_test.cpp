@@ -157,6 +157,11 @@ TEST_F(Control, PosturesAreListedInWords) {
   EXPECT_THAT(list.lines[0], HasSubstr("shoulder "));
   EXPECT_THAT(list.lines[0], HasSubstr(", elbow "));
   EXPECT_NE(list.lines[0].substr(1), list.lines[1].substr(1));
+  const LanguageScope chinese(Language::chinese);
+  std::vector<view::PanelSection> same;
+  control_.add_sections(same);
+  EXPECT_THAT(std::get<view::PanelList>(same.at(1).items.at(0).what).lines.at(0),
+              HasSubstr("、elbow "));
 }
 
 TEST_F(Control, PosturesGoAlongWithTheTarget) {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/view/plot_history_internal.hpp"
 
@@ -61,7 +62,7 @@ void add_limits(Chart& chart, const JointVec& lower, const JointVec& upper) {
 std::string joint_unit(const Arm& arm, const char* hinge, const char* slide) {
   const auto slides = std::ranges::count(arm.joints, JointType::slide, &ArmJoint::type);
   if (slides == 0) return hinge;
-  return slides == arm.dof() ? slide : std::string(hinge) + ", " + slide;
+  return slides == arm.dof() ? slide : hinge + text(msg::core_comma) + slide;
 }
 
 /// Legends are narrow: "wrist_1" for "wrist_1_joint".

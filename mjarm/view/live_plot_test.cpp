@@ -5,7 +5,9 @@
 #include <cmath>
 #include <memory>
 
+#include "mjarm/core/language_scope.hpp"
 #include "mjarm/view/figure_internal.hpp"
+#include "mjarm/view/recorded_run.hpp"
 
 namespace mjarm::view {
 namespace {
@@ -39,6 +41,13 @@ TEST_F(Figures, HoldTheCurvesAndTheirNames) {
   EXPECT_FLOAT_EQ(figure.range[0][1], 2);
   EXPECT_FLOAT_EQ(figure.range[1][0], -1);
   EXPECT_FLOAT_EQ(figure.range[1][1], 1);
+}
+
+TEST(RecordedPlots, TheUnitStandsInTheTitle) {
+  const render::PlotPanel panel{.title = "error", .y_label = "mm"};
+  EXPECT_EQ(live_plot(panel).title, "error, mm");
+  const LanguageScope chinese(Language::chinese);
+  EXPECT_EQ(live_plot(panel).title, "error，mm");
 }
 
 TEST_F(Figures, ThinLongCurvesAndKeepTheirEnds) {

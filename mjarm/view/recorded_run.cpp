@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "mjarm/core/messages/view.hpp"
+
 namespace mjarm::view {
 namespace {
 
@@ -16,7 +18,9 @@ LivePlot live_plot(const render::PlotPanel& panel) {
                .equal_aspect = panel.equal_aspect,
                .y_from_zero = panel.y_from_zero,
                .over_time = panel.over_time};
-  if (!panel.y_label.empty() && panel.y_label != panel.title) out.title += ", " + panel.y_label;
+  if (!panel.y_label.empty() && panel.y_label != panel.title) {
+    out.title = text(msg::view_plot_titled, panel.title, panel.y_label);
+  }
   int next = 0;
   for (const render::PlotLine& line : panel.lines) {
     const bool dotted = line.style == render::LineStyle::dotted;

@@ -6,6 +6,7 @@
 
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/collision/exact.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/kinematics.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
@@ -60,7 +61,7 @@ NoAnswer other_branches(const IkSolver& ik, const Branch& wanted,
   }
   std::string listed;
   for (const std::string& word : words)
-    listed += (listed.empty() ? "" : text(msg::app_semicolon)) + word;
+    listed += (listed.empty() ? "" : text(msg::core_semicolon)) + word;
   return {"no_branch", text(msg::kinematics_branch_missing, describe(wanted), listed),
           answers.front().q};
 }

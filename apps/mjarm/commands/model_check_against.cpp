@@ -95,7 +95,7 @@ std::string cause_text(const Cause& cause, const Robot& first, const Robot& seco
 std::string all_causes(const Comparison& comparison, const Robot& first, const Robot& second) {
   std::string words;
   for (const Cause& cause : comparison.causes) {
-    words += (words.empty() ? "" : text(msg::app_semicolon)) + cause_text(cause, first, second);
+    words += (words.empty() ? "" : text(msg::core_semicolon)) + cause_text(cause, first, second);
   }
   return words.empty() ? text(msg::app_against_unknown) : words;
 }

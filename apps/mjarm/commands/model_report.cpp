@@ -9,12 +9,13 @@
 #include "apps/mjarm/cli/table.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/text_width.hpp"
 
 namespace mjarm::app {
 namespace {
 
-std::string join(const std::vector<std::string>& words, const char* between = ", ") {
+std::string join(const std::vector<std::string>& words, const std::string& between) {
   std::string result;
   for (const std::string& word : words) {
     if (word.empty()) continue;
@@ -84,14 +85,14 @@ std::string arm_text(const ModelReport& report) {
   std::string result = line(msg::app_info_arm, text(msg::app_info_arm_joints, arm.dof()));
   result += joint_table(report);
   result += line(msg::app_info_tip, arm.tip);
-  result += line(msg::app_info_tips, join(report.tips));
-  result += line(msg::app_info_home, join(home));
+  result += line(msg::app_info_tips, join(report.tips, text(msg::core_comma)));
+  result += line(msg::app_info_home, join(home, ", "));
   if (!arm.gripper) return result + line(msg::app_info_gripper, text(msg::app_info_none));
   const Gripper& gripper = *arm.gripper;
-  return result + line(msg::app_info_gripper,
-                       text(msg::app_info_gripper_line, gripper.actuator,
-                            fmt::format("{:.5g}", gripper.ctrl_open),
-                            fmt::format("{:.5g}", gripper.ctrl_closed), join(gripper.joints)));
+  return result + line(msg::app_info_gripper, text(msg::app_info_gripper_line, gripper.actuator,
+                                                   fmt::format("{:.5g}", gripper.ctrl_open),
+                                                   fmt::format("{:.5g}", gripper.ctrl_closed),
+                                                   join(gripper.joints, text(msg::core_comma))));
 }
 
 JsonDoc joint_json(const Arm& arm, int i) {
@@ -197,7 +198,8 @@ std::string to_text(const ModelReport& report) {
               text(msg::app_info_counts, counts.bodies, counts.joints, counts.actuators,
                    counts.geoms, counts.sites, counts.sensors, counts.cameras, counts.meshes)) +
          line(msg::app_info_mass, fmt::format("{:.5g} kg", all.mass)) +
-         line(msg::app_info_keyframes, or_none(join(keyframe_names(all)))) + arm_text(report);
+         line(msg::app_info_keyframes, or_none(join(keyframe_names(all), text(msg::core_comma)))) +
+         arm_text(report);
 }
 
 std::string to_json(const ModelReport& report) {

@@ -73,6 +73,7 @@ TEST(ModelInfo, TextInBothLanguages) {
   const auto chinese = mjarm({"model", "info", "ur5e", "--lang", "zh-CN"});
   EXPECT_EQ(chinese.exit_code, 0);
   EXPECT_NE(chinese.out.find("工具坐标系"), std::string::npos);
+  EXPECT_NE(chinese.out.find("attachment_site、"), std::string::npos) << chinese.out;
   EXPECT_EQ(support::lines_of(english.out).size(), support::lines_of(chinese.out).size());
 }
 

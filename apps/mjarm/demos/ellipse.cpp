@@ -5,8 +5,8 @@
 #include "apps/mjarm/demos/demo_stage.hpp"
 #include "apps/mjarm/demos/demos.hpp"
 #include "apps/mjarm/demos/program_demo.hpp"
-#include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/demo.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/path/path_fix.hpp"
 
@@ -23,7 +23,7 @@ Result<Report> refuse(session::Stage& stage, std::span<const Pose> points,
   std::string detail;
   for (const UnreachableRange& range : ranges) {
     for (std::size_t i = range.first; i <= range.last; ++i) report.unreachable.push_back(i);
-    if (!detail.empty()) detail += text(msg::app_semicolon);
+    if (!detail.empty()) detail += text(msg::core_semicolon);
     detail += text(msg::demo_points_unreachable, range.first, range.last, points.size(),
                    describe(range.worst, stage.arm()));
   }
@@ -31,9 +31,9 @@ Result<Report> refuse(session::Stage& stage, std::span<const Pose> points,
   if (shift) {
     report.shift = *shift;
     detail +=
-        text(msg::app_semicolon) + text(msg::demo_shift_mends, shift->x(), shift->y(), shift->z());
+        text(msg::core_semicolon) + text(msg::demo_shift_mends, shift->x(), shift->y(), shift->z());
   } else {
-    detail += text(msg::app_semicolon) + text(msg::demo_no_shift);
+    detail += text(msg::core_semicolon) + text(msg::demo_no_shift);
   }
   return stage.refuse(name(ranges.front().worst.code), detail, std::move(report));
 }
