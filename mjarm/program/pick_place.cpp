@@ -103,6 +103,7 @@ class PickPlanner {
   [[nodiscard]] ProgramPlanOptions plan_options() const {
     return {.tool_speed = options_.tool_speed,
             .scene = choice_.scene(),
+            .to_first_fault = true,
             .after_step = {},
             .stop = options_.stop};
   }

@@ -64,8 +64,12 @@ class ProgramPlanner {
       i = attempt.next;
       at = std::move(attempt.at);
       if (!attempt.fault) continue;
+      if (options_.to_first_fault) {
+        note(*attempt.fault, {}, {});
+        break;
+      }
       const std::optional<Detour> detour = find_detour(*attempt.fault, at);
-      note(*attempt.fault, detour, at.scene);
+      note(*attempt.fault, detour, detour ? std::nullopt : find_fix(*attempt.fault, at.scene));
       known = detour || recover(steps_[attempt.fault->step], at);
       i = attempt.fault->step + 1;
     }
@@ -179,9 +183,9 @@ class ProgramPlanner {
                                      .code = stopped().code});
   }
 
-  void note(const PlanFault& fault, const std::optional<Detour>& detour, std::size_t scene) {
+  void note(const PlanFault& fault, const std::optional<Detour>& detour,
+            const std::optional<PathFix>& fix) {
     const Step& step = steps_[fault.step];
-    const std::optional<PathFix> fix = detour ? std::nullopt : find_fix(fault, scene);
     const std::string what =
         fix ? text(msg::program_mended, fault.what, describe(*fix)) : fault.what;
     detail::add_fault(plan_.faults, {step.place, std::string(step.word), fault.reason, what,

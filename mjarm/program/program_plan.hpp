@@ -86,7 +86,9 @@ struct ProgramPlanOptions {
   bool collision = true;     ///< look at contact, and measure clearance
   double tool_speed = 0.25;  ///< [m/s] where the program says none, > 0
   SceneState scene = {};     ///< how things stand at first; empty: as in the model
-  SeeScene see = {};         ///< does the instruction `look`, which is a fault without
+  /// Nothing behind the first fault is planned, nor looked for what would mend it.
+  bool to_first_fault = false;
+  SeeScene see = {};  ///< does the instruction `look`, which is a fault without
   /// Called after every step with how many of how many are done. May be empty.
   std::function<void(std::size_t done, std::size_t total)> after_step = {};
   StopCheck stop = {};  ///< ends the work; the plan then has a fault `stopped`

@@ -338,6 +338,27 @@ TEST(ProgramPlan, GoesOnAfterAFault) {
   EXPECT_THAT(all, HasSubstr("9 not_available"));
 }
 
+/// Who only asks whether all of it can be done need not wait for the rest, nor for what would mend it.
+TEST(ProgramPlan, StopsAtTheFirstFaultWhereThatIsEnough) {
+  Program program;
+  const auto down = [](double x, double y) {
+    return ProgramPose{.X_FT = {{x, y, 0.4}, kDown}};
+  };
+  program.instructions = {{MoveJ{.goal = down(0, -0.45)}},
+                          {MoveL{.goal = down(0, -0.95)}},
+                          {MoveL{.goal = down(0.1, -0.45)}},
+                          {MoveL{.goal = down(0, -2)}}};
+  const ProgramPlan all = plan_of(program);
+  ASSERT_EQ(all.faults.size(), 2U) << faults_of(all);
+  EXPECT_TRUE(all.faults[0].fix.has_value()) << faults_of(all);
+  const ProgramPlan first =
+      plan_program(robot().model, robot().arm, program, {.to_first_fault = true});
+  ASSERT_EQ(first.faults.size(), 1U) << faults_of(first);
+  EXPECT_EQ(first.faults[0].reason, all.faults[0].reason);
+  EXPECT_FALSE(first.faults[0].fix.has_value());
+  EXPECT_LT(first.moves.size(), all.moves.size());
+}
+
 TEST(ProgramPlan, DegreesWithoutAUnitAreGuessedAt) {
   EXPECT_THAT(faults_of(plan_text("  - movej: {joints: [0, -90, 90, -90, -90, 0]}\n")),
               HasSubstr("90deg"));
