@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "mjarm/core/finite.hpp"
@@ -27,12 +29,6 @@ constexpr double kSingular = 0.02;   // smallest singular value
 constexpr double kClearance = 0.01;  // [m]
 
 double largest(const JointVec& d) { return d.cwiseAbs().maxCoeff(); }
-
-Arm without_limits(Arm arm) {
-  arm.limits.lower.setConstant(-kInfinity);
-  arm.limits.upper.setConstant(kInfinity);
-  return arm;
-}
 
 IkOptions without_predicate(IkOptions options) {
   options.valid = {};
@@ -82,6 +78,36 @@ bool same_place(const Chain& chain, const JointVec& a, const JointVec& b) {
   return true;
 }
 
+/// A number for each way in which the six joints of `q` are whole turns away from those of
+/// `q_base`.
+std::uint64_t winding(const JointVec& q, const JointVec& q_base) {
+  constexpr std::uint64_t kMost = 1U << 10;  // turns, more than limits leave
+  std::uint64_t out = 0;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const double turns = std::nearbyint((q[i] - q_base[i]) / kFullTurn);
+    out = out * kMost + (static_cast<std::uint64_t>(std::llrint(turns)) % kMost);
+  }
+  return out;
+}
+
+/// Whether no singular value of J is below `least`: then J J^T less its square (J^T J of fewer than
+/// six joints) has a Cholesky factor, which takes a tenth of the time of the values themselves.
+bool is_regular(const Jacobian& J, double least) {
+  const bool wide = J.cols() >= 6;
+  const Eigen::Index n = wide ? 6 : J.cols();
+  double L[6][6];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      double sum = wide ? J.row(i).dot(J.row(j)) : J.col(i).dot(J.col(j));
+      if (i == j) sum -= least * least;
+      for (Eigen::Index k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
+      if (i == j && !(sum > 0)) return false;
+      L[i][j] = i == j ? std::sqrt(sum) : sum / L[j][j];
+    }
+  }
+  return true;
+}
+
 /// Sorts `layer` and keeps the best `max`.
 void keep_best(Layer& layer, std::size_t max) {
   std::vector<std::size_t> order(layer.size());
@@ -96,6 +122,12 @@ void keep_best(Layer& layer, std::size_t max) {
 }
 
 }  // namespace
+
+Arm without_limits(Arm arm) {
+  arm.limits.lower.setConstant(-kInfinity);
+  arm.limits.upper.setConstant(kInfinity);
+  return arm;
+}
 
 bool TrackRank::operator<(const TrackRank& other) const noexcept {
   return std::tie(tightness, posture, start, length) <
@@ -116,6 +148,18 @@ double PathLayers::smallest_singular_value(const JointVec& q) const {
   return mjarm::smallest_singular_value(fk_jacobian(chain_, as_span(q)).J_W);
 }
 
+/// 0.5 where the smallest singular value is kSingular, 1 at a singularity.
+double PathLayers::singular_tightness(const JointVec& q) const {
+  constexpr double kRounding = 1 + 1e-6;
+  const Jacobian J = fk_jacobian(chain_, as_span(q)).J_W;
+  if (is_regular(J, kRounding * 2 * kSingular)) return 0;
+  return std::max(0.0, 1 - mjarm::smallest_singular_value(J) / (2 * kSingular));
+}
+
+bool PathLayers::fits(const JointVec& q, double tightness) const {
+  return within_limits(ik_.arm(), as_span(q)) && level(limit_tightness(q)) <= tightness;
+}
+
 /// 0.5 at kRoom from the nearest limit, 1 on it.
 double PathLayers::limit_tightness(const JointVec& q) const {
   double worst = 0;
@@ -133,7 +177,7 @@ double PathLayers::limit_tightness(const JointVec& q) const {
 /// None where the configuration is refused.
 std::optional<PathLayers::Room> PathLayers::room(const JointVec& q) const {
   if (ik_.options().valid && !ik_.options().valid(as_span(q))) return std::nullopt;
-  Room out{.tightness = std::max(0.0, 1 - smallest_singular_value(q) / (2 * kSingular))};
+  Room out{.tightness = singular_tightness(q)};
   if (options_.clearance) {
     out.clearance = options_.clearance(as_span(q)).distance;
     if (!(out.clearance >= 0)) return std::nullopt;
@@ -233,7 +277,7 @@ Layer PathLayers::join(const Pose& X_WT, const Layer& before, const JointVec& lo
     JointVec q;
     std::optional<Room> room;
     bool looked_at = false;
-    std::vector<std::size_t> nodes;  // its windings in the new layer
+    std::unordered_map<std::uint64_t, std::size_t> nodes;  // its windings in the new layer
   };
   Layer layer;
   std::vector<Branch> branches;
@@ -250,14 +294,11 @@ Layer PathLayers::join(const Pose& X_WT, const Layer& before, const JointVec& lo
       branch.looked_at = true;
       if (!branch.room) continue;
       const TrackRank rank = extended(before[i], *q, *branch.room, longest);
-      const auto known = std::find_if(branch.nodes.begin(), branch.nodes.end(), [&](std::size_t k) {
-        return largest(layer[k].q - *q) < kSame;
-      });
-      if (known == branch.nodes.end()) {
-        branch.nodes.push_back(layer.size());
+      const auto [known, is_new] = branch.nodes.try_emplace(winding(*q, branch.q), layer.size());
+      if (is_new) {
         layer.push_back({*q, static_cast<int>(i), rank});
-      } else if (rank < layer[*known].rank) {
-        layer[*known] = {*q, static_cast<int>(i), rank};
+      } else if (rank < layer[known->second].rank) {
+        layer[known->second] = {*q, static_cast<int>(i), rank};
       }
     }
   }

@@ -30,6 +30,9 @@ struct TrackNode {
 /// The answers to one pose that tracks lead to, best first.
 using Layer = std::vector<TrackNode>;
 
+/// The same arm with joints that turn as far as they like.
+[[nodiscard]] Arm without_limits(Arm arm);
+
 /// Makes the answers to each pose out of those to the pose before.
 class PathLayers {
  public:
@@ -60,6 +63,8 @@ class PathLayers {
   /// Longest step of each joint from pose to pose.
   [[nodiscard]] JointVec longest_step(const Pose& X_before, const Pose& X_WT) const;
   [[nodiscard]] double smallest_singular_value(const JointVec& q) const;
+  /// `q` is within the limits, and as far from them as a track of that tightness is.
+  [[nodiscard]] bool fits(const JointVec& q, double tightness) const;
 
  private:
   [[nodiscard]] std::vector<Pose> allowed(const Pose& X_WT) const;
@@ -68,6 +73,7 @@ class PathLayers {
   [[nodiscard]] std::vector<JointVec> aside(const JointVec& q) const;
   [[nodiscard]] std::optional<Room> room(const JointVec& q) const;
   [[nodiscard]] double limit_tightness(const JointVec& q) const;
+  [[nodiscard]] double singular_tightness(const JointVec& q) const;
   [[nodiscard]] double posture_cost(const JointVec& q, const Room& room, double start) const;
   [[nodiscard]] TrackRank extended(const TrackNode& node, const JointVec& q, const Room& room,
                                    const JointVec& longest) const;

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "mjarm/path/track_search_internal.hpp"
@@ -6,6 +8,8 @@ namespace mjarm::detail {
 namespace {
 
 constexpr std::size_t kSegment = 512;  // layers that are kept at a time
+constexpr std::size_t kMore =
+    8;  // times as many answers to the first pose where fewer are not enough
 
 /// Where a segment of layers begins.
 struct Checkpoint {
@@ -24,20 +28,18 @@ int walk_back(std::span<const Layer> layers, std::size_t at, int index, std::vec
   return index;
 }
 
-}  // namespace
-
-/// Only the layers of one segment are kept; to walk back through the ones before, each is made
-/// again from its first layer.
-Track find_track(const PathLayers& layers, std::span<const Pose> poses, const JointVec& q_start) {
+/// The best track from the answers to the first pose that are given. Only the layers of one segment
+/// are kept; to walk back through the ones before, each is made again from its first layer.
+Track track_from(const PathLayers& layers, std::span<const Pose> poses, Layer first) {
   Track track;
   const StopCheck& stop = layers.options().stop;
   std::vector<Checkpoint> checkpoints;
   std::vector<Layer> segment;
-  std::size_t at = 0;
+  segment.push_back(std::move(first));
+  std::size_t at = 1;
   for (; at < poses.size(); ++at) {
     if (is_stopped(stop)) return {.is_stopped = true};
-    Layer layer = at == 0 ? layers.first(poses[0], q_start)
-                          : layers.next(poses[at - 1], poses[at], segment.back());
+    Layer layer = layers.next(poses[at - 1], poses[at], segment.back());
     if (layer.empty()) break;
     if (segment.size() == kSegment) {
       checkpoints.push_back({at - kSegment, std::move(segment.front())});
@@ -45,7 +47,6 @@ Track find_track(const PathLayers& layers, std::span<const Pose> poses, const Jo
     }
     segment.push_back(std::move(layer));
   }
-  if (at == 0) return track;
   track.q.resize(at);
   track.last = segment.back();
   int index = walk_back(segment, at - segment.size(), 0, track.q);
@@ -60,6 +61,47 @@ Track find_track(const PathLayers& layers, std::span<const Pose> poses, const Jo
     index = walk_back(segment, from, index, track.q);
   }
   return track;
+}
+
+/// The best track as if joints had no limits, where it keeps them: no other can be better. Of an
+/// arm of six axes it takes one answer a branch, in place of as many as that has windings.
+std::optional<Track> track_without_limits(const PathLayers& layers, std::span<const Pose> poses,
+                                          const JointVec& q_start) {
+  const PathOptions& options = layers.options();
+  if (!layers.ik().six_axis() || options.keep_start || options.best_posture) return std::nullopt;
+  const IkSolver ik(without_limits(layers.ik().arm()), layers.ik().options());
+  const PathLayers free(ik, options);
+  Layer first = free.first(poses[0], q_start);
+  if (first.empty()) return std::nullopt;
+  Track track = track_from(free, poses, std::move(first));
+  if (track.is_stopped || track.q.size() < poses.size()) return std::nullopt;
+  const double tightness = track.last.front().rank.tightness;
+  const auto fits = [&](const JointVec& q) { return layers.fits(q, tightness); };
+  if (!std::ranges::all_of(track.q, fits)) return std::nullopt;
+  return track;
+}
+
+}  // namespace
+
+/// Tracks only get worse on their way: one that is better in the end than an answer to the first
+/// pose is better than all that begin there. So most of them need not be followed, as a rule all
+/// but the best.
+Track find_track(const PathLayers& layers, std::span<const Pose> poses, const JointVec& q_start) {
+  if (is_stopped(layers.options().stop)) return {.is_stopped = true};
+  const Layer first = layers.first(poses[0], q_start);
+  if (first.empty()) return {};
+  for (std::size_t count = 1;; count *= kMore) {
+    const bool all = count >= first.size();
+    Layer some(first.begin(),
+               all ? first.end() : first.begin() + static_cast<std::ptrdiff_t>(count));
+    Track track = track_from(layers, poses, std::move(some));
+    const bool whole = track.q.size() == poses.size();
+    if (all || track.is_stopped || (whole && track.last.front().rank < first[count].rank)) {
+      return track;
+    }
+    if (count > 1) continue;
+    if (auto free = track_without_limits(layers, poses, q_start)) return std::move(*free);
+  }
 }
 
 }  // namespace mjarm::detail

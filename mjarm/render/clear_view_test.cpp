@@ -121,7 +121,8 @@ TEST(ClearView, ATextIsSeenAsItIsRead) {
   const Model model = Model::from_mjcf(kHall).value();
   for (const double turn : {0.3, 2.0, -1.5}) {
     const Eigen::Vector3d right(std::cos(turn), std::sin(turn), 0), up(-right.y(), right.x(), 0);
-    ViewSubject subject{.right_W = right};
+    ViewSubject subject;
+    subject.right_W = right;
     subject.moments.resize(1);
     subject.balls = moving_parts(model, subject.moments);
     for (int i = 0; i < 40; ++i) {
