@@ -8,8 +8,6 @@ namespace mjarm::detail {
 namespace {
 
 constexpr std::size_t kSegment = 512;  // layers that are kept at a time
-constexpr std::size_t kMore =
-    8;  // times as many answers to the first pose where fewer are not enough
 
 /// Where a segment of layers begins.
 struct Checkpoint {
@@ -28,9 +26,16 @@ int walk_back(std::span<const Layer> layers, std::size_t at, int index, std::vec
   return index;
 }
 
-/// The best track from the answers to the first pose that are given. Only the layers of one segment
-/// are kept; to walk back through the ones before, each is made again from its first layer.
-Track track_from(const PathLayers& layers, std::span<const Pose> poses, Layer first) {
+/// The best track from the answers to the first pose that are given, of those better than `bound`
+/// where that is given. Only the layers of one segment are kept; to walk back through the ones
+/// before, each is made again from its first layer.
+Track track_from(const PathLayers& layers, std::span<const Pose> poses, Layer first,
+                 const std::optional<TrackRank>& bound) {
+  const auto next = [&](std::size_t at, const Layer& before) {
+    Layer layer = layers.next(poses[at - 1], poses[at], before);
+    if (bound) std::erase_if(layer, [&](const TrackNode& node) { return !(node.rank < *bound); });
+    return layer;
+  };
   Track track;
   const StopCheck& stop = layers.options().stop;
   std::vector<Checkpoint> checkpoints;
@@ -39,7 +44,7 @@ Track track_from(const PathLayers& layers, std::span<const Pose> poses, Layer fi
   std::size_t at = 1;
   for (; at < poses.size(); ++at) {
     if (is_stopped(stop)) return {.is_stopped = true};
-    Layer layer = layers.next(poses[at - 1], poses[at], segment.back());
+    Layer layer = next(at, segment.back());
     if (layer.empty()) break;
     if (segment.size() == kSegment) {
       checkpoints.push_back({at - kSegment, std::move(segment.front())});
@@ -55,8 +60,7 @@ Track track_from(const PathLayers& layers, std::span<const Pose> poses, Layer fi
     const std::size_t from = checkpoints.back().at;
     while (segment.size() < kSegment) {
       if (is_stopped(stop)) return {.is_stopped = true};
-      const std::size_t next = from + segment.size();
-      segment.push_back(layers.next(poses[next - 1], poses[next], segment.back()));
+      segment.push_back(next(from + segment.size(), segment.back()));
     }
     index = walk_back(segment, from, index, track.q);
   }
@@ -73,7 +77,7 @@ std::optional<Track> track_without_limits(const PathLayers& layers, std::span<co
   const PathLayers free(ik, options);
   Layer first = free.first(poses[0], q_start);
   if (first.empty()) return std::nullopt;
-  Track track = track_from(free, poses, std::move(first));
+  Track track = track_from(free, poses, std::move(first), {});
   if (track.is_stopped || track.q.size() < poses.size()) return std::nullopt;
   const double tightness = track.last.front().rank.tightness;
   const auto fits = [&](const JointVec& q) { return layers.fits(q, tightness); };
@@ -84,24 +88,19 @@ std::optional<Track> track_without_limits(const PathLayers& layers, std::span<co
 }  // namespace
 
 /// Tracks only get worse on their way: one that is better in the end than an answer to the first
-/// pose is better than all that begin there. So most of them need not be followed, as a rule all
-/// but the best.
+/// pose is better than all that begin there, and what is worse on the way need not be followed.
 Track find_track(const PathLayers& layers, std::span<const Pose> poses, const JointVec& q_start) {
   if (is_stopped(layers.options().stop)) return {.is_stopped = true};
-  const Layer first = layers.first(poses[0], q_start);
+  Layer first = layers.first(poses[0], q_start);
   if (first.empty()) return {};
-  for (std::size_t count = 1;; count *= kMore) {
-    const bool all = count >= first.size();
-    Layer some(first.begin(),
-               all ? first.end() : first.begin() + static_cast<std::ptrdiff_t>(count));
-    Track track = track_from(layers, poses, std::move(some));
-    const bool whole = track.q.size() == poses.size();
-    if (all || track.is_stopped || (whole && track.last.front().rank < first[count].rank)) {
-      return track;
-    }
-    if (count > 1) continue;
-    if (auto free = track_without_limits(layers, poses, q_start)) return std::move(*free);
-  }
+  Track known = track_from(layers, poses, {first.front()}, {});
+  const bool whole = known.q.size() == poses.size();
+  if (first.size() == 1 || known.is_stopped) return known;
+  if (whole && known.last.front().rank < first[1].rank) return known;
+  if (auto free = track_without_limits(layers, poses, q_start)) return std::move(*free);
+  if (!whole) return track_from(layers, poses, std::move(first), {});
+  Track better = track_from(layers, poses, std::move(first), known.last.front().rank);
+  return better.is_stopped || better.q.size() == poses.size() ? better : known;
 }
 
 }  // namespace mjarm::detail

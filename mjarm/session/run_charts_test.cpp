@@ -54,9 +54,10 @@ TEST(RunCharts, RunsAreNotJoined) {
 TEST(RunCharts, APenShowsItsInkAndItsForce) {
   Arm arm;
   arm.joints.resize(1);
-  arm.limits = JointLimits{JointVec::Constant(1, -1), JointVec::Constant(1, 1),
-                           JointVec::Constant(1, 1),  JointVec::Constant(1, 1),
-                           JointVec::Constant(1, 1),  JointVec::Constant(1, 1)};
+  JointLimits& limits = arm.limits;
+  for (JointVec* one : {&limits.lower, &limits.upper, &limits.velocity, &limits.torque}) {
+    *one = JointVec::Constant(1, 1);
+  }
   const MeasuredRun run;
   std::vector<InkPoint> ink;
   for (int i = 0; i < 200; ++i) {
@@ -73,7 +74,8 @@ TEST(RunCharts, APenShowsItsInkAndItsForce) {
   const auto panel = std::ranges::find(plot.panels, "force of the pen", &render::PlotPanel::title);
   ASSERT_NE(panel, plot.panels.end());
   const std::vector<double>& force = panel->lines.at(0).y;
-  EXPECT_EQ(std::ranges::count_if(force, [](double y) { return std::isnan(y); }), 1) << "two strokes";
+  EXPECT_EQ(std::ranges::count_if(force, [](double y) { return std::isnan(y); }), 1)
+      << "two strokes";
   EXPECT_DOUBLE_EQ(force.front(), 1);
   EXPECT_DOUBLE_EQ(force.back(), 1.199);
   // The sheet stands, so that it is seen from the front.
