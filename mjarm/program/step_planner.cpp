@@ -179,11 +179,22 @@ Attempt StepPlanner::detour_to(std::size_t i, const Stand& at, std::span<const J
     put(std::move(found->motion), attempt.moves.emplace_back(begun(i, at.scene)));
     std::ranges::move(found->after, std::back_inserter(attempt.moves));
     tool_moves(attempt);
-    if (!attempt.fault) return attempt;
+    if (!attempt.fault || (!best && is_closed(attempt))) return attempt;
     if (!best || attempt.next > best->next) best = std::move(attempt);
     goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(goal));
   }
   return std::move(*best);
+}
+
+/// Whether the way of the tool that ended `attempt` can be gone from no answer to its first pose:
+/// then those to an earlier pose need not be tried one by one.
+bool StepPlanner::is_closed(const Attempt& attempt) const {
+  const PlanFault& fault = *attempt.fault;
+  if (!fault.way || is_stopped(options_.stop)) return false;
+  ClosedWay way = *fault.way;
+  way.options.path.keep_start = false;
+  return !solve_curve(tool(fault.step, attempt.at)->ik, way.curve, as_span(way.q_start),
+                      way.options);
 }
 
 /// Along a whole curve, from the answer to its first pose from which it and the tool moves that

@@ -85,6 +85,7 @@ class StepPlanner {
   [[nodiscard]] Attempt tool_move(std::size_t i, const Stand& at);
   [[nodiscard]] Attempt detour(std::size_t i, const Stand& at);
   [[nodiscard]] Attempt detour_to(std::size_t i, const Stand& at, std::span<const JointVec> to);
+  [[nodiscard]] bool is_closed(const Attempt& attempt) const;
   void tool_moves(Attempt& attempt);
   void await(Attempt& attempt, std::size_t left);
   [[nodiscard]] std::optional<PlanFault> joint_move(std::size_t i, const Stand& at,
