@@ -348,6 +348,7 @@ TEST(ProgramPlan, StopsAtTheFirstFaultWhereThatIsEnough) {
                           {MoveL{.goal = down(0, -0.95)}},
                           {MoveL{.goal = down(0.1, -0.45)}},
                           {MoveL{.goal = down(0, -2)}}};
+  for (int i = 0; i < 4; ++i) program.instructions[static_cast<std::size_t>(i)].place.line = i + 1;
   const ProgramPlan all = plan_of(program);
   ASSERT_EQ(all.faults.size(), 2U) << faults_of(all);
   EXPECT_TRUE(all.faults[0].fix.has_value()) << faults_of(all);
