@@ -338,12 +338,11 @@ TEST(ProgramPlan, GoesOnAfterAFault) {
   EXPECT_THAT(all, HasSubstr("9 not_available"));
 }
 
-/// Who only asks whether all of it can be done need not wait for the rest, nor for what would mend it.
+/// Who only asks whether all of it can be done need not wait for the rest, nor for what would mend
+/// it.
 TEST(ProgramPlan, StopsAtTheFirstFaultWhereThatIsEnough) {
   Program program;
-  const auto down = [](double x, double y) {
-    return ProgramPose{.X_FT = {{x, y, 0.4}, kDown}};
-  };
+  const auto down = [](double x, double y) { return ProgramPose{.X_FT = {{x, y, 0.4}, kDown}}; };
   program.instructions = {{MoveJ{.goal = down(0, -0.45)}},
                           {MoveL{.goal = down(0, -0.95)}},
                           {MoveL{.goal = down(0.1, -0.45)}},
