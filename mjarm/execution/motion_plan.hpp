@@ -62,10 +62,10 @@ struct PlannedMove {
   bool passes = false;                   ///< ends moving, as the next one begins: no stop
   std::optional<ToolPress> press = {};   ///< needs tool_impedance and a force sensor
   std::optional<Eigen::Vector3d> right_W = {};  ///< of a text: the way it is read, a unit vector
-  std::optional<bool> close = {};        ///< the gripper closes or opens at its beginning
-  std::vector<AttachedBody> attached = {};    ///< to the first arm's tool, at its end
-  std::vector<SpeedDip> dips = {};            ///< where the tool is slower than asked
-  std::optional<MoveMeasures> measures = {};  ///< none for rests
+  std::optional<bool> close = {};               ///< the gripper closes or opens at its beginning
+  std::vector<AttachedBody> attached = {};      ///< to the first arm's tool, at its end
+  std::vector<SpeedDip> dips = {};              ///< where the tool is slower than asked
+  std::optional<MoveMeasures> measures = {};    ///< none for rests
 
   [[nodiscard]] bool is_approach() const { return word == "approach"; }
 };

@@ -33,13 +33,13 @@ struct Step {
   Branch branch = {};               ///< pose, curve, plan: of the answer that is chosen
   /// pose, curve, plan: nobody gave joint values from which the nearest answer would be meant.
   bool is_free = false;
-  std::optional<ToolPress> press = {};   ///< curve
+  std::optional<ToolPress> press = {};          ///< curve
   std::optional<Eigen::Vector3d> right_W = {};  ///< of a text: the way it is read
-  double seconds = 0;                    ///< wait
-  std::optional<double> clearance = {};  ///< [m] plan: what is asked
-  bool close = false;                    ///< grip
-  std::string object = {};               ///< pick; look: the camera
-  bool any_turn = false;                 ///< place; its X_WT is that of the object's body
+  double seconds = 0;                           ///< wait
+  std::optional<double> clearance = {};         ///< [m] plan: what is asked
+  bool close = false;                           ///< grip
+  std::string object = {};                      ///< pick; look: the camera
+  bool any_turn = false;                        ///< place; its X_WT is that of the object's body
 };
 
 struct Steps {

@@ -15,10 +15,10 @@ using Eigen::Vector3d;
 constexpr mjtByte kShownGroups[mjNGROUP] = {1, 1, 1, 0, 0, 0};
 constexpr int kHeadings = 24;
 constexpr double kElevations[] = {-0.22, -0.45, -0.85};  // [rad] the last one on what is read
-constexpr std::size_t kMaxMarks = 80;             // that are looked for
-constexpr double kLevel = 0.3;                    // what is read lies at least so much across
-constexpr double kReading = 2;                    // how much half a turn from there costs
-constexpr double kTouching = 0.012;               // [m] in front of a mark does not hide it
+constexpr std::size_t kMaxMarks = 80;                    // that are looked for
+constexpr double kLevel = 0.3;       // what is read lies at least so much across
+constexpr double kReading = 2;       // how much half a turn from there costs
+constexpr double kTouching = 0.012;  // [m] in front of a mark does not hide it
 
 /// The places of a model's parts in some state.
 class Standing {

@@ -141,17 +141,16 @@ render::PlotPanel ink_panel(const Ink& ink) {
 render::PlotPanel ink_error_panel(const Ink& ink) {
   render::PlotPanel panel = over_time(msg::run_chart_ink_error, "mm");
   panel.y_from_zero = true;
-  panel.lines.push_back(
-      {.x = ink_times(ink),
-       .y = ink_column(ink, [](const InkPoint& point) { return 1e3 * point.off; })});
+  panel.lines.push_back({.x = ink_times(ink), .y = ink_column(ink, [](const InkPoint& point) {
+                                                return 1e3 * point.off;
+                                              })});
   return panel;
 }
 
 render::PlotPanel force_panel(const Ink& ink) {
   render::PlotPanel panel = over_time(msg::run_chart_force, "N");
-  panel.lines.push_back({.x = ink_times(ink), .y = ink_column(ink, [](const InkPoint& point) {
-                           return point.force;
-                         })});
+  panel.lines.push_back({.x = ink_times(ink),
+                         .y = ink_column(ink, [](const InkPoint& point) { return point.force; })});
   return panel;
 }
 

@@ -28,8 +28,8 @@ struct RunRecord {
 };
 
 /// The page of motion_plot() with what its report says of the path at the foot. Of a tool that
-/// pressed it shows the ink, how far that is off the strokes and the force, in the place of the path
-/// and its errors.
+/// pressed it shows the ink, how far that is off the strokes and the force, in the place of the
+/// path and its errors.
 /// @param name, control  that the report gets, or has.
 [[nodiscard]] render::Plot run_plot(const std::string& name, const std::string& control,
                                     const Report& report, const Arm& arm, const RunRecord& record,

@@ -43,8 +43,7 @@ Result<std::unique_ptr<BoundRun>> BoundRun::execute(program::LoadedProgram loade
 
 render::Plot BoundRun::plot() const {
   return session::run_plot(report_.name, report_.control, report_, loaded_.robot.arm,
-                           {measured_, run_.ink()},
-                           choice_.tolerance);
+                           {measured_, run_.ink()}, choice_.tolerance);
 }
 
 render::Overlay BoundRun::overlay() const {
