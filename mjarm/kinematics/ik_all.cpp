@@ -18,7 +18,7 @@ double distance(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs(
 /// Collects the distinct ones of what is given to it.
 class Answers {
  public:
-  Answers(double same, IkSolution first) : same_(same), list_{std::move(first)} {}
+  explicit Answers(double same) : same_(same) {}
 
   [[nodiscard]] bool knows(const JointVec& q) const {
     return std::any_of(list_.begin(), list_.end(),
@@ -99,17 +99,24 @@ void sort_by_distance(std::vector<IkSolution>& answers, const JointVec& q_seed) 
 Result<std::vector<IkSolution>, IkFailure> solve_all(const IkSolver& ik, const Pose& X_WT,
                                                      std::span<const double> q_seed,
                                                      const IkAllOptions& options) {
-  const auto first = ik.solve(X_WT, q_seed);
-  if (!first) return fail(first.error());
   IkGoal goal;
-  if (!detail::check_goal(ik.chain(), ik.options(), X_WT, q_seed, goal)) return fail(IkFailure{});
-  Answers answers(options.same, *first);
-  if (ik.six_axis()) {
-    add_branches(*ik.six_axis(), ik, goal, answers);
-  } else if (ik.seven_axis()) {
-    add_branches(*ik.seven_axis(), ik, goal, answers);
-  } else {
-    add_samples(ik, goal, options.starts, answers);
+  const bool sane = detail::check_goal(ik.chain(), ik.options(), X_WT, q_seed, goal);
+  Answers answers(options.same);
+  if (sane && ik.general_six()) {
+    if (ik.six_axis()) add_branches(*ik.six_axis(), ik, goal, answers);
+    add_branches(*ik.general_six(), ik, goal, answers);
+  }
+  if (answers.list().empty()) {
+    const auto first = ik.solve(X_WT, q_seed);
+    if (!first) return fail(first.error());
+    answers.add(*first);
+    if (ik.six_axis()) {
+      add_branches(*ik.six_axis(), ik, goal, answers);
+    } else if (ik.seven_axis()) {
+      add_branches(*ik.seven_axis(), ik, goal, answers);
+    } else {
+      add_samples(ik, goal, options.starts, answers);
+    }
   }
   std::vector<IkSolution> list = std::move(answers.list());
   const auto max = static_cast<std::size_t>(std::max(options.max, 1));
