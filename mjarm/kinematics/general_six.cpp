@@ -16,23 +16,41 @@ namespace {
 constexpr double kTouch = 1e-12;     // of the largest determinant: least rounding
 constexpr double kNoises = 10;       // noise of the series by which an extremum may miss 0
 constexpr double kLowNoise = 1e-12;  // with less, one order of the columns is enough
-constexpr double kClose = 0.01;      // [rad] roots so near to each other are taken as a pair, too
-constexpr double kMet = 1e-5;      // error of what Newton's steps, still under way, will make exact
+constexpr double kClose = 0.003;     // [rad] roots so near to each other are taken as a pair, too
+constexpr double kMet = 1e-8;      // error of what Newton's steps, still under way, will make exact
 constexpr double kSameRow = 1e-6;  // [rad] of all joints: found twice
 
 using Roots = TrigSeries::Root[TrigSeries::kMaxRoots];
 
-/// The roots of a series; between two that are close, one more that stands for both.
-int roots_and_pairs(const TrigSeries& series, Roots& out) noexcept {
-  const int found = series.roots(std::max(kTouch, kNoises * series.noise), out);
-  int count = found;
-  for (int i = 0; i < found && count < TrigSeries::kMaxRoots; ++i) {
-    const int next = (i + 1) % found;
-    const double gap = out[next].x - out[i].x + (next == 0 ? kFullTurn : 0);
-    if (gap < kClose) out[count++] = {out[i].x + 0.5 * gap, 0.5 * gap};
+/// True where roots that may be two lie so close that there may be more than four.
+bool is_crowded(const Roots& roots, int count) noexcept {
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < i; ++k) {
+      const double reach = roots[i].spread + roots[k].spread;
+      if (roots[i].spread == 0 || roots[k].spread == 0) continue;
+      if (std::abs(roots[i].x - roots[k].x) <= reach) return true;
+    }
   }
-  return count;
+  return false;
 }
+
+/// The roots of a series; between two that are close, one more that stands for both.
+struct RootsAndPairs {
+  Roots roots;
+  int count = 0;
+  bool crowded = false;
+
+  explicit RootsAndPairs(const TrigSeries& series) noexcept {
+    const int found = series.roots(std::max(kTouch, kNoises * series.noise), roots);
+    crowded = is_crowded(roots, found);
+    count = found;
+    for (int i = 0; i < found && count < TrigSeries::kMaxRoots; ++i) {
+      const int next = (i + 1) % found;
+      const double gap = roots[next].x - roots[i].x + (next == 0 ? kFullTurn : 0);
+      if (gap < kClose) roots[count++] = {roots[i].x + 0.5 * gap, 0.5 * gap};
+    }
+  }
+};
 
 bool same_row(const double* a, const double* b) noexcept {
   bool same = true;
@@ -52,20 +70,21 @@ class BranchBlocks {
   }
 
   void run() noexcept {
-    Roots roots;
-    const int count = roots_and_pairs(determinant_series(g_, equations_, X_WT_), roots);
-    for (int i = 0; i < count; ++i) {
-      if (roots[i].spread == 0) add(roots[i].x, false);
+    const RootsAndPairs all(determinant_series(g_, equations_, X_WT_));
+    for (int i = 0; i < all.count; ++i) {
+      if (all.roots[i].spread == 0) add(all.roots[i].x, false);
     }
     flush(false);
-    for (int i = 0; i < count; ++i) {
-      if (roots[i].spread == 0) continue;
+    for (int i = 0; i < all.count; ++i) {
+      const TrigSeries::Root& root = all.roots[i];
+      if (root.spread == 0) continue;
       for (const double side : {-1.0, -0.3, 0.3, 1.0}) {
-        add(roots[i].x + side * roots[i].spread, true);
-        add(roots[i].x + side * roots[i].spread, true);
+        add(root.x + side * root.spread, true);
+        add(root.x + side * root.spread, true);
       }
     }
     flush(true);
+    out_.complete = !all.crowded;
   }
 
  private:

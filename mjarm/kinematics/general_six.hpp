@@ -67,8 +67,9 @@ class GeneralSix {
   explicit GeneralSix(detail::GeneralGeometry geometry, bool reversed)
       : geometry_(std::move(geometry)), reversed_(reversed) {}
 
-  /// Appends the branches that reach the pose, limits left aside. Of answers that form a
-  /// continuous family (a joint is free) it finds few or none. Never allocates.
+  /// Appends the branches that reach the pose, limits left aside. `out.complete` is false where
+  /// three or more have nearly the same value of joint 4, so that one may be missing. Of answers
+  /// that form a continuous family (a joint is free) it finds few or none. Never allocates.
   void branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept;
 
   detail::GeneralGeometry geometry_;

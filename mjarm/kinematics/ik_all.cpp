@@ -34,8 +34,9 @@ class Answers {
   std::vector<IkSolution> list_;
 };
 
+/// False where the form may have missed one.
 template <class Form>
-void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answers& answers) {
+bool add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answers& answers) {
   const IkOptions& options = ik.options();
   detail::Branches branches;
   detail::BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
@@ -43,6 +44,7 @@ void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answ
   detail::ClosedForm::branches(form, query, branches);
   detail::BranchChoice(ik, goal).each(branches,
                                       [&](const IkSolution& solution) { answers.add(solution); });
+  return branches.complete;
 }
 
 void add_samples(const IkSolver& ik, const IkGoal& goal, int starts, Answers& answers) {
@@ -104,7 +106,9 @@ Result<std::vector<IkSolution>, IkFailure> solve_all(const IkSolver& ik, const P
   Answers answers(options.same);
   if (sane && ik.general_six()) {
     if (ik.six_axis()) add_branches(*ik.six_axis(), ik, goal, answers);
-    add_branches(*ik.general_six(), ik, goal, answers);
+    if (!add_branches(*ik.general_six(), ik, goal, answers)) {
+      add_samples(ik, goal, options.starts, answers);
+    }
   }
   if (answers.list().empty()) {
     const auto first = ik.solve(X_WT, q_seed);

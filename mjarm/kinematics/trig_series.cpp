@@ -14,7 +14,6 @@ constexpr int kTerms = 2 * TrigSeries::kDegree + 1;
 constexpr double kFirstSample = 0.1;  // [rad]
 constexpr int kHalvings = 8;          // of a cell, at most
 constexpr double kMissed = 0.05;      // share of f that a cubic may miss in the middle of a cell
-constexpr double kRounding = 1e-13;   // of the largest value: where f is less, no cell is halved
 constexpr int kMostSteps = 60;
 constexpr double kSameRoot = 1e-12;  // [rad]
 
@@ -75,16 +74,15 @@ class RootScan {
   RootScan(const TrigSeries& series, double least, TrigSeries::Root* out) noexcept
       : series_(series), least_(least), out_(out) {}
 
-  /// In halves, as often as it takes.
+  /// In halves, as often as it takes. What is too small for that may hide anything.
   void hard_cell(const GraphPoint& a, const GraphPoint& b, int halvings) noexcept {
-    const double rounding = kRounding * series_.largest;
-    if (halvings > 0 && std::max(std::abs(a.f), std::abs(b.f)) > rounding) {
-      const GraphPoint middle = point(0.5 * (a.x + b.x));
-      if (may_hide(a, b, std::abs(middle.f - middle_of_cubic(a, b)))) {
-        hard_cell(a, middle, halvings - 1);
-        hard_cell(middle, b, halvings - 1);
-        return;
-      }
+    const GraphPoint middle = point(0.5 * (a.x + b.x));
+    if (std::max(std::abs(a.f), std::abs(b.f)) <= least_) {
+      add({middle.x, 0.5 * (b.x - a.x)});
+    } else if (halvings > 0 && may_hide(a, b, std::abs(middle.f - middle_of_cubic(a, b)))) {
+      hard_cell(a, middle, halvings - 1);
+      hard_cell(middle, b, halvings - 1);
+      return;
     }
     plain_cell(a, b);
   }

@@ -46,10 +46,12 @@ std::vector<TrigSeries::Root> roots_of(const TrigSeries& series, double touch) {
   return {found, found + count};
 }
 
-/// How many of the roots have none of those found within `far`.
+/// How many of the roots have none of those found within `far` or its spread.
 int lost(const Factors& factors, const std::vector<TrigSeries::Root>& found, double far) {
   return static_cast<int>(std::ranges::count_if(factors.roots, [&](double root) {
-    return std::ranges::none_of(found, [&](const auto& one) { return off(one.x, root) <= far; });
+    return std::ranges::none_of(found, [&](const auto& one) {
+      return off(one.x, root) <= std::max(far, 1.01 * one.spread);
+    });
   }));
 }
 
