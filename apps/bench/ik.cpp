@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/bench/ik_all.hpp"
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
 #include "apps/bench/robots.hpp"
@@ -80,7 +81,8 @@ Result<int> judge_and_describe(const IkProblem& problem, IkRun& run) {
 Command ik_suite() {
   return {"ik", msg::bench_ik_summary, msg::bench_ik_examples, [](CLI::App& app) {
             return setup_robots(app, msg::bench_ik_option_data, true, {msg::bench_ik_right},
-                                measure_ik);
+                                measure_ik,
+                                {msg::bench_ik_option_all, ik_all_columns(), measure_ik_all});
           }};
 }
 

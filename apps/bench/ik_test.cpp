@@ -92,6 +92,29 @@ TEST(BenchIk, RunsPeersAndJudgesThemToo) {
   EXPECT_GT(good.at("ratio").get<double>(), 0);
 }
 
+/// At each of the two poses there is one branch, as tool and joints lie in a plane.
+TEST(BenchIk, CountsBranchesBesidePeers) {
+  const support::TempFolder folder;
+  const std::string data = write_ik_data(folder);
+  const std::string venv = write_peers(folder, R"(
+{"who":"half","version":"1","set":"branches","timed":"python","us":[5,7],"q":[[[0,1.5707963],[1,1]],[]]}
+)");
+  const json bench = bench_json(
+      bench_arm("ik", data, {"--all", "--tip", "tool", "--peers", venv, "--rounds", "1"}));
+  for (const char* who : {"mjarm", "mjarm search", "mjarm 10000 starts"}) {
+    const json& run = run_of(bench, who, "branches");
+    EXPECT_EQ(run.at("poses"), 2) << who;
+    EXPECT_EQ(run.at("found"), 2) << who;
+    EXPECT_EQ(run.at("known"), 2) << who;
+    EXPECT_EQ(run.at("missed"), 0) << who;
+    EXPECT_GT(run.at("us").at("median").get<double>(), 0) << who;
+  }
+  const json& half = run_of(bench, "half", "branches");
+  EXPECT_EQ(half.at("found"), 1);
+  EXPECT_EQ(half.at("missed"), 1);
+  EXPECT_EQ(half.at("false_ok"), 1);
+}
+
 TEST(BenchIk, SaysWhatIsWrong) {
   const support::TempFolder folder;
   const std::string data = write_ik_data(folder);

@@ -159,7 +159,8 @@ Result<int> run_robots(const BenchOptions& options, const std::vector<Msg>& colu
   if (Result<void> there = check_peers(options.peers); !there) return fail(there.error());
   Result<AnswerOutput> output = AnswerOutput::open(options.out, options.replace);
   if (!output) return fail(std::move(output.error()));
-  std::vector<std::string> robots{"ur5e", "panda"};
+  std::vector<std::string> robots{"ur5e"};
+  if (!options.all) robots.emplace_back("panda");
   if (!options.robot.empty()) robots = {options.robot};
   std::vector<BenchResult> results;
   for (const std::string& robot : robots) {
@@ -214,7 +215,7 @@ Result<int> report_in_folder(const ReportOptions& options, const std::vector<Ben
 }
 
 Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> columns,
-                 BenchRobot measure) {
+                 BenchRobot measure, BenchAll all) {
   auto options = std::make_shared<BenchOptions>();
   add_option(app, "--robot", options->robot, msg::bench_option_robot, "ROBOT");
   add_option(app, "--data", options->data, data_help, "DIR");
@@ -224,7 +225,11 @@ Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> colum
   add_overwrite_option(app, options->replace);
   add_report_options(app, *options);
   if (tool) add_option(app, "--tip", options->tip, msg::app_option_tip, "FRAME");
-  return [=, columns = std::move(columns)] { return run_robots(*options, columns, measure); };
+  if (all.measure != nullptr) add_flag(app, "--all", options->all, all.help);
+  return [=, columns = std::move(columns), all = std::move(all)] {
+    return options->all ? run_robots(*options, all.columns, all.measure)
+                        : run_robots(*options, columns, measure);
+  };
 }
 
 bool wants_peers(const std::string& peers, const std::string& robot) {

@@ -84,18 +84,26 @@ void add_report_options(CLI::App& app, ReportOptions& options);
 /// What suites that measure robots beside peers can be told.
 struct BenchOptions : ReportOptions {
   std::string robot, tip, data, peers, rounds = "5", out;
+  bool all = false;
   Replace replace;
 };
 /// Measures one robot, given by name or file, in so many rounds.
 using BenchRobot = Result<BenchResult> (*)(const BenchOptions& options, const std::string& robot,
                                            int rounds);
+/// What else a suite measures where `--all` is given.
+struct BenchAll {
+  Msg help;
+  std::vector<Msg> columns;
+  BenchRobot measure = nullptr;  ///< null: there is no such option
+};
 /// Adds the options to such a suite's command.
 /// @param data_help  what `--data` holds.
 /// @param tool       whether it asks for the pose of a tool.
+/// @param all        what `--all` measures instead, of the UR5e where no robot is named.
 /// @return measures each robot, writes the table or the JSON document; fails where an answer of
 /// mjarm is wrong, or with what `measure` fails.
 [[nodiscard]] Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> columns,
-                               BenchRobot measure);
+                               BenchRobot measure, BenchAll all = {});
 
 /// True where peers are to run on this robot; says so.
 [[nodiscard]] bool wants_peers(const std::string& peers, const std::string& robot);

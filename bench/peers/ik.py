@@ -80,9 +80,7 @@ def eaik(job):
     return lambda case: (matrix(case) @ to_tip,), robot._robot.calculate_IK, pick
 
 
-def ssik(job):
-    import numpy as np
-
+def ssik_module(job):
     # Its build tool writes a module for the arm, which calls compiled code.
     path = os.path.join(job["folder"], "peer_arm_ik.py")
     command = [os.path.join(os.path.dirname(sys.executable), "ssik"), "build", job["urdf"], "--no-validate"]
@@ -91,8 +89,16 @@ def ssik(job):
     sys.path.insert(0, job["folder"])
     import peer_arm_ik
 
+    return peer_arm_ik
+
+
+def ssik(job):
+    import numpy as np
+
+    module = ssik_module(job)
+
     def call(target, seed):
-        return peer_arm_ik.solve(target, max_solutions=1, q_seed=seed, enumerate_windings=False)
+        return module.solve(target, max_solutions=1, q_seed=seed, enumerate_windings=False)
 
     return lambda case: (matrix(case), np.array(case["seed"])), call, lambda found: found[0].q if found else None
 

@@ -12,6 +12,7 @@
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/kinematics/chain.hpp"
+#include "mjarm/kinematics/general_six.hpp"
 #include "mjarm/kinematics/link_chain.hpp"
 #include "mjarm/kinematics/reach.hpp"
 #include "mjarm/kinematics/seven_axis.hpp"
@@ -118,6 +119,8 @@ class IkSolver {
   [[nodiscard]] const std::optional<SixAxis>& six_axis() const noexcept { return six_; }
   /// The same of seven axes.
   [[nodiscard]] const std::optional<SevenAxis>& seven_axis() const noexcept { return seven_; }
+  /// What finds all branches of six hinges where no closed form does exactly (solve_all()).
+  [[nodiscard]] const std::optional<GeneralSix>& general_six() const noexcept { return general_; }
   /// [m] position error that weighs as much as 1 rad in the numeric search.
   [[nodiscard]] double length() const noexcept { return length_; }
 
@@ -129,6 +132,7 @@ class IkSolver {
   Reach reach_;
   std::optional<SixAxis> six_;
   std::optional<SevenAxis> seven_;
+  std::optional<GeneralSix> general_;
   double length_ = 1;
 };
 

@@ -18,7 +18,7 @@ double distance(const JointVec& a, const JointVec& b) { return (a - b).cwiseAbs(
 /// Collects the distinct ones of what is given to it.
 class Answers {
  public:
-  Answers(double same, IkSolution first) : same_(same), list_{std::move(first)} {}
+  explicit Answers(double same) : same_(same) {}
 
   [[nodiscard]] bool knows(const JointVec& q) const {
     return std::any_of(list_.begin(), list_.end(),
@@ -34,8 +34,9 @@ class Answers {
   std::vector<IkSolution> list_;
 };
 
+/// False where the form may have missed one.
 template <class Form>
-void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answers& answers) {
+bool add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answers& answers) {
   const IkOptions& options = ik.options();
   detail::Branches branches;
   detail::BranchQuery query{goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol};
@@ -43,6 +44,7 @@ void add_branches(const Form& form, const IkSolver& ik, const IkGoal& goal, Answ
   detail::ClosedForm::branches(form, query, branches);
   detail::BranchChoice(ik, goal).each(branches,
                                       [&](const IkSolution& solution) { answers.add(solution); });
+  return branches.complete;
 }
 
 void add_samples(const IkSolver& ik, const IkGoal& goal, int starts, Answers& answers) {
@@ -99,17 +101,26 @@ void sort_by_distance(std::vector<IkSolution>& answers, const JointVec& q_seed) 
 Result<std::vector<IkSolution>, IkFailure> solve_all(const IkSolver& ik, const Pose& X_WT,
                                                      std::span<const double> q_seed,
                                                      const IkAllOptions& options) {
-  const auto first = ik.solve(X_WT, q_seed);
-  if (!first) return fail(first.error());
   IkGoal goal;
-  if (!detail::check_goal(ik.chain(), ik.options(), X_WT, q_seed, goal)) return fail(IkFailure{});
-  Answers answers(options.same, *first);
-  if (ik.six_axis()) {
-    add_branches(*ik.six_axis(), ik, goal, answers);
-  } else if (ik.seven_axis()) {
-    add_branches(*ik.seven_axis(), ik, goal, answers);
-  } else {
-    add_samples(ik, goal, options.starts, answers);
+  const bool sane = detail::check_goal(ik.chain(), ik.options(), X_WT, q_seed, goal);
+  Answers answers(options.same);
+  if (sane && ik.general_six()) {
+    if (ik.six_axis()) add_branches(*ik.six_axis(), ik, goal, answers);
+    if (!add_branches(*ik.general_six(), ik, goal, answers)) {
+      add_samples(ik, goal, options.starts, answers);
+    }
+  }
+  if (answers.list().empty()) {
+    const auto first = ik.solve(X_WT, q_seed);
+    if (!first) return fail(first.error());
+    answers.add(*first);
+    if (ik.six_axis()) {
+      add_branches(*ik.six_axis(), ik, goal, answers);
+    } else if (ik.seven_axis()) {
+      add_branches(*ik.seven_axis(), ik, goal, answers);
+    } else {
+      add_samples(ik, goal, options.starts, answers);
+    }
   }
   std::vector<IkSolution> list = std::move(answers.list());
   const auto max = static_cast<std::size_t>(std::max(options.max, 1));
