@@ -30,7 +30,6 @@
 #include "mjarm/path/curve.hpp"
 #include "mjarm/path/ellipse.hpp"
 #include "mjarm/path/solve_path.hpp"
-#include "mjarm/render/plot.hpp"
 #include "mjarm/sim/sim.hpp"
 
 namespace mjarm::app {
@@ -313,30 +312,12 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
       {"model", robot.model.name()}, {"rest", std::move(rest_docs)}, {"laps", std::move(lap_docs)}};
 }
 
-constexpr int kMaxWorlds = 10'000, kMaxSeed = 1'000'000;
-
 struct ControlWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
-  std::string poses = "100", characters = "100", worlds = "20", seed = "1", plot;
+  std::string poses = "100", characters = "100";
   bool robust = false;
+  RobustWords wrong;
 };
-
-Result<int> run_robust(const ControlWords& options, const Robot& robot) {
-  const Result<int> worlds = parse_count("--worlds", options.worlds, kMaxWorlds);
-  if (!worlds) return fail(worlds.error());
-  const Result<int> seed = parse_count("--seed", options.seed, kMaxSeed);
-  if (!seed) return fail(seed.error());
-  const auto runs = drive_wrong_worlds(robot, *worlds, *seed);
-  if (!runs) return fail(runs.error());
-  const std::string table = (options.no_timing ? "" : bench_occasion() + "\n\n") +
-                            std::string(robot.model.name()) + "\n\n" + robust_table(*runs);
-  const JsonDoc doc{{"model", robot.model.name()}, {"robust", robust_docs(*runs)}};
-  std::fputs((options.json ? doc.document() : table).c_str(), stdout);
-  if (options.plot.empty()) return 0;
-  const auto saved = render::save_plot(robust_plot(*runs), options.plot);
-  if (!saved) return fail(saved.error());
-  return 0;
-}
 
 Result<int> run_control(const ControlWords& options) {
   constexpr int kMaxPoses = 100'000;
@@ -346,7 +327,7 @@ Result<int> run_control(const ControlWords& options) {
   if (!characters) return fail(characters.error());
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
-  if (options.robust) return run_robust(options, *robot);
+  if (options.robust) return run_robust(options, options.wrong, *robot);
   std::vector<LapRun> runs = laps();
   const int written = *characters * sheet_count();
   Progress progress(text(msg::control_suite_progress),
@@ -392,9 +373,7 @@ Command control_suite() {
             add_option(app, "--characters", options->characters,
                        msg::control_suite_option_characters, "N");
             add_flag(app, "--robust", options->robust, msg::control_suite_option_robust);
-            add_option(app, "--worlds", options->worlds, msg::control_suite_option_worlds, "N");
-            add_option(app, "--seed", options->seed, msg::control_suite_option_seed, "N");
-            add_option(app, "--plot", options->plot, msg::control_suite_option_plot, "STEM");
+            add_robust_options(app, options->wrong);
             add_report_options(app, *options);
             return [options] { return run_control(*options); };
           }};

@@ -3,16 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/robust_clearance.hpp"
+#include "apps/bench/robust_lap.hpp"
+#include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/table.hpp"
+#include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/program.hpp"
+#include "mjarm/render/plot.hpp"
 
 namespace mjarm::app {
 namespace {
 
 constexpr int kLateSteps = 2;  // 4 ms of the shipped robots
+constexpr int kMaxWorlds = 10'000, kMaxSeed = 1'000'000;
+constexpr double kClearance = 0.003;  // [m] of the plan that is driven in wrong worlds
+
+/// One way of control in wrong worlds.
+struct RobustRun {
+  std::string name;
+  ControlMode mode = ControlMode::computed_torque;
+  ControlOptions control = {};
+  std::vector<RobustWorld> worlds = {};
+  double timestep = 0;  ///< [s] of control
+};
 
 /// The gains with an integral are as high as the delay allows.
 std::vector<RobustRun> robust_runs() {
@@ -40,8 +60,6 @@ double mean_of_max(const RobustRun& run) {
 }
 
 std::string in_millimetres(double metres) { return fmt::format("{:.3f}", 1e3 * metres); }
-
-}  // namespace
 
 Result<std::vector<RobustRun>> drive_wrong_worlds(const Robot& robot, int worlds, int seed) {
   const Result<RobustLaps> laps = robust_laps(robot);
@@ -109,6 +127,23 @@ std::vector<JsonDoc> robust_docs(const std::vector<RobustRun>& runs) {
   return docs;
 }
 
+std::string robust_table(const ClearanceResult& result) {
+  return "\n" +
+         markdown_table({{text(msg::control_suite_plan), text(msg::control_suite_worlds),
+                          text(msg::control_suite_planned), text(msg::control_suite_tube),
+                          text(msg::control_suite_contacts)},
+                         {"wall.xml", std::to_string(result.worlds), in_millimetres(result.planned),
+                          in_millimetres(result.tube), std::to_string(result.contacts)}});
+}
+
+JsonDoc robust_doc(const ClearanceResult& result) {
+  return {{"worlds", result.worlds},
+          {"planned", result.planned},
+          {"tube", result.tube},
+          {"contacts", result.contacts}};
+}
+
+/// Distance from the ellipse over time, of the world in which each was farthest from it.
 render::Plot robust_plot(const std::vector<RobustRun>& runs) {
   render::Plot plot{.columns = 1, .panel_width = 560, .panel_height = 170};
   for (const RobustRun& run : runs) {
@@ -126,6 +161,41 @@ render::Plot robust_plot(const std::vector<RobustRun>& runs) {
                            .y_from_zero = true});
   }
   return plot;
+}
+
+}  // namespace
+
+void add_robust_options(CLI::App& app, RobustWords& words) {
+  add_option(app, "--worlds", words.worlds, msg::control_suite_option_worlds, "N");
+  add_option(app, "--clearance-worlds", words.clearance_worlds, msg::control_suite_option_clear,
+             "N");
+  add_option(app, "--seed", words.seed, msg::control_suite_option_seed, "N");
+  add_option(app, "--plot", words.plot, msg::control_suite_option_plot, "STEM");
+}
+
+Result<int> run_robust(const ReportOptions& report, const RobustWords& words, const Robot& robot) {
+  const Result<int> worlds = parse_count("--worlds", words.worlds, kMaxWorlds);
+  if (!worlds) return fail(worlds.error());
+  const Result<int> clear = parse_count("--clearance-worlds", words.clearance_worlds, kMaxWorlds);
+  if (!clear) return fail(clear.error());
+  const Result<int> seed = parse_count("--seed", words.seed, kMaxSeed);
+  if (!seed) return fail(seed.error());
+  const auto runs = drive_wrong_worlds(robot, *worlds, *seed);
+  if (!runs) return fail(runs.error());
+  const auto clearance = clearance_in_wrong_worlds(kClearance, *clear, *seed);
+  if (!clearance) return fail(clearance.error());
+  const std::string table = (report.no_timing ? "" : bench_occasion() + "\n\n") +
+                            std::string(robot.model.name()) + "\n\n" + robust_table(*runs) +
+                            robust_table(*clearance);
+  const JsonDoc doc{{"model", robot.model.name()},
+                    {"robust", robust_docs(*runs)},
+                    {"clearance", robust_doc(*clearance)}};
+  std::fputs((report.json ? doc.document() : table).c_str(), stdout);
+  if (words.plot.empty()) return 0;
+  if (auto saved = render::save_plot(robust_plot(*runs), words.plot); !saved) {
+    return fail(std::move(saved.error()));
+  }
+  return 0;
 }
 
 }  // namespace mjarm::app

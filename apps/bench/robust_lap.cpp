@@ -12,7 +12,6 @@
 #include "mjarm/model/wrong_model.hpp"
 #include "mjarm/path/solve_path.hpp"
 #include "mjarm/sim/imperfect_drives.hpp"
-#include "mjarm/sim/sim.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -136,71 +135,104 @@ Result<Model> draw_world(const Robot& bare, Rng& rng) {
 
 }  // namespace
 
-Result<RobustLaps> robust_laps(const Robot& robot) {
+Result<Robot> known_robot(const Robot& robot) {
   const Result<Model> loaded = with_payload(robot.model, robot.arm.tip, {.mass = kPayload});
   if (!loaded) return fail(loaded.error());
+  return with_torque_drives({*loaded, robot.arm});
+}
+
+std::vector<JointVec> warm_up_at(const JointVec& q, double timestep) {
+  std::vector<JointVec> out;
+  const auto steps = static_cast<std::size_t>((kWarmUp + kRest) / timestep);
+  for (std::size_t i = 0; i < steps; ++i) {
+    const double off = warm_up(static_cast<double>(i) * timestep);
+    out.push_back(q + JointVec::Constant(q.size(), off));
+  }
+  return out;
+}
+
+Result<RobustLaps> robust_laps(const Robot& robot) {
+  const Result<Robot> known = known_robot(robot);
+  if (!known) return fail(known.error());
   const Ellipse ellipse{
       {0, -0.45, 0.4}, 0.3, 0.15, Eigen::Vector3d::UnitZ(), from_euler({std::numbers::pi, 0, 0})};
   const double around = ellipse_arc_length(ellipse.a, ellipse.b, 2 * std::numbers::pi);
-  RobustLaps out{with_torque_drives({*loaded, robot.arm}), ellipse, around};
+  RobustLaps out{*known, ellipse, around};
   const Arm& arm = out.robot.arm;
   const IkSolver ik(arm);
   const auto path = solve_path(ik, ellipse_points(ellipse, 200), as_span(arm.home));
   if (!path) return fail(Errc::impossible, describe(path.error(), arm));
 
-  const double h = out.robot.model.timestep(), before = kWarmUp + kRest;
+  const double h = out.robot.model.timestep();
+  out.q = warm_up_at(path->q.front(), h);
+  out.s.assign(out.q.size(), 0.0);
+  out.theta.assign(out.q.size(), 0.0);
   const double total = kLaps * around / kSpeed + kRamp;
-  out.end = static_cast<std::size_t>((before + total) / h);
-  const std::size_t steps = out.end + static_cast<std::size_t>(kRestAfter / h);
+  out.end = out.q.size() + static_cast<std::size_t>(total / h);
+  const auto steps = static_cast<std::size_t>((total + kRestAfter) / h);
   JointVec q = path->q.front();
   for (std::size_t i = 0; i < steps + 2; ++i) {
-    const double t = static_cast<double>(i) * h;
-    out.s.push_back(way_after(t - before, total));
+    out.s.push_back(way_after(static_cast<double>(i) * h, total));
     out.theta.push_back(ellipse_angle(ellipse.a, ellipse.b, out.s.back()));
     const Pose goal{point_at(ellipse, out.theta.back()), ellipse.R};
     const auto answer = ik.solve(goal, as_span(q));
     if (!answer) return fail(Errc::impossible, describe(answer.error(), arm));
     q = answer->q;
-    out.q.push_back(q + JointVec::Constant(arm.dof(), warm_up(t)));
+    out.q.push_back(q);
   }
   return out;
 }
 
-Result<RobustWorld> drive_wrong_world(const RobustLaps& laps, const Robot& bare, ControlMode mode,
-                                      const ControlOptions& control, std::uint64_t seed,
-                                      std::uint64_t world) {
+Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
+                                    std::uint64_t world, const AfterWrongStep& after) {
   Rng rng(seed, world);
-  const Result<Model> drawn = draw_world(bare, rng);
+  const Result<Model> drawn = draw_world(drive.bare, rng);
   if (!drawn) return fail(drawn.error());
-  const Arm& arm = laps.robot.arm;
-  Result<Controller> controller = Controller::create(laps.robot.model, arm, mode, control);
+  const Arm& arm = drive.known.arm;
+  Result<Controller> controller =
+      Controller::create(drive.known.model, arm, drive.mode, drive.control);
   if (!controller) return fail(std::move(controller.error()));
-  const double h = laps.robot.model.timestep();
-  ImperfectDrives drives(arm, {.late_steps = control.robust.late_steps}, h, rng);
+  ImperfectDrives drives(arm, {.late_steps = drive.control.robust.late_steps},
+                         drive.known.model.timestep(), rng);
   Sim sim(*drawn);
-  sim.place(arm, as_span(laps.q.front()));
+  sim.place(arm, as_span(drive.q.front()));
   std::vector<double> ctrl(sim.ctrl().begin(), sim.ctrl().end());
-  LapMeter meter(laps, h);
-  RobustWorld out;
-  for (std::size_t i = 0; i + 2 < laps.q.size(); ++i) {
+  for (std::size_t i = 0; i + 2 < drive.q.size(); ++i) {
     drives.read(sim.qpos(), sim.qvel());
-    const StepReference reference{laps.q[i > 0 ? i - 1 : 0], laps.q[i], laps.q[i + 1]};
-    out.limited_steps += controller->command(drives.qpos(), drives.qvel(), reference, ctrl) ? 1 : 0;
+    const StepReference reference{drive.q[i > 0 ? i - 1 : 0], drive.q[i], drive.q[i + 1]};
+    WrongStep step{i + 1};
+    step.limited = controller->command(drives.qpos(), drives.qvel(), reference, ctrl);
     for (int j = 0; j < arm.dof(); ++j) {
       const ArmActuator& actuator = *arm.joints[j].actuator;
-      out.torque_use = std::max(out.torque_use,
-                                std::abs(actuator.gear * ctrl[actuator.id]) / arm.limits.torque[j]);
+      const double torque = std::abs(actuator.gear * ctrl[actuator.id]);
+      step.torque_use = std::max(step.torque_use, torque / arm.limits.torque[j]);
     }
     drives.pass(ctrl);
     for (int k = 0; k < kSubsteps; ++k) {
       if (Result<void> done = sim.step(ctrl); !done) return fail(std::move(done.error()));
     }
-    meter.look(sim.tool(arm).p, i + 1);
+    after(sim, step);
   }
+  return controller;
+}
+
+Result<RobustWorld> drive_wrong_world(const RobustLaps& laps, const Robot& bare, ControlMode mode,
+                                      const ControlOptions& control, std::uint64_t seed,
+                                      std::uint64_t world) {
+  const Arm& arm = laps.robot.arm;
+  LapMeter meter(laps, laps.robot.model.timestep());
+  RobustWorld out;
+  const auto driven = drive_references({laps.robot, bare, laps.q, mode, control}, seed, world,
+                                       [&](const Sim& sim, const WrongStep& step) {
+                                         out.limited_steps += step.limited ? 1 : 0;
+                                         out.torque_use = std::max(out.torque_use, step.torque_use);
+                                         meter.look(sim.tool(arm).p, step.index);
+                                       });
+  if (!driven) return fail(driven.error());
   meter.measure(out);
-  const JointVec off =
-      controller->friction().cwiseQuotient(ModelErrors{}.friction * arm.limits.torque);
-  out.friction = (off - JointVec::Ones(arm.dof())).cwiseAbs().maxCoeff();
+  const JointVec share =
+      driven->friction().cwiseQuotient(ModelErrors{}.friction * arm.limits.torque);
+  out.friction = (share - JointVec::Ones(arm.dof())).cwiseAbs().maxCoeff();
   return out;
 }
 

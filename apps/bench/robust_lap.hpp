@@ -1,12 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/path/ellipse.hpp"
+#include "mjarm/sim/sim.hpp"
 
 namespace mjarm::app {
 
@@ -27,6 +31,32 @@ struct RobustLaps {
 /// @return an error where the ellipse cannot be reached.
 [[nodiscard]] Result<RobustLaps> robust_laps(const Robot& robot);
 
+/// The robot as its controller knows it: with the load that it should have, driven by torque.
+[[nodiscard]] Result<Robot> known_robot(const Robot& robot);
+/// Every joint to and fro once about `q` by 0.6 deg, then a rest: positions at every step.
+[[nodiscard]] std::vector<JointVec> warm_up_at(const JointVec& q, double timestep);
+
+/// What is driven, and how.
+struct WrongDrive {
+  const Robot& known;           ///< known_robot() of `bare`
+  const Robot& bare;            ///< as it was loaded
+  std::span<const JointVec> q;  ///< positions at every step of control
+  ControlMode mode = ControlMode::robust;
+  ControlOptions control = {};
+};
+/// A step of control that was done.
+struct WrongStep {
+  std::size_t index = 0;  ///< in WrongDrive::q, of where the arm should be now
+  double torque_use = 0;  ///< largest command over the torque limit of its joint
+  bool limited = false;   ///< a limit cut the command
+};
+using AfterWrongStep = std::function<void(const Sim& sim, const WrongStep& step)>;
+/// Drives in a world that is drawn by `seed` and `world`: payload and links of other masses with
+/// other centres, dry friction; encoders, drives and delay as DriveFaults has them.
+/// @return the controller as it is in the end.
+[[nodiscard]] Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
+                                                  std::uint64_t world, const AfterWrongStep& after);
+
 /// How the laps went in one wrong world.
 struct RobustWorld {
   double first_quarter = 0;   ///< [m] worst distance of the tool from the ellipse, in that of lap 1
@@ -40,8 +70,7 @@ struct RobustWorld {
   std::vector<double> error;  ///< [m] distance from the ellipse at every step
 };
 
-/// One lap run in a world that is drawn by `seed` and `world`: payload and links of other masses
-/// with other centres, dry friction; encoders, drives and delay as DriveFaults has them.
+/// The laps in one world of drive_references().
 /// @param control  `robust` knows by how many steps commands are late, and nothing else.
 [[nodiscard]] Result<RobustWorld> drive_wrong_world(const RobustLaps& laps, const Robot& bare,
                                                     ControlMode mode, const ControlOptions& control,

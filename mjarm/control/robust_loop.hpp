@@ -18,7 +18,7 @@ namespace mjarm {
 /// Control of an arm whose model is wrong. Every default is usable as is.
 struct RobustOptions {
   double bandwidth = 50;  ///< [rad/s] > 0, both poles of the loop that follows
-  double observer = 100;  ///< [rad/s] > 0, the three poles of the observer
+  double observer = 140;  ///< [rad/s] > 0, the three poles of the observer
   int late_steps = 0;     ///< time steps from a command to when it acts, 0 .. 20
   /// [rad/s or m/s] > 0, the speed of the reference from which its dry friction has turned.
   double friction_speed = 1e-3;
