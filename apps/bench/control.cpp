@@ -12,6 +12,7 @@
 
 #include "apps/bench/calligraphy.hpp"
 #include "apps/bench/messages/bench.hpp"
+#include "apps/bench/robust.hpp"
 #include "apps/bench/suite.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/table.hpp"
@@ -314,6 +315,8 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
 struct ControlWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
   std::string poses = "100", characters = "100";
+  bool robust = false;
+  RobustWords wrong;
 };
 
 Result<int> run_control(const ControlWords& options) {
@@ -324,6 +327,7 @@ Result<int> run_control(const ControlWords& options) {
   if (!characters) return fail(characters.error());
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
+  if (options.robust) return run_robust(options, options.wrong, *robot);
   std::vector<LapRun> runs = laps();
   const int written = *characters * sheet_count();
   Progress progress(text(msg::control_suite_progress),
@@ -368,6 +372,8 @@ Command control_suite() {
             add_option(app, "--poses", options->poses, msg::control_suite_option_poses, "N");
             add_option(app, "--characters", options->characters,
                        msg::control_suite_option_characters, "N");
+            add_flag(app, "--robust", options->robust, msg::control_suite_option_robust);
+            add_robust_options(app, options->wrong);
             add_report_options(app, *options);
             return [options] { return run_control(*options); };
           }};

@@ -37,5 +37,38 @@ TEST(BenchControl, StaysOnTheCurveAndCoversIt) {
   EXPECT_EQ(driven, 4);
 }
 
+std::string robust_bench(const std::string& robot) {
+  const auto result = mjarm({"bench", "control", "--robust", "--robot", robot, "--worlds", "3",
+                             "--clearance-worlds", "2", "--json", "--no-timing"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.out;
+}
+
+/// What is promised of an arm whose model is wrong.
+TEST(BenchControl, RobustStaysWithinThreeTenthsWhereComputedTorqueDoesNot) {
+  for (const char* robot : {"ur5e", "panda"}) {
+    const json bench = json::parse(robust_bench(robot));
+    const json& plain = bench.at("robust").front();
+    const json& robust = bench.at("robust").back();
+    EXPECT_EQ(plain.at("control"), "computed_torque");
+    EXPECT_EQ(robust.at("control"), "robust");
+    EXPECT_GT(plain.at("max").get<double>(), 3e-3) << robot;
+    EXPECT_LT(robust.at("max").get<double>(), 3e-4) << robot;
+    ASSERT_EQ(robust.at("worlds").size(), 3U);
+    for (const json& world : robust.at("worlds")) {
+      EXPECT_LT(world.at("ripple").get<double>(), 1e-4) << world;
+      EXPECT_LT(world.at("rest").get<double>(), 1e-4) << world;
+      EXPECT_LT(world.at("torque_use").get<double>(), 1) << world;
+      EXPECT_EQ(world.at("limited_steps"), 0) << world;
+    }
+    EXPECT_EQ(bench.at("clearance").at("contacts"), 0);
+    EXPECT_LT(bench.at("clearance").at("tube"), bench.at("clearance").at("planned"));
+  }
+}
+
+TEST(BenchControl, RobustRunsAreTheSameBytesForOneSeed) {
+  EXPECT_EQ(robust_bench("ur5e"), robust_bench("ur5e"));
+}
+
 }  // namespace
 }  // namespace mjarm::app

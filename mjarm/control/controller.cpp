@@ -16,9 +16,9 @@
 namespace mjarm {
 namespace {
 
-constexpr std::array<std::string_view, 6> kNames = {"servo",           "servo_gravity",
-                                                    "feed_forward",    "computed_torque",
-                                                    "joint_impedance", "tool_impedance"};
+constexpr std::array<std::string_view, 7> kNames = {
+    "servo",           "servo_gravity",  "feed_forward", "computed_torque",
+    "joint_impedance", "tool_impedance", "robust"};
 
 /// True where the position gains of the actuators do the feedback.
 bool by_servos(ControlMode mode) {
@@ -82,6 +82,7 @@ Result<void> check_impedance(const Impedance& impedance) {
 }
 
 Result<void> check_options(const ControlOptions& options, ControlMode mode, double h) {
+  if (mode == ControlMode::robust) return {};  // RobustLoop looks at its own
   if (mode == ControlMode::computed_torque) return check_feedback(options, h);
   return check_impedance(options.impedance);
 }
@@ -115,6 +116,7 @@ struct Controller::Impl {
   JointVec sum;  // [rad s or m s] of the errors
   std::optional<AxialPush> push = {};
   double axial_offset = 0;
+  std::optional<RobustLoop> robust = {};  // of its mode
 
   using State = std::span<const double>;
 
@@ -139,6 +141,7 @@ struct Controller::Impl {
       x.q[i] = qpos[arm.joints[i].qpos];
       x.v[i] = qvel[arm.joints[i].dof];
     }
+    if (mode == ControlMode::robust) return {robust->torque(qpos, qvel, reference), x.q, x.v};
     JointVec a = reference.acceleration(h);
     if (mode == ControlMode::computed_torque) {
       a += options.damping * (x.v_ref - x.v) + options.stiffness * (x.q_ref - x.q) +
@@ -184,9 +187,14 @@ Result<Controller> Controller::create(const Model& model, const Arm& arm, Contro
   }
   const auto usable = check_options(options, mode, model.timestep());
   if (!usable) return fail(usable.error());
-  return Controller(
-      std::unique_ptr<Impl>(new Impl{arm, mode, options, StepInverse(model, arm),
-                                     LinkChain(Chain(arm)), JointVec::Zero(arm.dof())}));
+  std::unique_ptr<Impl> impl(new Impl{arm, mode, options, StepInverse(model, arm),
+                                      LinkChain(Chain(arm)), JointVec::Zero(arm.dof())});
+  if (mode == ControlMode::robust) {
+    Result<RobustLoop> loop = RobustLoop::create(model, arm, options.robust);
+    if (!loop) return fail(std::move(loop.error()));
+    impl->robust = std::move(*loop);
+  }
+  return Controller(std::move(impl));
 }
 
 ControlMode Controller::mode() const noexcept { return impl_->mode; }
@@ -197,6 +205,7 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
   assert(reference.next.size() == arm.dof());
   const Demand demand = impl_->demand(qpos, qvel, reference);
   bool limited = false;
+  JointVec torque(arm.dof());
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmActuator& actuator = *arm.joints[i].actuator;
     const double q = qpos[arm.joints[i].qpos];
@@ -210,7 +219,9 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
     limited =
         limited || given != wanted || force < actuator.force_lower || force > actuator.force_upper;
     ctrl[actuator.id] = given;
+    torque[i] = actuator.gear * std::clamp(force, actuator.force_lower, actuator.force_upper);
   }
+  if (impl_->robust) impl_->robust->take(torque);
   // Behind a limit the error is no sign of a load, and a sum of it would overshoot.
   if (impl_->options.integral > 0 && !limited) impl_->gather(qpos, reference.now);
   return limited;
@@ -222,5 +233,13 @@ void Controller::set_axial(std::optional<AxialPush> push, double offset) {
 }
 
 void Controller::restart() { impl_->sum.setZero(); }
+
+void Controller::learn_from(const Controller& other) {
+  if (impl_->robust && other.impl_->robust) impl_->robust->learn_from(*other.impl_->robust);
+}
+
+JointVec Controller::friction() const {
+  return impl_->robust ? impl_->robust->friction() : JointVec::Zero(impl_->arm.dof());
+}
 
 }  // namespace mjarm

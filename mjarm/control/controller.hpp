@@ -6,6 +6,7 @@
 
 #include "mjarm/control/impedance.hpp"
 #include "mjarm/control/reference.hpp"
+#include "mjarm/control/robust_loop.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
@@ -20,6 +21,7 @@ enum class ControlMode {
   computed_torque,  ///< model-based torque by inverting the actuators' gain and bias
   joint_impedance,  ///< springs and dampers between the joints and the reference
   tool_impedance,   ///< a spring and a damper between the tool and where the reference puts it
+  robust,           ///< computed torque that copes with a wrong model (RobustLoop)
 };
 /// The names of the modes, in the order of ControlMode.
 [[nodiscard]] std::span<const std::string_view> control_mode_names() noexcept;
@@ -34,10 +36,12 @@ struct ControlOptions {
   double damping = 60;     ///< [1/s]   acceleration per velocity error, > 0
   double integral = 0;     ///< [1/s^3] against loads the model does not know; 0 = none
   Impedance impedance = {};
+  RobustOptions robust = {};
 };
 
 /// Turns the state and a reference into actuator commands; never writes forces past the actuators.
-/// Keeps no memory of earlier steps but the integral. Owns its scratch memory: one a thread.
+/// Keeps no memory of earlier steps but the integral, and what `robust` has learned. Owns its
+/// scratch memory: one a thread.
 class Controller {
  public:
   /// @return an error that names the joint whose actuator cannot be used this way.
@@ -65,8 +69,13 @@ class Controller {
   /// @param offset  [m] along z, from where the reference puts the tool to where it shall be.
   void set_axial(std::optional<AxialPush> push, double offset);
 
-  /// Forgets what the integral has gathered.
+  /// Forgets what the integral has gathered; `robust` keeps what it learned.
   void restart();
+
+  /// Goes on with what another one of the same arm has learned, both in `robust`; else nothing.
+  void learn_from(const Controller& other);
+  /// (dof,) [N m or N] Dry friction of the joints, as `robust` has learned it; else zeros.
+  [[nodiscard]] JointVec friction() const;
 
  private:
   struct Impl;

@@ -170,7 +170,7 @@ TEST(Controller, RefusesFeedbackThatIsUnstableAtTheTimeStep) {
 }
 
 TEST(Controller, ModesHaveNames) {
-  ASSERT_EQ(control_mode_names().size(), 6U);
+  ASSERT_EQ(control_mode_names().size(), 7U);
   for (const std::string_view word : control_mode_names()) {
     EXPECT_EQ(name(control_mode(word).value()), word);
   }

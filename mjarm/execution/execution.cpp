@@ -106,12 +106,16 @@ void Execution::take_load(const Model& model, std::size_t move) {
   }
   if (load == load_) return;
   load_ = load;
+  if (loaded_) controller_.learn_from(*loaded_);
   loaded_.reset();
   if (load == 0) return;
   const Arm& arm = plan_->arms.front();
   const Result<Model> heavier = model.with_point_mass(arm.tip, load);
   if (!heavier) return;
-  if (auto made = Controller::create(*heavier, arm, options_.control)) loaded_ = std::move(*made);
+  if (auto made = Controller::create(*heavier, arm, options_.control)) {
+    loaded_ = std::move(*made);
+    loaded_->learn_from(controller_);
+  }
 }
 
 void Execution::move_gripper(Sim& sim) {

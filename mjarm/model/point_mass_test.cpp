@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "mjarm/model/model.hpp"
+#include "mjarm/model/payload.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm {
@@ -50,6 +51,25 @@ TEST(PointMass, RefusesWhatIsNoLoad) {
   EXPECT_FALSE(model.with_point_mass("tool", std::nan("")).has_value());
   EXPECT_FALSE(model.with_point_mass("tol", 1).has_value());
   EXPECT_FALSE(model.with_point_mass("world", 1).has_value());
+}
+
+TEST(Payload, OffTheFrameMovesLikeABallThatHangsThere) {
+  const Model bare = two_links("");
+  const Model with_ball = two_links(
+      R"(<body pos="0.33 0.01 0.12"><geom type="sphere" size="0.0001" mass="0.8"/></body>)");
+  const auto loaded = with_payload(bare, "tool", {0.8, {0.03, -0.04, 0.02}});
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().what;
+  const std::vector<double> expected = falling(with_ball), got = falling(*loaded);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(got[i], expected[i], 1e-5);
+}
+
+TEST(Payload, OfNoMassIsNone) {
+  const Model bare = two_links("");
+  EXPECT_EQ(falling(with_payload(bare, "tool", {}).value()), falling(bare));
+  EXPECT_FALSE(with_payload(bare, "tool", {.mass = -1}));
+  EXPECT_FALSE(with_payload(bare, "tool", {.mass = 1, .center = {std::nan(""), 0, 0}}));
+  EXPECT_FALSE(with_payload(bare, "tol", {.mass = 1}));
+  EXPECT_FALSE(with_payload(bare, "world", {.mass = 1}));
 }
 
 }  // namespace

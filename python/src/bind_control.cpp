@@ -35,6 +35,7 @@ class BoundController {
       : robot_(robot.robot), controller_(std::move(controller)) {}
 
   [[nodiscard]] std::string mode() const { return std::string(name(controller_.mode())); }
+  [[nodiscard]] JointVec friction() const { return controller_.friction(); }
 
   void hold(nb::handle q) {
     const JointVec values = joint_vec(reals(q, "q", {robot_.arm.dof()}).span());
@@ -100,9 +101,13 @@ class BoundController {
 };
 
 std::unique_ptr<BoundController> controller(const BoundRobot& robot, const std::string& control,
-                                            double stiffness, double damping, double integral) {
+                                            double stiffness, double damping, double integral,
+                                            int late_steps) {
   const ControlMode mode = value_of(control_mode(control));
-  const ControlOptions options{.stiffness = stiffness, .damping = damping, .integral = integral};
+  const ControlOptions options{.stiffness = stiffness,
+                               .damping = damping,
+                               .integral = integral,
+                               .robust = {.late_steps = late_steps}};
   return std::make_unique<BoundController>(
       robot, value_of(Controller::create(robot.robot.model, robot.arm(), mode, options)));
 }
@@ -121,6 +126,8 @@ control : str, optional
     As simulate() has it.
 stiffness, damping, integral : float, optional
     Feedback of computed torque: acceleration per error [1/s^2], [1/s], [1/s^3].
+late_steps : int, optional
+    Time steps from a command to when it acts, 0 to 20; "robust" reckons with it.
 )";
 
 }  // namespace
@@ -146,6 +153,10 @@ void bind_control(nb::module_& m) {
            "it is "
            "told something, it\n"
            "holds the arm where it stands.")
+      .def_prop_ro(
+          "friction", [](const BoundController& c) { return array(c.friction()); },
+          nb::sig("def friction(self) -> Array"),
+          "Dry friction of the joints as \"robust\" has learned it [N m or N], (dof,); else zeros.")
       .def_prop_ro("done", &BoundController::done, "Whether the motion is at its end.")
       .def_prop_ro(
           "reference", [](const BoundController& c) { return array(c.reference()); },
@@ -154,9 +165,10 @@ void bind_control(nb::module_& m) {
   auto robot = nb::borrow<nb::class_<BoundRobot>>(m.attr("Robot"));
   robot.def("controller", &controller, nb::arg("control") = "computed_torque", nb::kw_only(),
             nb::arg("stiffness") = usual.stiffness, nb::arg("damping") = usual.damping,
-            nb::arg("integral") = usual.integral,
+            nb::arg("integral") = usual.integral, nb::arg("late_steps") = usual.robust.late_steps,
             nb::sig("def controller(self, control: str = 'computed_torque', *, stiffness: float = "
-                    "900.0, damping: float = 60.0, integral: float = 0.0) -> Controller"),
+                    "900.0, damping: float = 60.0, integral: float = 0.0, late_steps: int = 0) -> "
+                    "Controller"),
             kController);
 }
 

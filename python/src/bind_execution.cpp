@@ -143,7 +143,7 @@ motion : Motion or sequence of Motion
     One after another; each begins where the one before ends.
 control : str, optional
     "servo" (the actuators alone, as most scripts do), "servo_gravity", "feed_forward",
-    "computed_torque", "joint_impedance" or "tool_impedance".
+    "computed_torque", "joint_impedance", "tool_impedance" or "robust".
 rest : float, optional
     How long the arm is held at the end [s].
 tolerance : float, optional

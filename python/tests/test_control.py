@@ -125,3 +125,24 @@ def test_what_is_no_data(world):
         mjarm.Robot(model).controller("pid")
     with pytest.raises(mjarm.Error):
         mjarm.Robot(model).controller(stiffness=-1)
+
+
+def test_robust_control_carries_what_nobody_told_it_of(world):
+    model, data = world
+    robot = mjarm.Robot(model)
+    model.body_mass[mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "wrist_3_link")] += 1.0
+    mujoco.mj_setConst(model, data)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    errors = {}
+    for control in ("computed_torque", "robust"):
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        controller = robot.controller(control)
+        controller.hold(robot.home)
+        for _ in range(1000):
+            controller.step(data)
+            mujoco.mj_step(model, data)
+        errors[control] = np.abs(data.qpos[:6] - robot.home).max()
+        assert controller.friction.shape == (6,)
+    assert errors["robust"] < 1e-5 < errors["computed_torque"]
+    with pytest.raises(mjarm.Error):
+        robot.controller("robust", late_steps=21)
