@@ -15,11 +15,15 @@ enum class PointToPointErrc {
   bad_states,   ///< sizes that differ, no joint, numbers that are not finite or that overflow
   bad_limits,   ///< a limit that is not above 0, or neither acceleration nor jerk limited
   end_outside,  ///< the end is beyond a limit, or an approach with full jerk would come from there
+  start_leaves_range,  ///< full braking from the start takes the joint beyond its range
+  end_leaves_range,    ///< the joint must come to the end from beyond its range
+  no_room,             ///< neither, but no motion within the range was found: it is too narrow
 };
 /// The reason, and the first joint (from 0) it holds for.
 struct PointToPointFailure {
   PointToPointErrc code;
   int joint;
+  double beyond = 0;  ///< [rad or m] that it must leave its range by (`*_leaves_range`)
 };
 
 /// The fastest motion of all joints together from one state to another within velocity,
@@ -29,9 +33,15 @@ struct PointToPointFailure {
 ///
 /// A start beyond a limit, or that cannot but overshoot one, first returns within the limits as
 /// fast as the jerk and acceleration limits allow. A state that goes on after the duration is not
-/// kept: the motion ends there. Position limits are not looked at (`point_to_point` does).
+/// kept: the motion ends there.
 ///
-/// A plain value with inline storage. Memory: about 11 KB.
+/// No joint leaves its range, at no moment. Where the fastest motion does not either, it is the
+/// answer; else joints cruise more slowly, touch their limit where they turn, or rest on the way.
+/// That answer is short, but not proved to be the shortest. There is none at all for a start from
+/// which full braking ends beyond the range, or an end that full braking backwards in time so
+/// leaves, unless the fastest motion is over before.
+///
+/// A plain value with inline storage. Memory: about 21 KB.
 class PointToPoint {
  public:
   /// Never throws, never allocates, bounded steps; same input, same bytes.
@@ -39,7 +49,8 @@ class PointToPoint {
   /// @param limits     `velocity`, `acceleration` and `jerk`, > 0. Each may be infinite for a
   /// joint,
   ///                   as long as not both of its acceleration and jerk are; without a jerk limit
-  ///                   the acceleration jumps, and those of the two states do not matter.
+  ///                   the acceleration jumps, and those of the two states do not matter. `lower`
+  ///                   and `upper`: ranges, widened to hold both ends; infinite or empty = none.
   [[nodiscard]] static Result<PointToPoint, PointToPointFailure> solve(
       const JointState& start, const JointState& end, const JointLimits& limits) noexcept;
 
@@ -60,10 +71,11 @@ class PointToPoint {
   [[nodiscard]] JointState at(double t) const noexcept;
 
  private:
-  // 3 to return within the limits; then the phases of two motions with 7 each, laid over another.
+  // 3 to return within the limits; then twice the phases of two motions with 7 each, laid over
+  // another.
   struct Joint {
     int count;
-    std::array<Piece, 16> pieces;
+    std::array<Piece, 29> pieces;
   };
   JointState start_;
   JointState end_;
@@ -73,8 +85,7 @@ class PointToPoint {
 
 /// `PointToPoint` as a trajectory, with errors in words.
 /// @param limits  with finite jerk; `lower` and `upper` may be empty for joints without stops.
-/// @return an error also when the motion would leave the range between its ends and the position
-///         limits: moves from a standstill never do.
+/// @return an error that names the joint and, where it has to leave its range, by how much.
 [[nodiscard]] Result<Trajectory> point_to_point(const JointState& start, const JointState& end,
                                                 const JointLimits& limits);
 
