@@ -16,7 +16,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr std::size_t kPoses = 300;
+constexpr std::size_t kPosesOfArm = 300;
 constexpr int kManyStarts = 10'000;
 constexpr double kSameBranch = 1e-3;  // [rad or m]
 
@@ -114,7 +114,7 @@ Result<BenchResult> measure_ik_all(const BenchOptions& options, const std::strin
   const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
   if (!problem) return fail(problem.error());
   std::vector<IkCase> poses = problem->sets.front().cases;
-  poses.resize(std::min(poses.size(), kPoses));
+  poses.resize(std::min(poses.size(), kPosesOfArm));
   std::vector<BranchRun> runs = run_ours(*problem, poses, rounds);
   if (interrupted()) return fail(stopped());
   BenchResult result{problem->name, problem->robot.model.file().filename().string()};
