@@ -346,7 +346,7 @@ TEST(ProgramPlan, StopsAtTheFirstFaultWhereThatIsEnough) {
   program.instructions = {{MoveJ{.goal = down(0, -0.45)}},
                           {MoveL{.goal = down(0, -0.95)}},
                           {MoveL{.goal = down(0.1, -0.45)}},
-                          {MoveL{.goal = down(0, -2)}}};
+                          {MoveJ{.goal = down(0, -2)}}};
   for (int i = 0; i < 4; ++i) program.instructions[static_cast<std::size_t>(i)].place.line = i + 1;
   const ProgramPlan all = plan_of(program);
   ASSERT_EQ(all.faults.size(), 2U) << faults_of(all);
