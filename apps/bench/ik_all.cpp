@@ -16,7 +16,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr std::size_t kPosesOfArm = 300;
+constexpr std::size_t kBranchPoses = 300;
 constexpr int kManyStarts = 10'000;
 constexpr double kSameBranch = 1e-3;  // [rad or m]
 
@@ -52,8 +52,8 @@ BranchRun run_branches(std::string who, const IkSolver& ik, const IkAllOptions& 
   return run;
 }
 
-std::vector<BranchRun> run_ours(const IkProblem& problem, const std::vector<IkCase>& poses,
-                                int rounds) {
+std::vector<BranchRun> run_our_branches(const IkProblem& problem, const std::vector<IkCase>& poses,
+                                        int rounds) {
   const IkSolver ik(problem.robot.arm);
   const IkSolver search(problem.robot.arm, {.closed_form = false});
   Progress progress(text(msg::bench_ik_progress, problem.name),
@@ -114,8 +114,8 @@ Result<BenchResult> measure_ik_all(const BenchOptions& options, const std::strin
   const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
   if (!problem) return fail(problem.error());
   std::vector<IkCase> poses = problem->sets.front().cases;
-  poses.resize(std::min(poses.size(), kPosesOfArm));
-  std::vector<BranchRun> runs = run_ours(*problem, poses, rounds);
+  poses.resize(std::min(poses.size(), kBranchPoses));
+  std::vector<BranchRun> runs = run_our_branches(*problem, poses, rounds);
   if (interrupted()) return fail(stopped());
   BenchResult result{problem->name, problem->robot.model.file().filename().string()};
   if (wants_peers(options.peers, problem->name)) {

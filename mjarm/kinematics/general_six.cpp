@@ -13,10 +13,10 @@ namespace mjarm {
 namespace detail {
 namespace {
 
-constexpr double kTouch = 1e-12;     // of the largest determinant: least rounding
-constexpr double kNoises = 10;       // noise of the series by which an extremum may miss 0
-constexpr double kLowNoise = 1e-12;  // with less, one order of the columns is enough
-constexpr double kClose = 0.003;     // [rad] roots so near to each other are taken as a pair, too
+constexpr double kTouch = 1e-12;      // of the largest determinant: least rounding
+constexpr double kNoises = 10;        // noise of the series by which an extremum may miss 0
+constexpr double kLowNoise = 1e-12;   // with less, one order of the columns is enough
+constexpr double kClosePair = 0.003;  // [rad] roots so near to each other are taken as a pair, too
 constexpr double kMet = 1e-8;      // error of what Newton's steps, still under way, will make exact
 constexpr double kSameRow = 1e-6;  // [rad] of all joints: found twice
 
@@ -47,7 +47,7 @@ struct RootsAndPairs {
     for (int i = 0; i < found && count < TrigSeries::kMaxRoots; ++i) {
       const int next = (i + 1) % found;
       const double gap = roots[next].x - roots[i].x + (next == 0 ? kFullTurn : 0);
-      if (gap < kClose) roots[count++] = {roots[i].x + 0.5 * gap, 0.5 * gap};
+      if (gap < kClosePair) roots[count++] = {roots[i].x + 0.5 * gap, 0.5 * gap};
     }
   }
 };
