@@ -21,7 +21,6 @@
 namespace mjarm::app {
 namespace {
 
-constexpr int kLateSteps = 2;  // 4 ms of the shipped robots
 constexpr int kMaxWorlds = 10'000, kMaxSeed = 1'000'000;
 constexpr double kClearance = 0.003;  // [m] of the plan that is driven in wrong worlds
 
@@ -36,7 +35,7 @@ struct RobustRun {
 
 /// The gains with an integral are as high as the delay allows.
 std::vector<RobustRun> robust_runs() {
-  const RobustOptions late{.late_steps = kLateSteps};
+  const RobustOptions late{.late_steps = kRobustLate};
   return {
       {"computed_torque", ControlMode::computed_torque, {.robust = late}},
       {"computed_torque, integral",

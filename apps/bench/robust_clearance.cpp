@@ -23,7 +23,6 @@ namespace {
 
 constexpr double kShareOfLimits = 0.25;
 constexpr double kRestThere = 0.5;  // [s]
-constexpr int kLate = 2;            // steps
 
 /// From before the wall to behind it, at rest at both ends, after a warm-up: positions at every
 /// step of control.
@@ -74,7 +73,7 @@ Result<ClearanceResult> clearance_in_wrong_worlds(double margin, int worlds, int
     if (report->nearest) out.planned = std::min(out.planned, report->nearest->distance);
   }
   const WrongDrive drive{
-      *known, *robot, *q, ControlMode::robust, {.robust = {.late_steps = kLate}}};
+      *known, *robot, *q, ControlMode::robust, {.robust = {.late_steps = kRobustLate}}};
   Progress progress(text(msg::control_suite_progress), static_cast<std::size_t>(worlds));
   for (; out.worlds < worlds; ++out.worlds) {
     if (interrupted()) return fail(stopped());
@@ -83,7 +82,7 @@ Result<ClearanceResult> clearance_in_wrong_worlds(double margin, int worlds, int
         drive, static_cast<std::uint64_t>(seed), static_cast<std::uint64_t>(out.worlds),
         [&](const Sim& sim, const WrongStep& step) {
           touched = touched || !sim.contacts(robot->arm).empty();
-          const JointVec& late = (*q)[step.index - std::min<std::size_t>(step.index, kLate)];
+          const JointVec& late = (*q)[step.index - std::min<std::size_t>(step.index, kRobustLate)];
           out.tube = std::max(out.tube, farthest(robot->arm, sim.arm_state(robot->arm).q, late));
         });
     if (!driven) return fail(driven.error());

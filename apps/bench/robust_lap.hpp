@@ -10,9 +10,13 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/path/ellipse.hpp"
+#include "mjarm/sim/imperfect_drives.hpp"
 #include "mjarm/sim/sim.hpp"
 
 namespace mjarm::app {
+
+/// Steps of control by which commands are late in all worlds: 4 ms of the shipped robots.
+inline constexpr int kRobustLate = DriveFaults{}.late_steps;
 
 /// The same motion for every world: laps of an ellipse at constant speed, as positions of the
 /// joints at every step of control.

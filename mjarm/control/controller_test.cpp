@@ -19,21 +19,8 @@ using testing::load_shipped;
 using testing::load_text;
 using testing::Loaded;
 using testing::odd_arm;
-using testing::swing_reference;
 using testing::World;
-
-double worst_tracking_error(const Loaded& robot, ControlMode mode) {
-  Controller controller = controller_of(robot, mode);
-  World world(robot, robot.arm.home);
-  const double h = robot.model.timestep();
-  double worst = 0;
-  for (int i = 0; i < 1500; ++i) {
-    const StepReference reference = swing_reference(robot.arm, i, h);
-    EXPECT_FALSE(world.step(controller, reference)) << "step " << i;
-    worst = std::max(worst, (world.q() - reference.next).cwiseAbs().maxCoeff());
-  }
-  return worst;
-}
+using testing::worst_tracking_error;
 
 /// Joint errors after standing at home for a while.
 JointVec static_error(const Loaded& robot, ControlMode mode) {

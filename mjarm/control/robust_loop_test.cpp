@@ -125,17 +125,7 @@ TEST(Robust, LearnsTheFrictionOfJointsThatMove) {
 }
 
 TEST(Robust, IsExactEnoughWhereTheModelIsRight) {
-  const Loaded robot = load_shipped("panda");
-  Controller robust = controller_of(robot, ControlMode::robust);
-  World world(robot, robot.arm.home);
-  const double h = robot.model.timestep();
-  double worst = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const StepReference reference = swing_reference(robot.arm, i, h);
-    EXPECT_FALSE(world.step(robust, reference)) << "step " << i;
-    worst = std::max(worst, (world.q() - reference.next).cwiseAbs().maxCoeff());
-  }
-  EXPECT_LT(worst, 2e-4);
+  EXPECT_LT(testing::worst_tracking_error(load_shipped("panda"), ControlMode::robust, 3000), 2e-4);
 }
 
 /// Largest modulus of the poles of one joint whose inertia is `ratio` times that of the model:

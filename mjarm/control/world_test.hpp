@@ -1,7 +1,9 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -56,6 +58,20 @@ inline JointVec swing(const Arm& arm, double t, double size = 0.3) {
 /// What step `i` of that swing refers to, in steps of `h` [s].
 inline StepReference swing_reference(const Arm& arm, int i, double h) {
   return {swing(arm, (i - 1) * h), swing(arm, i * h), swing(arm, (i + 1) * h)};
+}
+
+/// Largest error of a joint in so many steps of that swing; no limit may cut a command.
+inline double worst_tracking_error(const Loaded& robot, ControlMode mode, int steps = 1500) {
+  Controller controller = controller_of(robot, mode);
+  World world(robot, robot.arm.home);
+  const double h = robot.model.timestep();
+  double worst = 0;
+  for (int i = 0; i < steps; ++i) {
+    const StepReference reference = swing_reference(robot.arm, i, h);
+    EXPECT_FALSE(world.step(controller, reference)) << "step " << i;
+    worst = std::max(worst, (world.q() - reference.next).cwiseAbs().maxCoeff());
+  }
+  return worst;
 }
 
 }  // namespace mjarm::testing

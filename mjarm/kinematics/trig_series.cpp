@@ -122,26 +122,26 @@ class RootScan {
     }
   }
 
-  /// By Newton's steps, halves where they lead out.
   double root(const GraphPoint& a, const GraphPoint& b) const noexcept {
-    double low = a.x, high = b.x;
-    double x = low - a.f * (high - low) / (b.f - a.f);
-    for (int i = 0; i < kMostSteps; ++i) {
-      const TrigSeries::Values v = series_.at(x);
-      (differ(v.f, a.f) ? high : low) = x;
-      const double next = inside(x - v.f / v.slope, low, high);
-      if (std::abs(next - x) < kSameRoot) return next;
-      x = next;
-    }
-    return x;
+    return zero<&TrigSeries::Values::f, &TrigSeries::Values::slope>({a.x, a.f}, {b.x, b.f});
   }
   double extremum(const GraphPoint& a, const GraphPoint& b) const noexcept {
+    return zero<&TrigSeries::Values::slope, &TrigSeries::Values::bend>({a.x, a.slope},
+                                                                       {b.x, b.slope});
+  }
+  struct End {
+    double x, value;
+  };
+  /// Where `kValue`, whose derivative is `kRate`, is zero between ends at which its signs differ:
+  /// by Newton's steps, halves where they lead out.
+  template <auto kValue, auto kRate>
+  double zero(const End& a, const End& b) const noexcept {
     double low = a.x, high = b.x;
-    double x = low - a.slope * (high - low) / (b.slope - a.slope);
+    double x = low - a.value * (high - low) / (b.value - a.value);
     for (int i = 0; i < kMostSteps; ++i) {
       const TrigSeries::Values v = series_.at(x);
-      (differ(v.slope, a.slope) ? high : low) = x;
-      const double next = inside(x - v.slope / v.bend, low, high);
+      (differ(v.*kValue, a.value) ? high : low) = x;
+      const double next = inside(x - v.*kValue / (v.*kRate), low, high);
       if (std::abs(next - x) < kSameRoot) return next;
       x = next;
     }

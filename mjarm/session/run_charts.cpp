@@ -20,7 +20,8 @@ constexpr double kShareOfTolerance = 0.05;  ///< that an error has to reach to b
 
 /// The rows of all runs to be drawn, with a gap (null) between runs.
 using Rows = std::vector<const RecordRow*>;
-using Value = std::function<double(const RecordRow& row)>;
+/// Points of ink to be drawn; null where the pen was lifted.
+using Ink = std::vector<const InkPoint*>;
 
 Rows rows_to_draw(std::span<const MeasuredRun> runs) {
   std::size_t count = 0;
@@ -35,16 +36,31 @@ Rows rows_to_draw(std::span<const MeasuredRun> runs) {
   return rows;
 }
 
-std::vector<double> column(const Rows& rows, const Value& value) {
+Ink ink_to_draw(std::span<const InkPoint> all) {
+  const std::size_t stride = chart_stride(all.size());
+  Ink ink;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool begins = i == 0 || all[i].move != all[i - 1].move;
+    const bool ends = i + 1 == all.size() || all[i + 1].move != all[i].move;
+    if (begins && !ink.empty()) ink.push_back(nullptr);
+    if (begins || ends || i % stride == 0) ink.push_back(&all[i]);
+  }
+  return ink;
+}
+
+/// Of rows or of points of ink; no number where there is a gap.
+template <class Point, class Value>
+std::vector<double> column(const std::vector<const Point*>& points, const Value& value) {
   std::vector<double> out;
-  for (const RecordRow* row : rows) {
-    out.push_back(row != nullptr ? value(*row) : std::numeric_limits<double>::quiet_NaN());
+  for (const Point* point : points) {
+    out.push_back(point != nullptr ? value(*point) : std::numeric_limits<double>::quiet_NaN());
   }
   return out;
 }
 
-std::vector<double> times(const Rows& rows) {
-  return column(rows, [](const RecordRow& row) { return row.time; });
+template <class Point>
+std::vector<double> times(const std::vector<const Point*>& points) {
+  return column(points, [](const Point& point) { return point.time; });
 }
 
 render::PlotPanel over_time(Msg title, const std::string& unit) {
@@ -56,13 +72,19 @@ render::PlotPanel over_time(Msg title, const std::string& unit) {
   return panel;
 }
 
-render::PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
+/// Places, by two axes of the world.
+render::PlotPanel place_panel(Msg title, int x, int y) {
   static constexpr const char* kAxes[] = {"x [m]", "y [m]", "z [m]"};
   render::PlotPanel panel;
   panel.title = text(title);
   panel.x_label = kAxes[x];
   panel.y_label = kAxes[y];
   panel.equal_aspect = true;
+  return panel;
+}
+
+render::PlotPanel side_view(Msg title, const Rows& rows, int x, int y) {
+  render::PlotPanel panel = place_panel(title, x, y);
   const auto executed = [&](int axis) {
     return column(rows, [axis](const RecordRow& row) { return row.X_WT.p[axis]; });
   };
@@ -85,6 +107,7 @@ render::PlotPanel a_line_a_joint(
   return panel;
 }
 
+template <class Value>
 render::PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
   render::PlotPanel panel = over_time(title, text(msg::run_chart_share));
   panel.y_from_zero = true;
@@ -92,47 +115,14 @@ render::PlotPanel share_panel(Msg title, const Rows& rows, const Value& share) {
   return panel;
 }
 
-/// Points of ink to be drawn; null where the pen was lifted.
-using Ink = std::vector<const InkPoint*>;
-
-Ink ink_to_draw(std::span<const InkPoint> all) {
-  const std::size_t stride = chart_stride(all.size());
-  Ink ink;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool begins = i == 0 || all[i].move != all[i - 1].move;
-    const bool ends = i + 1 == all.size() || all[i + 1].move != all[i].move;
-    if (begins && !ink.empty()) ink.push_back(nullptr);
-    if (begins || ends || i % stride == 0) ink.push_back(&all[i]);
-  }
-  return ink;
-}
-
-std::vector<double> ink_column(const Ink& ink,
-                               const std::function<double(const InkPoint& point)>& value) {
-  std::vector<double> out;
-  for (const InkPoint* point : ink) {
-    out.push_back(point != nullptr ? value(*point) : std::numeric_limits<double>::quiet_NaN());
-  }
-  return out;
-}
-
-std::vector<double> ink_times(const Ink& ink) {
-  return ink_column(ink, [](const InkPoint& point) { return point.time; });
-}
-
 /// From where the pen looks at the sheet along an axis of the world, about.
 render::PlotPanel ink_panel(const Ink& ink) {
-  static constexpr const char* kAxes[] = {"x [m]", "y [m]", "z [m]"};
   int along = 0;
   ink.front()->X_WT.R.col(2).cwiseAbs().maxCoeff(&along);
   const int x = along == 0 ? 1 : 0, y = along == 2 ? 1 : 2;
-  render::PlotPanel panel;
-  panel.title = text(msg::run_chart_ink);
-  panel.x_label = kAxes[x];
-  panel.y_label = kAxes[y];
-  panel.equal_aspect = true;
+  render::PlotPanel panel = place_panel(msg::run_chart_ink, x, y);
   const auto place = [&](int axis) {
-    return ink_column(ink, [axis](const InkPoint& point) { return point.X_WT.p[axis]; });
+    return column(ink, [axis](const InkPoint& point) { return point.X_WT.p[axis]; });
   };
   panel.lines.push_back({.x = place(x), .y = place(y)});
   return panel;
@@ -141,16 +131,15 @@ render::PlotPanel ink_panel(const Ink& ink) {
 render::PlotPanel ink_error_panel(const Ink& ink) {
   render::PlotPanel panel = over_time(msg::run_chart_ink_error, "mm");
   panel.y_from_zero = true;
-  panel.lines.push_back({.x = ink_times(ink), .y = ink_column(ink, [](const InkPoint& point) {
-                                                return 1e3 * point.off;
-                                              })});
+  panel.lines.push_back(
+      {.x = times(ink), .y = column(ink, [](const InkPoint& point) { return 1e3 * point.off; })});
   return panel;
 }
 
 render::PlotPanel force_panel(const Ink& ink) {
   render::PlotPanel panel = over_time(msg::run_chart_force, "N");
-  panel.lines.push_back({.x = ink_times(ink),
-                         .y = ink_column(ink, [](const InkPoint& point) { return point.force; })});
+  panel.lines.push_back(
+      {.x = times(ink), .y = column(ink, [](const InkPoint& point) { return point.force; })});
   return panel;
 }
 
