@@ -3,8 +3,7 @@
 import { el } from './dom.js';
 import { label } from './words.js';
 import { numberBox } from './number_box.js';
-
-const STANDS = 350; // [ms] after the last touch
+import { stands } from './stands.js';
 
 /**
  * @typedef {object} Dial
@@ -30,15 +29,14 @@ const STANDS = 350; // [ms] after the last touch
  */
 export function dial(options) {
   const { name, test, digits, unit, onValue } = options;
-  let until = 0;
-  let pressed = false;
+  const state = stands((value) => draw(value));
   const slider = el('input', {
     type: 'range', class: 'track', test: `${test}-slider`, step: 'any', min: options.lower, max: options.upper,
     on: {
       input: () => use(Number(slider.value), true),
-      pointerdown: () => { pressed = true; },
-      pointerup: () => { pressed = false; until = performance.now() + STANDS; },
-      pointercancel: () => { pressed = false; },
+      pointerdown: state.hold,
+      pointerup: state.release,
+      pointercancel: state.release,
       keydown: stepByKey,
     },
   });
@@ -55,7 +53,7 @@ export function dial(options) {
   node.append(slider);
 
   function use(value, bySlider) {
-    until = performance.now() + STANDS;
+    state.touch();
     draw(value, bySlider);
     onValue(value);
   }
@@ -81,9 +79,7 @@ export function dial(options) {
 
   return {
     node,
-    show(value) {
-      if (!pressed && performance.now() >= until) draw(value);
-    },
+    show: state.show,
     enable(on) {
       slider.disabled = !on;
       box.enable(on);

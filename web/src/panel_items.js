@@ -1,9 +1,9 @@
 // The controls of the server's panels, one maker a kind. Each gives {node, show(item)}.
 import { dial } from './dial.js';
 import { el } from './dom.js';
+import { stands } from './stands.js';
 import { label, t } from './words.js';
 
-const STANDS = 350; // [ms] what the user moved stands, after he let go
 const DIGITS = 4; // that count
 
 /** @typedef {{node: HTMLElement, show: (item: object) => void}} Control */
@@ -16,12 +16,21 @@ export const MAKERS = {
   },
 
   checkbox(item, test, use) {
-    const box = el('input', { type: 'checkbox', test, on: { change: () => use(box.checked ? 1 : 0) } });
+    const state = stands((on) => { box.checked = on; });
+    const box = el('input', {
+      type: 'checkbox', test,
+      on: {
+        change() {
+          state.touch();
+          use(box.checked ? 1 : 0);
+        },
+      },
+    });
     const node = el('label', { class: 'switch half', title: item.name }, box, el('span', {}, item.name));
     return {
       node,
       show({ on, enabled }) {
-        if (box.checked !== on) box.checked = on;
+        state.show(on);
         box.disabled = !enabled;
       },
     };
@@ -56,7 +65,16 @@ export const MAKERS = {
   },
 
   choice(item, test, use) {
-    const menu = el('select', { class: 'pick', test, on: { change: () => use(menu.selectedIndex) } });
+    const state = stands((current) => { menu.selectedIndex = current; });
+    const menu = el('select', {
+      class: 'pick', test,
+      on: {
+        change() {
+          state.touch();
+          use(menu.selectedIndex);
+        },
+      },
+    });
     label(menu, item.name);
     const node = el('div', { class: 'row pick-row' }, el('span', { class: 'name', title: item.name }, item.name), menu);
     let words = '';
@@ -67,8 +85,7 @@ export const MAKERS = {
           words = now.words.join('\n');
           menu.replaceChildren(...now.words.map((word) => el('option', {}, word)));
         }
-        if (menu.selectedIndex !== now.current && document.activeElement !== menu) menu.selectedIndex = now.current;
-        else if (menu.selectedIndex !== now.current) menu.selectedIndex = now.current;
+        state.show(now.current);
         menu.disabled = !now.enabled;
       },
     };
@@ -99,20 +116,23 @@ export const MAKERS = {
   },
 
   timeline(item, test, use) {
-    let pressed = false;
-    let until = 0;
+    const state = stands(({ time, end }) => {
+      slider.max = String(end);
+      slider.value = String(time);
+      draw(time);
+    });
     const value = el('span', { class: 'value', test: `${test}-value` });
     const slider = el('input', {
       type: 'range', class: 'track', test, min: 0, step: 'any',
       on: {
         input() {
-          until = performance.now() + STANDS;
+          state.touch();
           draw(Number(slider.value));
           use(Number(slider.value));
         },
-        pointerdown: () => { pressed = true; },
-        pointerup: () => { pressed = false; },
-        pointercancel: () => { pressed = false; },
+        pointerdown: state.hold,
+        pointerup: state.release,
+        pointercancel: state.release,
         keydown: step,
       },
     });
@@ -136,10 +156,7 @@ export const MAKERS = {
       node: el('div', { class: 'timeline' }, head, slider),
       show(now) {
         slider.disabled = !now.enabled;
-        if (pressed || performance.now() < until) return;
-        slider.max = String(now.end);
-        slider.value = String(now.time);
-        draw(now.time);
+        state.show(now);
       },
     };
   },

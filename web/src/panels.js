@@ -33,6 +33,11 @@ export class Panels {
     }
   }
 
+  /** As the server told them last. */
+  get sections() {
+    return this.#sections;
+  }
+
   enable(on) {
     this.#enabled = on;
     this.take(this.#sections);

@@ -2,7 +2,7 @@
 import { Vector3 } from 'three';
 
 /** @param {object} page  parts of the page */
-export function exposeProbe({ source, stage, eye, model, target, overlay, selection, transport, last }) {
+export function exposeProbe({ source, stage, eye, model, target, overlay, panels, selection, transport, last }) {
   const probe = {
     get connection() { return source.connection; },
     get ready() { return model.ready; },
@@ -23,6 +23,11 @@ export function exposeProbe({ source, stage, eye, model, target, overlay, select
     get overlay() { return overlay.items.map((item) => item.kind); },
     /** How many points each line has. */
     get lines() { return overlay.items.flatMap((item) => (item.kind === 'line' ? [item.points.length] : [])); },
+    /** Of the checkboxes: id to whether it is on, as the server told them last. */
+    get switches() {
+      const items = panels.sections.flatMap((section) => section.items);
+      return Object.fromEntries(items.filter(({ kind }) => kind === 'checkbox').map(({ id, on }) => [id, on]));
+    },
     get selected() { return selection.body; },
     get groups() { return model.groups; },
     get camera() {

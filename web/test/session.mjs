@@ -42,8 +42,13 @@ export class Session {
 
   /** Switches a checkbox of the panels and waits until the program has it so. */
   async check(name, on, section) {
-    const { witness } = this;
-    if (witness.item(name, section).on === on) return;
+    const { witness, page } = this;
+    const item = witness.item(name, section);
+    if (item.on === on) return;
+    // The page may learn later than the witness how things stand.
+    const seen = ([id, was]) => window.mjarm.switches[id] === was
+      && document.querySelector(`[data-test="panel-${id}"]`).checked === was;
+    await page.waitForFunction(seen, [item.id, item.on]);
     await this.panel(name, section).click();
     await witness.until(`"${name}" to be ${on}`, () => witness.item(name, section).on === on);
   }
