@@ -72,7 +72,7 @@ def source_of(name, language):
 def without_blanks_in_chinese(text):
     """A line that ends in Chinese goes on in the next one; a browser would show a blank there."""
     wide = r"[\u3000-\u303f\u4e00-\u9fff\uff00-\uffef]"
-    return re.sub(rf"(?<!\n)(?<={wide})\n(?={wide})|(?<={wide})\n(?=[`\[*]*{wide})", "", text)
+    return re.sub(rf"(?m)^(?!#)(.*{wide})\n(?=[`\[*]*{wide})", r"\1", text)
 
 
 class Stage:

@@ -99,6 +99,7 @@ class PagesTest(unittest.TestCase):
 
     def test_chinese_goes_on_without_a_blank(self):
         self.assertEqual(build.without_blanks_in_chinese("甲\n乙，\n丙\n\n丁\n`a`\n- 戊"), "甲乙，丙\n\n丁\n`a`\n- 戊")
+        self.assertEqual(build.without_blanks_in_chinese("## 甲\n乙\n丙"), "## 甲\n乙丙")
 
     def test_every_page_is_in_the_site(self):
         found = {page.relative_to(build.ROOT).as_posix()[:-3] for page in check_links.pages_of(build.ROOT) if ".zh-CN." not in page.name}
