@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMaxRepeats = 10000;
 constexpr double kMaxSeconds = 86400;
+constexpr double kMaxPayload = 1000;  // [kg] more is a slip of the pen, as grams
 
 std::optional<double> speed_of(const Fields& fields) {
   return fields.positive("speed", Quantity::speed, 100);
@@ -50,6 +51,26 @@ std::optional<Branch> branch_of(const Fields& fields) {
         return 0;
       });
     }
+    return out;
+  });
+}
+
+/// `payload: {mass: 1.2, com: [0, 0, 0.05]}`, or the mass alone.
+std::optional<Payload> payload_of(const Fields& fields) {
+  const YamlNode* node = fields.find("payload");
+  if (node == nullptr) return std::nullopt;
+  return or_noted(fields.faults(), std::optional<Payload>(), [&]() -> std::optional<Payload> {
+    const auto mass_of = [](const YamlNode& given, const std::string& what) {
+      const double mass = number_of(given, what, Quantity::number);
+      if (mass >= 0 && mass <= kMaxPayload) return mass;
+      throw ReadFault{given.place, text(msg::program_not_between, what, kMaxPayload, mass)};
+    };
+    const std::string what = fields.named("payload");
+    if (node->kind == YamlNode::Kind::scalar) return Payload{mass_of(*node, what)};
+    const Fields parts(*node, what, {"mass", "com"}, fields.faults());
+    Payload out;
+    if (parts.find("com") != nullptr) out.center = parts.vector("com", Quantity::length);
+    out.mass = parts.take("mass", 0.0, mass_of);
     return out;
   });
 }
@@ -222,7 +243,8 @@ Instruction::What read_wait(const YamlNode& node, const NamedThings&) {
 }
 
 Instruction::What read_set(const YamlNode& node, const NamedThings& named) {
-  return set_of(Fields(node, "set", {"tool", "frame", "speed", "joint_speed", "zone", "branch"},
+  return set_of(Fields(node, "set",
+                       {"tool", "frame", "speed", "joint_speed", "zone", "branch", "payload"},
                        named.faults));
 }
 
@@ -322,6 +344,7 @@ Set set_of(const Fields& fields) {
   out.share = share_of(fields, "joint_speed");
   out.zone = fields.not_negative("zone", Quantity::length);
   out.branch = branch_of(fields);
+  out.payload = payload_of(fields);
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/branch.hpp"
+#include "mjarm/model/payload.hpp"
 
 namespace mjarm::program {
 
@@ -111,7 +112,8 @@ struct Set {
   std::optional<double> speed = {};  ///< [m/s] of tool moves, > 0
   std::optional<double> share = {};  ///< of the joint limits in joint moves, (0, 1]
   std::optional<double> zone = {};  ///< [m] >= 0, `blend` of straight moves and arcs that have none
-  std::optional<Branch> branch = {};  ///< wherever the answer to a pose is free
+  std::optional<Branch> branch = {};    ///< wherever the answer to a pose is free
+  std::optional<Payload> payload = {};  ///< hangs at the tool from then on; mass 0: nothing does
 };
 
 /// Round obstacles, by the planner.

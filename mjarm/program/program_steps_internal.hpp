@@ -23,6 +23,7 @@ struct Step {
   double speed = 0;      ///< [m/s]
   bool keep_speed = false;
   double share = 1;
+  Payload payload = {};             ///< at the first tool
   JointVec q = {};                  ///< joints
   Pose X_WT = {};                   ///< pose, line, arc: where it ends
   Pose X_via = {};                  ///< arc

@@ -71,6 +71,7 @@ PlannedMove StepPlanner::begun(std::size_t i, std::size_t scene) const {
   move.place = step.place;
   move.tool = step.tool;
   move.attached = places_.attached(scene);
+  move.payload = step.payload;
   return move;
 }
 
