@@ -77,9 +77,9 @@ Identification told(const Robot& robot, const Unknowns& unknowns, const Solution
       phi.segment<kInertialSize>(kInertialSize * j) = links[static_cast<std::size_t>(j)].vector();
     }
     out.base = *unknowns.base;
-    const Eigen::VectorXd model = out.base.of(phi);
-    for (int i = 0; i < model.size(); ++i) {
-      out.links.push_back(estimate(solution, unknowns.link(i), model[i]));
+    out.model_links = out.base.of(phi);
+    for (int i = 0; i < out.model_links.size(); ++i) {
+      out.links.push_back(estimate(solution, unknowns.link(i), out.model_links[i]));
     }
   }
   out.delay = solution.delay;
@@ -90,6 +90,11 @@ Identification told(const Robot& robot, const Unknowns& unknowns, const Solution
 }  // namespace
 
 Result<Identification> identify(const Robot& robot, const IdentifyTask& task) {
+  constexpr double kSame = 0.01;  // of a time step
+  if (task.empty != nullptr && std::abs(task.empty->timestep / task.log->timestep - 1) > kSame) {
+    return fail(Errc::bad_input,
+                text(msg::identification_other_step, task.empty->timestep, task.log->timestep));
+  }
   const Eigen::Vector3d gravity = gravity_of(robot.model);
   Unknowns unknowns{robot.arm.dof(), task.payload || task.empty != nullptr, {}};
   if (task.links || task.empty != nullptr) unknowns.base = base_columns(robot.arm, gravity);

@@ -54,6 +54,7 @@ struct Identification {
   std::optional<PayloadEstimate> payload;
   BaseColumns base;             ///< which parameters `links` are; empty where they were not asked
   std::vector<Estimate> links;  ///< base parameters [kg, kg m, kg m^2], payload not included
+  Eigen::VectorXd model_links;  ///< the same as the model has them
   double delay = 0;             ///< [s] by which torques in the log are told before they act
   std::size_t rows = 0;         ///< of the equations that were solved
 };

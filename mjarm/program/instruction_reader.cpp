@@ -2,8 +2,10 @@
 #include <cmath>
 #include <utility>
 
+#include "mjarm/core/messages/identification.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/identification/excitation.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/program/fields_internal.hpp"
 
@@ -264,6 +266,31 @@ Instruction::What read_plan(const YamlNode& node, const NamedThings& named) {
   return PlanMove{goal_of(fields, named), branch, kept};
 }
 
+/// `excite: 20`, or with fields.
+Instruction::What read_excite(const YamlNode& node, const NamedThings& named) {
+  static constexpr double kMaxSeed = 1e9;
+  Excite out;
+  const auto seconds_of = [](const YamlNode& given, const std::string& what) {
+    const double seconds = number_of(given, what, Quantity::time);
+    if (seconds >= kLeastExcitation && seconds <= kMostExcitation) return seconds;
+    throw ReadFault{given.place, text(msg::program_in, what,
+                                      text(msg::identification_bad_seconds, kLeastExcitation,
+                                           kMostExcitation, seconds))};
+  };
+  const auto seed_of = [](const YamlNode& given, const std::string& what) {
+    const double seed = number_of(given, what, Quantity::number);
+    if (seed >= 0 && seed <= kMaxSeed && std::floor(seed) == seed) {
+      return static_cast<std::uint64_t>(seed);
+    }
+    throw ReadFault{given.place, text(msg::program_bad_count, what, kMaxSeed)};
+  };
+  if (node.kind == YamlNode::Kind::scalar) return Excite{seconds_of(node, "excite")};
+  const Fields fields(node, "excite", {"seconds", "seed"}, named.faults);
+  if (fields.find("seconds") != nullptr) out.seconds = fields.take("seconds", 20.0, seconds_of);
+  if (fields.find("seed") != nullptr) out.seed = fields.take("seed", out.seed, seed_of);
+  return out;
+}
+
 Instruction::What read_grip(const YamlNode& node, const NamedThings&) {
   return Grip{word_of(node, "grip", {"open", "close"}) == "close"};
 }
@@ -317,7 +344,7 @@ struct Word {
   const char* word;
   Instruction::What (*read)(const YamlNode& node, const NamedThings& named);
 };
-constexpr std::array<Word, 16> kWords{{{"movej", read_movej},
+constexpr std::array<Word, 17> kWords{{{"movej", read_movej},
                                        {"movel", read_movel},
                                        {"movec", read_movec},
                                        {"ellipse", read_ellipse},
@@ -329,6 +356,7 @@ constexpr std::array<Word, 16> kWords{{{"movej", read_movej},
                                        {"set", read_set},
                                        {"repeat", read_repeat},
                                        {"plan", read_plan},
+                                       {"excite", read_excite},
                                        {"grip", read_grip},
                                        {"look", read_look},
                                        {"pick", read_pick},

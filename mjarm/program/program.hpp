@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -124,6 +125,13 @@ struct PlanMove {
   std::optional<double> clearance = {};
 };
 
+/// Every joint to and fro about where it stands, so that a log of it tells payload, friction and
+/// links (excitation()).
+struct Excite {
+  double seconds = 20;  ///< [s] 5 .. 120
+  std::uint64_t seed = 1;
+};
+
 struct Grip {
   bool close = true;
 };
@@ -156,7 +164,7 @@ struct Repeat {
 /// One sentence of a program.
 struct Instruction {
   using What = std::variant<MoveJ, MoveL, MoveC, DrawEllipse, DrawPolyline, DrawSpline, DrawText,
-                            Wait, Set, PlanMove, Grip, Look, Pick, Place, Repeat>;
+                            Wait, Set, PlanMove, Excite, Grip, Look, Pick, Place, Repeat>;
   What what;
   FilePlace place = {};
 };

@@ -320,6 +320,13 @@ class StepWriter {
     push(std::move(step));
   }
 
+  void add(const Excite& what, const Instruction& instruction) {
+    Step step = begun(Step::Kind::excite, instruction);
+    step.seconds = what.seconds;
+    step.seed = what.seed;
+    push(std::move(step));
+  }
+
   void add(const Set& what, const Instruction& instruction) { take(what, instruction.place); }
 
   void add(const PlanMove& what, const Instruction& instruction) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,7 +15,7 @@ namespace mjarm::program::detail {
 
 /// One thing to be done, with all that holds at that moment; repeats are unrolled.
 struct Step {
-  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan, look, pick, place };
+  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan, excite, look, pick, place };
 
   Kind kind = Kind::wait;
   std::string_view word;
@@ -36,7 +37,8 @@ struct Step {
   bool is_free = false;
   std::optional<ToolPress> press = {};          ///< curve
   std::optional<Eigen::Vector3d> right_W = {};  ///< of a text: the way it is read
-  double seconds = 0;                           ///< wait
+  double seconds = 0;                           ///< wait, excite
+  std::uint64_t seed = 1;                       ///< excite
   std::optional<double> clearance = {};         ///< [m] plan: what is asked
   bool close = false;                           ///< grip
   std::string object = {};                      ///< pick; look: the camera
