@@ -107,7 +107,8 @@ void Equations::add_row(const SmoothLog& log, std::size_t sample, int joint, boo
   row[unknowns_.friction(joint)] = state.v[joint] > 0 ? 1 : -1;
   row[unknowns_.viscous(joint)] = state.v[joint];
   row[unknowns_.offset(joint)] = 1;
-  row[unknowns_.inertia(joint)] = state.a[joint];
+  // Where links are unknown, rotors are among their base parameters.
+  if (!unknowns_.base) row[unknowns_.inertia(joint)] = state.a[joint];
   if (unknowns_.has_payload && loaded) {
     row.segment<4>(unknowns_.payload()) = regressor.payload.row(joint).head<4>();
   }

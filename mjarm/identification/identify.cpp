@@ -71,15 +71,12 @@ Identification told(const Robot& robot, const Unknowns& unknowns, const Solution
   }
   if (unknowns.has_payload) out.payload = payload_of(solution, unknowns.payload());
   if (unknowns.base) {
-    Eigen::VectorXd phi(kInertialSize * arm.dof());
-    const std::vector<Inertial> links = link_inertials(robot.model, arm);
-    for (int j = 0; j < arm.dof(); ++j) {
-      phi.segment<kInertialSize>(kInertialSize * j) = links[static_cast<std::size_t>(j)].vector();
-    }
     out.base = *unknowns.base;
-    out.model_links = out.base.of(phi);
+    out.model_links = out.base.of(parameters_of(robot.model, arm));
     for (int i = 0; i < out.model_links.size(); ++i) {
       out.links.push_back(estimate(solution, unknowns.link(i), out.model_links[i]));
+      const int rotor = out.base.kept[static_cast<std::size_t>(i)] - kInertialSize * arm.dof();
+      if (rotor >= 0) out.joints[static_cast<std::size_t>(rotor)].inertia = out.links.back();
     }
   }
   out.delay = solution.delay;

@@ -25,8 +25,10 @@ struct JointEstimate {
   Estimate friction;  ///< [N m or N] dry
   Estimate viscous;   ///< [N m s/rad or N s/m]
   Estimate offset;    ///< [N m or N] of the torque that is told
-  Estimate inertia;   ///< [kg m^2 or kg] of the rotor, at the joint
-  double rms = 0;     ///< [N m or N] of what the estimates leave unexplained
+  /// [kg m^2 or kg] Of the rotor, at the joint; where links are unknown those of the first joints
+  /// cannot be told from them.
+  Estimate inertia;
+  double rms = 0;  ///< [N m or N] of what the estimates leave unexplained
 };
 
 /// What hangs at the tool, as a point mass.

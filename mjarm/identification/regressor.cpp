@@ -6,6 +6,7 @@
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/link_inertials.hpp"
 
 namespace mjarm {
 namespace {
@@ -58,7 +59,7 @@ Regressor regressor_at(const Arm& arm, const Vec3& gravity, const JointState& st
   const int n = arm.dof();
   std::vector<Pose> X(static_cast<std::size_t>(n));
   const Pose X_WT = fk_all(arm, as_span(state.q), X);
-  Regressor out{Eigen::MatrixXd::Zero(n, kInertialSize * n),
+  Regressor out{Eigen::MatrixXd::Zero(n, parameter_count(arm)),
                 Eigen::MatrixXd::Zero(n, kInertialSize)};
   // Of a wrench at p each joint inward of it bears its part.
   const auto put = [&](const Wrenches& wrench, const Vec3& p, int last, Eigen::MatrixXd& to,
@@ -90,7 +91,19 @@ Regressor regressor_at(const Arm& arm, const Vec3& gravity, const JointState& st
     origin = frame.p;
     put(wrenches(frame.R, motion), origin, i, out.links, kInertialSize * i);
   }
+  out.links.rightCols(n).diagonal() = state.a;
   put(wrenches(X_WT.R, motion.at(X_WT.p - origin)), X_WT.p, n - 1, out.payload, 0);
+  return out;
+}
+
+Eigen::VectorXd parameters_of(const Model& model, const Arm& arm) {
+  Eigen::VectorXd out(parameter_count(arm));
+  const std::vector<Inertial> links = link_inertials(model, arm);
+  for (int i = 0; i < arm.dof(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out.segment<kInertialSize>(kInertialSize * i) = links[k].vector();
+    out[kInertialSize * arm.dof() + i] = arm.joints[k].armature;
+  }
   return out;
 }
 
@@ -100,8 +113,8 @@ Eigen::VectorXd BaseColumns::of(const Eigen::VectorXd& phi) const {
 
 BaseColumns base_columns(const Arm& arm, const Vec3& gravity) {
   constexpr int kStates = 60;
-  constexpr double kDependent = 1e-7;
-  const int n = arm.dof(), columns = kInertialSize * n;
+  constexpr double kDependent = 1e-6;  // of the longest column
+  const int n = arm.dof(), columns = parameter_count(arm);
   Eigen::MatrixXd W(kStates * n, columns);
   Rng rng(1);
   for (int i = 0; i < kStates; ++i) {
@@ -113,12 +126,13 @@ BaseColumns base_columns(const Arm& arm, const Vec3& gravity) {
     }
     W.middleRows(i * n, n) = regressor_at(arm, gravity, state).links;
   }
+  const double least = kDependent * W.colwise().norm().maxCoeff();
   BaseColumns out;
   Eigen::MatrixXd Q(W.rows(), 0);
   for (int k = 0; k < columns; ++k) {
     Eigen::VectorXd rest = W.col(k);
     for (int twice = 0; twice < 2; ++twice) rest -= Q * (Q.transpose() * rest);
-    if (rest.norm() <= kDependent * W.col(k).norm() || W.col(k).norm() == 0) {
+    if (rest.norm() <= least) {
       out.merged.push_back(k);
       continue;
     }

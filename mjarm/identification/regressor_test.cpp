@@ -11,15 +11,6 @@
 namespace mjarm {
 namespace {
 
-Eigen::VectorXd parameters_of(const Robot& robot) {
-  Eigen::VectorXd out(kInertialSize * robot.arm.dof());
-  const std::vector<Inertial> links = link_inertials(robot.model, robot.arm);
-  for (int i = 0; i < robot.arm.dof(); ++i) {
-    out.segment<kInertialSize>(kInertialSize * i) = links[static_cast<std::size_t>(i)].vector();
-  }
-  return out;
-}
-
 JointState random_state(const Arm& arm, Rng& rng) {
   JointState out = JointState::at_rest(arm.home);
   for (int i = 0; i < arm.dof(); ++i) {
@@ -30,13 +21,13 @@ JointState random_state(const Arm& arm, Rng& rng) {
   return out;
 }
 
-/// Torque of links and payload by MuJoCo, less that of armature and damping.
+/// Torque of links and payload by MuJoCo, less that of damping.
 JointVec moved_by_links(const Robot& robot, const Model& model, const JointState& state) {
   ArmDynamics dynamics(model, robot.arm);
   JointVec out = dynamics.inverse(state.q, state.v, state.a);
   for (int i = 0; i < robot.arm.dof(); ++i) {
     const ArmJoint& joint = robot.arm.joints[static_cast<std::size_t>(i)];
-    out[i] -= joint.armature * state.a[i] + joint.damping * state.v[i];
+    out[i] -= joint.damping * state.v[i];
   }
   return out;
 }
@@ -45,7 +36,7 @@ TEST(Regressor, TorquesAreThoseOfMujoco) {
   Rng rng(3);
   for (const char* name : {"ur5e", "panda"}) {
     const Robot robot = load_robot(name).value();
-    const Eigen::VectorXd phi = parameters_of(robot);
+    const Eigen::VectorXd phi = parameters_of(robot.model, robot.arm);
     for (int i = 0; i < 20; ++i) {
       const JointState state = random_state(robot.arm, rng);
       const Regressor at = regressor_at(robot.arm, gravity_of(robot.model), state);
@@ -77,8 +68,9 @@ TEST(Regressor, BaseParametersSayAllThatTorquesTell) {
   const Robot robot = load_robot("ur5e").value();
   const Eigen::Vector3d gravity = gravity_of(robot.model);
   const BaseColumns base = base_columns(robot.arm, gravity);
-  EXPECT_EQ(base.kept.size(), 36u);  // of six turning joints, the first one upright
-  const Eigen::VectorXd phi = parameters_of(robot);
+  // Of six turning joints, the first one upright: 36 of links, and the rotors from the third on.
+  EXPECT_EQ(base.kept.size(), 40u);
+  const Eigen::VectorXd phi = parameters_of(robot.model, robot.arm);
   for (int i = 0; i < 20; ++i) {
     const JointState state = random_state(robot.arm, rng);
     const Eigen::MatrixXd links = regressor_at(robot.arm, gravity, state).links;

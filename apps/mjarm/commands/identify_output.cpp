@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "apps/mjarm/cli/table.hpp"
@@ -17,11 +20,16 @@ constexpr std::array<const char*, kInertialSize> kParameterNames{"m",   "mx",  "
 
 std::string with_error(const Estimate& estimate) {
   if (!estimate.known) return "-";
-  return fmt::format("{:.4f} +- {:.4f}", estimate.value, estimate.error);
+  // Two digits of the error say all there is.
+  const double digits = std::ceil(1 - std::log10(std::max(estimate.error, 1e-12)));
+  const int decimals = static_cast<int>(std::clamp(digits, 0.0, 6.0));
+  return fmt::format("{:.{}f} +- {:.{}f}", estimate.value, decimals, estimate.error, decimals);
 }
 
 /// "mx wrist_1_joint"
 std::string parameter_name(int column, const Arm& arm) {
+  const int links = kInertialSize * arm.dof();
+  if (column >= links) return "rotor " + arm.joints[static_cast<std::size_t>(column - links)].name;
   return std::string(kParameterNames[static_cast<std::size_t>(column % kInertialSize)]) + " " +
          arm.joints[static_cast<std::size_t>(column / kInertialSize)].name;
 }
@@ -39,7 +47,8 @@ std::string payload_text(const PayloadEstimate& payload, const Arm& arm) {
   std::vector<std::vector<std::string>> rows{
       {text(msg::identify_mass), with_error(payload.mass), "kg"}};
   for (std::size_t i = 0; i < 3; ++i) {
-    rows.push_back({text(msg::identify_center, "xyz"[i]), with_error(payload.center[i]), "m"});
+    rows.push_back({text(msg::identify_center, std::string_view("xyz").substr(i, 1)),
+                    with_error(payload.center[i]), "m"});
   }
   const Payload found = payload.payload();
   const std::string words = fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", found.mass, found.center.x(),
