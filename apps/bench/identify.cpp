@@ -33,7 +33,8 @@ struct IdentifiedWorld {
   double friction = 0;      ///< of the worst joint
   double links = 0;         ///< rms torque of the links in random states
   double links_before = 0;  ///< the same of the model
-  double mass_errors = 0;   ///< error of the mass in standard errors
+  double mass_alone = 0, center_alone = 0;  ///< from the one log with the payload
+  double mass_errors = 0;                   ///< error of the mass in standard errors
   double without = 0, told = 0, found = 0;  ///< [m] of laps that know no payload, 2 kg, the found
 };
 
@@ -81,13 +82,17 @@ double share_of_torque(const Robot& bare, const BaseColumns& base, const Eigen::
   return std::sqrt(squares / all);
 }
 
+/// Of the centre of mass, over its distance from the tool.
+double center_error(const PayloadEstimate& found, const Payload& truth) {
+  return (found.payload().center - truth.center).norm() / truth.center.norm();
+}
+
 IdentifiedWorld compare(const Identification& found, const WrongArm& truth, const Robot& bare) {
   IdentifiedWorld out;
   const PayloadEstimate& payload = *found.payload;
   out.mass = std::abs(payload.mass.value / truth.payload.mass - 1);
   out.mass_errors = (payload.mass.value - truth.payload.mass) / payload.mass.error;
-  out.center =
-      (payload.payload().center - truth.payload.center).norm() / truth.payload.center.norm();
+  out.center = center_error(payload, truth.payload);
   for (int j = 0; j < bare.arm.dof(); ++j) {
     const double friction = ModelErrors{}.friction * bare.arm.limits.torque[j];
     const double share = found.joints[static_cast<std::size_t>(j)].friction.value / friction;
@@ -127,7 +132,11 @@ Result<IdentifiedWorld> identify_world(const RobustLaps& laps, const Robot& bare
   if (!loaded) return fail(loaded.error());
   const auto found = identify(known, {.log = &*loaded, .empty = &*empty});
   if (!found) return fail(found.error());
+  const auto alone = identify(known, {.log = &*loaded});
+  if (!alone) return fail(alone.error());
   IdentifiedWorld out = compare(*found, *truth, bare);
+  out.mass_alone = std::abs(alone->payload->mass.value / truth->payload.mass - 1);
+  out.center_alone = center_error(*alone->payload, truth->payload);
   const std::pair<Payload, double*> cases[] = {
       {{}, &out.without}, {{.mass = 2}, &out.told}, {found->payload->payload(), &out.found}};
   for (const auto& [payload, error] : cases) {
@@ -167,14 +176,17 @@ struct Column {
   double factor;
 };
 std::vector<Column> columns() {
-  return {{"mass", text(msg::control_suite_id_mass), &IdentifiedWorld::mass, 100},
-          {"com", text(msg::control_suite_id_center), &IdentifiedWorld::center, 100},
-          {"friction", text(msg::control_suite_id_friction), &IdentifiedWorld::friction, 100},
-          {"links", text(msg::control_suite_id_links), &IdentifiedWorld::links, 100},
-          {"links_model", text(msg::control_suite_id_model), &IdentifiedWorld::links_before, 100},
-          {"lap_without", text(msg::control_suite_id_without), &IdentifiedWorld::without, 1e3},
-          {"lap_told", text(msg::control_suite_id_told), &IdentifiedWorld::told, 1e3},
-          {"lap_found", text(msg::control_suite_id_found), &IdentifiedWorld::found, 1e3}};
+  return {
+      {"mass", text(msg::control_suite_id_mass), &IdentifiedWorld::mass, 100},
+      {"com", text(msg::control_suite_id_center), &IdentifiedWorld::center, 100},
+      {"friction", text(msg::control_suite_id_friction), &IdentifiedWorld::friction, 100},
+      {"links", text(msg::control_suite_id_links), &IdentifiedWorld::links, 100},
+      {"mass_alone", text(msg::control_suite_id_mass_alone), &IdentifiedWorld::mass_alone, 100},
+      {"com_alone", text(msg::control_suite_id_center_alone), &IdentifiedWorld::center_alone, 100},
+      {"links_model", text(msg::control_suite_id_model), &IdentifiedWorld::links_before, 100},
+      {"lap_without", text(msg::control_suite_id_without), &IdentifiedWorld::without, 1e3},
+      {"lap_told", text(msg::control_suite_id_told), &IdentifiedWorld::told, 1e3},
+      {"lap_found", text(msg::control_suite_id_found), &IdentifiedWorld::found, 1e3}};
 }
 
 std::string identify_table(const std::vector<IdentifiedWorld>& worlds) {
