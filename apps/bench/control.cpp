@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/bench/calligraphy.hpp"
+#include "apps/bench/identify.hpp"
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robust.hpp"
 #include "apps/bench/suite.hpp"
@@ -315,7 +316,7 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
 struct ControlWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
   std::string poses = "100", characters = "100";
-  bool robust = false;
+  bool robust = false, identify = false;
   RobustWords wrong;
 };
 
@@ -327,6 +328,7 @@ Result<int> run_control(const ControlWords& options) {
   if (!characters) return fail(characters.error());
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
+  if (options.identify) return run_identify(options, options.wrong, *robot);
   if (options.robust) return run_robust(options, options.wrong, *robot);
   std::vector<LapRun> runs = laps();
   const int written = *characters * sheet_count();
@@ -373,6 +375,7 @@ Command control_suite() {
             add_option(app, "--characters", options->characters,
                        msg::control_suite_option_characters, "N");
             add_flag(app, "--robust", options->robust, msg::control_suite_option_robust);
+            add_flag(app, "--identify", options->identify, msg::control_suite_option_identify);
             add_robust_options(app, options->wrong);
             add_report_options(app, *options);
             return [options] { return run_control(*options); };

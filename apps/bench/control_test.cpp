@@ -66,6 +66,24 @@ TEST(BenchControl, RobustStaysWithinThreeTenthsWhereComputedTorqueDoesNot) {
   }
 }
 
+/// The same of payload, friction and links: within 5 % of the truth.
+TEST(BenchControl, IdentifiesPayloadFrictionAndLinksOfWrongWorlds) {
+  for (const char* robot : {"ur5e", "panda"}) {
+    const auto result = mjarm({"bench", "control", "--identify", "--robot", robot, "--worlds", "2",
+                               "--json", "--no-timing"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json bench = json::parse(result.out);
+    ASSERT_EQ(bench.at("identify").size(), 2U);
+    for (const json& world : bench.at("identify")) {
+      for (const char* what : {"mass", "com", "friction", "links"}) {
+        EXPECT_LT(world.at(what).get<double>(), 0.05) << robot << " " << what;
+      }
+      EXPECT_GT(world.at("links_model").get<double>(), 0.05) << robot;
+      EXPECT_LT(world.at("lap_found"), world.at("lap_without")) << robot;
+    }
+  }
+}
+
 TEST(BenchControl, RobustRunsAreTheSameBytesForOneSeed) {
   EXPECT_EQ(robust_bench("ur5e"), robust_bench("ur5e"));
 }

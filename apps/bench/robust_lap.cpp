@@ -119,18 +119,23 @@ class LapMeter {
 };
 
 /// The true arm: `bare` with wrong links and friction, and a wrong load.
-Result<Model> draw_world(const Robot& bare, Rng& rng) {
+Result<WrongArm> draw_arm(const Robot& bare, Rng& rng) {
   const Result<Model> fine =
       bare.model.with_physics({.timestep = bare.model.timestep() / kSubsteps});
   if (!fine) return fail(fine.error());
-  const Result<Model> wrong = wrong_model(*fine, bare.arm, {}, rng);
+  Result<Model> wrong = wrong_model(*fine, bare.arm, {}, rng);
   if (!wrong) return fail(wrong.error());
   const double mass = kPayload * (1 + kPayloadError * rng.uniform(-1, 1));
   const Eigen::Vector3d way(rng.normal(), rng.normal(), rng.normal());
-  const Result<Model> loaded =
-      with_payload(*wrong, bare.arm.tip, {mass, kPayloadShift * way.normalized()});
-  if (!loaded) return fail(loaded.error());
-  return with_torque_drives({*loaded, bare.arm}).model;
+  return WrongArm{std::move(*wrong), {mass, kPayloadShift * way.normalized()}};
+}
+
+/// The same as it is driven, with that load or without.
+Result<Model> driven_model(const WrongArm& drawn, const Robot& bare, bool loaded) {
+  const Payload payload = loaded ? drawn.payload : Payload{};
+  const Result<Model> model = with_payload(drawn.empty, bare.arm.tip, payload);
+  if (!model) return fail(model.error());
+  return with_torque_drives({*model, bare.arm}).model;
 }
 
 }  // namespace
@@ -139,6 +144,11 @@ Result<Robot> known_robot(const Robot& robot) {
   const Result<Model> loaded = with_payload(robot.model, robot.arm.tip, {.mass = kPayload});
   if (!loaded) return fail(loaded.error());
   return with_torque_drives({*loaded, robot.arm});
+}
+
+Result<WrongArm> draw_wrong_arm(const Robot& bare, std::uint64_t seed, std::uint64_t world) {
+  Rng rng(seed, world);
+  return draw_arm(bare, rng);
 }
 
 std::vector<JointVec> warm_up_at(const JointVec& q, double timestep) {
@@ -186,7 +196,9 @@ Result<RobustLaps> robust_laps(const Robot& robot) {
 Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
                                     std::uint64_t world, const AfterWrongStep& after) {
   Rng rng(seed, world);
-  const Result<Model> drawn = draw_world(drive.bare, rng);
+  const Result<WrongArm> arm_drawn = draw_arm(drive.bare, rng);
+  if (!arm_drawn) return fail(arm_drawn.error());
+  const Result<Model> drawn = driven_model(*arm_drawn, drive.bare, drive.loaded);
   if (!drawn) return fail(drawn.error());
   const Arm& arm = drive.known.arm;
   Result<Controller> controller =
@@ -200,12 +212,13 @@ Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
   for (std::size_t i = 0; i + 2 < drive.q.size(); ++i) {
     drives.read(sim.qpos(), sim.qvel());
     const StepReference reference{drive.q[i > 0 ? i - 1 : 0], drive.q[i], drive.q[i + 1]};
-    WrongStep step{i + 1};
+    WrongStep step{.index = i + 1, .q = JointVec(arm.dof()), .torque = JointVec(arm.dof())};
     step.limited = controller->command(drives.qpos(), drives.qvel(), reference, ctrl);
     for (int j = 0; j < arm.dof(); ++j) {
       const ArmActuator& actuator = *arm.joints[j].actuator;
-      const double torque = std::abs(actuator.gear * ctrl[actuator.id]);
-      step.torque_use = std::max(step.torque_use, torque / arm.limits.torque[j]);
+      step.q[j] = drives.qpos()[arm.joints[j].qpos];
+      step.torque[j] = actuator.gear * ctrl[actuator.id];
+      step.torque_use = std::max(step.torque_use, std::abs(step.torque[j]) / arm.limits.torque[j]);
     }
     drives.pass(ctrl);
     for (int k = 0; k < kSubsteps; ++k) {

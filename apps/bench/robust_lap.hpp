@@ -8,6 +8,7 @@
 
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/model/payload.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/path/ellipse.hpp"
 #include "mjarm/sim/imperfect_drives.hpp"
@@ -47,12 +48,22 @@ struct WrongDrive {
   std::span<const JointVec> q;  ///< positions at every step of control
   ControlMode mode = ControlMode::robust;
   ControlOptions control = {};
+  bool loaded = true;  ///< the world has its payload
 };
+/// The true arm of a world.
+struct WrongArm {
+  Model empty;      ///< wrong links and friction
+  Payload payload;  ///< what hangs at the tool beside them
+};
+[[nodiscard]] Result<WrongArm> draw_wrong_arm(const Robot& bare, std::uint64_t seed,
+                                              std::uint64_t world);
 /// A step of control that was done.
 struct WrongStep {
   std::size_t index = 0;  ///< in WrongDrive::q, of where the arm should be now
   double torque_use = 0;  ///< largest command over the torque limit of its joint
   bool limited = false;   ///< a limit cut the command
+  JointVec q = {};        ///< [rad] (dof,) what the encoders said before it
+  JointVec torque = {};   ///< [N m] (dof,) the command
 };
 using AfterWrongStep = std::function<void(const Sim& sim, const WrongStep& step)>;
 /// Drives in a world that is drawn by `seed` and `world`: payload and links of other masses with

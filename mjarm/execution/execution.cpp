@@ -11,6 +11,7 @@ namespace mjarm {
 Execution::Execution(const Model& model, const MotionPlan& plan, Controller controller,
                      const ExecutionOptions& options)
     : plan_(&plan),
+      model_(model),
       options_(options),
       controller_(std::move(controller)),
       clock_(plan, model.timestep(), options.rest),
@@ -36,6 +37,7 @@ Result<Execution> Execution::create(const Model& model, const MotionPlan& plan,
   if (!controller) return fail(std::move(controller.error()));
   Execution execution(model, plan, std::move(*controller), options);
   execution.presser_ = std::move(*presser);
+  execution.control_ = stiffness;
   return execution;
 }
 
@@ -95,24 +97,29 @@ MotionClock::Step Execution::next(Sim& sim) {
   return step;
 }
 
-void Execution::take_load(const Model& model, std::size_t move) {
+void Execution::take_load(Sim& sim, std::size_t move) {
+  const Arm& arm = plan_->arms.front();
   double load = 0;
   if (move > 0) {
-    const SceneBodies bodies = scene_bodies(model, plan_->arms.front());
+    const SceneBodies bodies = scene_bodies(model_, arm);
     for (const AttachedBody& one : plan_->moves[move - 1].attached) {
       const auto object = std::ranges::find(bodies.objects, one.body, &SceneObject::name);
-      if (object != bodies.objects.end()) load += object_mass(model, object->body).mass;
+      if (object != bodies.objects.end()) load += object_mass(model_, object->body).mass;
     }
   }
-  if (load == load_) return;
-  load_ = load;
+  const Payload& payload = plan_->moves[move].payload;
+  if (load == load_ && payload == payload_) return;
   if (loaded_) controller_.learn_from(*loaded_);
   loaded_.reset();
-  if (load == 0) return;
-  const Arm& arm = plan_->arms.front();
-  const Result<Model> heavier = model.with_point_mass(arm.tip, load);
+  // A payload is checked where the plan is made.
+  const Model hung = with_payload(model_, arm.tip, payload).value_or(model_);
+  if (payload != payload_) sim.take_masses(hung);
+  load_ = load;
+  payload_ = payload;
+  if (load == 0 && payload.mass == 0) return;
+  const Result<Model> heavier = with_payload(hung, arm.tip, {.mass = load});
   if (!heavier) return;
-  if (auto made = Controller::create(*heavier, arm, options_.control)) {
+  if (auto made = Controller::create(*heavier, arm, options_.control, control_)) {
     loaded_ = std::move(*made);
     loaded_->learn_from(controller_);
   }
@@ -138,7 +145,7 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
     if (loaded_) loaded_->restart();
   }
   if (step.begins) {
-    take_load(sim.model(), step.motion);
+    take_load(sim, step.motion);
     begin_motion(sim, step.motion, sim.time() + passed);
   }
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());

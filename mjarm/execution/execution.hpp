@@ -39,13 +39,14 @@ struct ExecutedMotion {
 /// step by step, to be stopped and taken up again as a user likes, or all in one call. What the
 /// gripper is told to do is told over the first kGripShare of that motion, at a steady rate:
 /// fingers that are thrown shut throw what they hold. The controller knows the mass of what the
-/// plan has in the gripper, as if it hung at the tool frame. The arm goes on from where it stands;
+/// plan has in the gripper, as if it hung at the tool frame, and the plan's payloads, which the
+/// simulation gets as well. The arm goes on from where it stands;
 /// Sim::place() puts it at the plan's start.
 class Execution {
  public:
   using State = MotionClock::State;
 
-  /// @param model  of the simulations that are stepped.
+  /// @param model  of the simulations that are stepped, without payload.
   /// @param plan   outlives this.
   /// @return an error where the arm's actuators cannot do that control, a motion is not one of
   ///         this arm, or it has no gripper to close.
@@ -97,7 +98,7 @@ class Execution {
   void move_gripper(Sim& sim);
   /// Of what is carried now, or of the empty hand.
   [[nodiscard]] Controller& controller() { return loaded_ ? *loaded_ : controller_; }
-  void take_load(const Model& model, std::size_t move);
+  void take_load(Sim& sim, std::size_t move);
   void begin_motion(Sim& sim, std::size_t move, double from);
   void end_motion(const Sim& sim);
   void take_measures(const Sim& sim);
@@ -109,10 +110,13 @@ class Execution {
   };
 
   const MotionPlan* plan_;
+  Model model_;             ///< of the robot without payload
+  ControlOptions control_;  ///< of all its controllers
   ExecutionOptions options_;
   Controller controller_;             ///< of the empty hand
   std::optional<Controller> loaded_;  ///< of what is carried now, as far as that is known
-  double load_ = 0;                   ///< [kg] of that
+  double load_ = 0;                   ///< [kg] of what is attached
+  Payload payload_;                   ///< what hangs at the tool beside it
   MotionClock clock_;
   std::optional<Presser> presser_;
   std::optional<Stepper> stepper_;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include "mjarm/core/rng.hpp"
 #include "mjarm/execution/execution_test.hpp"
@@ -35,6 +36,64 @@ struct World {
   }
   [[nodiscard]] JointVec q() const { return sim.arm_state(robot.arm).q; }
 };
+
+/// How far the joints are off at rest at the end of `plan`, in a world of its own.
+double error_at_rest(const Model& model, const Arm& arm, const MotionPlan& plan) {
+  Sim sim(model);
+  sim.place(arm, as_span(arm.home));
+  Result<Execution> execution =
+      Execution::create(model, plan, {.control = ControlMode::servo_gravity, .rest = 2});
+  EXPECT_TRUE(execution->run_to_end(sim).has_value());
+  return execution->error(sim).cwiseAbs().maxCoeff();
+}
+
+TEST(Execution, PayloadIsCarriedAndKnown) {
+  const Loaded robot = load_shipped("ur5e");
+  const Payload payload{2, {0.02, -0.01, 0.06}};
+  MotionPlan plan = there_and_half_back(robot.arm);
+  const Model loaded = with_payload(robot.model, robot.arm.tip, payload).value();
+  // A controller that is told of a load that nobody carries holds the arm too high, as one that is
+  // not told of a load lets it sag: both must be off, or the test sees nothing.
+  const double unknown = [&] {
+    Sim sim(loaded);
+    sim.place(robot.arm, as_span(robot.arm.home));
+    Result<Execution> execution =
+        Execution::create(robot.model, plan, {.control = ControlMode::servo_gravity, .rest = 2});
+    EXPECT_TRUE(execution->run_to_end(sim).has_value());
+    return execution->error(sim).cwiseAbs().maxCoeff();
+  }();
+  EXPECT_GT(unknown, 1e-3);
+  for (PlannedMove& move : plan.moves) move.payload = payload;
+  EXPECT_LT(error_at_rest(robot.model, robot.arm, plan), 1e-5);
+}
+
+TEST(Execution, PayloadHangsAtTheToolAsLongAsThePlanHasIt) {
+  const Loaded robot = load_shipped("ur5e");
+  const Payload payload{2, {0.02, -0.01, 0.06}};
+  MotionPlan plan = there_and_half_back(robot.arm);
+  plan.moves[0].payload = payload;
+  Sim sim(robot.model);
+  sim.place(robot.arm, as_span(robot.arm.home));
+  Result<Execution> execution =
+      Execution::create(robot.model, plan, {.control = ControlMode::servo_gravity, .rest = 2});
+  const auto mass_of = [](const Model& model) {
+    double mass = 0;
+    for (int i = 0; i < model.raw()->nbody; ++i) mass += model.raw()->body_mass[i];
+    return mass;
+  };
+  std::vector<double> masses;
+  const auto outcome = execution->run_to_end(sim, [&](const Sim& world) {
+    const double mass = mass_of(world.model());
+    if (masses.empty() || masses.back() != mass) masses.push_back(mass);
+    return true;
+  });
+  ASSERT_TRUE(outcome.has_value());
+  const double bare = mass_of(robot.model);
+  ASSERT_EQ(masses.size(), 2u);
+  EXPECT_NEAR(masses[0], bare + payload.mass, 1e-12);
+  EXPECT_NEAR(masses[1], bare, 1e-12);
+  EXPECT_LT(execution->error(sim).cwiseAbs().maxCoeff(), 1e-5);
+}
 
 TEST(Execution, ComputedTorqueFollowsToTheEnd) {
   World world(load_shipped("ur5e"));

@@ -9,6 +9,7 @@
 #include "mjarm/core/file_place.hpp"
 #include "mjarm/kinematics/singularity.hpp"
 #include "mjarm/model/arm.hpp"
+#include "mjarm/model/payload.hpp"
 #include "mjarm/path/curve.hpp"
 #include "mjarm/trajectory/tool_speed.hpp"
 #include "mjarm/trajectory/trajectory.hpp"
@@ -64,8 +65,11 @@ struct PlannedMove {
   std::optional<Eigen::Vector3d> right_W = {};  ///< of a text: the way it is read, a unit vector
   std::optional<bool> close = {};               ///< the gripper closes or opens at its beginning
   std::vector<AttachedBody> attached = {};      ///< to the first arm's tool, at its end
-  std::vector<SpeedDip> dips = {};              ///< where the tool is slower than asked
-  std::optional<MoveMeasures> measures = {};    ///< none for rests
+  /// Hangs at the first arm's tool while it moves, beside what is attached: the controller knows
+  /// it, and the simulation has it.
+  Payload payload = {};
+  std::vector<SpeedDip> dips = {};            ///< where the tool is slower than asked
+  std::optional<MoveMeasures> measures = {};  ///< none for rests
 
   [[nodiscard]] bool is_approach() const { return word == "approach"; }
 };

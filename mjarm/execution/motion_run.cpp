@@ -58,6 +58,8 @@ Result<void> MotionRun::execute(const MotionPlan& plan, ControlMode mode, double
 Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double rest) {
   if (ended_early()) return {};
   q_command_ = plan.q_end();
+  // What the plan before had at the tool in the end is gone.
+  if (sim_.model().raw() != model_.raw()) sim_.take_masses(model_);
   Result<Execution> execution =
       Execution::create(model_, plan, {.control = mode, .rest = rest, .recorder = &recorder_});
   if (!execution) return fail(std::move(execution.error()));

@@ -12,6 +12,10 @@ namespace mjarm {
 struct Payload {
   double mass = 0;                                   ///< [kg] >= 0; 0 = nothing
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< [m] centre of mass in the tool's frame
+
+  [[nodiscard]] bool operator==(const Payload& other) const {
+    return mass == other.mass && center == other.center;
+  }
 };
 
 /// The same robot with a payload at a frame (site or body).

@@ -2,8 +2,10 @@
 #include <cmath>
 #include <utility>
 
+#include "mjarm/core/messages/identification.hpp"
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/nearest_word.hpp"
+#include "mjarm/identification/excitation.hpp"
 #include "mjarm/planning/plan_path.hpp"
 #include "mjarm/program/fields_internal.hpp"
 
@@ -12,6 +14,7 @@ namespace {
 
 constexpr double kMaxRepeats = 10000;
 constexpr double kMaxSeconds = 86400;
+constexpr double kMaxPayload = 1000;  // [kg] more is a slip of the pen, as grams
 
 std::optional<double> speed_of(const Fields& fields) {
   return fields.positive("speed", Quantity::speed, 100);
@@ -50,6 +53,26 @@ std::optional<Branch> branch_of(const Fields& fields) {
         return 0;
       });
     }
+    return out;
+  });
+}
+
+/// `payload: {mass: 1.2, com: [0, 0, 0.05]}`, or the mass alone.
+std::optional<Payload> payload_of(const Fields& fields) {
+  const YamlNode* node = fields.find("payload");
+  if (node == nullptr) return std::nullopt;
+  return or_noted(fields.faults(), std::optional<Payload>(), [&]() -> std::optional<Payload> {
+    const auto mass_of = [](const YamlNode& given, const std::string& what) {
+      const double mass = number_of(given, what, Quantity::number);
+      if (mass >= 0 && mass <= kMaxPayload) return mass;
+      throw ReadFault{given.place, text(msg::program_not_between, what, kMaxPayload, mass)};
+    };
+    const std::string what = fields.named("payload");
+    if (node->kind == YamlNode::Kind::scalar) return Payload{mass_of(*node, what)};
+    const Fields parts(*node, what, {"mass", "com"}, fields.faults());
+    Payload out;
+    if (parts.find("com") != nullptr) out.center = parts.vector("com", Quantity::length);
+    out.mass = parts.take("mass", 0.0, mass_of);
     return out;
   });
 }
@@ -222,7 +245,8 @@ Instruction::What read_wait(const YamlNode& node, const NamedThings&) {
 }
 
 Instruction::What read_set(const YamlNode& node, const NamedThings& named) {
-  return set_of(Fields(node, "set", {"tool", "frame", "speed", "joint_speed", "zone", "branch"},
+  return set_of(Fields(node, "set",
+                       {"tool", "frame", "speed", "joint_speed", "zone", "branch", "payload"},
                        named.faults));
 }
 
@@ -240,6 +264,31 @@ Instruction::What read_plan(const YamlNode& node, const NamedThings& named) {
   const auto kept = asked ? fields.take("clearance", std::optional<double>(), clearance)
                           : std::optional<double>();
   return PlanMove{goal_of(fields, named), branch, kept};
+}
+
+/// `excite: 20`, or with fields.
+Instruction::What read_excite(const YamlNode& node, const NamedThings& named) {
+  static constexpr double kMaxSeed = 1e9;
+  Excite out;
+  const auto seconds_of = [](const YamlNode& given, const std::string& what) {
+    const double seconds = number_of(given, what, Quantity::time);
+    if (seconds >= kLeastExcitation && seconds <= kMostExcitation) return seconds;
+    throw ReadFault{given.place, text(msg::program_in, what,
+                                      text(msg::identification_bad_seconds, kLeastExcitation,
+                                           kMostExcitation, seconds))};
+  };
+  const auto seed_of = [](const YamlNode& given, const std::string& what) {
+    const double seed = number_of(given, what, Quantity::number);
+    if (seed >= 0 && seed <= kMaxSeed && std::floor(seed) == seed) {
+      return static_cast<std::uint64_t>(seed);
+    }
+    throw ReadFault{given.place, text(msg::program_bad_count, what, kMaxSeed)};
+  };
+  if (node.kind == YamlNode::Kind::scalar) return Excite{seconds_of(node, "excite")};
+  const Fields fields(node, "excite", {"seconds", "seed"}, named.faults);
+  if (fields.find("seconds") != nullptr) out.seconds = fields.take("seconds", 20.0, seconds_of);
+  if (fields.find("seed") != nullptr) out.seed = fields.take("seed", out.seed, seed_of);
+  return out;
 }
 
 Instruction::What read_grip(const YamlNode& node, const NamedThings&) {
@@ -295,7 +344,7 @@ struct Word {
   const char* word;
   Instruction::What (*read)(const YamlNode& node, const NamedThings& named);
 };
-constexpr std::array<Word, 16> kWords{{{"movej", read_movej},
+constexpr std::array<Word, 17> kWords{{{"movej", read_movej},
                                        {"movel", read_movel},
                                        {"movec", read_movec},
                                        {"ellipse", read_ellipse},
@@ -307,6 +356,7 @@ constexpr std::array<Word, 16> kWords{{{"movej", read_movej},
                                        {"set", read_set},
                                        {"repeat", read_repeat},
                                        {"plan", read_plan},
+                                       {"excite", read_excite},
                                        {"grip", read_grip},
                                        {"look", read_look},
                                        {"pick", read_pick},
@@ -322,6 +372,7 @@ Set set_of(const Fields& fields) {
   out.share = share_of(fields, "joint_speed");
   out.zone = fields.not_negative("zone", Quantity::length);
   out.branch = branch_of(fields);
+  out.payload = payload_of(fields);
   return out;
 }
 

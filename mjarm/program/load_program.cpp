@@ -83,7 +83,8 @@ Result<std::vector<ProgramFault>> find_text_faults(const std::filesystem::path& 
 }
 
 Result<LoadedProgram> load_program(const std::string& name_or_path, const StopCheck& stop,
-                                   const LoadOptions& load, const SeeScene& see) {
+                                   const LoadOptions& load, const SeeScene& see,
+                                   const std::optional<Payload>& payload) {
   const Result<std::filesystem::path> found = find_program_file(name_or_path);
   if (!found) return fail(found.error());
   Result<ProgramText> read = look_through_file(*found);
@@ -93,12 +94,14 @@ Result<LoadedProgram> load_program(const std::string& name_or_path, const StopCh
   }
   Result<Robot> robot = load_program_robot(read->program, *found, load);
   if (!robot) return fail(std::move(robot.error()));
+  if (payload) read->program.settings.payload = payload;
   return plan_loaded(found->string(), std::move(read->program), std::move(*robot), stop, see);
 }
 
 Result<LoadedProgram> load_sound_program(const std::string& name_or_path, const StopCheck& stop,
-                                         const LoadOptions& load, const SeeScene& see) {
-  Result<LoadedProgram> loaded = load_program(name_or_path, stop, load, see);
+                                         const LoadOptions& load, const SeeScene& see,
+                                         const std::optional<Payload>& payload) {
+  Result<LoadedProgram> loaded = load_program(name_or_path, stop, load, see, payload);
   if (loaded && !loaded->plan.ok()) return fail(first_fault(*loaded));
   return loaded;
 }

@@ -45,16 +45,19 @@ struct LoadedProgram {
 /// @param stop  ends the planning with stopped(), as in the others.
 /// @param load  how the robot's files are read.
 /// @param see   does the instruction `look`.
+/// @param payload  in place of the one at the top of the program.
 [[nodiscard]] Result<LoadedProgram> load_program(const std::string& name_or_path,
                                                  const StopCheck& stop = {},
                                                  const LoadOptions& load = {},
-                                                 const SeeScene& see = {});
+                                                 const SeeScene& see = {},
+                                                 const std::optional<Payload>& payload = {});
 
 /// The same; a plan with faults is an error, the first of them.
 [[nodiscard]] Result<LoadedProgram> load_sound_program(const std::string& name_or_path,
                                                        const StopCheck& stop = {},
                                                        const LoadOptions& load = {},
-                                                       const SeeScene& see = {});
+                                                       const SeeScene& see = {},
+                                                       const std::optional<Payload>& payload = {});
 
 /// Plans a program for a robot that is loaded already, with a progress bar.
 /// @param file  for messages.

@@ -6,9 +6,9 @@
 namespace mjarm::program {
 
 std::string_view word(const Instruction& instruction) noexcept {
-  static constexpr std::array<std::string_view, 15> kWords{
-      "movej", "movel", "movec", "ellipse", "polyline", "spline", "text",  "wait",
-      "set",   "plan",  "grip",  "look",    "pick",     "place",  "repeat"};
+  static constexpr std::array<std::string_view, 16> kWords{
+      "movej", "movel", "movec",  "ellipse", "polyline", "spline", "text",  "wait",
+      "set",   "plan",  "excite", "grip",    "look",     "pick",   "place", "repeat"};
   if (const auto* drawn = std::get_if<DrawEllipse>(&instruction.what)) return drawn->word;
   return kWords[instruction.what.index()];
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/kinematics/branch.hpp"
+#include "mjarm/model/payload.hpp"
 
 namespace mjarm::program {
 
@@ -111,7 +113,8 @@ struct Set {
   std::optional<double> speed = {};  ///< [m/s] of tool moves, > 0
   std::optional<double> share = {};  ///< of the joint limits in joint moves, (0, 1]
   std::optional<double> zone = {};  ///< [m] >= 0, `blend` of straight moves and arcs that have none
-  std::optional<Branch> branch = {};  ///< wherever the answer to a pose is free
+  std::optional<Branch> branch = {};    ///< wherever the answer to a pose is free
+  std::optional<Payload> payload = {};  ///< hangs at the tool from then on; mass 0: nothing does
 };
 
 /// Round obstacles, by the planner.
@@ -120,6 +123,13 @@ struct PlanMove {
   std::optional<Branch> branch = {};  ///< of the answer to a pose
   /// [m] >= 0: kept from all else on the way, as PlanOptions::clearance has it.
   std::optional<double> clearance = {};
+};
+
+/// Every joint to and fro about where it stands, so that a log of it tells payload, friction and
+/// links (excitation()).
+struct Excite {
+  double seconds = 20;  ///< [s] 5 .. 120
+  std::uint64_t seed = 1;
 };
 
 struct Grip {
@@ -154,7 +164,7 @@ struct Repeat {
 /// One sentence of a program.
 struct Instruction {
   using What = std::variant<MoveJ, MoveL, MoveC, DrawEllipse, DrawPolyline, DrawSpline, DrawText,
-                            Wait, Set, PlanMove, Grip, Look, Pick, Place, Repeat>;
+                            Wait, Set, PlanMove, Excite, Grip, Look, Pick, Place, Repeat>;
   What what;
   FilePlace place = {};
 };

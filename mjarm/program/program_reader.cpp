@@ -93,7 +93,7 @@ void read(const YamlNode& root, ProgramText& text) {
   Program& out = text.program;
   const Fields fields(root, "program",
                       {"robot", "scene", "tool", "start", "frame", "frames", "poses", "postures",
-                       "speed", "joint_speed", "zone", "branch", "control", "program"},
+                       "speed", "joint_speed", "zone", "branch", "payload", "control", "program"},
                       faults);
   read_robot(fields, out);
   out.frames = read_frames(fields);

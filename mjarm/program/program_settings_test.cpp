@@ -75,6 +75,40 @@ constexpr const char* kSquareOfMoves =
     "  - movel: {pos: [-0.1, -0.5, 0.4], euler: [180deg, 0, 0]}\n"
     "  - movel: {pos: [-0.1, -0.4, 0.4], euler: [180deg, 0, 0]}\n";
 
+TEST(ProgramSettings, PayloadHoldsForWhatFollowsInTheFrameOfTheToolThatIsSet) {
+  const ProgramPlan plan = planned(
+      "  - wait: 1\n"
+      "  - set: {tool: wrist_3_link, payload: {mass: 1.5, com: [0, 20mm, 0]}}\n"
+      "  - wait: 1\n"
+      "  - set: {payload: 0}\n"
+      "  - wait: 1\n",
+      "payload: 0.5\n");
+  ASSERT_TRUE(plan.ok()) << faults_told(plan);
+  ASSERT_EQ(plan.moves.size(), 3u);
+  EXPECT_EQ(plan.moves[0].payload, Payload{0.5});
+  EXPECT_EQ(plan.moves[1].payload.mass, 1.5);
+  const auto point_W = [&](std::size_t tool, const Vector3d& p) {
+    return fk(plan.arms[tool], as_span(plan.q_start)) * p;
+  };
+  EXPECT_LT((point_W(0, plan.moves[1].payload.center) - point_W(1, Vector3d(0, 0.02, 0))).norm(),
+            1e-12);
+  EXPECT_EQ(plan.moves[2].payload.mass, 0);
+}
+
+TEST(ProgramSettings, PayloadsThatAreNoneAreFaultsWithTheirLine) {
+  const auto said = [](const std::string& payload) {
+    const auto program = parse_program(
+        "robot: ur5e\nprogram:\n  - set: {payload: " + payload + "}\n  - wait: 1\n", "p.yaml");
+    return program ? std::string() : program.error().what;
+  };
+  EXPECT_EQ(said("{mass: 2, com: [0, 0, 0.1]}"), "");
+  EXPECT_THAT(said("-1"), HasSubstr("p.yaml:3:"));
+  EXPECT_THAT(said("-1"), HasSubstr("set: payload: expected from 0 to 1000, got -1"));
+  EXPECT_THAT(said("{com: [0, 0, 0]}"), HasSubstr("mass"));
+  EXPECT_THAT(said("{mass: 1, cog: [0, 0, 0]}"), HasSubstr("did you mean \"com\""));
+  EXPECT_THAT(said("{mass: 1, com: [0, 0]}"), HasSubstr("com"));
+}
+
 TEST(ProgramSettings, WhatIsSetIsWhatEachMoveWouldName) {
   const std::string named =
       "  - movej: {pos: [0.1, -0.4, 0.4], euler: [180deg, 0, 0], speed: 0.3}\n"

@@ -95,6 +95,7 @@ class StepWriter {
     step.speed = speed.value_or(speed_.value_or(0));
     step.keep_speed = speed.has_value() || speed_.has_value();
     step.share = share_;
+    step.payload = payload_;
     step.branch = branch_;
     step.is_free = is_free_;
     return step;
@@ -168,6 +169,10 @@ class StepWriter {
     if (set.zone) zone_ = *set.zone;
     if (set.branch) branch_ = known(*set.branch, place);
     if (set.tool) tool_ = tool(*set.tool, place);
+    if (set.payload) {
+      const Pose X_TU = out_.arms.front().X_JT.inverse() * out_.arms[tool_].X_JT;
+      payload_ = {set.payload->mass, X_TU * set.payload->center};
+    }
   }
 
   /// A fault where the arm has no such words.
@@ -315,6 +320,13 @@ class StepWriter {
     push(std::move(step));
   }
 
+  void add(const Excite& what, const Instruction& instruction) {
+    Step step = begun(Step::Kind::excite, instruction);
+    step.seconds = what.seconds;
+    step.seed = what.seed;
+    push(std::move(step));
+  }
+
   void add(const Set& what, const Instruction& instruction) { take(what, instruction.place); }
 
   void add(const PlanMove& what, const Instruction& instruction) {
@@ -378,6 +390,7 @@ class StepWriter {
   std::optional<double> speed_;
   double share_ = 1;
   double zone_ = 0;
+  Payload payload_;
   Branch branch_;
   bool is_free_ = true;  // no joint values were given of late, `home` aside
   bool full_ = false;

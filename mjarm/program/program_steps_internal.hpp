@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,7 +15,7 @@ namespace mjarm::program::detail {
 
 /// One thing to be done, with all that holds at that moment; repeats are unrolled.
 struct Step {
-  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan, look, pick, place };
+  enum class Kind { joints, pose, line, arc, curve, wait, grip, plan, excite, look, pick, place };
 
   Kind kind = Kind::wait;
   std::string_view word;
@@ -23,6 +24,7 @@ struct Step {
   double speed = 0;      ///< [m/s]
   bool keep_speed = false;
   double share = 1;
+  Payload payload = {};             ///< at the first tool
   JointVec q = {};                  ///< joints
   Pose X_WT = {};                   ///< pose, line, arc: where it ends
   Pose X_via = {};                  ///< arc
@@ -35,7 +37,8 @@ struct Step {
   bool is_free = false;
   std::optional<ToolPress> press = {};          ///< curve
   std::optional<Eigen::Vector3d> right_W = {};  ///< of a text: the way it is read
-  double seconds = 0;                           ///< wait
+  double seconds = 0;                           ///< wait, excite
+  std::uint64_t seed = 1;                       ///< excite
   std::optional<double> clearance = {};         ///< [m] plan: what is asked
   bool close = false;                           ///< grip
   std::string object = {};                      ///< pick; look: the camera

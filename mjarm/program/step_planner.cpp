@@ -3,6 +3,7 @@
 
 #include "mjarm/core/messages/program.hpp"
 #include "mjarm/core/os.hpp"
+#include "mjarm/identification/excitation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/path/joint_path.hpp"
 #include "mjarm/program/detour_chain_internal.hpp"
@@ -55,6 +56,8 @@ Attempt StepPlanner::begin(std::size_t i, const Stand& at) {
       return rest(i, at, steps_[i].seconds);
     case Step::Kind::grip:
       return grip(i, at);
+    case Step::Kind::excite:
+      return excite(i, at);
     case Step::Kind::plan:
     case Step::Kind::look:  // ProgramPlanner's
     case Step::Kind::pick:
@@ -71,6 +74,7 @@ PlannedMove StepPlanner::begun(std::size_t i, std::size_t scene) const {
   move.place = step.place;
   move.tool = step.tool;
   move.attached = places_.attached(scene);
+  move.payload = step.payload;
   return move;
 }
 
@@ -82,6 +86,30 @@ Attempt StepPlanner::rest(std::size_t i, const Stand& at, double seconds) const 
   if (!trajectory) return failed(i, at, {i, "bad_input", trajectory.error().what});
   PlannedMove move = begun(i, at.scene);
   move.trajectory = std::move(*trajectory);
+  return {{std::move(move)}, i + 1, at, {}};
+}
+
+/// To and fro about where the arm stands, free of contact all along.
+Attempt StepPlanner::excite(std::size_t i, const Stand& at) const {
+  constexpr double kClear = 0.01;  // [m]
+  constexpr double kLook = 0.01;   // [s] from look to look
+  const Step& step = steps_[i];
+  const ToolPtr with = tool(i, at);
+  const ClearanceCheck& clearance = with->judge.clearance();
+  ExcitationOptions options{.seconds = step.seconds, .seed = step.seed};
+  if (clearance) {
+    options.valid = [&](std::span<const double> q) { return clearance(q).distance > kClear; };
+  }
+  Result<Trajectory> motion = excitation(places_.model(), with->arm, at.q, options);
+  if (!motion) return failed(i, at, {i, "collision", motion.error().what});
+  PlannedMove move = begun(i, at.scene);
+  std::vector<JointVec> way;
+  for (double t = 0; t < step.seconds; t += kLook) way.push_back(motion->at(t).q);
+  move.measures = with->judge.measure(with->ik, way);
+  if (const auto fault = with->judge.touches(*move.measures)) {
+    return failed(i, at, {i, "collision", text(msg::program_move_touches, *fault)});
+  }
+  move.trajectory = std::move(*motion);
   return {{std::move(move)}, i + 1, at, {}};
 }
 

@@ -78,6 +78,7 @@ class StepPlanner {
   [[nodiscard]] Attempt begin(std::size_t i, const Stand& at);
   [[nodiscard]] PlannedMove begun(std::size_t i, std::size_t scene) const;
   [[nodiscard]] Attempt rest(std::size_t i, const Stand& at, double seconds) const;
+  [[nodiscard]] Attempt excite(std::size_t i, const Stand& at) const;
   [[nodiscard]] Attempt grip(std::size_t i, const Stand& at);
   [[nodiscard]] Attempt to_joints(std::size_t i, const Stand& at);
   [[nodiscard]] Attempt to_pose(std::size_t i, const Stand& at);

@@ -238,6 +238,10 @@ class UrscriptWriter {
 Result<std::string> to_urscript(const Program& program, const Robot& robot, const ProgramPlan& plan,
                                 const UrscriptOptions& options) {
   if (!plan.ok()) return fail(plan.faults.front().code, plan.faults.front().what);
+  const auto excites = [](const PlannedMove& move) { return move.word == "excite"; };
+  if (std::ranges::any_of(plan.moves, excites)) {
+    return fail(Errc::not_available, text(msg::program_urscript_excite));
+  }
   const Result<UrArm> ur = detail::find_ur_arm(robot.model, robot.arm);
   if (!ur) return fail(ur.error());
   return UrscriptWriter(program, plan, options, *ur).write();

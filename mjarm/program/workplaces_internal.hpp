@@ -54,6 +54,7 @@ class Workplaces {
         stop_(std::move(stop)),
         scenes_{std::move(first)} {}
 
+  [[nodiscard]] const Model& model() const { return model_; }
   /// Stays what it is as long as somebody has it.
   [[nodiscard]] std::shared_ptr<Tool> tool(std::size_t scene, std::size_t tool);
   /// The scene after the gripper has closed or opened where the arm stands.

@@ -217,6 +217,16 @@ void Sim::hold_others(const Arm& arm) {
   impl_->stand();
 }
 
+void Sim::take_masses(const Model& model) {
+  assert(model.nq() == impl_->m().nq && model.raw()->nbody == impl_->m().nbody);
+  impl_->model = model;
+  if (impl_->holding) {
+    impl_->clamped.reset(mj_copyModel(nullptr, model.raw()));
+    impl_->holding->clamp(*impl_->clamped);
+  }
+  impl_->refresh();
+}
+
 std::vector<HeldState> Sim::held() const {
   std::vector<HeldState> held;
   if (!impl_->holding) return held;

@@ -85,6 +85,9 @@ class Sim {
   void hold_others(const Arm& arm);
   /// The joints that are held, in the order of the model.
   [[nodiscard]] std::vector<HeldState> held() const;
+  /// Goes on with other masses in the next step: something was hung on the robot, or taken off.
+  /// @param model  the same one with other masses (with_payload()).
+  void take_masses(const Model& model);
   /// One time step with these actuator commands (nu,).
   /// @return an error that names time and joint when the simulation became unstable (NaN, huge
   ///         values); the world is then back in its initial state. A ctrl that is not a number is

@@ -7,6 +7,7 @@ TEXTS = {
     "kinematics": "where the tool is, and joint values for it", "collision": "spheres, exact distances, proofs of edges",
     "path": "curves without time, and joints along them", "planning": "paths round obstacles, and their proof",
     "trajectory": "motions in time within limits", "control": "from a reference to commands of actuators",
+    "identification": "payload, friction and links from a log",
     "sim": "MuJoCo steps, with a controller", "render": "pictures and films", "perception": "objects that a camera sees",
     "execution": "motions run and measured", "program": "motion programs", "view": "the window", "serve": "the page in a browser",
     "rl": "learning to reach", "install": "real meshes", "session": "what every face of the program shares",

@@ -212,9 +212,10 @@ TEST(Help, ExamplesUseOnlyCommandsAndOptionsThatAreThere) {
 
 TEST(Help, OfTheProgramNamesEveryCommandOnce) {
   const Words lines = section(help_of_words({}), "Commands:");
-  for (const char* name : {"demo",   "doctor", "model",  "models",    "fk",    "ik",     "path",
-                           "plan",   "time",   "verify", "check",     "run",   "export", "sim",
-                           "render", "view",   "serve",  "workspace", "train", "eval",   "learn"}) {
+  for (const char* name :
+       {"demo",  "doctor",    "model", "models", "fk",     "ik",      "path",   "plan",
+        "time",  "verify",    "check", "run",    "export", "sim",     "render", "view",
+        "serve", "workspace", "train", "eval",   "learn",  "identify"}) {
     const auto is_it = [&](const std::string& line) { return first_word(line) == name; };
     EXPECT_EQ(std::ranges::count_if(lines, is_it), 1) << name;
   }

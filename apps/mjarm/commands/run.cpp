@@ -18,7 +18,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file, out, control, tolerance, max_duration = "3600";
+  std::string file, out, control, tolerance, payload, max_duration = "3600";
   RobotChoice robot;  // that the program names: how its files are read
   bool headless = false, video = false, no_timing = false;
   RunPageArguments pages;
@@ -57,6 +57,24 @@ Result<double> max_duration_of(const Options& options) {
   return seconds;
 }
 
+/// Reads `1.2` or `1.2,0,0,50mm`.
+Result<std::optional<Payload>> payload_of(const Options& options) {
+  if (options.payload.empty()) return std::nullopt;
+  const auto bad = [&] {
+    return fail(Errc::usage, text(msg::motion_program_payload, options.payload));
+  };
+  const std::size_t comma = options.payload.find(',');
+  const Result<double> mass = parse_quantity(options.payload.substr(0, comma), Quantity::number);
+  constexpr double kMax = 1000;  // [kg]
+  if (!mass || !(*mass >= 0 && *mass <= kMax)) return bad();
+  if (comma == std::string::npos) return Payload{*mass};
+  const Result<std::vector<double>> center =
+      parse_quantities(options.payload.substr(comma + 1), Quantity::length);
+  if (!center) return fail(in_option("--payload", center.error()));
+  if (center->size() != 3) return bad();
+  return Payload{*mass, Eigen::Vector3d(center->data())};
+}
+
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
   const Result<double> tolerance = tolerance_of(options);
@@ -65,6 +83,8 @@ Result<int> run(const Options& options) {
   if (!longest) return fail(longest.error());
   Result<session::StageOptions> chosen = stage_options(options);
   if (!chosen) return fail(chosen.error());
+  const Result<std::optional<Payload>> payload = payload_of(options);
+  if (!payload) return fail(payload.error());
   const Result<RunPages> pages = read_run_pages(options.pages, options.headless);
   if (!pages) return fail(pages.error());
   chosen->record = pages->record;
@@ -72,7 +92,7 @@ Result<int> run(const Options& options) {
   if (!free) return fail(free.error());  // before it is planned
   catch_interrupts();
   Result<program::LoadedProgram> loaded = program::load_sound_program(
-      options.file, interrupted, load_options(options.robot), session::see_scene);
+      options.file, interrupted, load_options(options.robot), session::see_scene, *payload);
   if (!loaded) return fail(loaded.error());
   const double duration = loaded->plan.duration();
   if (duration > *longest) {  // a slip of the pen, as a wait in milliseconds
@@ -96,6 +116,7 @@ Run setup(CLI::App& app) {
   add_flag(app, "--video", options->video, msg::demo_option_video);
   add_run_page_options(app, options->pages);
   add_option(app, "--control", options->control, msg::demo_option_control, "MODE");
+  add_option(app, "--payload", options->payload, msg::motion_program_option_payload, "KG[,X,Y,Z]");
   add_option(app, "--tolerance", options->tolerance, msg::motion_program_option_tolerance,
              "LENGTH");
   add_option(app, "--max-duration", options->max_duration, msg::motion_program_option_max_duration,

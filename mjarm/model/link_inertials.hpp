@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mjarm/model/arm.hpp"
+#include "mjarm/model/model.hpp"
+
+namespace mjarm {
+
+/// The ten inertial parameters of a rigid body in a frame F: what joint torques are linear in.
+struct Inertial {
+  double mass = 0;                                    ///< [kg]
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();   ///< [kg m] mass times centre of mass, in F
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< [kg m^2] about the origin of F, in F
+
+  /// (10,) mass, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz.
+  [[nodiscard]] Eigen::Matrix<double, 10, 1> vector() const {
+    Eigen::Matrix<double, 10, 1> out;
+    out << mass, moment, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1), inertia(0, 2),
+        inertia(1, 2);
+    return out;
+  }
+};
+
+/// What each joint of the arm moves and the next one does not, in the frame J of that joint: all
+/// bodies that hang there, other joints of the model as at home.
+[[nodiscard]] std::vector<Inertial> link_inertials(const Model& model, const Arm& arm);
+
+/// [m/s^2] Of gravity, in the world.
+[[nodiscard]] Eigen::Vector3d gravity_of(const Model& model);
+
+}  // namespace mjarm
