@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/bench/bumps.hpp"
 #include "apps/bench/calligraphy.hpp"
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/robust.hpp"
@@ -315,8 +316,9 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
 struct ControlWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
   std::string poses = "100", characters = "100";
-  bool robust = false;
+  bool robust = false, bumps = false;
   RobustWords wrong;
+  BumpWords pushed;
 };
 
 Result<int> run_control(const ControlWords& options) {
@@ -327,6 +329,9 @@ Result<int> run_control(const ControlWords& options) {
   if (!characters) return fail(characters.error());
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
+  if (options.bumps) {
+    return run_bumps(options, options.pushed, options.wrong.seed, options.wrong.plot, *robot);
+  }
   if (options.robust) return run_robust(options, options.wrong, *robot);
   std::vector<LapRun> runs = laps();
   const int written = *characters * sheet_count();
@@ -374,6 +379,8 @@ Command control_suite() {
                        msg::control_suite_option_characters, "N");
             add_flag(app, "--robust", options->robust, msg::control_suite_option_robust);
             add_robust_options(app, options->wrong);
+            add_flag(app, "--bumps", options->bumps, msg::control_suite_option_bumps);
+            add_bump_options(app, options->pushed);
             add_report_options(app, *options);
             return [options] { return run_control(*options); };
           }};

@@ -19,7 +19,6 @@ namespace {
 constexpr double kPayload = 2;          // [kg] that the controller takes to hang at the tool
 constexpr double kPayloadError = 0.2;   // of its mass, either way
 constexpr double kPayloadShift = 0.02;  // [m] of its centre of mass
-constexpr int kSubsteps = 4;            // of the simulation in a step of control
 constexpr double kSpeed = 0.27;         // [m/s] of the tool
 constexpr int kLaps = 2;
 constexpr double kRamp = 1;          // [s] from rest to that speed
@@ -118,10 +117,11 @@ class LapMeter {
   std::vector<double> distance_, s_;
 };
 
-/// The true arm: `bare` with wrong links and friction, and a wrong load.
-Result<Model> draw_world(const Robot& bare, Rng& rng) {
+}  // namespace
+
+Result<Model> draw_wrong_world(const Robot& bare, Rng& rng) {
   const Result<Model> fine =
-      bare.model.with_physics({.timestep = bare.model.timestep() / kSubsteps});
+      bare.model.with_physics({.timestep = bare.model.timestep() / kRobustSubsteps});
   if (!fine) return fail(fine.error());
   const Result<Model> wrong = wrong_model(*fine, bare.arm, {}, rng);
   if (!wrong) return fail(wrong.error());
@@ -132,8 +132,6 @@ Result<Model> draw_world(const Robot& bare, Rng& rng) {
   if (!loaded) return fail(loaded.error());
   return with_torque_drives({*loaded, bare.arm}).model;
 }
-
-}  // namespace
 
 Result<Robot> known_robot(const Robot& robot) {
   const Result<Model> loaded = with_payload(robot.model, robot.arm.tip, {.mass = kPayload});
@@ -186,7 +184,7 @@ Result<RobustLaps> robust_laps(const Robot& robot) {
 Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
                                     std::uint64_t world, const AfterWrongStep& after) {
   Rng rng(seed, world);
-  const Result<Model> drawn = draw_world(drive.bare, rng);
+  const Result<Model> drawn = draw_wrong_world(drive.bare, rng);
   if (!drawn) return fail(drawn.error());
   const Arm& arm = drive.known.arm;
   Result<Controller> controller =
@@ -208,7 +206,7 @@ Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
       step.torque_use = std::max(step.torque_use, torque / arm.limits.torque[j]);
     }
     drives.pass(ctrl);
-    for (int k = 0; k < kSubsteps; ++k) {
+    for (int k = 0; k < kRobustSubsteps; ++k) {
       if (Result<void> done = sim.step(ctrl); !done) return fail(std::move(done.error()));
     }
     after(sim, step);

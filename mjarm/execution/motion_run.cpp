@@ -58,8 +58,8 @@ Result<void> MotionRun::execute(const MotionPlan& plan, ControlMode mode, double
 Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double rest) {
   if (ended_early()) return {};
   q_command_ = plan.q_end();
-  Result<Execution> execution =
-      Execution::create(model_, plan, {.control = mode, .rest = rest, .recorder = &recorder_});
+  Result<Execution> execution = Execution::create(
+      model_, plan, {.control = mode, .contact = contact_, .rest = rest, .recorder = &recorder_});
   if (!execution) return fail(std::move(execution.error()));
   const Result<FollowOutcome> outcome = execution->run_to_end(
       sim_, [&](const Sim& sim) { return !after_step_ || after_step_(sim, execution->part()); });
@@ -69,6 +69,7 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
     ink_.insert(ink_.end(), presser->ink().begin(), presser->ink().end());
     strokes_.insert(strokes_.end(), presser->strokes().begin(), presser->strokes().end());
   }
+  felt_ = execution->felt();
   for (const ExecutedMotion& motion : execution->motions()) {
     const PlannedMove& move = plan.moves[motion.move];
     add(motion.outcome);
@@ -77,6 +78,10 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
     const bool to_measure = move.curve && !execution->presser();
     add_span(to_measure ? &*move.curve : nullptr, motion.from, motion.to,
              tool_in_tool(plan, move.tool));
+  }
+  if (felt_) {
+    end_reason_ = "contact";
+    end_detail_ = text(msg::execution_felt, felt_->link, felt_->force, felt_->time);
   }
   return {};
 }
