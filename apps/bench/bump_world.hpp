@@ -14,11 +14,11 @@ inline constexpr double kBumpTime = 0.02, kBumpForce = 20;
 
 /// A moment of a run round a bump, for the plot.
 struct BumpMoment {
-  double time = 0;             ///< [s] since the force passed kBumpForce
-  double force = 0;            ///< [N]
-  double surprise = 0;         ///< of the observer
-  std::vector<double> torque;  ///< (dof,) [N m] from outside, as the observer has it
-  std::vector<double> speed;   ///< (dof,) [rad/s] true
+  double time = 0;                  ///< [s] since the force passed kBumpForce
+  double force = 0;                 ///< [N]
+  double surprise = 0;              ///< of the observer
+  std::vector<double> torque = {};  ///< (dof,) [N m] from outside, as the observer has it
+  std::vector<double> speed = {};   ///< (dof,) [rad/s] true
 };
 
 /// What came of one run in a wrong world.

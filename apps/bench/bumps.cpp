@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
 #include <vector>
@@ -22,7 +21,7 @@
 namespace mjarm::app {
 namespace {
 
-constexpr int kMostBumps = 10'000, kMostHours = 100, kLastSeed = 1'000'000;
+constexpr int kMostBumps = 10'000, kMostQuietRuns = 10'000, kLastSeed = 1'000'000;
 constexpr int kDrawsEach = 20;     // bumps that are drawn for one that joints can tell, at most
 constexpr double kQuietRun = 120;  // [s] of motion in a world, without a bump
 constexpr std::uint64_t kQuietWorlds = 1'000'000;  // their numbers begin here
@@ -55,11 +54,10 @@ std::pair<double, double> median_and_worst(std::vector<double> values) {
   return {values[values.size() / 2], values.back()};
 }
 
-Result<BumpResults> drive_bumps(const Robot& robot, int count, int hours, int seed) {
+Result<BumpResults> drive_bumps(const Robot& robot, int count, int quiet, int seed) {
   const Result<Robot> known = known_robot(robot);
   if (!known) return fail(known.error());
-  const auto quiet = static_cast<std::uint64_t>(std::ceil(hours * 3600 / kQuietRun));
-  Progress progress(text(msg::control_suite_progress), static_cast<std::size_t>(count) + quiet);
+  Progress progress(text(msg::control_suite_progress), static_cast<std::size_t>(count + quiet));
   BumpResults out;
   const auto drive = [&](std::uint64_t world, bool push) {
     return drive_bump(*known, robot, static_cast<std::uint64_t>(seed), world, push, kQuietRun);
@@ -69,7 +67,6 @@ Result<BumpResults> drive_bumps(const Robot& robot, int count, int hours, int se
     auto run = drive(static_cast<std::uint64_t>(i), true);
     if (!run) return fail(std::move(run.error()));
     (run->told ? out.told : out.untold).add(*run);
-    out.hours += run->seconds / 3600;
     out.alarms += run->alarms;
     out.surprise = std::max(out.surprise, run->surprise);
     if (!run->told) continue;
@@ -78,10 +75,9 @@ Result<BumpResults> drive_bumps(const Robot& robot, int count, int hours, int se
       out.slowest = std::move(*run);
     }
   }
-  out.hours = 0;  // of runs without a bump alone
-  for (std::uint64_t i = 0; i < quiet; ++i) {
+  for (int i = 0; i < quiet; ++i) {
     if (interrupted()) return fail(stopped());
-    const auto run = drive(kQuietWorlds + i, false);
+    const auto run = drive(kQuietWorlds + static_cast<std::uint64_t>(i), false);
     if (!run) return fail(run.error());
     out.hours += run->seconds / 3600;
     out.alarms += run->alarms;
@@ -167,18 +163,18 @@ render::Plot bump_plot(const BumpRun& run) {
 
 void add_bump_options(CLI::App& app, BumpWords& words) {
   add_option(app, "--bump-count", words.count, msg::control_suite_option_bump_count, "N");
-  add_option(app, "--hours", words.hours, msg::control_suite_option_hours, "N");
+  add_option(app, "--quiet-runs", words.quiet_runs, msg::control_suite_option_quiet, "N");
 }
 
 Result<int> run_bumps(const ReportOptions& report, const BumpWords& words, const std::string& seed,
                       const std::string& plot, const Robot& robot) {
   const Result<int> count = parse_count("--bump-count", words.count, kMostBumps);
   if (!count) return fail(count.error());
-  const Result<int> hours = parse_count("--hours", words.hours, kMostHours);
-  if (!hours) return fail(hours.error());
+  const Result<int> quiet = parse_count("--quiet-runs", words.quiet_runs, kMostQuietRuns);
+  if (!quiet) return fail(quiet.error());
   const Result<int> drawn = parse_count("--seed", seed, kLastSeed);
   if (!drawn) return fail(drawn.error());
-  const auto results = drive_bumps(robot, *count, *hours, *drawn);
+  const auto results = drive_bumps(robot, *count, *quiet, *drawn);
   if (!results) return fail(results.error());
   const std::string table = (report.no_timing ? "" : bench_occasion() + "\n\n") +
                             std::string(robot.model.name()) + "\n\n" + bump_table(*results);

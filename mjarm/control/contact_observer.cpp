@@ -23,6 +23,25 @@ constexpr double kTurns = 4;
 constexpr int kForget = 6;
 constexpr std::size_t kShortLook = 5, kLongLook = 20;  // [steps] in which a joint has moved
 
+/// F X, F = [1 h hG; 0 1 G; 0 0 1]: how positions, velocities and unknowns go on. G is (dof,
+/// unknowns).
+void carry(Eigen::MatrixXd& X, const Eigen::MatrixXd& G, double h) {
+  const Eigen::Index n = G.rows();
+  X.middleRows(n, n).noalias() += G * X.bottomRows(G.cols());
+  X.topRows(n) += h * X.middleRows(n, n);
+}
+
+/// Torques of this step with that variance (dof,), independent of each other.
+void add_torque_noise(Eigen::MatrixXd& P, const Eigen::MatrixXd& inverse_mass,
+                      const Eigen::VectorXd& variance, double h) {
+  const Eigen::Index n = variance.size();
+  const Eigen::MatrixXd Q = h * h * inverse_mass * variance.asDiagonal() * inverse_mass;
+  P.topLeftCorner(n, n) += h * h * Q;
+  P.block(0, n, n, n) += h * Q;
+  P.block(n, 0, n, n) += h * Q;
+  P.block(n, n, n, n) += Q;
+}
+
 /// Evidence of an onset with its joints in another order: L L^T = information + 1 / prior,
 /// L y = evidence. The first joints of that order explain |y of those|^2 by themselves.
 struct Factor {
@@ -162,15 +181,10 @@ void ContactObserver::predict(const JointVec& torque) {
   x_.segment(n, n) += h_ * w_;
   x_.head(n) += h_ * x_.segment(n, n);
 
-  // F P F^T + Q, F = [1 h hG; 0 1 G; 0 0 1].
   const Eigen::MatrixXd G = h_ * inv * A;
-  const auto push = [&](Eigen::MatrixXd& X) {
-    X.middleRows(n, n).noalias() += G * X.bottomRows(unknown_);
-    X.topRows(n) += h_ * X.middleRows(n, n);
-  };
-  push(P_);
+  carry(P_, G, h_);  // F P F^T
   P_.transposeInPlace();
-  push(P_);
+  carry(P_, G, h_);
   P_ = 0.5 * (P_ + P_.transpose().eval());  // rounding must not grow
   P_.diagonal().segment(2 * n, errors_.count()).array() += kForgets * kForgets * h_;
   Eigen::VectorXd noise(n);
@@ -183,13 +197,9 @@ void ContactObserver::predict(const JointVec& torque) {
     P_(first(i) + n, first(i) + n) += drift * drift * h_;
     P_(first(i), first(i)) += rubs * rubs * h_;
   }
-  const Eigen::MatrixXd Qv = h_ * h_ * inv * noise.asDiagonal() * inv;
-  P_.topLeftCorner(n, n) += h_ * h_ * Qv;
-  P_.block(0, n, n, n) += h_ * Qv;
-  P_.block(n, 0, n, n) += h_ * Qv;
-  P_.block(n, n, n, n) += Qv;
+  add_torque_noise(P_, inv, noise, h_);
 
-  push(traces_);
+  carry(traces_, G, h_);
   newest_ = (newest_ + 1) % kWindow;
   filled_ = std::min(filled_ + 1, kWindow);
   traces_.middleCols(newest_ * n, n).setZero();
