@@ -6,6 +6,7 @@
 namespace mjarm {
 namespace {
 
+constexpr double kHurry = 1.25;  // of the limits of jerk
 constexpr int kBrakeStride = 5;  // of the numbers of steps that are tried
 constexpr double kWhole = 1e-9;  // [steps] more than a whole number is rounding
 
@@ -64,8 +65,15 @@ bool MotionClock::keeps(const JointLimits& limits, int brake) const {
 
 void MotionClock::brake(const JointLimits& limits) {
   if (pace_ == brake_) {
-    int steps = kBrakeStride;
-    while (steps < kBrakeSteps && !keeps(limits, steps)) steps += kBrakeStride;
+    // A motion that uses all of its jerk leaves none for brakes of any length.
+    JointLimits hurried = limits;
+    hurried.jerk *= kHurry;
+    int steps = kBrakeSteps;
+    for (const JointLimits* kept : {&limits, static_cast<const JointLimits*>(&hurried)}) {
+      if (steps < kBrakeSteps) break;
+      steps = kBrakeStride;
+      while (steps < kBrakeSteps && !keeps(*kept, steps)) steps += kBrakeStride;
+    }
     brake_ = pace_ = std::min(steps, kBrakeSteps);
   }
   stop();

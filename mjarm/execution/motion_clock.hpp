@@ -38,7 +38,8 @@ class MotionClock {
   void run_one();
   void stop();
   /// The same as fast as `limits` allow: in the fewest steps, at most kBrakeSteps, in which no
-  /// joint is accelerated or jerked beyond them.
+  /// joint is accelerated or jerked beyond them; where the motion itself needs all its jerk just
+  /// then, up to 1.25 of that.
   void brake(const JointLimits& limits);
   /// Is back at the start.
   void restart();
