@@ -140,7 +140,8 @@ class BumpDrive {
     while (sim_.time() < starts + (push ? kBefore + kAfter + kHeld : 0)) {
       if (push && !bump_->from && sim_.time() >= starts) bump_->from = sim_.time();
       if (auto moved = move_on(); !moved) return fail(std::move(moved.error()));
-      if (!push && !sim_.contacts(arm_).empty()) break;  // what follows would be no false alarm
+      // What follows a contact of the motion itself would be no false alarm.
+      if (!(push && bump_->from) && !sim_.contacts(arm_).empty()) break;
     }
     // The brakes may take longer than the push.
     while (noticed_ && clock_->state() == MotionClock::State::stopping) {

@@ -23,11 +23,11 @@ struct BumpMoment {
 
 /// What came of one run in a wrong world.
 struct BumpRun {
-  double seconds = 0;                    ///< simulated
-  long alarms = 0;                       ///< before the bump
-  double surprise = 0;                   ///< the largest before the bump
-  bool pushed = false;                   ///< there was a bump
-  bool told = false;                     ///< joints can tell it, see drive_bump()
+  double seconds = 0;   ///< simulated
+  long alarms = 0;      ///< before the bump
+  double surprise = 0;  ///< the largest before the bump
+  bool pushed = false;  ///< there was a bump; none where the motion itself touched something before
+  bool told = false;    ///< joints can tell it, see drive_bump()
   std::optional<double> delay = {};      ///< [s] from kBumpForce to the notice; before: 0
   std::optional<double> at_rest = {};    ///< [s] from the notice until the reference rests
   int link = -1, named = -1;             ///< joint whose link was pushed, and was named

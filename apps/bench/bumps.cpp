@@ -66,7 +66,7 @@ Result<BumpResults> drive_bumps(const Robot& robot, int count, int quiet, int se
     if (interrupted()) return fail(stopped());
     auto run = drive(static_cast<std::uint64_t>(i), true);
     if (!run) return fail(std::move(run.error()));
-    (run->told ? out.told : out.untold).add(*run);
+    if (run->pushed) (run->told ? out.told : out.untold).add(*run);
     out.alarms += run->alarms;
     out.surprise = std::max(out.surprise, run->surprise);
     if (!run->told) continue;
