@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/bench/bumps.hpp"
 #include "apps/bench/calligraphy.hpp"
 #include "apps/bench/identify.hpp"
 #include "apps/bench/messages/bench.hpp"
@@ -316,8 +317,9 @@ JsonDoc to_json(const Robot& robot, const std::vector<RestResult>& rests,
 struct ControlWords : ReportOptions {
   RobotChoice robot{.robot = "ur5e", .tip = {}};
   std::string poses = "100", characters = "100";
-  bool robust = false, identify = false;
+  bool robust = false, identify = false, bumps = false;
   RobustWords wrong;
+  BumpWords pushed;
 };
 
 Result<int> run_control(const ControlWords& options) {
@@ -329,6 +331,9 @@ Result<int> run_control(const ControlWords& options) {
   const Result<Robot> robot = load_robot(options.robot);
   if (!robot) return fail(robot.error());
   if (options.identify) return run_identify(options, options.wrong, *robot);
+  if (options.bumps) {
+    return run_bumps(options, options.pushed, options.wrong.seed, options.wrong.plot, *robot);
+  }
   if (options.robust) return run_robust(options, options.wrong, *robot);
   std::vector<LapRun> runs = laps();
   const int written = *characters * sheet_count();
@@ -377,6 +382,8 @@ Command control_suite() {
             add_flag(app, "--robust", options->robust, msg::control_suite_option_robust);
             add_flag(app, "--identify", options->identify, msg::control_suite_option_identify);
             add_robust_options(app, options->wrong);
+            add_flag(app, "--bumps", options->bumps, msg::control_suite_option_bumps);
+            add_bump_options(app, options->pushed);
             add_report_options(app, *options);
             return [options] { return run_control(*options); };
           }};

@@ -88,5 +88,29 @@ TEST(BenchControl, RobustRunsAreTheSameBytesForOneSeed) {
   EXPECT_EQ(robust_bench("ur5e"), robust_bench("ur5e"));
 }
 
+std::string bump_bench(const std::string& robot) {
+  const auto result = mjarm({"bench", "control", "--bumps", "--robot", robot, "--bump-count", "8",
+                             "--quiet-runs", "1", "--json", "--no-timing"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.out;
+}
+
+/// What is promised of a contact that nobody planned.
+TEST(BenchControl, BumpsThatJointsCanTellAreNoticedWithinTwentyMilliseconds) {
+  for (const char* robot : {"ur5e", "panda"}) {
+    const json bench = json::parse(bump_bench(robot));
+    EXPECT_EQ(bench.at("told").at("bumps"), 8) << robot;
+    EXPECT_EQ(bench.at("told").at("noticed"), 8) << robot;
+    EXPECT_GT(bench.at("told").at("delay_max"), 0.0) << robot;
+    EXPECT_EQ(bench.at("false_alarms"), 0) << robot;
+    EXPECT_GT(bench.at("surprise_max").get<double>(), 5) << robot << ": it was looked at";
+    EXPECT_GT(bench.at("hours").get<double>(), 0.01) << robot;
+  }
+}
+
+TEST(BenchControl, BumpsAreTheSameBytesForOneSeed) {
+  EXPECT_EQ(bump_bench("ur5e"), bump_bench("ur5e"));
+}
+
 }  // namespace
 }  // namespace mjarm::app

@@ -19,7 +19,6 @@ namespace {
 constexpr double kPayload = 2;          // [kg] that the controller takes to hang at the tool
 constexpr double kPayloadError = 0.2;   // of its mass, either way
 constexpr double kPayloadShift = 0.02;  // [m] of its centre of mass
-constexpr int kSubsteps = 4;            // of the simulation in a step of control
 constexpr double kSpeed = 0.27;         // [m/s] of the tool
 constexpr int kLaps = 2;
 constexpr double kRamp = 1;          // [s] from rest to that speed
@@ -121,7 +120,7 @@ class LapMeter {
 /// The true arm: `bare` with wrong links and friction, and a wrong load.
 Result<WrongArm> draw_arm(const Robot& bare, Rng& rng) {
   const Result<Model> fine =
-      bare.model.with_physics({.timestep = bare.model.timestep() / kSubsteps});
+      bare.model.with_physics({.timestep = bare.model.timestep() / kRobustSubsteps});
   if (!fine) return fail(fine.error());
   Result<Model> wrong = wrong_model(*fine, bare.arm, {}, rng);
   if (!wrong) return fail(wrong.error());
@@ -139,6 +138,12 @@ Result<Model> driven_model(const WrongArm& drawn, const Robot& bare, bool loaded
 }
 
 }  // namespace
+
+Result<Model> draw_wrong_world(const Robot& bare, Rng& rng) {
+  const Result<WrongArm> drawn = draw_arm(bare, rng);
+  if (!drawn) return fail(drawn.error());
+  return driven_model(*drawn, bare, true);
+}
 
 Result<Robot> known_robot(const Robot& robot) {
   const Result<Model> loaded = with_payload(robot.model, robot.arm.tip, {.mass = kPayload});
@@ -221,7 +226,7 @@ Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
       step.torque_use = std::max(step.torque_use, std::abs(step.torque[j]) / arm.limits.torque[j]);
     }
     drives.pass(ctrl);
-    for (int k = 0; k < kSubsteps; ++k) {
+    for (int k = 0; k < kRobustSubsteps; ++k) {
       if (Result<void> done = sim.step(ctrl); !done) return fail(std::move(done.error()));
     }
     after(sim, step);

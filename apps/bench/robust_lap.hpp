@@ -19,6 +19,8 @@ namespace mjarm::app {
 /// Steps of control by which commands are late in all worlds: 4 ms of the shipped robots.
 inline constexpr int kRobustLate = DriveFaults{}.late_steps;
 
+inline constexpr int kRobustSubsteps = 4;  ///< of the simulation in a step of control
+
 /// The same motion for every world: laps of an ellipse at constant speed, as positions of the
 /// joints at every step of control.
 struct RobustLaps {
@@ -38,6 +40,9 @@ struct RobustLaps {
 
 /// The robot as its controller knows it: with the load that it should have, driven by torque.
 [[nodiscard]] Result<Robot> known_robot(const Robot& robot);
+/// The true arm: `bare` with wrong links and friction, and a wrong load, in kRobustSubsteps steps a
+/// step of control.
+[[nodiscard]] Result<Model> draw_wrong_world(const Robot& bare, Rng& rng);
 /// Every joint to and fro once about `q` by 0.6 deg, then a rest: positions at every step.
 [[nodiscard]] std::vector<JointVec> warm_up_at(const JointVec& q, double timestep);
 

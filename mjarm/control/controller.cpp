@@ -113,7 +113,8 @@ struct Controller::Impl {
   ControlOptions options;
   StepInverse inverse;
   LinkChain links;
-  JointVec sum;  // [rad s or m s] of the errors
+  JointVec sum;     // [rad s or m s] of the errors
+  JointVec torque;  // of the last command
   std::optional<AxialPush> push = {};
   double axial_offset = 0;
   std::optional<RobustLoop> robust = {};  // of its mode
@@ -188,7 +189,8 @@ Result<Controller> Controller::create(const Model& model, const Arm& arm, Contro
   const auto usable = check_options(options, mode, model.timestep());
   if (!usable) return fail(usable.error());
   std::unique_ptr<Impl> impl(new Impl{arm, mode, options, StepInverse(model, arm),
-                                      LinkChain(Chain(arm)), JointVec::Zero(arm.dof())});
+                                      LinkChain(Chain(arm)), JointVec::Zero(arm.dof()),
+                                      JointVec::Zero(arm.dof())});
   if (mode == ControlMode::robust) {
     Result<RobustLoop> loop = RobustLoop::create(model, arm, options.robust);
     if (!loop) return fail(std::move(loop.error()));
@@ -205,7 +207,7 @@ bool Controller::command(std::span<const double> qpos, std::span<const double> q
   assert(reference.next.size() == arm.dof());
   const Demand demand = impl_->demand(qpos, qvel, reference);
   bool limited = false;
-  JointVec torque(arm.dof());
+  JointVec& torque = impl_->torque;
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmActuator& actuator = *arm.joints[i].actuator;
     const double q = qpos[arm.joints[i].qpos];
@@ -231,6 +233,8 @@ void Controller::set_axial(std::optional<AxialPush> push, double offset) {
   impl_->push = push;
   impl_->axial_offset = offset;
 }
+
+const JointVec& Controller::torque() const noexcept { return impl_->torque; }
 
 void Controller::restart() { impl_->sum.setZero(); }
 

@@ -74,6 +74,8 @@ class Controller {
 
   /// Goes on with what another one of the same arm has learned, both in `robust`; else nothing.
   void learn_from(const Controller& other);
+  /// (dof,) [N m or N] What the actuators were told last, within their limits; zeros at first.
+  [[nodiscard]] const JointVec& torque() const noexcept;
   /// (dof,) [N m or N] Dry friction of the joints, as `robust` has learned it; else zeros.
   [[nodiscard]] JointVec friction() const;
 

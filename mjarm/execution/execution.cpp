@@ -38,6 +38,11 @@ Result<Execution> Execution::create(const Model& model, const MotionPlan& plan,
   Execution execution(model, plan, std::move(*controller), options);
   execution.presser_ = std::move(*presser);
   execution.control_ = stiffness;
+  if (options.contact == ContactReaction::stop) {
+    Result<ContactGuard> guard = ContactGuard::create(model, arm);
+    if (!guard) return fail(std::move(guard.error()));
+    execution.guard_ = std::move(*guard);
+  }
   return execution;
 }
 
@@ -50,6 +55,8 @@ void Execution::restart() {
   motions_.clear();
   watch_.restart();
   grip_.reset();
+  gripped_.reset();
+  if (guard_) guard_->restart();
 }
 
 void Execution::begin_motion(Sim& sim, std::size_t move, double from) {
@@ -82,8 +89,14 @@ MotionClock::Step Execution::next(Sim& sim) {
             .moves = true,
             .waits = true};
   }
+  if (reacts() && state() != State::stopping) {
+    if (const auto back = guard_->back_off(*plan_, clock_)) {
+      return {.reference = *back, .motion = clock_.motion(), .moves = true, .waits = true};
+    }
+  }
   MotionClock::Step step = clock_.next();
   if (step.close) {
+    gripped_ = step.motion;
     const Gripper& gripper = *plan_->arms.front().gripper;
     const PlannedMove* move =
         step.motion < plan_->moves.size() ? &plan_->moves[step.motion] : nullptr;
@@ -116,9 +129,13 @@ void Execution::take_load(Sim& sim, std::size_t move) {
   if (payload != payload_) sim.take_masses(hung);
   load_ = load;
   payload_ = payload;
-  if (load == 0 && payload.mass == 0) return;
+  if (load == 0 && payload.mass == 0) {
+    if (guard_) (void)guard_->change_model(model_);
+    return;
+  }
   const Result<Model> heavier = with_payload(hung, arm.tip, {.mass = load});
   if (!heavier) return;
+  if (guard_) (void)guard_->change_model(*heavier);
   if (auto made = Controller::create(*heavier, arm, options_.control, control_)) {
     loaded_ = std::move(*made);
     loaded_->learn_from(controller_);
@@ -131,6 +148,12 @@ void Execution::move_gripper(Sim& sim) {
                share == 1 ? grip_->to : grip_->from + share * (grip_->to - grip_->from));
   ++grip_->done;
   if (share == 1) grip_.reset();
+}
+
+/// A contact that is noticed brakes the arm from the step after this one on.
+void Execution::feel(const Sim& sim, std::size_t motion) {
+  const bool by_gripper = gripped_ && motion <= *gripped_ + 1;
+  if (guard_->look(sim, by_gripper || presser_)) clock_.brake(plan_->arms.front().limits);
 }
 
 Result<void> Execution::step(Sim& sim) { return make_step(sim, next(sim)); }
@@ -150,10 +173,12 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
   }
   if (!stepper_) stepper_.emplace(sim, plan_->arms.front());
   if (step.begins && motions_.size() == 1) watch_.look(sim, step.motion);
+  if (guard_) feel(sim, step.motion);
   if (auto stepped = stepper_->step(sim, controller(), step.reference, options_.recorder);
       !stepped) {
     return stepped;
   }
+  if (guard_) guard_->take(controller().torque());
   watch_.look(sim, step.motion, presser_ && presser_->is_down());
   if (step.waits) take_measures(sim);
   if (step.ends) {
@@ -166,7 +191,7 @@ Result<void> Execution::make_step(Sim& sim, const MotionClock::Step& step) {
 
 Result<FollowOutcome> Execution::run_to_end(Sim& sim, const AfterStep& after_step) {
   run();
-  while (state() == State::running) {
+  while (state() == State::running || reacts()) {
     const MotionClock::Step step = next(sim);
     if (!step.moves) break;  // what was left takes no time
     if (auto stepped = make_step(sim, step); !stepped) return fail(std::move(stepped.error()));

@@ -7,6 +7,7 @@
 
 #include "mjarm/control/controller.hpp"
 #include "mjarm/core/result.hpp"
+#include "mjarm/execution/contact_guard.hpp"
 #include "mjarm/execution/motion_clock.hpp"
 #include "mjarm/execution/motion_plan.hpp"
 #include "mjarm/execution/object_watch.hpp"
@@ -20,7 +21,8 @@ namespace mjarm {
 /// How a plan is executed. Every default is usable as is.
 struct ExecutionOptions {
   ControlMode control = ControlMode::computed_torque;
-  double rest = kRestAtEnd;      ///< [s] >= 0 after the last motion
+  ContactReaction contact = ContactReaction::ignore;  ///< to what the joints feel
+  double rest = kRestAtEnd;                           ///< [s] >= 0 after the last motion
   Recorder* recorder = nullptr;  ///< gets every step; outlives the execution; null = nobody records
 };
 
@@ -86,6 +88,10 @@ class Execution {
   [[nodiscard]] JointVec error(const Sim& sim) const;
   /// Of a plan that presses the tool on something.
   [[nodiscard]] const std::optional<Presser>& presser() const { return presser_; }
+  /// The contact that its joints noticed and that ended it (ContactReaction::stop), if one did.
+  [[nodiscard]] std::optional<FeltContact> felt() const {
+    return guard_ ? guard_->contact() : std::nullopt;
+  }
   /// What became of the objects of the scene.
   [[nodiscard]] std::vector<ObservedObject> objects() const { return watch_.objects(); }
 
@@ -96,6 +102,8 @@ class Execution {
   [[nodiscard]] MotionClock::Step next(Sim& sim);
   [[nodiscard]] Result<void> make_step(Sim& sim, const MotionClock::Step& step);
   void move_gripper(Sim& sim);
+  void feel(const Sim& sim, std::size_t motion);
+  [[nodiscard]] bool reacts() const { return guard_ && guard_->contact(); }
   /// Of what is carried now, or of the empty hand.
   [[nodiscard]] Controller& controller() { return loaded_ ? *loaded_ : controller_; }
   void take_load(Sim& sim, std::size_t move);
@@ -123,6 +131,8 @@ class Execution {
   std::vector<ExecutedMotion> motions_;
   ObjectWatch watch_;
   std::optional<GripWay> grip_;
+  std::optional<ContactGuard> guard_;   ///< where contacts are not ignored
+  std::optional<std::size_t> gripped_;  ///< the last motion in which the gripper moved
 };
 
 }  // namespace mjarm

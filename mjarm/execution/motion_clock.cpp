@@ -6,6 +6,8 @@
 namespace mjarm {
 namespace {
 
+constexpr double kHurry = 1.25;  // of the limits of jerk
+constexpr int kBrakeStride = 5;  // of the numbers of steps that are tried
 constexpr double kWhole = 1e-9;  // [steps] more than a whole number is rounding
 
 }  // namespace
@@ -19,6 +21,7 @@ void MotionClock::restart() {
   motion_ = 0;
   at_ = 0;
   pace_ = 0;
+  brake_ = kBrakeSteps;
   going_ = one_ = begun_ = false;
   before_ = now_ = plan_->q_start;
 }
@@ -31,12 +34,49 @@ void MotionClock::set_out(bool one) {
   going_ = begun_ = true;
   one_ = one;
   // Motions begin at rest: nothing has to be taken up.
-  if (at_ == 0) pace_ = kBrakeSteps;
+  if (at_ == 0) pace_ = brake_;
 }
 
 void MotionClock::stop() {
   going_ = one_ = false;
   if (at_ == 0) pace_ = 0;
+}
+
+bool MotionClock::keeps(const JointLimits& limits, int brake) const {
+  MotionClock tried = *this;
+  tried.brake_ = tried.pace_ = brake;
+  tried.stop();
+  const double earlier = std::max(0.0, at_ - 2) * timestep_;
+  JointVec q = now_, v = (now_ - before_) / timestep_;
+  JointVec a =
+      (v - (before_ - plan_->moves[motion_].trajectory.at(earlier).q) / timestep_) / timestep_;
+  while (tried.is_moving()) {
+    const JointVec next = tried.next().reference.next;
+    const JointVec v_next = (next - q) / timestep_, a_next = (v_next - v) / timestep_;
+    const JointVec jerk = (a_next - a) / timestep_;
+    if ((a_next.cwiseAbs() - limits.acceleration).maxCoeff() > 0) return false;
+    if ((jerk.cwiseAbs() - limits.jerk).maxCoeff() > 0) return false;
+    q = next;
+    v = v_next;
+    a = a_next;
+  }
+  return true;
+}
+
+void MotionClock::brake(const JointLimits& limits) {
+  if (pace_ == brake_) {
+    // A motion that uses all of its jerk leaves none for brakes of any length.
+    JointLimits hurried = limits;
+    hurried.jerk *= kHurry;
+    int steps = kBrakeSteps;
+    for (const JointLimits* kept : {&limits, static_cast<const JointLimits*>(&hurried)}) {
+      if (steps < kBrakeSteps) break;
+      steps = kBrakeStride;
+      while (steps < kBrakeSteps && !keeps(*kept, steps)) steps += kBrakeStride;
+    }
+    brake_ = pace_ = std::min(steps, kBrakeSteps);
+  }
+  stop();
 }
 
 bool MotionClock::is_moving() const noexcept {
@@ -84,7 +124,7 @@ void MotionClock::end_motion() {
   ++motion_;
   at_ = 0;
   if (one_ || motion_ == plan_->moves.size()) going_ = one_ = false;
-  pace_ = going_ ? kBrakeSteps : 0;
+  pace_ = going_ ? brake_ : 0;
 }
 
 /// Goes over into the next motion where this one is passed, between two steps.
@@ -104,8 +144,8 @@ MotionClock::Step MotionClock::next() {
   JointVec q = now_;
   step.moves = is_moving();
   if (step.moves) {
-    pace_ = std::clamp(pace_ + (going_ ? 1 : -1), 0, kBrakeSteps);
-    const double share = static_cast<double>(pace_) / kBrakeSteps;
+    pace_ = std::clamp(pace_ + (going_ ? 1 : -1), 0, brake_);
+    const double share = static_cast<double>(pace_) / brake_;
     // The speed of time along a cubic: its own rate does not jump either.
     at_ += share * share * (3 - 2 * share);
     pass_on(step);

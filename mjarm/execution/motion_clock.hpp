@@ -37,6 +37,10 @@ class MotionClock {
   /// Goes on to the end of the current motion; of one that passes, to where the arm next stops.
   void run_one();
   void stop();
+  /// The same as fast as `limits` allow: in the fewest steps, at most kBrakeSteps, in which no
+  /// joint is accelerated or jerked beyond them; where the motion itself needs all its jerk just
+  /// then, up to 1.25 of that.
+  void brake(const JointLimits& limits);
   /// Is back at the start.
   void restart();
 
@@ -71,6 +75,8 @@ class MotionClock {
  private:
   [[nodiscard]] bool is_moving() const noexcept;
   void set_out(bool one);
+  /// Whether it comes to rest within that many steps without breaking `limits`.
+  [[nodiscard]] bool keeps(const JointLimits& limits, int brake) const;
   void begin_motion(Step& step);
   void end_motion();
   void pass_on(Step& step);
@@ -79,10 +85,11 @@ class MotionClock {
   double timestep_;
   double rest_at_end_;
   std::size_t motion_ = 0;
-  double at_ = 0;       ///< [steps] of the current motion; whole where nobody stopped or passed
-  int pace_ = 0;        ///< from 0 at rest to kBrakeSteps at full speed
-  bool going_ = false;  ///< the user wants it to move
-  bool one_ = false;    ///< to the end of this motion only
+  double at_ = 0;  ///< [steps] of the current motion; whole where nobody stopped or passed
+  int brake_ = kBrakeSteps;  ///< steps from full speed to rest
+  int pace_ = 0;             ///< from 0 at rest to brake_ at full speed
+  bool going_ = false;       ///< the user wants it to move
+  bool one_ = false;         ///< to the end of this motion only
   bool begun_ = false;
   JointVec before_, now_;
 };

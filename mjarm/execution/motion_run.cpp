@@ -60,8 +60,8 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
   q_command_ = plan.q_end();
   // What the plan before had at the tool in the end is gone.
   if (sim_.model().raw() != model_.raw()) sim_.take_masses(model_);
-  Result<Execution> execution =
-      Execution::create(model_, plan, {.control = mode, .rest = rest, .recorder = &recorder_});
+  Result<Execution> execution = Execution::create(
+      model_, plan, {.control = mode, .contact = contact_, .rest = rest, .recorder = &recorder_});
   if (!execution) return fail(std::move(execution.error()));
   const Result<FollowOutcome> outcome = execution->run_to_end(
       sim_, [&](const Sim& sim) { return !after_step_ || after_step_(sim, execution->part()); });
@@ -71,6 +71,7 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
     ink_.insert(ink_.end(), presser->ink().begin(), presser->ink().end());
     strokes_.insert(strokes_.end(), presser->strokes().begin(), presser->strokes().end());
   }
+  felt_ = execution->felt();
   for (const ExecutedMotion& motion : execution->motions()) {
     const PlannedMove& move = plan.moves[motion.move];
     add(motion.outcome);
@@ -79,6 +80,10 @@ Result<void> MotionRun::go_on(const MotionPlan& plan, ControlMode mode, double r
     const bool to_measure = move.curve && !execution->presser();
     add_span(to_measure ? &*move.curve : nullptr, motion.from, motion.to,
              tool_in_tool(plan, move.tool));
+  }
+  if (felt_) {
+    end_reason_ = "contact";
+    end_detail_ = text(msg::execution_felt, felt_->link, felt_->force, felt_->time);
   }
   return {};
 }

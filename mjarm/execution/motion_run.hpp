@@ -32,6 +32,9 @@ class MotionRun {
   using AfterStep = std::function<bool(const Sim& sim, MotionPart part)>;
   void set_after_step(AfterStep after_step) { after_step_ = std::move(after_step); }
 
+  /// What all executed plans do about contacts that the joints notice.
+  void set_contact(ContactReaction reaction) { contact_ = reaction; }
+
   /// Puts the arm at `q` (dof,), at rest.
   void start_at(std::span<const double> q);
   /// A whole plan, from its beginning. Approaches are not part of what is measured.
@@ -60,6 +63,8 @@ class MotionRun {
   [[nodiscard]] const std::vector<PressedStroke>& strokes() const { return strokes_; }
   /// What was done so far, all together.
   [[nodiscard]] const FollowOutcome& outcome() const { return total_; }
+  /// The contact that the joints noticed and that ended the run, if one did.
+  [[nodiscard]] const std::optional<FeltContact>& felt() const { return felt_; }
   /// Something ended the run: the user, or a waypoint that was never reached.
   [[nodiscard]] bool ended_early() const { return !end_reason_.empty(); }
   /// What was run so far, measured against the curves; they point into this.
@@ -91,12 +96,14 @@ class MotionRun {
   Sim sim_;
   Recorder recorder_;
   AfterStep after_step_;
+  ContactReaction contact_ = ContactReaction::ignore;
   JointVec q_command_;
   FollowOutcome total_;
   std::vector<MeasuredSpan> spans_;
   std::vector<ObservedObject> objects_;  ///< of the last plan
   std::vector<InkPoint> ink_;
   std::vector<PressedStroke> strokes_;
+  std::optional<FeltContact> felt_;
   std::string end_reason_, end_detail_;
 };
 

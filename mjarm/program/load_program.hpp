@@ -18,6 +18,9 @@ struct LoadedProgram {
   ProgramPlan plan;
 
   /// How it is run: as the program asks, else by computed torque.
+  [[nodiscard]] ContactReaction contact() const {
+    return program.contact.value_or(ContactReaction::ignore);
+  }
   [[nodiscard]] ControlMode control() const {
     return program.control.value_or(ControlMode::computed_torque);
   }

@@ -12,6 +12,7 @@
 #include "mjarm/core/file_place.hpp"
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/units.hpp"
+#include "mjarm/execution/contact_guard.hpp"
 #include "mjarm/kinematics/branch.hpp"
 #include "mjarm/model/payload.hpp"
 
@@ -184,6 +185,7 @@ struct Program {
   std::map<std::string, ProgramPose> frames;  ///< by name, each in another one or in the world
   Set settings = {};                          ///< what holds before the first instruction
   std::optional<ControlMode> control = {};
+  std::optional<ContactReaction> contact = {};  ///< to what the joints feel
   std::vector<Instruction> instructions;
 };
 

@@ -79,6 +79,14 @@ void read_robot(const Fields& fields, Program& out) {
   if (fields.find("scene") == nullptr) {
     or_noted(fields.faults(), 0, [&] { return fields.need("robot").place.line; });
   }
+  if (const YamlNode* contact = fields.find("contact")) {
+    out.contact = or_noted(fields.faults(), out.contact, [&]() -> std::optional<ContactReaction> {
+      const Result<ContactReaction> reaction =
+          contact_reaction(detail::text_of(*contact, "contact"));
+      if (!reaction) throw ReadFault{contact->place, reaction.error().what};
+      return *reaction;
+    });
+  }
   const YamlNode* control = fields.find("control");
   if (control == nullptr) return;
   out.control = or_noted(fields.faults(), out.control, [&]() -> std::optional<ControlMode> {
@@ -91,10 +99,11 @@ void read_robot(const Fields& fields, Program& out) {
 void read(const YamlNode& root, ProgramText& text) {
   ReadFaults& faults = text.faults;
   Program& out = text.program;
-  const Fields fields(root, "program",
-                      {"robot", "scene", "tool", "start", "frame", "frames", "poses", "postures",
-                       "speed", "joint_speed", "zone", "branch", "payload", "control", "program"},
-                      faults);
+  const Fields fields(
+      root, "program",
+      {"robot", "scene", "tool", "start", "frame", "frames", "poses", "postures", "speed",
+       "joint_speed", "zone", "branch", "payload", "control", "contact", "program"},
+      faults);
   read_robot(fields, out);
   out.frames = read_frames(fields);
   out.settings = detail::set_of(fields);

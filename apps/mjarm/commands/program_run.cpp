@@ -24,6 +24,7 @@ Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loa
   stage.show().add(paths);
   stage.set_outline(session::outline_of(plan));
   const ControlMode mode = stage.control(loaded.control());
+  stage.run().set_contact(loaded.contact());
   auto done = stage.move([&](MotionRun& run) { return run.execute(plan, mode); });
   if (!done) return fail(std::move(done.error()));
   stage.set_tick({});

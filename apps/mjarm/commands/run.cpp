@@ -18,7 +18,7 @@ namespace mjarm::app {
 namespace {
 
 struct Options {
-  std::string file, out, control, tolerance, payload, max_duration = "3600";
+  std::string file, out, control, contact, tolerance, payload, max_duration = "3600";
   RobotChoice robot;  // that the program names: how its files are read
   bool headless = false, video = false, no_timing = false;
   RunPageArguments pages;
@@ -75,6 +75,13 @@ Result<std::optional<Payload>> payload_of(const Options& options) {
   return Payload{*mass, Eigen::Vector3d(center->data())};
 }
 
+Result<std::optional<ContactReaction>> reaction_of(const Options& options) {
+  if (options.contact.empty()) return std::optional<ContactReaction>();
+  const Result<ContactReaction> reaction = contact_reaction(options.contact);
+  if (!reaction) return fail(reaction.error());
+  return std::optional(*reaction);
+}
+
 Result<int> run(const Options& options) {
   if (options.file.empty()) return fail(Errc::usage, text(msg::motion_program_which_run));
   const Result<double> tolerance = tolerance_of(options);
@@ -85,6 +92,8 @@ Result<int> run(const Options& options) {
   if (!chosen) return fail(chosen.error());
   const Result<std::optional<Payload>> payload = payload_of(options);
   if (!payload) return fail(payload.error());
+  const auto reaction = reaction_of(options);
+  if (!reaction) return fail(reaction.error());
   const Result<RunPages> pages = read_run_pages(options.pages, options.headless);
   if (!pages) return fail(pages.error());
   chosen->record = pages->record;
@@ -100,6 +109,7 @@ Result<int> run(const Options& options) {
                                   std::ceil(duration)));
   }
   if (chosen->control) loaded->program.control = chosen->control;
+  if (*reaction) loaded->program.contact = *reaction;
   if (chosen->out.empty()) chosen->out = std::filesystem::path("mjarm-out") / loaded->program.name;
   const Result<Report> report = beside_what_shows(
       *pages, chosen->headless, [&] { return run_and_show(*loaded, *chosen, *tolerance); });
@@ -117,6 +127,7 @@ Run setup(CLI::App& app) {
   add_run_page_options(app, options->pages);
   add_option(app, "--control", options->control, msg::demo_option_control, "MODE");
   add_option(app, "--payload", options->payload, msg::motion_program_option_payload, "KG[,X,Y,Z]");
+  add_option(app, "--contact", options->contact, msg::motion_program_option_contact, "stop|ignore");
   add_option(app, "--tolerance", options->tolerance, msg::motion_program_option_tolerance,
              "LENGTH");
   add_option(app, "--max-duration", options->max_duration, msg::motion_program_option_max_duration,

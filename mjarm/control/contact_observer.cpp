@@ -1,0 +1,320 @@
+#include "mjarm/control/contact_observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mjarm/core/linear_algebra.hpp"
+#include "mjarm/core/messages/control.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr int kLatest = 20;            // [steps]
+constexpr double kContactJump = 0.05;  // [rad or m] no arm comes so far in a step: it was put there
+constexpr double kDrift = 0.005;       // of the largest torque, after a second
+constexpr double kRubs = 1e-3;         // the same of the friction
+constexpr double kForgets = 0.02;      // of a link error, in its standard deviation
+constexpr double kSolverStep = 1e-7;   // [rad or m] what a simulation rounds where encoders do not
+constexpr double kMostTorque = 1;      // of the largest torque: prior deviation of a contact's
+constexpr double kLeft = 12, kLeftShare = 0.01;  // squared deviations that are left over by chance
+// A joint whose direction nobody knows: its friction may have any size within kTurns times its own
+// in each step (it is the same over many), and what that did is forgotten after kForget steps.
+constexpr double kTurns = 4;
+constexpr int kForget = 6;
+constexpr std::size_t kShortLook = 5, kLongLook = 20;  // [steps] in which a joint has moved
+
+/// F X, F = [1 h hG; 0 1 G; 0 0 1]: how positions, velocities and unknowns go on. G is (dof,
+/// unknowns).
+void carry(Eigen::MatrixXd& X, const Eigen::MatrixXd& G, double h) {
+  const Eigen::Index n = G.rows();
+  X.middleRows(n, n).noalias() += G * X.bottomRows(G.cols());
+  X.topRows(n) += h * X.middleRows(n, n);
+}
+
+/// Torques of this step with that variance (dof,), independent of each other.
+void add_torque_noise(Eigen::MatrixXd& P, const Eigen::MatrixXd& inverse_mass,
+                      const Eigen::VectorXd& variance, double h) {
+  const Eigen::Index n = variance.size();
+  const Eigen::MatrixXd Q = h * h * inverse_mass * variance.asDiagonal() * inverse_mass;
+  P.topLeftCorner(n, n) += h * h * Q;
+  P.block(0, n, n, n) += h * Q;
+  P.block(n, 0, n, n) += h * Q;
+  P.block(n, n, n, n) += Q;
+}
+
+/// Evidence of an onset with its joints in another order: L L^T = information + 1 / prior,
+/// L y = evidence. The first joints of that order explain |y of those|^2 by themselves.
+struct Factor {
+  Eigen::MatrixXd L;
+  Eigen::VectorXd y;
+
+  Factor(const Eigen::MatrixXd& information, const Eigen::VectorXd& evidence,
+         const std::vector<int>& order, const JointVec& prior)
+      : L(Eigen::MatrixXd::Zero(evidence.size(), evidence.size())), y(evidence.size()) {
+    const Eigen::Index n = y.size();
+    for (Eigen::Index r = 0; r < n; ++r) {
+      const int i = order[static_cast<std::size_t>(r)];
+      for (Eigen::Index c = 0; c < r; ++c) {
+        const int j = order[static_cast<std::size_t>(c)];
+        L(r, c) = (information(i, j) - L.row(r).head(c).dot(L.row(c).head(c))) / L(c, c);
+      }
+      L(r, r) = std::sqrt(information(i, i) + prior[i] - L.row(r).head(r).squaredNorm());
+      y[r] = (evidence[i] - L.row(r).head(r).dot(y.head(r))) / L(r, r);
+    }
+  }
+
+  /// The torques of the first `count` joints that explain most, in the arm's order.
+  [[nodiscard]] JointVec torque(const std::vector<int>& order, int count) const {
+    JointVec out = JointVec::Zero(y.size());
+    Eigen::VectorXd t = Eigen::VectorXd::Zero(count);
+    for (int r = count - 1; r >= 0; --r) {
+      double sum = y[r];
+      for (int c = r + 1; c < count; ++c) sum -= L(c, r) * t[c];
+      t[r] = sum / L(r, r);
+      out[order[static_cast<std::size_t>(r)]] = t[r];
+    }
+    return out;
+  }
+};
+
+}  // namespace
+
+Result<ContactObserver> ContactObserver::create(const Model& model, const Arm& arm,
+                                                const ContactOptions& options) {
+  const ModelErrors& errors = options.errors;
+  const bool usable = options.late_steps >= 0 && options.late_steps <= kLatest &&
+                      options.encoder_step >= 0 && options.torque_noise >= 0 && errors.mass >= 0 &&
+                      errors.mass < 1 && errors.center >= 0 && errors.friction >= 0 &&
+                      options.surprise > 0 &&
+                      std::isfinite(options.encoder_step + options.torque_noise + errors.center +
+                                    errors.friction + options.surprise);
+  if (!usable) {
+    return fail(Errc::bad_input, text(msg::control_bad_contact, options.late_steps,
+                                      options.encoder_step, options.torque_noise, errors.mass,
+                                      errors.center, errors.friction, options.surprise));
+  }
+  return ContactObserver(model, arm, options);
+}
+
+ContactObserver::ContactObserver(const Model& model, const Arm& arm, const ContactOptions& options)
+    : arm_(arm),
+      options_(options),
+      inverse_(model, arm),
+      errors_(model, arm, options.errors),
+      h_(model.timestep()),
+      joints_(arm.dof()),
+      unknown_(errors_.count() + 2 * arm.dof()),
+      prior_((kMostTorque * arm.limits.torque).cwiseAbs2().cwiseInverse()) {}
+
+void ContactObserver::begin(const JointVec& q) {
+  const Eigen::Index n = joints_, all = 2 * n + unknown_;
+  const double step = std::max(options_.encoder_step, kSolverStep);
+  if (!runs_) {
+    x_ = Eigen::VectorXd::Zero(all);
+    P_ = Eigen::MatrixXd::Zero(all, all);
+    P_.diagonal().segment(2 * n, errors_.count()).setOnes();
+    for (int i = 0; i < joints_; ++i) {
+      const double half = 0.5 * options_.errors.friction * arm_.limits.torque[i];
+      x_[first(i)] = half;
+      P_(first(i), first(i)) = half * half + 1e-12;
+      const double drift = kDrift * arm_.limits.torque[i];
+      P_(first(i) + n, first(i) + n) = drift * drift;
+    }
+  }
+  x_.head(n) = q;
+  x_.segment(n, n).setZero();
+  P_.topRows(2 * n).setZero();
+  P_.leftCols(2 * n).setZero();
+  P_.diagonal().head(n).setConstant(step * step);
+  P_.diagonal().segment(n, n).setConstant(0.01);
+  s_ = JointVec::Zero(n);
+  w_ = s_;
+  told_.clear();
+  seen_.clear();
+  traces_ = Eigen::MatrixXd::Zero(all, n * kWindow);
+  onsets_.assign(kWindow, {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)});
+  newest_ = filled_ = 0;
+  settled_.assign(static_cast<std::size_t>(n), 0);
+  runs_ = true;
+}
+
+void ContactObserver::take(const JointVec& torque) {
+  while (static_cast<int>(told_.size()) <= options_.late_steps) told_.push_back(torque);
+  told_.back() = torque;
+}
+
+std::optional<NoticedContact> ContactObserver::look(std::span<const double> qpos,
+                                                    std::span<const double> qvel) {
+  JointVec q(joints_);
+  for (int i = 0; i < joints_; ++i) q[i] = qpos[arm_.joints[i].qpos];
+  qpos_.assign(qpos.begin(), qpos.end());
+  qvel_.assign(qvel.begin(), qvel.end());
+  if (!runs_ || told_.empty() || (q - x_.head(joints_)).cwiseAbs().maxCoeff() > kContactJump) {
+    begin(q);
+    return std::nullopt;
+  }
+  const JointVec torque = told_.front();
+  told_.pop_front();
+  predict(torque);
+  correct(q);
+  find_moving(q);
+  return weigh();
+}
+
+void ContactObserver::predict(const JointVec& torque) {
+  const Eigen::Index n = joints_;
+  const JointVec q = x_.head(n), v = x_.segment(n, n);
+  for (int i = 0; i < joints_; ++i) {
+    qpos_[static_cast<std::size_t>(arm_.joints[i].qpos)] = q[i];
+    qvel_[static_cast<std::size_t>(arm_.joints[i].dof)] = v[i];
+  }
+  Eigen::MatrixXd mass = inverse_.mass_matrix(qpos_);
+  mass.diagonal() += inverse_.implicit_mass();
+  const JointVec rest = inverse_.torque(qpos_, qvel_, JointVec::Zero(n));
+  const Eigen::MatrixXd inv = solve_symmetric(mass, Eigen::MatrixXd::Identity(n, n));
+
+  Eigen::MatrixXd A(n, unknown_);
+  A.leftCols(errors_.count()) = -errors_.torques(q, v, w_);
+  A.middleCols(errors_.count(), n) = (-s_).asDiagonal();
+  A.rightCols(n).setIdentity();
+  w_ = inv * (torque - rest + A * x_.tail(unknown_));
+  x_.segment(n, n) += h_ * w_;
+  x_.head(n) += h_ * x_.segment(n, n);
+
+  const Eigen::MatrixXd G = h_ * inv * A;
+  carry(P_, G, h_);  // F P F^T
+  P_.transposeInPlace();
+  carry(P_, G, h_);
+  P_ = 0.5 * (P_ + P_.transpose().eval());  // rounding must not grow
+  P_.diagonal().segment(2 * n, errors_.count()).array() += kForgets * kForgets * h_;
+  Eigen::VectorXd noise(n);
+  for (int i = 0; i < joints_; ++i) {
+    const double f = x_[first(i)] + std::sqrt(std::max(0.0, P_(first(i), first(i))));
+    const double drive = options_.torque_noise * torque[i];
+    const double turns = s_[i] == 0 ? kTurns * f : 0;
+    noise[i] = drive * drive + turns * turns;
+    const double drift = kDrift * arm_.limits.torque[i], rubs = kRubs * arm_.limits.torque[i];
+    P_(first(i) + n, first(i) + n) += drift * drift * h_;
+    P_(first(i), first(i)) += rubs * rubs * h_;
+  }
+  add_torque_noise(P_, inv, noise, h_);
+
+  carry(traces_, G, h_);
+  newest_ = (newest_ + 1) % kWindow;
+  filled_ = std::min(filled_ + 1, kWindow);
+  traces_.middleCols(newest_ * n, n).setZero();
+  onsets_[static_cast<std::size_t>(newest_)].information.setZero();
+  onsets_[static_cast<std::size_t>(newest_)].evidence.setZero();
+  for (int k = 0; k < kWindow; ++k) {
+    traces_.block(n, k * n, n, n) += h_ * inv;
+    traces_.block(0, k * n, n, n) += h_ * h_ * inv;
+  }
+}
+
+void ContactObserver::correct(const JointVec& q) {
+  const Eigen::Index n = joints_;
+  const double step = std::max(options_.encoder_step, kSolverStep);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    // A joint that takes several steps of time for one of its encoder is off by the same amount all
+    // that while.
+    const double pace = std::abs(x_[n + i]) * h_;
+    const double same = std::clamp(step / std::max(pace, 1e-12), 1.0, 20.0);
+    const double S = P_(i, i) + same * step * step / 12;
+    const double off = q[i] - x_[i];
+    const Eigen::VectorXd K = P_.col(i) / S;
+    x_ += K * off;
+    P_.noalias() -= S * K * K.transpose();
+    const Eigen::RowVectorXd g = traces_.row(i);
+    for (int k = 0; k < kWindow; ++k) {
+      const auto part = g.segment(k * n, n);
+      Onset& onset = onsets_[static_cast<std::size_t>(k)];
+      onset.information.noalias() += part.transpose() * part / S;
+      onset.evidence += part.transpose() * (off / S);
+    }
+    traces_.noalias() -= K * g;
+  }
+}
+
+/// Which way each joint moves, for the friction of the step that comes.
+void ContactObserver::find_moving(const JointVec& q) {
+  const Eigen::Index n = joints_;
+  seen_.push_back(q);
+  if (seen_.size() > kLongLook + 1) seen_.pop_front();
+  const double step = std::max(options_.encoder_step, kSolverStep);
+  const JointVec& before = seen_[seen_.size() > kShortLook ? seen_.size() - 1 - kShortLook : 0];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double v = x_[n + i], sign = v < 0 ? -1 : 1;
+    const double spread = 4 * std::sqrt(std::max(0.0, P_(n + i, n + i)));
+    if (s_[i] != 0) {
+      const double slow = std::max({std::min(spread, 0.05), 2 * h_ * std::abs(w_[i]), 2e-3});
+      if (std::abs(v) < slow || s_[i] != sign) s_[i] = 0;
+    } else {
+      const bool moved =
+          (q[i] - before[i]) * sign > 2.5 * step || (q[i] - seen_.front()[i]) * sign > 3.5 * step;
+      if (moved && (q[i] - before[i]) * sign > 0.5 * step && std::abs(v) > 4e-3) s_[i] = sign;
+    }
+    int& settled = settled_[static_cast<std::size_t>(i)];
+    settled = s_[i] == 0 ? 0 : settled + 1;
+  }
+}
+
+ContactObserver::Ordered ContactObserver::order(int age) const {
+  Ordered out;
+  const auto doubtful = [&](int i) {
+    return settled_[static_cast<std::size_t>(i)] <= age + 1 + kForget;
+  };
+  for (const bool first : {true, false}) {
+    for (int i = 0; i < joints_; ++i) {
+      if (doubtful(i) == first) out.joints.push_back(i);
+    }
+    if (first) out.doubtful = static_cast<int>(out.joints.size());
+  }
+  return out;
+}
+
+std::optional<NoticedContact> ContactObserver::weigh() {
+  surprise_ = 0;
+  std::optional<NoticedContact> out;
+  for (int age = 1; age < filled_; ++age) {
+    const int k = (newest_ - age + kWindow) % kWindow;
+    const Onset& onset = onsets_[static_cast<std::size_t>(k)];
+    const Ordered ordered = order(age);
+    const Factor factor(onset.information, onset.evidence, ordered.joints, prior_);
+    const double surprise = factor.y.tail(joints_ - ordered.doubtful).squaredNorm();
+    if (surprise <= surprise_) continue;
+    surprise_ = surprise;
+    if (surprise < options_.surprise) continue;
+    int last = ordered.doubtful;
+    for (double left = surprise - factor.y[last] * factor.y[last];
+         left > std::max(kLeft, kLeftShare * surprise);) {
+      ++last;
+      left -= factor.y[last] * factor.y[last];
+    }
+    out = {.joint = ordered.joints[static_cast<std::size_t>(last)],
+           .torque = factor.torque(ordered.joints, last + 1),
+           .since = (age + 1) * h_,
+           .surprise = surprise};
+  }
+  return out;
+}
+
+JointVec ContactObserver::torque() const {
+  const Onset& onset = onsets_[static_cast<std::size_t>((newest_ + 1) % kWindow)];
+  Eigen::MatrixXd C = onset.information;
+  C.diagonal() += prior_;
+  return solve_symmetric(C, onset.evidence);
+}
+
+JointVec ContactObserver::torque_deviation() const {
+  const Onset& onset = onsets_[static_cast<std::size_t>((newest_ + 1) % kWindow)];
+  Eigen::MatrixXd C = onset.information;
+  C.diagonal() += prior_;
+  return solve_symmetric(C, Eigen::MatrixXd::Identity(joints_, joints_)).diagonal().cwiseSqrt();
+}
+
+JointVec ContactObserver::friction() const {
+  if (!runs_) return JointVec::Zero(joints_);
+  return x_.segment(first(0), joints_);
+}
+
+}  // namespace mjarm

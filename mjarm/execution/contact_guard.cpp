@@ -1,0 +1,160 @@
+#include "mjarm/execution/contact_guard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "mjarm/core/linear_algebra.hpp"
+#include "mjarm/core/messages/execution.hpp"
+#include "mjarm/core/nearest_word.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/moved_bodies.hpp"
+#include "mjarm/model/scene_bodies.hpp"
+
+namespace mjarm {
+namespace {
+
+constexpr std::array<std::string_view, 2> kReactions = {"ignore", "stop"};
+constexpr double kJudged = 0.014;    // [s] for which link and force may still be corrected
+constexpr double kShareBack = 0.25;  // of the limits, on the way back
+constexpr int kFewestBack = 25;      // [steps]
+
+/// The force at `p_W` of link `joint` that explains `torque` best, and what it leaves.
+struct ForceFit {
+  double force = 0, left = 0;
+};
+ForceFit fit_force(const Arm& arm, std::span<const Pose> X_WJ, int joint,
+                   const Eigen::Vector3d& p_W, const JointVec& torque) {
+  Eigen::MatrixXd J(joint + 1, 3);
+  for (int j = 0; j <= joint; ++j) {
+    const Pose& X = X_WJ[static_cast<std::size_t>(j)];
+    const Eigen::Vector3d axis = X.R * arm.joints[j].axis;
+    J.row(j) = (arm.joints[j].type == JointType::slide ? axis : axis.cross(p_W - X.p)).transpose();
+  }
+  const Eigen::VectorXd shown = torque.head(joint + 1);
+  const Eigen::VectorXd force = least_squares(J, shown);
+  return {force.norm(), (J * force - shown).norm()};
+}
+
+double smooth_way(double x) { return x * x * x * (10 - x * (15 - 6 * x)); }
+
+}  // namespace
+
+std::string_view name(ContactReaction reaction) noexcept {
+  return kReactions[static_cast<std::size_t>(reaction)];
+}
+
+Result<ContactReaction> contact_reaction(std::string_view word) {
+  for (std::size_t i = 0; i < kReactions.size(); ++i) {
+    if (kReactions[i] == word) return static_cast<ContactReaction>(i);
+  }
+  const std::vector<std::string> words(kReactions.begin(), kReactions.end());
+  return fail(Errc::usage, text(msg::execution_unknown_reaction, word, listed(words)) +
+                               did_you_mean(word, words));
+}
+
+ContactGuard::ContactGuard(const Model& model, const Arm& arm, ContactObserver observer)
+    : model_(model), arm_(arm), observer_(std::move(observer)) {}
+
+Result<ContactGuard> ContactGuard::create(const Model& model, const Arm& arm) {
+  Result<ContactObserver> observer = ContactObserver::create(model, arm, {});
+  if (!observer) return fail(std::move(observer.error()));
+  return ContactGuard(model, arm, std::move(*observer));
+}
+
+Result<void> ContactGuard::change_model(const Model& model) {
+  Result<ContactObserver> observer = ContactObserver::create(model, arm_, {});
+  if (!observer) return fail(std::move(observer.error()));
+  observer_ = std::move(*observer);
+  return {};
+}
+
+void ContactGuard::restart() {
+  contact_.reset();
+  surprise_ = 0;
+  back_.clear();
+  done_ = 0;
+  has_way_ = planned_ = false;
+  observer_.restart();
+}
+
+bool ContactGuard::look(const Sim& sim, bool planned) {
+  if (planned_ && !planned) observer_.restart();
+  planned_ = planned;
+  if (planned) return false;
+  const std::optional<NoticedContact> noticed = observer_.look(sim.qpos(), sim.qvel());
+  if (!noticed) return false;
+  const bool first = !contact_;
+  if (first || sim.time() <= contact_->time + kJudged) {
+    judge(*noticed, sim.arm_state(arm_).q, sim.time());
+  }
+  return first;
+}
+
+void ContactGuard::judge(const NoticedContact& noticed, const JointVec& q, double time) {
+  if (noticed.surprise <= surprise_) return;
+  surprise_ = noticed.surprise;
+  FeltContact felt{
+      .time = contact_ ? contact_->time : time, .joint = noticed.joint, .torque = noticed.torque};
+  for (const MovedBody& body : moved_bodies(model_, arm_)) {
+    if (body.joint != felt.joint) continue;
+    felt.link = scene_bodies(model_, arm_).name[static_cast<std::size_t>(body.body)];
+    break;
+  }
+  std::vector<Pose> X_WJ(static_cast<std::size_t>(arm_.dof()));
+  const Pose X_WT = fk_all(arm_, as_span(q), X_WJ);
+  const Eigen::Vector3d from = X_WJ[static_cast<std::size_t>(felt.joint)].p;
+  const Eigen::Vector3d to =
+      felt.joint + 1 < arm_.dof() ? X_WJ[static_cast<std::size_t>(felt.joint + 1)].p : X_WT.p;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+    const ForceFit fit = fit_force(arm_, X_WJ, felt.joint, from + share * (to - from), felt.torque);
+    if (fit.left >= least) continue;
+    least = fit.left;
+    felt.force = fit.force;
+  }
+  contact_ = std::move(felt);
+}
+
+/// As far back on the motion that was stopped as the tool has gone kBackOff, or to its beginning.
+void ContactGuard::plan_way_back(const MotionPlan& plan, const MotionClock& clock) {
+  constexpr double kLook = 0.01;  // [s]
+  has_way_ = true;
+  if (clock.motion() >= plan.moves.size()) return;
+  const Trajectory& way = plan.moves[clock.motion()].trajectory;
+  const double from = clock.time(), h = model_.timestep();
+  const Eigen::Vector3d here = fk(arm_, as_span(way.at(from).q)).p;
+  double to = from;
+  while (to > 0 && (fk(arm_, as_span(way.at(to).q)).p - here).norm() < kBackOff) {
+    to = std::max(0.0, to - kLook);
+  }
+  for (int steps = kFewestBack;; steps += steps / 2) {
+    back_.assign(1, way.at(from).q);
+    JointVec v = JointVec::Zero(arm_.dof()), a = v;
+    bool keeps = true;
+    for (int i = 1; i <= steps; ++i) {
+      const double x = smooth_way(static_cast<double>(i) / steps);
+      const JointVec q = way.at(from + x * (to - from)).q;
+      const JointVec v_next = (q - back_.back()) / h, a_next = (v_next - v) / h;
+      keeps = keeps && (v_next.cwiseAbs() - kShareBack * arm_.limits.velocity).maxCoeff() <= 0 &&
+              (a_next.cwiseAbs() - kShareBack * arm_.limits.acceleration).maxCoeff() <= 0 &&
+              ((a_next - a).cwiseAbs() / h - arm_.limits.jerk).maxCoeff() <= 0;
+      back_.push_back(q);
+      v = v_next;
+      a = a_next;
+    }
+    if (keeps || steps * h > 60) return;
+  }
+}
+
+std::optional<StepReference> ContactGuard::back_off(const MotionPlan& plan,
+                                                    const MotionClock& clock) {
+  if (!has_way_) plan_way_back(plan, clock);
+  if (done_ + 1 >= back_.size()) return std::nullopt;
+  const std::size_t i = done_++;
+  return StepReference{back_[i > 0 ? i - 1 : 0], back_[i], back_[i + 1]};
+}
+
+}  // namespace mjarm
