@@ -19,7 +19,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/identification/excitation.hpp"
 #include "mjarm/identification/identify.hpp"
-#include "mjarm/model/link_inertials.hpp"
+#include "mjarm/model/moved_bodies.hpp"
 #include "mjarm/model/wrong_model.hpp"
 #include "mjarm/path/clearance.hpp"
 

@@ -11,7 +11,7 @@
 #include "mjarm/core/messages/identification.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/identification/regressor.hpp"
-#include "mjarm/model/link_inertials.hpp"
+#include "mjarm/model/moved_bodies.hpp"
 
 namespace mjarm {
 namespace {

@@ -8,7 +8,7 @@
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/messages/identification.hpp"
 #include "mjarm/identification/equations_internal.hpp"
-#include "mjarm/model/link_inertials.hpp"
+#include "mjarm/model/moved_bodies.hpp"
 #include "mjarm/model/step_rule.hpp"
 
 namespace mjarm {

@@ -5,6 +5,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/arm_dynamics.hpp"
 #include "mjarm/model/link_inertials.hpp"
+#include "mjarm/model/moved_bodies.hpp"
 #include "mjarm/model/payload.hpp"
 #include "mjarm/model/robot.hpp"
 

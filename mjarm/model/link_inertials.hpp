@@ -24,10 +24,7 @@ struct Inertial {
 };
 
 /// What each joint of the arm moves and the next one does not, in the frame J of that joint: all
-/// bodies that hang there, other joints of the model as at home.
+/// moved_bodies() there together.
 [[nodiscard]] std::vector<Inertial> link_inertials(const Model& model, const Arm& arm);
-
-/// [m/s^2] Of gravity, in the world.
-[[nodiscard]] Eigen::Vector3d gravity_of(const Model& model);
 
 }  // namespace mjarm

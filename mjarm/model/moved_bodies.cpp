@@ -2,7 +2,10 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
+
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/home.hpp"
 #include "mjarm/model/load_internal.hpp"
 
 namespace mjarm {
@@ -16,11 +19,11 @@ Pose standing(const mjData* d, int body) {
 }
 
 /// Frames of the joints in their bodies: the arm's frames move as its bodies do.
-std::vector<Pose> joint_frames(const mjModel* m, const mjData* d, const Arm& arm) {
+std::vector<Pose> frames_in_bodies(const mjModel* m, const mjData* d, const Arm& arm) {
   std::vector<Pose> out;
   Pose X_WJ;
   for (const ArmJoint& joint : arm.joints) {
-    const double q = m->qpos0[joint.qpos];
+    const double q = d->qpos[joint.qpos];
     X_WJ = X_WJ * joint.X_PJ;
     if (joint.type == JointType::slide) {
       X_WJ.p += X_WJ.R * (q * joint.axis);
@@ -46,8 +49,9 @@ std::vector<MovedBody> moved_bodies(const Model& model, const Arm& arm) {
   const mjModel* m = model.raw();
   const MjDataPtr data(mj_makeData(m));
   const mjData* d = data.get();
+  std::ranges::copy(home_configuration(m), data->qpos);
   mj_kinematics(m, data.get());
-  const std::vector<Pose> X_BJ = joint_frames(m, d, arm);
+  const std::vector<Pose> X_BJ = frames_in_bodies(m, d, arm);
   std::vector<MovedBody> out;
   for (int body = 1; body < m->nbody; ++body) {
     const int joint = mover(m, arm, body);

@@ -18,7 +18,7 @@ struct MovedBody {
 };
 
 /// All bodies with a mass that `arm` moves, in the order of the model; joints that are not the
-/// arm's (fingers) as in `qpos0`.
+/// arm's (fingers) as at home.
 [[nodiscard]] std::vector<MovedBody> moved_bodies(const Model& model, const Arm& arm);
 
 /// [m/s^2] of the model, in the world frame.
