@@ -140,8 +140,9 @@ class BumpDrive {
     while (sim_.time() < starts + (push ? kBefore + kAfter + kHeld : 0)) {
       if (push && !bump_->from && sim_.time() >= starts) bump_->from = sim_.time();
       if (auto moved = move_on(); !moved) return fail(std::move(moved.error()));
-      // What follows a contact of the motion itself would be no false alarm.
-      if (!(push && bump_->from) && !sim_.contacts(arm_).empty()) break;
+      // What follows a contact of the motion itself would be no false alarm, and an arm whose
+      // drives give all they have is off its motion.
+      if (!(push && bump_->from) && (cut_ || !sim_.contacts(arm_).empty())) break;
     }
     // The brakes may take longer than the push.
     while (noticed_ && clock_->state() == MotionClock::State::stopping) {
@@ -188,7 +189,7 @@ class BumpDrive {
 
   Result<void> step(const StepReference& reference) {
     drives_.read(sim_.qpos(), sim_.qvel());
-    controller_.command(drives_.qpos(), drives_.qvel(), reference, ctrl_);
+    cut_ = controller_.command(drives_.qpos(), drives_.qvel(), reference, ctrl_) || cut_;
     look(observer_.look(drives_.qpos(), drives_.qvel()));
     observer_.take(controller_.torque());
     drives_.pass(ctrl_);
@@ -287,7 +288,7 @@ class BumpDrive {
   std::vector<MovedBody> bodies_;
   std::deque<JointVec> turned_;
   std::optional<double> noticed_, passed_, resting_;
-  bool braked_ = false, alarmed_ = false;
+  bool braked_ = false, alarmed_ = false, cut_ = false;
   double strongest_ = 0;
   BumpRun out_;
 };

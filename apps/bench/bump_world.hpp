@@ -26,7 +26,8 @@ struct BumpRun {
   double seconds = 0;   ///< simulated
   long alarms = 0;      ///< before the bump
   double surprise = 0;  ///< the largest before the bump
-  bool pushed = false;  ///< there was a bump; none where the motion itself touched something before
+  bool pushed = false;  ///< there was a bump; none where the motion itself touched something
+                        ///< before, or a limit of torque cut it
   bool told = false;    ///< joints can tell it, see drive_bump()
   std::optional<double> delay = {};      ///< [s] from kBumpForce to the notice; before: 0
   std::optional<double> at_rest = {};    ///< [s] from the notice until the reference rests
