@@ -108,7 +108,9 @@ std::string identification_text(const Identification& found, const Arm& arm) {
   if (found.payload) out += payload_text(*found.payload, arm);
   out += joints_text(found, arm);
   if (!found.links.empty()) out += links_text(found, arm);
-  return out + text(msg::identify_delay, 1e3 * found.delay, found.rows) + "\n";
+  // A row of our own log has the torque that led to it.
+  if (found.delay > 0) out += text(msg::identify_delay, 1e3 * found.delay) + "\n";
+  return out + text(msg::identify_rows, found.rows) + "\n";
 }
 
 std::string identification_json(const Identification& found, const Arm& arm) {
