@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "mjarm/control/robots_test.hpp"
 #include "mjarm/core/rng.hpp"
+#include "mjarm/model/home.hpp"
 
 namespace mjarm::testing {
 namespace {
@@ -20,6 +22,7 @@ struct FreeModel {
 JointVec inverse_of(const mjModel* m, const Arm& arm, const JointVec& q, const JointVec& v,
                     const JointVec& a) {
   const std::unique_ptr<mjData, FreeModel> d(mj_makeData(m));
+  std::ranges::copy(home_configuration(m), d->qpos);
   for (int i = 0; i < arm.dof(); ++i) {
     d->qpos[arm.joints[i].qpos] = q[i];
     d->qvel[arm.joints[i].dof] = v[i];

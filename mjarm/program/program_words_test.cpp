@@ -55,7 +55,8 @@ TEST(ProgramWords, EveryFaultOfTheHeadHasItsOwnLine) {
       {"robot2: ur5e", "2:1: program: unknown field \"robot2\" (did you mean \"robot\"?)"},
       {"gripper: hand",
        "2:1: program: unknown field \"gripper\"; expected: robot, scene, tool, start, frame, "
-       "frames, poses, postures, speed, joint_speed, zone, branch, payload, control, program"},
+       "frames, poses, postures, speed, joint_speed, zone, branch, payload, control, contact, "
+       "program"},
       {"scene: [a, b]", "2:8: scene: expected a word"},
       {"tool: \"\"", "2:7: tool: expected a word"},
       {"frame: {pos: [0, 0, 0]}", "2:8: program: frame: expected a word"},

@@ -1,5 +1,5 @@
 // A program that serves, a page that shows it, and a witness beside.
-import { strictEqual } from 'node:assert/strict';
+import { ok, strictEqual } from 'node:assert/strict';
 import { byTest, openPage } from './browser.mjs';
 import { Program } from './program.mjs';
 import { Witness } from './witness.mjs';
@@ -43,12 +43,15 @@ export class Session {
   /** Switches a checkbox of the panels and waits until the program has it so. */
   async check(name, on, section) {
     const { witness, page } = this;
-    const item = witness.item(name, section);
-    if (item.on === on) return;
-    // The page may learn later than the witness how things stand.
-    const seen = ([id, was]) => window.mjarm.switches[id] === was
+    // The page may learn later than the witness how things stand, which may go on changing.
+    const isSeen = ([id, was]) => window.mjarm.switches[id] === was
       && document.querySelector(`[data-test="panel-${id}"]`).checked === was;
-    await page.waitForFunction(seen, [item.id, item.on]);
+    const state = () => [witness.item(name, section).id, witness.item(name, section).on];
+    for (const end = Date.now() + 30000; ; await page.waitForTimeout(20)) {
+      if (state()[1] === on) return;
+      if (await page.evaluate(isSeen, state())) break;
+      ok(Date.now() < end, `the page does not show "${name}" as it is: ${state()}`);
+    }
     await this.panel(name, section).click();
     await witness.until(`"${name}" to be ${on}`, () => witness.item(name, section).on === on);
   }
