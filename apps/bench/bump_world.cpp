@@ -73,9 +73,8 @@ struct Bump {
   }
 };
 
-Result<Bump> draw_bump(const Model& model, const Arm& arm, Rng& rng) {
+Bump draw_bump(const Model& model, const Arm& arm, std::span<const MovedBody> bodies, Rng& rng) {
   Bump out;
-  const std::vector<MovedBody> bodies = moved_bodies(model, arm);
   const SceneBodies names = scene_bodies(model, arm);
   for (;;) {
     const MovedBody& body = bodies[rng.below(bodies.size())];
@@ -124,18 +123,15 @@ class BumpDrive {
         drives_(arm_, {.late_steps = kRobustLate}, h_, Rng(rng_.next())),
         sim_(world),
         q_(arm_.home),
-        qpos_(static_cast<std::size_t>(known.model.nq()), 0.0) {
+        qpos_(static_cast<std::size_t>(known.model.nq()), 0.0),
+        bodies_(moved_bodies(world, arm_)) {
     sim_.place(arm_, as_span(q_));
     ctrl_.assign(sim_.ctrl().begin(), sim_.ctrl().end());
   }
 
   Result<BumpRun> drive(bool push, double seconds) {
     if (auto warm = warm_up(); !warm) return fail(std::move(warm.error()));
-    if (push) {
-      auto bump = draw_bump(sim_.model(), arm_, rng_);
-      if (!bump) return fail(std::move(bump.error()));
-      bump_ = *bump;
-    }
+    if (push) bump_ = draw_bump(sim_.model(), arm_, bodies_, rng_);
     const double starts = push ? rng_.uniform(3, 8) : seconds;
     while (sim_.time() < starts + (push ? kBefore + kAfter + kHeld : 0)) {
       if (push && !bump_->from && sim_.time() >= starts) bump_->from = sim_.time();
@@ -159,8 +155,7 @@ class BumpDrive {
   Result<void> warm_up() {
     const std::vector<JointVec> q = warm_up_at(q_, h_);
     for (std::size_t i = 0; i + 1 < q.size(); ++i) {
-      const StepReference reference{q[i > 0 ? i - 1 : 0], q[i], q[i + 1]};
-      if (auto done = step(reference); !done) return done;
+      if (auto done = step(reference_at(q, i)); !done) return done;
     }
     return {};
   }
@@ -230,7 +225,7 @@ class BumpDrive {
     const double force = bump_->force_at(sim_.time());
     const Pose X_WB = sim_.body_pose(bump_->body);
     const Eigen::Vector3d f_W = force * (X_WB.R * bump_->way_B), p_W = X_WB * bump_->p_B;
-    for (const MovedBody& body : bodies()) {
+    for (const MovedBody& body : bodies_) {
       if (body.body != bump_->body) continue;
       std::vector<Pose> X_WJ(static_cast<std::size_t>(arm_.dof()));
       const JointVec q = sim_.arm_state(arm_).q;
@@ -243,11 +238,6 @@ class BumpDrive {
       out_.link = bump_->link;
       out_.told = can_be_told(q, X_WJ, p_W, kBumpForce / force * f_W);
     }
-  }
-
-  const std::vector<MovedBody>& bodies() {
-    if (bodies_.empty()) bodies_ = moved_bodies(sim_.model(), arm_);
-    return bodies_;
   }
 
   /// See drive_bump(), with the masses that the controller knows.
@@ -281,11 +271,12 @@ class BumpDrive {
   ImperfectDrives drives_;
   Sim sim_;
   JointVec q_;
-  std::vector<double> qpos_, ctrl_;
+  std::vector<double> qpos_;
+  std::vector<MovedBody> bodies_;
+  std::vector<double> ctrl_;
   MotionPlan plan_;
   std::optional<MotionClock> clock_;
   std::optional<Bump> bump_;
-  std::vector<MovedBody> bodies_;
   std::deque<JointVec> turned_;
   std::optional<double> noticed_, passed_, resting_;
   bool braked_ = false, alarmed_ = false, cut_ = false;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -48,10 +47,9 @@ struct BumpResults {
   std::optional<BumpRun> slowest = {};
 };
 
-std::pair<double, double> median_and_worst(std::vector<double> values) {
-  if (values.empty()) return {0, 0};
-  std::ranges::sort(values);
-  return {values[values.size() / 2], values.back()};
+/// 0 where there are none.
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0 : std::ranges::max(values);
 }
 
 Result<BumpResults> drive_bumps(const Robot& robot, int count, int quiet, int seed) {
@@ -88,8 +86,7 @@ Result<BumpResults> drive_bumps(const Robot& robot, int count, int quiet, int se
 }
 
 std::string pair_in_ms(const std::vector<double>& seconds) {
-  const auto [median, worst] = median_and_worst(seconds);
-  return fmt::format("{:.0f}, {:.0f}", 1e3 * median, 1e3 * worst);
+  return fmt::format("{:.0f}, {:.0f}", 1e3 * percentile(seconds, 50), 1e3 * largest(seconds));
 }
 
 std::string bump_table(const BumpResults& results) {
@@ -111,11 +108,14 @@ std::string bump_table(const BumpResults& results) {
 }
 
 JsonDoc group_doc(const BumpGroup& group) {
-  const auto [median, worst] = median_and_worst(group.delays);
-  const auto [rest, rest_worst] = median_and_worst(group.rests);
-  return {{"bumps", group.bumps},   {"noticed", group.noticed},  {"delay_median", median},
-          {"delay_max", worst},     {"link_right", group.right}, {"link_one_below", group.below},
-          {"at_rest_median", rest}, {"at_rest_max", rest_worst}};
+  return {{"bumps", group.bumps},
+          {"noticed", group.noticed},
+          {"delay_median", percentile(group.delays, 50)},
+          {"delay_max", largest(group.delays)},
+          {"link_right", group.right},
+          {"link_one_below", group.below},
+          {"at_rest_median", percentile(group.rests, 50)},
+          {"at_rest_max", largest(group.rests)}};
 }
 
 render::PlotPanel bump_panel(const Msg& label, const BumpRun& run, double BumpMoment::* which) {
@@ -176,15 +176,13 @@ Result<int> run_bumps(const ReportOptions& report, const BumpWords& words, const
   if (!drawn) return fail(drawn.error());
   const auto results = drive_bumps(robot, *count, *quiet, *drawn);
   if (!results) return fail(results.error());
-  const std::string table = (report.no_timing ? "" : bench_occasion() + "\n\n") +
-                            std::string(robot.model.name()) + "\n\n" + bump_table(*results);
   const JsonDoc doc{{"model", robot.model.name()},
                     {"told", group_doc(results->told)},
                     {"untold", group_doc(results->untold)},
                     {"hours", results->hours},
                     {"false_alarms", static_cast<double>(results->alarms)},
                     {"surprise_max", results->surprise}};
-  std::fputs((report.json ? doc.document() : table).c_str(), stdout);
+  print_robot(report, robot, bump_table(*results), doc);
   if (plot.empty() || !results->slowest) return 0;
   if (auto saved = render::save_plot(bump_plot(*results->slowest), plot); !saved) {
     return fail(std::move(saved.error()));

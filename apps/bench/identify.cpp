@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -227,10 +226,8 @@ Result<int> run_identify(const ReportOptions& report, const RobustWords& words,
   if (!seed) return fail(seed.error());
   const auto found = identify_worlds(robot, *worlds, *seed);
   if (!found) return fail(found.error());
-  const std::string table = (report.no_timing ? "" : bench_occasion() + "\n\n") +
-                            std::string(robot.model.name()) + "\n\n" + identify_table(*found);
   const JsonDoc doc{{"model", robot.model.name()}, {"identify", identify_doc(*found)}};
-  std::fputs((report.json ? doc.document() : table).c_str(), stdout);
+  print_robot(report, robot, identify_table(*found), doc);
   return 0;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -183,13 +182,10 @@ Result<int> run_robust(const ReportOptions& report, const RobustWords& words, co
   if (!runs) return fail(runs.error());
   const auto clearance = clearance_in_wrong_worlds(kClearance, *clear, *seed);
   if (!clearance) return fail(clearance.error());
-  const std::string table = (report.no_timing ? "" : bench_occasion() + "\n\n") +
-                            std::string(robot.model.name()) + "\n\n" + robust_table(*runs) +
-                            robust_table(*clearance);
   const JsonDoc doc{{"model", robot.model.name()},
                     {"robust", robust_docs(*runs)},
                     {"clearance", robust_doc(*clearance)}};
-  std::fputs((report.json ? doc.document() : table).c_str(), stdout);
+  print_robot(report, robot, robust_table(*runs) + robust_table(*clearance), doc);
   if (words.plot.empty()) return 0;
   if (auto saved = render::save_plot(robust_plot(*runs), words.plot); !saved) {
     return fail(std::move(saved.error()));

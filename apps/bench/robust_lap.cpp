@@ -216,7 +216,7 @@ Result<Controller> drive_references(const WrongDrive& drive, std::uint64_t seed,
   std::vector<double> ctrl(sim.ctrl().begin(), sim.ctrl().end());
   for (std::size_t i = 0; i + 2 < drive.q.size(); ++i) {
     drives.read(sim.qpos(), sim.qvel());
-    const StepReference reference{drive.q[i > 0 ? i - 1 : 0], drive.q[i], drive.q[i + 1]};
+    const StepReference reference = reference_at(drive.q, i);
     WrongStep step{.index = i + 1, .q = JointVec(arm.dof()), .torque = JointVec(arm.dof())};
     step.limited = controller->command(drives.qpos(), drives.qvel(), reference, ctrl);
     for (int j = 0; j < arm.dof(); ++j) {

@@ -179,6 +179,13 @@ double percentile(std::vector<double> values, std::size_t percent) {
   return values[values.size() * percent / 100];
 }
 
+void print_robot(const ReportOptions& options, const Robot& robot, const std::string& tables,
+                 const JsonDoc& doc) {
+  const std::string table = (options.no_timing ? "" : bench_occasion() + "\n\n") +
+                            std::string(robot.model.name()) + "\n\n" + tables;
+  std::fputs((options.json ? doc.document() : table).c_str(), stdout);
+}
+
 std::string rounded(double value) {
   const int decimals = value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3;
   return fmt::format("{:.{}f}", value, decimals);

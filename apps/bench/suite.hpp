@@ -14,6 +14,7 @@
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/progress.hpp"
+#include "mjarm/model/robot.hpp"
 
 namespace mjarm::app {
 
@@ -68,6 +69,11 @@ struct ReportOptions {
   bool no_timing = false;  ///< leave out everything that differs from run to run
 };
 void add_report_options(CLI::App& app, ReportOptions& options);
+
+/// Writes the answer about one robot to standard output: its name over the tables, or the JSON
+/// document.
+void print_robot(const ReportOptions& options, const Robot& robot, const std::string& tables,
+                 const JsonDoc& doc);
 
 /// Writes everything into the folder: `bench.json`, and what `write_more()` does; and the answer,
 /// the table or the JSON document, to standard output.

@@ -305,16 +305,4 @@ JointVec ContactObserver::torque() const {
   return solve_symmetric(C, onset.evidence);
 }
 
-JointVec ContactObserver::torque_deviation() const {
-  const Onset& onset = onsets_[static_cast<std::size_t>((newest_ + 1) % kWindow)];
-  Eigen::MatrixXd C = onset.information;
-  C.diagonal() += prior_;
-  return solve_symmetric(C, Eigen::MatrixXd::Identity(joints_, joints_)).diagonal().cwiseSqrt();
-}
-
-JointVec ContactObserver::friction() const {
-  if (!runs_) return JointVec::Zero(joints_);
-  return x_.segment(first(0), joints_);
-}
-
 }  // namespace mjarm

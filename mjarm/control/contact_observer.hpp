@@ -63,14 +63,10 @@ class ContactObserver {
 
   /// The arm was somewhere else meanwhile, or felt what was planned: goes on with what it learned.
   void restart() { told_.clear(); }
-  /// (dof,) [N m or N] Torque from outside, as the last kWindow steps have it, and the standard
-  /// deviation of that; for plots.
+  /// (dof,) [N m or N] Torque from outside, as the last kWindow steps have it; for plots.
   [[nodiscard]] JointVec torque() const;
-  [[nodiscard]] JointVec torque_deviation() const;
   /// The largest surprise of the last step.
   [[nodiscard]] double surprise() const noexcept { return surprise_; }
-  /// (dof,) [N m or N] Dry friction, as far as it is known.
-  [[nodiscard]] JointVec friction() const;
 
  private:
   ContactObserver(const Model& model, const Arm& arm, const ContactOptions& options);

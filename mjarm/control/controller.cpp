@@ -99,12 +99,9 @@ std::span<const std::string_view> control_mode_names() noexcept { return kNames;
 std::string_view name(ControlMode mode) noexcept { return kNames[static_cast<std::size_t>(mode)]; }
 
 Result<ControlMode> control_mode(std::string_view word) {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (kNames[i] == word) return static_cast<ControlMode>(i);
-  }
-  const std::vector<std::string> words(kNames.begin(), kNames.end());
-  return fail(Errc::usage,
-              text(msg::control_unknown_mode, word, listed(words)) + did_you_mean(word, words));
+  const auto index = index_of_word(word, kNames, msg::control_unknown_mode);
+  if (!index) return fail(index.error());
+  return static_cast<ControlMode>(*index);
 }
 
 struct Controller::Impl {

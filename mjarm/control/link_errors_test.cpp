@@ -9,6 +9,7 @@
 #include "mjarm/control/robots_test.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/model/home.hpp"
+#include "mjarm/model/moved_bodies.hpp"
 
 namespace mjarm::testing {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "mjarm/core/joint_vec.hpp"
@@ -28,5 +29,9 @@ struct StepReference {
 
 /// The reference of the step that begins at time `t` [s] of `trajectory`.
 [[nodiscard]] StepReference reference_at(const Trajectory& trajectory, double t, double timestep);
+
+/// The reference of step `i` along positions at every step, those before q[0] as there; i + 1 <
+/// q.size().
+[[nodiscard]] StepReference reference_at(std::span<const JointVec> q, std::size_t i);
 
 }  // namespace mjarm

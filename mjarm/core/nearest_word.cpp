@@ -161,4 +161,12 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> kno
   return nearest ? text(msg::core_did_you_mean, *nearest) : std::string();
 }
 
+Result<std::size_t> index_of_word(std::string_view word, std::span<const std::string_view> names,
+                                  Msg unknown) {
+  const auto found = std::ranges::find(names, word);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const std::vector<std::string> words(names.begin(), names.end());
+  return fail(Errc::usage, text(unknown, word, listed(words)) + did_you_mean(word, words));
+}
+
 }  // namespace mjarm

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "mjarm/core/messages.hpp"
+#include "mjarm/core/result.hpp"
 
 namespace mjarm {
 
@@ -19,6 +23,12 @@ namespace mjarm {
 
 /// `a, b, c`: words in a message, parted as the language in use parts them.
 [[nodiscard]] std::string listed(std::span<const std::string> words);
+
+/// Which of `names` the word is.
+/// @param unknown  of the usage error for another word; gets the word and listed() names.
+[[nodiscard]] Result<std::size_t> index_of_word(std::string_view word,
+                                                std::span<const std::string_view> names,
+                                                Msg unknown);
 
 /// ` (did you mean "NAME"?)` in the language in use, or nothing where no known word is near.
 [[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string> known);

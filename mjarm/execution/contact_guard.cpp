@@ -47,12 +47,9 @@ std::string_view name(ContactReaction reaction) noexcept {
 }
 
 Result<ContactReaction> contact_reaction(std::string_view word) {
-  for (std::size_t i = 0; i < kReactions.size(); ++i) {
-    if (kReactions[i] == word) return static_cast<ContactReaction>(i);
-  }
-  const std::vector<std::string> words(kReactions.begin(), kReactions.end());
-  return fail(Errc::usage, text(msg::execution_unknown_reaction, word, listed(words)) +
-                               did_you_mean(word, words));
+  const auto index = index_of_word(word, kReactions, msg::execution_unknown_reaction);
+  if (!index) return fail(index.error());
+  return static_cast<ContactReaction>(*index);
 }
 
 ContactGuard::ContactGuard(const Model& model, const Arm& arm, ContactObserver observer)
@@ -64,11 +61,9 @@ Result<ContactGuard> ContactGuard::create(const Model& model, const Arm& arm) {
   return ContactGuard(model, arm, std::move(*observer));
 }
 
-Result<void> ContactGuard::change_model(const Model& model) {
-  Result<ContactObserver> observer = ContactObserver::create(model, arm_, {});
-  if (!observer) return fail(std::move(observer.error()));
-  observer_ = std::move(*observer);
-  return {};
+void ContactGuard::change_model(const Model& model) {
+  // Its options, which are what could be wrong, are those that served before.
+  observer_ = ContactObserver::create(model, arm_, {}).value();
 }
 
 void ContactGuard::restart() {
@@ -153,8 +148,7 @@ std::optional<StepReference> ContactGuard::back_off(const MotionPlan& plan,
                                                     const MotionClock& clock) {
   if (!has_way_) plan_way_back(plan, clock);
   if (done_ + 1 >= back_.size()) return std::nullopt;
-  const std::size_t i = done_++;
-  return StepReference{back_[i > 0 ? i - 1 : 0], back_[i], back_[i + 1]};
+  return reference_at(back_, done_++);
 }
 
 }  // namespace mjarm

@@ -45,7 +45,7 @@ class ContactGuard {
   [[nodiscard]] static Result<ContactGuard> create(const Model& model, const Arm& arm);
 
   /// The arm has another load from now on.
-  [[nodiscard]] Result<void> change_model(const Model& model);
+  void change_model(const Model& model);
   /// Before the command of a step.
   /// @param planned  what the joints feel now is planned.
   /// @return true in the step in which a contact is noticed for the first time.

@@ -130,12 +130,12 @@ void Execution::take_load(Sim& sim, std::size_t move) {
   load_ = load;
   payload_ = payload;
   if (load == 0 && payload.mass == 0) {
-    if (guard_) (void)guard_->change_model(model_);
+    if (guard_) guard_->change_model(model_);
     return;
   }
   const Result<Model> heavier = with_payload(hung, arm.tip, {.mass = load});
   if (!heavier) return;
-  if (guard_) (void)guard_->change_model(*heavier);
+  if (guard_) guard_->change_model(*heavier);
   if (auto made = Controller::create(*heavier, arm, options_.control, control_)) {
     loaded_ = std::move(*made);
     loaded_->learn_from(controller_);

@@ -109,7 +109,8 @@ void Equations::add_row(const SmoothLog& log, std::size_t sample, int joint, boo
   row[unknowns_.offset(joint)] = 1;
   // Where links are unknown, rotors are among their base parameters.
   if (!unknowns_.base) row[unknowns_.inertia(joint)] = state.a[joint];
-  if (unknowns_.has_payload && loaded) {
+  const bool has = unknowns_.has_payload && loaded;
+  if (has) {
     row.segment<4>(unknowns_.payload()) = regressor.payload.row(joint).head<4>();
   }
   if (unknowns_.base) {
@@ -118,7 +119,6 @@ void Equations::add_row(const SmoothLog& log, std::size_t sample, int joint, boo
     }
   }
   columns_.push_back(std::move(row));
-  const bool has = unknowns_.has_payload && loaded;
   inertia_columns_.emplace_back(has ? Eigen::VectorXd(regressor.payload.row(joint))
                                     : Eigen::VectorXd::Zero(kInertialSize));
 }

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "mjarm/control/regressor.hpp"
 #include "mjarm/control/step_inverse.hpp"
-#include "mjarm/identification/regressor.hpp"
 #include "mjarm/identification/smooth_log_internal.hpp"
 #include "mjarm/model/robot.hpp"
 

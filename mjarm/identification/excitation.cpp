@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "mjarm/control/regressor.hpp"
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/messages/identification.hpp"
 #include "mjarm/core/rng.hpp"
-#include "mjarm/identification/regressor.hpp"
 #include "mjarm/model/moved_bodies.hpp"
 
 namespace mjarm {

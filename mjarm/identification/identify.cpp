@@ -8,6 +8,7 @@
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/core/messages/identification.hpp"
 #include "mjarm/identification/equations_internal.hpp"
+#include "mjarm/model/link_inertials.hpp"
 #include "mjarm/model/moved_bodies.hpp"
 #include "mjarm/model/step_rule.hpp"
 
@@ -45,15 +46,10 @@ PayloadEstimate payload_of(const Solution& solution, int at) {
 }
 
 /// (10,) Parameters of second degree of a point mass, which follow from those of first degree.
-Eigen::VectorXd point_inertia(const Solution& solution, int at) {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(kInertialSize);
+Eigen::VectorXd second_degree(const Solution& solution, int at) {
   const double mass = solution.x[at];
-  if (!(mass > 0)) return out;
-  const Eigen::Vector3d c = solution.x.segment<3>(at + 1) / mass;
-  const Eigen::Matrix3d I =
-      mass * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
-  out.tail<6>() << I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2);
-  return out;
+  if (!(mass > 0)) return Eigen::VectorXd::Zero(kInertialSize);
+  return Inertial{.inertia = point_inertia(mass, solution.x.segment<3>(at + 1) / mass)}.vector();
 }
 
 Identification told(const Robot& robot, const Unknowns& unknowns, const Solution& solution) {
@@ -108,7 +104,7 @@ Result<Identification> identify(const Robot& robot, const IdentifyTask& task) {
   Solution solution = equations.solve();
   constexpr int kRounds = 2;
   for (int i = 0; i < kRounds && unknowns.has_payload; ++i) {
-    equations.set_point_inertia(point_inertia(solution, unknowns.payload()));
+    equations.set_point_inertia(second_degree(solution, unknowns.payload()));
     solution = equations.solve();
   }
   return told(robot, unknowns, solution);

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "mjarm/control/regressor.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/identification/joint_log.hpp"
-#include "mjarm/identification/regressor.hpp"
 #include "mjarm/model/payload.hpp"
 #include "mjarm/model/robot.hpp"
 

@@ -12,8 +12,7 @@ std::vector<Inertial> link_inertials(const Model& model, const Arm& arm) {
     link.mass += body.mass;
     link.moment += body.mass * c;
     // Steiner's theorem.
-    link.inertia += body.inertia_center_J +
-                    body.mass * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+    link.inertia += body.inertia_center_J + point_inertia(body.mass, c);
   }
   return out;
 }

@@ -23,6 +23,11 @@ struct Inertial {
   }
 };
 
+/// [kg m^2] Inertia of a point mass [kg] at `p` [m], about the origin.
+[[nodiscard]] inline Eigen::Matrix3d point_inertia(double mass, const Eigen::Vector3d& p) {
+  return mass * (p.squaredNorm() * Eigen::Matrix3d::Identity() - p * p.transpose());
+}
+
 /// What each joint of the arm moves and the next one does not, in the frame J of that joint: all
 /// moved_bodies() there together.
 [[nodiscard]] std::vector<Inertial> link_inertials(const Model& model, const Arm& arm);

@@ -6,18 +6,11 @@
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/link_inertials.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/point_mass_internal.hpp"
 
 namespace mjarm::detail {
-namespace {
-
-/// Inertia of a point mass about the origin.
-Eigen::Matrix3d of_point(double mass, const Eigen::Vector3d& p) {
-  return mass * (p.squaredNorm() * Eigen::Matrix3d::Identity() - p * p.transpose());
-}
-
-}  // namespace
 
 void add_point_mass(mjModel& m, int body, const Eigen::Vector3d& p_B, double mass) {
   using Vector = Eigen::Map<Eigen::Vector3d>;
@@ -28,7 +21,8 @@ void add_point_mass(mjModel& m, int body, const Eigen::Vector3d& p_B, double mas
   const Eigen::Vector3d middle = (before * center + mass * p_B) / after;
   // Steiner's theorem, about the new centre.
   const Eigen::Matrix3d inertia = R_BI * moments.asDiagonal() * R_BI.transpose() +
-                                  of_point(before, center - middle) + of_point(mass, p_B - middle);
+                                  point_inertia(before, center - middle) +
+                                  point_inertia(mass, p_B - middle);
   const SymmetricEigen axes = symmetric_eigen(inertia);
   Eigen::Matrix3d R = axes.vectors;
   if (R.determinant() < 0) R.col(0) *= -1;

@@ -18,12 +18,9 @@ constexpr std::array<std::string_view, 2> kGrippers = {"open", "as_model"};
 
 template <class Choice>
 Result<Choice> choice(std::string_view word, std::span<const std::string_view> names) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == word) return static_cast<Choice>(i);
-  }
-  const std::vector<std::string> words(names.begin(), names.end());
-  return fail(Errc::usage,
-              text(msg::reach_unknown, word, listed(words)) + did_you_mean(word, words));
+  const auto index = index_of_word(word, names, msg::reach_unknown);
+  if (!index) return fail(index.error());
+  return static_cast<Choice>(*index);
 }
 
 }  // namespace

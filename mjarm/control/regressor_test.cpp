@@ -1,4 +1,4 @@
-#include "mjarm/identification/regressor.hpp"
+#include "mjarm/control/regressor.hpp"
 
 #include <gtest/gtest.h>
 
