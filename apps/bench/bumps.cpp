@@ -170,7 +170,7 @@ Result<int> run_bumps(const ReportOptions& report, const BumpWords& words, const
                       const std::string& plot, const Robot& robot) {
   const Result<int> count = parse_count("--bump-count", words.count, kMostBumps);
   if (!count) return fail(count.error());
-  const Result<int> quiet = parse_count("--quiet-runs", words.quiet_runs, kMostQuietRuns);
+  const Result<int> quiet = parse_count("--quiet-runs", words.quiet_runs, kMostQuietRuns, 0);
   if (!quiet) return fail(quiet.error());
   const Result<int> drawn = parse_count("--seed", seed, kLastSeed);
   if (!drawn) return fail(drawn.error());

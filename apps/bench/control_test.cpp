@@ -1,3 +1,6 @@
+#include <cstdlib>
+#include <utility>
+
 #include "apps/mjarm/commands/program_test.hpp"
 
 namespace mjarm::app {
@@ -37,9 +40,9 @@ TEST(BenchControl, StaysOnTheCurveAndCoversIt) {
   EXPECT_EQ(driven, 4);
 }
 
-std::string robust_bench(const std::string& robot) {
-  const auto result = mjarm({"bench", "control", "--robust", "--robot", robot, "--worlds", "3",
-                             "--clearance-worlds", "2", "--json", "--no-timing"});
+std::string robust_bench(const std::string& robot, const char* worlds) {
+  const auto result = mjarm({"bench", "control", "--robust", "--robot", robot, "--worlds", worlds,
+                             "--clearance-worlds", worlds, "--json", "--no-timing"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return result.out;
 }
@@ -47,14 +50,14 @@ std::string robust_bench(const std::string& robot) {
 /// What is promised of an arm whose model is wrong.
 TEST(BenchControl, RobustStaysWithinThreeTenthsWhereComputedTorqueDoesNot) {
   for (const char* robot : {"ur5e", "panda"}) {
-    const json bench = json::parse(robust_bench(robot));
+    const json bench = json::parse(robust_bench(robot, "2"));
     const json& plain = bench.at("robust").front();
     const json& robust = bench.at("robust").back();
     EXPECT_EQ(plain.at("control"), "computed_torque");
     EXPECT_EQ(robust.at("control"), "robust");
     EXPECT_GT(plain.at("max").get<double>(), 3e-3) << robot;
     EXPECT_LT(robust.at("max").get<double>(), 3e-4) << robot;
-    ASSERT_EQ(robust.at("worlds").size(), 3U);
+    ASSERT_EQ(robust.at("worlds").size(), 2U);
     for (const json& world : robust.at("worlds")) {
       EXPECT_LT(world.at("ripple").get<double>(), 1e-4) << world;
       EXPECT_LT(world.at("rest").get<double>(), 1e-4) << world;
@@ -69,11 +72,11 @@ TEST(BenchControl, RobustStaysWithinThreeTenthsWhereComputedTorqueDoesNot) {
 /// The same of payload, friction and links: within 5 % of the truth.
 TEST(BenchControl, IdentifiesPayloadFrictionAndLinksOfWrongWorlds) {
   for (const char* robot : {"ur5e", "panda"}) {
-    const auto result = mjarm({"bench", "control", "--identify", "--robot", robot, "--worlds", "2",
+    const auto result = mjarm({"bench", "control", "--identify", "--robot", robot, "--worlds", "1",
                                "--json", "--no-timing"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json bench = json::parse(result.out);
-    ASSERT_EQ(bench.at("identify").size(), 2U);
+    ASSERT_EQ(bench.at("identify").size(), 1U);
     for (const json& world : bench.at("identify")) {
       for (const char* what : {"mass", "com", "friction", "links"}) {
         EXPECT_LT(world.at(what).get<double>(), 0.05) << robot << " " << what;
@@ -85,31 +88,31 @@ TEST(BenchControl, IdentifiesPayloadFrictionAndLinksOfWrongWorlds) {
 }
 
 TEST(BenchControl, RobustRunsAreTheSameBytesForOneSeed) {
-  EXPECT_EQ(robust_bench("ur5e"), robust_bench("ur5e"));
+  EXPECT_EQ(robust_bench("ur5e", "1"), robust_bench("ur5e", "1"));
 }
 
-std::string bump_bench(const std::string& robot) {
-  const auto result = mjarm({"bench", "control", "--bumps", "--robot", robot, "--bump-count", "8",
-                             "--quiet-runs", "1", "--json", "--no-timing"});
+std::string bump_bench(const std::string& robot, const char* bumps, const char* quiet) {
+  const auto result = mjarm({"bench", "control", "--bumps", "--robot", robot, "--bump-count", bumps,
+                             "--quiet-runs", quiet, "--json", "--no-timing"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   return result.out;
 }
 
 /// What is promised of a contact that nobody planned.
 TEST(BenchControl, BumpsThatJointsCanTellAreNoticedWithinTwentyMilliseconds) {
-  for (const char* robot : {"ur5e", "panda"}) {
-    const json bench = json::parse(bump_bench(robot));
+  for (const auto& [robot, quiet] : {std::pair("ur5e", "0"), std::pair("panda", "1")}) {
+    const json bench = json::parse(bump_bench(robot, "8", quiet));
     EXPECT_EQ(bench.at("told").at("bumps"), 8) << robot;
     EXPECT_EQ(bench.at("told").at("noticed"), 8) << robot;
     EXPECT_GT(bench.at("told").at("delay_max"), 0.0) << robot;
     EXPECT_EQ(bench.at("false_alarms"), 0) << robot;
     EXPECT_GT(bench.at("surprise_max").get<double>(), 5) << robot << ": it was looked at";
-    EXPECT_GT(bench.at("hours").get<double>(), 0.01) << robot;
+    EXPECT_GE(bench.at("hours").get<double>(), 0.01 * std::atoi(quiet)) << robot;
   }
 }
 
 TEST(BenchControl, BumpsAreTheSameBytesForOneSeed) {
-  EXPECT_EQ(bump_bench("ur5e"), bump_bench("ur5e"));
+  EXPECT_EQ(bump_bench("ur5e", "2", "0"), bump_bench("ur5e", "2", "0"));
 }
 
 }  // namespace

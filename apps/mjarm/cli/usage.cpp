@@ -34,11 +34,11 @@ Result<std::uint64_t> parse_whole(const std::string& option, const std::string& 
   return number;
 }
 
-Result<int> parse_count(const std::string& option, const std::string& value, int max) {
+Result<int> parse_count(const std::string& option, const std::string& value, int max, int min) {
   const Result<std::uint64_t> count = parse_whole(option, value);
   if (!count) return fail(count.error());
-  if (*count < 1 || *count > static_cast<std::uint64_t>(max)) {
-    return fail(Errc::usage, text(msg::app_count, option, max, *count));
+  if (*count < static_cast<std::uint64_t>(min) || *count > static_cast<std::uint64_t>(max)) {
+    return fail(Errc::usage, text(msg::app_count, option, min, max, *count));
   }
   return static_cast<int>(*count);
 }

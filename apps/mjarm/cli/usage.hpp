@@ -16,8 +16,10 @@ namespace mjarm::app {
 [[nodiscard]] Result<std::uint64_t> parse_whole(const std::string& option,
                                                 const std::string& value);
 
-/// Reads a whole number from 1 to `max`, as `--rounds 5`. @return an error that names `option`.
-[[nodiscard]] Result<int> parse_count(const std::string& option, const std::string& value, int max);
+/// Reads a whole number from `min` (>= 0) to `max`, as `--rounds 5`. @return an error that names
+/// `option`.
+[[nodiscard]] Result<int> parse_count(const std::string& option, const std::string& value, int max,
+                                      int min = 1);
 
 /// Reads the value of `--threads`, 1 to 1024.
 [[nodiscard]] Result<int> parse_threads(const std::string& value);

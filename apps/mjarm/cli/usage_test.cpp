@@ -42,6 +42,7 @@ TEST(Usage, CountsHaveBothEnds) {
             "--rounds must be a whole number from 1 to 5, not 0");
   EXPECT_EQ(refusal(parse_count("--rounds", "6", 5)),
             "--rounds must be a whole number from 1 to 5, not 6");
+  EXPECT_EQ(parse_count("--quiet-runs", "0", 5, 0).value(), 0);
   // A number that fits no int is not cut down to one that does.
   EXPECT_THAT(refusal(parse_count("--rounds", "4294967297", 5)), HasSubstr("not 4294967297"));
   EXPECT_THAT(refusal(parse_count("--rounds", "two", 5)), HasSubstr("\"two\""));
