@@ -109,13 +109,14 @@ std::string reason_of(const TimedMotion& motion) {
 /// @return how many cases have no motion, pass a limit or do not arrive.
 int describe(const TimeSet& set, std::span<const double> best, TimeRun& run) {
   int solved = 0, beyond = 0;
-  double use = 0;
+  double use = 0, outside = 0;
   std::vector<JsonDoc> wrong;
   for (std::size_t i = 0; i < run.motions.size(); ++i) {
     const TimedMotion& motion = run.motions[i];
     solved += motion.reason.empty() && motion.arrives ? 1 : 0;
     beyond += motion.holds ? 0 : 1;
     use = std::max(use, motion.use);
+    outside = std::max(outside, motion.outside);
     if (motion.reason.empty() && motion.holds && motion.arrives) continue;
     wrong.push_back(
         {{"case", set.cases[i].id}, {"reason", reason_of(motion)}, {"use", motion.use}});
@@ -130,6 +131,7 @@ int describe(const TimeSet& set, std::span<const double> best, TimeRun& run) {
                  {"solved", solved},
                  {"duration", {{"mean", ratio.mean}, {"worst", ratio.worst}}},
                  {"use", use},
+                 {"outside", outside},
                  {"beyond", beyond},
                  {"wrong", std::move(wrong)}};
   return count;

@@ -14,18 +14,18 @@ namespace mjarm::app {
 
 /// Motions of one kind to be timed.
 struct TimeSet {
-  std::string name;  ///< "rest", "state", "path_va", "path_vaj", "via_vaj", "ellipse"
+  std::string name;  ///< "rest", "state", "range", "path_va", "path_vaj", "via_vaj", "ellipse"
   TimeProblem problem;
   JointLimits limits;
   std::vector<TimeCase> cases;
   /// [s] what durations are compared with, one a case: the shortest known ones (for path_vaj those
-  /// without jerk limits). Empty where none are known.
+  /// without jerk limits; for range those without ranges). Empty where none are known.
   std::vector<double> best = {};
 };
 
 /// The sets of one robot. With a folder: `NAME_p2p.json`, and `NAME_paths.json`,
 /// `NAME_ellipse.json` and `best_known.json` as far as they are there. Without: the robot's own
-/// limits, and cases made at random, the same every time.
+/// limits, and cases made at random, the same every time; so is `range` with a folder.
 /// @param folder  empty = none.
 [[nodiscard]] Result<std::vector<TimeSet>> load_time_sets(const std::string& robot,
                                                           const std::filesystem::path& folder);
@@ -34,6 +34,7 @@ struct TimeSet {
 struct TimedMotion {
   double duration = 0;      ///< [s]
   double use = 0;           ///< worst use of a limit that counts, as a share of it
+  double outside = 0;       ///< [rad or m] farthest beyond the range of a joint
   bool arrives = true;      ///< it starts, ends and passes where it has to
   bool holds = true;        ///< no limit is passed by more than the set allows
   std::string reason = {};  ///< why there is no motion; empty where there is one

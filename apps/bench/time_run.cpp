@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "apps/bench/time.hpp"
 #include "mjarm/core/stopwatch.hpp"
@@ -9,6 +10,8 @@ namespace {
 
 constexpr double kStateTol = 1e-6;  // [rad, rad/s] at both ends
 constexpr double kPassTol = 1e-3;   // [rad or m] at waypoints
+
+constexpr double kRangeTol = 1e-9;  // [rad or m] beyond the range of a joint
 
 /// Share of a limit that may be passed: path timers without jerk limits hold theirs on a grid.
 double allowed(TimeProblem problem) { return problem == TimeProblem::path_va ? 1e-3 : 1e-6; }
@@ -57,6 +60,26 @@ TimedMotion judged(const TimeSet& set, const TimeCase& entry, double duration, c
   return judge_motion(set, entry, duration, states);
 }
 
+/// How far beyond its range a joint gets between the samples, too: at the ends of each piece and
+/// where its velocity v + a x + jerk x^2 / 2 is 0.
+double outside(const PointToPoint& move, const JointLimits& limits) {
+  double worst = 0;
+  for (int i = 0; i < move.dof(); ++i) {
+    const auto pieces = move.pieces(i);
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const PointToPoint::Piece& p = pieces[k];
+      const double h = (k + 1 < pieces.size() ? pieces[k + 1].t : move.duration()) - p.t;
+      const double root = std::sqrt(std::max(0.0, p.a * p.a - 2 * p.jerk * p.v));
+      for (const double x : {0.0, (root - p.a) / p.jerk, -(root + p.a) / p.jerk, -p.v / p.a, h}) {
+        if (!(x >= 0 && x <= h)) continue;
+        const double q = p.q + x * (p.v + x * (p.a / 2 + x * p.jerk / 6));
+        worst = std::max({worst, q - limits.upper[i], limits.lower[i] - q});
+      }
+    }
+  }
+  return worst;
+}
+
 /// One case. Point to point is what a control loop calls; it makes no trajectory of its own.
 TimedMotion solve(const TimeSet& set, const TimeCase& entry, bool judge, double& us) {
   const Stopwatch watch;
@@ -65,7 +88,11 @@ TimedMotion solve(const TimeSet& set, const TimeCase& entry, bool judge, double&
     us = std::min(us, watch.us());
     if (!move) return {.reason = "bad_input"};
     if (!judge) return {};
-    return judged(set, entry, move->duration(), [&](double t) { return move->at(t); });
+    TimedMotion motion =
+        judged(set, entry, move->duration(), [&](double t) { return move->at(t); });
+    motion.outside = std::max(motion.outside, outside(*move, set.limits));
+    motion.holds = motion.holds && motion.outside <= kRangeTol;
+    return motion;
   }
   const Result<Trajectory> motion = time_case(entry, set.limits, set.problem);
   us = std::min(us, watch.us());
@@ -90,7 +117,8 @@ TimedMotion judge_motion(const TimeSet& set, const TimeCase& entry, double durat
   const LimitUse use = check_limits(*motion, set.limits, dt * (1 + 1e-12));
   out.use = use.worst();
   if (set.problem != TimeProblem::path_va) out.use = std::max(out.use, use.jerk.maxCoeff());
-  out.holds = out.use <= 1 + allowed(set.problem);
+  out.outside = std::max(0.0, use.position.maxCoeff());
+  out.holds = out.use <= 1 + allowed(set.problem) && out.outside <= kRangeTol;
   out.arrives = arrives(set, entry, *motion, states);
   return out;
 }

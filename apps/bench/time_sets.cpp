@@ -8,6 +8,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/messages/json.hpp"
+#include "mjarm/trajectory/point_to_point.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::uint64_t kTimeSeed = 1;
 constexpr int kMoves = 500;
+constexpr int kRangeMoves = 10'000;
 constexpr int kTimedPaths = 20;
 constexpr int kWaypoints = 10;
 constexpr int kLapPoints = 200;
@@ -78,12 +80,85 @@ std::vector<TimeCase> make_lap(Eigen::Index dof) {
   return {std::move(entry)};
 }
 
+/// What full braking of a joint that moves up comes to: the way up, and the deceleration there.
+struct Braked {
+  double way = 0, deceleration = 0;
+};
+
+Braked braked(double v, double a, double a_max, double jerk) {
+  const double up = std::max(a, 0.0);
+  if (v + up * up / (2 * jerk) <= 0) return {};
+  const double stop = (a + std::sqrt(a * a + 2 * jerk * v)) / jerk, ramp = (a + a_max) / jerk;
+  const double t = std::min(stop, ramp);
+  const double way = t * (v + t * (a / 2 - t * jerk / 6));
+  if (stop <= ramp) return {std::max(way, 0.0), jerk * stop - a};
+  const double left = v + t * (a - t * jerk / 2);
+  return {way + left * left / (2 * a_max), a_max};
+}
+
+/// Whether a joint that brakes fully, then eases off, stays between both ends: with a deceleration
+/// d in the end it falls back by 2 d^3 / (3 jerk^2).
+bool brakes_within(double v, double a, double a_max, double jerk, double below, double above) {
+  const Braked end = braked(v, a, a_max, jerk);
+  const double back = 2 * std::pow(end.deceleration, 3) / (3 * jerk * jerk);
+  return end.way < above && end.way - back > -below;
+}
+
+/// A state near one end of each joint's range that can stay in it (`sign` 1) or can have come from
+/// there (-1). Each try is slower than the one before, so a range that is too narrow ends in rest.
+JointState state_near_limits(Rng& rng, const JointLimits& limits, int sign) {
+  constexpr double kDecades = 4;  // of the distance from the end, up to 1 rad or m
+  JointState x = JointState::at_rest(JointVec::Zero(limits.velocity.size()));
+  for (Eigen::Index i = 0; i < x.q.size(); ++i) {
+    const double v_max = limits.velocity[i], a_max = limits.acceleration[i], j = limits.jerk[i];
+    const double range = limits.upper[i] - limits.lower[i];
+    for (double fast = 1; fast > 0; fast = fast > 1e-3 ? 0.95 * fast : 0) {
+      const double away = std::min(std::pow(10, -kDecades * rng.uniform()), 0.5 * range);
+      x.q[i] = rng.uniform() < 0.5 ? limits.lower[i] + away : limits.upper[i] - away;
+      x.v[i] = fast * rng.uniform(-v_max, v_max);
+      const double most = std::min(a_max, std::sqrt(2 * j * (v_max - std::abs(x.v[i]))));
+      x.a[i] = 0.999 * fast * rng.uniform(-most, most);
+      const double v = sign * x.v[i], below = x.q[i] - limits.lower[i];
+      const double above = limits.upper[i] - x.q[i];
+      if (brakes_within(v, x.a[i], a_max, j, below, above) &&
+          brakes_within(-v, -x.a[i], a_max, j, above, below)) {
+        break;
+      }
+      x.v[i] = x.a[i] = 0;
+    }
+  }
+  return x;
+}
+
+/// Moves between states near the ends of the joints' ranges. Compared with the fastest motions
+/// that know no range, whether those stay in it or not.
+TimeSet make_range_set(JointLimits limits) {
+  constexpr double kFar = 2 * std::numbers::pi;  // [rad] of joints that turn without end
+  limits.lower = limits.lower.cwiseMax(-kFar);
+  limits.upper = limits.upper.cwiseMin(kFar);
+  JointLimits open = limits;
+  open.lower = open.upper = {};
+  TimeSet set{"range", TimeProblem::p2p, limits, {}};
+  Rng rng(kTimeSeed, 4);
+  for (int i = 0; i < kRangeMoves; ++i) {
+    TimeCase entry{std::to_string(i),
+                   state_near_limits(rng, limits, 1),
+                   state_near_limits(rng, limits, -1),
+                   {}};
+    const auto fastest = PointToPoint::solve(entry.start, entry.end, open);
+    set.best.push_back(fastest ? fastest->duration() : 0);
+    set.cases.push_back(std::move(entry));
+  }
+  return set;
+}
+
 std::vector<TimeSet> make_sets(const JointLimits& arm) {
   const JointLimits limits = unbounded(arm.velocity, arm.acceleration, arm.jerk);
   const Eigen::Index dof = limits.velocity.size();
   const std::vector<TimeCase> paths = make_paths(dof);
   return {{"rest", TimeProblem::p2p, limits, make_moves(limits, true)},
           {"state", TimeProblem::p2p, limits, make_moves(limits, false)},
+          make_range_set(arm),
           {"path_va", TimeProblem::path_va, limits, paths},
           {"path_vaj", TimeProblem::path_vaj, limits, paths},
           {"via_vaj", TimeProblem::via_vaj, limits, paths},
@@ -144,6 +219,7 @@ Result<void> read_moves(const fs::path& file, const JsonValue& known, std::vecto
     set.best = best_of(known, file.stem().string(), "p2p_vaj", set.cases);
     if (!set.cases.empty()) sets.push_back(std::move(set));
   }
+  sets.push_back(make_range_set(all->limits));
   return {};
 }
 

@@ -37,6 +37,12 @@ TEST(BenchTime, ComparesWithTheBestKnown) {
   EXPECT_NEAR(rest.at("use").get<double>(), 1, 1e-6);  // the jerk
   EXPECT_GT(rest.at("us").at("median").get<double>(), 0);
   EXPECT_EQ(run_of(bench, "mjarm", "state").at("cases"), 1);
+  // No joint leaves its range.
+  const json& range = run_of(bench, "mjarm", "range");
+  EXPECT_EQ(range.at("solved"), 10'000);
+  EXPECT_EQ(range.at("beyond"), 0);
+  EXPECT_LE(range.at("outside").get<double>(), 1e-9);
+  EXPECT_GE(range.at("duration").at("worst").get<double>(), 1);
   // Nothing is known of paths: ours stand in, and jerk limits cost time.
   EXPECT_EQ(run_of(bench, "mjarm", "path_va").at("duration").at("mean"), 1);
   EXPECT_GT(run_of(bench, "mjarm", "path_vaj").at("duration").at("mean").get<double>(), 1);
@@ -89,10 +95,18 @@ TEST(BenchTime, MakesItsOwnCasesTheSameEveryTime) {
                                               "--rounds", "1",    "--no-timing"};
   const auto first = mjarm(arguments);
   ASSERT_EQ(first.exit_code, 0) << first.err;
-  for (const char* set : {"rest", "state", "path_va ", "path_vaj", "via_vaj", "ellipse"}) {
+  for (const char* set : {"rest", "state", "range", "path_va ", "path_vaj", "via_vaj", "ellipse"}) {
     EXPECT_NE(first.out.find(std::string("| ") + set), std::string::npos) << first.out;
   }
   EXPECT_EQ(first.out, mjarm(arguments).out);
+}
+
+TEST(BenchTime, RangesOfAnArmCostNoTime) {
+  const json bench = bench_json({"bench", "time", "--robot", "ur5e", "--rounds", "1"});
+  const json& range = run_of(bench, "mjarm", "range");
+  EXPECT_EQ(range.at("solved"), 10'000);
+  EXPECT_EQ(range.at("beyond"), 0);
+  EXPECT_LE(range.at("duration").at("worst").get<double>(), 1.02);
 }
 
 TEST(BenchTime, SaysWhatIsWrong) {
