@@ -55,7 +55,11 @@ BranchRun run_branches(std::string who, const IkSolver& ik, const IkAllOptions& 
 std::vector<BranchRun> run_our_branches(const IkProblem& problem, const std::vector<IkCase>& poses,
                                         int rounds) {
   const IkSolver ik(problem.robot.arm);
-  const IkSolver search(problem.robot.arm, {.closed_form = false});
+  // At the tolerance of a single answer, points along a curve that is nearly singular count as
+  // branches.
+  constexpr double kTight = 1e-10;  // [m], [rad]
+  const IkSolver search(problem.robot.arm,
+                        {.pos_tol = kTight, .rot_tol = kTight, .closed_form = false});
   Progress progress(text(msg::bench_ik_progress, problem.name),
                     2 * static_cast<std::size_t>(rounds) + 1);
   std::vector<BranchRun> runs;
