@@ -71,8 +71,9 @@ def child(peers, run, job_file, name):
             raise NotImplementedError("not installed")
         rows = list(run(job, name, maker, {"who": name, "version": version, "timed": "python"}))
     except Exception as error:  # whatever a peer cannot do is its result
-        line = str(error).splitlines() or [type(error).__name__]
-        rows = [{"who": name, "version": version, "error": line[0][:80]}]
+        said = getattr(error, "stderr", None)  # the last line of a tool that failed says why
+        lines = said.decode(errors="replace").splitlines()[-1:] if said else str(error).splitlines()
+        rows = [{"who": name, "version": version, "error": (lines or [type(error).__name__])[0][:80]}]
     for row in rows:
         print(json.dumps(row), file=out)
     out.close()
