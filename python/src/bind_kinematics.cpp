@@ -337,10 +337,11 @@ void bind_kinematics(nb::module_& m) {
            nb::arg("windings") = false, nb::arg("max") = IkAllOptions().max, none("task"),
            nb::arg("pos_tol") = usual.pos_tol, nb::arg("rot_tol") = usual.rot_tol,
            nb::arg("max_step") = kAnyStep, none("valid"), nb::sig(kIkAllSig),
-           "All distinct answers, nearest to the seed first, shape (n, dof) [rad or m]: every "
-           "branch of a\n"
-           "closed form, and with `windings` every winding of each. Raises as `ik` does where none "
-           "is.")
+           "All distinct answers, nearest to the seed first, shape (n, dof) [rad or m]: of six "
+           "hinges, whatever\n"
+           "their geometry, and of other closed forms every branch, else those that random starts "
+           "find; with\n"
+           "`windings` every winding of each. Raises as `ik` does where none is.")
       .def("tracker", &tracker, nb::kw_only(), nb::arg("dt") = TrackOptions().dt,
            nb::arg("gain") = TrackOptions().gain,
            nb::arg("speed_share") = TrackOptions().speed_share,
