@@ -174,10 +174,14 @@ void ContactObserver::predict(const JointVec& torque) {
   const Eigen::MatrixXd inv = solve_symmetric(mass, Eigen::MatrixXd::Identity(n, n));
 
   Eigen::MatrixXd A(n, unknown_);
-  A.leftCols(errors_.count()) = -errors_.torques(q, v, w_);
   A.middleCols(errors_.count(), n) = (-s_).asDiagonal();
   A.rightCols(n).setIdentity();
-  w_ = inv * (torque - rest + A * x_.tail(unknown_));
+  // What link errors do depends on the acceleration, and that on what they do: with the one of the
+  // step before alone they would be late wherever it changes.
+  for (int pass = 0; pass < 2; ++pass) {
+    A.leftCols(errors_.count()) = -errors_.torques(q, v, w_);
+    w_ = inv * (torque - rest + A * x_.tail(unknown_));
+  }
   x_.segment(n, n) += h_ * w_;
   x_.head(n) += h_ * x_.segment(n, n);
 
