@@ -20,7 +20,7 @@ constexpr double kLeft = 12, kLeftShare = 0.01;  // squared deviations that are 
 // A joint whose direction nobody knows: its friction may have any size within kTurns times its own
 // in each step (it is the same over many), and what that did is forgotten after kForget steps.
 constexpr double kTurns = 4;
-constexpr int kForget = 6;
+constexpr int kForget = 12;
 constexpr std::size_t kShortLook = 5, kLongLook = 20;  // [steps] in which a joint has moved
 
 /// F X, F = [1 h hG; 0 1 G; 0 0 1]: how positions, velocities and unknowns go on. G is (dof,
