@@ -17,13 +17,16 @@ namespace mjarm {
 struct BallShape {
   double radius = 0;  ///< [m] > 0, round the origin
 };
+/// A cylinder with half a ball at either end.
 struct CapsuleShape {
   double radius = 0;       ///< [m] > 0
   double half_length = 0;  ///< [m] >= 0, of the segment along z that the radius is put round
 };
+/// A box about the origin, its edges along the axes.
 struct BoxShape {
   Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< [m] > 0, half extents
 };
+/// A cylinder about z, its middle at the origin.
 struct CylinderShape {
   double radius = 0;       ///< [m] > 0, about z
   double half_length = 0;  ///< [m] > 0, flat ends

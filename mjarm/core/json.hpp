@@ -86,6 +86,7 @@ struct JsonLimits {
   bool unique_keys = true;  ///< refuse an object that names a key twice; else the last one counts
 };
 
+/// Why a text is not taken.
 enum class JsonErrc {
   syntax,        ///< no JSON from `byte` on
   number_range,  ///< a number beyond the range of double

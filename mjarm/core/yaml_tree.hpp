@@ -22,6 +22,7 @@ struct YamlNode {
   std::vector<YamlNode> items;  ///< of a list
   std::vector<YamlMember> members;  ///< of a map; keys are scalars, all different
 };
+/// A key of a map and what stands there.
 struct YamlMember {
   YamlNode key, value;
 };

@@ -58,6 +58,7 @@ struct FollowFailure {
 /// One line for people.
 [[nodiscard]] std::string describe(const FollowFailure& failure, const Arm& arm);
 
+/// When a waypoint counts as reached, and how long it may take. Every default is usable as is.
 struct GateOptions {
   double joint_tol = 0.02;  ///< [rad or m] every joint this near: next joint waypoint, > 0
   double tool_tol = 0.01;   ///< [m] tool this near: next tool point, > 0

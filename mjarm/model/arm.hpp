@@ -12,6 +12,7 @@
 
 namespace mjarm {
 
+/// Whether a joint turns about its axis or moves along it.
 enum class JointType { hinge, slide };
 
 /// An actuator that drives one joint directly: force = gain * ctrl + bias[0] + bias[1] * length +

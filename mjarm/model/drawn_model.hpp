@@ -12,9 +12,7 @@
 
 namespace mjarm {
 
-/// What a model looks like and how it may move, as plain data: for whoever draws it without
-/// MuJoCo. Numbers of bodies, geoms and joints are those of the compiled model.
-
+/// A body, whose pose is given elsewhere.
 struct DrawnBody {
   std::string name = {};                           ///< "body 7" where the model has none
   Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();  ///< [m] centre of mass in the body
@@ -22,6 +20,7 @@ struct DrawnBody {
   bool moves = false;                              ///< false for the world and what is fixed to it
 };
 
+/// What a geom looks like, and what its size means.
 enum class DrawnShape {
   plane,      ///< half lengths along x and y, 0 = endless; its z axis is the normal
   sphere,     ///< radius
@@ -32,6 +31,7 @@ enum class DrawnShape {
   mesh,       ///< `DrawnGeom::mesh`
 };
 
+/// A geom, which moves with its body.
 struct DrawnGeom {
   int id = -1;            ///< number in the model
   int body = 0;           ///< number of its body
@@ -68,6 +68,8 @@ struct DrawnJoint {
   bool angle = true;                                        ///< radians, else metres
 };
 
+/// What a model looks like and how it may move, as plain data: for whoever draws it without
+/// MuJoCo. Numbers of bodies, geoms and joints are those of the compiled model.
 struct DrawnModel {
   std::vector<DrawnBody> bodies = {};  ///< all; the first is the world
   std::vector<DrawnGeom> geoms = {};   ///< all groups, without those that are transparent

@@ -60,6 +60,7 @@ struct FindFailure {
   FindErrc code = FindErrc::not_seen;
   std::optional<FoundPose> best = {};
 };
+/// One of the objects asked for, with its pose or the reason why it has none.
 struct FoundObject {
   std::string name;
   Result<FoundPose, FindFailure> pose;

@@ -84,6 +84,7 @@ struct PlanOptions {
   StopCheck stop = {};      ///< ends the work with PlanErrc::stopped
 };
 
+/// Why there is no path.
 enum class PlanErrc {
   bad_input,       ///< no goal, a wrong size, a number that is not finite
   bad_tilt,        ///< PlanOptions::tilt is out of range

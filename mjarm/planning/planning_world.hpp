@@ -48,6 +48,7 @@ struct WorldScene {
   FastChecker checker;  ///< of the cover, with the margin; it looks closer
 };
 
+/// Where a plan came to nothing.
 enum class WorldErrc {
   bad_model,  ///< the model cannot be covered
   no_answer,  ///< no configuration has the tool there

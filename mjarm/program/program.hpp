@@ -103,6 +103,7 @@ struct DrawText {
   std::optional<double> speed = {};
 };
 
+/// The arm stands still.
 struct Wait {
   double seconds = 0;  ///< [s] >= 0
 };
@@ -133,6 +134,7 @@ struct Excite {
   std::uint64_t seed = 1;
 };
 
+/// The gripper closes or opens where the arm stands.
 struct Grip {
   bool close = true;
 };
@@ -157,6 +159,7 @@ struct Place {
 
 struct Instruction;
 
+/// Instructions that are run several times.
 struct Repeat {
   int times = 1;  ///< >= 0
   std::vector<Instruction> body;

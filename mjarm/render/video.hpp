@@ -18,6 +18,7 @@ enum class VideoFormat {
 /// The format that the ending of `path` names (.mp4, .gif, also in capitals); none for others.
 [[nodiscard]] std::optional<VideoFormat> video_format(const std::filesystem::path& path);
 
+/// Size and rate of a video. Every default is usable as is.
 struct VideoOptions {
   int width = 1280;  ///< [px] of every frame; even for MP4
   int height = 720;  ///< [px] of every frame; even for MP4

@@ -11,6 +11,7 @@
 
 namespace mjarm {
 
+/// How long to measure. Every default is usable as is.
 struct SimBenchOptions {
   int rounds = 40;  ///< every contestant once a round, > 0
   int steps = 250;  ///< simulation steps of one contestant in one round, > 0; short ones dodge

@@ -13,6 +13,7 @@
 
 namespace mjarm {
 
+/// What is kept of a simulation. Every default is usable as is.
 struct RecordOptions {
   int every = 1;                  ///< steps from row to row, >= 1
   std::size_t max_rows = 100000;  ///< when full, every second row is dropped, >= 2

@@ -44,6 +44,7 @@ struct PanelTimeline {
   double end = 1;   ///< [s] > 0
 };
 
+/// One line of a panel.
 struct PanelItem {
   int id = 0;  ///< the application's own number; comes back with the event
   std::string name = {};
