@@ -72,7 +72,7 @@ class Demonstrator {
 
   void plan_reach(const Jaws& jaws, Demonstration& out) const {
     Pose X_TJ{.p = jaws.center_T};
-    X_TJ.R.col(0) = jaws.side_T();
+    X_TJ.R.col(0) = -jaws.side_T();  // close x approach
     X_TJ.R.col(1) = jaws.close_T;
     X_TJ.R.col(2) = jaws.approach_T;
     const Eigen::Vector3d p_W = scene_.objects[scene_.target].X_WB.p;
@@ -89,10 +89,11 @@ class Demonstrator {
                                 {.scene = before_, .to_first_fault = true, .stop = stop_});
       if (plan.ok()) {
         out.plan = std::move(plan);
+        out.verdict.reason.clear();
         return;
       }
+      out.verdict.reason = plan.faults.front().reason;
     }
-    out.verdict.reason = "no_plan";
   }
 
   void plan_pick_place(Demonstration& out) const {
@@ -130,7 +131,7 @@ class Demonstrator {
                   .motion = motion};
     sample.X_WT_ref = fk(robot_.arm, as_span(sample.q_ref));
     const double ctrl = sample.ctrl[static_cast<std::size_t>(grip_.id)];
-    sample.grip = (ctrl - grip_.ctrl_open) / (grip_.ctrl_closed - grip_.ctrl_open);
+    sample.grip = 0.0 + (ctrl - grip_.ctrl_open) / (grip_.ctrl_closed - grip_.ctrl_open);  // no -0
     out.samples.push_back(std::move(sample));
   }
 

@@ -29,6 +29,7 @@ const char* scene_file(const std::string& robot) {
 /// Draws every row as every camera sees it.
 Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
                         const Demonstration& done, EpisodeTimes& times, StoredZipWriter& out) {
+  if (done.samples.empty()) return {};
   const Stopwatch opening;
   const Result<Model> looks = with_looks(robot.model, scene.looks);
   if (!looks) return fail(looks.error());

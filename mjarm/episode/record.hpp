@@ -20,7 +20,8 @@ inline constexpr double kOthersMoved = 1e-3;     // [m]
 
 /// How an episode went, by the simulation's own knowledge of the scene.
 struct Verdict {
-  /// Empty for a success; else the first that applies: a word of program::PickErrc or "no_plan";
+  /// Empty for a success; else the first that applies: a word of program::PickErrc or of
+  /// ProgramFault;
   /// "nothing_held", "lost", "blocked"; "contact"; "object_lost", ... (ObjectFault); "off_goal",
   /// "others_moved". Words, so that bytes do not depend on the language.
   std::string reason = {};
