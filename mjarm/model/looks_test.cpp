@@ -24,15 +24,15 @@ TEST(Looks, ChangeColoursAndNothingThatMoves) {
   const Model other =
       with_looks(
           robot.model,
-          {.geoms = {{"can", {1, 0.5F, 0, 1}}},
+          {.geoms = {{"can", {1, 0.25F, 0, 1}}},
            .lights = {{.name = "key", .direction_W = {0, 2, -2}, .diffuse = {0.5, 0.25, 1}}}})
           .value();
   const mjModel& m = *other.raw();
   const int can = mj_name2id(&m, mjOBJ_GEOM, "can"), key = mj_name2id(&m, mjOBJ_LIGHT, "key");
-  EXPECT_EQ(m.geom_rgba[4 * can + 1], 0.5F);
+  EXPECT_EQ(m.geom_rgba[4 * can + 1], 0.25F);
   EXPECT_NEAR(m.light_dir[3 * key + 1], std::sqrt(0.5), 1e-12);
   EXPECT_EQ(m.light_diffuse[3 * key + 2], 1);
-  EXPECT_NE(robot.model.raw()->geom_rgba[4 * can + 1], 0.5F) << "the model itself was changed";
+  EXPECT_NE(robot.model.raw()->geom_rgba[4 * can + 1], 0.25F) << "the model itself was changed";
   EXPECT_EQ(after_a_second(other), after_a_second(robot.model));
 }
 
