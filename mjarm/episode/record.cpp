@@ -28,7 +28,8 @@ const char* scene_file(const std::string& robot) {
 
 /// Draws every row as every camera sees it.
 Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
-                        const Demonstration& done, EpisodeTimes& times, StoredZipWriter& out) {
+                        const Demonstration& done, const StopCheck& stop, EpisodeTimes& times,
+                        StoredZipWriter& out) {
   if (done.samples.empty()) return {};
   const Stopwatch opening;
   const Result<Model> looks = with_looks(robot.model, scene.looks);
@@ -41,6 +42,7 @@ Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const
   times.rendering += opening.us();
   for (const DrawnView& view : scene.views) {
     for (std::size_t row = 0; row < done.samples.size(); ++row) {
+      if (is_stopped(stop)) return fail(stopped());
       const Stopwatch drawing;
       const auto image = renderer->draw(done.samples[row].state, {.view = view.view});
       if (!image) return fail(image.error());
@@ -93,7 +95,7 @@ Result<Episode> Studio::make(std::uint64_t number, const StopCheck& stop) {
   const Origin origin{impl_->options, number, impl_->model_hash};
   archive.add("episode.json", episode_json(robot, origin, scene, *done));
   add_columns(*done, archive);
-  auto drawn = add_frames(robot, impl_->options, scene, *done, out.times, archive);
+  auto drawn = add_frames(robot, impl_->options, scene, *done, stop, out.times, archive);
   if (!drawn) return fail(std::move(drawn.error()));
   out.bytes = std::move(archive).finish();
   return out;
