@@ -27,6 +27,7 @@ ALLOWED = {
     "view": "core model sim render",
     "serve": "core model sim render view",
     "rl": "core model kinematics control sim",
+    "episode": "core model kinematics collision path planning trajectory control sim render execution program",
     "install": "core model",
     "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception",
 }

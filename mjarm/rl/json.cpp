@@ -1,5 +1,4 @@
 #include "mjarm/core/messages/policy_file.hpp"
-#include "mjarm/core/number.hpp"
 #include "mjarm/rl/json_internal.hpp"
 
 namespace mjarm::rl {
@@ -23,14 +22,6 @@ Result<JsonObject> parse_json_object(std::string_view text_of_it, int max_depth,
     default:
       return fail(Errc::bad_input, text(msg::policy_file_json_bad, source, part, 0));
   }
-}
-
-std::string in_quotes(std::string_view name) {
-  constexpr std::size_t kLongest = 80;
-  std::string out;
-  append_json_string(out, name.substr(0, kLongest));
-  if (name.size() > kLongest) out += "...";
-  return out;
 }
 
 }  // namespace mjarm::rl

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "mjarm/core/in_quotes.hpp"
 #include "mjarm/core/json.hpp"
 
 namespace mjarm::rl {
@@ -14,8 +15,5 @@ namespace mjarm::rl {
 [[nodiscard]] Result<JsonObject> parse_json_object(std::string_view text, int max_depth,
                                                    const std::string& source,
                                                    const std::string& part);
-
-/// `name` in double quotes, on one line, cut where it is long: for messages.
-[[nodiscard]] std::string in_quotes(std::string_view name);
 
 }  // namespace mjarm::rl

@@ -10,10 +10,10 @@
 
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/policy_file.hpp"
+#include "mjarm/core/stored_zip.hpp"
 #include "mjarm/rl/byte_order_internal.hpp"
 #include "mjarm/rl/json_internal.hpp"
 #include "mjarm/rl/sb3_layers_internal.hpp"
-#include "mjarm/rl/stored_zip_internal.hpp"
 #include "mjarm/rl/torch_pickle_internal.hpp"
 
 namespace mjarm::rl {

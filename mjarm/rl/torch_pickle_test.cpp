@@ -4,10 +4,10 @@
 #include <random>
 
 #include "mjarm/core/file.hpp"
+#include "mjarm/core/stored_zip.hpp"
 #include "mjarm/rl/pickle_opcodes_internal.hpp"
 #include "mjarm/rl/policy_file_test.hpp"
 #include "mjarm/rl/sb3_file_test.hpp"
-#include "mjarm/rl/stored_zip_internal.hpp"
 #include "mjarm/rl/torch_pickle_internal.hpp"
 
 namespace mjarm::rl {

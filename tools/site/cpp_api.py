@@ -9,7 +9,8 @@ TEXTS = {
     "trajectory": "motions in time within limits", "control": "from a reference to commands of actuators",
     "identification": "payload, friction and links from a log",
     "sim": "MuJoCo steps, with a controller", "render": "pictures and films", "perception": "objects that a camera sees",
-    "execution": "motions run and measured", "program": "motion programs", "view": "the window", "serve": "the page in a browser",
+    "execution": "motions run and measured", "program": "motion programs", "episode": "recorded demonstrations",
+    "view": "the window", "serve": "the page in a browser",
     "rl": "learning to reach", "install": "real meshes", "session": "what every face of the program shares",
 }
 

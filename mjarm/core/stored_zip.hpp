@@ -1,14 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mjarm/core/result.hpp"
 
-namespace mjarm::rl {
+namespace mjarm {
 
 /// A zip archive whose entries are stored as they are, as stable-baselines3 and torch write them.
 /// Entries are views of its bytes: nothing is unpacked, so no archive can grow.
@@ -28,6 +30,8 @@ class StoredZip {
   [[nodiscard]] bool contains(std::string_view name) const { return entries_.contains(name); }
   /// The name that ends in `end`; empty where none or more than one does.
   [[nodiscard]] std::string_view name_ending_in(std::string_view end) const;
+  /// Names of all entries, sorted; they live as long as this object.
+  [[nodiscard]] std::vector<std::string_view> names() const;
 
  private:
   struct Entry {
@@ -42,4 +46,21 @@ class StoredZip {
   std::map<std::string, Entry, std::less<>> entries_;
 };
 
-}  // namespace mjarm::rl
+/// Writes such an archive, whose bytes depend on names and contents alone: every entry bears the
+/// date 1 January 1980. Eighty lines over the CRC-32 of zlib, which is needed anyway: a library
+/// (libzip, minizip) would be one more package on every system to set time stamps and nothing else,
+/// as pictures are compressed already and numbers are small beside them.
+class StoredZipWriter {
+ public:
+  /// @param name     UTF-8, none twice, at most 65535 bytes; at most 65535 entries.
+  /// @param content  all together below 4 GB.
+  void add(std::string_view name, std::string_view content);
+  /// The archive.
+  [[nodiscard]] std::string finish() &&;
+
+ private:
+  std::string bytes_, directory_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace mjarm

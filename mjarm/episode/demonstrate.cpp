@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "mjarm/core/rotation.hpp"
+#include "mjarm/core/stopwatch.hpp"
+#include "mjarm/episode/demonstrate_internal.hpp"
+#include "mjarm/execution/execution.hpp"
+#include "mjarm/execution/grip_watch.hpp"
+#include "mjarm/execution/metrics.hpp"
+#include "mjarm/kinematics/fk.hpp"
+#include "mjarm/program/pick_place.hpp"
+
+namespace mjarm::episode {
+namespace {
+
+constexpr double kAbove = 0.12;  // [m] of the jaws above the middle of an object
+
+class Demonstrator {
+ public:
+  Demonstrator(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
+               const StopCheck& stop)
+      : robot_(robot), options_(options), scene_(scene), stop_(stop), sim_(robot.model) {
+    sim_.reset_home();
+    sim_.place(robot.arm, scene.q);
+    sim_.hold_others(robot.arm);
+    const SceneBodies bodies = scene_bodies(robot.model, robot.arm);
+    for (const DrawnObject& object : scene.objects) {
+      sim_.place_free(object.name, object.X_WB);
+      bodies_.push_back(std::ranges::find(bodies.objects, object.name, &SceneObject::name)->body);
+    }
+    grip_ = robot.arm.gripper.value();
+    before_ = state();
+  }
+
+  /// Fills plan and goal; a verdict with a reason where there is none.
+  void plan(const Jaws& jaws, Demonstration& out) const {
+    if (options_.task == "reach") {
+      plan_reach(jaws, out);
+    } else {
+      plan_pick_place(out);
+    }
+  }
+
+  Result<void> execute(Demonstration& out) {
+    Result<Execution> execution = Execution::create(robot_.model, out.plan);
+    if (!execution) return fail(std::move(execution.error()));
+    GripWatch watch(robot_.model, out.plan, before_);
+    GripFault fault = GripFault::none;
+    take(*execution, 0, out);
+    long long steps = 0;
+    const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
+      const std::size_t motion = execution->motions().back().move;
+      const JointVec error = execution->error(sim);
+      fault = watch.look(sim, motion, error);
+      measure(error, out);
+      if (++steps >= due(out.samples.size())) take(*execution, motion, out);
+      return fault == GripFault::none && !is_stopped(stop_);
+    });
+    if (!done) return fail(done.error());
+    if (is_stopped(stop_)) return fail(stopped());
+    judge_end(*execution, fault, out);
+    return {};
+  }
+
+ private:
+  [[nodiscard]] SceneState state() const {
+    return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
+  }
+
+  void plan_reach(const Jaws& jaws, Demonstration& out) const {
+    Pose X_TJ{.p = jaws.center_T};
+    X_TJ.R.col(0) = -jaws.side_T();  // close x approach
+    X_TJ.R.col(1) = jaws.close_T;
+    X_TJ.R.col(2) = jaws.approach_T;
+    const Eigen::Vector3d p_W = scene_.objects[scene_.target].X_WB.p;
+    for (const double turn : scene_.turns) {
+      const Pose X_WJ{.p = p_W + Eigen::Vector3d(0, 0, kAbove),
+                      .R = from_euler({std::numbers::pi, 0, turn})};
+      out.goal = X_WJ * X_TJ.inverse();
+      program::Program program;
+      program.name = "reach";
+      program.start.values = scene_.q;
+      program.instructions = {{program::PlanMove{.goal = program::ProgramPose{.X_FT = out.goal}}}};
+      program::ProgramPlan plan =
+          program::plan_program(robot_.model, robot_.arm, program,
+                                {.scene = before_, .to_first_fault = true, .stop = stop_});
+      if (plan.ok()) {
+        out.plan = std::move(plan);
+        out.verdict.reason.clear();
+        return;
+      }
+      out.verdict.reason = plan.faults.front().reason;
+    }
+  }
+
+  void plan_pick_place(Demonstration& out) const {
+    const program::PickTask task{.object = scene_.objects[scene_.target].name,
+                                 .place = {{.X_WB = scene_.X_WB_place, .any_turn = true}}};
+    auto planned = program::plan_pick(robot_, before_, scene_.q, task, {.stop = stop_});
+    if (!planned) {
+      out.goal = scene_.X_WB_place;
+      out.verdict.reason = name(planned.error().code);
+      return;
+    }
+    out.goal = planned->X_WB_place.value_or(scene_.X_WB_place);
+    out.plan = std::move(planned->plan);
+  }
+
+  /// The number of steps after which row `row` is taken.
+  [[nodiscard]] long long due(std::size_t row) const {
+    return std::llround(static_cast<double>(row) / (options_.fps * robot_.model.timestep()));
+  }
+
+  void take(const Execution& execution, std::size_t motion, Demonstration& out) const {
+    const JointState arm = sim_.arm_state(robot_.arm);
+    Sample sample{.state = sim_.snapshot(),
+                  .qpos = {sim_.qpos().begin(), sim_.qpos().end()},
+                  .qvel = {sim_.qvel().begin(), sim_.qvel().end()},
+                  .ctrl = {sim_.ctrl().begin(), sim_.ctrl().end()},
+                  .q = arm.q,
+                  .v = arm.v,
+                  .q_ref = arm.q + (out.samples.empty() ? JointVec(JointVec::Zero(arm.q.size()))
+                                                        : execution.error(sim_)),
+                  .X_WT = sim_.tool(robot_.arm),
+                  .X_WT_ref = {},
+                  .grip = 0,
+                  .objects = poses(),
+                  .motion = motion};
+    sample.X_WT_ref = fk(robot_.arm, as_span(sample.q_ref));
+    const double ctrl = sample.ctrl[static_cast<std::size_t>(grip_.id)];
+    sample.grip = 0.0 + (ctrl - grip_.ctrl_open) / (grip_.ctrl_closed - grip_.ctrl_open);  // no -0
+    out.samples.push_back(std::move(sample));
+  }
+
+  void measure(const JointVec& error, Demonstration& out) const {
+    const JointVec q_ref = sim_.arm_state(robot_.arm).q + error;
+    const Pose X_WT = fk(robot_.arm, as_span(q_ref));
+    out.tool_error = std::max(out.tool_error, (X_WT.p - sim_.tool(robot_.arm).p).norm());
+    out.joint_error = std::max(out.joint_error, error.cwiseAbs().maxCoeff());
+  }
+
+  [[nodiscard]] std::vector<Pose> poses() const {
+    std::vector<Pose> out;
+    for (const int body : bodies_) out.push_back(sim_.body_pose(body));
+    return out;
+  }
+
+  /// What the scene says counts; what was noticed on the way is a reason as well.
+  void judge_end(const Execution& execution, GripFault fault, Demonstration& out) const {
+    std::vector<Pose> before, after = poses();
+    for (const DrawnObject& object : scene_.objects) before.push_back(object.X_WB);
+    Pose reached = sim_.tool(robot_.arm);
+    if (options_.task != "reach") {
+      const auto target = static_cast<std::ptrdiff_t>(scene_.target);
+      reached = after[scene_.target];
+      before.erase(before.begin() + target);
+      after.erase(after.begin() + target);
+    }
+    out.verdict = judge(reached, out.goal, before, after);
+    std::string_view noticed = name(fault);
+    for (const ObservedObject& object : execution.objects()) {
+      if (noticed.empty() && object.fault != ObjectFault::none) noticed = name(object.fault);
+    }
+    if (noticed.empty() && execution.outcome().first_contact) noticed = "contact";
+    if (!noticed.empty()) out.verdict.reason = noticed;
+  }
+
+  const Robot& robot_;
+  const EpisodeOptions& options_;
+  const DrawnScene& scene_;
+  const StopCheck& stop_;
+  Sim sim_;
+  std::vector<int> bodies_;  ///< of the objects
+  Gripper grip_;
+  SceneState before_;
+};
+
+}  // namespace
+
+Verdict judge(const Pose& X_WB, const Pose& goal, std::span<const Pose> before,
+              std::span<const Pose> after) {
+  const PoseError error = pose_error(goal, X_WB);
+  Verdict out{.reason = {}, .position = error.position, .rotation = error.rotation};
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    out.others = std::max(out.others, (after[i].p - before[i].p).norm());
+  }
+  // The comparisons are false for what is no number.
+  if (!(out.position <= kAtGoal && out.rotation <= kTurnedAtGoal)) {
+    out.reason = "off_goal";
+  } else if (!(out.others <= kOthersMoved)) {
+    out.reason = "others_moved";
+  }
+  return out;
+}
+
+Result<Demonstration> demonstrate(const Robot& robot, const Jaws& jaws,
+                                  const EpisodeOptions& options, const DrawnScene& scene,
+                                  const StopCheck& stop, EpisodeTimes& times) {
+  Demonstration out;
+  const Stopwatch planning;
+  Demonstrator demonstrator(robot, options, scene, stop);
+  demonstrator.plan(jaws, out);
+  times.planning += planning.us();
+  if (is_stopped(stop)) return fail(stopped());
+  if (!out.verdict.success()) return out;
+  const Stopwatch physics;
+  if (auto done = demonstrator.execute(out); !done) return fail(std::move(done.error()));
+  times.physics += physics.us();
+  return out;
+}
+
+}  // namespace mjarm::episode
