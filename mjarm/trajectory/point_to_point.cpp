@@ -89,7 +89,8 @@ Result<PointToPoint, PointToPointFailure> PointToPoint::solve(const JointState& 
     Joint& joint = result->joints_[static_cast<std::size_t>(i)];
     joint.count = 0;
     Piece piece{0, start.q[i], start.v[i], start.a[i], 0};
-    for (const detail::JerkPhase& phase : movers[i].motion(result->duration_).all()) {
+    const detail::Phases motion = movers[i].motion(result->duration_);
+    for (const detail::JerkPhase& phase : motion.all()) {
       piece.a = phase.a;
       piece.jerk = phase.jerk;
       joint.pieces[static_cast<std::size_t>(joint.count++)] = piece;
