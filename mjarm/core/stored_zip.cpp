@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "mjarm/core/byte_order.hpp"
 #include "mjarm/core/in_quotes.hpp"
 #include "mjarm/core/messages/zip.hpp"
 
@@ -21,22 +22,18 @@ constexpr unsigned kVersion = 20;          // of the format that is needed: 2.0
 constexpr unsigned kUtf8Names = 1U << 11;  // bit 11 of the flags
 constexpr unsigned kFirstDay = 0x21;       // 1 January 1980, as MS-DOS writes dates
 
-/// The little-endian number of `size` bytes at `at`; all of it must be there.
-std::size_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {
-  std::size_t out = 0;
-  for (std::size_t i = size; i-- > 0;) out = out << 8 | static_cast<unsigned char>(bytes[at + i]);
-  return out;
+std::size_t word16(std::string_view bytes, std::size_t at) {
+  return load_little<std::uint16_t>(bytes, at);
 }
-std::size_t word16(std::string_view bytes, std::size_t at) { return number_at(bytes, at, 2); }
-std::size_t word32(std::string_view bytes, std::size_t at) { return number_at(bytes, at, 4); }
+std::size_t word32(std::string_view bytes, std::size_t at) {
+  return load_little<std::uint32_t>(bytes, at);
+}
 
 void put16(std::string& out, std::size_t value) {
-  out += static_cast<char>(value & 0xFF);
-  out += static_cast<char>(value >> 8 & 0xFF);
+  append_little(out, static_cast<std::uint16_t>(value));
 }
 void put32(std::string& out, std::size_t value) {
-  put16(out, value);
-  put16(out, value >> 16);
+  append_little(out, static_cast<std::uint32_t>(value));
 }
 
 /// What local and directory records share, from the version needed on to the length of the extra
@@ -89,7 +86,7 @@ bool StoredZip::add_entry(std::string_view bytes, std::size_t& at, std::size_t d
   const std::size_t local = word32(bytes, at + 42);
   const bool stored = word16(bytes, at + 10) == 0 && word32(bytes, at + 24) == size;
   const bool plain = stored && (word16(bytes, at + 8) & kEncrypted) == 0;
-  const auto crc = static_cast<std::uint32_t>(word32(bytes, at + 16));
+  const auto crc = load_little<std::uint32_t>(bytes, at + 16);
   if (!fits_in(at + kDirectoryRecord, name_size, bytes.size())) return false;
   const std::string_view name = bytes.substr(at + kDirectoryRecord, name_size);
   at += kDirectoryRecord + name_size + word16(bytes, at + 30) + word16(bytes, at + 32);

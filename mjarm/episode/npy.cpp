@@ -1,6 +1,6 @@
-#include <bit>
 #include <cstdint>
 
+#include "mjarm/core/byte_order.hpp"
 #include "mjarm/episode/npy_internal.hpp"
 
 namespace mjarm::episode {
@@ -14,14 +14,10 @@ std::string npy(std::span<const double> values, const std::vector<std::size_t>& 
   header.append(kAlign - (kMagic + header.size() + 1) % kAlign, ' ');
   header += '\n';
   std::string out("\x93NUMPY\x01\x00", 8);
-  out += static_cast<char>(header.size() & 0xFF);
-  out += static_cast<char>(header.size() >> 8);
+  append_little(out, static_cast<std::uint16_t>(header.size()));
   out += header;
   out.reserve(out.size() + 8 * values.size());
-  for (const double value : values) {
-    auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int i = 0; i < 8; ++i, bits >>= 8) out += static_cast<char>(bits & 0xFF);
-  }
+  for (const double value : values) append_little(out, value);
   return out;
 }
 

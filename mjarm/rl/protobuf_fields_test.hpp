@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mjarm/rl/byte_order_internal.hpp"
+#include "mjarm/core/byte_order.hpp"
 
 namespace mjarm::testing {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "mjarm/rl/byte_order_internal.hpp"
+#include "mjarm/core/byte_order.hpp"
 
 namespace mjarm::rl {
 

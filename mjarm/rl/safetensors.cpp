@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "mjarm/core/byte_order.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/policy_file.hpp"
 #include "mjarm/core/number.hpp"
 #include "mjarm/core/utf8.hpp"
-#include "mjarm/rl/byte_order_internal.hpp"
 #include "mjarm/rl/json_internal.hpp"
 
 namespace mjarm::rl {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "mjarm/core/byte_order.hpp"
 #include "mjarm/core/file.hpp"
-#include "mjarm/rl/byte_order_internal.hpp"
 #include "mjarm/rl/policy_file_test.hpp"
 #include "tests/support/temp_folder.hpp"
 

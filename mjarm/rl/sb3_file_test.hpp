@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mjarm/rl/byte_order_internal.hpp"
+#include "mjarm/core/byte_order.hpp"
 #include "mjarm/rl/policy_file_test.hpp"
 #include "mjarm/rl/sb3_zip.hpp"
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "mjarm/core/byte_order.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/messages/policy_file.hpp"
 #include "mjarm/core/stored_zip.hpp"
-#include "mjarm/rl/byte_order_internal.hpp"
 #include "mjarm/rl/json_internal.hpp"
 #include "mjarm/rl/sb3_layers_internal.hpp"
 #include "mjarm/rl/torch_pickle_internal.hpp"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "mjarm/core/byte_order.hpp"
 #include "mjarm/core/messages/policy_file.hpp"
-#include "mjarm/rl/byte_order_internal.hpp"
 #include "mjarm/rl/json_internal.hpp"
 #include "mjarm/rl/pickle_opcodes_internal.hpp"
 #include "mjarm/rl/torch_pickle_internal.hpp"

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
-namespace mjarm::rl {
+namespace mjarm {
 
 /// An unsigned number of `bytes` bytes.
 template <std::size_t bytes>
@@ -42,4 +43,4 @@ void append_little(std::string& out, Number value) {
   }
 }
 
-}  // namespace mjarm::rl
+}  // namespace mjarm
