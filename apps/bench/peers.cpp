@@ -8,7 +8,6 @@
 #include "apps/bench/scratch_folder.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/os_program.hpp"
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/core/share.hpp"
 
 namespace mjarm::app {
@@ -80,11 +79,6 @@ Result<void> take_line(std::string_view line, const TakeAnswer& take) {
 }
 
 }  // namespace
-
-JsonDoc pose_json(const Pose& X) {
-  const Quat q = to_quat(X.R);
-  return {{"pos", {X.p[0], X.p[1], X.p[2]}}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
-}
 
 void broken(const std::string& member) {
   throw BrokenAnswer{{Errc::system, text(msg::bench_bad_answer, member)}};

@@ -7,13 +7,9 @@
 
 #include "apps/bench/suite.hpp"
 #include "mjarm/core/json.hpp"
-#include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
 
 namespace mjarm::app {
-
-/// A pose as the files of cases and the peers write it.
-[[nodiscard]] JsonDoc pose_json(const Pose& X);
 
 /// Thrown where an answer of a peer cannot be taken; `run_peers` reports it.
 struct BrokenAnswer {

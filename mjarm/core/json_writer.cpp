@@ -164,4 +164,9 @@ std::string JsonDoc::line() const {
   return safe(tree_->json.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
+JsonDoc pose_json(const Pose& X) {
+  const Quat q = to_quat(X.R);
+  return {{"pos", {X.p[0], X.p[1], X.p[2]}}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
 }  // namespace mjarm

@@ -128,4 +128,7 @@ struct JsonDoc::Member {
   mutable JsonDoc value;  ///< moved out: a list of initialisers is constant
 };
 
+/// An object of the members that JsonWriter::pose_members() writes.
+[[nodiscard]] JsonDoc pose_json(const Pose& X);
+
 }  // namespace mjarm

@@ -4,7 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/episode/archive_internal.hpp"
 #include "mjarm/model/mujoco_library.hpp"
 #include "mjarm/render/free_camera.hpp"
@@ -14,11 +13,6 @@ namespace {
 
 JsonDoc vector_doc(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-JsonDoc pose_doc(const Pose& X) {
-  const Quat q = to_quat(X.R);
-  return {{"pos", vector_doc(X.p)}, {"quat", {q.w(), q.x(), q.y(), q.z()}}};
-}
-
 JsonDoc color_doc(const std::array<float, 4>& rgba) {
   return std::vector<double>(rgba.begin(), rgba.end());
 }
@@ -26,7 +20,7 @@ JsonDoc color_doc(const std::array<float, 4>& rgba) {
 JsonDoc objects_doc(const DrawnScene& scene) {
   std::vector<JsonDoc> out;
   for (const DrawnObject& object : scene.objects) {
-    JsonDoc one = pose_doc(object.X_WB);
+    JsonDoc one = pose_json(object.X_WB);
     one.set("name", object.name);
     one.set("color", object.color);
     one.set("rgba", color_doc(object.rgba));
@@ -61,7 +55,7 @@ JsonDoc cameras_doc(const Robot& robot, const DrawnScene& scene, int size) {
                    {"fy", focal},
                    {"cx", half},
                    {"cy", half},
-                   {"pose", pose_doc(render::camera_pose(one.view))}});
+                   {"pose", pose_json(render::camera_pose(one.view))}});
   }
   return out;
 }
@@ -127,7 +121,7 @@ std::string episode_json(const Robot& robot, const Origin& origin, const DrawnSc
                  {"target", scene.objects[scene.target].name},
                  {"start", scene.q},
                  {"looks", looks_doc(scene.looks)}}},
-               {"goal", pose_doc(done.goal)},
+               {"goal", pose_json(done.goal)},
                {"plan", plan_doc(done.plan)},
                {"certificate", certificate_doc(done.plan)},
                {"executed",

@@ -3,17 +3,12 @@
 #include <algorithm>
 
 #include "mjarm/core/messages/episode.hpp"
+#include "mjarm/core/nearest_word.hpp"
 
 namespace mjarm::episode {
 namespace {
 
 constexpr int kMinSize = 16, kMaxSize = 1024, kMinFps = 1, kMaxFps = 50;
-
-std::string listed(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
 
 Result<void> in_range(const char* name, int value, int least, int most) {
   if (value >= least && value <= most) return {};

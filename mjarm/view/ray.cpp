@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "mjarm/render/free_camera.hpp"
+
 namespace mjarm::view {
 
 using Eigen::Vector2d;
@@ -15,14 +17,11 @@ double Eye::height_at(const Vector3d& point_W) const {
 }
 
 Eye eye_of(const render::CameraView& view, double fovy) {
-  const double ca = std::cos(view.azimuth);
-  const double sa = std::sin(view.azimuth);
-  const double ce = std::cos(view.elevation);
-  const double se = std::sin(view.elevation);
+  const Pose X_WC = render::camera_pose(view);
   Eye eye;
-  eye.forward_W = {ce * ca, ce * sa, se};
-  eye.up_W = {-se * ca, -se * sa, ce};
-  eye.p_W = view.lookat_W - view.distance * eye.forward_W;
+  eye.forward_W = -X_WC.R.col(2);
+  eye.up_W = X_WC.R.col(1);
+  eye.p_W = X_WC.p;
   eye.upper = std::tan(fovy / 2);
   eye.lower = -eye.upper;
   return eye;
