@@ -33,26 +33,26 @@ inline std::uint32_t crc_of(std::string_view bytes) {
 /// The fields that the records of an entry share.
 inline void append_shared(std::string& out, const ZipEntry& entry, std::int64_t size_off) {
   const auto size = static_cast<std::int64_t>(entry.content.size()) + size_off;
-  rl::append_little<std::uint16_t>(out, 20);
-  rl::append_little(out, static_cast<std::uint16_t>(entry.flags));
-  rl::append_little(out, static_cast<std::uint16_t>(entry.method));
-  rl::append_little<std::uint32_t>(out, 0);
-  rl::append_little(out, crc_of(entry.content) ^ (entry.wrong_crc ? 1u : 0u));
-  rl::append_little(out, static_cast<std::uint32_t>(size));
-  rl::append_little(out, static_cast<std::uint32_t>(size));
-  rl::append_little(out, static_cast<std::uint16_t>(entry.name.size()));
-  rl::append_little<std::uint16_t>(out, 0);
+  append_little<std::uint16_t>(out, 20);
+  append_little(out, static_cast<std::uint16_t>(entry.flags));
+  append_little(out, static_cast<std::uint16_t>(entry.method));
+  append_little<std::uint32_t>(out, 0);
+  append_little(out, crc_of(entry.content) ^ (entry.wrong_crc ? 1u : 0u));
+  append_little(out, static_cast<std::uint32_t>(size));
+  append_little(out, static_cast<std::uint32_t>(size));
+  append_little(out, static_cast<std::uint16_t>(entry.name.size()));
+  append_little<std::uint16_t>(out, 0);
 }
 
 inline std::string zip_of(const std::vector<ZipEntry>& entries) {
   std::string out, directory;
   for (const ZipEntry& entry : entries) {
     directory += "PK\1\2";
-    rl::append_little<std::uint16_t>(directory, 20);
+    append_little<std::uint16_t>(directory, 20);
     append_shared(directory, entry, entry.size_off);
     directory += std::string(10, '\0');
-    rl::append_little(directory, static_cast<std::uint32_t>(static_cast<std::int64_t>(out.size()) +
-                                                            entry.local_off));
+    append_little(directory, static_cast<std::uint32_t>(static_cast<std::int64_t>(out.size()) +
+                                                        entry.local_off));
     directory += entry.name;
     out += "PK\3\4";
     append_shared(out, entry, 0);
@@ -61,23 +61,23 @@ inline std::string zip_of(const std::vector<ZipEntry>& entries) {
   const auto count = static_cast<std::uint16_t>(entries.size());
   const auto at = static_cast<std::uint32_t>(out.size());
   out += directory + "PK\5\6" + std::string(4, '\0');
-  rl::append_little(out, count);
-  rl::append_little(out, count);
-  rl::append_little(out, static_cast<std::uint32_t>(directory.size()));
-  rl::append_little(out, at);
-  rl::append_little<std::uint16_t>(out, 0);
+  append_little(out, count);
+  append_little(out, count);
+  append_little(out, static_cast<std::uint32_t>(directory.size()));
+  append_little(out, at);
+  append_little<std::uint16_t>(out, 0);
   return out;
 }
 
 // Pieces of pickles, named as pickletools names them.
 inline std::string unicode(const std::string& words) {
   std::string out = "X";
-  rl::append_little(out, static_cast<std::uint32_t>(words.size()));
+  append_little(out, static_cast<std::uint32_t>(words.size()));
   return out + words;
 }
 inline std::string integer(std::int32_t value) {
   std::string out = "J";
-  rl::append_little(out, value);
+  append_little(out, value);
   return out;
 }
 inline std::string integers(const std::vector<std::int32_t>& values) {
@@ -116,7 +116,7 @@ inline std::string pickled_state(const std::vector<PlantedTensor>& tensors) {
 
 inline std::string float_bytes(const std::vector<float>& values) {
   std::string out;
-  for (const float value : values) rl::append_little(out, value);
+  for (const float value : values) append_little(out, value);
   return out;
 }
 
