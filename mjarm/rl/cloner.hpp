@@ -29,7 +29,7 @@ struct CloningOptions {
   std::vector<int> hidden = {256, 256};
   int modes = 4;                ///< ways that are kept apart, 1 to 64
   int batch = 1024;             ///< rows of a step, >= 1
-  int epochs = 60;              ///< passes over all rows, >= 1
+  int epochs = 100;             ///< passes over all rows, >= 1
   double learning_rate = 1e-3;  ///< at first; falls to 0 as half a cosine
   double least_std = 0.02;      ///< of a mode, in units of the actions; > 0
   double max_norm = 10;         ///< of the gradient, > 0
