@@ -5,6 +5,7 @@
 #include <iterator>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json.hpp"
 #include "mjarm/core/messages/episode.hpp"
+#include "mjarm/core/messages/rl.hpp"
 #include "mjarm/core/output_folder.hpp"
 #include "mjarm/core/threads.hpp"
 #include "mjarm/episode/draw_scene.hpp"
@@ -67,32 +69,75 @@ class DatasetWriter {
 
   Result<DatasetOutcome> run() {
     Result<Studio> studio = Studio::open(options_.episode);
-    if (!studio) return fail(std::move(studio.error()));
-    const Result<OutputFolder> lock = OutputFolder::open(folder_, {.overwrite = true});
-    if (!lock) return fail(lock.error());
-    const Result<OutputFolder> failed = OutputFolder::open(failed_folder(), {.overwrite = true});
-    if (!failed) return fail(failed.error());
-    model_hash_ = studio->model_hash();
-    if (auto same = fits(head_file(), options_.episode, model_hash_); !same) {
-      return fail(std::move(same.error()));
-    }
+    if (studio) model_hash_ = studio->model_hash();
+    std::optional<OpenFolders> held;
+    Result<void> done = studio ? begin(held) : fail(studio.error());
+    if (auto together = with_all(std::move(done)); !together) return fail(together.error());
     find_missing();
-    if (auto written = write_head(); !written) return fail(std::move(written.error()));
     make_all(std::move(*studio));
-    if (error_) return fail(std::move(*error_));
-    if (auto written = write_head(); !written) return fail(std::move(written.error()));
-    lock->made();
-    failed->made();
+    done = error_ ? fail(std::move(*error_)) : Result<void>();
+    if (auto together = with_all(std::move(done)); !together) return fail(together.error());
+    add_up();
+    done = leads() ? write_head() : Result<void>();
+    if (auto together = with_all(std::move(done)); !together) return fail(together.error());
+    if (held) held->folder.made();
+    if (held) held->failed.made();
     return out_;
   }
 
  private:
+  struct OpenFolders {
+    OutputFolder folder, failed;
+  };
+
+  [[nodiscard]] bool leads() const {
+    return options_.ranks == nullptr || options_.ranks->rank() == 0;
+  }
+
+  /// What came of it here, or that another process failed.
+  Result<void> with_all(Result<void> here) const {
+    if (on_any_rank(options_.ranks, !here) && here) {
+      return fail(Errc::impossible, text(msg::rl_failed_rank));
+    }
+    return here;
+  }
+
+  /// The first of all processes holds the folder for them.
+  Result<void> begin(std::optional<OpenFolders>& held) {
+    if (!leads()) return {};
+    Result<OutputFolder> folder = OutputFolder::open(folder_, {.overwrite = true});
+    if (!folder) return fail(std::move(folder.error()));
+    Result<OutputFolder> failed = OutputFolder::open(failed_folder(), {.overwrite = true});
+    if (!failed) return fail(std::move(failed.error()));
+    held = OpenFolders{std::move(*folder), std::move(*failed)};
+    if (auto same = fits(head_file(), options_.episode, model_hash_); !same) return same;
+    return write_head();
+  }
+
+  /// What all processes did.
+  void add_up() {
+    if (options_.ranks == nullptr) return;
+    EpisodeTimes& times = out_.times;
+    double sums[] = {double(out_.made), double(out_.found), out_.stopped ? 1.0 : 0.0,
+                     times.planning,    times.physics,      times.rendering,
+                     times.compression};
+    options_.ranks->sum(std::span<double>(sums));
+    out_.made = static_cast<std::uint64_t>(sums[0]);
+    out_.found = static_cast<std::uint64_t>(sums[1]);
+    out_.stopped = sums[2] > 0;
+    times = {sums[3], sums[4], sums[5], sums[6]};
+  }
+
   [[nodiscard]] fs::path failed_folder() const { return folder_ / "failed"; }
   [[nodiscard]] fs::path head_file() const { return folder_ / "dataset.json"; }
 
   void find_missing() {
     std::error_code unknown;
-    for (std::uint64_t number = 0; number < options_.episodes; ++number) {
+    const Ranks* ranks = options_.ranks;
+    const auto size = static_cast<std::uint64_t>(ranks == nullptr ? 1 : ranks->size());
+    const auto rank = static_cast<std::uint64_t>(ranks == nullptr ? 0 : ranks->rank());
+    for (std::uint64_t i = rank; i < options_.episodes; i += size) {
+      const std::uint64_t number = options_.first + i;
       const std::string name = episode_name(number);
       if (fs::exists(folder_ / name, unknown) || fs::exists(failed_folder() / name, unknown)) {
         ++out_.found;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "mjarm/core/ranks.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/stop.hpp"
 #include "mjarm/episode/options.hpp"
@@ -15,14 +16,18 @@ namespace mjarm::episode {
 /// `dataset.json` what all have in common.
 struct DatasetOptions {
   EpisodeOptions episode = {};
-  std::uint64_t episodes = 10;  ///< numbers 0 to this - 1; at least 1
+  std::uint64_t first = 0;      ///< number of the first episode
+  std::uint64_t episodes = 10;  ///< numbers `first` and on; at least 1
   int processes = 1;            ///< episodes that are made at the same time, >= 1
+  /// Processes that fill the folder together, on one machine or over a file system that all share:
+  /// each makes every size()-th episode. Null: this one alone. Outlives the call.
+  Ranks* ranks = nullptr;
   StopCheck stop = {};
   /// Called after each episode that was written, from one thread at a time. May be empty.
   std::function<void(const Episode& episode)> after_episode = {};
 };
 
-/// What was done.
+/// What was done, by all ranks together.
 struct DatasetOutcome {
   std::uint64_t made = 0;       ///< in this call
   std::uint64_t found = 0;      ///< that were there before

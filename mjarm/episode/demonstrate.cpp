@@ -16,8 +16,6 @@
 namespace mjarm::episode {
 namespace {
 
-constexpr double kAbove = 0.12;  // [m] of the jaws above the middle of an object
-
 class Demonstrator {
  public:
   Demonstrator(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
@@ -77,7 +75,7 @@ class Demonstrator {
     X_TJ.R.col(2) = jaws.approach_T;
     const Eigen::Vector3d p_W = scene_.objects[scene_.target].X_WB.p;
     for (const double turn : scene_.turns) {
-      const Pose X_WJ{.p = p_W + Eigen::Vector3d(0, 0, kAbove),
+      const Pose X_WJ{.p = p_W + Eigen::Vector3d(0, 0, kReachAbove),
                       .R = from_euler({std::numbers::pi, 0, turn})};
       out.goal = X_WJ * X_TJ.inverse();
       program::Program program;

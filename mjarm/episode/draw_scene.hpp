@@ -15,6 +15,9 @@
 
 namespace mjarm::episode {
 
+/// [m] "reach": of the middle of the jaws above that of the object.
+inline constexpr double kReachAbove = 0.12;
+
 /// An interval of which a number is drawn uniformly.
 struct DrawRange {
   const char* name;  ///< in dataset.json

@@ -101,6 +101,7 @@ Result<Episode> Studio::make(std::uint64_t number, const StopCheck& stop) {
   return out;
 }
 
+const Robot& Studio::robot() const { return impl_->robot; }
 const std::string& Studio::model_hash() const { return impl_->model_hash; }
 
 }  // namespace mjarm::episode

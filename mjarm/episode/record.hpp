@@ -9,6 +9,7 @@
 #include "mjarm/core/result.hpp"
 #include "mjarm/core/stop.hpp"
 #include "mjarm/episode/options.hpp"
+#include "mjarm/model/robot.hpp"
 
 namespace mjarm::episode {
 
@@ -71,6 +72,8 @@ class Studio {
   /// whatever was made before.
   /// @return an error where the simulation broke down, OpenGL failed, or it was stopped.
   [[nodiscard]] Result<Episode> make(std::uint64_t number, const StopCheck& stop = {});
+  /// With the scene of the task.
+  [[nodiscard]] const Robot& robot() const;
   /// Of the compiled scene: MuJoCo's own binary of it, so its version counts as well.
   [[nodiscard]] const std::string& model_hash() const;
 

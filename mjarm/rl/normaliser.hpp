@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "mjarm/rl/ranks.hpp"
+#include "mjarm/core/ranks.hpp"
 
 namespace mjarm::rl {
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "mjarm/core/ranks.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/rl/policy.hpp"
 #include "mjarm/rl/ppo.hpp"
-#include "mjarm/rl/ranks.hpp"
 #include "mjarm/rl/tensor_set.hpp"
 #include "mjarm/rl/vec_env.hpp"
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
+#include "mjarm/core/ranks.hpp"
 #include "mjarm/core/result.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/rl/evaluate.hpp"
 #include "mjarm/rl/ppo.hpp"
 #include "mjarm/rl/ppo_trainer.hpp"
-#include "mjarm/rl/ranks.hpp"
 #include "mjarm/rl/reach_options.hpp"
 
 namespace mjarm::rl {

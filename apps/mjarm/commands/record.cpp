@@ -9,6 +9,7 @@
 #include "apps/mjarm/cli/options.hpp"
 #include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/cli/usage.hpp"
+#include "apps/mjarm/commands/processes.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
@@ -26,8 +27,8 @@ constexpr int kMaxEpisodes = 1'000'000;
 
 struct Options {
   std::string task, out;
-  std::string episodes = "10", seed = "1", processes = "1", robot = "panda", size = "128",
-              fps = "10";
+  std::string episodes = "10", first = "0", seed = "1", processes = "1", robot = "panda",
+              size = "128", fps = "10";
   bool json = false;
 };
 
@@ -35,6 +36,10 @@ Result<episode::DatasetOptions> parsed(const Options& options) {
   if (options.task.empty()) return fail(Errc::usage, text(msg::record_which));
   const Result<int> episodes = parse_count("--episodes", options.episodes, kMaxEpisodes);
   if (!episodes) return fail(episodes.error());
+  const Result<std::uint64_t> first = parse_whole("--first", options.first);
+  if (!first) return fail(first.error());
+  const auto last = static_cast<std::uint64_t>(kMaxEpisodes - *episodes);
+  if (*first > last) return fail(Errc::usage, text(msg::record_bad_first, last, *first));
   const Result<std::uint64_t> seed = parse_whole("--seed", options.seed);
   if (!seed) return fail(seed.error());
   const Result<int> processes = parse_count("--processes", options.processes, 1024);
@@ -49,6 +54,7 @@ Result<episode::DatasetOptions> parsed(const Options& options) {
                                           .seed = *seed,
                                           .size = *size,
                                           .fps = *fps},
+                              .first = *first,
                               .episodes = static_cast<std::uint64_t>(*episodes),
                               .processes = *processes};
   if (auto fits = episode::check(out.episode); !fits) {
@@ -89,7 +95,11 @@ Result<int> run(const Options& options) {
   const std::string folder = options.out.empty()
                                  ? (fs::path("mjarm-out") / "record" / options.task).string()
                                  : options.out;
-  Progress progress(text(msg::record_progress), dataset->episodes);
+  Result<std::unique_ptr<Ranks>> ranks = join_processes();
+  if (!ranks) return fail(std::move(ranks.error()));
+  dataset->ranks = ranks->get();
+  const std::uint64_t share = dataset->ranks == nullptr ? 1 : dataset->ranks->size();
+  Progress progress(text(msg::record_progress), (dataset->episodes + share - 1) / share);
   dataset->stop = interrupted;
   dataset->after_episode = [&](const episode::Episode& one) {
     progress.advance();
@@ -104,6 +114,7 @@ Result<int> run(const Options& options) {
     return fail(Errc::impossible,
                 text(msg::record_stopped, folder, done->made + done->found, dataset->episodes));
   }
+  if (dataset->ranks != nullptr && dataset->ranks->rank() != 0) return 0;
   print_lines(options.json ? json_of(folder, *done) : summary(folder, *done, 1e-6 * watch.us()));
   return 0;
 }
@@ -113,6 +124,7 @@ Run setup(CLI::App& app) {
   add_option(app, "task", options->task, msg::record_option_task, "TASK");
   add_option(app, "--out", options->out, msg::record_option_out, "DIR");
   add_option(app, "--episodes", options->episodes, msg::record_option_episodes, "N");
+  add_option(app, "--first", options->first, msg::record_option_first, "N");
   add_option(app, "--seed", options->seed, msg::record_option_seed, "S");
   add_option(app, "--processes", options->processes, msg::record_option_processes, "P");
   add_option(app, "--robot", options->robot, msg::record_option_robot, "ROBOT");

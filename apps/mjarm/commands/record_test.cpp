@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/mjarm/commands/processes_test.hpp"
 #include "apps/mjarm/commands/program_test.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -45,6 +46,46 @@ TEST_F(RecordCommand, MakesEpisodesThatReplay) {
   EXPECT_EQ(differs.exit_code, 1);
   EXPECT_THAT(differs.err, HasSubstr("episode_000000.zip, qvel.npy, byte 201"));
 }
+
+TEST_F(RecordCommand, TakesSharesOfASet) {
+  ASSERT_EQ(record({}).exit_code, 0);
+  const std::string second = folder_.read("data/episode_000001.zip");
+  const std::string share = (folder_.path() / "share").string();
+  const auto made = mjarm({"record", "reach", "--out", share, "--first", "1", "--episodes", "1",
+                           "--size", "16", "--fps", "1", "--json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(nlohmann::json::parse(made.out).at("made"), 1);
+  EXPECT_EQ(folder_.read("share/episode_000001.zip"), second);
+  EXPECT_FALSE(folder_.exists("share/episode_000000.zip"));
+  const auto beyond = record({"--first", "999999"});
+  EXPECT_EQ(beyond.exit_code, 2);
+  EXPECT_THAT(beyond.err, HasSubstr("0 to 999998"));
+}
+
+#ifdef MJARM_MPIRUN
+TEST_F(RecordCommand, SeveralProcessesFillOneFolder) {
+  ASSERT_EQ(record({}).exit_code, 0);
+  const std::string both = (folder_.path() / "both").string();
+  const std::vector<std::string> words = {"record", "reach", "--out", both, "--episodes", "2",
+                                          "--size", "16",    "--fps", "1",  "--json"};
+  const auto made = in_processes(2, words);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto summary = nlohmann::json::parse(made.out);  // of the first process alone
+  EXPECT_EQ(summary.at("made"), 2);
+  EXPECT_EQ(summary.at("succeeded").get<int>() + summary.at("failed").get<int>(), 2);
+  for (const char* const file : {"episode_000000.zip", "episode_000001.zip", "dataset.json"}) {
+    EXPECT_EQ(folder_.read(std::string("both/") + file), folder_.read(std::string("data/") + file))
+        << file;
+  }
+  EXPECT_EQ(nlohmann::json::parse(in_processes(2, words).out).at("found"), 2);
+  // What the first refuses ends all of them.
+  std::vector<std::string> other = words;
+  other.insert(other.end(), {"--seed", "8"});
+  const auto refused = in_processes(2, other);
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_THAT(refused.err, HasSubstr("--seed 1, not 8"));
+}
+#endif
 
 TEST_F(RecordCommand, RefusesWhatItCannotDoInOneLine) {
   ASSERT_EQ(record({}).exit_code, 0);

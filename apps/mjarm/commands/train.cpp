@@ -10,11 +10,11 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/commands/policy_run.hpp"
+#include "apps/mjarm/commands/processes.hpp"
 #include "apps/mjarm/commands/run_output.hpp"
 #include "apps/mjarm/commands/train_curve.hpp"
 #include "apps/mjarm/commands/train_outcome.hpp"
 #include "apps/mjarm/commands/train_page.hpp"
-#include "apps/mjarm/commands/train_processes.hpp"
 #include "apps/mjarm/commands/train_task.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
@@ -60,7 +60,7 @@ void tell(const rl::TrainingStep& step, double seconds) {
 /// At its first step, or where the checkpoint left off; `folder` is made.
 Result<rl::Training> begin(const Model& model, const rl::TrainingOptions& options,
                            const std::filesystem::path& folder,
-                           const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
+                           const std::filesystem::path& checkpoint, Ranks* ranks) {
   Result<rl::Training> training = rl::Training::create(model, options, folder, ranks);
   if (!training || checkpoint.empty()) return training;
   if (auto resumed = training->resume(checkpoint); !resumed) return fail(resumed.error());
@@ -70,16 +70,15 @@ Result<rl::Training> begin(const Model& model, const rl::TrainingOptions& option
 
 Result<TrainedSeed> train(const Model& model, const rl::TrainingOptions& options,
                           const std::filesystem::path& folder,
-                          const std::filesystem::path& checkpoint, rl::Ranks* ranks) {
+                          const std::filesystem::path& checkpoint, Ranks* ranks) {
   Result<rl::Training> training = begin(model, options, folder, checkpoint, ranks);
   const bool begun = training.has_value();
-  if (rl::on_any_rank(ranks, !begun) && begun)
-    return fail(Errc::impossible, text(msg::rl_failed_rank));
+  if (on_any_rank(ranks, !begun) && begun) return fail(Errc::impossible, text(msg::rl_failed_rank));
   if (!begun) return fail(std::move(training.error()));
   TrainedSeed trained{options};
   Progress progress(text(msg::train_progress), static_cast<std::uint64_t>(options.ppo.total_steps));
   progress.advance(static_cast<std::uint64_t>(training->trainer().steps()));
-  while (!training->done() && !(trained.interrupted = rl::on_any_rank(ranks, interrupted()))) {
+  while (!training->done() && !(trained.interrupted = on_any_rank(ranks, interrupted()))) {
     const std::int64_t before = training->trainer().steps();
     const Result<rl::TrainingStep> step = training->advance();
     if (!step) return fail(step.error());
@@ -159,7 +158,7 @@ Result<void> check_overwriting(const Options& options, const std::filesystem::pa
 
 Result<int> train_seeds(const Options& options, const Model& model,
                         const rl::TrainingOptions& wanted, std::uint64_t seeds) {
-  Result<std::unique_ptr<rl::Ranks>> ranks = join_processes();
+  Result<std::unique_ptr<Ranks>> ranks = join_processes();
   if (!ranks) return fail(std::move(ranks.error()));
   const bool first = *ranks == nullptr || (*ranks)->rank() == 0;
   std::vector<TrainedSeed> runs;

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "apps/mjarm/commands/processes_test.hpp"
 #include "apps/mjarm/commands/program_test.hpp"
 #include "mjarm/core/os_child_input.hpp"
 #include "tests/support/rounds.hpp"
@@ -212,15 +213,6 @@ TEST(Train, CtrlCLeavesACheckpointThatGoesOn) {
 }
 
 #ifdef MJARM_MPIRUN
-/// Runs `mjarm` in so many processes on this machine.
-support::ProgramResult in_processes(int count, const std::vector<std::string>& arguments) {
-  std::vector<std::string> all = {
-      "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n",
-      std::to_string(count), MJARM_PROGRAM};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  return support::run_program(MJARM_MPIRUN, all);
-}
-
 TEST(TrainInProcesses, OneIsTheSameAsNoneAndTwoShareTheWork) {
   const support::TempFolder folder;
   const auto config = folder.write("small.yaml", kSmall).string();

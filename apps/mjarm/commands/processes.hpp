@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "mjarm/core/ranks.hpp"
 #include "mjarm/core/result.hpp"
-#include "mjarm/rl/ranks.hpp"
 
 namespace mjarm::app {
 
@@ -11,6 +11,6 @@ namespace mjarm::app {
 /// destroyed.
 /// @return null where this process is alone; an error where it is one of several and mjarm was
 ///         built without MPI (CMake option MJARM_MPI), or MPI does not start.
-[[nodiscard]] Result<std::unique_ptr<rl::Ranks>> join_processes();
+[[nodiscard]] Result<std::unique_ptr<Ranks>> join_processes();
 
 }  // namespace mjarm::app

@@ -1,4 +1,4 @@
-#include "apps/mjarm/commands/train_processes.hpp"
+#include "apps/mjarm/commands/processes.hpp"
 
 #include <array>
 #include <cstdlib>
@@ -25,7 +25,7 @@ int processes_announced() {
 #ifdef MJARM_MPI
 /// All sums go through rank 0, which hands the result out: MPI_Allreduce may round differently on
 /// each rank, and then their policies would drift apart.
-class MpiRanks final : public rl::Ranks {
+class MpiRanks final : public Ranks {
  public:
   MpiRanks() {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -58,7 +58,7 @@ class MpiRanks final : public rl::Ranks {
 
 }  // namespace
 
-Result<std::unique_ptr<rl::Ranks>> join_processes() {
+Result<std::unique_ptr<Ranks>> join_processes() {
   if (processes_announced() <= 1) return nullptr;
 #ifdef MJARM_MPI
   int provided = 0;  // only the main thread calls MPI; the others simulate and multiply

@@ -2,9 +2,9 @@
 
 #include <span>
 
-namespace mjarm::rl {
+namespace mjarm {
 
-/// Processes that train one policy together, each on environments of its own: sums over all of
+/// Processes that do one job together, each a share of its own: sums over all of
 /// them. Every rank makes the same calls in the same order. A sum over one rank changes nothing.
 class Ranks {
  public:
@@ -27,4 +27,4 @@ class Ranks {
   return count[0] > 0;
 }
 
-}  // namespace mjarm::rl
+}  // namespace mjarm
