@@ -4,12 +4,14 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/episode/options.hpp"
 #include "mjarm/model/looks.hpp"
+#include "mjarm/model/placed_bodies.hpp"
 #include "mjarm/model/robot.hpp"
 #include "mjarm/render/camera.hpp"
 
@@ -22,12 +24,12 @@ struct DrawRange {
   double lower, upper;
 };
 
-/// All of them, for who wants to know what a data set covers.
-[[nodiscard]] std::vector<DrawRange> draw_ranges();
+/// All of a task, for who wants to know what a data set covers; none of a task that is none.
+[[nodiscard]] std::vector<DrawRange> draw_ranges(std::string_view task);
 
 /// One object and how it is shown.
 struct DrawnObject {
-  std::string name;   ///< of body and geom
+  std::string name;   ///< of its body
   Pose X_WB;          ///< where it stands at first
   std::string color;  ///< in English
   std::array<float, 4> rgba;
@@ -39,21 +41,30 @@ struct DrawnView {
   render::CameraView view;
 };
 
-/// What one episode begins with, and what is asked for there.
+/// A joint of the scene that is not the arm's, and where it stands at first.
+struct DrawnJoint {
+  std::string name;
+  double value = 0;  ///< [rad or m]
+};
+
+/// What one episode begins with.
 struct DrawnScene {
   std::vector<DrawnObject> objects;
-  std::size_t target = 0;     ///< the object that is asked for
-  Pose X_WB_place;            ///< pick_place: where it is to be, turned as the arm likes
-  std::vector<double> turns;  ///< [rad] reach: of the tool about the vertical, tried in turn
-  std::vector<double> q;      ///< (dof,) [rad] where the arm stands
-  LooksChange looks;          ///< colours and light
+  std::size_t target = 0;          ///< the object that is asked for
+  std::vector<PlacedBody> places;  ///< furniture
+  std::vector<DrawnJoint> joints;
+  std::vector<double> q;  ///< (dof,) [rad] where the arm stands
+  LooksChange looks;      ///< colours and light
+  /// Geoms that look otherwise once the lamp of the task is on.
+  std::vector<LooksChange::Geom> lit;
   std::vector<DrawnView> views;
   std::string english, chinese;  ///< the task in words
 };
 
 /// Draws episode `number`. Looks come from a stream of their own: what moves is the same whatever
 /// is seen.
-/// @param robot  with one of the shipped scenes `pick.xml`.
+/// @param robot    with the scene of the task, scene_file().
+/// @param options  whose check() was successful.
 [[nodiscard]] DrawnScene draw_scene(const Robot& robot, const EpisodeOptions& options,
                                     std::uint64_t number);
 
