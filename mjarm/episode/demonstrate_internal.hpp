@@ -22,8 +22,7 @@ struct Sample {
   double grip = 0;            ///< 0 open to 1 closed, as commanded
   std::vector<Pose> objects;  ///< X_WB in the order of the drawn scene
   std::size_t motion = 0;     ///< of the plan
-  bool lit = false;           ///< Task::is_lit()
-  std::size_t ink = 0;        ///< spots of Task::ink() by then
+  std::size_t marks = 0;      ///< Task::marks()
 };
 
 /// What was done and what came of it.

@@ -55,15 +55,17 @@ struct DrawnScene {
   std::vector<DrawnJoint> joints;
   std::vector<double> q;  ///< (dof,) [rad] where the arm stands
   LooksChange looks;      ///< colours and light
-  /// Geoms that look otherwise once the lamp of the task is on.
-  std::vector<LooksChange::Geom> lit;
   std::vector<DrawnView> views;
   std::string english, chinese;  ///< the task in words
 };
 
+/// The robot in the scene of the task, as its file has it.
+/// @return check()'s error, or load_robot()'s.
+[[nodiscard]] Result<Robot> load_task_robot(const EpisodeOptions& options);
+
 /// Draws episode `number`. Looks come from a stream of their own: what moves is the same whatever
 /// is seen.
-/// @param robot    with the scene of the task, scene_file().
+/// @param robot    load_task_robot().
 /// @param options  whose check() was successful.
 [[nodiscard]] DrawnScene draw_scene(const Robot& robot, const EpisodeOptions& options,
                                     std::uint64_t number);

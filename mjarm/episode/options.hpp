@@ -23,8 +23,6 @@ struct EpisodeOptions {
 [[nodiscard]] std::vector<std::string> task_names();
 /// Those with shipped scenes for tasks; check() says of which.
 [[nodiscard]] std::vector<std::string> robot_names();
-/// The shipped scene that a task is in, for load_robot(); of options whose check() was successful.
-[[nodiscard]] std::string scene_file(const EpisodeOptions& options);
 
 /// @return bad_input that names the option, and what there is to choose from.
 [[nodiscard]] Result<void> check(const EpisodeOptions& options);

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "mjarm/core/sha256.hpp"
@@ -23,69 +22,29 @@ std::string frame_name(const std::string& camera, std::size_t row) {
   return "frames/" + camera + number;
 }
 
-/// What a picture shows beside the model: what was written by then.
-render::Overlay overlay_of(std::span<const InkSpot> ink) {
-  constexpr double kWidth = 2.5e-3, kSpacing = 1e-3;  // [m]
-  render::Overlay out;
-  for (const InkSpot& spot : ink) {
-    if (spot.begins || out.lines.empty()) {
-      out.lines.push_back(
-          {.width = kWidth, .color = {0.05F, 0.1F, 0.5F, 1}, .look = render::LineLook::tube});
-    }
-    std::vector<Eigen::Vector3d>& points = out.lines.back().points_W;
-    if (points.empty() || (spot.p_W - points.back()).norm() >= kSpacing) points.push_back(spot.p_W);
-  }
-  return out;
-}
-
-/// Draws the same picture of two models: one is used until a lamp is on.
-class FrameDrawer {
- public:
-  FrameDrawer(const Robot& robot, const Task& task, int size)
-      : model_(robot.model), task_(task), size_(size) {}
-
-  Result<render::Image> draw(const Sample& sample, const DrawnView& view, EpisodeTimes& times) {
-    const Stopwatch watch;
-    std::optional<render::OffscreenRenderer>& renderer = sample.lit ? lit_ : dark_;
-    if (!renderer) {
-      auto opened = open(sample.lit);
-      if (!opened) return fail(std::move(opened.error()));
-      renderer = std::move(*opened);
-    }
-    auto image = renderer->draw(sample.state, {.view = view.view},
-                                overlay_of(task_.ink().first(sample.ink)));
-    times.rendering += watch.us();
-    return image;
-  }
-
- private:
-  [[nodiscard]] Result<render::OffscreenRenderer> open(bool lit) const {
-    LooksChange change = task_.scene().looks;
-    const auto& more = task_.scene().lit;
-    if (lit) change.geoms.insert(change.geoms.end(), more.begin(), more.end());
-    const Result<Model> looks = with_looks(model_, change);
-    if (!looks) return fail(looks.error());
-    return render::OffscreenRenderer::create(
-        *looks,
-        {.width = size_, .height = size_, .quality = render::RenderQuality::low, .sites = false});
-  }
-
-  const Model& model_;
-  const Task& task_;
-  int size_;
-  std::optional<render::OffscreenRenderer> dark_, lit_;
-};
-
 /// Draws every row as every camera sees it.
 Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const Task& task,
                         const Demonstration& done, const StopCheck& stop, EpisodeTimes& times,
                         StoredZipWriter& out) {
-  FrameDrawer drawer(robot, task, options.size);
+  if (done.samples.empty()) return {};
+  const Stopwatch opening;
+  const Result<Model> looks = with_looks(robot.model, task.scene().looks);
+  if (!looks) return fail(looks.error());
+  auto renderer = render::OffscreenRenderer::create(*looks, {.width = options.size,
+                                                             .height = options.size,
+                                                             .quality = render::RenderQuality::low,
+                                                             .sites = false});
+  if (!renderer) return fail(std::move(renderer.error()));
+  times.rendering += opening.us();
   for (const DrawnView& view : task.scene().views) {
     for (std::size_t row = 0; row < done.samples.size(); ++row) {
       if (is_stopped(stop)) return fail(stopped());
-      const auto image = drawer.draw(done.samples[row], view, times);
+      const Stopwatch drawing;
+      const Sample& sample = done.samples[row];
+      const auto image =
+          renderer->draw(sample.state, {.view = view.view}, task.overlay(sample.marks));
       if (!image) return fail(image.error());
+      times.rendering += drawing.us();
       const Stopwatch packing;
       const Result<std::string> png = render::encode_png(*image);
       if (!png) return fail(png.error());
@@ -111,8 +70,7 @@ Studio::Studio(Studio&&) noexcept = default;
 Studio& Studio::operator=(Studio&&) noexcept = default;
 
 Result<Studio> Studio::open(const EpisodeOptions& options) {
-  if (Result<void> fits = check(options); !fits) return fail(std::move(fits.error()));
-  Result<Robot> robot = load_robot(scene_file(options));
+  Result<Robot> robot = load_task_robot(options);
   if (!robot) return fail(std::move(robot.error()));
   std::optional<Jaws> jaws;
   if (robot->arm.gripper) {

@@ -8,6 +8,8 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/episode/draw_looks_internal.hpp"
 #include "mjarm/episode/plan_chain_internal.hpp"
+#include "mjarm/kinematics/branch.hpp"
+#include "mjarm/kinematics/ik.hpp"
 #include "mjarm/path/letters.hpp"
 
 namespace mjarm::episode {
@@ -27,7 +29,7 @@ constexpr const char* kLetters = "ACLNOSTUVZ";
 
 constexpr DrawRange kFigureX{"figure_x", "m", -0.1, 0.1};
 constexpr DrawRange kFigureY{"figure_y", "m", -0.06, 0.06};
-constexpr DrawRange kFigureSize{"figure_size", "m", 0.04, 0.07};
+constexpr DrawRange kFigureSize{"figure_size", "m", 0.05, 0.08};
 constexpr DrawRange kFigureTurn{"figure_turn", "rad", -0.4, 0.4};
 constexpr DrawRange kSheetPitch{"sheet_pitch", "rad", -0.09, 0.09};
 constexpr DrawRange kSheetRoll{"sheet_roll", "rad", -0.09, 0.09};
@@ -84,6 +86,12 @@ double distance_to(const Eigen::Vector2d& p,
   return least;
 }
 
+/// Where ink is.
+struct InkSpot {
+  Eigen::Vector3d p_W;
+  bool begins = false;  ///< no line leads here
+};
+
 /// What is drawn of a sheet.
 struct Sheet {
   DrawnScene scene;
@@ -102,7 +110,12 @@ class DrawTask final : public Task {
 
   [[nodiscard]] TaskPlan plan(const PlanInput& input) const override {
     PlanChain chain(input, scene().q);
-    chain.add({plan_to(lifted(strokes_.front().front()))});
+    // Shoulder and elbow as at home, where the arm stands behind the pen and hides little.
+    Branch branch = branch_of(IkSolver(arm_), as_span(arm_.home));
+    branch.way[2] = -1;
+    chain.add(
+        {{program::PlanMove{.goal = program::ProgramPose{.X_FT = lifted(strokes_.front().front())},
+                            .branch = branch}}});
     if (figure_.kind == FigureKind::letter) {
       chain.add({written()});
     } else {
@@ -163,7 +176,24 @@ class DrawTask final : public Task {
     return out;
   }
 
-  [[nodiscard]] std::span<const InkSpot> ink() const override { return ink_; }
+  [[nodiscard]] std::size_t marks() const override { return ink_.size(); }
+
+  [[nodiscard]] render::Overlay overlay(std::size_t marks) const override {
+    constexpr double kWidth = 3e-3, kSpacing = 1.5e-3;  // [m]
+    const Eigen::Vector3d above(0, 0, 0.25 * kWidth);   // out of what it is written on
+    render::Overlay out;
+    for (const InkSpot& spot : std::span(ink_).first(marks)) {
+      if (spot.begins) {
+        out.lines.push_back({.width = kWidth,
+                             .color = {0.05F, 0.1F, 0.5F, 1},
+                             .look = render::LineLook::tube});
+      }
+      auto& points = out.lines.back().points_W;
+      const Eigen::Vector3d p_W = spot.p_W + above;
+      if (points.empty() || (p_W - points.back()).norm() >= kSpacing) points.push_back(p_W);
+    }
+    return out;
+  }
 
  private:
   /// The tool over a place of the figure, the pen upright.
@@ -265,8 +295,8 @@ std::unique_ptr<Task> draw_draw(const Robot& robot, EpisodeRng& rng) {
   constexpr double kFromBefore = 0.5 * std::numbers::pi;
   const DrawnView nominal[] = {
       {"front",
-       {.lookat_W = {0, -0.45, 0.12}, .distance = 0.75, .azimuth = kFromBefore, .elevation = -0.9}},
-      {"side", {.lookat_W = {0, -0.45, 0.12}, .distance = 0.8, .azimuth = 2.7, .elevation = -0.8}}};
+       {.lookat_W = {0, -0.47, 0.1}, .distance = 0.55, .azimuth = kFromBefore, .elevation = -0.8}},
+      {"side", {.lookat_W = {0, -0.47, 0.1}, .distance = 0.6, .azimuth = 2.3, .elevation = -0.75}}};
   draw_views(rng.looks, nominal, scene);
   tell_figure(sheet.figure, scene);
   return std::make_unique<DrawTask>(std::move(sheet));
@@ -280,7 +310,8 @@ TaskKind draw_a_figure_task() {
       "calligraphy.xml",
       {"ur5e"},
       with_looks_ranges({kFigureX, kFigureY, kFigureSize, kFigureTurn, kSheetPitch, kSheetRoll}),
-      draw_draw};
+      draw_draw,
+      "pen_tcp"};
 }
 
 }  // namespace mjarm::episode

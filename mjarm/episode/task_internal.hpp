@@ -16,6 +16,7 @@
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/model/jaws.hpp"
 #include "mjarm/program/program_plan.hpp"
+#include "mjarm/render/overlay.hpp"
 #include "mjarm/sim/sim.hpp"
 
 namespace mjarm::episode {
@@ -43,12 +44,6 @@ struct SceneEnd {
   const Pose& goal;               ///< TaskPlan::goal
 };
 
-/// A trace that a pen leaves.
-struct InkSpot {
-  Eigen::Vector3d p_W;
-  bool begins = false;  ///< no line leads here
-};
-
 /// One episode of a task: what was drawn, how it is planned, and whether it succeeded. What can be
 /// asked of all tasks; each is a file task_NAME.cpp.
 class Task {
@@ -67,10 +62,10 @@ class Task {
   [[nodiscard]] virtual Verdict judge(const SceneEnd& end) const = 0;
   /// The goal in `episode.json`; members `pos` and `quat` at least.
   [[nodiscard]] virtual JsonDoc goal_json(const Pose& goal) const { return pose_json(goal); }
-  /// Whether the lamp is on by now: DrawnScene::lit.
-  [[nodiscard]] virtual bool is_lit() const { return false; }
-  /// All that was written by now.
-  [[nodiscard]] virtual std::span<const InkSpot> ink() const { return {}; }
+  /// How much there is by now of what pictures show beside the model: a lamp that is on, ink.
+  [[nodiscard]] virtual std::size_t marks() const { return 0; }
+  /// What pictures show with so many marks.
+  [[nodiscard]] virtual render::Overlay overlay(std::size_t /*marks*/) const { return {}; }
 
  private:
   DrawnScene scene_;
@@ -92,6 +87,7 @@ struct TaskKind {
   std::vector<DrawRange> ranges;
   /// @param robot  with that scene.
   std::unique_ptr<Task> (*draw)(const Robot& robot, EpisodeRng& rng);
+  const char* tip = "";  ///< frame that is moved; empty: the robot's own
 };
 
 [[nodiscard]] TaskKind reach_task();

@@ -12,7 +12,8 @@ namespace mjarm::episode {
 namespace {
 
 constexpr std::size_t kButtons = 3;  // in scenes/buttons.xml, whose lengths [m] the next ones are
-constexpr double kButtonTable = 0.2, kBallHeight = 0.06, kCapHeight = 0.049, kStroke = 8e-3;
+constexpr double kButtonTable = 0.2, kBallHeight = 0.06, kCapHeight = 0.049, kStroke = 8e-3,
+                 kLampHeight = 0.038, kLampRadius = 0.037;
 constexpr double kSwitch = 6e-3;          // [m] that a cap is pushed to switch
 constexpr double kReleased = 1e-3;        // [m] at most, of a cap that came back
 constexpr double kTouchedCap = 5e-4;      // [m] of one that was not asked for
@@ -75,7 +76,17 @@ class PushButtonTask final : public Task {
     }
   }
 
-  [[nodiscard]] bool is_lit() const override { return most_[scene().target] >= kSwitch; }
+  /// Its lamp is on once it has switched.
+  [[nodiscard]] std::size_t marks() const override {
+    return most_[scene().target] >= kSwitch ? 1 : 0;
+  }
+
+  [[nodiscard]] render::Overlay overlay(std::size_t marks) const override {
+    if (marks == 0) return {};
+    return {.ellipsoids = {{.X_WE = X_WH_ * Pose{.p = {0, 0, kLampHeight}},
+                            .semi_axes = {kLampRadius, kLampRadius, 1e-3},
+                            .color = {1.0F, 0.85F, 0.25F, 1}}}};
+  }
 
   [[nodiscard]] Verdict judge(const SceneEnd& end) const override {
     const std::size_t target = scene().target;
@@ -85,7 +96,7 @@ class PushButtonTask final : public Task {
       if (i != target) out.others = std::max(out.others, most_[i]);
     }
     out.facts = {{"button_pushed_max", most_[target]}, {"button_pushed_end", now}};
-    if (!is_lit()) {
+    if (marks() == 0) {
       out.reason = "not_pushed";
     } else if (!(std::abs(now) <= kReleased)) {
       out.reason = "not_released";
@@ -134,7 +145,7 @@ std::vector<Pose> draw_buttons(Rng& rng, DrawnScene& out) {
   return heads;
 }
 
-/// Each button another colour; the lamp about the one that is asked for shines in it.
+/// Each button another colour.
 const NamedColor& color_buttons(Rng& rng, DrawnScene& out) {
   ColorBox box;
   const NamedColor* of_target = nullptr;
@@ -144,9 +155,7 @@ const NamedColor& color_buttons(Rng& rng, DrawnScene& out) {
     button.color = color.name.in(Language::english);
     button.rgba = tinted(rng, color);
     out.looks.geoms.push_back({button.name, button.rgba});
-    if (i != out.target) continue;
-    of_target = &color;
-    out.lit = {{button.name + "_lamp", {1.0F, 1.0F, 0.75F, 1}}};
+    if (i == out.target) of_target = &color;
   }
   return *of_target;
 }

@@ -203,7 +203,7 @@ std::unique_ptr<Task> draw_sort(const Robot& robot, EpisodeRng& rng) {
   constexpr const char* kFurniture[] = {"table_top", "cube_bin_floor", "can_bin_floor"};
   draw_grays(rng.looks, kFurniture, scene);
   draw_light(rng.looks, scene);
-  constexpr double kFromFront = std::numbers::pi;
+  constexpr double kFromFront = std::numbers::pi - 0.45;  // beside the camera of the scene
   const DrawnView nominal[] = {
       {"front",
        {.lookat_W = {0.44, 0, 0.28}, .distance = 1.2, .azimuth = kFromFront, .elevation = -0.75}},

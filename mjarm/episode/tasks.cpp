@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <optional>
+#include <utility>
 
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/core/messages/episode.hpp"
 #include "mjarm/core/nearest_word.hpp"
 #include "mjarm/episode/options.hpp"
@@ -14,6 +17,21 @@ constexpr int kMinSize = 16, kMaxSize = 1024, kMinFps = 1, kMaxFps = 50;
 Result<void> in_range(const char* name, int value, int least, int most) {
   if (value >= least && value <= most) return {};
   return fail(Errc::bad_input, text(msg::episode_range, name, least, most, value));
+}
+
+/// ` (did you mean "pick_place"?)` where `word` is near to a task, or to how its name begins.
+std::string task_meant(const std::string& word, const std::vector<std::string>& tasks) {
+  if (const std::string whole = did_you_mean(word, tasks); !whole.empty()) return whole;
+  std::vector<std::string> beginnings;
+  for (const std::string& task : tasks) beginnings.push_back(task.substr(0, task.find('_')));
+  // Equal words are no nearest one.
+  auto found = std::ranges::find(beginnings, word);
+  if (found == beginnings.end()) {
+    const std::optional<std::string> near = nearest_word(word, beginnings);
+    if (!near) return "";
+    found = std::ranges::find(beginnings, *near);
+  }
+  return text(msg::core_did_you_mean, tasks[static_cast<std::size_t>(found - beginnings.begin())]);
 }
 
 const char* folder_of(const std::string& robot) {
@@ -50,15 +68,17 @@ std::vector<std::string> task_names() {
 
 std::vector<std::string> robot_names() { return {"panda", "ur5e"}; }
 
-std::string scene_file(const EpisodeOptions& options) {
-  return folder_of(options.robot) + std::string(task_kind(options.task).scene);
+Result<Robot> load_task_robot(const EpisodeOptions& options) {
+  if (Result<void> fits = check(options); !fits) return fail(std::move(fits.error()));
+  const TaskKind& kind = task_kind(options.task);
+  return load_robot(folder_of(options.robot) + std::string(kind.scene), {.tip = kind.tip});
 }
 
 Result<void> check(const EpisodeOptions& options) {
   const std::vector<std::string> tasks = task_names(), robots = robot_names();
   if (std::ranges::count(tasks, options.task) == 0) {
     return fail(Errc::bad_input, text(msg::episode_task, options.task, listed(tasks),
-                                      did_you_mean(options.task, tasks)));
+                                      task_meant(options.task, tasks)));
   }
   if (std::ranges::count(robots, options.robot) == 0) {
     return fail(Errc::bad_input, text(msg::episode_robot, options.robot, listed(robots),
