@@ -10,12 +10,12 @@
 #include "mjarm/episode/plan_chain_internal.hpp"
 #include "mjarm/kinematics/branch.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/model/find_arm.hpp"
 #include "mjarm/path/letters.hpp"
 
 namespace mjarm::episode {
 namespace {
 
-constexpr double kPaperX = 0, kPaperY = -0.47, kPaperZ = 0.08;  // [m] in calligraphy.xml
 constexpr double kInkLift = 0.02;  // [m] of the pen above the sheet, as the plan takes it
 constexpr double kInkForce = 1;    // [N]
 constexpr double kInkSpeed = 0.04, kAwaySpeed = 0.1;  // [m/s]
@@ -257,15 +257,15 @@ class DrawTask final : public Task {
   bool touched_ = false;  ///< the sheet, in the last step
 };
 
-Figure draw_figure(Rng& rng) {
+/// @param X_WS  the level sheet.
+Figure draw_figure(Rng& rng, const Pose& X_WS) {
   Figure out;
   const std::string letters = kLetters;
   out.kind = static_cast<FigureKind>(rng.below(3));
   out.letter = letters[rng.below(letters.size())];
   out.size = drawn(rng, kFigureSize);
   const double x = drawn(rng, kFigureX), y = drawn(rng, kFigureY);
-  out.X_WF.p = {kPaperX + x, kPaperY + y, kPaperZ};
-  out.X_WF.R = from_euler({0, 0, drawn(rng, kFigureTurn)});
+  out.X_WF = X_WS * Pose{.p = {x, y, 0}, .R = from_euler({0, 0, drawn(rng, kFigureTurn)})};
   return out;
 }
 
@@ -279,24 +279,26 @@ void tell_figure(const Figure& figure, DrawnScene& out) {
 }
 
 std::unique_ptr<Task> draw_draw(const Robot& robot, EpisodeRng& rng) {
-  Sheet sheet{.scene = {}, .figure = draw_figure(rng.scene), .arm = robot.arm};
+  const Pose X_WS = frame_pose(robot.model, "paper", robot.model.qpos0()).value_or(Pose{});
+  Sheet sheet{.scene = {}, .figure = draw_figure(rng.scene, X_WS), .arm = robot.arm};
   DrawnScene& scene = sheet.scene;
   scene.joints = {{"paper_pitch", drawn(rng.scene, kSheetPitch)},
                   {"paper_roll", drawn(rng.scene, kSheetRoll)}};
-  const Pose X_WS{
-      .p = {kPaperX, kPaperY, kPaperZ},
-      .R = from_euler({scene.joints[0].value, 0, 0}) * from_euler({0, scene.joints[1].value, 0})};
+  const Pose X_ST{.R = from_euler({scene.joints[0].value, 0, 0}) *
+                                from_euler({0, scene.joints[1].value, 0})};
   draw_start(rng.scene, robot.arm, scene);
 
-  scene.objects.push_back({"paper", X_WS, "white", {0.96F, 0.94F, 0.88F, 1}});
+  scene.objects.push_back({"paper", X_WS * X_ST, "white", {0.96F, 0.94F, 0.88F, 1}});
   constexpr const char* kFurniture[] = {"desk"};
   draw_grays(rng.looks, kFurniture, scene);
   draw_light(rng.looks, scene);
-  constexpr double kFromBefore = 0.5 * std::numbers::pi;
+  // From where one reads, and from its side.
+  const double facing = std::atan2(X_WS.R(1, 1), X_WS.R(0, 1));
+  const Eigen::Vector3d lookat = X_WS.p + Eigen::Vector3d(0, 0, 0.02);
   const DrawnView nominal[] = {
-      {"front",
-       {.lookat_W = {0, -0.47, 0.1}, .distance = 0.55, .azimuth = kFromBefore, .elevation = -0.8}},
-      {"side", {.lookat_W = {0, -0.47, 0.1}, .distance = 0.6, .azimuth = 2.3, .elevation = -0.75}}};
+      {"front", {.lookat_W = lookat, .distance = 0.55, .azimuth = facing, .elevation = -0.8}},
+      {"side",
+       {.lookat_W = lookat, .distance = 0.6, .azimuth = facing + 0.73, .elevation = -0.75}}};
   draw_views(rng.looks, nominal, scene);
   tell_figure(sheet.figure, scene);
   return std::make_unique<DrawTask>(std::move(sheet));
@@ -308,7 +310,7 @@ TaskKind draw_a_figure_task() {
   return {
       "draw",
       "calligraphy.xml",
-      {"ur5e"},
+      robot_names(),
       with_looks_ranges({kFigureX, kFigureY, kFigureSize, kFigureTurn, kSheetPitch, kSheetRoll}),
       draw_draw,
       "pen_tcp"};
