@@ -19,8 +19,8 @@ struct Origin {
 };
 
 /// `episode.json`.
-[[nodiscard]] std::string episode_json(const Robot& robot, const Origin& origin,
-                                       const DrawnScene& scene, const Demonstration& done);
+[[nodiscard]] std::string episode_json(const Robot& robot, const Origin& origin, const Task& task,
+                                       const Demonstration& done);
 
 /// Every column as `NAME.npy`, one row a sample.
 void add_columns(const Demonstration& done, StoredZipWriter& out);

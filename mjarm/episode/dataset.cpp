@@ -206,7 +206,7 @@ class DatasetWriter {
                           {"reason", episode->head.reason}});
     }
     out_.failed = failures.size();
-    for (const DrawRange& range : draw_ranges()) {
+    for (const DrawRange& range : draw_ranges(of.task)) {
       ranges.push_back({{"name", range.name},
                         {"unit", range.unit},
                         {"lower", range.lower},

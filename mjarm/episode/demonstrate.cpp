@@ -1,59 +1,60 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
-#include "mjarm/core/rotation.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/episode/demonstrate_internal.hpp"
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/execution/grip_watch.hpp"
 #include "mjarm/execution/metrics.hpp"
 #include "mjarm/kinematics/fk.hpp"
-#include "mjarm/program/pick_place.hpp"
+#include "mjarm/model/scene_bodies.hpp"
 
 namespace mjarm::episode {
 namespace {
 
 class Demonstrator {
  public:
-  Demonstrator(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
-               const StopCheck& stop)
-      : robot_(robot), options_(options), scene_(scene), stop_(stop), sim_(robot.model) {
+  Demonstrator(const Robot& robot, const EpisodeOptions& options, Task& task, const StopCheck& stop)
+      : robot_(robot), options_(options), task_(task), stop_(stop), sim_(robot.model) {
+    const DrawnScene& scene = task.scene();
     sim_.reset_home();
+    put_joints(scene);
     sim_.place(robot.arm, scene.q);
     sim_.hold_others(robot.arm);
     const SceneBodies bodies = scene_bodies(robot.model, robot.arm);
     for (const DrawnObject& object : scene.objects) {
       sim_.place_free(object.name, object.X_WB);
-      bodies_.push_back(std::ranges::find(bodies.objects, object.name, &SceneObject::name)->body);
+      bodies_.push_back(
+          static_cast<int>(std::ranges::find(bodies.name, object.name) - bodies.name.begin()));
     }
-    grip_ = robot.arm.gripper.value();
     before_ = state();
   }
 
   /// Fills plan and goal; a verdict with a reason where there is none.
-  void plan(const Jaws& jaws, Demonstration& out) const {
-    if (options_.task == "reach") {
-      plan_reach(jaws, out);
-    } else {
-      plan_pick_place(out);
-    }
+  void plan(const std::optional<Jaws>& jaws, Demonstration& out) const {
+    TaskPlan planned = task_.plan({robot_, jaws, before_, stop_});
+    out.plan = std::move(planned.plan);
+    out.goal = planned.goal;
+    out.verdict.reason = std::move(planned.reason);
   }
 
   Result<void> execute(Demonstration& out) {
-    Result<Execution> execution = Execution::create(robot_.model, out.plan);
+    Result<Execution> execution = Execution::create(robot_.model, out.plan, task_.execution());
     if (!execution) return fail(std::move(execution.error()));
     GripWatch watch(robot_.model, out.plan, before_);
     GripFault fault = GripFault::none;
+    task_.look(sim_);
     take(*execution, 0, out);
     long long steps = 0;
     const auto done = execution->run_to_end(sim_, [&](const Sim& sim) {
       const std::size_t motion = execution->motions().back().move;
       const JointVec error = execution->error(sim);
-      fault = watch.look(sim, motion, error);
+      // A tool that is pressed on something is not where the plan has it.
+      if (!execution->presser()) fault = watch.look(sim, motion, error);
       measure(error, out);
+      task_.look(sim);
       if (++steps >= due(out.samples.size())) take(*execution, motion, out);
       return fault == GripFault::none && !is_stopped(stop_);
     });
@@ -68,43 +69,15 @@ class Demonstrator {
     return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
   }
 
-  void plan_reach(const Jaws& jaws, Demonstration& out) const {
-    Pose X_TJ{.p = jaws.center_T};
-    X_TJ.R.col(0) = -jaws.side_T();  // close x approach
-    X_TJ.R.col(1) = jaws.close_T;
-    X_TJ.R.col(2) = jaws.approach_T;
-    const Eigen::Vector3d p_W = scene_.objects[scene_.target].X_WB.p;
-    for (const double turn : scene_.turns) {
-      const Pose X_WJ{.p = p_W + Eigen::Vector3d(0, 0, kReachAbove),
-                      .R = from_euler({std::numbers::pi, 0, turn})};
-      out.goal = X_WJ * X_TJ.inverse();
-      program::Program program;
-      program.name = "reach";
-      program.start.values = scene_.q;
-      program.instructions = {{program::PlanMove{.goal = program::ProgramPose{.X_FT = out.goal}}}};
-      program::ProgramPlan plan =
-          program::plan_program(robot_.model, robot_.arm, program,
-                                {.scene = before_, .to_first_fault = true, .stop = stop_});
-      if (plan.ok()) {
-        out.plan = std::move(plan);
-        out.verdict.reason.clear();
-        return;
-      }
-      out.verdict.reason = plan.faults.front().reason;
+  /// Joints of the scene, before anything else: those of the arm and of free bodies come then.
+  void put_joints(const DrawnScene& scene) {
+    if (scene.joints.empty()) return;
+    std::vector<double> qpos(sim_.qpos().begin(), sim_.qpos().end());
+    const std::vector<double> rest(sim_.qvel().size(), 0.0);
+    for (const DrawnJoint& joint : scene.joints) {
+      qpos[qpos_of(robot_.model, joint.name)] = joint.value;
     }
-  }
-
-  void plan_pick_place(Demonstration& out) const {
-    const program::PickTask task{.object = scene_.objects[scene_.target].name,
-                                 .place = {{.X_WB = scene_.X_WB_place, .any_turn = true}}};
-    auto planned = program::plan_pick(robot_, before_, scene_.q, task, {.stop = stop_});
-    if (!planned) {
-      out.goal = scene_.X_WB_place;
-      out.verdict.reason = name(planned.error().code);
-      return;
-    }
-    out.goal = planned->X_WB_place.value_or(scene_.X_WB_place);
-    out.plan = std::move(planned->plan);
+    sim_.set_state(qpos, rest);
   }
 
   /// The number of steps after which row `row` is taken.
@@ -126,10 +99,14 @@ class Demonstrator {
                   .X_WT_ref = {},
                   .grip = 0,
                   .objects = poses(),
-                  .motion = motion};
+                  .motion = motion,
+                  .marks = task_.marks()};
     sample.X_WT_ref = fk(robot_.arm, as_span(sample.q_ref));
-    const double ctrl = sample.ctrl[static_cast<std::size_t>(grip_.id)];
-    sample.grip = 0.0 + (ctrl - grip_.ctrl_open) / (grip_.ctrl_closed - grip_.ctrl_open);  // no -0
+    if (const std::optional<Gripper>& grip = robot_.arm.gripper) {
+      const double ctrl = sample.ctrl[static_cast<std::size_t>(grip->id)];
+      sample.grip =
+          0.0 + (ctrl - grip->ctrl_open) / (grip->ctrl_closed - grip->ctrl_open);  // no -0
+    }
     out.samples.push_back(std::move(sample));
   }
 
@@ -148,16 +125,8 @@ class Demonstrator {
 
   /// What the scene says counts; what was noticed on the way is a reason as well.
   void judge_end(const Execution& execution, GripFault fault, Demonstration& out) const {
-    std::vector<Pose> before, after = poses();
-    for (const DrawnObject& object : scene_.objects) before.push_back(object.X_WB);
-    Pose reached = sim_.tool(robot_.arm);
-    if (options_.task != "reach") {
-      const auto target = static_cast<std::ptrdiff_t>(scene_.target);
-      reached = after[scene_.target];
-      before.erase(before.begin() + target);
-      after.erase(after.begin() + target);
-    }
-    out.verdict = judge(reached, out.goal, before, after);
+    const std::vector<Pose> after = poses();
+    out.verdict = task_.judge({sim_, sim_.tool(robot_.arm), after, out.goal});
     std::string_view noticed = name(fault);
     for (const ObservedObject& object : execution.objects()) {
       if (noticed.empty() && object.fault != ObjectFault::none) noticed = name(object.fault);
@@ -168,11 +137,10 @@ class Demonstrator {
 
   const Robot& robot_;
   const EpisodeOptions& options_;
-  const DrawnScene& scene_;
+  Task& task_;
   const StopCheck& stop_;
   Sim sim_;
   std::vector<int> bodies_;  ///< of the objects
-  Gripper grip_;
   SceneState before_;
 };
 
@@ -194,12 +162,12 @@ Verdict judge(const Pose& X_WB, const Pose& goal, std::span<const Pose> before,
   return out;
 }
 
-Result<Demonstration> demonstrate(const Robot& robot, const Jaws& jaws,
-                                  const EpisodeOptions& options, const DrawnScene& scene,
-                                  const StopCheck& stop, EpisodeTimes& times) {
+Result<Demonstration> demonstrate(const Robot& robot, const std::optional<Jaws>& jaws,
+                                  const EpisodeOptions& options, Task& task, const StopCheck& stop,
+                                  EpisodeTimes& times) {
   Demonstration out;
   const Stopwatch planning;
-  Demonstrator demonstrator(robot, options, scene, stop);
+  Demonstrator demonstrator(robot, options, task, stop);
   demonstrator.plan(jaws, out);
   times.planning += planning.us();
   if (is_stopped(stop)) return fail(stopped());

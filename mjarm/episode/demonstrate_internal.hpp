@@ -1,13 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mjarm/core/stop.hpp"
-#include "mjarm/episode/draw_scene.hpp"
 #include "mjarm/episode/record.hpp"
-#include "mjarm/model/jaws.hpp"
-#include "mjarm/model/scene_bodies.hpp"
+#include "mjarm/episode/task_internal.hpp"
 #include "mjarm/program/program_plan.hpp"
 #include "mjarm/sim/sim.hpp"
 
@@ -23,25 +22,26 @@ struct Sample {
   double grip = 0;            ///< 0 open to 1 closed, as commanded
   std::vector<Pose> objects;  ///< X_WB in the order of the drawn scene
   std::size_t motion = 0;     ///< of the plan
+  std::size_t marks = 0;      ///< Task::marks()
 };
 
 /// What was done and what came of it.
 struct Demonstration {
   program::ProgramPlan plan;  ///< without motions where there is none
-  Pose goal;                  ///< reach: of the tool; pick_place: of the object, as planned
+  Pose goal;                  ///< TaskPlan::goal
   Verdict verdict;
   double tool_error = 0;   ///< [m] of the tool from where it was to be, at most
   double joint_error = 0;  ///< [rad] of any joint, at most
   std::vector<Sample> samples;
 };
 
-/// Plans and executes what the scene asks for, in a simulation of its own.
-/// @param jaws  find_jaws() of the robot.
+/// Plans and executes a task, in a simulation of its own.
+/// @param robot  in the scene of the task as it was drawn: placed().
+/// @param jaws   find_jaws() of the robot where it has a gripper.
 /// @return an error where the simulation broke down, or it was stopped; what cannot be planned or
 ///         goes wrong is a verdict.
-[[nodiscard]] Result<Demonstration> demonstrate(const Robot& robot, const Jaws& jaws,
-                                                const EpisodeOptions& options,
-                                                const DrawnScene& scene, const StopCheck& stop,
-                                                EpisodeTimes& times);
+[[nodiscard]] Result<Demonstration> demonstrate(const Robot& robot, const std::optional<Jaws>& jaws,
+                                                const EpisodeOptions& options, Task& task,
+                                                const StopCheck& stop, EpisodeTimes& times);
 
 }  // namespace mjarm::episode

@@ -42,6 +42,37 @@ JsonDoc looks_doc(const LooksChange& looks) {
   return {{"geoms", std::move(geoms)}, {"lights", std::move(lights)}};
 }
 
+/// The drawn scene; furniture and joints where any were drawn.
+JsonDoc scene_doc(const DrawnScene& scene) {
+  JsonDoc out{{"objects", objects_doc(scene)},
+              {"target", scene.objects[scene.target].name},
+              {"start", scene.q},
+              {"looks", looks_doc(scene.looks)}};
+  std::vector<JsonDoc> places, joints;
+  for (const PlacedBody& place : scene.places) {
+    JsonDoc one = pose_json(place.X_PB);
+    one.set("name", place.body);
+    places.push_back(std::move(one));
+  }
+  for (const DrawnJoint& joint : scene.joints) {
+    joints.push_back({{"name", joint.name}, {"value", joint.value}});
+  }
+  if (!places.empty()) out.set("places", std::move(places));
+  if (!joints.empty()) out.set("joints", std::move(joints));
+  return out;
+}
+
+JsonDoc executed_doc(const Demonstration& done) {
+  const Verdict& verdict = done.verdict;
+  JsonDoc out{{"tool_error_max", done.tool_error},
+              {"joint_error_max", done.joint_error},
+              {"goal_position_error", verdict.position},
+              {"goal_rotation_error", verdict.rotation},
+              {"others_moved", verdict.others}};
+  for (const auto& [name, value] : verdict.facts) out.set(name, value);
+  return out;
+}
+
 /// Pinhole cameras: u = cx + fx * x / -z, v = cy - fy * y / -z of a point (x, y, z) in the camera.
 JsonDoc cameras_doc(const Robot& robot, const DrawnScene& scene, int size) {
   const double half = 0.5 * size;
@@ -91,8 +122,9 @@ JsonDoc certificate_doc(const program::ProgramPlan& plan) {
 
 }  // namespace
 
-std::string episode_json(const Robot& robot, const Origin& origin, const DrawnScene& scene,
+std::string episode_json(const Robot& robot, const Origin& origin, const Task& task,
                          const Demonstration& done) {
+  const DrawnScene& scene = task.scene();
   const EpisodeOptions& options = origin.options;
   std::vector<std::string> joints;
   for (const ArmJoint& joint : robot.arm.joints) joints.push_back(joint.name);
@@ -116,20 +148,11 @@ std::string episode_json(const Robot& robot, const Origin& origin, const DrawnSc
                {"joints", joints},
                {"columns", columns_doc()},
                {"cameras", cameras_doc(robot, scene, options.size)}});
-  doc.set_all({{"scene",
-                {{"objects", objects_doc(scene)},
-                 {"target", scene.objects[scene.target].name},
-                 {"start", scene.q},
-                 {"looks", looks_doc(scene.looks)}}},
-               {"goal", pose_json(done.goal)},
+  doc.set_all({{"scene", scene_doc(scene)},
+               {"goal", task.goal_json(done.goal)},
                {"plan", plan_doc(done.plan)},
                {"certificate", certificate_doc(done.plan)},
-               {"executed",
-                {{"tool_error_max", done.tool_error},
-                 {"joint_error_max", done.joint_error},
-                 {"goal_position_error", verdict.position},
-                 {"goal_rotation_error", verdict.rotation},
-                 {"others_moved", verdict.others}}}});
+               {"executed", executed_doc(done)}});
   return doc.document();
 }
 

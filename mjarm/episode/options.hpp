@@ -19,9 +19,9 @@ struct EpisodeOptions {
   [[nodiscard]] bool operator==(const EpisodeOptions&) const = default;
 };
 
-/// "reach": the open gripper to above an object. "pick_place": an object into the tray.
+/// "reach", "pick_place", ...: docs/data.md says what each asks for.
 [[nodiscard]] std::vector<std::string> task_names();
-/// Those with a shipped scene for these tasks.
+/// Those with shipped scenes for tasks; check() says of which.
 [[nodiscard]] std::vector<std::string> robot_names();
 
 /// @return bad_input that names the option, and what there is to choose from.

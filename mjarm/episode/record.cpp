@@ -1,6 +1,7 @@
 #include "mjarm/episode/record.hpp"
 
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 #include "mjarm/core/sha256.hpp"
@@ -21,18 +22,13 @@ std::string frame_name(const std::string& camera, std::size_t row) {
   return "frames/" + camera + number;
 }
 
-/// The scene of the shipped robots in which the tasks are.
-const char* scene_file(const std::string& robot) {
-  return robot == "panda" ? "franka_emika_panda/pick.xml" : "universal_robots_ur5e/pick.xml";
-}
-
 /// Draws every row as every camera sees it.
-Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
+Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const Task& task,
                         const Demonstration& done, const StopCheck& stop, EpisodeTimes& times,
                         StoredZipWriter& out) {
   if (done.samples.empty()) return {};
   const Stopwatch opening;
-  const Result<Model> looks = with_looks(robot.model, scene.looks);
+  const Result<Model> looks = with_looks(robot.model, task.scene().looks);
   if (!looks) return fail(looks.error());
   auto renderer = render::OffscreenRenderer::create(*looks, {.width = options.size,
                                                              .height = options.size,
@@ -40,11 +36,13 @@ Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const
                                                              .sites = false});
   if (!renderer) return fail(std::move(renderer.error()));
   times.rendering += opening.us();
-  for (const DrawnView& view : scene.views) {
+  for (const DrawnView& view : task.scene().views) {
     for (std::size_t row = 0; row < done.samples.size(); ++row) {
       if (is_stopped(stop)) return fail(stopped());
       const Stopwatch drawing;
-      const auto image = renderer->draw(done.samples[row].state, {.view = view.view});
+      const Sample& sample = done.samples[row];
+      const auto image =
+          renderer->draw(sample.state, {.view = view.view}, task.overlay(sample.marks));
       if (!image) return fail(image.error());
       times.rendering += drawing.us();
       const Stopwatch packing;
@@ -61,8 +59,8 @@ Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const
 
 struct Studio::Impl {
   EpisodeOptions options;
-  Robot robot;
-  Jaws jaws;
+  Robot robot;  ///< as its file has it
+  std::optional<Jaws> jaws;
   std::string model_hash;
 };
 
@@ -72,30 +70,38 @@ Studio::Studio(Studio&&) noexcept = default;
 Studio& Studio::operator=(Studio&&) noexcept = default;
 
 Result<Studio> Studio::open(const EpisodeOptions& options) {
-  if (Result<void> fits = check(options); !fits) return fail(std::move(fits.error()));
-  Result<Robot> robot = load_robot(scene_file(options.robot));
+  Result<Robot> robot = load_task_robot(options);
   if (!robot) return fail(std::move(robot.error()));
-  const Result<Jaws> jaws = find_jaws(robot->model, robot->arm);
-  if (!jaws) return fail(jaws.error());
+  std::optional<Jaws> jaws;
+  if (robot->arm.gripper) {
+    const Result<Jaws> found = find_jaws(robot->model, robot->arm);
+    if (!found) return fail(found.error());
+    jaws = *found;
+  }
   const Result<Exported> binary = export_model(robot->model, ExportFormat::mjb, {});
   if (!binary) return fail(binary.error());
   return Studio(
-      std::make_unique<Impl>(Impl{options, std::move(*robot), *jaws, sha256(binary->content)}));
+      std::make_unique<Impl>(Impl{options, std::move(*robot), jaws, sha256(binary->content)}));
 }
 
 Result<Episode> Studio::make(std::uint64_t number, const StopCheck& stop) {
-  const Robot& robot = impl_->robot;
   Episode out{.number = number};
-  const DrawnScene scene = draw_scene(robot, impl_->options, number);
+  const std::unique_ptr<Task> task = draw_task(impl_->robot, impl_->options, number);
+  Robot robot = impl_->robot;
+  if (const auto& places = task->scene().places; !places.empty()) {
+    Result<Model> placed = with_bodies_at(robot.model, places);
+    if (!placed) return fail(std::move(placed.error()));
+    robot.model = std::move(*placed);
+  }
   Result<Demonstration> done =
-      demonstrate(robot, impl_->jaws, impl_->options, scene, stop, out.times);
+      demonstrate(robot, impl_->jaws, impl_->options, *task, stop, out.times);
   if (!done) return fail(std::move(done.error()));
   out.verdict = done->verdict;
   StoredZipWriter archive;
   const Origin origin{impl_->options, number, impl_->model_hash};
-  archive.add("episode.json", episode_json(robot, origin, scene, *done));
+  archive.add("episode.json", episode_json(robot, origin, *task, *done));
   add_columns(*done, archive);
-  auto drawn = add_frames(robot, impl_->options, scene, *done, stop, out.times, archive);
+  auto drawn = add_frames(robot, impl_->options, *task, *done, stop, out.times, archive);
   if (!drawn) return fail(std::move(drawn.error()));
   out.bytes = std::move(archive).finish();
   return out;

@@ -4,6 +4,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "mjarm/core/pose.hpp"
 #include "mjarm/core/result.hpp"
@@ -24,11 +26,14 @@ struct Verdict {
   /// Empty for a success; else the first that applies: a word of program::PickErrc or of
   /// ProgramFault;
   /// "nothing_held", "lost", "blocked"; "contact"; "object_lost", ... (ObjectFault); "off_goal",
-  /// "others_moved". Words, so that bytes do not depend on the language.
+  /// "others_moved"; a word of the task (docs/data.md). Words, so that bytes do not depend on the
+  /// language.
   std::string reason = {};
   double position = 0;  ///< [m] from the goal at the end
   double rotation = 0;  ///< [rad] likewise
   double others = 0;    ///< [m] farthest that an object that was not asked for was moved
+  /// What a task measured beside that, by name in `executed` of `episode.json`; SI units.
+  std::vector<std::pair<const char*, double>> facts = {};
 
   [[nodiscard]] bool success() const { return reason.empty(); }
 };

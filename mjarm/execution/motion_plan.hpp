@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -65,6 +66,8 @@ struct PlannedMove {
   std::optional<Eigen::Vector3d> right_W = {};  ///< of a text: the way it is read, a unit vector
   std::optional<bool> close = {};               ///< the gripper closes or opens at its beginning
   std::vector<AttachedBody> attached = {};      ///< to the first arm's tool, at its end
+  /// Two names each, of bodies or geoms, that may touch in it, as ContactRules has them.
+  std::vector<std::array<std::string, 2>> allowed = {};
   /// Hangs at the first arm's tool while it moves, beside what is attached: the controller knows
   /// it, and the simulation has it.
   Payload payload = {};

@@ -78,7 +78,7 @@ void ObjectWatch::look(const Sim& sim, std::size_t move, bool presses) {
   };
   for (const Contact& contact : sim.contacts()) {
     if (contact.body1 < 0 || contact.body2 < 0) continue;
-    if (!is_planned(contact, presses) && !first_contact_) {
+    if (!first_contact_ && !is_planned(contact, move, presses)) {
       first_contact_ = TimedContact{contact, sim.time()};
     }
     const int a = object_of(contact.body1), b = object_of(contact.body2);
@@ -124,7 +124,7 @@ void ObjectWatch::compare(const Sim& sim, std::size_t move, std::size_t object) 
 /// Contacts of a tool that presses, of the hand with itself and with what it carries at some time,
 /// of links that the arm does not move against each other, what overlaps by design, and all that
 /// the arm has no part in. Of what is carried the end tells, when it is known what it was put on.
-bool ObjectWatch::is_planned(const Contact& contact, bool presses) const {
+bool ObjectWatch::is_planned(const Contact& contact, std::size_t move, bool presses) const {
   const auto role = [&](int body) { return bodies_.role[static_cast<std::size_t>(body)]; };
   const auto is_arm = [](BodyRole r) { return r == BodyRole::link || r == BodyRole::hand; };
   const BodyRole a = role(contact.body1), b = role(contact.body2);
@@ -132,6 +132,7 @@ bool ObjectWatch::is_planned(const Contact& contact, bool presses) const {
   if (is_by_design(plan_->arms.front(), contact)) return true;
   const auto moved_by = [&](int body) { return bodies_.moved_by[static_cast<std::size_t>(body)]; };
   if (a == b && moved_by(contact.body1) == moved_by(contact.body2)) return true;
+  if (is_allowed(contact, move)) return true;
   const int last = plan_->arms.front().dof();
   if (presses && (moved_by(contact.body1) == last) != (moved_by(contact.body2) == last))
     return true;
@@ -141,6 +142,20 @@ bool ObjectWatch::is_planned(const Contact& contact, bool presses) const {
   };
   return (a == BodyRole::hand && carried(contact.body2)) ||
          (b == BodyRole::hand && carried(contact.body1));
+}
+
+/// By the motion itself: what touches on behind it is a contact again.
+bool ObjectWatch::is_allowed(const Contact& contact, std::size_t move) const {
+  const auto is_of = [&](const std::string& name, const std::string& geom, int body) {
+    return name == geom || name == bodies_.name[static_cast<std::size_t>(body)];
+  };
+  const auto is_pair = [&](const std::array<std::string, 2>& pair) {
+    return (is_of(pair[0], contact.first, contact.body1) &&
+            is_of(pair[1], contact.second, contact.body2)) ||
+           (is_of(pair[1], contact.first, contact.body1) &&
+            is_of(pair[0], contact.second, contact.body2));
+  };
+  return move < plan_->moves.size() && std::ranges::any_of(plan_->moves[move].allowed, is_pair);
 }
 
 void ObjectWatch::note_object(std::size_t object, int other_body, const std::string& other,

@@ -48,7 +48,8 @@ struct ObservedObject {
 
 /// Looks at the objects of a scene, and at what touches, while a plan is executed. What may touch:
 /// the hand itself and what it carries, before, while and after it does; what an object stands on
-/// when it is picked up and put down. Knows no physics but what the simulation shows.
+/// when it is picked up and put down; what a motion allows (PlannedMove::allowed). Knows no physics
+/// but what the simulation shows.
 class ObjectWatch {
  public:
   /// @param plan  outlives this.
@@ -89,7 +90,8 @@ class ObjectWatch {
   void compare(const Sim& sim, std::size_t move, std::size_t object);
   void note_object(std::size_t object, int other_body, const std::string& other, double time,
                    std::size_t move);
-  [[nodiscard]] bool is_planned(const Contact& contact, bool presses) const;
+  [[nodiscard]] bool is_planned(const Contact& contact, std::size_t move, bool presses) const;
+  [[nodiscard]] bool is_allowed(const Contact& contact, std::size_t move) const;
 
   const MotionPlan* plan_;
   SceneBodies bodies_;

@@ -29,7 +29,7 @@ class ProgramPlanner {
         start_place_(start_place),
         options_(options),
         plan_(begun(steps)),
-        places_(model, plan_.arms, options.scene, options.collision, options.stop),
+        places_(model, plan_.arms, options),
         planner_(steps_, options_, places_, [this](std::size_t i) { tell(i); }) {}
 
   ProgramPlan plan() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -86,6 +87,9 @@ struct ProgramPlanOptions {
   bool collision = true;     ///< look at contact, and measure clearance
   double tool_speed = 0.25;  ///< [m/s] where the program says none, > 0
   SceneState scene = {};     ///< how things stand at first; empty: as in the model
+  /// Two names each, of bodies or geoms, that may touch and overlap all through the program, as
+  /// ContactRules has them: fingers and the handle they pull.
+  std::vector<std::array<std::string, 2>> allowed = {};
   /// Nothing behind the first fault is planned, nor looked for what would mend it.
   bool to_first_fault = false;
   SeeScene see = {};  ///< does the instruction `look`, which is a fault without

@@ -74,6 +74,7 @@ PlannedMove StepPlanner::begun(std::size_t i, std::size_t scene) const {
   move.place = step.place;
   move.tool = step.tool;
   move.attached = places_.attached(scene);
+  move.allowed = places_.allowed();
   move.payload = step.payload;
   return move;
 }

@@ -42,11 +42,12 @@ std::shared_ptr<Tool> Workplaces::make(const SceneState& scene, const Arm& of_to
     arm.limits.acceleration *= kCarryingShare;
     arm.limits.jerk *= kCarryingShare;
   }
-  ContactRules rules{.attached = attached_to(arm, arms_.front(), scene.attached)};
+  ContactRules rules{.attached = attached_to(arm, arms_.front(), scene.attached),
+                     .allowed = options_.allowed};
   IkOptions options;
   options.task = task_for(arm);
   std::optional<ExactChecker> checker, shown;
-  if (collision_) {
+  if (options_.collision) {
     ExactOptions exact{.rules = rules, .qpos = scene.qpos, .rest_depth = kRestDepth};
     checker.emplace(model_, arm, exact);
     exact.skip_neighbours = true;
@@ -65,7 +66,7 @@ std::shared_ptr<Tool> Workplaces::make(const SceneState& scene, const Arm& of_to
   const double margin = scene.attached.empty() ? 0 : kCarryingMargin;
   return std::make_shared<Tool>(
       Tool{arm, IkSolver(arm, {.task = options.task}), ik, judge,
-           DetourPlanner({model_, arm}, ik, judge, std::move(world), stop_, margin),
+           DetourPlanner({model_, arm}, ik, judge, std::move(world), options_.stop, margin),
            AnswerChoice(ik, judge.clearance()), !scene.qpos.empty()});
 }
 

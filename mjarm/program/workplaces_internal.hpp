@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <deque>
 #include <map>
@@ -10,13 +11,13 @@
 #include <vector>
 
 #include "mjarm/collision/exact_grasp.hpp"
-#include "mjarm/core/stop.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/arm.hpp"
 #include "mjarm/model/model.hpp"
 #include "mjarm/program/answer_choice_internal.hpp"
 #include "mjarm/program/detour_planner_internal.hpp"
 #include "mjarm/program/move_measures_internal.hpp"
+#include "mjarm/program/program_plan.hpp"
 
 namespace mjarm::program::detail {
 
@@ -44,17 +45,15 @@ struct Tool {
 class Workplaces {
  public:
   /// @param arms       the arm with each tool, at least one; outlive this.
-  /// @param first      how things stand at first.
-  /// @param collision  look at contact.
-  Workplaces(const Model& model, const std::vector<Arm>& arms, SceneState first, bool collision,
-             StopCheck stop)
-      : model_(model),
-        arms_(arms),
-        collision_(collision),
-        stop_(std::move(stop)),
-        scenes_{std::move(first)} {}
+  /// @param options    of the program; outlive this.
+  Workplaces(const Model& model, const std::vector<Arm>& arms, const ProgramPlanOptions& options)
+      : model_(model), arms_(arms), options_(options), scenes_{options.scene} {}
 
   [[nodiscard]] const Model& model() const { return model_; }
+  /// What may touch all through the program.
+  [[nodiscard]] const std::vector<std::array<std::string, 2>>& allowed() const {
+    return options_.allowed;
+  }
   /// Stays what it is as long as somebody has it.
   [[nodiscard]] std::shared_ptr<Tool> tool(std::size_t scene, std::size_t tool);
   /// The scene after the gripper has closed or opened where the arm stands.
@@ -73,8 +72,7 @@ class Workplaces {
 
   const Model& model_;
   const std::vector<Arm>& arms_;
-  bool collision_;
-  StopCheck stop_;
+  const ProgramPlanOptions& options_;
   std::vector<SceneState> scenes_;            ///< the first is how things stand at first
   std::map<std::string, std::size_t> known_;  ///< indices of `scenes_` by all that is in them
   std::deque<std::pair<std::pair<std::size_t, std::size_t>, std::shared_ptr<Tool>>> tools_;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/options.hpp"
@@ -13,6 +14,7 @@
 #include "apps/mjarm/messages/app.hpp"
 #include "mjarm/core/json_writer.hpp"
 #include "mjarm/core/log.hpp"
+#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/progress.hpp"
 #include "mjarm/core/stopwatch.hpp"
@@ -33,7 +35,10 @@ struct Options {
 };
 
 Result<episode::DatasetOptions> parsed(const Options& options) {
-  if (options.task.empty()) return fail(Errc::usage, text(msg::record_which));
+  if (options.task.empty()) {
+    const std::vector<std::string> tasks = episode::task_names();
+    return fail(Errc::usage, text(msg::record_which, listed(tasks)));
+  }
   const Result<int> episodes = parse_count("--episodes", options.episodes, kMaxEpisodes);
   if (!episodes) return fail(episodes.error());
   const Result<std::uint64_t> first = parse_whole("--first", options.first);

@@ -38,6 +38,8 @@ TEST_F(RecordCommand, MakesEpisodesThatReplay) {
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.out, HasSubstr("2 of 2 episodes are the same"));
 
+  EXPECT_THAT(mjarm({"replay", data_}).out, HasSubstr("1 of 2 episodes in " + data_));
+
   std::string changed = folder_.read("data/episode_000000.zip");
   const std::string name = "qvel.npy";
   changed[changed.find(name) + name.size() + 200] ^= 1;
@@ -94,6 +96,12 @@ TEST_F(RecordCommand, RefusesWhatItCannotDoInOneLine) {
   EXPECT_THAT(other.err, HasSubstr("--seed 1, not 9"));
   EXPECT_THAT(mjarm({"record"}).err, HasSubstr("which task?"));
   EXPECT_EQ(mjarm({"record", "juggle", "--out", data_}).exit_code, 2);
+  const auto misspelt = mjarm({"record", "pik", "--out", data_});
+  EXPECT_EQ(misspelt.exit_code, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("did you mean \"pick_place\"?"));
+  const auto none = mjarm({"record", "draw", "--out", data_});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("panda has no scene for the task draw; ur5e has one"));
   EXPECT_EQ(record({"--fps", "51"}).exit_code, 2);
   EXPECT_EQ(mjarm({"replay"}).exit_code, 2);
   EXPECT_EQ(mjarm({"replay", folder_.path().string()}).exit_code, 2);

@@ -26,13 +26,20 @@ struct Options {
   bool all = false, json = false;
 };
 
-Result<std::vector<fs::path>> files_of(const Options& options) {
+/// What is looked at, and of how many.
+struct Chosen {
+  std::vector<fs::path> files;
+  std::size_t of = 1;
+};
+
+Result<Chosen> files_of(const Options& options) {
   std::error_code unknown;
-  if (!fs::is_directory(options.path, unknown)) return std::vector<fs::path>{options.path};
-  std::vector<fs::path> files = episode::episode_files(options.path);
-  if (files.empty()) return fail(Errc::bad_input, text(msg::episode_none, options.path));
-  if (!options.all) files.resize(1);
-  return files;
+  if (!fs::is_directory(options.path, unknown)) return Chosen{.files = {options.path}};
+  Chosen out{.files = episode::episode_files(options.path)};
+  if (out.files.empty()) return fail(Errc::bad_input, text(msg::episode_none, options.path));
+  out.of = out.files.size();
+  if (!options.all) out.files.resize(1);
+  return out;
 }
 
 /// Makes episodes again, with the studio of the one before where it serves.
@@ -59,14 +66,15 @@ class Replayer {
 Result<int> run(const Options& options) {
   if (options.path.empty()) return fail(Errc::usage, text(msg::replay_which));
   catch_interrupts();
-  const Result<std::vector<fs::path>> files = files_of(options);
-  if (!files) return fail(files.error());
-  Progress progress(text(msg::replay_progress), files->size());
+  const Result<Chosen> chosen = files_of(options);
+  if (!chosen) return fail(chosen.error());
+  const std::vector<fs::path>& files = chosen->files;
+  Progress progress(text(msg::replay_progress), files.size());
   Replayer replayer;
   std::vector<JsonDoc> docs;
   std::string first, lines;
   std::size_t different = 0;
-  for (const fs::path& file : *files) {
+  for (const fs::path& file : files) {
     const Result<std::string> where = replayer.replay(file);
     if (!where) return fail(where.error());
     progress.advance();
@@ -76,11 +84,15 @@ Result<int> run(const Options& options) {
     lines += text(msg::replay_differs, file.string(), *where) + '\n';
     ++different;
   }
-  lines += text(msg::replay_same, files->size() - different, files->size()) + '\n';
-  print_lines(options.json ? JsonDoc{{"episodes", std::move(docs)}}.document() : lines);
+  lines += text(msg::replay_same, files.size() - different, files.size()) + '\n';
+  if (files.size() < chosen->of) {
+    lines += text(msg::replay_some, files.size(), chosen->of, options.path) + '\n';
+  }
+  const JsonDoc doc{{"episodes", std::move(docs)}, {"of", chosen->of}};
+  print_lines(options.json ? doc.document() : lines);
   if (different == 0) return 0;
   return fail(Errc::impossible,
-              text(msg::replay_not_all, options.path, different, files->size(), first));
+              text(msg::replay_not_all, options.path, different, files.size(), first));
 }
 
 Run setup(CLI::App& app) {
