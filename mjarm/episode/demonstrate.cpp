@@ -7,6 +7,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/episode/demonstrate_internal.hpp"
+#include "mjarm/episode/studio_internal.hpp"
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/execution/grip_watch.hpp"
 #include "mjarm/execution/metrics.hpp"
@@ -16,21 +17,12 @@
 namespace mjarm::episode {
 namespace {
 
-constexpr double kAbove = 0.12;  // [m] of the jaws above the middle of an object
-
 class Demonstrator {
  public:
   Demonstrator(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
                const StopCheck& stop)
       : robot_(robot), options_(options), scene_(scene), stop_(stop), sim_(robot.model) {
-    sim_.reset_home();
-    sim_.place(robot.arm, scene.q);
-    sim_.hold_others(robot.arm);
-    const SceneBodies bodies = scene_bodies(robot.model, robot.arm);
-    for (const DrawnObject& object : scene.objects) {
-      sim_.place_free(object.name, object.X_WB);
-      bodies_.push_back(std::ranges::find(bodies.objects, object.name, &SceneObject::name)->body);
-    }
+    bodies_ = place_scene(robot, scene, sim_);
     grip_ = robot.arm.gripper.value();
     before_ = state();
   }
@@ -71,10 +63,7 @@ class Demonstrator {
   }
 
   void plan_reach(const Jaws& jaws, Demonstration& out) const {
-    Pose X_TJ{.p = jaws.center_T};
-    X_TJ.R.col(0) = -jaws.side_T();  // close x approach
-    X_TJ.R.col(1) = jaws.close_T;
-    X_TJ.R.col(2) = jaws.approach_T;
+    const Pose X_TJ = jaws_frame(jaws);
     const Eigen::Vector3d p_W = scene_.objects[scene_.target].X_WB.p;
     for (const double turn : scene_.turns) {
       const Pose X_WJ{.p = p_W + Eigen::Vector3d(0, 0, kAbove),
@@ -126,12 +115,10 @@ class Demonstrator {
                                                         : execution.error(sim_)),
                   .X_WT = sim_.tool(robot_.arm),
                   .X_WT_ref = {},
-                  .grip = 0,
+                  .grip = grip_command(grip_, sim_),
                   .objects = poses(),
                   .motion = motion};
     sample.X_WT_ref = fk(robot_.arm, as_span(sample.q_ref));
-    const double ctrl = sample.ctrl[static_cast<std::size_t>(grip_.id)];
-    sample.grip = 0.0 + (ctrl - grip_.ctrl_open) / (grip_.ctrl_closed - grip_.ctrl_open);  // no -0
     out.samples.push_back(std::move(sample));
   }
 

@@ -6,8 +6,8 @@
 #include "mjarm/core/sha256.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/episode/archive_internal.hpp"
+#include "mjarm/episode/studio_internal.hpp"
 #include "mjarm/model/export.hpp"
-#include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/png.hpp"
 
 namespace mjarm::episode {
@@ -21,23 +21,13 @@ std::string frame_name(const std::string& camera, std::size_t row) {
   return "frames/" + camera + number;
 }
 
-/// The scene of the shipped robots in which the tasks are.
-const char* scene_file(const std::string& robot) {
-  return robot == "panda" ? "franka_emika_panda/pick.xml" : "universal_robots_ur5e/pick.xml";
-}
-
 /// Draws every row as every camera sees it.
 Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const DrawnScene& scene,
                         const Demonstration& done, const StopCheck& stop, EpisodeTimes& times,
                         StoredZipWriter& out) {
   if (done.samples.empty()) return {};
   const Stopwatch opening;
-  const Result<Model> looks = with_looks(robot.model, scene.looks);
-  if (!looks) return fail(looks.error());
-  auto renderer = render::OffscreenRenderer::create(*looks, {.width = options.size,
-                                                             .height = options.size,
-                                                             .quality = render::RenderQuality::low,
-                                                             .sites = false});
+  auto renderer = open_pictures(robot, options, scene);
   if (!renderer) return fail(std::move(renderer.error()));
   times.rendering += opening.us();
   for (const DrawnView& view : scene.views) {
