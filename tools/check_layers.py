@@ -28,7 +28,7 @@ ALLOWED = {
     "serve": "core model sim render view",
     "rl": "core model kinematics control sim",
     "episode": "core model kinematics collision path planning trajectory control sim render execution program",
-    "clone": "core model kinematics control sim rl episode",
+    "clone": "core model kinematics rl episode",
     "install": "core model",
     "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception",
 }

@@ -88,8 +88,8 @@ def describe_module(source, public=None):
     return "".join(out) + "".join(describe_class(node) for node in sorted(classes, key=lambda node: node.name != "Robot"))
 
 
-def public_names():
-    tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
+def public_names(package=PACKAGE):
+    tree = ast.parse((package / "__init__.py").read_text(encoding="utf-8"))
     names = next(node.value for node in tree.body if isinstance(node, ast.Assign) and node.targets[0].id == "__all__")
     return {name.value for name in names.elts}
 
@@ -99,6 +99,10 @@ def page(stub):
     for name in ("errors", "ikpy", "gym"):
         source = (PACKAGE / f"{name}.py").read_text(encoding="utf-8")
         parts += [f"\n## mjarm.{name}\n\n{doc_of(ast.parse(source))}\n\n", describe_module(source)]
+    data = PACKAGE / "data"
+    parts += ["\n## mjarm.data\n\n", doc_of(ast.parse((data / "__init__.py").read_text(encoding="utf-8"))), "\n\n"]
+    for name in ("lerobot", "robomimic", "mcap"):
+        parts.append(describe_module((data / f"{name}.py").read_text(encoding="utf-8"), public_names(data)))
     return re.sub(r"\n{3,}", "\n\n", "".join(parts)).rstrip() + "\n"
 
 

@@ -15,6 +15,7 @@
 #include "mjarm/episode/episode_file.hpp"
 #include "mjarm/episode/read_column.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/jaws.hpp"
 #include "tests/support/temp_folder.hpp"
 
 namespace mjarm::clone {
@@ -195,15 +196,14 @@ TEST(TryPolicy, StandsStillWhereThePolicyDoesAndFailsForThat) {
 
 TEST(TryPolicy, LeadsTheToolAsThePolicyAnswers) {
   const ClonedPolicy up = steady({0, 0, -0.02F});  // 1 mm a row backwards along the tool's z
-  const episode::Studio studio = episode::Studio::open(up.options).value();
-  const Robot& robot = studio.robot();
-  const Jaws jaws = find_jaws(robot.model, robot.arm).value();
-  const episode::DrawnScene scene = episode::draw_scene(robot, up.options, kFirstTrial);
-  const auto verdict = try_policy(robot, jaws, up.policy, up.options, scene);
+  episode::TaskWorld world = episode::TaskWorld::open(up.options).value();
+  const auto verdict = try_policy(world, kFirstTrial, up.policy);
   ASSERT_TRUE(verdict) << verdict.error().what;
-  Pose X_WT = fk(robot.arm, scene.q);
+  const Robot& robot = world.robot();
+  const Jaws jaws = find_jaws(robot.model, robot.arm).value();
+  Pose X_WT = fk(robot.arm, world.scene().q);
   X_WT.p -= 0.1 * X_WT.R.col(2);  // after 20 s
-  EXPECT_NEAR(verdict->position, (X_WT * jaws.center_T - place_of(up.options, scene)).norm(), 1e-3);
+  EXPECT_NEAR(verdict->position, (X_WT * jaws.center_T - *world.scene().p_goal).norm(), 1e-3);
 }
 
 TEST(TryPolicy, RefusesAPolicyOfAnotherSize) {

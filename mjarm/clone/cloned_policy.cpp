@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "mjarm/clone/observation.hpp"
 #include "mjarm/clone/trial.hpp"
 #include "mjarm/core/messages/clone.hpp"
 #include "mjarm/core/threads.hpp"
@@ -57,32 +58,39 @@ Result<ClonedPolicy> load_cloned(const std::filesystem::path& file) {
   return out;
 }
 
+namespace {
+
+/// Whether the policy is of the size of what is seen and done in this world.
+Result<void> fits(const ClonedPolicy& cloned, const episode::TaskWorld& world) {
+  const int wanted = observation_size(world.scene().objects.size());
+  const rl::MixturePolicy& policy = cloned.policy;
+  if (policy.net.shape().observations == wanted && policy.actions() == kActions) return {};
+  return fail(Errc::bad_input, text(msg::clone_sizes, policy.net.shape().observations,
+                                    policy.actions(), cloned.options.task, wanted, kActions));
+}
+
+}  // namespace
+
 Result<std::vector<episode::Verdict>> try_often(const ClonedPolicy& cloned, int scenes, int threads,
                                                 const StopCheck& stop,
                                                 const std::function<void()>& after_one) {
-  const Result<episode::Studio> studio = episode::Studio::open(cloned.options);
-  if (!studio) return fail(studio.error());
-  const Robot& robot = studio->robot();
-  const Result<Jaws> jaws = find_jaws(robot.model, robot.arm);
-  if (!jaws) return fail(jaws.error());
-  const episode::DrawnScene first = episode::draw_scene(robot, cloned.options, kFirstTrial);
-  const int wanted = observation_size(first.objects.size());
-  if (cloned.policy.net.shape().observations != wanted || cloned.policy.actions() != kActions) {
-    return fail(Errc::bad_input,
-                text(msg::clone_sizes, cloned.policy.net.shape().observations,
-                     cloned.policy.actions(), cloned.options.task, wanted, kActions));
-  }
   std::vector<episode::Verdict> out(static_cast<std::size_t>(scenes));
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;  // of what follows
   std::optional<Error> error;
+  const auto keep = [&](Error what) {
+    const std::scoped_lock lock(mutex);
+    if (!error) error = std::move(what);
+    next = out.size();
+  };
   run_in_threads(threads, [&](int) {
+    Result<episode::TaskWorld> world = episode::TaskWorld::open(cloned.options);
+    if (!world) return keep(std::move(world.error()));
+    if (auto fine = fits(cloned, *world); !fine) return keep(std::move(fine.error()));
     for (std::size_t i = next++; i < out.size(); i = next++) {
-      const episode::DrawnScene scene = episode::draw_scene(robot, cloned.options, kFirstTrial + i);
-      auto verdict = try_policy(robot, *jaws, cloned.policy, cloned.options, scene, stop);
+      auto verdict = try_policy(*world, kFirstTrial + i, cloned.policy, stop);
+      if (!verdict) return keep(std::move(verdict.error()));
       const std::scoped_lock lock(mutex);
-      if (!verdict && !error) error = std::move(verdict.error());
-      if (error) return;
       out[i] = std::move(*verdict);
       if (after_one) after_one();
     }

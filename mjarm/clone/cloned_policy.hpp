@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -30,7 +31,8 @@ inline constexpr std::uint64_t kFirstTrial = 1'000'000;
 
 /// Tries a policy in scenes kFirstTrial and on, in several threads, whose number changes nothing.
 /// @param after_one  called after each, from one thread at a time; may be empty.
-/// @return how each went, in order; an error as try_policy() has.
+/// @return how each went, in order; bad_input for a policy of another size; errors as try_policy()
+///         and TaskWorld::open() have them.
 [[nodiscard]] Result<std::vector<episode::Verdict>> try_often(
     const ClonedPolicy& cloned, int scenes, int threads, const StopCheck& stop = {},
     const std::function<void()>& after_one = {});

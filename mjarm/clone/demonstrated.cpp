@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "mjarm/core/messages/clone.hpp"
-#include "mjarm/core/nearest_word.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/core/stored_zip.hpp"
 #include "mjarm/episode/draw_scene.hpp"
@@ -53,11 +52,11 @@ Result<LearnedColumns> read_columns(const episode::EpisodeFile& file, std::size_
 }
 
 /// What stays the same from row to row.
-Observed scene_of(const episode::EpisodeOptions& options, const episode::DrawnScene& scene) {
+Observed scene_of(const episode::DrawnScene& scene) {
   Observed out;
   out.objects.resize(scene.objects.size());
   out.target = scene.target;
-  out.p_place = place_of(options, scene);
+  out.p_place = *scene.p_goal;
   return out;
 }
 
@@ -89,7 +88,7 @@ Result<void> add_episode(const fs::path& file, episode::Studio& studio, Demonstr
       episode::draw_scene(studio.robot(), out.options, read->head.number);
   const Result<LearnedColumns> columns = read_columns(*read, scene.objects.size(), source);
   if (!columns) return fail(columns.error());
-  add_rows(*columns, scene_of(out.options, scene), out.rows);
+  add_rows(*columns, scene_of(scene), out.rows);
   out.numbers.push_back(read->head.number);
   return {};
 }
@@ -106,13 +105,11 @@ Result<Demonstrated> read_demonstrated(const fs::path& folder, std::size_t most,
   const Result<episode::EpisodeFile> first = episode::read_episode(files.front());
   if (!first) return fail(first.error());
   Demonstrated out{.options = first->head.options, .numbers = {}, .rows = {}};
-  const std::vector<std::string> tasks = learnable_tasks();
-  if (std::ranges::find(tasks, out.options.task) == tasks.end()) {
-    return fail(Errc::bad_input,
-                text(msg::clone_task, folder.string(), listed(tasks), out.options.task));
-  }
   Result<episode::Studio> studio = episode::Studio::open(out.options);
   if (!studio) return fail(std::move(studio.error()));
+  if (!episode::draw_scene(studio->robot(), out.options, 0).p_goal) {
+    return fail(Errc::bad_input, text(msg::clone_task, folder.string(), out.options.task));
+  }
   for (const fs::path& file : files) {
     if (is_stopped(stop)) return fail(stopped());
     if (auto added = add_episode(file, *studio, out); !added) return fail(std::move(added.error()));

@@ -38,13 +38,6 @@ class Row {
 
 }  // namespace
 
-std::vector<std::string> learnable_tasks() { return {"reach", "pick_place"}; }
-
-Eigen::Vector3d place_of(const episode::EpisodeOptions& options, const episode::DrawnScene& scene) {
-  if (options.task != "reach") return scene.X_WB_place.p;
-  return scene.objects[scene.target].X_WB.p + Eigen::Vector3d(0, 0, episode::kReachAbove);
-}
-
 int observation_size(std::size_t objects) {
   constexpr int kFixed = 3 + 6 + 1 + 6 + 6 + 6 + 6;
   return kFixed + static_cast<int>(objects) + 3 * (static_cast<int>(objects) - 1);

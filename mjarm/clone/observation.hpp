@@ -1,13 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "mjarm/core/pose.hpp"
-#include "mjarm/episode/draw_scene.hpp"
-#include "mjarm/episode/options.hpp"
 
 namespace mjarm::clone {
 
@@ -17,7 +15,7 @@ struct Observed {
   double grip = 0;                                    ///< command, 0 open to 1 closed
   std::vector<Pose> objects;                          ///< X_WB, in the order of the drawn scene
   std::size_t target = 0;                             ///< the object that is asked for
-  Eigen::Vector3d p_place = Eigen::Vector3d::Zero();  ///< [m] place_of()
+  Eigen::Vector3d p_place = Eigen::Vector3d::Zero();  ///< [m] DrawnScene::p_goal
 };
 
 /// What it answers: where the tool and the gripper's command are to be one row later.
@@ -25,13 +23,6 @@ struct Answer {
   Pose X_WT;
   double grip = 0;
 };
-
-/// Tasks whose goal is a place, which a policy can be told.
-[[nodiscard]] std::vector<std::string> learnable_tasks();
-
-/// [m] In the world: where the object is to be; "reach": the middle of the jaws, over the object.
-[[nodiscard]] Eigen::Vector3d place_of(const episode::EpisodeOptions& options,
-                                       const episode::DrawnScene& scene);
 
 inline constexpr int kActions = 7;  ///< numbers of an answer
 

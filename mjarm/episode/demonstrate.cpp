@@ -5,6 +5,7 @@
 
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/episode/demonstrate_internal.hpp"
+#include "mjarm/episode/studio_internal.hpp"
 #include "mjarm/execution/execution.hpp"
 #include "mjarm/execution/grip_watch.hpp"
 #include "mjarm/execution/metrics.hpp"
@@ -18,17 +19,7 @@ class Demonstrator {
  public:
   Demonstrator(const Robot& robot, const EpisodeOptions& options, Task& task, const StopCheck& stop)
       : robot_(robot), options_(options), task_(task), stop_(stop), sim_(robot.model) {
-    const DrawnScene& scene = task.scene();
-    sim_.reset_home();
-    put_joints(scene);
-    sim_.place(robot.arm, scene.q);
-    sim_.hold_others(robot.arm);
-    const SceneBodies bodies = scene_bodies(robot.model, robot.arm);
-    for (const DrawnObject& object : scene.objects) {
-      sim_.place_free(object.name, object.X_WB);
-      bodies_.push_back(
-          static_cast<int>(std::ranges::find(bodies.name, object.name) - bodies.name.begin()));
-    }
+    bodies_ = place_scene(robot, task.scene(), sim_);
     before_ = state();
   }
 
@@ -69,17 +60,6 @@ class Demonstrator {
     return {.qpos = {sim_.qpos().begin(), sim_.qpos().end()}, .attached = {}};
   }
 
-  /// Joints of the scene, before anything else: those of the arm and of free bodies come then.
-  void put_joints(const DrawnScene& scene) {
-    if (scene.joints.empty()) return;
-    std::vector<double> qpos(sim_.qpos().begin(), sim_.qpos().end());
-    const std::vector<double> rest(sim_.qvel().size(), 0.0);
-    for (const DrawnJoint& joint : scene.joints) {
-      qpos[qpos_of(robot_.model, joint.name)] = joint.value;
-    }
-    sim_.set_state(qpos, rest);
-  }
-
   /// The number of steps after which row `row` is taken.
   [[nodiscard]] long long due(std::size_t row) const {
     return std::llround(static_cast<double>(row) / (options_.fps * robot_.model.timestep()));
@@ -97,16 +77,11 @@ class Demonstrator {
                                                         : execution.error(sim_)),
                   .X_WT = sim_.tool(robot_.arm),
                   .X_WT_ref = {},
-                  .grip = 0,
+                  .grip = grip_command(robot_.arm, sim_),
                   .objects = poses(),
                   .motion = motion,
                   .marks = task_.marks()};
     sample.X_WT_ref = fk(robot_.arm, as_span(sample.q_ref));
-    if (const std::optional<Gripper>& grip = robot_.arm.gripper) {
-      const double ctrl = sample.ctrl[static_cast<std::size_t>(grip->id)];
-      sample.grip =
-          0.0 + (ctrl - grip->ctrl_open) / (grip->ctrl_closed - grip->ctrl_open);  // no -0
-    }
     out.samples.push_back(std::move(sample));
   }
 

@@ -7,8 +7,8 @@
 #include "mjarm/core/sha256.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/episode/archive_internal.hpp"
+#include "mjarm/episode/studio_internal.hpp"
 #include "mjarm/model/export.hpp"
-#include "mjarm/render/offscreen.hpp"
 #include "mjarm/render/png.hpp"
 
 namespace mjarm::episode {
@@ -28,12 +28,7 @@ Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const
                         StoredZipWriter& out) {
   if (done.samples.empty()) return {};
   const Stopwatch opening;
-  const Result<Model> looks = with_looks(robot.model, task.scene().looks);
-  if (!looks) return fail(looks.error());
-  auto renderer = render::OffscreenRenderer::create(*looks, {.width = options.size,
-                                                             .height = options.size,
-                                                             .quality = render::RenderQuality::low,
-                                                             .sites = false});
+  auto renderer = open_pictures(robot, options, task.scene());
   if (!renderer) return fail(std::move(renderer.error()));
   times.rendering += opening.us();
   for (const DrawnView& view : task.scene().views) {
