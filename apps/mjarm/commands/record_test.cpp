@@ -34,7 +34,7 @@ TEST_F(RecordCommand, MakesEpisodesThatReplay) {
   EXPECT_EQ(summary.at("made"), 2);
   EXPECT_EQ(summary.at("succeeded").get<int>() + summary.at("failed").get<int>(), 2);
   EXPECT_EQ(nlohmann::json::parse(record({}).out).at("found"), 2);
-  const auto same = mjarm({"replay", data_, "--all"});
+  const auto same = mjarm({"replay", data_, "--all", "--processes", "2"});
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.out, HasSubstr("2 of 2 episodes are the same"));
 
