@@ -250,7 +250,7 @@ TEST(TrainInProcesses, OneThatFailsTakesTheOthersAlong) {
   const auto missing = in_processes(2, {"train", "reach", "--resume", last, "--steps", "4096"});
   EXPECT_NE(missing.exit_code, 0);
   EXPECT_THAT(missing.err, HasSubstr("last.rank1.safetensors"));
-  EXPECT_THAT(missing.err, HasSubstr("another process"));
+  EXPECT_THAT(missing.err, HasSubstr("another of the processes"));
   // A folder stands in the way of a checkpoint that only the second process writes.
   std::filesystem::create_directories(path_in(folder, "other/last.rank1.safetensors/x"));
   const auto blocked =
