@@ -21,7 +21,7 @@ struct EpisodeOptions {
 
 /// "reach", "pick_place", ...: docs/data.md says what each asks for.
 [[nodiscard]] std::vector<std::string> task_names();
-/// Those with shipped scenes for tasks; check() says of which.
+/// Those with a shipped scene for each task.
 [[nodiscard]] std::vector<std::string> robot_names();
 
 /// @return bad_input that names the option, and what there is to choose from.

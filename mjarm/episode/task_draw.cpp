@@ -184,9 +184,8 @@ class DrawTask final : public Task {
     render::Overlay out;
     for (const InkSpot& spot : std::span(ink_).first(marks)) {
       if (spot.begins) {
-        out.lines.push_back({.width = kWidth,
-                             .color = {0.05F, 0.1F, 0.5F, 1},
-                             .look = render::LineLook::tube});
+        out.lines.push_back(
+            {.width = kWidth, .color = {0.05F, 0.1F, 0.5F, 1}, .look = render::LineLook::tube});
       }
       auto& points = out.lines.back().points_W;
       const Eigen::Vector3d p_W = spot.p_W + above;
@@ -285,7 +284,7 @@ std::unique_ptr<Task> draw_draw(const Robot& robot, EpisodeRng& rng) {
   scene.joints = {{"paper_pitch", drawn(rng.scene, kSheetPitch)},
                   {"paper_roll", drawn(rng.scene, kSheetRoll)}};
   const Pose X_ST{.R = from_euler({scene.joints[0].value, 0, 0}) *
-                                from_euler({0, scene.joints[1].value, 0})};
+                       from_euler({0, scene.joints[1].value, 0})};
   draw_start(rng.scene, robot.arm, scene);
 
   scene.objects.push_back({"paper", X_WS * X_ST, "white", {0.96F, 0.94F, 0.88F, 1}});
@@ -308,12 +307,9 @@ std::unique_ptr<Task> draw_draw(const Robot& robot, EpisodeRng& rng) {
 
 TaskKind draw_a_figure_task() {
   return {
-      "draw",
-      "calligraphy.xml",
-      robot_names(),
+      "draw", "calligraphy.xml",
       with_looks_ranges({kFigureX, kFigureY, kFigureSize, kFigureTurn, kSheetPitch, kSheetRoll}),
-      draw_draw,
-      "pen_tcp"};
+      draw_draw, "pen_tcp"};
 }
 
 }  // namespace mjarm::episode

@@ -82,8 +82,7 @@ struct EpisodeRng {
 /// A task as a user asks for it.
 struct TaskKind {
   const char* name;
-  const char* scene;                ///< file in the folders of the robots
-  std::vector<std::string> robots;  ///< that have it
+  const char* scene;  ///< file in the folder of each robot
   std::vector<DrawRange> ranges;
   /// @param robot  with that scene.
   std::unique_ptr<Task> (*draw)(const Robot& robot, EpisodeRng& rng);

@@ -210,7 +210,7 @@ std::unique_ptr<Task> draw_open_drawer(const Robot& robot, EpisodeRng& rng) {
 }  // namespace
 
 TaskKind open_drawer_task() {
-  return {"open_drawer", "cabinet.xml", robot_names(),
+  return {"open_drawer", "cabinet.xml",
           with_looks_ranges({kCabinetX, kCabinetY, kCabinetZ, kCabinetYaw, kOpening}),
           draw_open_drawer};
 }

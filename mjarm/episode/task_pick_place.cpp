@@ -53,8 +53,7 @@ TaskKind pick_place_task() {
   std::vector<DrawRange> ranges = object_ranges();
   const std::vector<DrawRange> place = place_ranges();
   ranges.insert(ranges.end(), place.begin(), place.end());
-  return {"pick_place", kPickScene, robot_names(), with_looks_ranges(std::move(ranges)),
-          draw_pick_place};
+  return {"pick_place", kPickScene, with_looks_ranges(std::move(ranges)), draw_pick_place};
 }
 
 }  // namespace mjarm::episode

@@ -23,8 +23,8 @@ constexpr double kBeforeButton = 0.08;    // [m] of the fingertips, where the st
 constexpr double kPushSpeed = 0.05;       // [m/s]
 constexpr std::size_t kButtonTurns = 12;  // of the hand about the push that are tried
 
-constexpr DrawRange kButtonX{"button_x", "m", 0.4, 0.6};
-constexpr DrawRange kButtonY{"button_y", "m", -0.3, 0.3};
+constexpr DrawRange kButtonX{"button_x", "m", 0.38, 0.56};
+constexpr DrawRange kButtonY{"button_y", "m", -0.28, 0.28};
 constexpr DrawRange kButtonTilt{"button_tilt", "rad", 0, 0.45};
 constexpr DrawRange kTiltAzimuth{"button_tilt_azimuth", "rad", -std::numbers::pi, std::numbers::pi};
 constexpr DrawRange kHandTurn{"hand_turn", "rad", -std::numbers::pi, std::numbers::pi};
@@ -199,7 +199,7 @@ std::unique_ptr<Task> draw_push_button(const Robot& robot, EpisodeRng& rng) {
 }  // namespace
 
 TaskKind push_button_task() {
-  return {"push_button", "buttons.xml", robot_names(),
+  return {"push_button", "buttons.xml",
           with_looks_ranges({kButtonX, kButtonY, kButtonTilt, kTiltAzimuth, kHandTurn}),
           draw_push_button};
 }

@@ -54,7 +54,7 @@ std::unique_ptr<Task> draw_reach(const Robot& robot, EpisodeRng& rng) {
 }  // namespace
 
 TaskKind reach_task() {
-  return {"reach", kPickScene, robot_names(), with_looks_ranges(object_ranges()), draw_reach};
+  return {"reach", kPickScene, with_looks_ranges(object_ranges()), draw_reach};
 }
 
 }  // namespace mjarm::episode

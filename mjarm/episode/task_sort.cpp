@@ -223,8 +223,7 @@ std::unique_ptr<Task> draw_sort(const Robot& robot, EpisodeRng& rng) {
 }  // namespace
 
 TaskKind sort_task() {
-  return {"sort", "sort.xml", robot_names(), with_looks_ranges({kSortX, kSortY, kSortYaw}),
-          draw_sort};
+  return {"sort", "sort.xml", with_looks_ranges({kSortX, kSortY, kSortYaw}), draw_sort};
 }
 
 }  // namespace mjarm::episode

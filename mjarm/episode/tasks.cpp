@@ -84,11 +84,6 @@ Result<void> check(const EpisodeOptions& options) {
     return fail(Errc::bad_input, text(msg::episode_robot, options.robot, listed(robots),
                                       did_you_mean(options.robot, robots)));
   }
-  const std::vector<std::string>& with = task_kind(options.task).robots;
-  if (std::ranges::count(with, options.robot) == 0) {
-    return fail(Errc::bad_input,
-                text(msg::episode_no_scene, options.robot, options.task, listed(with)));
-  }
   if (auto fits = in_range("size", options.size, kMinSize, kMaxSize); !fits) return fits;
   return in_range("fps", options.fps, kMinFps, kMaxFps);
 }

@@ -99,9 +99,6 @@ TEST_F(RecordCommand, RefusesWhatItCannotDoInOneLine) {
   const auto misspelt = mjarm({"record", "pik", "--out", data_});
   EXPECT_EQ(misspelt.exit_code, 2);
   EXPECT_THAT(misspelt.err, HasSubstr("did you mean \"pick_place\"?"));
-  const auto none = mjarm({"record", "draw", "--out", data_});
-  EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("panda has no scene for the task draw; ur5e has one"));
   EXPECT_EQ(record({"--fps", "51"}).exit_code, 2);
   EXPECT_EQ(mjarm({"replay"}).exit_code, 2);
   EXPECT_EQ(mjarm({"replay", folder_.path().string()}).exit_code, 2);
