@@ -12,6 +12,7 @@ import gymnasium
 import numpy as np
 import pytest
 import torch
+from lerobot.datasets.aggregate import aggregate_datasets
 from lerobot.datasets.compute_stats import get_feature_stats
 from lerobot.datasets.lerobot_dataset import LeRobotDataset
 from lerobot.envs.factory import make_env, make_env_config
@@ -107,8 +108,8 @@ def test_statistics_are_those_that_lerobot_computes(root, archives):
 
 def test_parts_are_put_together_by_lerobot_too(root, parts, tmp_path):
     """Sets of one part each, put together by LeRobot's own tool, are the set of both parts."""
-    from lerobot.datasets.aggregate import aggregate_datasets
-
+    if len(parts) < 2:
+        pytest.skip("one part was given")
     for i, part in enumerate(parts[:2]):
         to_lerobot([part], tmp_path / str(i))
     aggregate_datasets(repo_ids=["mjarm/a", "mjarm/b"], aggr_repo_id="mjarm/both", roots=[tmp_path / "0", tmp_path / "1"],
