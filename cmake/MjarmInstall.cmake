@@ -15,7 +15,7 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/programs" DESTINATION "${CMAKE
 # The pages, with the pictures and programs that they link to, beside each other as in a clone.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm" PATTERN roadmap.md EXCLUDE)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/examples/learn" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/examples")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/examples" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/python")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/examples" "${PROJECT_SOURCE_DIR}/python/lerobot_env_mjarm" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/python")
 file(GLOB python_pages "${PROJECT_SOURCE_DIR}/python/README*.md")
 install(FILES ${python_pages} DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/python")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/web/dist/" DESTINATION "${CMAKE_INSTALL_DATADIR}/mjarm/page" OPTIONAL)

@@ -109,3 +109,29 @@ configure_wheel() {
   quiet cmake -S "$root" --preset wheel -U 'Python_*' -U '_Python*' -U 'nanobind_*' \
     -DMUJOCO_ROOT="${MUJOCO_ROOT:-$mujoco/mujoco}" -DMJARM_PYTHON=ON -DPython_EXECUTABLE="$environment/bin/python"
 }
+
+# Data sets and the environment, judged by LeRobot itself, which takes a Python from 3.12 on. It is large, so no part of `./dev test`.
+run_lerobot() {
+  local build=$root/build/wheel results=$root/build/wheel/lerobot.xml
+  for python3 in $(pythons_of_wheels) ""; do is_python "$python3" 3.12 4.0 && break; done
+  [[ $python3 ]] || die "lerobot: it takes a Python of 3.12 or later, with headers"
+  check "$("$python3" --version)" configure_wheel
+  ((failed)) || check "build" build_counted wheel mjarm_python mjarm_python_stub
+  ((failed)) || check "wheel" build_wheel wheel "$build/lerobot"
+  ((failed)) || check "lerobot: installed" python_environment lerobot
+  ((failed)) || check "tests" test_lerobot "$build/lerobot" "$results"
+  [[ ! -e $results ]] || count_results "$results"
+  finish
+}
+
+# test_lerobot FOLDER RESULTS: with the wheel in there.
+test_lerobot() {
+  python_environment lerobot || return
+  quiet "$environment/bin/pip" install --disable-pip-version-check --no-deps --no-index --force-reinstall --find-links "$1" mjarm &&
+    quiet "$environment/bin/pip" install --disable-pip-version-check --no-deps --no-build-isolation --force-reinstall \
+      "$root/python/lerobot_env_mjarm" || return
+  rm -rf "$2" "$root"/python/lerobot_env_mjarm/{build,*.egg-info}
+  (cd / && PATH=$environment/bin:$PATH HF_HUB_OFFLINE=1 HF_HOME="$root/build/wheel/hf" "$environment/bin/python" -B -m pytest -q -p no:cacheprovider \
+    --junitxml "$2" "$root/python/lerobot_env_mjarm/tests" >&2) || true
+  [[ -e $2 ]]
+}

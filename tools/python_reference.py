@@ -96,7 +96,7 @@ def public_names(package=PACKAGE):
 
 def page(stub):
     parts = [HEAD, "\n## mjarm\n\n", describe_module(stub.read_text(encoding="utf-8"), public_names())]
-    for name in ("errors", "ikpy", "gym"):
+    for name in ("errors", "ikpy", "gym", "tasks"):
         source = (PACKAGE / f"{name}.py").read_text(encoding="utf-8")
         parts += [f"\n## mjarm.{name}\n\n{doc_of(ast.parse(source))}\n\n", describe_module(source)]
     data = PACKAGE / "data"

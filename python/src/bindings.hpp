@@ -20,6 +20,7 @@ void bind_pick(nanobind::module_& m);
 void bind_perception(nanobind::module_& m);
 void bind_tags(nanobind::module_& m);
 void bind_rl(nanobind::module_& m);
+void bind_episode(nanobind::module_& m);
 void bind_pictures(nanobind::module_& m);
 void bind_view(nanobind::module_& m);
 

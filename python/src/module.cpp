@@ -38,6 +38,7 @@ NB_MODULE(_core, m) {
   python::bind_perception(m);
   python::bind_tags(m);
   python::bind_rl(m);
+  python::bind_episode(m);
   python::bind_pictures(m);
   python::bind_view(m);
 }

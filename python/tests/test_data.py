@@ -164,7 +164,8 @@ def test_robomimic_holds_every_row(parts, archives, tmp_path, action):
     to_robomimic(parts, tmp_path / "set.hdf5", action=action, next_obs=action == "tool")
     with h5py.File(tmp_path / "set.hdf5") as file:
         assert file["data"].attrs["total"] == sum(one.rows for one in archives) and len(file["data"]) == 3
-        assert json.loads(file["data"].attrs["env_args"])["env_name"] == "mjarm/reach"
+        assert json.loads(file["data"].attrs["env_args"])["env_kwargs"] == {
+            "task": "reach", "robot": "panda", "size": SIZE, "fps": 10, "action": action}
         assert sorted([*file["mask/train"], *file["mask/valid"]]) == [b"demo_0", b"demo_1", b"demo_2"]
         for i, one in enumerate(archives):
             demo = file["data"][f"demo_{i}"]
@@ -259,6 +260,16 @@ def test_what_is_there_is_kept(parts, tmp_path):
         with pytest.raises(mjarm.Usage, match="something else"):
             convert(parts, out, force=True)
     assert (out / "thesis.tex").exists() and list(tmp_path.iterdir()) == [out]
+
+
+def test_a_process_that_is_ended_leaves_nothing(parts, tmp_path):
+    code = "import os, signal, sys; import mjarm.data.__main__ as it; " \
+           "it._shown = lambda: lambda done, total: os.kill(os.getpid(), signal.SIGTERM); sys.exit(it.main(sys.argv[1:]))"
+    for name in ("lerobot", "robomimic", "mcap"):
+        done = subprocess.run([sys.executable, "-c", code, name, *map(str, parts), "--out", str(tmp_path / name)],
+                              capture_output=True, text=True, timeout=300)
+        assert done.returncode == 130 and "was not written" in done.stderr, done.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_missing_packages_are_told():

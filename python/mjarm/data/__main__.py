@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 import time
 from collections.abc import Callable
@@ -66,6 +67,7 @@ def main(words: list[str] | None = None) -> int:
     options: dict[str, Any] = vars(_parser().parse_args(words))
     convert = {"lerobot": to_lerobot, "robomimic": to_robomimic, "mcap": to_mcap}[options.pop("format")]
     data, out = options.pop("data"), options.pop("out")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # like Ctrl-C: nothing half written stays
     try:
         count = convert(data, out, progress=_shown(), **options)
     except (BadInput, Usage) as wrong:

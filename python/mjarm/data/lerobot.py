@@ -258,7 +258,7 @@ def to_lerobot(folders: Sequence[str | os.PathLike[str]], out: str | os.PathLike
     """
     for module, package in (("pyarrow", "pyarrow"), ("av", "av"), ("PIL", "pillow")):
         needed(module, package)
-    with whole(pathlib.Path(out), force, lambda there: (there / "meta" / "info.json").is_file()) as part:
+    with whole(pathlib.Path(out), force, lambda there: (there / "meta" / "mjarm.json").is_file()) as part:
         episodes = EpisodeSet([pathlib.Path(folder) for folder in folders], failed)
         writer = _Writer(part, episodes, action, chinese)
         try:

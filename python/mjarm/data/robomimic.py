@@ -107,7 +107,7 @@ def to_robomimic(folders: Sequence[str | os.PathLike[str]], out: str | os.PathLi
                 if progress:
                     progress(i + 1, len(episodes))
             data.attrs["total"] = total
-            data.attrs["env_args"] = json.dumps({"env_name": f"mjarm/{head.task}", "type": GYM, "env_kwargs": {
-                "robot": head.robot, "size": head.size, "fps": head.fps, "action": action}})
+            data.attrs["env_args"] = json.dumps({"env_name": "mjarm/Task-v0", "type": GYM, "env_kwargs": {
+                "task": head.task, "robot": head.robot, "size": head.size, "fps": head.fps, "action": action}})
             _write_masks(file, len(episodes))
         return len(episodes)
