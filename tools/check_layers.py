@@ -20,6 +20,7 @@ ALLOWED = {
     "control": "core model kinematics trajectory",
     "identification": "core model kinematics trajectory control",
     "sim": "core model control",
+    "teleop": "core model kinematics collision trajectory control sim",
     "render": "core model sim",
     "perception": "core model sim render",
     "execution": "core model kinematics collision path planning trajectory control sim",
@@ -29,7 +30,7 @@ ALLOWED = {
     "rl": "core model kinematics control sim",
     "episode": "core model kinematics collision path planning trajectory control sim render execution program",
     "install": "core model",
-    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception",
+    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception teleop",
 }
 
 # Where MuJoCo's own headers may be included; tests may, everywhere: MuJoCo is their oracle.
