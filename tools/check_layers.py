@@ -30,7 +30,7 @@ ALLOWED = {
     "rl": "core model kinematics control sim",
     "episode": "core model kinematics collision path planning trajectory control sim render execution program",
     "install": "core model",
-    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception teleop",
+    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception teleop episode",
 }
 
 # Where MuJoCo's own headers may be included; tests may, everywhere: MuJoCo is their oracle.

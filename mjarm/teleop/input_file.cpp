@@ -14,14 +14,19 @@
 namespace mjarm {
 namespace {
 
-constexpr std::array<std::string_view, 8> kInputColumns = {"time", "vx", "vy", "vz",
-                                                           "wx",   "wy", "wz", "gripper"};
-constexpr std::array<std::string_view, 8> kInputUnits = {
-    " [s]", " [m/s]", " [m/s]", " [m/s]", " [rad/s]", " [rad/s]", " [rad/s]", ""};
+constexpr std::size_t kNeededColumns = 8;
+constexpr std::array<std::string_view, 9> kInputColumns = {"time", "vx", "vy",      "vz",     "wx",
+                                                           "wy",   "wz", "gripper", "in_tool"};
+constexpr std::array<std::string_view, 9> kInputUnits = {
+    " [s]", " [m/s]", " [m/s]", " [m/s]", " [rad/s]", " [rad/s]", " [rad/s]", "", ""};
 constexpr std::size_t kMaxInputFile = std::size_t{64} << 20;  // [bytes]
 
+bool has_columns(const std::vector<std::string>& fields) {
+  return fields.size() == kNeededColumns || fields.size() == kInputColumns.size();
+}
+
 bool is_head(const std::vector<std::string>& fields) {
-  if (fields.size() != kInputColumns.size()) return false;
+  if (!has_columns(fields)) return false;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string_view word = std::string_view(fields[i]).substr(0, fields[i].find('['));
     if (trimmed(word) != kInputColumns[i]) return false;
@@ -34,12 +39,12 @@ Error line_error(const std::string& source, std::size_t line, const std::string&
 }
 
 /// One line, without the head.
-Result<TimedInput> input_of(const std::vector<std::string>& fields) {
-  if (fields.size() != kInputColumns.size()) {
-    return fail(Errc::bad_input, text(msg::teleop_input_columns, kInputColumns.size()));
+Result<TimedInput> input_of(const std::vector<std::string>& fields, TwistFrame frame) {
+  if (!has_columns(fields)) {
+    return fail(Errc::bad_input, text(msg::teleop_input_columns, kNeededColumns));
   }
   std::array<double, kInputColumns.size()> values{};
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < fields.size(); ++i) {
     const Result<double> value = parse_quantity(fields[i], Quantity::number);
     if (!value) return fail(value.error());
     values[i] = *value;
@@ -47,7 +52,14 @@ Result<TimedInput> input_of(const std::vector<std::string>& fields) {
   if (values[7] < 0 || values[7] > 1) {
     return fail(Errc::bad_input, text(msg::teleop_input_gripper, values[7]));
   }
+  if (values[8] != 0 && values[8] != 1) {
+    return fail(Errc::bad_input, text(msg::teleop_input_frame, values[8]));
+  }
   TimedInput out;
+  out.input.frame = frame;
+  if (fields.size() > kNeededColumns) {
+    out.input.frame = values[8] == 1 ? TwistFrame::tool : TwistFrame::world;
+  }
   out.time = values[0];
   out.input.linear = {values[1], values[2], values[3]};
   out.input.angular = {values[4], values[5], values[6]};
@@ -69,12 +81,11 @@ Result<std::vector<TimedInput>> parse_inputs(std::string_view csv, TwistFrame fr
     if (trimmed(line).empty()) continue;
     const std::vector<std::string> fields = csv_fields(line);
     if (out.empty() && is_head(fields)) continue;
-    Result<TimedInput> input = input_of(fields);
+    Result<TimedInput> input = input_of(fields, frame);
     if (!input) return fail(line_error(source, number, input.error().what));
     if (input->time < 0 || (!out.empty() && !(input->time > out.back().time))) {
       return fail(line_error(source, number, text(msg::teleop_input_time, input->time)));
     }
-    input->input.frame = frame;
     out.push_back(std::move(*input));
   }
   if (out.empty()) return fail(Errc::bad_input, text(msg::teleop_input_empty, source));
@@ -104,7 +115,7 @@ std::string inputs_csv(std::span<const TimedInput> inputs) {
     }
     out += ',';
     append_number(out, one.input.grip_to.value_or(0));
-    out += '\n';
+    out += one.input.frame == TwistFrame::tool ? ",1\n" : ",0\n";
   }
   return out;
 }

@@ -19,9 +19,10 @@ struct TimedInput {
 
 /// Reads inputs that were recorded, or written by a program: a table of comma separated values, a
 /// line a time, each of which holds until the next; times rise from 0. Columns `time` [s], `vx`,
-/// `vy`, `vz` [m/s], `wx`, `wy`, `wz` [rad/s], `gripper` (TeleopInput::grip_to), in this order;
-/// units in brackets after a name are passed over.
-/// @param frame   of all velocities.
+/// `vy`, `vz` [m/s], `wx`, `wy`, `wz` [rad/s], `gripper` (TeleopInput::grip_to) and, where wanted,
+/// `in_tool` (1: in the axes of the tool, 0: of the world), in this order; units in brackets after
+/// a name are passed over.
+/// @param frame   of the velocities of lines without `in_tool`.
 /// @param source  for messages.
 /// @return bad_input that names the line.
 [[nodiscard]] Result<std::vector<TimedInput>> parse_inputs(std::string_view csv, TwistFrame frame,

@@ -10,6 +10,7 @@ TEST(TeleopInputFile, ReadsWhatItWrites) {
   inputs[0].input = {.linear = {0.1, -0.2, 1e-3}, .angular = {1, 2, 1.0 / 3}, .grip_to = 0.25};
   inputs[1].time = 0.004;
   inputs[1].input.grip_to = 1;
+  inputs[1].input.frame = TwistFrame::tool;
   const auto read = parse_inputs(inputs_csv(inputs), TwistFrame::tool, "file.csv");
   ASSERT_TRUE(read) << read.error().what;
   ASSERT_EQ(read->size(), 2U);
@@ -18,7 +19,7 @@ TEST(TeleopInputFile, ReadsWhatItWrites) {
     EXPECT_EQ((*read)[i].input.linear, inputs[i].input.linear);
     EXPECT_EQ((*read)[i].input.angular, inputs[i].input.angular);
     EXPECT_EQ((*read)[i].input.grip_to, inputs[i].input.grip_to);
-    EXPECT_EQ((*read)[i].input.frame, TwistFrame::tool);
+    EXPECT_EQ((*read)[i].input.frame, inputs[i].input.frame);
   }
 }
 
@@ -28,6 +29,7 @@ TEST(TeleopInputFile, NeedsNoHeadAndPassesOverEmptyLines) {
   ASSERT_TRUE(read) << read.error().what;
   ASSERT_EQ(read->size(), 2U);
   EXPECT_EQ((*read)[1].input.linear.x(), 0.1);
+  EXPECT_EQ((*read)[0].input.frame, TwistFrame::world);
 }
 
 TEST(TeleopInputFile, NamesTheLineThatDoesNotFit) {
@@ -39,6 +41,7 @@ TEST(TeleopInputFile, NamesTheLineThatDoesNotFit) {
                  {"0,0,0,0,0,0,0,0\n1,2,3\n", "f.csv:2"},
                  {"0,0,0,0,0,0,0,0\n0,0,0,0,0,0,0,0\n", "f.csv:2"},
                  {"0,0,0,0,0,0,0,1.5\n", "f.csv:1"},
+                 {"0,0,0,0,0,0,0,0,2\n", "f.csv:1"},
                  {"-1,0,0,0,0,0,0,0\n", "f.csv:1"},
                  {"0,nan,0,0,0,0,0,0\n", "f.csv:1"},
                  {"time,vx\n0,0,0,0,0,0,0,0\n", "f.csv:1"},
