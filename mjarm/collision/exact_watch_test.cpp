@@ -69,7 +69,7 @@ TEST(SceneWatch, WhatIsFreeIsFreeAllAlong) {
     OracleWorld world(robot);
     Rng rng(5);
     int free = 0, refused = 0, missed = 0;
-    for (int i = 0; i < 150; ++i) {
+    for (int i = 0; i < 300; ++i) {
       JointVec q0 = robot.arm.home, step(q0.size());
       for (int k = 0; k < q0.size(); ++k) {
         q0[k] += rng.uniform(-0.7, 0.7);

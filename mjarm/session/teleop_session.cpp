@@ -166,7 +166,9 @@ void TeleopSession::step() {
     return;
   }
   record();
-  if (taken.since && latencies_.size() < kMaxLatencies) {
+  // Files that are written make the period after them late.
+  const bool wrote = std::ranges::find(taken.actions, TeleopAction::keep) != taken.actions.end();
+  if (taken.since && !wrote && latencies_.size() < kMaxLatencies) {
     latencies_.push_back(
         std::chrono::duration<double>(TeleopDesk::Clock::now() - *taken.since).count());
   }
@@ -179,7 +181,7 @@ TeleopLatency TeleopSession::latency() const {
   std::vector<double> sorted = latencies_;
   std::ranges::sort(sorted);
   out.mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(out.count);
-  out.p99 = sorted[(sorted.size() - 1) * 99 / 100];
+  out.p99 = sorted[std::min(sorted.size() - 1, sorted.size() * 99 / 100)];
   out.max = sorted.back();
   return out;
 }

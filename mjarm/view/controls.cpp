@@ -66,15 +66,19 @@ std::vector<ControlHelp> control_help(std::span<const int> taken) {
   const auto add = [&rows](std::string keys, Msg about) {
     rows.push_back({std::move(keys), text(about)});
   };
+  const bool whole = taken.empty();
   add(text(msg::view_left_drag), msg::view_mouse_turn);
   add(text(msg::view_right_drag), msg::view_mouse_pan);
   add(text(msg::view_wheel), msg::view_mouse_zoom);
   add(text(msg::view_right_click), msg::view_mouse_settings);
-  add(text(msg::view_drag_handle), msg::view_mouse_target);
+  if (whole) add(text(msg::view_drag_handle), msg::view_mouse_target);
   add(text(msg::view_double_click), msg::view_mouse_select);
-  add(text(msg::view_ctrl_right_drag), msg::view_mouse_push);
-  add(text(msg::view_ctrl_left_drag), msg::view_mouse_twist);
+  if (whole) {
+    add(text(msg::view_ctrl_right_drag), msg::view_mouse_push);
+    add(text(msg::view_ctrl_left_drag), msg::view_mouse_twist);
+  }
   for (const ActionRow& row : kActions) {
+    if (!whole && row.action == target) continue;
     const bool plain = row.modifier == none;
     if (!plain || std::ranges::find(taken, row.key) == taken.end()) add(text(row.shown), row.about);
   }
