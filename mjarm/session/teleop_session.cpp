@@ -57,6 +57,7 @@ void TeleopSession::reset() {
   past_.clear();
   inputs_.clear();
   rows_.clear();
+  next_row_ = 0;
   tape_ = Tape::empty;
   said_.clear();
 }
@@ -112,6 +113,7 @@ void TeleopSession::redo() {
   const double time = sim_.time() + 1e-9;
   while (!rows_.empty() && rows_.back().world.time > time) rows_.pop_back();
   while (!inputs_.empty() && inputs_.back().time > time) inputs_.pop_back();
+  next_row_ = rows_.empty() ? sim_.time() : rows_.back().world.time + 1.0 / options_.fps;
   said_ = text(msg::teleop_went_back, now - sim_.time());
 }
 
@@ -137,8 +139,11 @@ double TeleopSession::recorded() const { return static_cast<double>(rows_.size()
 void TeleopSession::record() {
   if (tape_ != Tape::running) return;
   const double every = 1.0 / options_.fps;
-  if (!rows_.empty() && sim_.time() < rows_.back().world.time + every - 1e-9) return;
+  const double late = sim_.time() - next_row_;
+  if (late < -1e-9) return;
   rows_.push_back({sim_.snapshot(), teleop_.reference(), teleop_.state().grip});
+  // In step with the first row, whatever the periods are; anew after a rest.
+  next_row_ += late > every ? late + every : every;
 }
 
 void TeleopSession::remember(const TeleopInput& input) {

@@ -97,7 +97,8 @@ class TeleopSession {
   std::vector<TimedInput> inputs_;
   Tape tape_ = Tape::empty;
   std::vector<episode::LedSample> rows_;
-  std::string said_;  ///< what came of the last action
+  double next_row_ = 0;  ///< [s]
+  std::string said_;     ///< what came of the last action
   std::vector<double> latencies_;
 };
 

@@ -165,10 +165,10 @@ TEST_F(LedPanda, InputsPlayedAgainGiveTheSameArm) {
   }
   const std::string bytes = folder.read("episode_000000.zip");
   const StoredZip zip = StoredZip::open(bytes, "episode").value();
-  const auto about = parse_json(zip.read_checked("episode.json").value(), "episode.json");
+  const auto about = JsonObject::parse(zip.read_checked("episode.json").value());
   ASSERT_TRUE(about);
-  EXPECT_EQ(about->find("task")->string(), "teleop");
-  EXPECT_EQ(about->find("language")->find("en")->string(), "wave");
+  EXPECT_EQ((*about)->find("task")->string(), "teleop");
+  EXPECT_EQ((*about)->find("language")->find("en")->string(), "wave");
   EXPECT_TRUE(zip.contains("action_tool.npy"));
   EXPECT_TRUE(zip.contains("object_poses.npy"));
 }
