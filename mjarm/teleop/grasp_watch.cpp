@@ -1,4 +1,7 @@
+#include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "mjarm/model/scene_bodies.hpp"
 #include "mjarm/teleop/grasp_watch_internal.hpp"
