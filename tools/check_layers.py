@@ -20,6 +20,7 @@ ALLOWED = {
     "control": "core model kinematics trajectory",
     "identification": "core model kinematics trajectory control",
     "sim": "core model control",
+    "teleop": "core model kinematics collision trajectory control sim",
     "render": "core model sim",
     "perception": "core model sim render",
     "execution": "core model kinematics collision path planning trajectory control sim",
@@ -30,7 +31,7 @@ ALLOWED = {
     "episode": "core model kinematics collision path planning trajectory control sim render execution program",
     "clone": "core model kinematics rl episode",
     "install": "core model",
-    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception",
+    "session": "core model kinematics collision path planning trajectory control sim render execution program view rl perception teleop episode",
 }
 
 # Where MuJoCo's own headers may be included; tests may, everywhere: MuJoCo is their oracle.

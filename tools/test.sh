@@ -173,7 +173,7 @@ run_long() {
   [[ $seconds =~ ^[0-9]+$ ]] || die "long: \"$seconds\" is no whole number of seconds"
   check "build" build_counted dev all
   if ((failed == 0)); then
-    MJARM_LONG_TESTS=1 run_ctest dev --tests-regex '^(kinematics|path|collision|planning|perception|rl|bench|app|whole)\.' --timeout 7200
+    MJARM_LONG_TESTS=1 run_ctest dev --tests-regex '^(kinematics|path|collision|planning|perception|rl|teleop|bench|app|whole)\.' --timeout 7200
     for parser in $(python3 -B "${mutate[@]}" --list); do
       check "changed files: $parser" python3 -B "${mutate[@]}" --parser "$parser" --seconds "$seconds" \
         --seed "$(date +%s)" --keep "$root/build/dev/mutation-found"

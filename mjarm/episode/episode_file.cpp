@@ -34,6 +34,10 @@ Result<EpisodeHead> read_head(std::string_view json, const std::string& source) 
     const std::string found = schema != nullptr ? schema->string() : "";
     return fail(Errc::bad_input, text(msg::episode_schema, source, found, kSchema));
   }
+  const JsonValue* task = (*parsed)->find("task");
+  if (task != nullptr && task->is_string() && task->string() == kLedTask) {
+    return fail(Errc::bad_input, text(msg::episode_by_hand, source));
+  }
   FieldReader fields(**parsed, source);
   EpisodeHead head{.options = fields.options(),
                    .number = fields.whole("number", kMaxNumber),

@@ -52,6 +52,12 @@ Result<void> add_frames(const Robot& robot, const EpisodeOptions& options, const
 
 }  // namespace
 
+Result<std::string> hash_of_model(const Model& model) {
+  const Result<Exported> binary = export_model(model, ExportFormat::mjb, {});
+  if (!binary) return fail(binary.error());
+  return sha256(binary->content);
+}
+
 struct Studio::Impl {
   EpisodeOptions options;
   Robot robot;  ///< as its file has it
@@ -73,10 +79,9 @@ Result<Studio> Studio::open(const EpisodeOptions& options) {
     if (!found) return fail(found.error());
     jaws = *found;
   }
-  const Result<Exported> binary = export_model(robot->model, ExportFormat::mjb, {});
-  if (!binary) return fail(binary.error());
-  return Studio(
-      std::make_unique<Impl>(Impl{options, std::move(*robot), jaws, sha256(binary->content)}));
+  Result<std::string> hash = hash_of_model(robot->model);
+  if (!hash) return fail(std::move(hash.error()));
+  return Studio(std::make_unique<Impl>(Impl{options, std::move(*robot), jaws, std::move(*hash)}));
 }
 
 Result<Episode> Studio::make(std::uint64_t number, const StopCheck& stop) {

@@ -261,12 +261,22 @@ Result<PageMessage> read_drag(const JsonValue& object, const PageScene& scene) {
   return in.give(drag);
 }
 
+Result<PageMessage> read_lead(const JsonValue& object, const PageScene& scene) {
+  Reader in(object, {"linear", "angular", "grip"});
+  in.refuse_unless(scene.facts.can_lead, "lead");
+  view::LeadEvent event;
+  event.linear = in.vector("linear").cwiseMax(-1).cwiseMin(1);
+  event.angular = in.vector("angular").cwiseMax(-1).cwiseMin(1);
+  event.grip = in.number("grip", -1, 1);
+  return in.give(view::ViewEvent(event));
+}
+
 using Read = Result<PageMessage> (*)(const JsonValue&, const PageScene&);
 constexpr std::pair<std::string_view, Read> kTypes[] = {
     {"pause", read_pause},   {"step", read_step},   {"speed", read_speed},
     {"reset", read_reset},   {"push", read_push},   {"release", read_release},
     {"select", read_select}, {"joint", read_joint}, {"panel", read_panel},
-    {"target", read_target}, {"drag", read_drag},
+    {"target", read_target}, {"drag", read_drag},   {"lead", read_lead},
 };
 
 }  // namespace

@@ -120,6 +120,19 @@ TEST_F(FromPage, ADragIsAPoseWithAUnitQuaternion) {
   refused(R"({"type":"drag","pos":[0,0,0],"quat":[1,0,0,0])" + rest, "drag");
 }
 
+TEST_F(FromPage, ALeadIsClampedAndOnlyWhereItIsFollowed) {
+  const std::string lead = R"({"type":"lead","linear":[0.5,-2,0],"angular":[0,0,1],"grip":-1})";
+  refused(lead, "lead");
+  facts_.can_lead = true;
+  const auto read = event<view::LeadEvent>(lead);
+  EXPECT_EQ(read.linear, Eigen::Vector3d(0.5, -1, 0));
+  EXPECT_EQ(read.angular, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(read.grip, -1);
+  refused(R"({"type":"lead","linear":[0,0],"angular":[0,0,0],"grip":0})", "linear");
+  refused(R"({"type":"lead","linear":[0,0,0],"angular":[0,0,0],"grip":2})", "grip");
+  refused(R"({"type":"lead","linear":[0,0,0],"angular":[0,0,0]})", "grip");
+}
+
 TEST_F(FromPage, ASelectionHasNamesAndNumbersOfTheModel) {
   const DrawnGeom& geom = drawn_.geoms.back();
   const auto chosen = event<view::SelectEvent>(

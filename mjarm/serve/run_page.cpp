@@ -67,6 +67,7 @@ std::string run_json(const view::RecordedRun& run, const DrawnModel& drawn,
                          .nq = run.model.nq(),
                          .can_push = false,
                          .can_target = thinks,
+                         .can_lead = false,
                          .jog_dofs = thinks ? run.dofs : std::vector<int>()};
   BodyPoses last(run.model);
   std::string out;

@@ -33,6 +33,7 @@ void add_options(JsonWriter& json, const DrawnModel& model, const SceneFacts& fa
   json.key("options").object();
   json.member("can_step", facts.can_step).member("can_reset", facts.can_reset);
   json.member("can_push", facts.can_push).member("can_target", facts.can_target);
+  json.member("can_lead", facts.can_lead);
   json.member("turns", facts.turns).key("joints").list();
   for (const DrawnJoint& joint : slider_joints(model, facts)) {
     json.object().member("dof", joint.dof).member("qpos", joint.qpos).member("name", joint.name);

@@ -20,6 +20,7 @@ struct SceneFacts {
   bool can_reset = true;           ///< ... and ResetEvent
   bool can_push = true;            ///< ... and PushEvent
   bool can_target = false;         ///< ... and TargetEvent and drags of the target
+  bool can_lead = false;           ///< ... and LeadEvent
   bool turns = true;               ///< the target has rings
   std::vector<int> jog_dofs = {};  ///< ... and JointEvent of these dofs
 };

@@ -65,6 +65,7 @@ class ServedScene {
                      .can_reset = window.can_reset,
                      .can_push = window.can_push,
                      .can_target = window.can_target && options.target != nullptr,
+                     .can_lead = window.can_lead,
                      .turns = options.turns,
                      .jog_dofs = window.jog_dofs};
     std::unique_ptr<ServedScene> scene(

@@ -1,5 +1,6 @@
 #include "mjarm/view/controls.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mjarm/core/messages/view.hpp"
@@ -60,20 +61,35 @@ std::optional<ViewAction> action_of(int key, bool control_held, bool shift_held)
   return found == nullptr ? std::nullopt : std::optional(found->action);
 }
 
-std::vector<ControlHelp> control_help() {
+std::vector<ControlHelp> control_help(std::span<const int> taken) {
   std::vector<ControlHelp> rows;
   const auto add = [&rows](std::string keys, Msg about) {
     rows.push_back({std::move(keys), text(about)});
   };
+  const bool whole = taken.empty();
   add(text(msg::view_left_drag), msg::view_mouse_turn);
   add(text(msg::view_right_drag), msg::view_mouse_pan);
   add(text(msg::view_wheel), msg::view_mouse_zoom);
   add(text(msg::view_right_click), msg::view_mouse_settings);
-  add(text(msg::view_drag_handle), msg::view_mouse_target);
+  if (whole) add(text(msg::view_drag_handle), msg::view_mouse_target);
   add(text(msg::view_double_click), msg::view_mouse_select);
-  add(text(msg::view_ctrl_right_drag), msg::view_mouse_push);
-  add(text(msg::view_ctrl_left_drag), msg::view_mouse_twist);
-  for (const ActionRow& row : kActions) add(text(row.shown), row.about);
+  if (whole) {
+    add(text(msg::view_ctrl_right_drag), msg::view_mouse_push);
+    add(text(msg::view_ctrl_left_drag), msg::view_mouse_twist);
+  }
+  for (const ActionRow& row : kActions) {
+    if (!whole && row.action == target) continue;
+    const bool plain = row.modifier == none;
+    if (!plain || std::ranges::find(taken, row.key) == taken.end()) add(text(row.shown), row.about);
+  }
+  return rows;
+}
+
+std::vector<ControlHelp> control_help() {
+  std::vector<ControlHelp> rows = control_help({});
+  const auto add = [&rows](std::string keys, Msg about) {
+    rows.push_back({std::move(keys), text(about)});
+  };
   add("0 - 5", msg::view_key_geom_groups);
   add("Shift 0 - 5", msg::view_key_site_groups);
   for (const SettingRow& row : setting_rows()) {

@@ -53,6 +53,9 @@ struct ControlHelp {
 };
 /// Every control of a window: mouse, keys, settings; in the language in use.
 [[nodiscard]] std::vector<ControlHelp> control_help();
+/// The same of a window in which an application uses the keys of these numbers: without them, those
+/// of settings, and what drags a target or pushes.
+[[nodiscard]] std::vector<ControlHelp> control_help(std::span<const int> taken);
 
 /// The speeds that + and - go through, simulated seconds a second.
 [[nodiscard]] std::span<const double> view_speeds() noexcept;

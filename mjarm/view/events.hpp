@@ -53,6 +53,13 @@ struct PanelEvent {
 };
 /// The user wants the target of the tool shown, or put away.
 struct TargetEvent {};
+/// The user of a page leads the tool: what he asks for from now on, in shares of the full speed,
+/// each from -1 to 1. Comes again and again as long as it is not zero.
+struct LeadEvent {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();
+  double grip = 0;  ///< 1: the gripper closes; -1: it opens
+};
 /// A picture of the window was written, or could not be.
 struct ScreenshotEvent {
   std::string file = {};
@@ -62,6 +69,6 @@ struct ScreenshotEvent {
 /// What the user did in a window, for the application to act on.
 using ViewEvent =
     std::variant<PauseEvent, StepEvent, SpeedEvent, ResetEvent, PushEvent, ReleaseEvent,
-                 SelectEvent, JointEvent, PanelEvent, TargetEvent, ScreenshotEvent>;
+                 SelectEvent, JointEvent, PanelEvent, TargetEvent, LeadEvent, ScreenshotEvent>;
 
 }  // namespace mjarm::view

@@ -25,8 +25,9 @@ int draw_help_rows(std::span<const ControlHelp> rows, int left, int top, const T
   return right;
 }
 
-void draw_help(const mjrRect& view, const TextTools& tools) {
-  const std::vector<ControlHelp> rows = control_help();
+void draw_help(const std::vector<ControlHelp>& chosen, const mjrRect& view,
+               const TextTools& tools) {
+  const std::vector<ControlHelp> rows = chosen.empty() ? control_help() : chosen;
   const std::size_t half = (rows.size() + 1) / 2;
   const int wanted = tools.width(std::string(100, 'n'));
   mjrRect box = view;
@@ -68,7 +69,7 @@ void draw_hud(const HudText& hud, const mjrRect& view, const TextTools& tools) {
     if (!line.empty()) foot.push_back({line});
   }
   draw_text_block(foot, view, false, tools);
-  if (hud.help) draw_help(view, tools);
+  if (hud.help) draw_help(hud.help_rows, view, tools);
 }
 
 }  // namespace mjarm::view

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mjarm/view/controls.hpp"
 #include "mjarm/view/pick_internal.hpp"
 #include "mjarm/view/text_block_internal.hpp"
 #include "mjarm/view/view_stats.hpp"
@@ -21,6 +22,7 @@ struct HudText {
   std::string status = {};  ///< of the application
   std::string note = {};    ///< of the window
   bool help = false;
+  std::vector<ControlHelp> help_rows = {};  ///< empty: control_help()
   ViewStats stats = {};
 };
 

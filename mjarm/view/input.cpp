@@ -1,6 +1,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+
 #include "mjarm/view/input_internal.hpp"
 
 namespace mjarm::view {
@@ -54,6 +56,14 @@ void on_scroll(GLFWwindow* window, double, double notches) {
 }
 
 void on_key(GLFWwindow* window, int key, int, int action, int modifiers) {
+  const KeyHook& hook = inputs_of(window).key_hook;
+  if (hook && hook({.key = key,
+                    .pressed = action != GLFW_RELEASE,
+                    .repeat = action == GLFW_REPEAT,
+                    .control = (modifiers & GLFW_MOD_CONTROL) != 0,
+                    .shift = (modifiers & GLFW_MOD_SHIFT) != 0})) {
+    return;
+  }
   if (action == GLFW_RELEASE) return;
   // Held down, only the keys that step go on.
   if (action == GLFW_REPEAT && key != GLFW_KEY_RIGHT && key != GLFW_KEY_LEFT) return;
@@ -63,7 +73,29 @@ void on_key(GLFWwindow* window, int key, int, int action, int modifiers) {
   input.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
 }
 
+void on_focus(GLFWwindow* window, int focused) {
+  const KeyHook& hook = inputs_of(window).key_hook;
+  if (hook && focused == GLFW_FALSE) (void)hook({.key = -1, .pressed = false});
+}
+
 }  // namespace
+
+void look_at_gamepads(const GamepadHook& hook) {
+  for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; ++id) {
+    GLFWgamepadstate raw;
+    if (glfwJoystickIsGamepad(id) == GLFW_FALSE || glfwGetGamepadState(id, &raw) == GLFW_FALSE) {
+      continue;
+    }
+    GamepadState state;
+    state.name = glfwGetGamepadName(id);
+    std::copy(std::begin(raw.axes), std::end(raw.axes), state.axes.begin());
+    std::transform(std::begin(raw.buttons), std::end(raw.buttons), state.buttons.begin(),
+                   [](unsigned char button) { return button == GLFW_PRESS; });
+    hook(&state);
+    return;
+  }
+  hook(nullptr);
+}
 
 void gather_inputs(GLFWwindow* window, RawInputs& inputs) {
   // Later it would be where the mouse is by then, and not where it was when a button was pressed.
@@ -73,6 +105,7 @@ void gather_inputs(GLFWwindow* window, RawInputs& inputs) {
   glfwSetCursorPosCallback(window, on_move);
   glfwSetScrollCallback(window, on_scroll);
   glfwSetKeyCallback(window, on_key);
+  glfwSetWindowFocusCallback(window, on_focus);
 }
 
 }  // namespace mjarm::view

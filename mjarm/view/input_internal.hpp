@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "mjarm/view/device_input.hpp"
+
 struct GLFWwindow;
 
 namespace mjarm::view {
@@ -26,9 +28,13 @@ struct RawInputs {
   std::vector<RawInput> all = {};
   double x = 0;  ///< [screen units] where the mouse was told to be last, from the upper left
   double y = 0;
+  KeyHook key_hook = {};  ///< is asked first, at once
 };
 /// Lets everything that happens in `window` gather in `inputs`, which outlives it. They are acted
 /// on later, when OpenGL can be used.
 void gather_inputs(GLFWwindow* window, RawInputs& inputs);
+
+/// Tells `hook` of the first gamepad.
+void look_at_gamepads(const GamepadHook& hook);
 
 }  // namespace mjarm::view

@@ -103,6 +103,7 @@ struct Window::Impl {
   std::unique_ptr<GlyphFont> font;
   RawInputs inputs;
   DrawHook draw_hook;
+  GamepadHook gamepad_hook;
   double time = 0;  ///< [s] of the state shown
   std::string status;
   std::string note;
@@ -188,6 +189,7 @@ HudText Window::Impl::hud() const {
           .status = status,
           .note = note,
           .help = user.help_shown(),
+          .help_rows = options.help,
           .stats = counter.stats()};
 }
 
@@ -286,6 +288,8 @@ void Window::set_status(std::string line) { impl_->status = std::move(line); }
 const ViewSettings& Window::settings() const noexcept { return impl_->user.settings; }
 void Window::set_settings(const ViewSettings& settings) { impl_->user.settings = settings; }
 void Window::set_mouse_hook(MouseHook hook) { impl_->user.set_hook(std::move(hook)); }
+void Window::set_key_hook(KeyHook hook) { impl_->inputs.key_hook = std::move(hook); }
+void Window::set_gamepad_hook(GamepadHook hook) { impl_->gamepad_hook = std::move(hook); }
 void Window::set_draw_hook(DrawHook hook) { impl_->draw_hook = std::move(hook); }
 std::vector<ViewEvent> Window::take_events() { return impl_->user.take_events(); }
 render::CameraView Window::view() const { return impl_->scene.view(); }
@@ -303,6 +307,7 @@ Result<void> Window::draw(const Snapshot& snapshot, const render::Overlay& overl
                           std::span<const LivePlot> plots, std::span<const PanelSection> panels) {
   if (display_lost()) return fail(display_lost_error());
   const double begin = seconds_now();
+  if (impl_->gamepad_hook) look_at_gamepads(impl_->gamepad_hook);
   if (begin < impl_->next_frame) {
     glfwWaitEventsTimeout(std::min(impl_->next_frame - begin, kLongestRest));
     if (display_lost()) return fail(display_lost_error());

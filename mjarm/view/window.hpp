@@ -14,6 +14,8 @@
 #include "mjarm/render/overlay.hpp"
 #include "mjarm/render/scene.hpp"
 #include "mjarm/sim/sim.hpp"
+#include "mjarm/view/controls.hpp"
+#include "mjarm/view/device_input.hpp"
 #include "mjarm/view/draw_hook.hpp"
 #include "mjarm/view/events.hpp"
 #include "mjarm/view/live_plot.hpp"
@@ -35,10 +37,12 @@ struct WindowOptions {
   bool can_reset = true;                              ///< ... and ResetEvent
   bool can_push = true;                               ///< ... and PushEvent
   bool can_target = false;                            ///< ... and TargetEvent
+  bool can_lead = false;                              ///< ... and, of a page, LeadEvent
   std::vector<int> jog_dofs = {};                     ///< ... and JointEvent of these dofs
   std::filesystem::path screenshots = {};  ///< folder of pictures the user takes; empty = none
   bool right_panel = false;                ///< is shown at first
   bool joints_open = true;                 ///< its section of joints is unfolded at first
+  std::vector<ControlHelp> help = {};      ///< rows of the help; empty: control_help()
 };
 
 /// A window that shows a simulated world. The caller owns the loop and the physics; what the user
@@ -74,6 +78,10 @@ class Window {
   void set_settings(const ViewSettings& settings);
   /// Lets a tool in the scene use the mouse before the camera does.
   void set_mouse_hook(MouseHook hook);
+  /// Lets an application use keys before the window does.
+  void set_key_hook(KeyHook hook);
+  /// Tells an application of a gamepad.
+  void set_gamepad_hook(GamepadHook hook);
   /// Lets it add to the overlay of every frame.
   void set_draw_hook(DrawHook hook);
 

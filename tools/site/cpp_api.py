@@ -8,6 +8,7 @@ TEXTS = {
     "path": "curves without time, and joints along them", "planning": "paths round obstacles, and their proof",
     "trajectory": "motions in time within limits", "control": "from a reference to commands of actuators",
     "identification": "payload, friction and links from a log",
+    "teleop": "leading an arm by velocities of its tool",
     "sim": "MuJoCo steps, with a controller", "render": "pictures and films", "perception": "objects that a camera sees",
     "execution": "motions run and measured", "program": "motion programs", "episode": "recorded demonstrations",
     "view": "the window", "serve": "the page in a browser",

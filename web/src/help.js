@@ -16,11 +16,13 @@ const KEYS = [
   ['k_home', 'h_first_view'], ['=1 2 3', 'h_presets'], ['=F', 'h_fit'], ['=[ ]', 'h_cameras'],
   ['=C', 'h_collision'], ['=B', 'h_panels'], ['=P', 'h_picture'], ['=?', 'h_help'],
 ];
+const LEAD = [['=W S A D Q E', 'h_lead'], ['k_lead_turn', 'h_lead_turn'], ['=G H', 'h_lead_grip']];
 
 export class Help {
   #node = byTest('help-panel');
 
-  constructor() {
+  /** @param {boolean} leads  an arm is led */
+  constructor(leads) {
     const close = el('button', {
       type: 'button', class: 'tool', test: 'help-close', wordLabel: 'close', on: { click: () => this.#node.close() },
     }, icon('close'));
@@ -28,7 +30,7 @@ export class Help {
       el('header', {}, el('h2', { word: 'help_title' }), close),
       el('div', { class: 'columns' },
         el('div', {}, ...part('help_mouse', MOUSE), ...part('help_touch', TOUCH)),
-        el('div', {}, ...part('help_keys', KEYS))),
+        el('div', {}, ...(leads ? part('help_lead', LEAD) : []), ...part('help_keys', KEYS))),
       el('p', { class: 'hint', word: 'h_values' }),
     );
     this.#node.addEventListener('click', (event) => {

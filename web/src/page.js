@@ -6,6 +6,7 @@ import { Help } from './help.js';
 import { jointSection } from './joints.js';
 import { listenToKeys } from './keys.js';
 import { Layout } from './layout.js';
+import { Lead } from './lead.js';
 import { Menu } from './menu.js';
 import { Model } from './model.js';
 import { Outbox } from './outbox.js';
@@ -73,6 +74,7 @@ function build(scene, source, notices, stage) {
   const picker = new Picker(stage, model);
   const readout = new Readout(byTest('readout'));
   const target = new Target({ stage, eye, picker, outbox, readout, turns: options.turns });
+  const lead = new Lead(outbox, options.can_lead === true);
   const push = new Push({ stage, eye, picker, model, outbox, readout });
   const overlay = new Overlay({ stage, model, eye });
   const ghosts = new GhostTool({ picker, overlay, outbox, stage });
@@ -92,9 +94,9 @@ function build(scene, source, notices, stage) {
   side.append(panels.node);
   fill(side);
   return {
-    scene, source, notices, stage, outbox, model, eye, picker, target, push, ghosts, overlay, selection, transport,
+    scene, source, notices, stage, outbox, model, eye, picker, target, lead, push, ghosts, overlay, selection, transport,
     viewBar, menu, panels, joints, plots: new Plots(byTest('plots'), byTest('figures')),
-    pointer: new PointerHub(stage.canvas, eye, [push, target, ghosts]), help: new Help(), layout: new Layout(),
+    pointer: new PointerHub(stage.canvas, eye, [push, target, ghosts]), help: new Help(options.can_lead === true), layout: new Layout(),
     triad: new Triad(byTest('triad'), eye), last: { frame: null },
     /** Light and shadow for all that is shown. */
     seeAll() {
@@ -144,7 +146,7 @@ function listenToSource(page, source) {
 }
 
 /** Whether there is somebody who does what the controls say. */
-function enable({ scene, transport, panels, joints, target, push, ghosts }, on) {
+function enable({ scene, transport, panels, joints, target, lead, push, ghosts }, on) {
   const { can_push: canPush, can_target: canTarget } = scene.options;
   transport.enable(on);
   panels.enable(on);
@@ -154,6 +156,7 @@ function enable({ scene, transport, panels, joints, target, push, ghosts }, on) 
     push.end();
   }
   target.enabled = ghosts.enabled = on;
+  lead.enabled = on;
   push.enabled = on && canPush;
   byTest('target').disabled = !(on && canTarget);
 }
@@ -189,7 +192,9 @@ function followLooks({ stage, model, overlay, plots, panels, eye, triad, viewBar
 
 /** Once a picture: takes the newest frame, lets the tools go on, draws. */
 function run(page, source) {
-  const { model, transport, joints, selection, eye, push, target, overlay, plots, pointer, outbox, stage, last } = page;
+  const {
+    model, transport, joints, selection, eye, push, target, lead, overlay, plots, pointer, outbox, stage, last,
+  } = page;
   const tick = (now) => {
     requestAnimationFrame(tick);
     const frame = source.takeFrame();
@@ -208,6 +213,7 @@ function run(page, source) {
     pointer.update();
     push.update();
     target.update();
+    lead.update(now);
     overlay.update();
     plots.update();
     outbox.flush();

@@ -20,6 +20,17 @@ const WORDS = {
   close: ['Close', '关闭'],
   hide_side: ['Panels on and off', '显示或隐藏面板'],
 
+  // Leading an arm.
+  lead_flat: ['Tool forth, back, left, right', '工具前后左右移动'],
+  lead_high: ['Tool up, down, turning', '工具上下移动与转动'],
+  lead_close: ['Close', '闭合'],
+  lead_open: ['Open', '张开'],
+  h_lead: ['lead the tool along x, y, z', '沿 x、y、z 移动工具'],
+  h_lead_turn: ['turn it about x, y, z', '绕 x、y、z 转动'],
+  h_lead_grip: ['close and open the gripper', '闭合和张开夹爪'],
+  k_lead_turn: ['J L, arrows', 'J L、方向键'],
+  help_lead: ['Leading the arm', '操纵机械臂'],
+
   // The scene.
   scene: ['The scene in 3D', '三维场景'],
   scene_hint: [

@@ -17,6 +17,7 @@ async function declare() {
   const { testPhone } = await import('./phone_test.mjs');
   const { testProgram } = await import('./program_test.mjs');
   const { testConnection } = await import('./connection_test.mjs');
+  const { testLead } = await import('./lead_test.mjs');
   const { testRecorded } = await import('./recorded_test.mjs');
 
   /** Tests that share a program and a page. */
@@ -33,6 +34,7 @@ async function declare() {
     after(closeBrowser);
     beside('robot', ['ur5e'], [testTransport, testJoints, testTarget, testPanels, testScene, testLooks, testPhone]);
     beside('program', ['speeds'], [testProgram]);
+    beside('led arm', ['teleop', 'franka_emika_panda/pick.xml'], [testLead]);
     describe('connection', testConnection);
     describe('recorded run', testRecorded);
   });

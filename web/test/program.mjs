@@ -42,7 +42,7 @@ export class Program {
   #process;
   #exit;
 
-  /** @param {string[]} args  of `mjarm serve` @param {object} [environment]  added to its own */
+  /** @param {string[]} args  of `mjarm serve`, or of `mjarm teleop` with that word first @param {object} [environment]  added to its own */
   static async serve(args, environment = {}) {
     const program = new Program(args, environment);
     program.url = await program.#address();
@@ -51,7 +51,8 @@ export class Program {
 
   constructor(args, environment) {
     const env = { ...ENVIRONMENT, ...environment };
-    this.#process = spawn(MJARM, ['serve', ...args], { stdio: ['ignore', 'pipe', 'inherit'], env });
+    const words = args[0] === 'teleop' ? [...args, '--serve'] : ['serve', ...args];
+    this.#process = spawn(MJARM, words, { stdio: ['ignore', 'pipe', 'inherit'], env });
     this.#exit = new Promise((resolve) => this.#process.once('exit', (code, signal) => resolve(code ?? signal)));
     process.once('exit', () => this.#process.kill('SIGKILL'));
   }

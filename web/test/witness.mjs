@@ -19,7 +19,9 @@ export class Witness {
     witness.#scene = await (await fetch(new URL('scene.json', url))).json();
     witness.#socket = new WebSocket(new URL('live', url.replace('http:', 'ws:')));
     witness.#socket.on('message', (data, isBinary) => witness.#take(data, isBinary));
-    await witness.until('everything to be told', () => witness.frame && witness.latest.panels && witness.latest.target);
+    const hasTarget = witness.#scene.options.can_target;
+    await witness.until('everything to be told',
+      () => witness.frame && witness.latest.panels && (witness.latest.target || !hasTarget));
     return witness;
   }
 

@@ -28,6 +28,7 @@
 #include "mjarm/planning/ompl_planners.hpp"
 #include "mjarm/render/fonts.hpp"
 #include "mjarm/render/gl_context.hpp"
+#include "mjarm/session/teleop_devices.hpp"
 
 namespace mjarm::app {
 namespace {
@@ -113,6 +114,13 @@ void look_at_apriltag(Findings& findings) {
       built_in ? name : text(msg::app_doctor_no_apriltag));
 }
 
+/// Only who leads arms by one needs it.
+void look_at_space_mouse(Findings& findings) {
+  const Result<session::SpaceMouse> mouse = session::SpaceMouse::open();
+  add(findings, "space_mouse", "SpaceMouse", mouse.has_value(),
+      mouse ? "libspnav" : mouse.error().what);
+}
+
 /// What is kept from run to run; safe to delete.
 void look_at_cache(Findings& findings) {
   constexpr double kMega = 1e6;
@@ -169,6 +177,7 @@ Result<int> run(bool json) {
   look_at_ffmpeg(findings);
   look_at_ompl(findings);
   look_at_apriltag(findings);
+  look_at_space_mouse(findings);
   look_at_cache(findings);
   look_at_models(findings);
   look_at_meshes(findings);

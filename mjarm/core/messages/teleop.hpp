@@ -1,0 +1,9 @@
+#pragma once
+
+#include "mjarm/core/messages.hpp"
+
+namespace mjarm::msg {
+#define MJARM_MSG(id, english, chinese) inline constexpr Msg id{english, chinese};
+#include "mjarm/core/messages/teleop.inc"
+#undef MJARM_MSG
+}  // namespace mjarm::msg

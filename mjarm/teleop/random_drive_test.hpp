@@ -1,0 +1,127 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mjarm/core/rng.hpp"
+#include "mjarm/model/robot.hpp"
+#include "mjarm/model/scene_bodies.hpp"
+#include "mjarm/sim/sim.hpp"
+#include "mjarm/teleop/teleop.hpp"
+
+namespace mjarm::testing {
+
+/// Somebody who holds directions down at random, changes them, the frame and the gripper.
+class RandomHand {
+ public:
+  explicit RandomHand(std::uint64_t seed) : rng_(seed) {}
+
+  TeleopInput at(double time) {
+    if (time < until_) return input_;
+    until_ = time + rng_.uniform(0.1, 2.0);
+    const auto held = [&](double size) {
+      const double way = rng_.uniform(-1, 1);
+      return way < -0.4 ? -size : way > 0.4 ? size : 0.0;
+    };
+    for (int k = 0; k < 3; ++k) {
+      input_.linear[k] = held(0.25);
+      input_.angular[k] = rng_.uniform(0, 1) < 0.5 ? 0 : held(1);
+    }
+    input_.frame = rng_.uniform(0, 1) < 0.5 ? TwistFrame::tool : TwistFrame::world;
+    input_.grip = held(2);
+    return input_;
+  }
+
+ private:
+  Rng rng_;
+  double until_ = 0;
+  TeleopInput input_;
+};
+
+/// Contacts that the arm should never have, by MuJoCo's own list and the tree of bodies: of links,
+/// hand and fingers with anything, but of fingers with bodies that have a free joint, and of the
+/// hand's parts with each other.
+class ForbiddenContacts {
+ public:
+  explicit ForbiddenContacts(const Robot& robot) : m_(*robot.model.raw()) {
+    const int first = m_.dof_bodyid[robot.arm.joints.front().dof];
+    const int last = m_.dof_bodyid[robot.arm.joints.back().dof];
+    for (int b = 0; b < static_cast<int>(m_.nbody); ++b) {
+      arm_.push_back(b > 0 && (b == first || arm_[static_cast<std::size_t>(m_.body_parentid[b])]));
+      hand_.push_back(b > 0 && (b == last || hand_[static_cast<std::size_t>(m_.body_parentid[b])]));
+      finger_.push_back(hand_.back() && b != last && m_.body_jntnum[b] > 0);
+    }
+  }
+
+  /// The first of them as "left_finger - table"; empty: none.
+  [[nodiscard]] std::string first(const Sim& sim) const {
+    for (const Contact& contact : sim.contacts()) {
+      if (contact.depth <= 0 || contact.body1 < 0 || contact.body2 < 0) continue;
+      if (is_bad(contact.body1, contact.body2) || is_bad(contact.body2, contact.body1)) {
+        return contact.first + " - " + contact.second;
+      }
+    }
+    return {};
+  }
+
+ private:
+  bool is_free(int body) const {
+    return m_.body_jntnum[body] > 0 && m_.jnt_type[m_.body_jntadr[body]] == mjJNT_FREE;
+  }
+  bool is_bad(int body, int other) const {
+    const auto b = static_cast<std::size_t>(body), o = static_cast<std::size_t>(other);
+    if (!arm_[b] || (hand_[b] && hand_[o])) return false;
+    return !(finger_[b] && is_free(other));
+  }
+
+  const mjModel& m_;
+  std::vector<bool> arm_, hand_, finger_;
+};
+
+/// How a drive went.
+struct DriveResult {
+  std::string contact;       ///< the first that should not be; empty: none
+  double time = 0;           ///< [s] of it, or of the end
+  double way = 0;            ///< [m] of the tool
+  double slowed = 0;         ///< share of the periods with input in which something was near
+  double held = 0;           ///< [s] something was held
+  std::vector<double> qpos;  ///< at the end
+};
+
+/// Drives a robot at random for `seconds` of simulated time, or until something touches.
+inline DriveResult drive(const Robot& robot, const TeleopOptions& options, std::uint64_t seed,
+                         double seconds) {
+  Sim sim(robot.model);
+  sim.reset_home();
+  sim.place(robot.arm, as_span(robot.arm.home));
+  Result<Teleop> teleop = Teleop::create(robot, options);
+  if (!teleop) throw std::runtime_error(teleop.error().what);
+  teleop->begin(sim);
+  RandomHand hand(seed);
+  const ForbiddenContacts forbidden(robot);
+  DriveResult out;
+  int near = 0, all = 0;
+  Eigen::Vector3d p = sim.tool(robot.arm).p;
+  while (sim.time() < seconds && out.contact.empty()) {
+    if (auto done = teleop->advance(sim, hand.at(sim.time())); !done) {
+      throw std::runtime_error(done.error().what);
+    }
+    out.contact = forbidden.first(sim);
+    const TeleopState state = teleop->state();
+    near += state.limit == TeleopLimit::near ? 1 : 0;
+    out.held += state.held.empty() ? 0 : teleop->period();
+    ++all;
+    const Eigen::Vector3d now = sim.tool(robot.arm).p;
+    out.way += (now - std::exchange(p, now)).norm();
+  }
+  out.time = sim.time();
+  out.slowed = static_cast<double>(near) / all;
+  out.qpos.assign(sim.qpos().begin(), sim.qpos().end());
+  return out;
+}
+
+}  // namespace mjarm::testing
