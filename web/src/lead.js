@@ -1,5 +1,6 @@
 // Leads the arm: keys that are held, a gamepad, and two pads under the thumbs.
 import { byTest, el } from './dom.js';
+import { fill } from './words.js';
 
 const EVERY = 100; // [ms] what is held is said again
 const DEAD_ZONE = 0.125; // of a stick's way
@@ -28,6 +29,8 @@ export class Lead {
     this.wanted = wanted;
     if (!wanted) return;
     this.#makePads();
+    // Pictures may be slow; who says nothing has let go.
+    setInterval(() => this.update(performance.now()), EVERY / 2);
     // Before the keys of the page: here they lead.
     document.addEventListener('keydown', (event) => this.#onKey(event, true), true);
     document.addEventListener('keyup', (event) => this.#onKey(event, false), true);
@@ -63,7 +66,7 @@ export class Lead {
     for (const pad of Object.values(this.#pads)) pad.letGo();
   }
 
-  /** Once a picture. @param {number} now  [ms] */
+  /** Once a picture, and in between. @param {number} now  [ms] */
   update(now) {
     if (!this.#enabled) return;
     const hand = this.hand;
@@ -82,6 +85,7 @@ export class Lead {
     if (event.target.closest?.('input:not([type=checkbox]):not([type=range]), select, textarea, dialog')) return;
     event.preventDefault();
     this.#held.add(event.code);
+    this.update(performance.now());
   }
 
   #makePads() {
@@ -101,6 +105,7 @@ export class Lead {
     const grip = el('div', { class: 'lead-grip' },
       button('lead-close', 'lead_close', 'KeyG'), button('lead-open', 'lead_open', 'KeyH'));
     row.append(this.#pads.left.node, grip, this.#pads.right.node);
+    fill(row);
     byTest('view').append(row);
   }
 }
