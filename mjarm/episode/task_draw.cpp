@@ -9,7 +9,6 @@
 #include "mjarm/episode/draw_looks_internal.hpp"
 #include "mjarm/episode/plan_chain_internal.hpp"
 #include "mjarm/kinematics/branch.hpp"
-#include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/model/find_arm.hpp"
 #include "mjarm/path/letters.hpp"
@@ -211,12 +210,8 @@ class DrawTask final : public Task {
   [[nodiscard]] Pose lifted(const Eigen::Vector2d& p) const {
     return {.p = figure_.X_WF * Eigen::Vector3d(p.x(), p.y(), kInkLift), .R = pen_turn()};
   }
-  /// Upright, and about itself as at home: the wrist is in the middle of its range there.
   [[nodiscard]] Eigen::Matrix3d pen_turn() const {
-    const Pose X_WT = fk(arm_, as_span(arm_.home));
-    const auto heading = [](const auto& v) { return std::atan2(v.y(), v.x()); };
-    const double yaw = heading(X_WT.R.col(0)) + heading(figure_.X_WF.p) - heading(X_WT.p);
-    return from_euler({0, 0, yaw}) * from_euler({std::numbers::pi, 0, 0});
+    return figure_.X_WF.R * from_euler({std::numbers::pi, 0, 0});
   }
 
   [[nodiscard]] program::Instruction written(double speed) const {

@@ -41,7 +41,7 @@ struct Cabinet {
 /// nothing can move farther from one look to the middle of the next than the distance that is kept.
 bool is_pull_free(const PlanInput& input, const PlannedMove& pull, const SceneState& scene,
                   std::size_t qpos, const Eigen::Vector3d& way_W) {
-  constexpr double kLook = 0.03;  // [s]
+  constexpr double kLook = 0.01;  // [s]
   constexpr double kReach = 1.3;  // [m] of any point of an arm from any of its joints
   const Robot& robot = input.robot;
   const double duration = pull.trajectory.duration();
