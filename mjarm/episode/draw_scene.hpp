@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mjarm/core/pose.hpp"
+#include "mjarm/core/result.hpp"
 #include "mjarm/core/rng.hpp"
 #include "mjarm/episode/options.hpp"
 #include "mjarm/model/looks.hpp"

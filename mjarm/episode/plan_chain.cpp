@@ -67,6 +67,7 @@ void PlanChain::append(PlanChain piece, const ToolPress& press) {
 
 TaskPlan PlanChain::finish(const Pose& goal) && {
   if (!reason_.empty()) return {.plan = {}, .goal = goal, .reason = std::move(reason_)};
+  plan_.scene_end = std::move(scene_);
   return {.plan = std::move(plan_), .goal = goal, .reason = {}};
 }
 

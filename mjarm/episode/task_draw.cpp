@@ -18,8 +18,9 @@ namespace {
 
 constexpr double kInkLift = 0.02;  // [m] of the pen above the sheet, as the plan takes it
 constexpr double kInkForce = 1;    // [N]
-constexpr double kInkSpeed = 0.04, kAwaySpeed = 0.1;  // [m/s]
-constexpr double kInkSpacing = 3e-4;                  // [m] between spots that are kept
+constexpr double kInkSpeeds[] = {0.04, 0.02, 0.01};  // [m/s]
+constexpr double kAwaySpeed = 0.1;                   // [m/s]
+constexpr double kInkSpacing = 3e-4;                 // [m] between spots that are kept
 /// Of the joints' acceleration and jerk, as a pen that starts fast presses with another force.
 constexpr double kInkShare = 0.02;
 constexpr double kOffFigure = 1e-3;   // [m] of the ink from the figure, at most
@@ -108,29 +109,14 @@ class DrawTask final : public Task {
         arm_(std::move(sheet.arm)),
         strokes_(strokes_of(figure_)) {}
 
+  /// As fast as the joints can.
   [[nodiscard]] TaskPlan plan(const PlanInput& input) const override {
-    PlanChain chain(input, scene().q);
-    // Shoulder and elbow as at home, where the arm stands behind the pen and hides little.
-    Branch branch = branch_of(IkSolver(arm_), as_span(arm_.home));
-    branch.way[2] = -1;
-    chain.add(
-        {{program::PlanMove{.goal = program::ProgramPose{.X_FT = lifted(strokes_.front().front())},
-                            .branch = branch}}});
-    if (figure_.kind == FigureKind::letter) {
-      chain.add({written()});
-    } else {
-      Robot slow = input.robot;
-      slow.arm.limits.acceleration *= kInkShare;
-      slow.arm.limits.jerk *= kInkShare;
-      const PlanInput slowly{slow, input.jaws, input.before, input.stop};
-      PlanChain trace(slowly, as_span(chain.q()));
-      trace.add({traced()});
-      chain.append(std::move(trace), ToolPress{.force = kInkForce, .reach = 2 * kInkLift});
+    TaskPlan out;
+    for (const double speed : kInkSpeeds) {
+      out = plan_at(input, speed);
+      if (out.reason.empty()) break;
     }
-    Pose away = lifted(strokes_.back().back());
-    away.p.z() += kInkLift;
-    chain.add({line_to(away, kAwaySpeed)});
-    return std::move(chain).finish(figure_.X_WF);
+    return out;
   }
 
   [[nodiscard]] ExecutionOptions execution() const override {
@@ -195,6 +181,31 @@ class DrawTask final : public Task {
   }
 
  private:
+  [[nodiscard]] TaskPlan plan_at(const PlanInput& input, double speed) const {
+    PlanChain chain(input, scene().q);
+    // Shoulder and elbow as at home, where the arm stands behind the pen and hides little.
+    Branch branch = branch_of(IkSolver(arm_), as_span(arm_.home));
+    branch.way[2] = -1;
+    chain.add(
+        {{program::PlanMove{.goal = program::ProgramPose{.X_FT = lifted(strokes_.front().front())},
+                            .branch = branch}}});
+    if (figure_.kind == FigureKind::letter) {
+      chain.add({written(speed)});
+    } else {
+      Robot slow = input.robot;
+      slow.arm.limits.acceleration *= kInkShare;
+      slow.arm.limits.jerk *= kInkShare;
+      const PlanInput slowly{slow, input.jaws, input.before, input.stop};
+      PlanChain trace(slowly, as_span(chain.q()));
+      trace.add({traced(speed)});
+      chain.append(std::move(trace), ToolPress{.force = kInkForce, .reach = 2 * kInkLift});
+    }
+    Pose away = lifted(strokes_.back().back());
+    away.p.z() += kInkLift;
+    chain.add({line_to(away, kAwaySpeed)});
+    return std::move(chain).finish(figure_.X_WF);
+  }
+
   /// The tool over a place of the figure, the pen upright.
   [[nodiscard]] Pose lifted(const Eigen::Vector2d& p) const {
     return {.p = figure_.X_WF * Eigen::Vector3d(p.x(), p.y(), kInkLift), .R = pen_turn()};
@@ -203,7 +214,7 @@ class DrawTask final : public Task {
     return figure_.X_WF.R * from_euler({std::numbers::pi, 0, 0});
   }
 
-  [[nodiscard]] program::Instruction written() const {
+  [[nodiscard]] program::Instruction written(double speed) const {
     Pose X_WP = figure_.X_WF;
     X_WP.p = X_WP * Eigen::Vector3d(0, -0.5 * figure_.size, 0);
     return {program::DrawText{.text = std::string(1, figure_.letter),
@@ -212,16 +223,16 @@ class DrawTask final : public Task {
                               .press = kInkForce,
                               .plane = {.X_FT = X_WP},
                               .R_FT = pen_turn(),
-                              .speed = kInkSpeed}};
+                              .speed = speed}};
   }
 
-  [[nodiscard]] program::Instruction traced() const {
+  [[nodiscard]] program::Instruction traced(double speed) const {
     std::vector<program::ProgramPose> points;
     for (const Eigen::Vector2d& p : strokes_.front()) points.push_back({.X_FT = lifted(p)});
     if (figure_.kind == FigureKind::square) {
-      return {program::DrawPolyline{.points = std::move(points), .speed = kInkSpeed, .blend = 0.0}};
+      return {program::DrawPolyline{.points = std::move(points), .speed = speed, .blend = 0.0}};
     }
-    return {program::DrawSpline{.points = std::move(points), .speed = kInkSpeed}};
+    return {program::DrawSpline{.points = std::move(points), .speed = speed}};
   }
 
   /// [m] The farthest of the ink from the figure, and of the figure from the ink.

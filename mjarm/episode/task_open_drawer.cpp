@@ -21,7 +21,7 @@ constexpr double kBeforeHandle = 0.1;                     // [m] where the strai
 constexpr double kToHandle = 0.15, kPullSpeed = 0.1;      // [m/s]
 constexpr double kPitches[] = {0, 0.2, -0.2, 0.4, -0.4};  // [rad] of the hand about the handle
 
-constexpr DrawRange kCabinetX{"cabinet_x", "m", 0.62, 0.7};
+constexpr DrawRange kCabinetX{"cabinet_x", "m", 0.64, 0.7};
 constexpr DrawRange kCabinetY{"cabinet_y", "m", -0.15, 0.15};
 constexpr DrawRange kCabinetZ{"cabinet_z", "m", 0.14, 0.24};
 constexpr DrawRange kCabinetYaw{"cabinet_yaw", "rad", -0.3, 0.3};
