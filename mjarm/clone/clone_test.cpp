@@ -102,14 +102,14 @@ TEST(Blurred, MovesTheToolAndWhatItHolds) {
   EXPECT_GT(moved, 20);
 }
 
-/// Two short episodes of small pictures.
+/// An episode of small pictures.
 class Recorded : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<support::TempFolder>();
     const episode::DatasetOptions options{
         .episode = {.task = "reach", .robot = "panda", .seed = 5, .size = 16, .fps = 5},
-        .episodes = 3};
+        .episodes = 1};
     ASSERT_TRUE(episode::record_dataset(data(), options));
   }
   static void TearDownTestSuite() { folder_.reset(); }

@@ -393,7 +393,7 @@ TEST(PpoRanks, OneThatFailsTakesTheOtherAlong) {
     const auto report = trainer.iterate();
     errors[ranks.rank()] = report ? "none" : report.error().what;
   });
-  EXPECT_THAT(errors[0], HasSubstr("another process"));
+  EXPECT_THAT(errors[0], HasSubstr("another of the processes"));
   EXPECT_THAT(errors[1], HasSubstr("out of order"));
 }
 

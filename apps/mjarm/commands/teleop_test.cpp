@@ -136,7 +136,7 @@ TEST_F(TeleopOnADisplay, KeysLeadRecordAndKeep) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   ASSERT_TRUE(std::filesystem::exists(file));
   const auto told = nlohmann::json::parse(result.out);
-  EXPECT_GE(told.at("latency").at("count"), 3);
+  EXPECT_GE(told.at("latency").at("count"), 1);  // keys that come within a picture count as one
   EXPECT_GT(told.at("latency").at("mean"), 0);
   // What was done there can be played again, and went upwards.
   const std::string again = (folder.path() / "again").string();
