@@ -29,7 +29,7 @@ LANGUAGES = {"en": "C.UTF-8", "zh-CN": "zh_CN.UTF-8"}
 PARTS = [
     ({"en": "Begin", "zh-CN": "入门"}, ["docs/tutorial_steps", "docs/learn/README", "docs/learn/0*"]),
     ({"en": "Use", "zh-CN": "使用"}, ["docs/programs", "docs/identify", "docs/planning", "docs/perception", "docs/viewing", "docs/serve", "docs/learning", "docs/teleop", "docs/data"]),
-    ({"en": "In programs", "zh-CN": "编程"}, ["python/README", "docs/python", "api/index"]),
+    ({"en": "In programs", "zh-CN": "编程"}, ["python/README", "docs/python", "python/lerobot_env_mjarm/README", "api/index"]),
     ({"en": "Reference", "zh-CN": "参考"}, ["commands/index", "docs/files", "docs/conventions", "docs/troubleshooting", "docs/windows", "messages", "models/README", "docs/benchmarks"]),
     ({"en": "Project", "zh-CN": "项目"}, ["docs/architecture", "CONTRIBUTING", "web/README", "docs/roadmap", "CHANGELOG"]),
 ]

@@ -12,7 +12,7 @@ TEXTS = {
     "sim": "MuJoCo steps, with a controller", "render": "pictures and films", "perception": "objects that a camera sees",
     "execution": "motions run and measured", "program": "motion programs", "episode": "recorded demonstrations",
     "view": "the window", "serve": "the page in a browser",
-    "rl": "learning to reach", "install": "real meshes", "session": "what every face of the program shares",
+    "rl": "learning to reach", "clone": "policies from demonstrations", "install": "real meshes", "session": "what every face of the program shares",
 }
 
 

@@ -1,4 +1,4 @@
-#include "apps/mjarm/messages/clone.hpp"
+#include "apps/mjarm/messages/cloning.hpp"
 
 #include <algorithm>
 #include <filesystem>
