@@ -52,7 +52,7 @@ struct DrawnJoint {
 /// What one episode begins with.
 struct DrawnScene {
   std::vector<DrawnObject> objects;
-  std::size_t target = 0;          ///< the object that is asked for
+  std::size_t target = 0;  ///< the object that is asked for
   /// [m] In the world, where the task is about a place: pick_place: of the object; reach: of the
   /// middle of the jaws.
   std::optional<Eigen::Vector3d> p_goal;

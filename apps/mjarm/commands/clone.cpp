@@ -1,5 +1,3 @@
-#include "apps/mjarm/messages/cloning.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -14,6 +12,7 @@
 #include "apps/mjarm/cli/print.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/messages/app.hpp"
+#include "apps/mjarm/messages/cloning.hpp"
 #include "mjarm/clone/cloned_policy.hpp"
 #include "mjarm/clone/demonstrated.hpp"
 #include "mjarm/clone/learn.hpp"
