@@ -196,10 +196,15 @@ set_up_machine() {
   fi
 }
 
+# True where a plain `cmake --preset dev` configured the folder without the module of Python, which its tests want.
+lacks_python() {
+  [[ $1 == dev ]] && grep -qxF "MJARM_PYTHON:BOOL=OFF" "$root/build/$1/CMakeCache.txt" && [[ $(python_options) ]]
+}
+
 # configure PRESET: where that was not done.
 configure() {
   local preset=$1 folder=$root/build/$1 options=()
-  if [[ ! -e $folder/build.ninja ]] ||
+  if [[ ! -e $folder/build.ninja ]] || lacks_python "$preset" ||
     { [[ -n ${MUJOCO_ROOT:-} ]] && ! uses_mujoco_root "$preset"; }; then
     [[ $preset != dev && $preset != wheel ]] || mapfile -t options < <(python_options)
     step "Configuring $preset" quiet cmake -S "$root" --preset "$preset" \
