@@ -1,6 +1,5 @@
 #include "mjarm/clone/demonstrated.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -97,9 +96,7 @@ Result<void> add_episode(const fs::path& file, episode::Studio& studio, Demonstr
 
 Result<Demonstrated> read_demonstrated(const fs::path& folder, std::size_t most,
                                        const StopCheck& stop) {
-  std::vector<fs::path> files = episode::episode_files(folder);
-  std::erase_if(files,
-                [](const fs::path& file) { return file.parent_path().filename() == "failed"; });
+  std::vector<fs::path> files = episode::succeeded_files(folder);
   if (files.empty()) return fail(Errc::bad_input, text(msg::clone_none, folder.string()));
   if (most > 0 && files.size() > most) files.resize(most);
   const Result<episode::EpisodeFile> first = episode::read_episode(files.front());

@@ -194,12 +194,8 @@ class DatasetWriter {
   Result<void> write_head() {
     const EpisodeOptions& of = options_.episode;
     std::vector<JsonDoc> failures, ranges;
-    out_.succeeded = 0;
-    for (const fs::path& file : episode_files(folder_)) {
-      if (file.parent_path() == folder_) {
-        ++out_.succeeded;
-        continue;
-      }
+    out_.succeeded = succeeded_files(folder_).size();
+    for (const fs::path& file : failed_files(folder_)) {
       const Result<EpisodeFile> episode = read_episode(file);
       if (!episode) return fail(episode.error());
       failures.push_back({{"number", static_cast<std::size_t>(episode->head.number)},

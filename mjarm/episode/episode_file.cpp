@@ -52,13 +52,22 @@ Result<EpisodeHead> read_head(std::string_view json, const std::string& source) 
   return head;
 }
 
-/// Appends the episodes that lie in `folder` itself.
-void add_files(const fs::path& folder, std::vector<fs::path>& out) {
+void sort_by_number(std::vector<fs::path>& files) {
+  std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
+    const std::string x = a.filename().string(), y = b.filename().string();
+    return x.size() != y.size() ? x.size() < y.size() : x < y;
+  });
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> out;
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with(kPrefix) && name.ends_with(kEnding)) out.push_back(entry.path());
   }
+  sort_by_number(out);
+  return out;
 }
 
 }  // namespace
@@ -83,14 +92,15 @@ std::string episode_name(std::uint64_t number) {
   return kPrefix + zeros + digits + kEnding;
 }
 
+std::vector<fs::path> succeeded_files(const fs::path& folder) { return files_in(folder); }
+
+std::vector<fs::path> failed_files(const fs::path& folder) { return files_in(folder / "failed"); }
+
 std::vector<fs::path> episode_files(const fs::path& folder) {
-  std::vector<fs::path> out;
-  add_files(folder, out);
-  add_files(folder / "failed", out);
-  std::ranges::sort(out, [](const fs::path& a, const fs::path& b) {
-    const std::string x = a.filename().string(), y = b.filename().string();
-    return x.size() != y.size() ? x.size() < y.size() : x < y;
-  });
+  std::vector<fs::path> out = succeeded_files(folder);
+  const std::vector<fs::path> failed = failed_files(folder);
+  out.insert(out.end(), failed.begin(), failed.end());
+  sort_by_number(out);
   return out;
 }
 

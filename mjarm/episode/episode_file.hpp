@@ -36,7 +36,14 @@ struct EpisodeFile {
 /// "episode_000042.zip".
 [[nodiscard]] std::string episode_name(std::uint64_t number);
 
-/// The episodes of a folder and of `failed` in it, by number; empty where there are none.
+/// The episodes that lie in a folder itself, by number; empty where there are none.
+[[nodiscard]] std::vector<std::filesystem::path> succeeded_files(
+    const std::filesystem::path& folder);
+
+/// Those in `failed` in it.
+[[nodiscard]] std::vector<std::filesystem::path> failed_files(const std::filesystem::path& folder);
+
+/// Both together, by number.
 [[nodiscard]] std::vector<std::filesystem::path> episode_files(const std::filesystem::path& folder);
 
 /// Where two archives differ: "qpos.npy, byte 1234" (from 1), the name of an entry that only one of

@@ -49,6 +49,18 @@ TEST_F(RecordCommand, MakesEpisodesThatReplay) {
   EXPECT_THAT(differs.err, HasSubstr("episode_000000.zip, qvel.npy, byte 201"));
 }
 
+TEST_F(RecordCommand, CountsTheSameInAFolderThatIsGivenWithASlash) {
+  const auto before = nlohmann::json::parse(record({}).out);
+  ASSERT_GT(before.at("succeeded"), 0);
+  data_ += '/';
+  const auto again = record({});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto now = nlohmann::json::parse(again.out);
+  EXPECT_EQ(now.at("found"), 2);
+  EXPECT_EQ(now.at("succeeded"), before.at("succeeded"));
+  EXPECT_EQ(now.at("failed"), before.at("failed"));
+}
+
 TEST_F(RecordCommand, TakesSharesOfASet) {
   ASSERT_EQ(record({}).exit_code, 0);
   const std::string second = folder_.read("data/episode_000001.zip");
