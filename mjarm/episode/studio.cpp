@@ -2,6 +2,7 @@
 
 #include "mjarm/episode/studio_internal.hpp"
 #include "mjarm/episode/task_internal.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/model/looks.hpp"
 #include "mjarm/model/scene_bodies.hpp"
 
@@ -37,9 +38,7 @@ std::vector<int> place_scene(const Robot& robot, const DrawnScene& scene, Sim& s
 
 double grip_command(const Arm& arm, const Sim& sim) {
   if (!arm.gripper) return 0;
-  const Gripper& gripper = *arm.gripper;
-  const double ctrl = sim.ctrl()[static_cast<std::size_t>(gripper.id)];
-  return 0.0 + (ctrl - gripper.ctrl_open) / (gripper.ctrl_closed - gripper.ctrl_open);  // no -0
+  return grip_of_ctrl(*arm.gripper, sim.ctrl()[static_cast<std::size_t>(arm.gripper->id)]);
 }
 
 Result<render::OffscreenRenderer> open_pictures(const Robot& robot, const EpisodeOptions& options,

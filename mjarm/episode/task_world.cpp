@@ -14,6 +14,7 @@
 #include "mjarm/episode/plan_chain_internal.hpp"
 #include "mjarm/episode/studio_internal.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/sim/sim.hpp"
 #include "mjarm/sim/stepper.hpp"
 
@@ -135,8 +136,7 @@ Result<void> TaskWorld::step(std::span<const double> action) {
     const JointVec q = q0 + u * u * (3 - 2 * u) * (q1 - q0) + u * (1 - u) * (1 - u) * T * v0 -
                        u * u * (1 - u) * T * v1;
     const double grip = grip0 + u * (grip1 - grip0);
-    self.sim.set_ctrl(self.gripper.id, self.gripper.ctrl_open + grip * (self.gripper.ctrl_closed -
-                                                                        self.gripper.ctrl_open));
+    self.sim.set_ctrl(self.gripper.id, ctrl_for_grip(self.gripper, grip));
     const StepReference reference{.before = self.q_before, .now = self.q_ref, .next = q};
     if (auto done = self.stepper->step(self.sim, self.controller, reference, nullptr); !done) {
       return done;

@@ -11,6 +11,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/track.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/teleop/grasp_watch_internal.hpp"
 
 namespace mjarm {
@@ -106,7 +107,7 @@ struct Teleop::Impl {
   }
 
   WantedVelocity wanted(const TeleopInput& input);
-  void follow_goal(const JointVec& q_before, const Eigen::Matrix<double, 6, 1>& twist);
+  void follow_goal(const JointVec& q_before);
   bool range_allows(const JointVec& q1, const JointVec& stop, int& joint) const;
   bool allows(const JointVec& v1);
   void plan(const Sim& sim, const TeleopInput& input);
@@ -123,6 +124,7 @@ struct Teleop::Impl {
   JointVec q, v;       ///< where the arm is led
   JointVec v_next;     ///< at the end of the period
   Pose X_WT;           ///< where the tool is led, without what steps make it stray
+  Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();  ///< see wanted()
   double allowed = 1;  ///< share of the speed that was found free last
   double grip = 0;
   int held = -1;
@@ -133,20 +135,22 @@ struct Teleop::Impl {
   std::vector<double> ctrl;
 };
 
-/// What Tracker makes of the input, slower near singularities.
+/// What Tracker makes of the input, slower near singularities. `twist` is then what the input asks
+/// for in this period, in the world frame: [m], below it [rad].
 WantedVelocity Teleop::Impl::wanted(const TeleopInput& input) {
-  const int dof = arm.dof();
   Eigen::Vector3d linear = bounded(input.linear, options.speed);
   Eigen::Vector3d angular = bounded(input.angular, options.turn);
   if (linear.isZero(0) && angular.isZero(0)) {
     X_WT = fk(arm, as_span(q));
-    return {JointVec::Zero(dof), TeleopLimit::none, -1};
+    twist.setZero();
+    return {JointVec::Zero(arm.dof()), TeleopLimit::none, -1};
   }
   if (input.frame == TwistFrame::tool) {
     linear = X_WT.R * linear;
     angular = X_WT.R * angular;
   }
-  const Pose goal{X_WT.p + dt * linear, rotation_exp(dt * angular) * X_WT.R};
+  twist << dt * linear, dt * angular;
+  const Pose goal{X_WT.p + twist.head<3>(), rotation_exp(twist.tail<3>()) * X_WT.R};
   const TrackStep step = tracker.step(goal, as_span(q));
   WantedVelocity out{(step.q - q) / dt, TeleopLimit::none, -1};
   if (step.speed_scale < 1) {
@@ -164,7 +168,7 @@ WantedVelocity Teleop::Impl::wanted(const TeleopInput& input) {
 
 /// The goal goes as far as the tool went along the twist; across it what the tool strays is made
 /// good in the next period.
-void Teleop::Impl::follow_goal(const JointVec& q_before, const Eigen::Matrix<double, 6, 1>& twist) {
+void Teleop::Impl::follow_goal(const JointVec& q_before) {
   const Pose before = fk(arm, as_span(q_before)), now = fk(arm, as_span(q));
   Eigen::Matrix<double, 6, 1> went;
   went << now.p - before.p, kArmLength * rotation_log(now.R * before.R.transpose());
@@ -290,9 +294,8 @@ void Teleop::begin(Sim& sim) {
   own.grip = 0;
   if (!own.arm.gripper) return;
   const Gripper& gripper = *own.arm.gripper;
-  const double way = gripper.ctrl_closed - gripper.ctrl_open;
-  own.grip = std::clamp((own.ctrl[static_cast<std::size_t>(gripper.id)] - gripper.ctrl_open) / way,
-                        0.0, 1.0);
+  const double ctrl = own.ctrl[static_cast<std::size_t>(gripper.id)];
+  own.grip = std::clamp(grip_of_ctrl(gripper, ctrl), 0.0, 1.0);
 }
 
 Result<void> Teleop::advance(Sim& sim, const TeleopInput& input) {
@@ -300,21 +303,13 @@ Result<void> Teleop::advance(Sim& sim, const TeleopInput& input) {
   if (own.arm.gripper) {
     own.grip = own.next_grip(input);
     const Gripper& gripper = *own.arm.gripper;
-    own.ctrl[static_cast<std::size_t>(gripper.id)] =
-        gripper.ctrl_open + own.grip * (gripper.ctrl_closed - gripper.ctrl_open);
+    own.ctrl[static_cast<std::size_t>(gripper.id)] = ctrl_for_grip(gripper, own.grip);
     own.held = own.grasp.held(sim, own.grip > kGripping, own.held);
   }
   own.plan(sim, input);
   const JointVec before = own.q;
-  const Pose X_WT = own.X_WT;
   if (auto done = own.make_steps(sim, own.v_next); !done) return done;
-  Eigen::Matrix<double, 6, 1> twist;
-  twist << bounded(input.linear, own.options.speed), bounded(input.angular, own.options.turn);
-  if (input.frame == TwistFrame::tool) {
-    twist.head<3>() = X_WT.R * twist.head<3>();
-    twist.tail<3>() = X_WT.R * twist.tail<3>();
-  }
-  own.follow_goal(before, own.dt * twist);
+  own.follow_goal(before);
   return {};
 }
 
