@@ -121,9 +121,9 @@ struct Teleop::Impl {
   std::optional<SceneWatch> watch;
   detail::GraspWatch grasp;
   Tracker tracker;
-  JointVec q, v;       ///< where the arm is led
-  JointVec v_next;     ///< at the end of the period
-  Pose X_WT;           ///< where the tool is led, without what steps make it stray
+  JointVec q, v;    ///< where the arm is led
+  JointVec v_next;  ///< at the end of the period
+  Pose X_WT;        ///< where the tool is led, without what steps make it stray
   Eigen::Matrix<double, 6, 1> twist = Eigen::Matrix<double, 6, 1>::Zero();  ///< see wanted()
   double allowed = 1;  ///< share of the speed that was found free last
   double grip = 0;
