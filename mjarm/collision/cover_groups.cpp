@@ -108,9 +108,7 @@ class GeomSorter {
   }
 
   Pose pose_of_geom(int geom) const {
-    using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-    const Pose X_WG{Vector3d(d_->geom_xpos + 3 * geom),
-                    Eigen::Map<const Rows>(d_->geom_xmat + 9 * geom)};
+    const Pose X_WG = geom_pose(*d_, geom);
     const int joint = piece(geom) - 1;
     return joint < 0 ? X_WG : X_WJ_[static_cast<std::size_t>(joint)].inverse() * X_WG;
   }

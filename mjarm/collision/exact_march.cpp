@@ -94,17 +94,11 @@ struct ModelMarch::Impl final : detail::MarchGeometry {
       if (least > measured) return least;
     }
     GeomIds ids{a.geom, b.geom};
-    put(ids.geom1, X_WA);
-    put(ids.geom2, X_WB);
+    detail::put_geom(*d, ids.geom1, X_WA);
+    detail::put_geom(*d, ids.geom2, X_WB);
     const mjModel& m = *model.raw();
     if (m.geom_type[ids.geom1] > m.geom_type[ids.geom2]) std::swap(ids.geom1, ids.geom2);
     return detail::geom_distance(m, d.get(), ids, 2 * measured);
-  }
-
-  void put(int geom, const Pose& X) {
-    using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-    Eigen::Map<Eigen::Vector3d>(d->geom_xpos + 3 * geom) = X.p;
-    Eigen::Map<Rows>(d->geom_xmat + 9 * geom) = X.R;
   }
 
   double distance(const GeomGroup& a, const GeomGroup& b, std::span<const Pose> X_WJ) {

@@ -110,12 +110,12 @@ struct SceneWatch::Impl {
       const WatchShape& one = shapes[i];
       if (one.joint < 0 && (one.still && !fresh)) continue;
       const Pose before = poses[i];
-      if (is_held(one)) held_in_hand[i] = X_hand * pose_in_data(one.geom);
+      if (is_held(one)) held_in_hand[i] = X_hand * detail::geom_pose(*d, one.geom);
       if (one.joint < 0 && !is_held(one)) {
-        poses[i] = pose_in_data(one.geom);
+        poses[i] = detail::geom_pose(*d, one.geom);
       } else {
         poses[i] = place(static_cast<int>(i), X_ref);
-        const Pose there = is_held(one) ? pose_in_data(one.geom)
+        const Pose there = is_held(one) ? detail::geom_pose(*d, one.geom)
                                         : X_sim[static_cast<std::size_t>(one.joint)] * one.X_LG;
         off = std::max(off, moved_by(there, poses[i], one.radius));
       }
@@ -124,12 +124,6 @@ struct SceneWatch::Impl {
     fresh = false;
     find_levers();
     for (WatchGap& gap : gaps) gap.exact = false;
-  }
-
-  Pose pose_in_data(int geom) const {
-    using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-    return {Eigen::Map<const Eigen::Vector3d>(d->geom_xpos + 3 * geom),
-            Eigen::Map<const Rows>(d->geom_xmat + 9 * geom)};
   }
 
   void forget() {
@@ -194,12 +188,6 @@ struct SceneWatch::Impl {
     return moved[static_cast<std::size_t>(pair.a)] + moved[static_cast<std::size_t>(pair.b)];
   }
 
-  void put(int geom, const Pose& X) {
-    using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-    Eigen::Map<Eigen::Vector3d>(d->geom_xpos + 3 * geom) = X.p;
-    Eigen::Map<Rows>(d->geom_xmat + 9 * geom) = X.R;
-  }
-
   /// [m] Not more than the distance of a pair at these poses; exact below kMeasured.
   double measure(const WatchPair& pair, const Pose& X_a, const Pose& X_b, bool& exact) {
     const WatchShape &a = shape(pair.a), &b = shape(pair.b);
@@ -209,8 +197,8 @@ struct SceneWatch::Impl {
       if (least > kMeasured) return least;
     }
     detail::GeomIds ids{a.geom, b.geom};
-    put(ids.geom1, X_a);
-    put(ids.geom2, X_b);
+    detail::put_geom(*d, ids.geom1, X_a);
+    detail::put_geom(*d, ids.geom2, X_b);
     if (m.geom_type[ids.geom1] > m.geom_type[ids.geom2]) std::swap(ids.geom1, ids.geom2);
     const double distance = detail::geom_distance(m, d.get(), ids, 2 * kMeasured);
     exact = distance < 2 * kMeasured;

@@ -18,12 +18,6 @@ namespace {
 /// Of a finger's way: so many that its pieces overlap each other.
 constexpr int kFingerPlaces = 5;
 
-Pose watch_geom_pose(const mjData& d, int geom) {
-  using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  return {Eigen::Map<const Eigen::Vector3d>(d.geom_xpos + 3 * geom),
-          Eigen::Map<const Rows>(d.geom_xmat + 9 * geom)};
-}
-
 /// [m] An upper bound of the distance from the origin of any of the joints 0 to `joint` to a point
 /// of that joint's frame, less what is in this frame.
 double chain_length(const Arm& arm, int joint) {
@@ -91,7 +85,7 @@ class WatchBuilder {
     shape.still = m_.body_weldid[body] == 0;
     shape.radius = m_.geom_rbound[geom];
     if (shape.joint >= 0) {
-      const Pose X_WG = watch_geom_pose(*d_, geom);
+      const Pose X_WG = geom_pose(*d_, geom);
       shape.X_LG = X_WJ_[static_cast<std::size_t>(shape.joint)].inverse() * X_WG;
       shape.reach = chain_length(arm_, shape.joint) + shape.X_LG.p.norm() + shape.radius;
     }

@@ -58,10 +58,23 @@ const NamedColor& ColorBox::take(Rng& rng) {
   return *color;
 }
 
-std::array<float, 4> tinted(Rng& rng, const NamedColor& color) {
-  std::array<float, 4> out{0, 0, 0, 1};
-  for (std::size_t c = 0; c < 3; ++c) out[c] = shade(color.rgb[c] + drawn(rng, kTint));
-  return out;
+void paint(Rng& rng, const NamedColor& color, DrawnObject& object, LooksChange& looks,
+           const char* part) {
+  object.color = color.name.in(Language::english);
+  object.rgba = {0, 0, 0, 1};
+  for (std::size_t c = 0; c < 3; ++c) object.rgba[c] = shade(color.rgb[c] + drawn(rng, kTint));
+  looks.geoms.push_back({object.name + part, object.rgba});
+}
+
+const NamedColor& paint_all(Rng& rng, DrawnScene& out, const char* part) {
+  ColorBox box;
+  const NamedColor* of_target = nullptr;
+  for (std::size_t i = 0; i < out.objects.size(); ++i) {
+    const NamedColor& color = box.take(rng);
+    if (i == out.target) of_target = &color;
+    paint(rng, color, out.objects[i], out.looks, part);
+  }
+  return *of_target;
 }
 
 void draw_grays(Rng& rng, std::span<const char* const> geoms, DrawnScene& out) {

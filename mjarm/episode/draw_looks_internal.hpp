@@ -37,8 +37,12 @@ class ColorBox {
  private:
   std::vector<const NamedColor*> left_;
 };
-/// That colour, each part of it a little off.
-[[nodiscard]] std::array<float, 4> tinted(Rng& rng, const NamedColor& color);
+/// Gives an object that colour, each part of it a little off.
+/// @param part  what the geom that shows it is named behind the object's name.
+void paint(Rng& rng, const NamedColor& color, DrawnObject& object, LooksChange& looks,
+           const char* part = "");
+/// Each object gets another colour. @return the colour of the target.
+const NamedColor& paint_all(Rng& rng, DrawnScene& out, const char* part = "");
 /// Each geom gets a gray of its own.
 void draw_grays(Rng& rng, std::span<const char* const> geoms, DrawnScene& out);
 void draw_light(Rng& rng, DrawnScene& out);

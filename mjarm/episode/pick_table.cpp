@@ -49,21 +49,6 @@ void draw_objects(Rng& rng, DrawnScene& out) {
   }
 }
 
-/// Each object gets another colour. @return the colour of the target.
-const NamedColor& color_objects(Rng& rng, DrawnScene& out) {
-  ColorBox box;
-  const NamedColor* of_target = nullptr;
-  for (std::size_t i = 0; i < out.objects.size(); ++i) {
-    const NamedColor& color = box.take(rng);
-    if (i == out.target) of_target = &color;
-    DrawnObject& object = out.objects[i];
-    object.color = color.name.in(Language::english);
-    object.rgba = tinted(rng, color);
-    out.looks.geoms.push_back({object.name, object.rgba});
-  }
-  return *of_target;
-}
-
 /// Both see the table, the tray and the hand: one from before the arm, one from its side.
 void draw_table_views(Rng& rng, DrawnScene& out) {
   const DrawnView nominal[] = {
@@ -85,11 +70,11 @@ PickTable draw_pick_table(const Robot& robot, EpisodeRng& rng, Msg pattern) {
   draw_objects(rng.scene, scene);
   scene.target = rng.scene.below(scene.objects.size());
   const double x = drawn(rng.scene, kPlaceX), y = drawn(rng.scene, kPlaceY);
-  out.X_WB_place.p = {x, y, kTrayFloor + kObjects[scene.target].height};
+  out.p_place = {x, y, kTrayFloor + kObjects[scene.target].height};
   for (std::size_t i = 0; i < kTurns; ++i) out.turns.push_back(drawn(rng.scene, kObjectYaw));
   draw_start(rng.scene, robot.arm, scene);
 
-  const NamedColor& color = color_objects(rng.looks, scene);
+  const NamedColor& color = paint_all(rng.looks, scene);
   constexpr const char* kFurniture[] = {"table_top", "tray_floor", "fence"};
   draw_grays(rng.looks, kFurniture, scene);
   draw_light(rng.looks, scene);

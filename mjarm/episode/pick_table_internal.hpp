@@ -12,8 +12,9 @@ inline constexpr const char* kPickScene = "pick.xml";
 /// What is drawn of it.
 struct PickTable {
   DrawnScene scene;
-  Pose X_WB_place;            ///< where the target is to be, turned as the arm likes
-  std::vector<double> turns;  ///< [rad] of the tool about the vertical, to be tried in turn
+  Eigen::Vector3d p_place =
+      Eigen::Vector3d::Zero();  ///< [m] where the target is to be, turned as the arm likes
+  std::vector<double> turns;    ///< [rad] of the tool about the vertical, to be tried in turn
 };
 
 /// @param pattern  the task in words, of colour and object.

@@ -146,21 +146,6 @@ class OpenDrawerTask final : public Task {
   double opening_;
 };
 
-/// Each drawer another colour.
-const NamedColor& color_drawers(Rng& rng, DrawnScene& out) {
-  ColorBox box;
-  const NamedColor* of_target = nullptr;
-  for (std::size_t i = 0; i < out.objects.size(); ++i) {
-    const NamedColor& color = box.take(rng);
-    if (i == out.target) of_target = &color;
-    DrawnObject& drawer = out.objects[i];
-    drawer.color = color.name.in(Language::english);
-    drawer.rgba = tinted(rng, color);
-    out.looks.geoms.push_back({drawer.name + "_front", drawer.rgba});
-  }
-  return *of_target;
-}
-
 /// All parts of the cabinet in one gray.
 void color_cabinet(Rng& rng, DrawnScene& out) {
   constexpr const char* kOne[] = {"cabinet_top"};
@@ -189,7 +174,7 @@ std::unique_ptr<Task> draw_open_drawer(const Robot& robot, EpisodeRng& rng) {
   cabinet.opening = 0.01 * std::round(100 * drawn(rng.scene, kOpening));
   draw_start(rng.scene, robot.arm, scene);
 
-  const NamedColor& color = color_drawers(rng.looks, scene);
+  const NamedColor& color = paint_all(rng.looks, scene, "_front");
   color_cabinet(rng.looks, scene);
   draw_light(rng.looks, scene);
   const DrawnView nominal[] = {

@@ -11,19 +11,19 @@ namespace {
 /// An object into the tray.
 class PickPlaceTask final : public Task {
  public:
-  explicit PickPlaceTask(PickTable table)
-      : Task(std::move(table.scene)), X_WB_place_(table.X_WB_place) {}
+  using Task::Task;
 
   [[nodiscard]] TaskPlan plan(const PlanInput& input) const override {
+    const Pose X_WB_place{.p = *scene().p_goal};
     const program::PickTask task{.object = scene().objects[scene().target].name,
-                                 .place = {{.X_WB = X_WB_place_, .any_turn = true}}};
+                                 .place = {{.X_WB = X_WB_place, .any_turn = true}}};
     auto planned =
         program::plan_pick(input.robot, input.before, scene().q, task, {.stop = input.stop});
     if (!planned) {
-      return {.plan = {}, .goal = X_WB_place_, .reason = std::string(name(planned.error().code))};
+      return {.plan = {}, .goal = X_WB_place, .reason = std::string(name(planned.error().code))};
     }
     return {.plan = std::move(planned->plan),
-            .goal = planned->X_WB_place.value_or(X_WB_place_),
+            .goal = planned->X_WB_place.value_or(X_WB_place),
             .reason = {}};
   }
 
@@ -36,15 +36,12 @@ class PickPlaceTask final : public Task {
     }
     return episode::judge(end.X_WB[scene().target], end.goal, before, after);
   }
-
- private:
-  Pose X_WB_place_;
 };
 
 std::unique_ptr<Task> draw_pick_place(const Robot& robot, EpisodeRng& rng) {
   PickTable table = draw_pick_table(robot, rng, msg::episode_put);
-  table.scene.p_goal = table.X_WB_place.p;
-  return std::make_unique<PickPlaceTask>(std::move(table));
+  table.scene.p_goal = table.p_place;
+  return std::make_unique<PickPlaceTask>(std::move(table.scene));
 }
 
 }  // namespace

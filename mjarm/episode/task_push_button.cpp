@@ -145,21 +145,6 @@ std::vector<Pose> draw_buttons(Rng& rng, DrawnScene& out) {
   return heads;
 }
 
-/// Each button another colour.
-const NamedColor& color_buttons(Rng& rng, DrawnScene& out) {
-  ColorBox box;
-  const NamedColor* of_target = nullptr;
-  for (std::size_t i = 0; i < out.objects.size(); ++i) {
-    const NamedColor& color = box.take(rng);
-    DrawnObject& button = out.objects[i];
-    button.color = color.name.in(Language::english);
-    button.rgba = tinted(rng, color);
-    out.looks.geoms.push_back({button.name, button.rgba});
-    if (i == out.target) of_target = &color;
-  }
-  return *of_target;
-}
-
 std::unique_ptr<Task> draw_push_button(const Robot& robot, EpisodeRng& rng) {
   ButtonTable table;
   DrawnScene& scene = table.scene;
@@ -176,7 +161,7 @@ std::unique_ptr<Task> draw_push_button(const Robot& robot, EpisodeRng& rng) {
   }
   draw_start(rng.scene, robot.arm, scene);
 
-  const NamedColor& color = color_buttons(rng.looks, scene);
+  const NamedColor& color = paint_all(rng.looks, scene);
   constexpr const char* kFurniture[] = {"table_top"};
   draw_grays(rng.looks, kFurniture, scene);
   draw_light(rng.looks, scene);

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "mjarm/core/messages/episode.hpp"
 #include "mjarm/core/rotation.hpp"
+#include "mjarm/core/shuffle.hpp"
 #include "mjarm/episode/draw_looks_internal.hpp"
 #include "mjarm/episode/plan_chain_internal.hpp"
 #include "mjarm/model/find_arm.hpp"
@@ -19,7 +21,6 @@ constexpr double kSortTable = 0.2;               // [m] height of the table
 constexpr double kSortApart = 0.11;              // [m] between the middles of two that are to go
 constexpr int kMaxSortDraws = 10000;             // of a place beside the others
 constexpr double kAtSpot = 0.01;                 // [m] from its spot
-constexpr double kUpright = 0.0873;              // [rad] 5 deg
 
 constexpr DrawRange kSortX{"object_x", "m", 0.35, 0.57};
 constexpr DrawRange kSortY{"object_y", "m", -0.14, 0.14};
@@ -94,7 +95,7 @@ class SortTask final : public Task {
       out.rotation = std::max(out.rotation, std::acos(upright));
     }
     // The comparisons are false for what is no number.
-    if (!(out.position <= kAtSpot && out.rotation <= kUpright)) {
+    if (!(out.position <= kAtSpot && out.rotation <= kTurnedAtGoal)) {
       out.reason = "off_goal";
     } else if (!(out.others <= kOthersMoved)) {
       out.reason = "others_moved";
@@ -130,11 +131,11 @@ class SortTask final : public Task {
   std::vector<SortObject> objects_;
 };
 
-/// Numbers 0 to n - 1 in any order (R. Durstenfeld, CACM 7 (1964) 420).
+/// Numbers 0 to n - 1 in any order.
 std::vector<std::size_t> shuffled(Rng& rng, std::size_t n) {
   std::vector<std::size_t> out(n);
-  for (std::size_t i = 0; i < n; ++i) out[i] = i;
-  for (std::size_t i = n; i > 1; --i) std::swap(out[i - 1], out[rng.below(i)]);
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  shuffle(out, rng);
   return out;
 }
 
@@ -183,11 +184,8 @@ std::vector<const NamedColor*> color_kinds(Rng& rng, const std::vector<SortObjec
   std::vector<const NamedColor*> colors;
   for (std::size_t k = 0; k < std::size(kSortKinds); ++k) colors.push_back(&box.take(rng));
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const NamedColor& color = *colors[static_cast<std::size_t>(objects[i].kind - kSortKinds)];
-    DrawnObject& object = out.objects[i];
-    object.color = color.name.in(Language::english);
-    object.rgba = tinted(rng, color);
-    out.looks.geoms.push_back({object.name, object.rgba});
+    const auto kind = static_cast<std::size_t>(objects[i].kind - kSortKinds);
+    paint(rng, *colors[kind], out.objects[i], out.looks);
   }
   return colors;
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mjarm/core/shuffle.hpp"
 #include "mjarm/rl/adam_internal.hpp"
 #include "mjarm/rl/first_weights_internal.hpp"
 #include "mjarm/rl/mixture_loss_internal.hpp"
@@ -162,7 +163,7 @@ Cloner& Cloner::operator=(Cloner&&) noexcept = default;
 double Cloner::epoch() {
   State& state = *state_;
   const std::size_t n = state.rows.size();
-  for (std::size_t i = n; i > 1; --i) std::swap(state.rows[i - 1], state.rows[state.rng.below(i)]);
+  shuffle(state.rows, state.rng);
   const auto batch = static_cast<std::size_t>(state.options.batch);
   double sum = 0;
   for (std::size_t first = 0; first < n; first += batch) {

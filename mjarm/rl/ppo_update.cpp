@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "mjarm/core/messages/rl.hpp"
+#include "mjarm/core/shuffle.hpp"
 #include "mjarm/rl/gae.hpp"
 #include "mjarm/rl/ppo_loss_internal.hpp"
 #include "mjarm/rl/trainer_state_internal.hpp"
@@ -26,11 +27,6 @@ double explained_variance_of(std::span<const float> returns, std::span<const flo
   const std::vector<float> zeros(returns.size());
   const double all = variance_of(returns, zeros);
   return all > 0 ? 1 - variance_of(returns, values) / all : 0;
-}
-
-/// All orders are alike probable (R. Durstenfeld, CACM 7 (1964) 420).
-void shuffle(std::vector<int>& order, Rng& rng) {
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng.below(i)]);
 }
 
 double rate_at(const PpoOptions& options, std::int64_t steps) {
