@@ -10,17 +10,16 @@
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/page_options.hpp"
 #include "apps/mjarm/commands/seen_robot.hpp"
+#include "apps/mjarm/commands/window_options.hpp"
 #include "apps/mjarm/messages/app.hpp"
 #include "apps/mjarm/messages/demo.hpp"
 #include "apps/mjarm/messages/teleop_command.hpp"
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/json_writer.hpp"
-#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/view.hpp"
 #include "mjarm/core/os.hpp"
 #include "mjarm/core/output_folder.hpp"
-#include "mjarm/core/text_width.hpp"
 #include "mjarm/core/units.hpp"
 #include "mjarm/episode/led_episode.hpp"
 #include "mjarm/serve/show_in_page.hpp"
@@ -38,7 +37,8 @@ struct Options {
   RobotChoice robot;
   ServeArguments page;
   std::string frame = "world", speed = "0.25", turn = "1", margin = "5mm", fps = "20";
-  std::string input, out, task, seconds, size, camera, quality;
+  std::string input, out, task, seconds;
+  WindowArguments window;
   bool headless = false, no_guard = false, serve = false, json = false, no_timing = false;
   Replace replace;
 };
@@ -135,26 +135,16 @@ Result<int> play(const Options& options, const Chosen& chosen, const Robot& robo
 }
 
 Result<view::WindowOptions> window_options(const Options& options, const Model& model) {
-  view::WindowOptions out{.can_step = false,
-                          .can_push = false,
-                          .can_lead = true,
-                          .right_panel = true,
-                          .joints_open = false,
-                          .help = session::teleop_help()};
-  if (!options.size.empty()) {
-    const Result<PixelSize> size = parse_size("--size", options.size);
-    if (!size) return fail(size.error());
-    out.width = size->width;
-    out.height = size->height;
-  }
-  if (!options.quality.empty()) {
-    const std::string words[] = {"low", "high"};
-    const auto chosen = parse_choice("--quality", options.quality, words);
-    if (!chosen) return fail(chosen.error());
-    out.quality = *chosen == 0 ? render::RenderQuality::low : render::RenderQuality::high;
-  }
-  out.screenshots = options.out;
-  if (auto set = set_camera(options.camera, model, out); !set) return fail(set.error());
+  Result<view::WindowOptions> out =
+      read_window_options(options.window, {.can_step = false,
+                                           .can_push = false,
+                                           .can_lead = true,
+                                           .screenshots = options.out,
+                                           .right_panel = true,
+                                           .joints_open = false,
+                                           .help = session::teleop_help()});
+  if (!out) return out;
+  if (auto set = set_camera(options.window.camera, model, *out); !set) return fail(set.error());
   return out;
 }
 
@@ -250,14 +240,9 @@ Result<int> run(const Options& options) {
   return options.headless ? play(options, *chosen, *robot) : lead(options, *chosen, *robot);
 }
 
-/// Examples, and below them every key, in one language.
-std::string help_end(Language language) {
-  const LanguageScope scope(language);
-  std::string lines = text(msg::teleop_command_examples) + "\n\n" + text(msg::teleop_command_keys);
-  for (const view::ControlHelp& row : session::teleop_help()) {
-    lines += "\n  " + padded(row.keys, 20) + row.about;
-  }
-  return lines;
+std::string teleop_help_end(Language language) {
+  return examples_and_controls(language, msg::teleop_command_examples, msg::teleop_command_keys,
+                               session::teleop_help);
 }
 
 Run setup(CLI::App& app) {
@@ -277,9 +262,7 @@ Run setup(CLI::App& app) {
   add_option(app, "--input", options->input, msg::teleop_command_input, "FILE.csv");
   add_flag(app, "--serve", options->serve, msg::teleop_command_serve);
   add_serve_options(app, options->page);
-  add_option(app, "--size", options->size, msg::view_option_size, "WxH");
-  add_option(app, "--camera", options->camera, msg::view_option_camera, "CAMERA");
-  add_option(app, "--quality", options->quality, msg::view_option_quality, "low|high");
+  add_window_options(app, options->window);
   add_option(app, "--seconds", options->seconds, msg::view_option_seconds, "S");
   add_flag(app, "--json", options->json, msg::app_option_json);
   add_flag(app, "--no-timing", options->no_timing, msg::demo_option_no_timing);
@@ -290,8 +273,8 @@ Run setup(CLI::App& app) {
 }  // namespace
 
 Command teleop_command() {
-  static const std::string english = help_end(Language::english);
-  static const std::string chinese = help_end(Language::chinese);
+  static const std::string english = teleop_help_end(Language::english);
+  static const std::string chinese = teleop_help_end(Language::chinese);
   return {"teleop", msg::teleop_command_summary, Msg{english.c_str(), chinese.c_str()}, setup};
 }
 

@@ -4,15 +4,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "apps/mjarm/cli/command.hpp"
 #include "apps/mjarm/cli/robot.hpp"
 #include "apps/mjarm/cli/usage.hpp"
 #include "apps/mjarm/commands/seen_robot.hpp"
+#include "apps/mjarm/commands/window_options.hpp"
 #include "apps/mjarm/messages/app.hpp"
-#include "mjarm/core/language_scope.hpp"
 #include "mjarm/core/os.hpp"
-#include "mjarm/core/text_width.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/session/free_sim.hpp"
 #include "mjarm/session/robot_session.hpp"
@@ -27,7 +27,8 @@ namespace {
 
 struct Options {
   RobotChoice robot;
-  std::string size, camera, quality, seconds, out;
+  WindowArguments window;
+  std::string seconds, out;
   bool passive = false, paused = false, stats = false;
 };
 
@@ -35,19 +36,7 @@ struct Options {
 Result<view::WindowOptions> window_options(const Options& options, view::WindowOptions out) {
   out.paused = options.paused;
   out.screenshots = options.out;
-  if (!options.size.empty()) {
-    const Result<PixelSize> size = parse_size("--size", options.size);
-    if (!size) return fail(size.error());
-    out.width = size->width;
-    out.height = size->height;
-  }
-  if (!options.quality.empty()) {
-    const std::string words[] = {"low", "high"};
-    const auto chosen = parse_choice("--quality", options.quality, words);
-    if (!chosen) return fail(chosen.error());
-    out.quality = *chosen == 0 ? render::RenderQuality::low : render::RenderQuality::high;
-  }
-  return out;
+  return read_window_options(options.window, std::move(out));
 }
 
 /// Tells how the window was drawn, where that was asked for.
@@ -71,7 +60,8 @@ Result<int> run(const Options& options) {
   Result<view::WindowOptions> chosen =
       window_options(options, {.can_target = sim->is_held(), .jog_dofs = sim->jog_dofs()});
   if (!chosen) return fail(chosen.error());
-  if (auto set = set_camera(options.camera, loaded->model, *chosen); !set) return fail(set.error());
+  if (auto set = set_camera(options.window.camera, loaded->model, *chosen); !set)
+    return fail(set.error());
   catch_interrupts();
   if (options.paused) sim->handle(view::PauseEvent{true});
   session::RobotSession view(loaded->model, loaded->arm, *sim);
@@ -94,19 +84,14 @@ Result<int> run_program(const Options& options) {
   if (!window) return fail(window.error());
   const Result<program::LoadedProgram> loaded = load_seen_program(options.robot, options.passive);
   if (!loaded) return fail(loaded.error());
-  if (auto set = set_camera(options.camera, loaded->robot.model, *window); !set)
+  if (auto set = set_camera(options.window.camera, loaded->robot.model, *window); !set)
     return fail(set.error());
   return told(options, session::view_program(*loaded, *window, {*seconds}));
 }
 
-/// Examples, and below them every control, in one language.
-std::string help_end(Language language) {
-  const LanguageScope scope(language);
-  std::string lines = text(msg::view_examples) + "\n\n" + text(msg::view_controls);
-  for (const view::ControlHelp& row : view::control_help()) {
-    lines += "\n  " + padded(row.keys, 20) + row.about;
-  }
-  return lines;
+std::string view_help_end(Language language) {
+  return examples_and_controls(language, msg::view_examples, msg::view_controls,
+                               view::control_help);
 }
 
 Run setup(CLI::App& app) {
@@ -116,9 +101,7 @@ Run setup(CLI::App& app) {
   add_load_options(app, options->robot);
   add_flag(app, "--passive", options->passive, msg::view_option_passive);
   add_flag(app, "--paused", options->paused, msg::view_option_paused);
-  add_option(app, "--size", options->size, msg::view_option_size, "WxH");
-  add_option(app, "--camera", options->camera, msg::view_option_camera, "CAMERA");
-  add_option(app, "--quality", options->quality, msg::view_option_quality, "low|high");
+  add_window_options(app, options->window);
   add_option(app, "--out", options->out, msg::view_option_out, "DIR");
   add_option(app, "--seconds", options->seconds, msg::view_option_seconds, "S");
   add_flag(app, "--stats", options->stats, msg::view_option_stats);
@@ -130,8 +113,8 @@ Run setup(CLI::App& app) {
 }  // namespace
 
 Command view_command() {
-  static const std::string english = help_end(Language::english);
-  static const std::string chinese = help_end(Language::chinese);
+  static const std::string english = view_help_end(Language::english);
+  static const std::string chinese = view_help_end(Language::chinese);
   return {"view", msg::view_summary, Msg{english.c_str(), chinese.c_str()}, setup};
 }
 
