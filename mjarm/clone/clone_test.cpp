@@ -159,6 +159,15 @@ TEST_F(Recorded, IsLearnedToTheSameBytesAndKept) {
   EXPECT_EQ(back->options.fps, 5);
 }
 
+TEST_F(Recorded, TellsThatTheLearningDiverged) {
+  const Demonstrated data_read = read_demonstrated(data(), 0).value();
+  const Result<ClonedPolicy> learned = learn(
+      data_read, {.hidden = {16}, .modes = 2, .batch = 32, .epochs = 9, .learning_rate = 1e30});
+  ASSERT_FALSE(learned);
+  EXPECT_EQ(learned.error().code, Errc::impossible);
+  EXPECT_THAT(learned.error().what, HasSubstr("diverged in epoch"));
+}
+
 TEST_F(Recorded, RefusesOtherFilesInOneLine) {
   const support::TempFolder other;
   EXPECT_THAT(read_demonstrated(other.path(), 0).error().what, HasSubstr("holds no episodes"));

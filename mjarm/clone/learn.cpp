@@ -1,5 +1,9 @@
 #include "mjarm/clone/learn.hpp"
 
+#include <cmath>
+
+#include "mjarm/core/messages/clone.hpp"
+
 namespace mjarm::clone {
 
 Result<ClonedPolicy> learn(const Demonstrated& data, const rl::CloningOptions& options,
@@ -20,6 +24,9 @@ Result<ClonedPolicy> learn(const Demonstrated& data, const rl::CloningOptions& o
   while (cloner.epochs() < options.epochs) {
     if (is_stopped(stop)) return fail(stopped());
     const double loss = cloner.epoch();
+    if (!std::isfinite(loss)) {
+      return fail(Errc::impossible, text(msg::clone_diverged, cloner.epochs(), loss));
+    }
     if (after_epoch) after_epoch(cloner.epochs(), loss);
   }
   return ClonedPolicy{cloner.policy(), data.options};

@@ -13,7 +13,7 @@ namespace mjarm::clone {
 /// Learns from demonstrations: rows blurred anew in each pass.
 /// @param after_epoch  called with the number of the pass, from 1, and Cloner::epoch(); may be
 ///                     empty.
-/// @return an error where it was stopped.
+/// @return an error where it was stopped, and impossible where the learning diverged.
 [[nodiscard]] Result<ClonedPolicy> learn(
     const Demonstrated& data, const rl::CloningOptions& options, const StopCheck& stop = {},
     const std::function<void(int epoch, double loss)>& after_epoch = {});

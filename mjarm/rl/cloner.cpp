@@ -9,6 +9,7 @@
 #include "mjarm/core/shuffle.hpp"
 #include "mjarm/rl/adam_internal.hpp"
 #include "mjarm/rl/first_weights_internal.hpp"
+#include "mjarm/rl/gradient_sums_internal.hpp"
 #include "mjarm/rl/mixture_loss_internal.hpp"
 #include "mjarm/rl/networks_internal.hpp"
 
@@ -21,6 +22,7 @@ using detail::Mlp;
 enum RngUse : std::uint64_t { first_weights = 1, order = 2, blur = 16 };
 
 constexpr double kAdamEpsilon = 1e-8;
+constexpr std::size_t kCloningPortion = std::size_t{1} << 16;  // parameters a task
 
 Policy first_policy(const Demonstrations& data, const CloningOptions& options) {
   Policy policy({.observations = data.observations,
@@ -64,7 +66,7 @@ struct Cloner::State {
         rng(options.seed, RngUse::order),
         workers(options.threads),
         networks(detail::net_kernels(simd_level()), policy.net, workers),
-        gradient(policy.net.parameters().size()),
+        sums(policy.net.parameters().size(), kCloningPortion, networks),
         rows(data.rows) {
     learn_scale(data, policy.net.normaliser);
     std::iota(rows.begin(), rows.end(), std::size_t{0});
@@ -72,6 +74,7 @@ struct Cloner::State {
 
   /// Of some rows, at most Mlp::kRows, to `slice`.
   double slice_loss(std::size_t first, std::size_t count, double weight, int thread, float* slice);
+  /// @return the sum of their losses; not finite, and nothing learned, where that diverges.
   double step(std::size_t first, std::size_t count, double rate);
 
   const Demonstrations& data;
@@ -81,8 +84,7 @@ struct Cloner::State {
   Rng rng;
   detail::Workers workers;
   detail::Networks networks;
-  detail::FloatBuffer gradient;
-  std::vector<detail::FloatBuffer> slices;
+  detail::GradientSums sums;
   std::vector<std::size_t> rows;  ///< in the order of this pass
   std::uint64_t shown = 0;        ///< rows so far: each is blurred by numbers of its own
   int epochs = 0;
@@ -119,33 +121,26 @@ double Cloner::State::slice_loss(std::size_t first, std::size_t count, double we
     }
   }
   networks.actor().backward(n, scratch, false, slice);
-  float* last = slice + gradient.size() - outputs;  // log_std stands last of all parameters
+  float* last = slice + sums.size() - outputs;  // log_std stands last of all parameters
   for (std::size_t k = 0; k < outputs; ++k) last[k] = static_cast<float>(weight * by_log_std[k]);
   return sum;
 }
 
 double Cloner::State::step(std::size_t first, std::size_t count, double rate) {
   const std::size_t pieces = (count + Mlp::kRows - 1) / Mlp::kRows;
-  while (slices.size() < pieces) slices.emplace_back(gradient.size());
+  sums.reserve(static_cast<int>(pieces));
   std::vector<double> losses(pieces);
   networks.pack(policy.net);
   workers.run(static_cast<int>(pieces), [&](int piece, int thread) {
     const auto i = static_cast<std::size_t>(piece);
     const std::size_t begin = first + i * Mlp::kRows;
     const std::size_t size = std::min<std::size_t>(Mlp::kRows, first + count - begin);
-    losses[i] = slice_loss(begin, size, 1 / static_cast<double>(count), thread, slices[i].data());
+    losses[i] = slice_loss(begin, size, 1 / static_cast<double>(count), thread, sums.slice(piece));
   });
-  const auto size = static_cast<long>(gradient.size());
-  std::vector<const float*> from;
-  for (std::size_t i = 0; i < pieces; ++i) from.push_back(slices[i].data());
-  networks.kernels().add(static_cast<int>(pieces), from.data(), size, gradient.data());
-  constexpr long kPortion = 1 << 16;  // the kernel's most
-  double squares = 0;
-  for (long at = 0; at < size; at += kPortion) {
-    squares += networks.kernels().squares(gradient.data() + at, std::min(kPortion, size - at));
-  }
-  const double norm = std::sqrt(squares);
-  adam.step(networks.kernels(), workers, {gradient.data(), gradient.size()},
+  sums.add(static_cast<int>(pieces));
+  const double norm = std::sqrt(sums.squares());
+  if (!std::isfinite(norm)) return norm;
+  adam.step(networks.kernels(), workers, sums.gradient(),
             std::min(1.0, options.max_norm / std::max(norm, options.max_norm)), rate, kAdamEpsilon,
             policy.net.parameters());
   const auto least = static_cast<float>(std::log(options.least_std));

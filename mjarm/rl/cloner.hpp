@@ -48,7 +48,8 @@ class Cloner {
   Cloner& operator=(Cloner&&) noexcept;
 
   /// One pass over all rows in an order of its own.
-  /// @return the mean of -ln of their likelihood, as they were shown.
+  /// @return the mean of -ln of their likelihood, as they were shown; not finite where the learning
+  ///         diverged.
   double epoch();
   [[nodiscard]] int epochs() const noexcept;  ///< done so far
   [[nodiscard]] const MixturePolicy& policy() const noexcept;

@@ -118,6 +118,13 @@ TEST(Cloner, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_NE(one.policy().tensors(), other.policy().tensors());
 }
 
+TEST(Cloner, TellsThatItDiverged) {
+  const Demonstrations data = two_ways();
+  const CloningOptions options{.hidden = {16}, .batch = 64, .epochs = 2, .learning_rate = 1e30};
+  Cloner cloner(data, options);
+  EXPECT_FALSE(std::isfinite(cloner.epoch()));
+}
+
 TEST(Cloner, KeepsDeviationsAboveTheLeast) {
   const Demonstrations data = two_ways();
   const CloningOptions options{.hidden = {16},

@@ -79,7 +79,7 @@ struct PpoGradient::Batch {
 };
 
 PpoGradient::PpoGradient(const PolicyShape& shape, std::size_t parameters, Networks& networks)
-    : shape_(shape), networks_(networks), gradient_(parameters) {}
+    : shape_(shape), networks_(networks), sums_(parameters, kPortion, networks) {}
 
 LossMeans PpoGradient::compute(const Policy& policy, const Samples& samples,
                                std::span<const int> which, const PpoOptions& options) {
@@ -89,9 +89,8 @@ LossMeans PpoGradient::compute(const Policy& policy, const Samples& samples,
                        Gaussian(policy.log_std()),
                        AdvantageScale(samples.advantages, which, options.normalise_advantages),
                        slices_of(which.size())};
-  while (static_cast<int>(slices_.size()) < batch.slices) {
-    slices_.push_back({FloatBuffer(gradient_.size()), {}});
-  }
+  sums_.reserve(batch.slices);
+  losses_.resize(static_cast<std::size_t>(batch.slices));
   networks_.workers().run(2 * batch.slices, [&](int task, int thread) {
     if (task < batch.slices) {
       run_actor(batch, task, thread);
@@ -99,9 +98,13 @@ LossMeans PpoGradient::compute(const Policy& policy, const Samples& samples,
       run_critic(batch, task - batch.slices, thread);
     }
   });
-  add_slices(batch.slices, policy.parameters(), options);
+  sums_.add(batch.slices);
+  // The entropy is the sum of log_std but for a constant.
+  for (float& by_log_std : gradient().last(static_cast<std::size_t>(shape_.actions))) {
+    by_log_std -= static_cast<float>(options.entropy_weight);
+  }
   LossMeans means;
-  for (int i = 0; i < batch.slices; ++i) means += slices_[i].sums;
+  for (const LossMeans& of_slice : losses_) means += of_slice;
   return means *= batch.weight();
 }
 
@@ -134,7 +137,7 @@ void PpoGradient::run_actor(const Batch& batch, int slice, int thread) {
   Mlp::Scratch& scratch = networks_.actor_scratch(thread);
   LossMeans sums;
   std::vector<double> by_log_std(static_cast<std::size_t>(shape_.actions), 0.0);
-  float* gradient = slices_[slice].gradient.data();
+  float* gradient = sums_.slice(slice);
   batch.for_each_block(slice, [&](std::span<const int> rows, bool first) {
     gather(batch.samples, rows, scratch.values.front());
     net.forward(static_cast<int>(rows.size()), scratch);
@@ -142,10 +145,10 @@ void PpoGradient::run_actor(const Batch& batch, int slice, int thread) {
     net.backward(static_cast<int>(rows.size()), scratch, !first, gradient);
   });
   // log_std stands last of all parameters.
-  std::ranges::copy(by_log_std, gradient + gradient_.size() - by_log_std.size());
-  slices_[slice].sums.policy = sums.policy;
-  slices_[slice].sums.kl = sums.kl;
-  slices_[slice].sums.clip_fraction = sums.clip_fraction;
+  std::ranges::copy(by_log_std, gradient + sums_.size() - by_log_std.size());
+  losses_[slice].policy = sums.policy;
+  losses_[slice].kl = sums.kl;
+  losses_[slice].clip_fraction = sums.clip_fraction;
 }
 
 void PpoGradient::run_critic(const Batch& batch, int slice, int thread) {
@@ -164,38 +167,9 @@ void PpoGradient::run_critic(const Batch& batch, int slice, int thread) {
       scratch.gradients.back().at(i, 0) =
           static_cast<float>(term.slope * batch.options.value_weight * batch.weight());
     }
-    net.backward(static_cast<int>(rows.size()), scratch, !first, slices_[slice].gradient.data());
+    net.backward(static_cast<int>(rows.size()), scratch, !first, sums_.slice(slice));
   });
-  slices_[slice].sums.value = sum;
-}
-
-void PpoGradient::add_slices(int count, std::span<const float> parameters,
-                             const PpoOptions& options) {
-  const std::size_t size = parameters.size();
-  networks_.workers().run(static_cast<int>((size + kPortion - 1) / kPortion), [&](int task, int) {
-    const std::size_t first = static_cast<std::size_t>(task) * kPortion;
-    const float* from[kMaxSlices];
-    for (int i = 0; i < count; ++i) from[i] = slices_[i].gradient.data() + first;
-    networks_.kernels().add(count, from, static_cast<long>(std::min(kPortion, size - first)),
-                            gradient_.data() + first);
-  });
-  // The entropy is the sum of log_std but for a constant.
-  for (std::size_t i = size - static_cast<std::size_t>(shape_.actions); i < size; ++i) {
-    gradient_.data()[i] -= static_cast<float>(options.entropy_weight);
-  }
-}
-
-double PpoGradient::squares() {
-  const std::size_t size = gradient_.size();
-  std::vector<float> portions((size + kPortion - 1) / kPortion);
-  networks_.workers().run(static_cast<int>(portions.size()), [&](int task, int) {
-    const std::size_t first = static_cast<std::size_t>(task) * kPortion;
-    portions[task] = networks_.kernels().squares(
-        gradient_.data() + first, static_cast<long>(std::min(kPortion, size - first)));
-  });
-  double sum = 0;
-  for (const float portion : portions) sum += portion;
-  return sum;
+  losses_[slice].value = sum;
 }
 
 }  // namespace mjarm::rl::detail

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "mjarm/rl/gradient_sums_internal.hpp"
 #include "mjarm/rl/networks_internal.hpp"
 #include "mjarm/rl/ppo.hpp"
 
@@ -40,30 +41,23 @@ class PpoGradient {
   LossMeans compute(const Policy& policy, const Samples& samples, std::span<const int> which,
                     const PpoOptions& options);
 
-  [[nodiscard]] std::span<float> gradient() noexcept {
-    return {gradient_.data(), gradient_.size()};
-  }
+  [[nodiscard]] std::span<float> gradient() noexcept { return sums_.gradient(); }
   /// |gradient()|^2
-  [[nodiscard]] double squares();
+  [[nodiscard]] double squares() { return sums_.squares(); }
 
  private:
   struct Batch;
-  struct Slice {
-    FloatBuffer gradient;
-    LossMeans sums;
-  };
   /// After the actor's forward pass over `rows`: the gradient by its outputs, and what comes to the
   /// sums.
   void actor_loss(const Batch& batch, std::span<const int> rows, Mlp::Scratch& scratch,
                   LossMeans& sums, std::span<double> by_log_std) const;
   void run_actor(const Batch& batch, int slice, int thread);
   void run_critic(const Batch& batch, int slice, int thread);
-  void add_slices(int count, std::span<const float> parameters, const PpoOptions& options);
 
   PolicyShape shape_;
   Networks& networks_;
-  FloatBuffer gradient_;
-  std::vector<Slice> slices_;
+  GradientSums sums_;
+  std::vector<LossMeans> losses_;  ///< of each slice
 };
 
 }  // namespace mjarm::rl::detail
