@@ -25,6 +25,15 @@ std::uint64_t whole(const std::string& word) {
   return out;
 }
 
+/// Whether the policy is of the size of what is seen and done in this world.
+Result<void> fits(const ClonedPolicy& cloned, const episode::TaskWorld& world) {
+  const int wanted = observation_size(world.scene().objects.size());
+  const rl::MixturePolicy& policy = cloned.policy;
+  if (policy.net.shape().observations == wanted && policy.actions() == kActions) return {};
+  return fail(Errc::bad_input, text(msg::clone_sizes, policy.net.shape().observations,
+                                    policy.actions(), cloned.options.task, wanted, kActions));
+}
+
 }  // namespace
 
 Result<void> save_cloned(const std::filesystem::path& file, const ClonedPolicy& cloned) {
@@ -57,19 +66,6 @@ Result<ClonedPolicy> load_cloned(const std::filesystem::path& file) {
   if (auto fits = episode::check(out.options); !fits) return bad(fits.error().what);
   return out;
 }
-
-namespace {
-
-/// Whether the policy is of the size of what is seen and done in this world.
-Result<void> fits(const ClonedPolicy& cloned, const episode::TaskWorld& world) {
-  const int wanted = observation_size(world.scene().objects.size());
-  const rl::MixturePolicy& policy = cloned.policy;
-  if (policy.net.shape().observations == wanted && policy.actions() == kActions) return {};
-  return fail(Errc::bad_input, text(msg::clone_sizes, policy.net.shape().observations,
-                                    policy.actions(), cloned.options.task, wanted, kActions));
-}
-
-}  // namespace
 
 Result<std::vector<episode::Verdict>> try_often(const ClonedPolicy& cloned, int scenes, int threads,
                                                 const StopCheck& stop,

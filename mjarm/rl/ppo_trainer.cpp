@@ -24,29 +24,6 @@ tl::unexpected<Error> failed_iteration(std::int64_t iteration, const Error& erro
   return fail(error.code, text(msg::rl_iteration, iteration, error.what));
 }
 
-}  // namespace
-
-PpoTrainer::State::State(VecEnv& environment, const PpoOptions& all_options, Ranks* all_ranks,
-                         Policy first_policy)
-    : env(environment),
-      policy(std::move(first_policy)),
-      adam(policy.parameters().size()),
-      rng(rng_of_rank(all_options, all_ranks, 0)),
-      reward_scale(scale_of_one_number()),
-      open(environment.count()),
-      options(all_options),
-      ranks(all_ranks),
-      workers(all_options.threads),
-      networks(detail::net_kernels(simd_level()), policy, workers),
-      gradient(policy.shape(), policy.parameters().size(), networks),
-      rollout(all_options.rollout_steps, environment.count(), policy.shape()) {}
-
-void PpoTrainer::State::sum_over_ranks(std::span<double> values) const {
-  if (ranks != nullptr) ranks->sum(values);
-}
-
-namespace {
-
 /// Weights of layers one after another.
 double count_weights(int inputs, const std::vector<int>& hidden, int outputs) {
   double count = 0, from = inputs;
@@ -74,6 +51,25 @@ Result<void> check_memory(const VecEnv& env, const PpoOptions& options) {
 }
 
 }  // namespace
+
+PpoTrainer::State::State(VecEnv& environment, const PpoOptions& all_options, Ranks* all_ranks,
+                         Policy first_policy)
+    : env(environment),
+      policy(std::move(first_policy)),
+      adam(policy.parameters().size()),
+      rng(rng_of_rank(all_options, all_ranks, 0)),
+      reward_scale(scale_of_one_number()),
+      open(environment.count()),
+      options(all_options),
+      ranks(all_ranks),
+      workers(all_options.threads),
+      networks(detail::net_kernels(simd_level()), policy, workers),
+      gradient(policy.shape(), policy.parameters().size(), networks),
+      rollout(all_options.rollout_steps, environment.count(), policy.shape()) {}
+
+void PpoTrainer::State::sum_over_ranks(std::span<double> values) const {
+  if (ranks != nullptr) ranks->sum(values);
+}
 
 PpoTrainer::PpoTrainer(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
 PpoTrainer::~PpoTrainer() = default;

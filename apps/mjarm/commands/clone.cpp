@@ -4,7 +4,6 @@
 #include <memory>
 #include <numbers>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "apps/mjarm/cli/command.hpp"
@@ -68,9 +67,9 @@ Result<Wanted> parsed(const Options& options) {
   const Result<std::uint64_t> seed = parse_whole("--seed", options.seed);
   if (!seed) return fail(seed.error());
   out.cloning.seed = *seed;
-  out.cloning.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  out.cloning.threads = core_count();
   if (!options.threads.empty()) {
-    const Result<int> threads = parse_count("--threads", options.threads, 1024);
+    const Result<int> threads = parse_threads(options.threads);
     if (!threads) return fail(threads.error());
     out.cloning.threads = *threads;
   }

@@ -45,6 +45,34 @@ std::string worst_line(const Finding& finding) {
   return text(msg::app_check_worst_element, line, finding.element, finding.what);
 }
 
+/// Refuses what could not be written, before anything is measured.
+Result<std::optional<LongResult>> begin_fix(const fs::path& file, const FixOptions& fix) {
+  if (fix.out.empty()) return std::optional<LongResult>();
+  if (fs::path(fix.out).extension() != ".xml") {
+    return fail(Errc::usage, text(msg::app_fix_ending, fix.out));
+  }
+  std::error_code unknown;
+  if (fs::equivalent(fix.out, file, unknown)) {
+    return fail(Errc::usage, text(msg::app_fix_over_input, fix.out));
+  }
+  Result<LongResult> result = LongResult::begin(fix.out, fix.replace);
+  if (!result) return fail(result.error());
+  return std::optional<LongResult>(std::move(*result));
+}
+
+Result<void> write_fix(const fs::path& file, const CheckOptions& options, const GripMend& mend,
+                       const LongResult& result, const std::string& out) {
+  const Result<Model> model = Model::load(file, options.load);
+  if (!model) return fail(model.error());
+  const Result<Exported> exported = export_mended(*model, mend, fs::absolute(out).parent_path());
+  if (!exported) return fail(exported.error());
+  if (auto written = write_file(out, exported->content); !written) return fail(written.error());
+  result.made();
+  // All that MJCF cannot take along.
+  if (!exported->notes.empty()) log_warning(text(msg::app_fix_files_stay, out));
+  return {};
+}
+
 }  // namespace
 
 std::string to_text(const CheckReport& report) {
@@ -90,38 +118,6 @@ std::string to_json(const CheckReport& report) {
                      {"findings", std::move(findings)}};
   return json.document();
 }
-
-namespace {
-
-/// Refuses what could not be written, before anything is measured.
-Result<std::optional<LongResult>> begin_fix(const fs::path& file, const FixOptions& fix) {
-  if (fix.out.empty()) return std::optional<LongResult>();
-  if (fs::path(fix.out).extension() != ".xml") {
-    return fail(Errc::usage, text(msg::app_fix_ending, fix.out));
-  }
-  std::error_code unknown;
-  if (fs::equivalent(fix.out, file, unknown)) {
-    return fail(Errc::usage, text(msg::app_fix_over_input, fix.out));
-  }
-  Result<LongResult> result = LongResult::begin(fix.out, fix.replace);
-  if (!result) return fail(result.error());
-  return std::optional<LongResult>(std::move(*result));
-}
-
-Result<void> write_fix(const fs::path& file, const CheckOptions& options, const GripMend& mend,
-                       const LongResult& result, const std::string& out) {
-  const Result<Model> model = Model::load(file, options.load);
-  if (!model) return fail(model.error());
-  const Result<Exported> exported = export_mended(*model, mend, fs::absolute(out).parent_path());
-  if (!exported) return fail(exported.error());
-  if (auto written = write_file(out, exported->content); !written) return fail(written.error());
-  result.made();
-  // All that MJCF cannot take along.
-  if (!exported->notes.empty()) log_warning(text(msg::app_fix_files_stay, out));
-  return {};
-}
-
-}  // namespace
 
 Result<int> check_file(const fs::path& file, const CheckOptions& options, bool json,
                        const FixOptions& fix) {
