@@ -1,11 +1,7 @@
 // mjarm teleop, as a user calls it.
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -13,6 +9,7 @@
 #include <vector>
 
 #include "apps/mjarm/commands/program_test.hpp"
+#include "tests/support/own_display.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -79,36 +76,16 @@ TEST(TeleopCommand, TheHelpListsTheKeysInBothLanguages) {
   EXPECT_THAT(mjarm({"teleop", "--help", "--lang", "zh"}).out, HasSubstr("重做最后 3 s"));
 }
 
-/// A display of the test's own, with a stand-in for the user.
-class TeleopOnADisplay : public ::testing::Test {
+/// With a stand-in for the user.
+class TeleopOnADisplay : public support::OwnDisplay {
  protected:
   void SetUp() override {
-    if (std::system("command -v Xvfb >/dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
     if (std::system("command -v xdotool >/dev/null") != 0) GTEST_SKIP() << "no xdotool";
-    int ends[2];
-    ASSERT_EQ(pipe(ends), 0);
-    server_ = fork();
-    if (server_ == 0) {
-      dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-      const std::string number = std::to_string(ends[1]);
-      execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "900x700x24", nullptr);
-      _exit(127);
-    }
-    close(ends[1]);
-    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) display_ += c;
-    close(ends[0]);
-    ASSERT_NE(display_, ":");
-  }
-  void TearDown() override {
-    if (server_ <= 0) return;
-    kill(server_, SIGKILL);
-    waitpid(server_, nullptr, 0);
+    OwnDisplay::SetUp();
   }
   bool user(const std::string& words) const {
     return std::system(("DISPLAY=" + display_ + " timeout 20 xdotool " + words).c_str()) == 0;
   }
-  pid_t server_ = -1;
-  std::string display_ = ":";
 };
 
 TEST_F(TeleopOnADisplay, KeysLeadRecordAndKeep) {

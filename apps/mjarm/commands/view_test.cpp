@@ -1,16 +1,12 @@
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
 #include "mjarm/core/file.hpp"
+#include "tests/support/own_display.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -54,33 +50,7 @@ TEST(ViewCommand, TheHelpListsEveryControlInBothLanguages) {
   EXPECT_NE(mjarm_in({"view", "--help", "--lang", "zh"}).out.find("接触点"), std::string::npos);
 }
 
-/// A display of the test's own.
-class OnADisplay : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (std::system("command -v Xvfb >/dev/null") != 0) GTEST_SKIP() << "Xvfb is not installed";
-    int ends[2];
-    ASSERT_EQ(pipe(ends), 0);
-    server_ = fork();
-    if (server_ == 0) {
-      dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-      const std::string number = std::to_string(ends[1]);
-      execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1300x820x24", nullptr);
-      _exit(127);
-    }
-    close(ends[1]);
-    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) display_ += c;
-    close(ends[0]);
-    ASSERT_NE(display_, ":");
-  }
-  void TearDown() override {
-    if (server_ <= 0) return;
-    kill(server_, SIGKILL);
-    waitpid(server_, nullptr, 0);
-  }
-  pid_t server_ = -1;
-  std::string display_ = ":";
-};
+using OnADisplay = support::OwnDisplay;
 
 TEST_F(OnADisplay, AWindowOpensDrawsAndCloses) {
   const support::ProgramResult result = mjarm_in(
