@@ -21,6 +21,7 @@ import pathlib
 import re
 import secrets
 import selectors
+import shutil
 import signal
 import subprocess
 import sys
@@ -443,7 +444,13 @@ def main():
     parser.add_argument("--seconds", type=float, default=120, help="the most one command may take")
     parser.add_argument("--tables", action="store_true")
     parser.add_argument("pages", nargs="+", type=pathlib.Path)
-    checker = Checker(parser.parse_args())
+    options = parser.parse_args()
+    program = shutil.which(options.program)
+    if not program:  # a name that nothing has would call the wrapper of that name again and again
+        parser.error(f"--program: \"{options.program}\" is no program")
+    options.program = pathlib.Path(program).resolve()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the shells of a page end with it
+    checker = Checker(options)
     for page in checker.options.pages:
         checker.check(page)
     print(f"{checker.passed} passed, {checker.failed} failed, {checker.skipped} skipped")

@@ -55,6 +55,13 @@ class CheckPagesTest(unittest.TestCase):
         self.assertEqual(code, 0 if ", 0 failed" in counts else 1)
         return "\n".join(lines[:-1])
 
+    def test_a_program_that_is_not_there_is_told(self):
+        self.program.unlink()
+        with contextlib.redirect_stderr(io.StringIO()) as told:
+            code, lines = self.run_page("```sh\nmjarm\n```\n")
+        self.assertEqual((code, lines), (2, []))
+        self.assertIn(f'"{self.program}" is no program', told.getvalue())
+
     def test_commands_run_in_order_in_one_folder(self):
         self.assert_counts("```sh\n# a comment\necho one > f\n\n./dev fk --x \\\n  1\n```\nwords\n```sh\ncat f\nmkdir d\ncd d\n"
                            "cat <<'EOF'\nhere\nEOF\nls ../f ../models/a.xml\n```\n```text\none\nhere\n../f\n```\n", "8 passed, 0 failed, 0 skipped")
