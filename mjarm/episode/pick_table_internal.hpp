@@ -12,9 +12,9 @@ inline constexpr const char* kPickScene = "pick.xml";
 /// What is drawn of it.
 struct PickTable {
   DrawnScene scene;
-  Eigen::Vector3d p_place =
-      Eigen::Vector3d::Zero();  ///< [m] where the target is to be, turned as the arm likes
-  std::vector<double> turns;    ///< [rad] of the tool about the vertical, to be tried in turn
+  /// [m] Where the target is to be, turned as the arm likes.
+  Eigen::Vector3d p_place = Eigen::Vector3d::Zero();
+  std::vector<double> turns;  ///< [rad] of the tool about the vertical, to be tried in turn
 };
 
 /// @param pattern  the task in words, of colour and object.
