@@ -234,7 +234,7 @@ def same_number(expected, printed):
 def same_line(expected, printed):
     """True where one stands for the other: equal words, close numbers, any number of blanks."""
     if "..." in expected.strip(" .") or expected.strip().endswith("...") or expected.strip().startswith("..."):
-        parts = [NUMBER.sub("\0", part) for part in expected.split("...")]
+        parts = [NUMBER.sub("\0", part) for part in expected.strip().split("...")]
         blanks = [re.sub(r"\s+", r"\\s+", re.escape(part).replace("\\ ", " ").replace("\0", f"({NUMBER.pattern})")) for part in parts]
         found = re.fullmatch(r"\s*" + ".*".join(blanks) + r"\s*", printed.strip())
         if found:

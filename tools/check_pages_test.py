@@ -153,7 +153,7 @@ class SameLineTest(unittest.TestCase):
 
     def test_dots_stand_for_anything(self):
         for expected, printed, same in (("wrote ...", "wrote /tmp/a b", True), ("wrote ... 5", "wrote x 7", False), ("... done", "all done", True),
-                                        ("a ... b", "a c", False), ("1.0 ... 2.0", "1.0 x 2.1", True), ("1.0 ... 2.0", "1.0 x 2.2", False)):
+                                        ("a ... b", "a c", False), ("1.0 ... 2.0", "1.0 x 2.1", True), ("1.0 ... 2.0", "1.0 x 2.2", False), ("  a  ... b", "  a 1   b", True)):
             self.assertEqual(check_pages.same_line(expected, printed), same, (expected, printed))
 
 

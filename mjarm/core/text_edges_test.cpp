@@ -152,7 +152,7 @@ TEST(TextEdges, TheNearestWordIsOneThatNoOtherIsNearerTo) {
   EXPECT_EQ(listed(std::vector<std::string>{"a", "b c", ""}), "a, b c, ");
   const LanguageScope chinese(Language::chinese);
   EXPECT_EQ(listed(std::vector<std::string>{"a", "b c"}), "a、b c");
-  EXPECT_EQ(did_you_mean("hme", std::vector<std::string>{"home"}), "（您是否想输入“home”？）");
+  EXPECT_EQ(did_you_mean("hme", std::vector<std::string>{"home"}), "（是否想输入“home”？）");
 }
 
 std::vector<std::string> lines_read(const std::string& content, std::size_t longest = 100) {

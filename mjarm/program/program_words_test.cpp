@@ -195,7 +195,7 @@ TEST(ProgramWords, FaultsInNestedRepeatsHaveTheirOwnLine) {
 TEST(ProgramWords, TheSameFaultIsToldInChineseAtTheSamePlace) {
   const LanguageScope chinese(Language::chinese);
   EXPECT_EQ(refusal(with_instruction("movell: {}")),
-            "p.yaml:3:5：没有名为“movell”的指令（您是否想输入“movel”？）");
+            "p.yaml:3:5：没有名为“movell”的指令（是否想输入“movel”？）");
   EXPECT_EQ(refusal(with_instruction("movel: {pos: [0, 0, 0]}")),
             "p.yaml:3:12：movel：缺少工具姿态：euler、quat 或 matrix");
   EXPECT_EQ(refusal(with_instruction("set: {speed: 0}")),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <span>
 #include <string>
 #include <vector>
@@ -61,6 +62,20 @@ inline void expect_both_languages(const Msg& message) {
   EXPECT_FALSE(has_chinese(message.in(Language::english)));
 }
 
+/// Chinese and a Latin letter or a digit stand apart by a space, as in "5 mm 以内".
+inline void expect_chinese_apart(const Msg& message) {
+  const std::string_view text = message.in(Language::chinese);
+  const auto begins_ideograph = [&](std::size_t i) {  // U+4000 to U+9FFF in UTF-8
+    const auto byte = i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+    return byte >= 0xE4 && byte <= 0xE9;
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!std::isalnum(static_cast<unsigned char>(text[i]))) continue;
+    EXPECT_FALSE(begins_ideograph(i + 1) || (i >= 3 && begins_ideograph(i - 3)))
+        << text << ": at \"" << text[i] << '"';
+  }
+}
+
 /// Numbered placeholders may change places, the others keep their order and format.
 inline void expect_same_placeholders(const Msg& message) {
   const auto in_order = [&](Language language) {
@@ -97,6 +112,7 @@ inline void expect_sound(std::span<const Msg> messages) {
   for (const Msg& message : messages) {
     SCOPED_TRACE(message.english);
     expect_both_languages(message);
+    expect_chinese_apart(message);
     expect_same_placeholders(message);
     expect_formats(message);
   }

@@ -86,7 +86,7 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(self.link("en", "docs/serve.md", "serve.zh-CN.md"), 'see <a href="../../zh-CN/docs/serve.html">it</a>.')
         self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "serve.md"), 'see <a href="../../en/docs/serve.html">it</a>.')
         self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "perception.zh-CN.md"), "see [it](../docs/perception.md).")
-        self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "architecture.md"), "see [it](../docs/architecture.md).")  # there is no other
+        self.assertEqual(self.link("zh-CN", "docs/serve.zh-CN.md", "roadmap.md"), "see [it](../docs/roadmap.md).")  # there is no other
         self.assertEqual(self.link("en", "docs/serve.md", "../README.md"), "see [it](../index.md).")
 
     def test_links_to_files(self):

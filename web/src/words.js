@@ -64,7 +64,7 @@ const WORDS = {
   sheet: ['Size of the panel', '面板大小'],
   plot_height: ['Height of the plots', '曲线图高度'],
   recording: ['Recording', '回放'],
-  postures: ['All postures', '所有姿态'],
+  postures: ['All postures', '所有构型'],
   go: ['Go', '前往'],
   of_end: ['{0} of {1} s', '{0} / {1} s'],
 
@@ -135,7 +135,7 @@ const WORDS = {
   h_select: ['Select a body; the sky deselects', '选中物体；双击空白处取消'],
   h_push: ['Pull a body by a spring', '用弹簧拉动物体'],
   h_target: ['Move the target of the tool', '移动工具目标'],
-  h_ghost: ['Choose the posture it shows', '选择它所示的姿态'],
+  h_ghost: ['Choose the posture it shows', '选择它所示的构型'],
   h_pause: ['Pause and go on', '暂停或继续'],
   h_step: ['One step back or forward', '后退或前进一步'],
   h_speed: ['Faster, slower', '加速、减速'],

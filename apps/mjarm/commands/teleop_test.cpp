@@ -73,7 +73,7 @@ TEST(TeleopCommand, RefusesInOneLine) {
 
 TEST(TeleopCommand, TheHelpListsTheKeysInBothLanguages) {
   EXPECT_THAT(mjarm({"teleop", "--help"}).out, HasSubstr("the last 3 s once more"));
-  EXPECT_THAT(mjarm({"teleop", "--help", "--lang", "zh"}).out, HasSubstr("重做最后 3 s"));
+  EXPECT_THAT(mjarm({"teleop", "--help", "--lang", "zh"}).out, HasSubstr("退回 3 s 重来"));
 }
 
 /// With a stand-in for the user.

@@ -53,7 +53,7 @@ def _shown() -> Callable[[int, int], None]:
 
     def show(done: int, total: int) -> None:
         left = (time.monotonic() - begin) / done * (total - done)
-        line = say(f"{done} of {total} episodes, {left:.0f} s left", f"{done}/{total} 个回合，还需 {left:.0f} 秒")
+        line = say(f"{done} of {total} episodes, {left:.0f} s left", f"{done}/{total} 个回合，还需 {left:.0f} s")
         if is_terminal:
             print(f"\r{line}\033[K", end="\n" if done == total else "", file=sys.stderr, flush=True)
         elif done == total or done % 100 == 0:
