@@ -1,6 +1,7 @@
-"""Writes docs/python.md, the reference of the package of Python, from its docstrings.
+"""Writes docs/python.md, the reference of the package of Python, from its docstrings, and docs/python.zh-CN.md beside it.
 
-Usage: python_reference.py STUB PAGE, the stub being mjarm/_core.pyi of a build or of an installed package.
+Usage: python_reference.py STUB PAGE, the stub being mjarm/_core.pyi of a build or of an installed package. The Chinese is that of
+python/docs/zh-CN.txt; a docstring without any, or Chinese of what no docstring says any more, is told a line each: exit code 1.
 """
 
 import ast
@@ -9,17 +10,74 @@ import pathlib
 import re
 import sys
 
-PACKAGE = pathlib.Path(__file__).resolve().parent.parent / "python" / "mjarm"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "python" / "mjarm"
+CATALOGUE = ROOT / "python" / "docs" / "zh-CN.txt"
 HEAD = """# Python: reference
+
+[中文](python.zh-CN.md)
 
 Made from the docstrings by `tools/python_reference.py`. Units are SI; `Array` is a float64 array of numpy, `PoseLike` a `Pose` or an array (4, 4), `PosesLike` a
 list of those, an array (n, 4, 4) or a pair of positions (n, 3) and quaternions (n, 4). How things are used: [python/README.md](../python/README.md),
 [python/examples](../python/examples).
 """
+ITEM = re.compile(r"(- `[^`]+`)(?: \((.*?)\)(?=:|$))?(?:: (.*))?")
+
+
+class Catalogue:
+    """Docstrings in Chinese: `## NAME`, then each piece of its docstring on one line, with its Chinese on indented ones below.
+
+    A piece is a paragraph, an item of a list, the type of an item, or a comment in an example; under `## *` it holds everywhere.
+    """
+
+    def __init__(self, text, file):
+        self.file, self.lines, self.chinese, self.faults = file, {}, {}, []
+        name = key = None
+        for number, line in enumerate(text.splitlines(), 1):
+            if line.startswith("## "):
+                name = line[3:]
+            elif name and line.startswith("  "):
+                self.chinese[key] = self.chinese.get(key, "") + line.strip()
+            elif name and line:
+                key = name, line
+                if key in self.lines:
+                    self.faults.append(f"{file}:{number}: {name}: stands twice: {line}")
+                self.lines[key] = number
+        self.unused = dict(self.lines)
+
+    def __call__(self, name, doc):
+        """A docstring, as doc_of() made it, in Chinese: the same lists and the same code."""
+        blocks = re.split(r"(\n\s*\n|\n(?=- ))", doc)
+        return "".join(block if not block.strip() else self.block(name, block) for block in blocks)
+
+    def block(self, name, text):
+        if text.startswith("    "):
+            return re.sub(r"# (.+)", lambda comment: f"# {self.piece(name, comment[1])}", text)
+        item = ITEM.fullmatch(text)
+        if not item:
+            return self.piece(name, " ".join(text.split()))
+        head, kind, words = item.groups()
+        return head + (f"（{self.piece(name, kind)}）" if kind else "") + (f"：{self.piece(name, words)}" if words else "")
+
+    def piece(self, name, english):
+        key = (name, english) if (name, english) in self.lines else ("*", english)
+        self.unused.pop(key, None)
+        if key not in self.chinese:
+            self.faults.append(f"{self.file}: {name}: has no Chinese: {english}")
+        return self.chinese.get(key, english)
+
+    def all_faults(self):
+        """A line each: what has no Chinese, and Chinese that nothing asked for."""
+        unused = (f"{self.file}:{number}: {name}: no docstring says this: {english}" for (name, english), number in self.unused.items())
+        return [*dict.fromkeys(self.faults), *unused]
+
+
+def as_it_is(_, doc):
+    return doc
 
 
 def doc_of(node):
-    """With the sections of numpy's form as lists."""
+    """With the sections of numpy's form as lists, and what Python is asked as code."""
     lines = inspect.cleandoc(ast.get_docstring(node, clean=False) or "").splitlines()
     out, inside = [], False
     for i, line in enumerate(lines):
@@ -34,7 +92,7 @@ def doc_of(node):
         elif inside and line:
             out[-1] += (": " if out[-1].endswith((")", "`")) else " ") + line.strip()
         else:
-            out.append(line)
+            out.append(f"    {line}" if line.startswith((">>> ", "... ")) else line)
     return "\n".join(out)
 
 
@@ -58,8 +116,8 @@ def entry(head, doc):
     return f"- `{head}` {lines[0]}\n" + (f"{body}\n" if body.strip() else "")
 
 
-def describe_class(node):
-    out = [f"\n### {node.name}\n\n{doc_of(node)}\n\n"]
+def describe_class(node, say):
+    out = [f"\n### {node.name}\n\n{say(node.name, doc_of(node))}\n\n"]
     seen = set()
     for one in node.body:
         if isinstance(one, ast.AnnAssign | ast.Assign):
@@ -71,21 +129,22 @@ def describe_class(node):
         if any(mark.endswith(".setter") for mark in marks) or (one.name, ast.unparse(one.args)) in seen:
             continue
         seen.add((one.name, ast.unparse(one.args)))
+        doc = say(f"{node.name}.{one.name}", doc_of(one))
         if "property" in marks:
-            out.append(entry(f"{one.name}: {ast.unparse(one.returns)}", doc_of(one)))
-        elif one.name != "__init__" or doc_of(one) or one.args.args[1:] or one.args.kwonlyargs:
-            out.append(entry(signature(one, node.name), doc_of(one)))
+            out.append(entry(f"{one.name}: {ast.unparse(one.returns)}", doc))
+        elif one.name != "__init__" or doc or one.args.args[1:] or one.args.kwonlyargs:
+            out.append(entry(signature(one, node.name), doc))
     return "".join(out)
 
 
-def describe_module(source, public=None):
+def describe_module(source, say, public=None):
     tree = ast.parse(source)
     functions, classes = [], []
     for node in tree.body:
         if isinstance(node, ast.ClassDef | ast.FunctionDef) and (node.name in public if public else not node.name.startswith("_")):
             (classes if isinstance(node, ast.ClassDef) else functions).append(node)
-    out = [entry(signature(node), doc_of(node)) for node in functions]
-    return "".join(out) + "".join(describe_class(node) for node in sorted(classes, key=lambda node: node.name != "Robot"))
+    out = [entry(signature(node), say(node.name, doc_of(node))) for node in functions]
+    return "".join(out) + "".join(describe_class(node, say) for node in sorted(classes, key=lambda node: node.name != "Robot"))
 
 
 def public_names(package=PACKAGE):
@@ -94,17 +153,31 @@ def public_names(package=PACKAGE):
     return {name.value for name in names.elts}
 
 
-def page(stub):
-    parts = [HEAD, "\n## mjarm\n\n", describe_module(stub.read_text(encoding="utf-8"), public_names())]
+def page(stub, say=as_it_is):
+    """The page, with what `say` makes of a name and its docstring."""
+    parts = [say("page", HEAD), "\n\n## mjarm\n\n", describe_module(stub.read_text(encoding="utf-8"), say, public_names())]
     for name in ("errors", "ikpy", "gym", "tasks"):
         source = (PACKAGE / f"{name}.py").read_text(encoding="utf-8")
-        parts += [f"\n## mjarm.{name}\n\n{doc_of(ast.parse(source))}\n\n", describe_module(source)]
+        parts += [f"\n## mjarm.{name}\n\n{say(f'mjarm.{name}', doc_of(ast.parse(source)))}\n\n", describe_module(source, say)]
     data = PACKAGE / "data"
-    parts += ["\n## mjarm.data\n\n", doc_of(ast.parse((data / "__init__.py").read_text(encoding="utf-8"))), "\n\n"]
+    parts += ["\n## mjarm.data\n\n", say("mjarm.data", doc_of(ast.parse((data / "__init__.py").read_text(encoding="utf-8")))), "\n\n"]
     for name in ("lerobot", "robomimic", "mcap"):
-        parts.append(describe_module((data / f"{name}.py").read_text(encoding="utf-8"), public_names(data)))
+        parts.append(describe_module((data / f"{name}.py").read_text(encoding="utf-8"), say, public_names(data)))
     return re.sub(r"\n{3,}", "\n\n", "".join(parts)).rstrip() + "\n"
 
 
+def catalogue():
+    return Catalogue(CATALOGUE.read_text(encoding="utf-8"), CATALOGUE.relative_to(ROOT).as_posix())
+
+
+def main(stub, english):
+    english.write_text(page(stub), encoding="utf-8")
+    chinese = catalogue()
+    text = page(stub, chinese)
+    if faults := chinese.all_faults():
+        sys.exit("\n".join(faults))
+    english.with_suffix(".zh-CN.md").write_text(text, encoding="utf-8")
+
+
 if __name__ == "__main__":
-    pathlib.Path(sys.argv[2]).write_text(page(pathlib.Path(sys.argv[1])), encoding="utf-8")
+    main(*map(pathlib.Path, sys.argv[1:]))

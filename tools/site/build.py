@@ -34,7 +34,6 @@ PARTS = [
     ({"en": "Project", "zh-CN": "项目"}, ["docs/architecture", "CONTRIBUTING", "web/README", "docs/roadmap", "CHANGELOG"]),
 ]
 ENGLISH_ONLY = {
-    "docs/python": "Python 参考手册",
     "docs/benchmarks": "基准测试",
     "web/README": "浏览器页面的源码", "docs/roadmap": "路线图", "CHANGELOG": "更新记录",
 }
