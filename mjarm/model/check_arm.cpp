@@ -106,10 +106,10 @@ void check_arm(const CheckContext& context) {
 
 namespace {
 
-/// Half of the joint's range and twice of it: commands outside this are of another unit, or leave
-/// much of the joint unused.
-constexpr double kLeastShare = 0.5;
-constexpr double kMaxShare = 2;
+/// Of the joint's range: commands that use less of it, or lead farther beyond it, are of another
+/// unit or of another joint.
+constexpr double kLeastUsed = 0.5;
+constexpr double kFarBeyond = 0.75;
 
 Place ctrl_place(const CheckContext& context, const ArmActuator& actuator) {
   return context.description.actuator(actuator.name, {"ctrlrange"});
@@ -121,10 +121,13 @@ void check_ctrl_range(const CheckContext& context, int i, const ArmActuator& act
   const double stiffness = -actuator.bias[1] * actuator.gear;
   if (!std::isfinite(joint) || !(joint > 0) || stiffness == 0) return;
   // Where the servo rests: gain * ctrl + bias[0] = -bias[1] * gear * q. A gear may turn it round.
-  const double servo =
-      std::abs((actuator.ctrl_upper - actuator.ctrl_lower) * actuator.gain / stiffness);
-  if (!std::isfinite(servo)) return;
-  if (servo >= kLeastShare * joint && servo <= kMaxShare * joint) return;
+  const auto rest = [&](double ctrl) {
+    return (ctrl * actuator.gain + actuator.bias[0]) / stiffness;
+  };
+  const auto [low, high] = std::minmax({rest(actuator.ctrl_lower), rest(actuator.ctrl_upper)});
+  if (!std::isfinite(high - low)) return;
+  const double used = std::min(high, arm.limits.upper[i]) - std::max(low, arm.limits.lower[i]);
+  if (used >= kLeastUsed * joint && high - low - used <= kFarBeyond * joint) return;
   context.add(CheckCode::ctrl_range_differs, Grade::warning, ctrl_place(context, actuator),
               text(msg::check_ctrl_range, actuator.ctrl_lower, actuator.ctrl_upper,
                    arm.limits.lower[i], arm.limits.upper[i]));
