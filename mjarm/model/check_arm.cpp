@@ -116,10 +116,10 @@ void check_arm(const CheckContext& context) {
 
 namespace {
 
-/// Commands reach over less than half of the joint's range, or twice of it: they are of another
-/// unit, or leave much of the joint unused.
-constexpr double kLeastShare = 0.5;
-constexpr double kMaxShare = 2;
+/// Of the joint's range: commands that use less of it, or lead farther beyond it, are of another
+/// unit or of another joint.
+constexpr double kLeastUsed = 0.5;
+constexpr double kFarBeyond = 0.75;
 
 Place ctrl_place(const CheckContext& context, const ArmActuator& actuator) {
   return context.description.actuator(actuator.name, {"ctrlrange"});
@@ -127,15 +127,12 @@ Place ctrl_place(const CheckContext& context, const ArmActuator& actuator) {
 
 void check_ctrl_range(const CheckContext& context, int i, const ArmActuator& actuator) {
   const Arm& arm = *context.arm;
-  const double lower = arm.limits.lower[i], upper = arm.limits.upper[i];
+  const double lower = arm.limits.lower[i], upper = arm.limits.upper[i], joint = upper - lower;
   const ServoRange servo = servo_range(arm.joints[static_cast<std::size_t>(i)]);
-  if (!(upper > lower) || !std::isfinite(upper - lower)) return;
-  if (!std::isfinite(servo.upper - servo.lower)) return;
-  const double common = std::min(upper, servo.upper) - std::max(lower, servo.lower);
-  if (common >= kLeastShare * (upper - lower) &&
-      servo.upper - servo.lower <= kMaxShare * (upper - lower)) {
-    return;
-  }
+  const double commanded = servo.upper - servo.lower;
+  if (!(joint > 0) || !std::isfinite(joint) || !std::isfinite(commanded)) return;
+  const double used = std::min(upper, servo.upper) - std::max(lower, servo.lower);
+  if (used >= kLeastUsed * joint && commanded - used <= kFarBeyond * joint) return;
   context.add(CheckCode::ctrl_range_differs, Grade::warning, ctrl_place(context, actuator),
               text(msg::check_ctrl_range, actuator.ctrl_lower, actuator.ctrl_upper, lower, upper));
 }

@@ -168,6 +168,29 @@ TEST(CtrlRange, OfAServoBehindATurnedGearIsSound) {
   }
 }
 
+/// A servo of a joint from 0 to 2 rad, nearly without gravity: what is said of these commands.
+CheckReport ranges(const std::string& ctrlrange) {
+  return report_of("a.xml", R"(<mujoco><compiler angle="radian"/><option gravity="0 0 -1e-6"/>
+      <worldbody><body name="a"><joint name="j" axis="0 1 0" range="0 2"/>
+      <geom size=".1" pos=".1 0 0"/><site name="tool0"/></body></worldbody>
+      <actuator><position name="s" joint="j" kp="100" kv="10" forcerange="-50 50" ctrlrange=")" +
+                                ctrlrange + R"("/></actuator></mujoco>)");
+}
+
+TEST(CtrlRange, IsHeldAgainstWhereTheJointMoves) {
+  for (const char* sound : {"0 2", "-0.2 2.1", "0.2 1.5", "-0.7 2.7"}) {
+    EXPECT_TRUE(said(ranges(sound), CheckCode::ctrl_range_differs).empty()) << sound;
+  }
+  // As wide as the joint's, but elsewhere; twice as wide; degrees.
+  for (const char* wrong : {"-1.2 0.8", "1.5 3.5", "-2 2", "0 115", "0 0.8"}) {
+    EXPECT_EQ(said(ranges(wrong), CheckCode::ctrl_range_differs).size(), 1U) << wrong;
+  }
+}
+
+TEST(CheckSag, IsNotToldWhereItIsNothing) {
+  EXPECT_TRUE(said(ranges("0 2"), CheckCode::servo_sag).empty());
+}
+
 #if defined(__linux__)
 TEST(NotLoadable, NamesTheLineAlsoInAFolderThatLooksLikeOne) {
   const support::TempFolder folder;
