@@ -34,10 +34,12 @@ bool is_told(const IkFailure& form, const IkFailure& search) noexcept {
   return form.code != IkErrc::no_convergence;
 }
 
-/// What is found beside a form whose branches are no proof and have been weighed by `choice`.
-Result<IkSolution, IkFailure> search_beside(const IkSolver& ik, const IkGoal& goal,
-                                            BranchChoice& choice,
-                                            const Branches& branches) noexcept {
+/// What is found beside a form whose branches are no proof and have been weighed by `choice`. Kept
+/// out of line: its list of branches would be on the stack of every answer.
+[[gnu::noinline]] Result<IkSolution, IkFailure> search_beside(const IkSolver& ik,
+                                                              const IkGoal& goal,
+                                                              BranchChoice& choice,
+                                                              const Branches& branches) noexcept {
   const IkOptions& options = ik.options();
   if (ik.general_six()) {
     Branches all;
