@@ -112,8 +112,8 @@ export function testTarget(session) {
     await page.mouse.down();
     await page.mouse.move(x + 30, y + 24, { steps: 6 });
     await heard();
-    await witness.until('the arm to follow', () => witness.frame.qpos.some((q, i) => Math.abs(q - stands[i]) > 0.02));
-    ok(witness.overlay.includes('ghost'), 'a ghost shows where to');
+    const follows = () => witness.frame.qpos.some((q, i) => Math.abs(q - stands[i]) > 0.02);
+    await witness.until('the arm to follow its ghost', () => follows() && witness.overlay.includes('ghost'));
     const [nowX, nowY] = await session.pixel(witness.target.pos);
     ok(Math.hypot(nowX - x - 30, nowY - y - 24) < 2, 'the ball is under the mouse');
     await page.mouse.up();
