@@ -78,16 +78,30 @@ struct PublicArm {
   const char* tip;
 };
 
-class TwelveArms : public ::testing::TestWithParam<PublicArm> {};
-
-TEST_P(TwelveArms, DrawASquare) {
-  const char* data = std::getenv("MJARM_ARMS_DATA");
-  if (data == nullptr || *data == '\0') {
-    GTEST_SKIP() << "MJARM_ARMS_DATA is not set; ./dev arms fetches the robots and sets it";
+class TwelveArms : public ::testing::TestWithParam<PublicArm> {
+ protected:
+  void SetUp() override {
+    const char* data = std::getenv("MJARM_ARMS_DATA");
+    if (data == nullptr || *data == '\0') {
+      GTEST_SKIP() << "MJARM_ARMS_DATA is not set; ./dev arms fetches the robots and sets it";
+    }
+    file_ = fs::path(data) / GetParam().file;
+    ASSERT_TRUE(fs::exists(file_)) << file_;
   }
-  const fs::path file = fs::path(data) / GetParam().file;
-  ASSERT_TRUE(fs::exists(file)) << file;
-  draw_square(file.string(), GetParam().tip);
+  std::string file() const { return file_.string(); }
+
+ private:
+  fs::path file_;
+};
+
+TEST_P(TwelveArms, DrawASquare) { draw_square(file(), GetParam().tip); }
+
+TEST_P(TwelveArms, RefuseNoHardPose) {
+  std::vector<std::string> arguments = {"bench",   "ik",          "--hard",  "--rounds", "1",
+                                        "--quiet", "--no-timing", "--robot", file()};
+  if (*GetParam().tip != '\0') arguments.insert(arguments.end(), {"--tip", GetParam().tip});
+  const auto result = support::run_program(MJARM_PROGRAM, arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -30,7 +30,7 @@ TIMEOUT = 300  # [s] for one command
 
 Result = collections.namedtuple("Result", "robot tip what reason")  # reason: empty = all is well
 
-STEPS = ("model check", "ik", "demo square", "plan", "run", "render")
+STEPS = ("model check", "ik", "hard poses", "demo square", "plan", "run", "render")
 
 
 class Absent(Exception):
@@ -78,6 +78,9 @@ class Arm:
         pose = json.loads(found.stdout)
         return reason(self.on_arm("ik", "--pos", numbers(pose["pos"]), "--quat", numbers(pose["quat"])))
 
+    def reason_of_hard_poses(self):
+        return reason(self.on_arm("bench", "ik", "--hard", "--rounds", "1", "--no-timing", "--quiet"))
+
     def reason_of_square(self):
         return reason(self.on_arm("demo", "square", "--headless", "--no-timing", "--out", str(self.folder / "square")))
 
@@ -100,8 +103,8 @@ class Arm:
         return why or ("" if picture.exists() else "there is no picture")
 
     def results(self):
-        steps = (self.reason_of_check, self.reason_of_ik, self.reason_of_square, self.reason_of_plan,
-                 self.reason_of_run, self.reason_of_render)
+        steps = (self.reason_of_check, self.reason_of_ik, self.reason_of_hard_poses, self.reason_of_square,
+                 self.reason_of_plan, self.reason_of_run, self.reason_of_render)
         for what, step in zip(STEPS, steps):
             yield Result(self.robot, self.tip, what, step())
 

@@ -7,7 +7,7 @@ import unittest
 
 import menagerie_arms
 
-# Two arms and a neck; the square of the second arm fails, and no picture is drawn.
+# Two arms and a neck; the first arm refuses hard poses, the square of the second fails, and no picture is drawn.
 PROGRAM = """#!/usr/bin/env python3
 import json, sys
 words = sys.argv[3:]
@@ -20,6 +20,9 @@ if words[:2] == ["model", "info"]:
                       "left, left_camera, right, head"}))
 elif words[0] == "fk":
     print(json.dumps({"pos": [0, 0, 1], "quat": [1, 0, 0, 0]}))
+elif words[:3] == ["bench", "ik", "--hard"] and tip == "left":
+    print("two: 3 poses that it reaches are refused or answered wrongly", file=sys.stderr)
+    sys.exit(1)
 elif words[:2] == ["demo", "square"] and tip == "right":
     print("start", file=sys.stderr)
     print("square: path_error: error 97 mm", file=sys.stderr)
@@ -55,6 +58,7 @@ class TryAll(unittest.TestCase):
     def test_what_fails_is_told_with_its_last_words(self):
         failed = {(one.tip, one.what): one.reason for one in self.results if one.robot == "two" and one.reason}
         self.assertEqual(failed, {("right", "demo square"): "square: path_error: error 97 mm",
+                                  ("left", "hard poses"): "two: 3 poses that it reaches are refused or answered wrongly",
                                   ("left", "render"): "there is no picture",
                                   ("right", "render"): "there is no picture"})
         rows = menagerie_arms.table(self.results)

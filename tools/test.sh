@@ -216,7 +216,7 @@ run_coverage() {
 # run_arms [ROBOT...]: with names, those of Menagerie alone.
 run_arms() {
   "$root/tools/fetch_arms.sh" "$deps/arms" || exit
-  check "build" build_counted dev whole_test
+  check "build" build_counted dev whole_test mjarm-bench
   if ((failed == 0 && $# == 0)); then
     check "arms" env MJARM_ARMS_DATA="$deps/arms/robots" \
       "$root/build/dev/bin/whole_test" --gtest_filter='*TwelveArms*'

@@ -3,27 +3,14 @@
 #include <fmt/format.h>
 
 #include "apps/bench/ik_all.hpp"
+#include "apps/bench/ik_hard.hpp"
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
 #include "apps/bench/robots.hpp"
+#include "apps/mjarm/cli/usage.hpp"
 
 namespace mjarm::app {
 namespace {
-
-/// Runs the peers of a Python environment on the same cases (`bench/peers/ik.py`).
-Result<std::vector<IkRun>> run_ik_peers(const IkProblem& problem,
-                                        const std::filesystem::path& environment, int rounds) {
-  Result<JsonDoc> job = robot_job(problem.robot, rounds);
-  if (!job) return fail(std::move(job.error()));
-  std::vector<JsonDoc> sets;
-  for (const IkCaseSet& set : problem.sets) {
-    sets.push_back({{"name", set.name}, {"cases", cases_json(set)}});
-  }
-  job->set("fk", problem.q);
-  job->set("sets", std::move(sets));
-  return peer_runs<IkRun>(environment, "ik", std::move(*job),
-                          [](const JsonValue& line, IkRun& run) { run.q = rows_in(line, "q"); });
-}
 
 /// Right answers of those asked for; what is right to the last case shows no decimals. Who was slow
 /// did only the first cases.
@@ -52,7 +39,9 @@ void describe(IkRun& run) {
 }
 
 Result<BenchResult> measure_ik(const BenchOptions& options, const std::string& robot, int rounds) {
-  const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
+  const auto seed = parse_whole("--seed", options.seed);
+  if (!seed) return fail(seed.error());
+  const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data, *seed);
   if (!problem) return fail(problem.error());
   const auto judge_run = [&](IkRun& run) { return judge_and_describe(*problem, run); };
   return compare(
@@ -62,6 +51,20 @@ Result<BenchResult> measure_ik(const BenchOptions& options, const std::string& r
 }
 
 }  // namespace
+
+Result<std::vector<IkRun>> run_ik_peers(const IkProblem& problem,
+                                        const std::filesystem::path& environment, int rounds) {
+  Result<JsonDoc> job = robot_job(problem.robot, rounds);
+  if (!job) return fail(std::move(job.error()));
+  std::vector<JsonDoc> sets;
+  for (const IkCaseSet& set : problem.sets) {
+    sets.push_back({{"name", set.name}, {"cases", cases_json(set)}});
+  }
+  job->set("fk", problem.q);
+  job->set("sets", std::move(sets));
+  return peer_runs<IkRun>(environment, "ik", std::move(*job),
+                          [](const JsonValue& line, IkRun& run) { run.q = rows_in(line, "q"); });
+}
 
 std::vector<JsonDoc> cases_json(const IkCaseSet& set) {
   std::vector<JsonDoc> cases;
@@ -81,8 +84,7 @@ Result<int> judge_and_describe(const IkProblem& problem, IkRun& run) {
 Command ik_suite() {
   return {"ik", msg::bench_ik_summary, msg::bench_ik_examples, [](CLI::App& app) {
             return setup_robots(app, msg::bench_ik_option_data, true, {msg::bench_ik_right},
-                                measure_ik,
-                                {msg::bench_ik_option_all, ik_all_columns(), measure_ik_all});
+                                measure_ik, {ik_all_variant(), ik_hard_variant()});
           }};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -37,8 +38,10 @@ struct IkProblem {
 /// `NAME_unreachable.jsonl`, `NAME_hard_negatives.jsonl` as far as they are there. Without: the
 /// shipped URDF or the given file, and cases made from random configurations, the same every time.
 /// @param folder  empty = none.
+/// @param seed    of the random configurations.
 [[nodiscard]] Result<IkProblem> load_ik_problem(const RobotChoice& options,
-                                                const std::filesystem::path& folder);
+                                                const std::filesystem::path& folder,
+                                                std::uint64_t seed = 1);
 
 /// What one contestant did on one set of cases: "reachable", "unreachable", ..., "path", "track",
 /// "fk_jacobian".
@@ -56,6 +59,14 @@ struct IkRun : BenchEntry {
 /// Runs mjarm on every set of the problem: all of them `rounds` times over, one call at a time in
 /// this thread, each call with a clock reading before and after. Stops at Ctrl-C.
 [[nodiscard]] std::vector<IkRun> run_ik(const IkProblem& problem, int rounds);
+
+/// Only the sets, and only as `IkSolver` does them by itself.
+[[nodiscard]] std::vector<IkRun> run_ik_sets(const IkProblem& problem, int rounds);
+
+/// Runs the peers of a Python environment on the same cases (`bench/peers/ik.py`).
+[[nodiscard]] Result<std::vector<IkRun>> run_ik_peers(const IkProblem& problem,
+                                                      const std::filesystem::path& environment,
+                                                      int rounds);
 
 /// The cases of a set as the peers read them.
 [[nodiscard]] std::vector<JsonDoc> cases_json(const IkCaseSet& set);

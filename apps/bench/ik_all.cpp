@@ -10,6 +10,7 @@
 #include "apps/bench/messages/bench.hpp"
 #include "apps/bench/peers.hpp"
 #include "apps/bench/robots.hpp"
+#include "apps/mjarm/cli/usage.hpp"
 #include "mjarm/core/stopwatch.hpp"
 #include "mjarm/kinematics/ik_all.hpp"
 
@@ -111,11 +112,13 @@ Result<std::vector<BranchCount>> count_branches(const Robot& robot,
   return counts;
 }
 
-std::vector<Msg> ik_all_columns() { return {msg::bench_ik_branches, msg::bench_ik_missed}; }
+namespace {
 
 Result<BenchResult> measure_ik_all(const BenchOptions& options, const std::string& robot,
                                    int rounds) {
-  const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data);
+  const auto seed = parse_whole("--seed", options.seed);
+  if (!seed) return fail(seed.error());
+  const auto problem = load_ik_problem({.robot = robot, .tip = options.tip}, options.data, *seed);
   if (!problem) return fail(problem.error());
   std::vector<IkCase> poses = problem->sets.front().cases;
   poses.resize(std::min(poses.size(), kBranchPoses));
@@ -145,6 +148,15 @@ Result<BenchResult> measure_ik_all(const BenchOptions& options, const std::strin
         return count.false_ok;
       },
       msg::bench_ik_wrong);
+}
+
+}  // namespace
+
+BenchVariant ik_all_variant() {
+  return {"--all",
+          msg::bench_ik_option_all,
+          {msg::bench_ik_branches, msg::bench_ik_missed},
+          measure_ik_all};
 }
 
 }  // namespace mjarm::app

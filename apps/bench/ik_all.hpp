@@ -28,12 +28,9 @@ struct BranchCount {
                                                               const std::vector<IkCase>& poses,
                                                               const std::vector<BranchRun>& runs);
 
-/// The columns of `mjarm bench ik --all`.
-[[nodiscard]] std::vector<Msg> ik_all_columns();
-
-/// All branches at the first 300 poses of the reachable set, as `solve_all()` finds them, beside
-/// its own search from random starts, 10,000 such starts, and the peers that give all branches.
-[[nodiscard]] Result<BenchResult> measure_ik_all(const BenchOptions& options,
-                                                 const std::string& robot, int rounds);
+/// `mjarm bench ik --all`: all branches at the first 300 poses of the reachable set, as
+/// `solve_all()` finds them, beside its own search from random starts, 10,000 such starts, and the
+/// peers that give all branches.
+[[nodiscard]] BenchVariant ik_all_variant();
 
 }  // namespace mjarm::app

@@ -13,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kCaseSeed = 1;
 constexpr int kReachable = 1000;
 constexpr int kUnreachable = 100;
 constexpr int kCasePaths = 20;
@@ -22,9 +21,9 @@ constexpr double kPathStep = 0.01;  // [rad or m] largest joint step from pose t
 
 std::vector<double> list(const JointVec& q) { return {q.begin(), q.end()}; }
 
-IkCaseSet make_reachable(const Arm& arm) {
+IkCaseSet make_reachable(const Arm& arm, std::uint64_t seed) {
   IkCaseSet set{"reachable", true, {}};
-  Rng rng(kCaseSeed);
+  Rng rng(seed);
   for (int i = 0; i < kReachable; ++i) {
     const Pose X_WT = fk(arm, as_span(random_q(arm, rng)));
     set.cases.push_back({X_WT, list(random_q(arm, rng))});
@@ -33,11 +32,11 @@ IkCaseSet make_reachable(const Arm& arm) {
 }
 
 /// Farther from the first joint than all links together are long.
-IkCaseSet make_unreachable(const Arm& arm) {
+IkCaseSet make_unreachable(const Arm& arm, std::uint64_t seed) {
   const double stretch = stretch_of(arm);
   IkCaseSet set{"unreachable", false, {}};
   if (!std::isfinite(stretch)) return set;
-  Rng rng(kCaseSeed, 1);
+  Rng rng(seed, 1);
   for (int i = 0; i < kUnreachable; ++i) {
     Eigen::Vector3d direction(rng.normal(), rng.normal(), rng.normal());
     Pose X_WT = fk(arm, as_span(random_q(arm, rng)));
@@ -48,9 +47,9 @@ IkCaseSet make_unreachable(const Arm& arm) {
 }
 
 /// Tool poses along straight lines in joint space, which every arm can follow.
-std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
+std::vector<std::vector<IkCase>> make_paths(const Arm& arm, std::uint64_t seed) {
   std::vector<std::vector<IkCase>> paths;
-  Rng rng(kCaseSeed, 2);
+  Rng rng(seed, 2);
   for (int i = 0; i < kCasePaths; ++i) {
     const JointVec from = random_q(arm, rng);
     const JointVec way = random_q(arm, rng) - from;
@@ -65,16 +64,17 @@ std::vector<std::vector<IkCase>> make_paths(const Arm& arm) {
   return paths;
 }
 
-Result<void> read_case_set(const fs::path& file, const Arm& arm, IkCaseSet& set) {
-  Rng rng(kCaseSeed, 3);
+Result<void> read_case_set(const fs::path& file, const Arm& arm, std::uint64_t seed,
+                           IkCaseSet& set) {
+  Rng rng(seed, 3);
   const auto take = [&](const JsonValue& object) -> Result<void> {
     const Result<Pose> X_WT = pose_of(object);
     if (!X_WT) return fail(X_WT.error());
     IkCase entry{*X_WT, list(random_q(arm, rng))};
     if (object.contains("seed")) {
-      auto seed = number_list(object, "seed", static_cast<std::size_t>(arm.dof()));
-      if (!seed) return fail(seed.error());
-      entry.seed = std::move(*seed);
+      auto q_seed = number_list(object, "seed", static_cast<std::size_t>(arm.dof()));
+      if (!q_seed) return fail(q_seed.error());
+      entry.seed = std::move(*q_seed);
     }
     set.cases.push_back(std::move(entry));
     return {};
@@ -83,34 +83,36 @@ Result<void> read_case_set(const fs::path& file, const Arm& arm, IkCaseSet& set)
 }
 
 Result<std::vector<IkCaseSet>> read_case_sets(const fs::path& folder, const std::string& name,
-                                              const Arm& arm) {
+                                              const Arm& arm, std::uint64_t seed) {
   std::vector<IkCaseSet> sets;
   for (const char* kind : {"reachable", "unreachable", "hard_negatives"}) {
     const fs::path file = folder / (name + "_" + kind + ".jsonl");
     if (!sets.empty() && !is_there(file)) continue;  // the first one must be there
     IkCaseSet& set = sets.emplace_back(IkCaseSet{kind, sets.empty(), {}});
-    if (auto read = read_case_set(file, arm, set); !read) return fail(std::move(read.error()));
+    if (auto read = read_case_set(file, arm, seed, set); !read)
+      return fail(std::move(read.error()));
   }
   return sets;
 }
 
 }  // namespace
 
-Result<IkProblem> load_ik_problem(const RobotChoice& options, const fs::path& folder) {
+Result<IkProblem> load_ik_problem(const RobotChoice& options, const fs::path& folder,
+                                  std::uint64_t seed) {
   Result<Robot> robot = load_bench_robot(options, folder);
   if (!robot) return fail(std::move(robot.error()));
   IkProblem problem{fs::path(options.robot).stem().string(), std::move(*robot), {}, {}, {}};
   const Arm& arm = problem.robot.arm;
   if (folder.empty()) {
-    problem.sets = {make_reachable(arm), make_unreachable(arm)};
+    problem.sets = {make_reachable(arm, seed), make_unreachable(arm, seed)};
   } else {
-    Result<std::vector<IkCaseSet>> sets = read_case_sets(folder, problem.name, arm);
+    Result<std::vector<IkCaseSet>> sets = read_case_sets(folder, problem.name, arm, seed);
     if (!sets) return fail(std::move(sets.error()));
     problem.sets = std::move(*sets);
   }
-  Rng rng(kCaseSeed, 4);
+  Rng rng(seed, 4);
   for (int i = 0; i < kReachable; ++i) problem.q.push_back(list(random_q(arm, rng)));
-  problem.paths = make_paths(arm);
+  problem.paths = make_paths(arm, seed);
   return problem;
 }
 

@@ -148,6 +148,17 @@ std::vector<IkRun> run_ik(const IkProblem& problem, int rounds) {
   return runs;
 }
 
+std::vector<IkRun> run_ik_sets(const IkProblem& problem, int rounds) {
+  const IkSolver ik(problem.robot.arm);
+  Progress progress(text(msg::bench_ik_progress, problem.name),
+                    static_cast<std::size_t>(rounds) * problem.sets.size());
+  std::vector<IkRun> runs;
+  for (const IkCaseSet& set : problem.sets) {
+    runs.push_back(solve_set(ik, "mjarm", set, rounds, progress));
+  }
+  return runs;
+}
+
 Result<void> judge(const IkProblem& problem, IkRun& run) {
   if (run.set == "fk_jacobian") return {};
   const IkCaseSet* const set = set_named(problem.sets, run.set);

@@ -115,6 +115,42 @@ TEST(BenchIk, CountsBranchesBesidePeers) {
   EXPECT_EQ(half.at("false_ok"), 1);
 }
 
+/// An arm in a plane reaches every pose of its own, with joints at limits or zero as well.
+TEST(BenchIk, HardPosesAreCountedWithTheirCauses) {
+  const support::TempFolder folder;
+  const std::string data = write_ik_data(folder);
+  const std::vector<std::string> hard =
+      bench_arm("ik", data, {"--hard", "--tip", "tool", "--rounds", "1", "--no-timing"});
+  const json bench = bench_json(hard);
+  for (const char* set : {"limit_1", "limit_2", "limit_3", "inside_3", "zero", "limit_or_zero"}) {
+    const json& run = run_of(bench, "mjarm", set);
+    EXPECT_EQ(run.at("cases"), 300) << set;
+    EXPECT_EQ(run.at("right"), 300) << set;
+  }
+  const auto table = mjarm(hard);
+  EXPECT_NE(table.out.find("| limit_or_zero | mjarm"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("300/300"), std::string::npos) << table.out;
+  std::vector<std::string> other = hard;
+  other.insert(other.end(), {"--seed", "2"});
+  EXPECT_EQ(mjarm(other).exit_code, 0);
+  other.back() = "-2";
+  EXPECT_NE(only_line(mjarm(other)).find("--seed"), std::string::npos);
+}
+
+/// A peer that gives nothing is counted as refusing, one that answers anything as wrong.
+TEST(BenchIk, HardPosesJudgePeersToo) {
+  const support::TempFolder folder;
+  const std::string data = write_ik_data(folder);
+  const std::string venv = write_peers(folder, R"(
+{"who":"half","version":"1","set":"limit_1","timed":"python","us":[5,7],"q":[[],[9,9]]}
+)");
+  const auto table = mjarm(bench_arm(
+      "ik", data, {"--hard", "--tip", "tool", "--peers", venv, "--rounds", "1", "--no-timing"}));
+  ASSERT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_NE(table.out.find("half 1"), std::string::npos) << table.out;
+  EXPECT_NE(table.out.find("0/2"), std::string::npos) << table.out;
+}
+
 TEST(BenchIk, SaysWhatIsWrong) {
   const support::TempFolder folder;
   const std::string data = write_ik_data(folder);

@@ -70,16 +70,20 @@ double stretch_of(const Arm& arm) {
   return stretch;
 }
 
+Result<Pose> mujoco_pose(const Robot& robot, std::span<const double> q) {
+  const std::span<const double> qpos0 = robot.model.qpos0();
+  std::vector<double> qpos(qpos0.begin(), qpos0.end());
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    qpos[static_cast<std::size_t>(robot.arm.joints[i].qpos)] = q[i];
+  }
+  return frame_pose(robot.model, robot.arm.tip, qpos);
+}
+
 Result<bool> reaches(const Robot& robot, const Pose& X_WT, const std::vector<double>& q) {
   const Arm& arm = robot.arm;
   if (q.size() != static_cast<std::size_t>(arm.dof())) return false;
   if (!within_limits(arm, q, -kBeyond)) return false;
-  const std::span<const double> qpos0 = robot.model.qpos0();
-  std::vector<double> qpos(qpos0.begin(), qpos0.end());
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    qpos[static_cast<std::size_t>(arm.joints[i].qpos)] = q[i];
-  }
-  const Result<Pose> X = frame_pose(robot.model, arm.tip, qpos);
+  const Result<Pose> X = mujoco_pose(robot, q);
   if (!X) return fail(X.error());
   return (X->p - X_WT.p).norm() <= kPosTol && angle_between(X->R, X_WT.R) <= kRotTol;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ namespace mjarm::app {
 
 /// [m] Length of all links together: no tool is farther from the first joint. May be infinite.
 [[nodiscard]] double stretch_of(const Arm& arm);
+
+/// Pose of the tool by MuJoCo's own forward kinematics of the loaded file.
+/// @param q  [rad or m] shape (dof,).
+[[nodiscard]] Result<Pose> mujoco_pose(const Robot& robot, std::span<const double> q);
 
 /// True where the tool is within 1e-4 m and 1e-3 rad of `X_WT` by MuJoCo's own forward kinematics
 /// of the loaded file, and `q` of the right size inside the limits.

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <ctime>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -151,16 +152,14 @@ Result<int> report(const ReportOptions& options, const std::vector<BenchResult>&
   return 0;
 }
 
-Result<int> run_robots(const BenchOptions& options, const std::vector<Msg>& columns,
-                       BenchRobot measure) {
+Result<int> run_robots(const BenchOptions& options, std::vector<std::string> robots,
+                       const std::vector<Msg>& columns, BenchRobot measure) {
   constexpr int kMaxRounds = 10'000;
   const Result<int> rounds = parse_count("--rounds", options.rounds, kMaxRounds);
   if (!rounds) return fail(rounds.error());
   if (Result<void> there = check_peers(options.peers); !there) return fail(there.error());
   Result<AnswerOutput> output = AnswerOutput::open(options.out, options.replace);
   if (!output) return fail(std::move(output.error()));
-  std::vector<std::string> robots{"ur5e"};
-  if (!options.all) robots.emplace_back("panda");
   if (!options.robot.empty()) robots = {options.robot};
   std::vector<BenchResult> results;
   for (const std::string& robot : robots) {
@@ -222,7 +221,7 @@ Result<int> report_in_folder(const ReportOptions& options, const std::vector<Ben
 }
 
 Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> columns,
-                 BenchRobot measure, BenchAll all) {
+                 BenchRobot measure, std::vector<BenchVariant> variants) {
   auto options = std::make_shared<BenchOptions>();
   add_option(app, "--robot", options->robot, msg::bench_option_robot, "ROBOT");
   add_option(app, "--data", options->data, data_help, "DIR");
@@ -232,10 +231,17 @@ Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> colum
   add_overwrite_option(app, options->replace);
   add_report_options(app, *options);
   if (tool) add_option(app, "--tip", options->tip, msg::app_option_tip, "FRAME");
-  if (all.measure != nullptr) add_flag(app, "--all", options->all, all.help);
-  return [=, columns = std::move(columns), all = std::move(all)] {
-    return options->all ? run_robots(*options, all.columns, all.measure)
-                        : run_robots(*options, columns, measure);
+  if (!variants.empty()) add_option(app, "--seed", options->seed, msg::app_option_seed, "N");
+  auto chosen = std::make_shared<std::deque<bool>>(variants.size());
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    add_flag(app, variants[i].flag, (*chosen)[i], variants[i].help);
+  }
+  return [=, columns = std::move(columns), variants = std::move(variants)] {
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      if (!(*chosen)[i]) continue;
+      return run_robots(*options, {"ur5e"}, variants[i].columns, variants[i].measure);
+    }
+    return run_robots(*options, {"ur5e", "panda"}, columns, measure);
   };
 }
 

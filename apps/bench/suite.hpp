@@ -90,26 +90,26 @@ void print_robot(const ReportOptions& options, const Robot& robot, const std::st
 /// What suites that measure robots beside peers can be told.
 struct BenchOptions : ReportOptions {
   std::string robot, tip, data, peers, rounds = "5", out;
-  bool all = false;
+  std::string seed = "1";  ///< of the cases that a suite with variants makes up
   Replace replace;
 };
 /// Measures one robot, given by name or file, in so many rounds.
 using BenchRobot = Result<BenchResult> (*)(const BenchOptions& options, const std::string& robot,
                                            int rounds);
-/// What else a suite measures where `--all` is given.
-struct BenchAll {
+/// What a suite measures instead where its flag is given, of the UR5e where no robot is named.
+struct BenchVariant {
+  const char* flag;  ///< "--all"
   Msg help;
   std::vector<Msg> columns;
-  BenchRobot measure = nullptr;  ///< null: there is no such option
+  BenchRobot measure;
 };
 /// Adds the options to such a suite's command.
 /// @param data_help  what `--data` holds.
 /// @param tool       whether it asks for the pose of a tool.
-/// @param all        what `--all` measures instead, of the UR5e where no robot is named.
 /// @return measures each robot, writes the table or the JSON document; fails where an answer of
 /// mjarm is wrong, or with what `measure` fails.
 [[nodiscard]] Run setup_robots(CLI::App& app, Msg data_help, bool tool, std::vector<Msg> columns,
-                               BenchRobot measure, BenchAll all = {});
+                               BenchRobot measure, std::vector<BenchVariant> variants = {});
 
 /// True where peers are to run on this robot; says so.
 [[nodiscard]] bool wants_peers(const std::string& peers, const std::string& robot);

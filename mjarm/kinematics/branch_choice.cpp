@@ -8,9 +8,12 @@
 namespace mjarm::detail {
 namespace {
 
-constexpr double kAtLimit = 1e-6;  // [rad] so little beyond a limit is rounding: the joint is put
-                                   // on it and the tool's error tells
-constexpr double kExact = 1e-10;   // [m and rad] larger errors are polished away
+constexpr double kAtLimit = 1e-6;    // [rad] so little beyond a limit is rounding: the joint is put
+                                     // on it and the tool's error tells
+constexpr double kNearLimit = 0.02;  // [rad] likewise for forms with a defect, which grows where
+                                     // branches meet: Newton's steps tell
+constexpr double kNoDefect = 1e-11;  // [rad and m] less is rounding
+constexpr double kExact = 1e-10;     // [m and rad] larger errors are polished away
 
 /// The winding of `q` nearest to `q_near` and within the limits, or nearest to their middle where
 /// none is within.
@@ -48,6 +51,12 @@ Nearness nearness(const double* q, const double* q_near, int dof) noexcept {
   return out;
 }
 
+BranchChoice::BranchChoice(const IkSolver& ik, const IkGoal& goal) noexcept
+    : ik_(ik), chain_(ik.chain()), options_(ik.options()), goal_(goal) {
+  const bool exact = !ik.six_axis() || ik.six_axis()->defect() < kNoDefect;
+  beyond_ = exact ? kAtLimit : kNearLimit;
+}
+
 BranchChoice::Placed BranchChoice::place(const double* row, double bound) const noexcept {
   Placed out;
   for (int i = 0; i < chain_.dof; ++i) {
@@ -81,11 +90,12 @@ IkSolution BranchChoice::measure(const double* q) const noexcept {
 
 std::optional<IkSolution> BranchChoice::confirm(const double* row) const noexcept {
   const Placed placed = place(row);
-  if (placed.beyond > kAtLimit) return std::nullopt;
+  if (placed.beyond > beyond_) return std::nullopt;
   IkSolution met = measure(placed.q);
   if (met.pos_err <= kExact && met.rot_err <= kExact) return met;
-  const Descent polished =
-      descend(chain_, goal_.X_WT, met.q, descent_options(options_, ik_.length()));
+  DescentOptions careful = descent_options(options_, ik_.length());
+  careful.share = placed.beyond > 0;
+  const Descent polished = descend(chain_, goal_.X_WT, met.q, careful);
   if (!polished.converged) return std::nullopt;
   return IkSolution{unwind(chain_, polished.q, goal_.seed), polished.pos_err, polished.rot_err,
                     polished.iterations, 0};
@@ -99,7 +109,7 @@ std::optional<IkSolution> BranchChoice::nearest(const Branches& branches) noexce
     const Placed placed = place(branches.q[i], bound);
     keys[i] = placed.near;
     whole[i] = placed.whole;
-    open[i] = !placed.whole || placed.beyond <= kAtLimit;
+    open[i] = !placed.whole || placed.beyond <= beyond_;
     if (open[i]) best = std::min(best, placed.near.largest);
   };
   for (int i = 0; i < branches.count; ++i) rank(i, best);

@@ -25,8 +25,7 @@ struct Nearness {
 /// than 1e-10 (m or rad), and shown to the predicate. Never allocates.
 class BranchChoice {
  public:
-  BranchChoice(const IkSolver& ik, const IkGoal& goal) noexcept
-      : ik_(ik), chain_(ik.chain()), options_(ik.options()), goal_(goal) {}
+  BranchChoice(const IkSolver& ik, const IkGoal& goal) noexcept;
 
   /// The nearest branch that holds; none where failure() has the reason.
   std::optional<IkSolution> nearest(const Branches& branches) noexcept;
@@ -72,6 +71,7 @@ class BranchChoice {
   const Chain& chain_;
   const IkOptions& options_;
   const IkGoal& goal_;
+  double beyond_;                      // [rad] so little beyond a limit, a branch may still hold
   std::optional<IkSolution> refused_;  // the nearest answer that the predicate refused
   std::optional<IkSolution> too_far_;  // the nearest answer beyond max_step
 };

@@ -163,7 +163,7 @@ class Walker {
 
   /// Turns the gradient `g` into the step of the joints that are not held; that of the others is 0.
   bool solve_for(const bool (&held)[kSize], double (&g)[kSize]) const noexcept {
-    const double lambda = kDamping * error_ + 1e-12;
+    const double lambda = kDamping * error_ + options_.damping;
     double A[kSize][kSize];
     for (int i = 0; i < n(); ++i) {
       for (int j = 0; j < i; ++j) A[i][j] = held[i] || held[j] ? 0.0 : J_[i].dot(J_[j]);

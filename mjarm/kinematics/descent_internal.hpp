@@ -18,6 +18,7 @@ struct DescentOptions {
   /// it leaves; false: each is cut by itself, which is quicker and loses its way among many limits.
   bool share = false;
   IkTask task = IkTask::pose;
+  double damping = 1e-12;  ///< [rad^2] least damping of a step, >= 0
 };
 
 /// Where a descent ended.

@@ -15,9 +15,8 @@ using detail::BranchQuery;
 using detail::ClosedForm;
 using detail::IkGoal;
 
-// [rad and m] A smaller defect of the closed form moves branches by less than 1e-3 rad even where
-// two of them meet, so that none is lost.
-constexpr double kNoDefect = 1e-8;
+constexpr double kNearLimits = 0.2;  // [rad] a breach of limits that may be one by missing a way
+constexpr double kSingular = 0.02;   // smallest singular value of the Jacobian, [mixed units]
 
 IkFailure failure_of(const ReachBreach& breach, const IkSolution& best) noexcept {
   IkFailure out;
@@ -27,6 +26,31 @@ IkFailure failure_of(const ReachBreach& breach, const IkSolution& best) noexcept
   out.bound = breach.bound;
   out.shape = breach.shape;
   return out;
+}
+
+/// True where a form says why, and the search beside it has met nothing that says otherwise.
+bool is_told(const IkFailure& form, const IkFailure& search) noexcept {
+  if (form.shape != ReachShape::none) return search.code != IkErrc::joint_limit;
+  return form.code != IkErrc::no_convergence;
+}
+
+/// What is found beside a form whose branches are no proof and have been weighed by `choice`. Kept
+/// out of line: its list of branches would be on the stack of every answer.
+[[gnu::noinline]] Result<IkSolution, IkFailure> search_beside(const IkSolver& ik,
+                                                              const IkGoal& goal,
+                                                              BranchChoice& choice,
+                                                              const Branches& branches) noexcept {
+  const IkOptions& options = ik.options();
+  if (ik.general_six()) {
+    Branches all;
+    ClosedForm::branches(*ik.general_six(),
+                         {goal.X_WT, goal.seed.data(), options.pos_tol, options.rot_tol}, all);
+    if (const auto solution = choice.nearest(all)) return *solution;
+  }
+  auto found = search_numeric(ik.chain(), options, ik.length(), goal);
+  if (found) return found;
+  const IkFailure failure = choice.failure(branches);
+  return is_told(failure, found.error()) ? fail(failure) : std::move(found);
 }
 
 /// Asks the closed form; where that has no answer and is no proof, the numeric search.
@@ -42,7 +66,16 @@ Result<IkSolution, IkFailure> solve_six(const IkSolver& ik, const IkGoal& goal) 
     return fail(failure_of(*breach, choice.failure(branches).best));
   }
   if (branches.complete) return fail(choice.failure(branches));
-  return search_numeric(ik.chain(), options, ik.length(), goal);
+  return search_beside(ik, goal, choice, branches);
+}
+
+/// True where a form of seven axes may have missed an answer: it came near to the limits, between
+/// two samples, or took one configuration for a whole family, a singular one.
+bool is_doubtful(const IkSolver& ik, const Branches& branches, const IkFailure& failure) noexcept {
+  if (!branches.complete) return true;
+  if (failure.code != IkErrc::joint_limit) return false;
+  if (failure.amount < kNearLimits) return true;
+  return smallest_singular_value(fk_jacobian(ik.links(), {branches.q[0], 7}).J_W) < kSingular;
 }
 
 /// Likewise for seven axes: the answer nearest to the seed, or, where that is refused, the nearest
@@ -63,8 +96,9 @@ Result<IkSolution, IkFailure> solve_seven(const IkSolver& ik, const IkGoal& goal
     ClosedForm::branches(*ik.seven_axis(), query, branches);
     if (const auto solution = choice.nearest(branches)) return *solution;
   }
-  if (branches.complete) return fail(choice.failure(branches));
-  return search_numeric(ik.chain(), options, ik.length(), goal);
+  const IkFailure failure = choice.failure(branches);
+  if (!is_doubtful(ik, branches, failure)) return fail(failure);
+  return search_beside(ik, goal, choice, branches);
 }
 
 }  // namespace
@@ -90,7 +124,7 @@ IkSolver::IkSolver(const Arm& arm, IkOptions options)
   if (!options_.closed_form || options_.task != IkTask::pose) return;
   six_ = SixAxis::recognise(chain_);
   seven_ = SevenAxis::recognise(chain_);
-  if (!six_ || six_->defect() > kNoDefect) general_ = GeneralSix::recognise(chain_);
+  if (!six_ || !six_->is_exact()) general_ = GeneralSix::recognise(chain_);
 }
 
 Result<IkSolution, IkFailure> IkSolver::solve(const Pose& X_WT,

@@ -102,9 +102,10 @@ class IkSolver {
   /// 1e-6.
   /// @param q_seed  [rad or m] shape (dof,); clamped to the limits before use.
   /// @return IkFailure with the reason and the best attempt. out_of_reach and inner_void are proofs
-  ///         from geometry (reach.hpp); with an exact closed form every reason is one. Otherwise
-  ///         the others tell what the search met. Never throws, never allocates (but for what
-  ///         `options.valid` does).
+  ///         from geometry (reach.hpp); with an exact closed form every reason is one, but where a
+  ///         joint is nearly free. There, and with a form that is not exact, the numeric search has
+  ///         found nothing either; without a form the reasons tell what it met. Never throws, never
+  ///         allocates (but for what `options.valid` does).
   [[nodiscard]] Result<IkSolution, IkFailure> solve(const Pose& X_WT,
                                                     std::span<const double> q_seed) const noexcept;
 

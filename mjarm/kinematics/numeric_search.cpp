@@ -28,7 +28,9 @@ class Search {
       iterations_ = lanes.steps();
       if (take(end->descent, end->start)) return best_;
     }
-    return refused_ ? std::nullopt : run_from_beyond();
+    if (refused_) return std::nullopt;
+    if (const auto found = run_from_beyond()) return found;
+    return go_on_from_best();
   }
 
   /// One descent from the seed, for the best attempt of a pose that is known to be out of reach.
@@ -63,7 +65,7 @@ class Search {
     const bool redundant = chain_.dof > 6 || options_.task != IkTask::pose;
     // Without joints to spare the way within the limits is short or there is none.
     const double max_beyond = redundant ? 1.0 : 0.1;  // [rad or m]
-    const int starts = (redundant ? 6 : 3) * std::min(options_.restarts, 100);
+    const int starts = (redundant ? 12 : 3) * std::min(options_.restarts, 100);
     DescentOptions free = descent_;
     free.limits = false;
     DescentOptions careful = descent_;
@@ -81,6 +83,25 @@ class Search {
       if (!descent.converged) continue;
       iterations_ += descent.iterations;
       if (take(descent, options_.restarts + end->start)) return best_;
+    }
+    return std::nullopt;
+  }
+
+  /// Where several directions are lost at once, or in a corner of the limits, steps overshoot near
+  /// the goal and descents are given up: from the nearest one on, only steps that get nearer are
+  /// taken, shorter ones where need be (Levenberg and Marquardt).
+  std::optional<IkSolution> go_on_from_best() noexcept {
+    constexpr double kClose = 1e-4;  // [rad^2]
+    constexpr double kStuck = 1;     // [rad^2] damping at which steps are as good as none
+    constexpr int kSteps = 2000;
+    DescentOptions one_step = descent_;
+    one_step.max_iterations = 1;
+    one_step.share = true;
+    for (int i = 0; i < kSteps && best_error_ < kClose && one_step.damping < kStuck; ++i) {
+      const Descent descent = descend(chain_, goal_.X_WT, best_.q, one_step);
+      iterations_ += descent.iterations;
+      one_step.damping *= descent.error < best_error_ ? 0.3 : 4.0;
+      if (take(descent, options_.restarts)) return best_;
     }
     return std::nullopt;
   }

@@ -71,6 +71,7 @@ class SixAxis::Walk {
     const double y = p_BC_.y();
     const double r2 = x * x + y * y;
     const double r = std::sqrt(r2);
+    if (r < kNearFree) out_.complete = false;
     if (r < slack_ && std::abs(level) < slack_) {  // C on axis 1: any q1 will do
       for (int i = 0; i < kSamples; ++i) with_q1(sin_cos(sample(0, i)), sample(0, i));
       return;
@@ -91,6 +92,9 @@ class SixAxis::Walk {
 
  private:
   static constexpr int kSamples = 12;
+  // [m and rad] So near to where a joint is free, rounding decides whether it is: what is told of
+  // the answers there is no proof.
+  static constexpr double kNearFree = 1e-5;
 
   /// Values of a free joint: that of the seed first, then round the circle.
   double sample(int joint, int i) const noexcept {
@@ -137,6 +141,7 @@ class SixAxis::Walk {
       const double c = m.x() * e.x() + m.y() * e.y();
       const double s = m.x() * e.y() - m.y() * e.x();
       const double size2 = c * c + s * s;
+      if (across2 < kNearFree * kNearFree) out_.complete = false;
       if (is_free) {
         free_wrist(m.z() > 0 ? 1 : -1, f, u, v);
       }
@@ -216,6 +221,7 @@ class SixAxis::Walk {
     const double g = 0.5 * (r2 - step.upper * step.upper - step.lower * step.lower);
     const double bend = arc_tangent(w, g);
     const double lift = arc_tangent(w, step.upper * step.upper + g);
+    if (r < kNearFree) out_.complete = false;
     if (r < slack_) {  // folded onto itself: any q2 will do
       for (int i = 0; i < kSamples; ++i) with_elbow(sample(1, i) + step.upper_angle, bend);
       return;

@@ -63,10 +63,11 @@ class SixAxis {
   /// (calibrated arms): then the branches are starts for Newton's steps, see defect().
   static std::optional<SixAxis> recognise(const Chain& chain);
 
-  /// How far the axes are from those of the form [rad and m]; up to 1e-5 (rounded figures of a
-  /// file) "no branch" is a proof.
+  /// How far the axes are from those of the form [rad and m].
   [[nodiscard]] double defect() const noexcept { return defect_; }
-  [[nodiscard]] bool is_exact() const noexcept { return defect_ <= 1e-5; }
+  /// True where the defect is so small that it moves branches by less than 1e-3 rad even where two
+  /// of them meet: none is lost. The rounded figures of a file (1.5708) are not enough.
+  [[nodiscard]] bool is_exact() const noexcept { return defect_ <= 1e-8; }
   /// True: parallel. False: spherical.
   [[nodiscard]] bool is_parallel() const noexcept { return parallel_; }
 
@@ -74,7 +75,8 @@ class SixAxis {
   friend struct detail::ClosedForm;
 
   /// Appends the branches that reach the pose, limits left aside. A missing one is told in
-  /// `out.why` by how much it misses. Never allocates.
+  /// `out.why` by how much it misses. Of answers that form a continuous family (a joint is free) it
+  /// gives samples, and is not complete. Never allocates.
   void branches(const detail::BranchQuery& query, detail::Branches& out) const noexcept;
 
   SixAxis() = default;

@@ -292,13 +292,13 @@ TEST(SixAxis, ACalibratedArmIsSolvedEveryTime) {
   }
 }
 
-TEST(SixAxis, RoundedFiguresAreStillExact) {
+TEST(SixAxis, RoundedFiguresAreSolvedAndNoProof) {
   Rng rng(79);
   Arm arm = ur5e();
   for (ArmJoint& joint : arm.joints) {  // as if half pi stood in the file with six digits
     joint.X_PJ.R = joint.X_PJ.R * rotation_exp(Eigen::Vector3d(7e-7, -5e-7, 6e-7));
   }
-  EXPECT_TRUE(SixAxis::recognise(Chain(arm))->is_exact());
+  EXPECT_FALSE(SixAxis::recognise(Chain(arm))->is_exact());
   expect_all_solved(arm, 500, 1.01e-7, rng);
 }
 

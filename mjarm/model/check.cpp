@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Names of the codes in the order of the enum.
-constexpr std::array<std::string_view, 59> kNames = {"not_loadable",
+constexpr std::array<std::string_view, 60> kNames = {"not_loadable",
                                                      "name_doubled",
                                                      "inertia_triangle",
                                                      "inertia_not_positive",
@@ -44,6 +44,7 @@ constexpr std::array<std::string_view, 59> kNames = {"not_loadable",
                                                      "arm_found",
                                                      "arm_missing",
                                                      "arm_ambiguous",
+                                                     "base_floats",
                                                      "tip_missing",
                                                      "gripper_not_driven",
                                                      "home_missing",

@@ -53,6 +53,7 @@ enum class CheckCode {
   arm_found,               ///< the arm, its tool frame and its gripper
   arm_missing,             ///< no arm in it
   arm_ambiguous,           ///< several arms or tool frames to choose from
+  base_floats,             ///< the arm stands on a body that nothing holds
   tip_missing,             ///< no tool frame: the last link has to serve
   gripper_not_driven,      ///< joints beyond the arm that nothing moves
   home_missing,            ///< no keyframe to start from

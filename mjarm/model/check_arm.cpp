@@ -4,6 +4,8 @@
 #include "mjarm/core/messages/check.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/check_internal.hpp"
+#include "mjarm/model/floating_base.hpp"
+#include "mjarm/model/servo_range.hpp"
 
 namespace mjarm {
 namespace {
@@ -57,6 +59,13 @@ void check_tip(const CheckContext& context) {
 }
 
 /// Joints beyond the arm that neither an actuator nor a coupling moves.
+void check_base(const CheckContext& context) {
+  const std::optional<std::string> base = floating_base(*context.model, *context.arm);
+  if (!base) return;
+  context.add(CheckCode::base_floats, Grade::warning, context.description.body(*base),
+              text(msg::check_base_floats));
+}
+
 void check_gripper(const CheckContext& context) {
   const mjModel* m = context.model->raw();
   const Arm& arm = *context.arm;
@@ -100,16 +109,17 @@ void check_arm(const CheckContext& context) {
   context.add(CheckCode::arm_found, Grade::note, context.description.joint(from),
               text(msg::check_arm_found, arm.dof(), from, to, arm.tip, gripper));
   for (int i = 0; i < arm.dof(); ++i) check_limits(context, i);
+  check_base(context);
   check_tip(context);
   check_gripper(context);
 }
 
 namespace {
 
-/// Half of the joint's range and twice of it: commands outside this are of another unit, or leave
-/// much of the joint unused.
-constexpr double kLeastShare = 0.5;
-constexpr double kMaxShare = 2;
+/// Of the joint's range: commands that use less of it, or lead farther beyond it, are of another
+/// unit or of another joint.
+constexpr double kLeastUsed = 0.5;
+constexpr double kFarBeyond = 0.75;
 
 Place ctrl_place(const CheckContext& context, const ArmActuator& actuator) {
   return context.description.actuator(actuator.name, {"ctrlrange"});
@@ -117,17 +127,14 @@ Place ctrl_place(const CheckContext& context, const ArmActuator& actuator) {
 
 void check_ctrl_range(const CheckContext& context, int i, const ArmActuator& actuator) {
   const Arm& arm = *context.arm;
-  const double joint = arm.limits.upper[i] - arm.limits.lower[i];
-  const double stiffness = -actuator.bias[1] * actuator.gear;
-  if (!std::isfinite(joint) || !(joint > 0) || stiffness == 0) return;
-  // Where the servo rests: gain * ctrl + bias[0] = -bias[1] * gear * q. A gear may turn it round.
-  const double servo =
-      std::abs((actuator.ctrl_upper - actuator.ctrl_lower) * actuator.gain / stiffness);
-  if (!std::isfinite(servo)) return;
-  if (servo >= kLeastShare * joint && servo <= kMaxShare * joint) return;
+  const double lower = arm.limits.lower[i], upper = arm.limits.upper[i], joint = upper - lower;
+  const ServoRange servo = servo_range(arm.joints[static_cast<std::size_t>(i)]);
+  const double commanded = servo.upper - servo.lower;
+  if (!(joint > 0) || !std::isfinite(joint) || !std::isfinite(commanded)) return;
+  const double used = std::min(upper, servo.upper) - std::max(lower, servo.lower);
+  if (used >= kLeastUsed * joint && commanded - used <= kFarBeyond * joint) return;
   context.add(CheckCode::ctrl_range_differs, Grade::warning, ctrl_place(context, actuator),
-              text(msg::check_ctrl_range, actuator.ctrl_lower, actuator.ctrl_upper,
-                   arm.limits.lower[i], arm.limits.upper[i]));
+              text(msg::check_ctrl_range, actuator.ctrl_lower, actuator.ctrl_upper, lower, upper));
 }
 
 void check_servo(const CheckContext& context, int i) {

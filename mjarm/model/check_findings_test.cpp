@@ -106,6 +106,29 @@ TEST(CheckFindings, ServosAreAskedWhetherTheyPullTheRightWay) {
   EXPECT_THAT(said(twice, CheckCode::actuator_doubled)[0], HasSubstr("2 actuators drive this"));
 }
 
+/// As wide as the joint's range, but beside it.
+TEST(CheckFindings, CommandsThatMissHalfOfTheJointAreTold) {
+  const CheckReport report = report_of("a.xml", R"(<mujoco><compiler angle="radian"/>
+    <worldbody><body name="a"><joint name="j" axis="0 1 0" range="0 3"/><geom size=".1"/>
+    <site name="tool0"/></body></worldbody><actuator>
+<position name="s" joint="j" kp="100" kv="10" ctrlrange="-1 1"/></actuator></mujoco>)");
+  EXPECT_EQ(said(report, CheckCode::ctrl_range_differs),
+            Lines{"warning 4 <position \"s\"> commands reach from -1 to 1, the joint from 0 to 3"});
+}
+
+TEST(CheckFindings, ABaseThatNothingHoldsIsTold) {
+  const auto with = [](const std::string& joint) {
+    return said(report_of("a.xml", R"(<mujoco><compiler angle="radian"/><worldbody>
+      <body name="base">)" + joint + R"(<geom size=".1"/>
+        <body name="a"><joint name="j" axis="0 1 0" range="-1 1"/><geom size=".1"/>
+        <site name="tool0"/></body></body></worldbody></mujoco>)"),
+                CheckCode::base_floats);
+  };
+  EXPECT_TRUE(with("").empty());
+  ASSERT_EQ(with("<freejoint/>").size(), 1U);
+  EXPECT_THAT(with("<freejoint/>")[0], HasSubstr("warning 2 <body \"base\"> the arm stands on"));
+}
+
 TEST(CheckFindings, TheLanguageChangesTheWordsAndNothingElse) {
   for (const char* robot : {"ur5e", "panda", "car", "universal_robots_ur5e/ur5e.urdf"}) {
     const auto file = find_model_file(robot);
@@ -143,6 +166,29 @@ TEST(CtrlRange, OfAServoBehindATurnedGearIsSound) {
   for (const Finding& finding : report->findings) {
     EXPECT_NE(finding.code, CheckCode::ctrl_range_differs) << finding.what;
   }
+}
+
+/// A servo of a joint from 0 to 2 rad, nearly without gravity: what is said of these commands.
+CheckReport ranges(const std::string& ctrlrange) {
+  return report_of("a.xml", R"(<mujoco><compiler angle="radian"/><option gravity="0 0 -1e-6"/>
+      <worldbody><body name="a"><joint name="j" axis="0 1 0" range="0 2"/>
+      <geom size=".1" pos=".1 0 0"/><site name="tool0"/></body></worldbody>
+      <actuator><position name="s" joint="j" kp="100" kv="10" forcerange="-50 50" ctrlrange=")" +
+                                ctrlrange + R"("/></actuator></mujoco>)");
+}
+
+TEST(CtrlRange, IsHeldAgainstWhereTheJointMoves) {
+  for (const char* sound : {"0 2", "-0.2 2.1", "0.2 1.5", "-0.7 2.7"}) {
+    EXPECT_TRUE(said(ranges(sound), CheckCode::ctrl_range_differs).empty()) << sound;
+  }
+  // As wide as the joint's, but elsewhere; twice as wide; degrees.
+  for (const char* wrong : {"-1.2 0.8", "1.5 3.5", "-2 2", "0 115", "0 0.8"}) {
+    EXPECT_EQ(said(ranges(wrong), CheckCode::ctrl_range_differs).size(), 1U) << wrong;
+  }
+}
+
+TEST(CheckSag, IsNotToldWhereItIsNothing) {
+  EXPECT_TRUE(said(ranges("0 2"), CheckCode::servo_sag).empty());
 }
 
 #if defined(__linux__)

@@ -15,6 +15,8 @@ namespace {
 
 /// Sag of the tool that is more than a property of position servos [m].
 constexpr double kMaxSag = 0.05;
+/// Less is nothing to tell [m]: the arm is balanced, and what is left is rounding.
+constexpr double kNoSag = 1e-5;
 
 /// The arm at rest: torques that hold it, and where its tool goes when joints yield.
 class RestingArm {
@@ -145,7 +147,7 @@ Sag sag_at(RestingArm& resting, const Arm& arm, const JointVec& q) {
 
 void report_sag(const CheckContext& context, const Sag& home, const Sag& stretched) {
   const Sag& worst = home.tool > stretched.tool ? home : stretched;
-  if (worst.joint < 0) return;
+  if (worst.joint < 0 || worst.tool < kNoSag) return;
   const ArmJoint& joint = context.arm->joints[static_cast<std::size_t>(worst.joint)];
   const ArmActuator& servo = *joint.actuator;
   const double stiffness = -servo.bias[1] * servo.gear * servo.gear;

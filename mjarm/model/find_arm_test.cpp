@@ -250,6 +250,29 @@ TEST(FindArm, DoorsAndFingersAreNoArms) {
   EXPECT_EQ(arm->tip, "b4");
 }
 
+/// As in Google's robot, whose last joint is called joint_gripper.
+TEST(FindArm, AHingeThatTurnsTwoFingersIsTheWristWhateverItsName) {
+  const auto finger = [](const std::string& side) {
+    return "<body name=\"" + side + "\"><joint name=\"finger_" + side +
+           "\"/><geom size=\".01\"/></body>";
+  };
+  const std::string hand =
+      "<body name=\"palm\"><joint name=\"joint_gripper\" axis=\"0 0 1\"/><geom size=\".01\"/>"
+      "<site name=\"gripper\"/>" +
+      finger("left") + finger("right") + "</body>";
+  const auto arm = find_arm(from_text(world(serial(6) + hand + close(6))));
+  ASSERT_TRUE(arm) << arm.error().what;
+  EXPECT_EQ(arm->dof(), 7);
+  EXPECT_EQ(arm->joints.back().name, "joint_gripper");
+  EXPECT_EQ(arm->tip, "gripper");
+  // A slide between them is part of the gripper.
+  const auto slide = find_arm(from_text(
+      world(serial(6) + "<body><joint name=\"gripper_base\" type=\"slide\"/><geom size=\".01\"/>" +
+            finger("left") + finger("right") + "</body>" + close(6))));
+  ASSERT_TRUE(slide) << slide.error().what;
+  EXPECT_EQ(slide->dof(), 6);
+}
+
 TEST(FindArm, SingleJawIsKnownByItsNameAndOpensAwayFromTheHand) {
   const std::string jaw =
       "<body name=\"moving\" pos=\"0 0 .1\"><joint name=\"Jaw\" axis=\"0 1 0\" limited=\"true\" "

@@ -90,24 +90,31 @@ std::set<int> coupled_joints(const mjModel* m) {
 }
 
 /// Joint chains from the world to each last joint that is no finger. Fingers are joints with such a
-/// name, or coupled with a neighbour, beyond which there are only fingers.
+/// name, or coupled with a neighbour, beyond which there are only fingers; but a hinge that carries
+/// two fingers or more turns them all: whatever its name, it is the wrist.
 std::vector<std::vector<int>> chains_of(const mjModel* m) {
   const std::set<int> coupled = coupled_joints(m);
   std::vector<char> arm_joint(static_cast<std::size_t>(m->njnt), 0);
   std::vector<char> arm_beyond(static_cast<std::size_t>(m->nbody), 0);  ///< on bodies hung on it
+  std::vector<int> fingers(static_cast<std::size_t>(m->nbody), 0);      ///< hung on it
   std::vector<int> last_bodies;
   for (int b = static_cast<int>(m->nbody) - 1; b > 0; --b) {  // children before parents
     bool beyond = arm_beyond[b] != 0;
     const bool is_last = !beyond;
     for (int j = m->body_jntadr[b] + m->body_jntnum[b] - 1; j >= m->body_jntadr[b] && j >= 0; --j) {
       if (m->jnt_type[j] != mjJNT_HINGE && m->jnt_type[j] != mjJNT_SLIDE) continue;
-      const bool finger_like = coupled.count(j) > 0 || has_finger_name(m, j);
-      if (!beyond && finger_like) continue;
+      const bool turns_fingers = m->jnt_type[j] == mjJNT_HINGE && fingers[b] > 1;
+      const bool finger_like = coupled.count(j) > 0 || (has_finger_name(m, j) && !turns_fingers);
+      if (!beyond && finger_like) {
+        fingers[b] = 1;
+        continue;
+      }
       arm_joint[j] = 1;
       beyond = true;
     }
     if (beyond && is_last) last_bodies.push_back(b);
     if (beyond) arm_beyond[m->body_parentid[b]] = 1;
+    fingers[m->body_parentid[b]] += fingers[b];
   }
   std::vector<std::vector<int>> chains;
   for (const int b : last_bodies) {

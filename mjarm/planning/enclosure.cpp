@@ -107,12 +107,19 @@ std::optional<Pocket> prove(const Arm& arm, const BallScene& scene, std::span<co
 
 }  // namespace
 
+const BallScene& EnclosureTest::scene() {
+  if (!scene_) scene_ = ball_scene(checker_, obstacles_);
+  return *scene_;
+}
+
 const std::optional<Pocket>& EnclosureTest::find() {
-  if (!found_) {
-    const BallScene scene = ball_scene(checker_, obstacles_);
-    found_ = prove(checker_.robot().arm(), scene, start_, goals_);
-  }
+  if (!found_) found_ = prove(checker_.robot().arm(), scene(), start_, goals_);
   return *found_;
+}
+
+const std::optional<JointBarrier>& EnclosureTest::barrier() {
+  if (!barrier_) barrier_ = find_barrier(checker_.robot().arm(), scene(), start_, goals_);
+  return *barrier_;
 }
 
 }  // namespace mjarm

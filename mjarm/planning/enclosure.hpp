@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "mjarm/collision/fast_check.hpp"
+#include "mjarm/collision/link_balls.hpp"
 #include "mjarm/core/joint_vec.hpp"
+#include "mjarm/planning/joint_barrier.hpp"
 
 namespace mjarm {
 
@@ -21,13 +23,14 @@ struct Pocket {
   int goals = 0;         ///< to so many different goals there is no path
 };
 
-/// Proof that no path leads from a start to any of its goals, where a ball in one link is shut in.
-/// Along a path the ball moves from one place to the other and touches nothing on its way. What its
-/// centre can reach is covered with cells, which count as shut only where the ball would hit
-/// something wherever in the cell it is (R. A. Brooks and T. Lozano-Perez, A subdivision algorithm
-/// in configuration space for findpath with rotation, IJCAI 1983). Where a start or a goal has
-/// nothing but shut cells round what it is connected with, that is a proof, for all margins and
-/// limits of the tilt. Where nothing is proved, there may be no path all the same.
+/// Proof that no path leads from a start to any of its goals, where a joint cannot get past a value
+/// (find_barrier()), or where a ball in one link is shut in. Along a path the ball moves from one
+/// place to the other and touches nothing on its way. What its centre can reach is covered with
+/// cells, which count as shut only where the ball would hit something wherever in the cell it is
+/// (R. A. Brooks and T. Lozano-Perez, A subdivision algorithm in configuration space for findpath
+/// with rotation, IJCAI 1983). Where a start or a goal has nothing but shut cells round what it is
+/// connected with, that is a proof, for all margins and limits of the tilt. Where nothing is
+/// proved, there may be no path all the same.
 class EnclosureTest {
  public:
   /// Cheap; the work is done by find().
@@ -41,13 +44,19 @@ class EnclosureTest {
   /// Looks for a proof when it is asked first, with bounded work.
   /// @return what shuts in the start, or else the first of the goals; none: nothing is proved.
   [[nodiscard]] const std::optional<Pocket>& find();
+  /// Likewise, what a joint cannot pass.
+  [[nodiscard]] const std::optional<JointBarrier>& barrier();
 
  private:
+  const BallScene& scene();
+
   const FastChecker& checker_;
   const Obstacles& obstacles_;
   std::span<const double> start_;
   std::span<const JointVec> goals_;
+  std::optional<BallScene> scene_;  // once it is asked for
   std::optional<std::optional<Pocket>> found_;
+  std::optional<std::optional<JointBarrier>> barrier_;
 };
 
 }  // namespace mjarm

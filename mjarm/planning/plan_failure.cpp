@@ -61,6 +61,13 @@ std::string enclosed(const Pocket& pocket, const FastRobot& robot) {
               1e3 * pocket.cell);
 }
 
+std::string barred(const JointBarrier& barrier, const FastRobot& robot,
+                   const Obstacles& obstacles) {
+  return text(msg::planning_barred,
+              robot.arm().joints[static_cast<std::size_t>(barrier.joint)].name, barrier.at,
+              link_name(robot, barrier.link), obstacle_text(obstacles, barrier.obstacle));
+}
+
 }  // namespace
 
 std::string describe(const PlanFailure& failure, const FastRobot& robot,
@@ -93,6 +100,8 @@ std::string describe(const PlanFailure& failure, const FastRobot& robot,
       return off_region(msg::planning_goals_off, failure.room);
     case PlanErrc::enclosed:
       return enclosed(failure.pocket, robot);
+    case PlanErrc::barred:
+      return barred(failure.barrier, robot, obstacles);
     case PlanErrc::budget_spent:
       return text(msg::planning_budget, failure.samples, failure.nearest);
     case PlanErrc::out_of_time:

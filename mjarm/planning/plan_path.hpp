@@ -99,7 +99,8 @@ enum class PlanErrc {
   goals_tilted,    ///< the tool leans too far at every goal that is free of collisions
   start_off,       ///< the tool is outside of PlanOptions::within at the start
   goals_off,       ///< the tool is outside of it at every goal that is free of collisions
-  enclosed,        ///< PlanOptions::enclosure proved that there is no path
+  enclosed,        ///< PlanOptions::enclosure proved that there is no path: a ball is shut in
+  barred,          ///< it proved the same: a joint cannot pass a value
   budget_spent,    ///< PlanOptions::samples did not do
   out_of_time,     ///< PlanOptions::time_limit did not do
   stopped,         ///< PlanOptions::stop ended the work
@@ -109,6 +110,11 @@ enum class PlanErrc {
   tilt_with_ompl,  ///< PlanOptions::tilt and within are for our own planners
   back_end,        ///< OMPL stopped with an error
 };
+
+/// Whether that is a proof that there is no path, so that no other search will find one.
+[[nodiscard]] constexpr bool is_proof(PlanErrc why) noexcept {
+  return why == PlanErrc::enclosed || why == PlanErrc::barred;
+}
 
 /// Why there is no path.
 struct PlanFailure {
@@ -120,11 +126,12 @@ struct PlanFailure {
   /// [rad] start_tilted, goals_tilted: the largest that is allowed; [m] too_near, bad_clearance:
   /// what was asked; [s] out_of_time: PlanOptions::time_limit.
   double limit = 0;
-  double possible = 0;   ///< [m] too_near: the largest clearance for which a path was found
-  double nearest = 0;    ///< [rad or m, L2] budget_spent, out_of_time: how near the trees came
-  int samples = 0;       ///< drawn
-  RegionRoom room = {};  ///< start_off, goals_off: how far outside
-  Pocket pocket = {};    ///< enclosed: what proves it
+  double possible = 0;        ///< [m] too_near: the largest clearance for which a path was found
+  double nearest = 0;         ///< [rad or m, L2] budget_spent, out_of_time: how near the trees came
+  int samples = 0;            ///< drawn
+  RegionRoom room = {};       ///< start_off, goals_off: how far outside
+  Pocket pocket = {};         ///< enclosed: what proves it
+  JointBarrier barrier = {};  ///< barred: likewise
 };
 
 /// What a search did.

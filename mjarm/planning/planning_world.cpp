@@ -205,8 +205,7 @@ Result<PlannedPath, WorldFailure> PlanningWorld::keep_clearance(const PlanOption
     clear.clearance = kPreferredClearance;
     clear.samples = detail::least_samples(options, kPreferSamples);
     Result<PlannedPath, WorldFailure> found = spheres_then_solids(clear, left, attempt);
-    const bool decided =
-        found || is_stopped(options.stop) || found.error().search.code == PlanErrc::enclosed;
+    const bool decided = found || is_stopped(options.stop) || is_proof(found.error().search.code);
     return decided ? std::move(found) : spheres_then_solids(bare, left, attempt);
   }
   Result<PlannedPath, WorldFailure> found = spheres_then_solids(clear, left, attempt);
@@ -288,7 +287,8 @@ Result<PlannedPath, WorldFailure> PlanningWorld::plan(std::span<const double> q_
                                     testing(enclosure, q_start, goals, how), times);
       });
   const auto is_for_winding = [](PlanErrc code) {
-    return code == PlanErrc::budget_spent || code == PlanErrc::out_of_time;
+    return code == PlanErrc::barred || code == PlanErrc::budget_spent ||
+           code == PlanErrc::out_of_time;
   };
   if (!found && goals.size() == 1 && is_for_winding(found.error().search.code)) {
     tell_winding(q_start, goals.front(), options, found.error());

@@ -20,14 +20,17 @@ class SearchWatch {
   bool is_hopeless(int samples, double nearest) {
     if (options_.progress) options_.progress({samples, nearest});
     if (options_.enclosure == nullptr || samples < proof_after_) return false;
-    return options_.enclosure->find().has_value();
+    return options_.enclosure->barrier() || options_.enclosure->find();
   }
 
   /// Why a search ended that was asked for as much.
   [[nodiscard]] PlanFailure why(int samples, double nearest) {
     PlanFailure out{.code = PlanErrc::budget_spent, .nearest = nearest, .samples = samples};
     if (options_.enclosure == nullptr || samples < proof_after_) return out;
-    if (const auto& pocket = options_.enclosure->find()) {
+    if (const auto& barrier = options_.enclosure->barrier()) {
+      out.code = PlanErrc::barred;
+      out.barrier = *barrier;
+    } else if (const auto& pocket = options_.enclosure->find()) {
       out.code = PlanErrc::enclosed;
       out.pocket = *pocket;
     }

@@ -27,6 +27,7 @@ const char* name_of(PlanErrc reason) {
     case PlanErrc::too_near:
       return "clearance";
     case PlanErrc::enclosed:
+    case PlanErrc::barred:
     case PlanErrc::budget_spent:
     case PlanErrc::out_of_time:
     case PlanErrc::unproved:

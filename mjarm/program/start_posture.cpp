@@ -6,6 +6,7 @@
 
 #include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/kinematics/fk.hpp"
+#include "mjarm/model/servo_range.hpp"
 
 namespace mjarm::program {
 namespace {
@@ -17,18 +18,27 @@ constexpr double kEnough = 0.25;
 /// [rad or m] two postures are different where a joint differs by more.
 constexpr double kDifferent = 0.3;
 
-/// The values from which a joint is drawn: its limits, at most half a turn (hinge) or 0.5 m (slide)
-/// to either side of the value nearest to 0, without the outer tenth.
 struct Range {
   double lower;
   double upper;
   [[nodiscard]] double middle() const { return 0.5 * (lower + upper); }
 };
 
+/// The limits of a joint, as far as its servo can be told to go there; where that is nowhere,
+/// commands are of another unit and say nothing.
+Range held_range(const Arm& arm, int i) {
+  const Range limits{arm.limits.lower[i], arm.limits.upper[i]};
+  const ServoRange servo = servo_range(arm.joints[static_cast<std::size_t>(i)]);
+  const Range held{std::max(limits.lower, servo.lower), std::min(limits.upper, servo.upper)};
+  return held.lower < held.upper ? held : limits;
+}
+
+/// The values from which a joint is drawn: those that it can be held at, at most half a turn
+/// (hinge) or 0.5 m (slide) to either side of the value nearest to 0, without the outer tenth.
+
 Range draw_range(const Arm& arm, int i) {
   const double max = arm.joints[i].type == JointType::hinge ? 0.75 * std::numbers::pi : 0.5;
-  const double lower = arm.limits.lower[i];
-  const double upper = arm.limits.upper[i];
+  const auto [lower, upper] = held_range(arm, i);
   const double centre = std::clamp(0.0, lower, upper);
   Range range{std::max(lower, centre - max), std::min(upper, centre + max)};
   const double inset = 0.1 * (range.upper - range.lower);
@@ -36,9 +46,12 @@ Range draw_range(const Arm& arm, int i) {
 }
 
 double limit_room(const Arm& arm, const JointVec& q) {
-  const double room =
-      std::min((q - arm.limits.lower).minCoeff(), (arm.limits.upper - q).minCoeff());
-  return std::min(room, std::numbers::pi);
+  double room = std::numbers::pi;
+  for (int i = 0; i < arm.dof(); ++i) {
+    const auto [lower, upper] = held_range(arm, i);
+    room = std::min({room, q[i] - lower, upper - q[i]});
+  }
+  return room;
 }
 
 /// Length of the stretched arm [m].

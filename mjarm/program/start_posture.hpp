@@ -14,7 +14,8 @@ struct StartPosture {
   JointVec q;             ///< [rad or m] shape (dof,)
   bool is_home = false;   ///< the arm's own `home`
   double dexterity = 0;   ///< see dexterity(); 0 at a singularity
-  double limit_room = 0;  ///< [rad or m] from the nearest limit; at most half a revolution
+  double limit_room = 0;  ///< [rad or m] from the nearest limit, of the joint or of what its servo
+                          ///< can be told; at most half a turn
 };
 
 /// What makes a posture good to start from. Every default is usable as is.
@@ -31,8 +32,8 @@ struct StartOptions {
 [[nodiscard]] double dexterity(const Arm& arm, std::span<const double> q);
 
 /// Postures to start from, the best first: `home` where it is fit, then bent ones out of random
-/// draws that are well inside the limits, dexterous, with the tool above the floor, and mutually
-/// different. Same arm and `rng`, same postures.
+/// draws that are well inside the limits and what the servos can be told (ctrlrange), dexterous,
+/// with the tool above the floor, and mutually different. Same arm and `rng`, same postures.
 /// @param valid  accepts or refuses a posture (contact); empty accepts all.
 [[nodiscard]] std::vector<StartPosture> start_postures(
     const Arm& arm, const std::function<bool(std::span<const double> q)>& valid, Rng& rng,

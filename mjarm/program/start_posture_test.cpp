@@ -42,6 +42,23 @@ TEST(StartPosture, StretchedHomeGivesWayToBentOnes) {
   for (std::size_t i = 0; i < same.size(); ++i) EXPECT_EQ(same[i].q, postures[i].q);
 }
 
+/// A servo that cannot be told to go where the arm starts would let go of it.
+TEST(StartPosture, IsWhereServosCanBeTold) {
+  Robot robot = load_robot("ur5e").value();
+  ArmActuator& elbow = *robot.arm.joints[2].actuator;
+  elbow.ctrl_lower = -1.5;
+  elbow.ctrl_upper = -0.5;  // home has 1.57
+  Rng rng(1);
+  const auto postures =
+      start_postures(robot.arm, ExactChecker(robot.model, robot.arm).predicate(), rng);
+  ASSERT_GE(postures.size(), 5U);
+  for (const StartPosture& posture : postures) {
+    EXPECT_FALSE(posture.is_home);
+    EXPECT_GT(posture.q[2], -1.5);
+    EXPECT_LT(posture.q[2], -0.5);
+  }
+}
+
 TEST(StartPosture, NoneWhereAllAreRefused) {
   const Robot robot = load_robot("ur5e").value();
   Rng rng(1);

@@ -6,6 +6,7 @@
 #include "mjarm/core/file.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/messages/show.hpp"
+#include "mjarm/execution/beyond_servo.hpp"
 #include "mjarm/kinematics/ik.hpp"
 #include "mjarm/session/picture.hpp"
 #include "mjarm/session/program_scene.hpp"
@@ -108,7 +109,13 @@ Result<MeasuredRun> Stage::rehearse(const Trajectory& trajectory, ControlMode mo
   return run;
 }
 
+void Stage::tell_servos(const Trajectory& motion) const {
+  const std::optional<BeyondServo> beyond = beyond_servo(robot_.arm, motion);
+  if (beyond) log_warning(describe(*beyond, robot_.arm));
+}
+
 void Stage::tell(const ToolMotion& motion, Report& report) const {
+  tell_servos(motion.trajectory);
   add_motion(motion, robot_.arm, report);
   for (const SpeedDip& dip : motion.dips) log_info(describe(dip, robot_.arm));
 }

@@ -72,7 +72,9 @@ class Stage {
   /// Writes the page of a comparison into the folder, as comparison.png and .svg.
   [[nodiscard]] Result<void> save_comparison(const render::Plot& page) const;
 
-  /// Adds a planned motion to the report and tells where its tool is slower than asked.
+  /// Tells the joint that a motion leads beyond what its servo can be told, if it does.
+  void tell_servos(const Trajectory& motion) const;
+  /// Adds a planned motion to the report; tells that, and where its tool is slower than asked.
   void tell(const ToolMotion& motion, Report& report) const;
 
   /// Writes report, log, plots and picture into the folder, and keeps the window open.

@@ -99,6 +99,7 @@ void bind_reasons(nb::module_& m) {
       .value("start_off", PlanErrc::start_off)
       .value("goals_off", PlanErrc::goals_off)
       .value("enclosed", PlanErrc::enclosed, "Proved: there is none.")
+      .value("barred", PlanErrc::barred, "Proved: there is none.")
       .value("budget_spent", PlanErrc::budget_spent)
       .value("out_of_time", PlanErrc::out_of_time)
       .value("stopped", PlanErrc::stopped)

@@ -17,6 +17,7 @@ Result<Report> run_plan(session::Stage& stage, const program::LoadedProgram& loa
   Progress progress(text(msg::motion_program_running), static_cast<std::uint64_t>(steps));
   stage.set_tick([&progress] { progress.advance(); });
   for (const PlannedMove& move : plan.moves) {
+    stage.tell_servos(move.trajectory);
     for (const SpeedDip& dip : move.dips) log_info(describe(dip, plan.arms[move.tool]));
   }
   render::Overlay paths;

@@ -16,6 +16,8 @@
 #include "apps/mjarm/messages/sim_command.hpp"
 #include "mjarm/core/log.hpp"
 #include "mjarm/core/text_width.hpp"
+#include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/floating_base.hpp"
 #include "mjarm/program/load_program.hpp"
 #include "mjarm/session/model_run_output.hpp"
 
@@ -50,6 +52,14 @@ void print_travel(const Model& model, const session::ModelRunReport& report) {
   }
 }
 
+/// What will surprise whoever simulates it.
+void tell_oddities(const Model& model, const std::string& file) {
+  if (model.nq() == 0) log_warning(text(msg::sim_command_nothing_moves, file));
+  const Result<Arm> arm = find_arm(model);
+  const auto base = arm ? floating_base(model, *arm) : std::nullopt;
+  if (base) log_warning(text(msg::sim_command_base_floats, *base));
+}
+
 int conclude(const Model& model, const session::ModelRunReport& report, const std::string& out) {
   if (!report.ok) log_error(report.detail);
   log_info(text(msg::sim_command_done, report.duration, report.steps));
@@ -72,7 +82,7 @@ Result<int> run(const Options& options) {
   if (!how) return fail(how.error());
   const Result<render::Camera> camera = choose_camera(*model, options.camera);
   if (!camera) return fail(camera.error());
-  if (model->nq() == 0) log_warning(text(msg::sim_command_nothing_moves, file));
+  tell_oddities(*model, file);
   const session::ModelOutput output{.out = options.out,
                                     .camera = *camera,
                                     .video = options.video,

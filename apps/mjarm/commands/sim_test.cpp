@@ -69,6 +69,16 @@ TEST_F(SimCommand, WhatHasAJointFalls) {
   EXPECT_TRUE(folder_.exists("out/plot.png"));
 }
 
+TEST_F(SimCommand, AnArmThatNothingHoldsIsTold) {
+  const std::string arm = folder_
+                              .write("arm.xml", R"(<mujoco><worldbody><body name="base" pos="0 0 1">
+    <freejoint/><geom size=".1"/><body name="link"><joint name="j" axis="0 1 0"/>
+    <geom size=".05" pos="0 0 .2"/><site name="tool0"/></body></body></worldbody></mujoco>)")
+                              .string();
+  run("out", {arm, "--seconds", "0.1"});
+  EXPECT_THAT(last_.err, HasSubstr("the arm's base \"base\" floats"));
+}
+
 TEST_F(SimCommand, WithoutAJointItSaysWhatIsMissing) {
   run("out", {"hello", "--seconds", "0.1"});
   EXPECT_THAT(last_.err, HasSubstr("nothing in hello can move: no body has a joint"));

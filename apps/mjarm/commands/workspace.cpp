@@ -1,6 +1,7 @@
 #include "mjarm/kinematics/workspace.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -23,9 +24,12 @@
 namespace mjarm::app {
 namespace {
 
+/// [m] heights of the slice where none is asked for: the first at which the tool reaches anything.
+constexpr std::array kHeights{0.4, 0.3, 0.2, 0.1, 0.0};
+
 struct Options {
   RobotChoice robot{.looks = false};
-  std::string slice = "z=0.4", step = "20mm", euler, quat, out, threads = "1";
+  std::string slice, step = "20mm", euler, quat, out, threads = "1";
   Replace replace;
   bool tool_down = false, position_only = false, json = false;
 };
@@ -60,7 +64,9 @@ Result<std::optional<Eigen::Matrix3d>> read_rotation(const Options& options, con
 
 Result<WorkspaceOptions> read_work(const Options& options, const Arm& arm) {
   WorkspaceOptions work;
-  if (Result<void> fine = read_slice(options.slice, work); !fine) return fail(fine.error());
+  if (!options.slice.empty()) {
+    if (Result<void> fine = read_slice(options.slice, work); !fine) return fail(fine.error());
+  }
   const Result<double> step = parse_quantity(options.step, Quantity::length);
   if (!step) return fail(in_option("--step", step.error()));
   work.step = *step;
@@ -77,6 +83,21 @@ Result<WorkspaceOptions> read_work(const Options& options, const Arm& arm) {
   return work;
 }
 
+/// @param any_height  the slice is the first of kHeights that is not empty; `work` says which.
+Result<WorkspaceMap> make_map(const Arm& arm, WorkspaceOptions& work, bool any_height) {
+  Progress progress(text(msg::workspace_progress), 0);
+  work.progress = [&progress](std::size_t cells) { progress.advance(cells); };
+  work.stop = interrupted;
+  if (!any_height) return map_workspace(arm, work);
+  Result<WorkspaceMap> map;
+  for (const double height : kHeights) {
+    work.at = height;
+    map = map_workspace(arm, work);
+    if (map || map.error().code != Errc::impossible) break;
+  }
+  return map;
+}
+
 Result<int> run(const Options& options) {
   const Result<WorkspaceFormat> format = workspace_format(options.out);
   if (!format) return fail(format.error());
@@ -86,12 +107,7 @@ Result<int> run(const Options& options) {
   if (!robot) return fail(robot.error());
   Result<WorkspaceOptions> work = read_work(options, robot->arm);
   if (!work) return fail(work.error());
-  Result<WorkspaceMap> map = [&] {
-    Progress progress(text(msg::workspace_progress), 0);
-    work->progress = [&progress](std::size_t cells) { progress.advance(cells); };
-    work->stop = interrupted;
-    return map_workspace(robot->arm, *work);
-  }();
+  const Result<WorkspaceMap> map = make_map(robot->arm, *work, options.slice.empty());
   if (!map) return fail(map.error());
   const WorkspaceReport report{robot->arm, *work, *map};
   if (Result<void> written = write_workspace(report, options.out, *format); !written) {

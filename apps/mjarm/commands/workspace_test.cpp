@@ -52,6 +52,24 @@ TEST(Workspace, HasTheHoleRoundTheBase) {
   EXPECT_LT(map.at("farthest").get<double>(), 0.97);
 }
 
+/// Where no slice is asked for it is one that the arm reaches: this one ends 0.27 m above the
+/// floor.
+TEST(Workspace, OfASmallArmIsLower) {
+  const support::TempFolder folder;
+  const std::string arm = folder
+                              .write("small.xml", R"(<mujoco><compiler angle="radian"/><worldbody>
+    <body name="turn"><joint name="a" axis="0 0 1" range="-3 3"/><geom size=".02"/>
+    <body name="upper" pos="0 0 .05"><joint name="b" axis="0 1 0" range="-2 2"/><geom size=".02"/>
+    <body name="lower" pos="0 0 .12"><joint name="c" axis="0 1 0" range="-2 2"/><geom size=".02"/>
+    <site name="tool0" pos="0 0 .1"/></body></body></body></worldbody></mujoco>)")
+                              .string();
+  const auto result = mjarm({"workspace", "--robot", arm, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out).at("slice").at("at"), 0.2);
+  const auto asked = mjarm({"workspace", "--robot", arm, "--json", "--slice", "z=0.4"});
+  EXPECT_EQ(asked.exit_code, 1);
+}
+
 TEST(Workspace, SameBytesForAnyNumberOfThreads) {
   const support::TempFolder folder;
   const auto run = [&](const std::string& threads, const std::string& name) {
