@@ -169,9 +169,9 @@ TEST(Models, PandaTipIsBetweenTheFingers) {
   EXPECT_EQ(arm.tip, "hand_tcp");
   EXPECT_EQ(arm.dof(), 7);
   ASSERT_TRUE(arm.gripper.has_value());
-  EXPECT_EQ(arm.gripper->actuator, "actuator8");
-  EXPECT_EQ(arm.gripper->ctrl_open, 255);
-  EXPECT_EQ(arm.gripper->ctrl_closed, 0);
+  EXPECT_EQ(arm.gripper->drives[0].actuator, "actuator8");
+  EXPECT_EQ(arm.gripper->drives[0].ctrl_open, 255);
+  EXPECT_EQ(arm.gripper->drives[0].ctrl_closed, 0);
   const State state(model);
   const std::span qpos(state->qpos, static_cast<std::size_t>(model.nq()));
   const auto left = frame_pose(model, "left_finger", qpos);

@@ -13,38 +13,41 @@ int actuator_of(const mjModel& m, int ctrl) {
   return -1;
 }
 
-/// By how much the actuator's length grows with a joint's value.
+/// By how much the actuator's length grows with a joint's value; 0 where it does not move it.
 double ratio_of(const mjModel& m, int actuator, int joint) {
   const double gear = m.actuator_gear[6 * m.actuator_outadr[actuator]];
-  if (m.actuator_trntype[actuator] != mjTRN_TENDON) return gear;
-  const int tendon = m.actuator_trnid[2 * actuator];
-  for (int w = m.tendon_adr[tendon]; w < m.tendon_adr[tendon] + m.tendon_num[tendon]; ++w) {
+  const int target = m.actuator_trnid[2 * actuator];
+  if (m.actuator_trntype[actuator] != mjTRN_TENDON) return target == joint ? gear : 0;
+  for (int w = m.tendon_adr[target]; w < m.tendon_adr[target] + m.tendon_num[target]; ++w) {
     if (m.wrap_type[w] == mjWRAP_JOINT && m.wrap_objid[w] == joint) return gear * m.wrap_prm[w];
   }
-  return gear;
+  return 0;
 }
 
 }  // namespace
 
 GripperWay::GripperWay(const mjModel& m, const Arm& arm) : m_(m), linkage_(m, arm) {
   if (!arm.gripper) return;
-  const Gripper& gripper = *arm.gripper;
-  ctrl_open_ = gripper.ctrl_open;
-  ctrl_closed_ = gripper.ctrl_closed;
-  const int actuator = actuator_of(m, gripper.id);
-  if (actuator < 0) return;
-  const bool ctrl_lengthens = m.actuator_gainprm[actuator * mjNGAIN] > 0;
-  const bool longer_opens = (gripper.ctrl_open > gripper.ctrl_closed) == ctrl_lengthens;
-  for (const std::string& name : gripper.joints) {
+  for (const std::string& name : arm.gripper->joints) {
     const int joint = mj_name2id(&m, mjOBJ_JOINT, name.c_str());
     if (joint < 0) continue;
-    has_ends_ = has_ends_ && m.jnt_limited[joint] != 0;
-    const mjtNum* range = m.jnt_range + 2 * joint;
-    const bool upper_opens = longer_opens == (ratio_of(m, actuator, joint) > 0);
-    driven_.push_back({joint, range[upper_opens ? 1 : 0], range[upper_opens ? 0 : 1]});
+    for (const GripperDrive& drive : arm.gripper->drives) add_driven(joint, drive);
   }
   has_ends_ = has_ends_ && !driven_.empty();
   find_coupled();
+}
+
+/// Nothing where the drive does not move the joint.
+void GripperWay::add_driven(int joint, const GripperDrive& drive) {
+  const int actuator = actuator_of(m_, drive.id);
+  const double ratio = actuator < 0 ? 0 : ratio_of(m_, actuator, joint);
+  if (ratio == 0) return;
+  const bool ctrl_lengthens = m_.actuator_gainprm[actuator * mjNGAIN] > 0;
+  const bool longer_opens = (drive.ctrl_open > drive.ctrl_closed) == ctrl_lengthens;
+  has_ends_ = has_ends_ && m_.jnt_limited[joint] != 0;
+  const mjtNum* range = m_.jnt_range + 2 * joint;
+  const bool upper_opens = longer_opens == (ratio > 0);
+  driven_.push_back({joint, range[upper_opens ? 1 : 0], range[upper_opens ? 0 : 1]});
 }
 
 /// Chains of couplings, link by link.
@@ -65,20 +68,19 @@ void GripperWay::find_coupled() {
   }
 }
 
-/// The command that goes with where the driven joints stand; open where they have no ends.
-double GripperWay::ctrl_in(const std::vector<double>& qpos) const {
+/// How far closed the driven joints stand; open where they have no ends.
+double GripperWay::grip_in(const std::vector<double>& qpos) const {
   double sum = 0;
   for (const Driven& one : driven_) {
     const double whole = one.closed - one.open;
     const double here = qpos[static_cast<std::size_t>(m_.jnt_qposadr[one.joint])];
     if (whole != 0) sum += std::clamp((here - one.open) / whole, 0.0, 1.0);
   }
-  const double share = driven_.empty() ? 0.0 : sum / static_cast<double>(driven_.size());
-  return ctrl_open_ + share * (ctrl_closed_ - ctrl_open_);
+  return driven_.empty() ? 0.0 : sum / static_cast<double>(driven_.size());
 }
 
 void GripperWay::find_way(const std::vector<double>& from) {
-  if (linkage_.has_loops()) linkage_.find_way(from, ctrl_in(from), ctrl_closed_);
+  if (linkage_.has_loops()) linkage_.find_way(from, grip_in(from), 1);
 }
 
 bool GripperWay::moves(int body) const {
@@ -110,7 +112,7 @@ void GripperWay::set(const std::vector<double>& from, double share,
 
 void GripperWay::set_open(std::vector<double>& qpos) {
   if (linkage_.has_loops()) {
-    linkage_.find_way(qpos, ctrl_in(qpos), ctrl_open_);
+    linkage_.find_way(qpos, grip_in(qpos), 0);
     return linkage_.set(1, qpos);
   }
   if (!has_ends_) return;

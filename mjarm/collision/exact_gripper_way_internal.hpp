@@ -37,12 +37,12 @@ class GripperWay {
     const mjtNum* polynomial = nullptr;
   };
   void find_coupled();
-  [[nodiscard]] double ctrl_in(const std::vector<double>& qpos) const;
+  void add_driven(int joint, const GripperDrive& drive);
+  [[nodiscard]] double grip_in(const std::vector<double>& qpos) const;
   void set_coupled(std::vector<double>& qpos) const;
 
   const mjModel& m_;
   Linkage linkage_;
-  double ctrl_open_ = 0, ctrl_closed_ = 0;
   std::vector<Driven> driven_;
   std::vector<Coupled> coupled_;  ///< after what they are coupled to
   bool has_ends_ = true;

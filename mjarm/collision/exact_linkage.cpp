@@ -3,6 +3,7 @@
 
 #include "mjarm/collision/exact_data_internal.hpp"
 #include "mjarm/collision/exact_linkage_internal.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 
 namespace mjarm::detail {
@@ -29,7 +30,7 @@ int body_of_end(const mjModel& m, int equality, int id) {
 
 Linkage::Linkage(const mjModel& m, const Arm& arm) : m_(m) {
   if (!arm.gripper) return;
-  ctrl_ = arm.gripper->id;
+  gripper_ = *arm.gripper;
   const int last = m.dof_bodyid[arm.joints.back().dof];
   for (int j = 0; j < static_cast<int>(m.njnt); ++j) {
     const bool one = m.jnt_type[j] == mjJNT_HINGE || m.jnt_type[j] == mjJNT_SLIDE;
@@ -70,7 +71,7 @@ void Linkage::note(const mjData& d) {
   way_.push_back(std::move(values));
 }
 
-void Linkage::find_way(const std::vector<double>& from, double ctrl_from, double ctrl) {
+void Linkage::find_way(const std::vector<double>& from, double grip_from, double grip) {
   way_.clear();
   length_.clear();
   const MjModelPtr still(mj_copyModel(nullptr, &m_));
@@ -82,9 +83,15 @@ void Linkage::find_way(const std::vector<double>& from, double ctrl_from, double
   const double dt = m_.opt.timestep;
   const int steps = std::min(static_cast<int>(kMoving / dt), kMaxLinkSteps);
   const double ramp = std::min(kRamp, 0.5 * steps * dt);
+  std::vector<double> begin(static_cast<std::size_t>(m_.nu)), end(begin);
+  set_grip(gripper_, grip_from, begin);
+  set_grip(gripper_, grip, end);
   bool resting = false;
   for (int k = 0; k < steps && !resting; ++k) {
-    d->ctrl[ctrl_] = ctrl_from + std::min(d->time / ramp, 1.0) * (ctrl - ctrl_from);
+    for (const GripperDrive& drive : gripper_.drives) {
+      const auto row = static_cast<std::size_t>(drive.id);
+      d->ctrl[row] = begin[row] + std::min(d->time / ramp, 1.0) * (end[row] - begin[row]);
+    }
     if (mjarm::call_mujoco([&] { mj_step(still.get(), d.get()); }).failed) break;
     if (d->warning[mjWARN_BADQACC].number > 0) break;
     hold(*d, from);

@@ -20,9 +20,9 @@ class Linkage {
   [[nodiscard]] bool has_loops() const { return has_loops_; }
   /// A joint of the hand moves this body against its parent.
   [[nodiscard]] bool moves(int body) const;
-  /// Finds the way of the hand from where it stands in `from` (nq,) to where `ctrl` brings it.
-  /// @param ctrl_from  [ctrl] that holds it in `from`, about.
-  void find_way(const std::vector<double>& from, double ctrl_from, double ctrl);
+  /// Finds the way of the hand from where it stands in `from` (nq,) to where a command brings it.
+  /// @param grip_from  how far closed it is in `from`, about, 0 open to 1 closed.
+  void find_way(const std::vector<double>& from, double grip_from, double grip);
   /// Writes the joints of the hand at `share` (0 to 1) of the way that was found.
   void set(double share, std::vector<double>& qpos) const;
 
@@ -31,7 +31,7 @@ class Linkage {
   void hold(mjData& d, const std::vector<double>& from) const;
 
   const mjModel& m_;
-  int ctrl_ = -1;
+  Gripper gripper_;
   bool has_loops_ = false;
   std::vector<int> joints_;               ///< hinges and slides of the hand
   std::vector<std::vector<double>> way_;  ///< values of `joints_`, from the first to the last

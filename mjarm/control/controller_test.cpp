@@ -115,7 +115,7 @@ TEST(Controller, KeepsCtrlWithinItsRangeAndLeavesOthersAlone) {
     EXPECT_EQ(ctrl[joint.actuator->id], joint.actuator->ctrl_upper);
   }
   ASSERT_TRUE(robot.arm.gripper);
-  EXPECT_EQ(ctrl[robot.arm.gripper->id], 123.0);
+  EXPECT_EQ(ctrl[robot.arm.gripper->drives[0].id], 123.0);
 }
 
 TEST(Controller, NamesTheJointThatCannotBeControlled) {

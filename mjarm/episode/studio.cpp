@@ -38,7 +38,7 @@ std::vector<int> place_scene(const Robot& robot, const DrawnScene& scene, Sim& s
 
 double grip_command(const Arm& arm, const Sim& sim) {
   if (!arm.gripper) return 0;
-  return grip_of_ctrl(*arm.gripper, sim.ctrl()[static_cast<std::size_t>(arm.gripper->id)]);
+  return grip_of(*arm.gripper, sim.ctrl());
 }
 
 Result<render::OffscreenRenderer> open_pictures(const Robot& robot, const EpisodeOptions& options,

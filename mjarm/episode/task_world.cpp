@@ -136,7 +136,9 @@ Result<void> TaskWorld::step(std::span<const double> action) {
     const JointVec q = q0 + u * u * (3 - 2 * u) * (q1 - q0) + u * (1 - u) * (1 - u) * T * v0 -
                        u * u * (1 - u) * T * v1;
     const double grip = grip0 + u * (grip1 - grip0);
-    self.sim.set_ctrl(self.gripper.id, ctrl_for_grip(self.gripper, grip));
+    for (const GripperDrive& drive : self.gripper.drives) {
+      self.sim.set_ctrl(drive.id, ctrl_for_grip(drive, grip));
+    }
     const StepReference reference{.before = self.q_before, .now = self.q_ref, .next = q};
     if (auto done = self.stepper->step(self.sim, self.controller, reference, nullptr); !done) {
       return done;

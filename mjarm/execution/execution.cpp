@@ -102,9 +102,12 @@ MotionClock::Step Execution::next(Sim& sim) {
         step.motion < plan_->moves.size() ? &plan_->moves[step.motion] : nullptr;
     // One that takes no time is passed already.
     const double seconds = move != nullptr && move->close ? move->trajectory.duration() : 0;
-    grip_ = {.from = sim.ctrl()[static_cast<std::size_t>(gripper.id)],
-             .to = *step.close ? gripper.ctrl_closed : gripper.ctrl_open,
-             .steps = static_cast<int>(kGripShare * seconds / sim.model().timestep())};
+    grip_.emplace();
+    grip_->steps = static_cast<int>(kGripShare * seconds / sim.model().timestep());
+    for (const GripperDrive& drive : gripper.drives) {
+      grip_->from.push_back(sim.ctrl()[static_cast<std::size_t>(drive.id)]);
+      grip_->to.push_back(*step.close ? drive.ctrl_closed : drive.ctrl_open);
+    }
   }
   if (grip_) move_gripper(sim);
   return step;
@@ -144,8 +147,11 @@ void Execution::take_load(Sim& sim, std::size_t move) {
 
 void Execution::move_gripper(Sim& sim) {
   const double share = grip_->done < grip_->steps ? (grip_->done + 1.0) / grip_->steps : 1.0;
-  sim.set_ctrl(plan_->arms.front().gripper->id,
-               share == 1 ? grip_->to : grip_->from + share * (grip_->to - grip_->from));
+  const std::vector<GripperDrive>& drives = plan_->arms.front().gripper->drives;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const double from = grip_->from[i], to = grip_->to[i];
+    sim.set_ctrl(drives[i].id, share == 1 ? to : from + share * (to - from));
+  }
   ++grip_->done;
   if (share == 1) grip_.reset();
 }

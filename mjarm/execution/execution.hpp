@@ -113,7 +113,7 @@ class Execution {
 
   /// The command of the gripper on its way.
   struct GripWay {
-    double from = 0, to = 0;
+    std::vector<double> from, to;  ///< one entry a drive
     int steps = 0, done = 0;
   };
 

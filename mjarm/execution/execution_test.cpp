@@ -284,7 +284,7 @@ TEST(Execution, WhatTheArmDoesNotMoveAgainstEachOtherIsNoContact) {
 
 TEST(Execution, TheGripperKeepsWhatItWasToldUntilItIsToldAnew) {
   World world(load_shipped("panda"));
-  const Gripper gripper = world.robot.arm.gripper.value();
+  const GripperDrive gripper = world.robot.arm.gripper->drives.front();
   const auto ctrl = [&] { return world.sim.ctrl()[static_cast<std::size_t>(gripper.id)]; };
   world.sim.set_ctrl(gripper.id, 77);
   const JointVec home = world.robot.arm.home;

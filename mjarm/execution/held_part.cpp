@@ -13,6 +13,7 @@
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/model/scene_bodies.hpp"
 #include "mjarm/sim/sim.hpp"
 
@@ -72,7 +73,7 @@ struct HeldPart::Impl {
       return fail(Errc::bad_input, text(msg::execution_part_blocked, name, *other));
     }
     ctrl.assign(sim.ctrl().begin(), sim.ctrl().end());
-    ctrl[static_cast<std::size_t>(arm.gripper->id)] = arm.gripper->ctrl_closed;
+    set_grip(*arm.gripper, 1, ctrl);
     for (const double end = sim.time() + kClosing; sim.time() < end;) {
       if (Result<void> done = stand(); !done) return done;
       sim.place_free(name, sim.tool(arm) * X_TB);

@@ -73,13 +73,18 @@ struct JointLimits {
   std::array<LimitSources, kMaxDof> sources;  ///< the first dof entries are meant
 };
 
-/// The gripper at the end of an arm, as its actuator is driven.
+/// An actuator that opens and closes a gripper, or one finger of it.
+struct GripperDrive {
+  std::string actuator;    ///< its name
+  int id = -1;             ///< row of ctrl that drives it
+  double ctrl_open = 0;    ///< ctrl that opens
+  double ctrl_closed = 0;  ///< ctrl that closes
+};
+
+/// The gripper at the end of an arm.
 struct Gripper {
-  std::string actuator;             ///< name of the actuator
-  int id = -1;                      ///< row of ctrl that drives it
-  double ctrl_open = 0;             ///< ctrl that opens it
-  double ctrl_closed = 0;           ///< ctrl that closes it
-  std::vector<std::string> joints;  ///< names of the joints it moves
+  std::vector<GripperDrive> drives;  ///< one, or one a finger, which open and close together
+  std::vector<std::string> joints;   ///< names of the joints they move
 };
 
 /// A geom of a model and its body, by their numbers.

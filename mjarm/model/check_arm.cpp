@@ -105,7 +105,12 @@ void check_arm(const CheckContext& context) {
   const Arm& arm = *context.arm;
   const std::string from = arm.joints.front().name;
   const std::string to = arm.joints.back().name;
-  const std::string gripper = arm.gripper ? arm.gripper->actuator : text(msg::check_arm_no_gripper);
+  std::vector<std::string> drives;
+  if (arm.gripper) {
+    for (const GripperDrive& drive : arm.gripper->drives) drives.push_back(drive.actuator);
+  }
+  const std::string gripper =
+      arm.gripper ? join(drives, text(msg::core_comma)) : text(msg::check_arm_no_gripper);
   context.add(CheckCode::arm_found, Grade::note, context.description.joint(from),
               text(msg::check_arm_found, arm.dof(), from, to, arm.tip, gripper));
   for (int i = 0; i < arm.dof(); ++i) check_limits(context, i);

@@ -56,7 +56,7 @@ class GripFindings {
     context_.add(code, Grade::note, std::move(place), std::move(what));
   }
   [[nodiscard]] Place gripper_place() const {
-    return context_.description.actuator(context_.arm->gripper->actuator);
+    return context_.description.actuator(context_.arm->gripper->drives.front().actuator);
   }
   [[nodiscard]] Place geom_place(int geom, const char* attribute) const {
     const char* const name = mj_id2name(&m_, mjOBJ_GEOM, geom);
@@ -185,7 +185,7 @@ void check_grip(const CheckContext& context) {
       detail::diagnose_grip(*context.model, *context.arm, context.load);
   if (!grip) {
     context.add(CheckCode::grip_not_measured, Grade::note,
-                context.description.actuator(context.arm->gripper->actuator),
+                context.description.actuator(context.arm->gripper->drives.front().actuator),
                 text(msg::check_grip_not_measured, grip.error().what));
     return;
   }

@@ -114,7 +114,7 @@ double simulated_creep(const std::filesystem::path& file, int part_of_scene) {
   mjtNum* const qpos = d->qpos + m->jnt_qposadr[m->body_jntadr[part_of_scene]];
   mju_copy3(qpos, d->site_xpos + 3 * site);
   mju_mat2Quat(qpos + 3, d->site_xmat + 9 * site);
-  d->ctrl[arm.gripper->id] = arm.gripper->ctrl_closed;
+  d->ctrl[arm.gripper->drives[0].id] = arm.gripper->drives[0].ctrl_closed;
   const auto run = [&](double seconds) {
     for (const double end = d->time + seconds; d->time < end;) {
       // Held by a hand until the fingers have it.

@@ -80,10 +80,10 @@ TEST(FindArm, Panda) {
   EXPECT_EQ(arm->dof(), 7);
   EXPECT_EQ(arm->tip, "hand_tcp");
   ASSERT_TRUE(arm->gripper);
-  EXPECT_EQ(arm->gripper->actuator, "actuator8");
-  EXPECT_EQ(arm->gripper->id, 7);
-  EXPECT_DOUBLE_EQ(arm->gripper->ctrl_open, 255);
-  EXPECT_DOUBLE_EQ(arm->gripper->ctrl_closed, 0);
+  EXPECT_EQ(arm->gripper->drives[0].actuator, "actuator8");
+  EXPECT_EQ(arm->gripper->drives[0].id, 7);
+  EXPECT_DOUBLE_EQ(arm->gripper->drives[0].ctrl_open, 255);
+  EXPECT_DOUBLE_EQ(arm->gripper->drives[0].ctrl_closed, 0);
   EXPECT_EQ(arm->gripper->joints, (std::vector<std::string>{"finger_joint1", "finger_joint2"}));
   EXPECT_DOUBLE_EQ(arm->limits.velocity[6], 2.61);
   EXPECT_DOUBLE_EQ(arm->limits.jerk[1], 3750);
@@ -285,8 +285,8 @@ TEST(FindArm, SingleJawIsKnownByItsNameAndOpensAwayFromTheHand) {
   EXPECT_EQ(arm->dof(), 5);
   EXPECT_EQ(arm->tip, "grip_point");
   ASSERT_TRUE(arm->gripper);
-  EXPECT_DOUBLE_EQ(arm->gripper->ctrl_closed, -0.2);
-  EXPECT_DOUBLE_EQ(arm->gripper->ctrl_open, 1.5);
+  EXPECT_DOUBLE_EQ(arm->gripper->drives[0].ctrl_closed, -0.2);
+  EXPECT_DOUBLE_EQ(arm->gripper->drives[0].ctrl_open, 1.5);
 }
 
 TEST(FindArm, ActuatorsOfOtherKindsLeaveTheJointWithout) {

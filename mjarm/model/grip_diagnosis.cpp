@@ -226,7 +226,9 @@ double drive_damping(const mjModel& m, const Gripper& gripper, int joint) {
   for (int a = 0; a < static_cast<int>(m.nactuator); ++a) {
     const double gear = m.actuator_gear[6 * m.actuator_outadr[a]];
     const double damping = -m.actuator_biasprm[mjNBIAS * a + 2] * gear * gear;
-    if (m.actuator_ctrladr[a] != gripper.id || !(damping > 0)) continue;
+    const bool drives =
+        std::ranges::count(gripper.drives, m.actuator_ctrladr[a], &GripperDrive::id) > 0;
+    if (!drives || !(damping > 0)) continue;
     const int target = m.actuator_trnid[2 * a];
     if (m.actuator_trntype[a] == mjTRN_JOINT && target == joint) sum += damping;
     if (m.actuator_trntype[a] != mjTRN_TENDON) continue;

@@ -8,6 +8,7 @@
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/grip_mend_internal.hpp"
 #include "mjarm/model/grip_trial_internal.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/model/home.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
 #include "mjarm/model/scene_bodies.hpp"
@@ -40,12 +41,9 @@ bool is_slider_or_hinge(const mjModel& m, int joint) {
 }  // namespace
 
 GripTrial::GripTrial(const mjModel& m, const Model& model, const Arm& arm, const Jaws& jaws)
-    : source_(m), jaws_(jaws), cube_body_(static_cast<int>(m.nbody) - 1) {
+    : source_(m), gripper_(*arm.gripper), jaws_(jaws), cube_body_(static_cast<int>(m.nbody) - 1) {
   cube_geom_ = m.body_geomadr[cube_body_];
   cube_qpos_ = m.jnt_qposadr[m.body_jntadr[cube_body_]];
-  ctrl_ = arm.gripper->id;
-  ctrl_open_ = arm.gripper->ctrl_open;
-  ctrl_closed_ = arm.gripper->ctrl_closed;
   const SceneBodies bodies = scene_bodies(model, arm);
   hand_.assign(static_cast<std::size_t>(m.nbody), 0);
   for (std::size_t b = 0; b < bodies.role.size(); ++b) {
@@ -151,7 +149,7 @@ void GripTrial::open() {
   const MjDataPtr d(mj_makeData(m.get()));
   const MujocoOutcome outcome = mjarm::call_mujoco([&] {
     std::ranges::copy(open_qpos_, d->qpos);
-    d->ctrl[ctrl_] = ctrl_open_;
+    set_grip(gripper_, 0, {d->ctrl, static_cast<std::size_t>(m->nu)});
     rest(*m, d.get(), kOpenTime);
     mj_kinematics(m.get(), d.get());
   });
@@ -272,7 +270,7 @@ double GripTrial::creep(const mjModel& m, mjData* d) const {
 
 /// True once both sides touch and the fingers rest.
 bool GripTrial::close(const mjModel& m, mjData* d, GripOutcome& out) const {
-  d->ctrl[ctrl_] = ctrl_closed_;
+  set_grip(gripper_, 1, {d->ctrl, static_cast<std::size_t>(m.nu)});
   const int steps = std::min(static_cast<int>(kCloseTime / m.opt.timestep), kMaxSteps);
   for (int k = 0; k < steps && !out.touched; ++k) {
     mj_step(&m, d);

@@ -80,12 +80,11 @@ class GripTrial {
   double creep(const mjModel& m, mjData* d) const;
 
   const mjModel& source_;
+  Gripper gripper_;
   Jaws jaws_;
   TipFrame tip_;
   Pose X_WT_;  ///< at rest
   int cube_body_ = -1, cube_geom_ = -1, cube_qpos_ = -1;
-  int ctrl_ = -1;
-  double ctrl_open_ = 0, ctrl_closed_ = 0;
   std::vector<char> hand_;        ///< per body
   std::vector<char> spring_dof_;  ///< per degree of freedom: of the arm and the scene
   std::vector<int> hand_joints_;

@@ -9,6 +9,7 @@
 
 #include "mjarm/core/messages/model.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/model/home.hpp"
 #include "mjarm/model/load_internal.hpp"
 #include "mjarm/model/mujoco_guard.hpp"
@@ -58,7 +59,7 @@ class OpenHand {
     for (int i = 0; i < arm.dof(); ++i) {
       rest[static_cast<std::size_t>(arm.joints[static_cast<std::size_t>(i)].qpos)] = arm.home[i];
     }
-    d_->ctrl[arm.gripper->id] = arm.gripper->ctrl_open;
+    set_grip(*arm.gripper, 0, {d_->ctrl, static_cast<std::size_t>(still.nu)});
     const std::vector<char> hand = hand_dofs(still);
     for (int k = 0; k < static_cast<int>(kSettle / still.opt.timestep); ++k) {
       for (int j = 0; j < static_cast<int>(still.njnt); ++j) hold(still, j, hand, rest);

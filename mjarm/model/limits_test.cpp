@@ -11,6 +11,7 @@
 #include "mjarm/core/rng.hpp"
 #include "mjarm/core/rotation.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/model/limits_table.hpp"
 #include "mjarm/model/shipped_test.hpp"
 
@@ -173,11 +174,12 @@ constexpr const char* kTendon = R"(<tendon><fixed name="both"><joint joint="fing
   <joint joint="finger2" coef=".5"/></fixed></tendon>
   <equality><joint joint1="finger1" joint2="finger2"/></equality>)";
 
-/// How far the fingers are apart once they have come to rest under a command [m].
-double distance_under(const Model& model, int ctrl, double command) {
+/// How far the fingers are apart once they have come to rest under a command, 0 to open and 1 to
+/// close [m].
+double distance_under(const Model& model, const Gripper& gripper, double grip) {
   const mjModel* m = model.raw();
   const std::unique_ptr<mjData, void (*)(mjData*)> d(mj_makeData(m), mj_deleteData);
-  d->ctrl[ctrl] = command;
+  set_grip(gripper, grip, {d->ctrl, static_cast<std::size_t>(m->nu)});
   for (int i = 0; i < 1500; ++i) mj_step(m, d.get());
   const auto at = [&](const char* body) {
     return Eigen::Vector3d(d->xpos + 3 * mj_name2id(m, mjOBJ_BODY, body));
@@ -201,20 +203,47 @@ TEST(Grippers, OpenIsWhereTheFingersAreApartOnceSimulated) {
     ASSERT_TRUE(arm) << arm.error().what;
     EXPECT_EQ(arm->dof(), 3);
     ASSERT_TRUE(arm->gripper) << drive;
-    EXPECT_EQ(arm->gripper->actuator, "g");
+    EXPECT_EQ(arm->gripper->drives[0].actuator, "g");
     EXPECT_EQ(arm->gripper->joints, (std::vector<std::string>{"finger1", "finger2"}));
-    const double open = distance_under(*model, arm->gripper->id, arm->gripper->ctrl_open);
-    const double closed = distance_under(*model, arm->gripper->id, arm->gripper->ctrl_closed);
-    EXPECT_NEAR(open, 0.1, 0.005) << drive;
-    EXPECT_NEAR(closed, 0.02, 0.005) << drive;
+    EXPECT_EQ(arm->gripper->drives.size(), 1U);
+    EXPECT_NEAR(distance_under(*model, *arm->gripper, 0), 0.1, 0.005) << drive;
+    EXPECT_NEAR(distance_under(*model, *arm->gripper, 1), 0.02, 0.005) << drive;
   }
 }
 
-TEST(Grippers, WhatOneCommandCannotOpenAndCloseIsNone) {
+TEST(Grippers, ADriveForEachFingerOpensAsItsFingerDoes) {
+  // The second finger's axis turned round: one opens upwards, the other one downwards.
+  std::string turned = kFingers;
+  turned.replace(turned.find("axis=\"-1 0 0\""), 13, "axis=\"1 0 0\"");
+  turned.replace(turned.rfind("range=\"-.04 0\""), 14, "range=\"0 .04\"");
+  for (const auto& [fingers, second] :
+       {std::pair(std::string(kFingers), "-.04 0"), std::pair(turned, "0 .04")}) {
+    for (const std::string gear : {"1", "-1"}) {
+      const std::string range = gear == "1" ? second : second[0] == '-' ? "0 .04" : "-.04 0";
+      const std::string drives =
+          "<actuator><position name=\"a\" joint=\"finger1\" kp=\"200\" ctrlrange=\"-.04 0\"/>"
+          "<position name=\"b\" joint=\"finger2\" kp=\"200\" gear=\"" +
+          gear + "\" ctrlrange=\"" + range + "\"/></actuator>";
+      const auto model = Model::from_mjcf(with_fingers(fingers, drives));
+      ASSERT_TRUE(model) << model.error().what;
+      const auto arm = find_arm(*model);
+      ASSERT_TRUE(arm) << arm.error().what;
+      EXPECT_EQ(arm->dof(), 3);
+      ASSERT_TRUE(arm->gripper) << drives;
+      ASSERT_EQ(arm->gripper->drives.size(), 2U);
+      EXPECT_EQ(arm->gripper->drives[1].actuator, "b");
+      EXPECT_EQ(arm->gripper->joints, (std::vector<std::string>{"finger1", "finger2"}));
+      EXPECT_NEAR(distance_under(*model, *arm->gripper, 0), 0.1, 0.005) << drives;
+      EXPECT_NEAR(distance_under(*model, *arm->gripper, 1), 0.02, 0.005) << drives;
+    }
+  }
+}
+
+TEST(Grippers, WhatOpensAndClosesInNoOneWayIsNone) {
   const std::string motor = "<motor joint=\"finger1\" ctrlrange=\"-1 1\"/>";
   for (const std::string& rest :
-       {std::string(),
-        "<actuator>" + motor + "<motor joint=\"finger2\" ctrlrange=\"-1 1\"/></actuator>",
+       {std::string(), "<actuator>" + motor + motor + "</actuator>",
+        "<actuator>" + motor + "<motor joint=\"finger2\"/></actuator>",
         kTendon + std::string("<actuator><motor tendon=\"both\"/></actuator>"),
         kTendon + std::string("<actuator><velocity tendon=\"both\" kv=\"1\"/></actuator>")}) {
     const auto model = Model::from_mjcf(with_fingers(kFingers, rest));

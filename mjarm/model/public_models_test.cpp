@@ -117,8 +117,8 @@ TEST(MenagerieScenes, ArmsAreFoundWithoutHelp) {
     EXPECT_EQ(arm->tip, e.tip);
     EXPECT_EQ(arm->gripper.has_value(), e.gripper);
     if (arm->gripper) {
-      EXPECT_DOUBLE_EQ(arm->gripper->ctrl_open, 255);
-      EXPECT_DOUBLE_EQ(arm->gripper->ctrl_closed, 0);
+      EXPECT_DOUBLE_EQ(arm->gripper->drives[0].ctrl_open, 255);
+      EXPECT_DOUBLE_EQ(arm->gripper->drives[0].ctrl_closed, 0);
     }
     for (const ArmJoint& joint : arm->joints) EXPECT_TRUE(joint.actuator) << joint.name;
     EXPECT_EQ(arm->limits.sources[0].velocity, LimitSource::table);

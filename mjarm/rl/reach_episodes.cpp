@@ -1,6 +1,7 @@
 #include "mjarm/core/messages/reach.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/model/find_arm.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/rl/reach_episodes_internal.hpp"
 #include "mjarm/rl/reach_options_internal.hpp"
 
@@ -103,7 +104,7 @@ Result<void> ReachEpisodes::settle(const ReachDrive& drive) {
   const Arm& arm = probe.arm;
   BatchSim& world = probe.world;
   const bool open = options_.gripper == ReachGripper::open && arm.gripper.has_value();
-  if (open) probe.ctrl[arm.gripper->id] = arm.gripper->ctrl_open;
+  if (open) set_grip(*arm.gripper, 0, probe.ctrl);
   bool clear = probe.clear(as_span(start_));
   if (open) {
     constexpr int kChunks = 50, kSteps = 10;  // 1 s of 2 ms

@@ -146,7 +146,7 @@ program:
           .value();
   ASSERT_TRUE(loaded.plan.ok()) << loaded.plan.faults.front().what;
   ProgramPlayer world = ProgramPlayer::create(loaded).value();
-  const Gripper& gripper = *loaded.robot.arm.gripper;
+  const GripperDrive& gripper = loaded.robot.arm.gripper->drives.front();
   const auto ctrl = [&] { return world.sim().ctrl()[static_cast<std::size_t>(gripper.id)]; };
   press_item(world, kProgramRun);
   make_steps(world, 5);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -14,8 +15,8 @@ constexpr double kHoldingForce = 0.5;
 
 }  // namespace
 
-GraspWatch::GraspWatch(const Robot& robot)
-    : actuator_(robot.arm.gripper ? robot.arm.gripper->id : -1) {
+GraspWatch::GraspWatch(const Robot& robot) {
+  if (robot.arm.gripper) drives_ = robot.arm.gripper->drives;
   const SceneBodies scene = scene_bodies(robot.model, robot.arm);
   names_ = scene.name;
   for (std::size_t b = 0; b < scene.role.size(); ++b) {
@@ -26,7 +27,7 @@ GraspWatch::GraspWatch(const Robot& robot)
 }
 
 int GraspWatch::held(const Sim& sim, bool closing, int before) const {
-  if (actuator_ < 0 || !closing) return -1;
+  if (drives_.empty() || !closing) return -1;
   std::map<int, std::set<int>> sides;  // bodies of the hand that touch it, by what is touched
   for (const Contact& contact : sim.contacts()) {
     for (const auto& [hand, other] :
@@ -36,7 +37,10 @@ int GraspWatch::held(const Sim& sim, bool closing, int before) const {
       if (object >= 0) sides[object].insert(hand);
     }
   }
-  const double force = std::abs(sim.actuator_force()[static_cast<std::size_t>(actuator_)]);
+  double force = 0;
+  for (const GripperDrive& drive : drives_) {
+    force = std::max(force, std::abs(sim.actuator_force()[static_cast<std::size_t>(drive.id)]));
+  }
   if (const auto kept = sides.find(before); kept != sides.end() && kept->second.size() > 1) {
     return before;
   }

@@ -20,7 +20,7 @@ class GraspWatch {
   [[nodiscard]] std::string name(int body) const;
 
  private:
-  int actuator_ = -1;
+  std::vector<GripperDrive> drives_;
   std::vector<bool> hand_;    ///< per body
   std::vector<int> carried_;  ///< per body: the one with the free joint it is of, or -1
   std::vector<std::string> names_;

@@ -293,17 +293,14 @@ void Teleop::begin(Sim& sim) {
   own.last = {};
   own.grip = 0;
   if (!own.arm.gripper) return;
-  const Gripper& gripper = *own.arm.gripper;
-  const double ctrl = own.ctrl[static_cast<std::size_t>(gripper.id)];
-  own.grip = std::clamp(grip_of_ctrl(gripper, ctrl), 0.0, 1.0);
+  own.grip = std::clamp(grip_of(*own.arm.gripper, own.ctrl), 0.0, 1.0);
 }
 
 Result<void> Teleop::advance(Sim& sim, const TeleopInput& input) {
   Impl& own = *impl_;
   if (own.arm.gripper) {
     own.grip = own.next_grip(input);
-    const Gripper& gripper = *own.arm.gripper;
-    own.ctrl[static_cast<std::size_t>(gripper.id)] = ctrl_for_grip(gripper, own.grip);
+    set_grip(*own.arm.gripper, own.grip, own.ctrl);
     own.held = own.grasp.held(sim, own.grip > kGripping, own.held);
   }
   own.plan(sim, input);

@@ -88,11 +88,15 @@ std::string arm_text(const ModelReport& report) {
   result += line(msg::app_info_tips, join(report.tips, text(msg::core_comma)));
   result += line(msg::app_info_home, join(home, ", "));
   if (!arm.gripper) return result + line(msg::app_info_gripper, text(msg::app_info_none));
-  const Gripper& gripper = *arm.gripper;
-  return result + line(msg::app_info_gripper, text(msg::app_info_gripper_line, gripper.actuator,
-                                                   fmt::format("{:.5g}", gripper.ctrl_open),
-                                                   fmt::format("{:.5g}", gripper.ctrl_closed),
-                                                   join(gripper.joints, text(msg::core_comma))));
+  std::vector<std::string> drives;
+  for (const GripperDrive& drive : arm.gripper->drives) {
+    drives.push_back(text(msg::app_info_drive, drive.actuator,
+                          fmt::format("{:.5g}", drive.ctrl_open),
+                          fmt::format("{:.5g}", drive.ctrl_closed)));
+  }
+  return result + line(msg::app_info_gripper,
+                       text(msg::app_info_gripper_line, join(drives, text(msg::core_semicolon)),
+                            join(arm.gripper->joints, text(msg::core_comma))));
 }
 
 JsonDoc joint_json(const Arm& arm, int i) {
@@ -113,16 +117,24 @@ JsonDoc joint_json(const Arm& arm, int i) {
           {"actuator", joint.actuator ? JsonDoc(joint.actuator->name) : JsonDoc(nullptr)}};
 }
 
+JsonDoc drive_json(const GripperDrive& drive) {
+  return {{"actuator", drive.actuator},
+          {"ctrl_open", drive.ctrl_open},
+          {"ctrl_closed", drive.ctrl_closed}};
+}
+
 JsonDoc arm_json(const ModelReport& report) {
   const Arm& arm = *report.arm;
   std::vector<JsonDoc> joints;
   for (int i = 0; i < arm.dof(); ++i) joints.push_back(joint_json(arm, i));
   JsonDoc gripper;
   if (arm.gripper) {
-    gripper = {{"actuator", arm.gripper->actuator},
-               {"ctrl_open", arm.gripper->ctrl_open},
-               {"ctrl_closed", arm.gripper->ctrl_closed},
-               {"joints", arm.gripper->joints}};
+    const std::vector<GripperDrive>& drives = arm.gripper->drives;
+    gripper = drive_json(drives.front());
+    gripper.set("joints", arm.gripper->joints);
+    std::vector<JsonDoc> others;
+    for (std::size_t i = 1; i < drives.size(); ++i) others.push_back(drive_json(drives[i]));
+    if (!others.empty()) gripper.set("others", std::move(others));
   }
   return {{"tip", arm.tip},
           {"tips", report.tips},
