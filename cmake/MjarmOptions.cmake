@@ -40,10 +40,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # These depend on what the optimiser sees, so they differ between releases of the compiler: news
   # for developers, who are not stopped by them, and noise for everybody else.
   set(silence "-Wno-")
-  if(WIN32)
-  target_compile_definitions(mjarm_options INTERFACE NOMINMAX WIN32_LEAN_AND_MEAN _WIN32_WINNT=0x0A00)
-endif()
-if(MJARM_WARNINGS_AS_ERRORS)
+  if(MJARM_WARNINGS_AS_ERRORS)
     set(silence "-Wno-error=")
   endif()
   foreach(warning maybe-uninitialized array-bounds stringop-overflow stringop-overread nonnull
