@@ -8,6 +8,7 @@
 
 #include "mjarm/collision/fast_oracle_test.hpp"
 #include "mjarm/collision/problems_test.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
 
 namespace mjarm {
@@ -68,8 +69,7 @@ TEST(FastChecker, LargeAndFarSolidsStaySafe) {
     const SphereSet set = testing::random_spheres(arm, rng);
     Obstacles world;
     const Eigen::Vector3d away = testing::random_vector(rng, 1).normalized();
-    const Eigen::Matrix3d R =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), away).toRotationMatrix();
+    const Eigen::Matrix3d R = rotation_between(Eigen::Vector3d::UnitZ(), away);
     const double size = std::pow(10, rng.uniform(1, 3.9));
     const double gap = rng.uniform(0.2, 0.8);
     const ObstacleShape shapes[] = {BallShape{size}, BoxShape{{size, size, size}},

@@ -10,6 +10,7 @@
 
 #include "mjarm/collision/obstacles.hpp"
 #include "mjarm/collision/sphere_set.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
@@ -67,8 +68,7 @@ inline Obstacle random_obstacle(Rng& rng, bool thin) {
       break;
     default:
       out.X_WO.p += 1.5 * out.X_WO.p.normalized();
-      out.X_WO.R = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -out.X_WO.p)
-                       .toRotationMatrix();
+      out.X_WO.R = rotation_between(Eigen::Vector3d::UnitZ(), -out.X_WO.p);
       out.shape = HalfSpaceShape{};
   }
   return out;

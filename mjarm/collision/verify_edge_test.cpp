@@ -8,6 +8,7 @@
 #include "mjarm/collision/edge_check.hpp"
 #include "mjarm/collision/edge_samples_test.hpp"
 #include "mjarm/collision/problems_test.hpp"
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/long_tests_test.hpp"
 
 namespace mjarm {
@@ -217,8 +218,7 @@ TEST(VerifyEdge, FindsAPlateBetweenTwoSamples) {
     Obstacle plate{"plate", {center_at(t), {}}, BoxShape{{0.05, 0.05, 5e-5}}};
     const Eigen::Vector3d along = center_at(t + 1e-6) - center_at(t - 1e-6);
     if (along.norm() < 1e-7) continue;
-    plate.X_WO.R =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
+    plate.X_WO.R = rotation_between(Eigen::Vector3d::UnitZ(), along);
     scene.world.solids = {plate};
     const VerifyResult result = verify(scene, as_span(q0), as_span(q1));
     ASSERT_EQ(result.verdict, EdgeVerdict::hit) << "round " << round;

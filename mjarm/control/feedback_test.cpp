@@ -100,7 +100,7 @@ TEST(Integral, DoesNotWindUpBehindALimit) {
 
 /// Largest modulus of the poles of the sampled loop, from its matrix.
 double spectral_radius(const ControlOptions& o, double h) {
-  Eigen::Matrix3d A;  // states e, e_v, sum
+  Eigen::MatrixXd A(3, 3);  // states e, e_v, sum
   const double e = -h * o.stiffness, v = 1 - h * o.damping, s = -h * o.integral;
   A << 1 + h * e, h * v, h * s, e, v, s, h, 0, 1;
   return A.eigenvalues().cwiseAbs().maxCoeff();

@@ -92,6 +92,10 @@ Eigen::Matrix3d rotation_exp(const Eigen::Vector3d& w) {
   return Eigen::Matrix3d::Identity() + a * W + b * W * W;
 }
 
+Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
 double angle_between(const Eigen::Matrix3d& A, const Eigen::Matrix3d& B) {
   const Quat q = to_quat(A.transpose() * B);
   return 2 * std::atan2(q.vec().norm(), q.w());

@@ -151,6 +151,21 @@ TEST(Rotation, QuaternionOfExactHalfTurns) {
   }
 }
 
+TEST(Rotation, BetweenTwoDirectionsIsTheShortestOne) {
+  Rng rng(5);
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d a(rng.normal(), rng.normal(), rng.normal());
+    Eigen::Vector3d b(rng.normal(), rng.normal(), rng.normal());
+    if (i % 3 == 0) b = -2 * a + 1e-9 * b;  // opposite
+    if (i == 0) b = -a;
+    const Eigen::Matrix3d R = rotation_between(a, b);
+    EXPECT_LT((R * a.normalized() - b.normalized()).norm(), 1e-7);
+    EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_NEAR(R.determinant(), 1, 1e-12);
+    EXPECT_NEAR(rotation_log(R).norm(), std::atan2(a.cross(b).norm(), a.dot(b)), 1e-7);
+  }
+}
+
 TEST(Rotation, GimbalLockRebuildsTheMatrix) {
   Rng rng(3);
   for (const double sign : {-1.0, 1.0}) {

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "mjarm/core/cpu.hpp"
+#include "mjarm/core/linear_algebra.hpp"
 #include "mjarm/kinematics/arms_test.hpp"
 #include "mjarm/kinematics/fk.hpp"
 #include "mjarm/kinematics/ik_search_internal.hpp"
@@ -51,7 +52,7 @@ JointVec plain_step(const Arm& arm, const Pose& X_goal, const DescentOptions& op
   }
   const Eigen::MatrixXd A =
       J * J.transpose() + (0.1 * error + 1e-12) * Eigen::MatrixXd::Identity(6, 6);
-  JointVec next = q + JointVec(J.transpose() * A.ldlt().solve(e));
+  JointVec next = q + JointVec(J.transpose() * solve_symmetric(A, e));
   for (int i = 0; i < arm.dof(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     if (!chain.full_turn[k]) next[i] = std::clamp(next[i], chain.lower[k], chain.upper[k]);

@@ -57,9 +57,7 @@ Pose flipped(const Pose& X_CB, const Eigen::Vector3d& middle_B, const Eigen::Vec
   const Eigen::Vector3d sight = middle_C.normalized();
   const Eigen::Vector3d normal_C = X_CB.R * normal_B;
   const Eigen::Vector3d other = 2 * normal_C.dot(sight) * sight - normal_C;
-  const Eigen::Matrix3d turn =
-      Eigen::Quaterniond::FromTwoVectors(normal_C, other).toRotationMatrix();
-  const Eigen::Matrix3d R = turn * X_CB.R;
+  const Eigen::Matrix3d R = rotation_between(normal_C, other) * X_CB.R;
   return {.p = middle_C - R * middle_B, .R = R};
 }
 

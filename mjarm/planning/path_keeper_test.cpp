@@ -40,7 +40,7 @@ struct Span {
 };
 
 Eigen::Matrix3d with_z(const Eigen::Vector3d& z) {
-  return Quat::FromTwoVectors(Eigen::Vector3d::UnitZ(), z).toRotationMatrix();
+  return rotation_between(Eigen::Vector3d::UnitZ(), z);
 }
 
 /// Bounds of all kinds that the ends of an edge keep.

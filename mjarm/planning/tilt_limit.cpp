@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mjarm/core/rotation.hpp"
 #include "mjarm/kinematics/fk.hpp"
 
 namespace mjarm {
@@ -24,8 +25,8 @@ double tilt(const TiltLimit& limit, const Arm& arm, std::span<const double> q) {
 }
 
 TaskRegion as_region(const TiltLimit& limit) {
-  const auto with_z = [](const Eigen::Vector3d& z) -> Eigen::Matrix3d {
-    return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), z).toRotationMatrix();
+  const auto with_z = [](const Eigen::Vector3d& z) {
+    return rotation_between(Eigen::Vector3d::UnitZ(), z);
   };
   TaskRegion out = region_about({}, Eigen::Vector3d::Constant(kFreePlace), limit.max, kFreeTurn);
   out.X_WR.R = with_z(limit.axis_W);
