@@ -38,6 +38,11 @@ constexpr const char* kCoupled =
 constexpr const char* kEquality =
     "<equality><joint joint1='right' joint2='left' polycoef='0 1 0 0 0'/></equality>";
 
+/// In the place of the coupling.
+constexpr const char* kSecondDrive =
+    "<actuator><position name='grip2' joint='right' kp='100' ctrlrange='-0.04 0' "
+    "ctrllimited='true'/></actuator>";
+
 std::string box(const std::string& name, const std::string& pos, const std::string& size) {
   return "<body" + (name.empty() ? "" : " name='" + name + "'") + " pos='" + pos +
          "'><freejoint/><geom type='box' size='" + size + "' mass='0.1'/></body>";
@@ -80,10 +85,11 @@ TEST(CloseGripper, HoldsWhatIsBetweenTheFingersAndNothingElse) {
 
 /// What lies off the middle is pushed to where both fingers meet it, by the faces' own figures.
 TEST(CloseGripper, FingersThatMoveAlikeBringItToTheirMiddle) {
-  for (const double off : {-0.018, -0.005, 0.0, 0.012}) {
-    const Hand hand(
-        two_fingers(kCoupled, box("part", "0.3 " + std::to_string(off) + " -0.1", "0.01 0.02 0.02"),
-                    kEquality));
+  for (const auto& [off, more] : {std::pair(-0.018, kEquality), std::pair(-0.005, kEquality),
+                                  std::pair(0.0, kSecondDrive), std::pair(0.012, kSecondDrive)}) {
+    const Hand hand(two_fingers(
+        kCoupled, box("part", "0.3 " + std::to_string(off) + " -0.1", "0.01 0.02 0.02"), more));
+    ASSERT_EQ(hand.arm.gripper->drives.size(), more == kSecondDrive ? 2U : 1U);
     const SceneState closed = hand.closed(0.3);
     ASSERT_EQ(closed.attached.size(), 1U) << off;
     const Pose X_WB = fk(hand.arm, std::vector{0.3}) * closed.attached[0].X_TB;

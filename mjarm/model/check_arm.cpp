@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "mjarm/core/messages/check.hpp"
+#include "mjarm/core/messages/core.hpp"
 #include "mjarm/model/arm_parts_internal.hpp"
 #include "mjarm/model/check_internal.hpp"
 #include "mjarm/model/floating_base.hpp"
@@ -105,12 +106,14 @@ void check_arm(const CheckContext& context) {
   const Arm& arm = *context.arm;
   const std::string from = arm.joints.front().name;
   const std::string to = arm.joints.back().name;
-  std::vector<std::string> drives;
+  std::string gripper;
   if (arm.gripper) {
-    for (const GripperDrive& drive : arm.gripper->drives) drives.push_back(drive.actuator);
+    for (const GripperDrive& drive : arm.gripper->drives) {
+      gripper += (gripper.empty() ? "" : text(msg::core_comma)) + drive.actuator;
+    }
+  } else {
+    gripper = text(msg::check_arm_no_gripper);
   }
-  const std::string gripper =
-      arm.gripper ? join(drives, text(msg::core_comma)) : text(msg::check_arm_no_gripper);
   context.add(CheckCode::arm_found, Grade::note, context.description.joint(from),
               text(msg::check_arm_found, arm.dof(), from, to, arm.tip, gripper));
   for (int i = 0; i < arm.dof(); ++i) check_limits(context, i);

@@ -97,7 +97,8 @@ MjModelPtr GripTrial::hand_alone(const GripMend& mend) const {
   std::fill_n(m.body_gravcomp, cube_body_, 1.0);
   m.ngravcomp = cube_body_;
   for (int a = 0; a < static_cast<int>(m.nactuator); ++a) {
-    if (m.actuator_ctrladr[a] == ctrl_) continue;
+    const int row = m.actuator_ctrladr[a];
+    if (std::ranges::count(gripper_.drives, row, &GripperDrive::id) > 0) continue;
     m.actuator_gaintype[a] = mjGAIN_FIXED;
     m.actuator_biastype[a] = mjBIAS_NONE;
     std::fill_n(m.actuator_gainprm + mjNGAIN * a, mjNGAIN, 0.0);
