@@ -1,4 +1,4 @@
-"""Brings the tables of docs/benchmarks.md up to date.
+"""Brings the tables of docs/benchmarks.md and of its Chinese page up to date.
 
 Usage: update_docs.py [ik|path|plan|near|time|control|pick|python|rl] MJARM [ARGUMENTS of `mjarm bench SUITE`...], e.g.
 update_docs.py ik build/release/bin/mjarm --data cases --peers .venv
@@ -18,6 +18,7 @@ SUITES = ("ik", "path", "time", "control", "pick", "python")
 PICTURES = {"plan": "bench_plan", "near": "bench_plan", "rl": "curves"}  # drawn by suites that run by themselves only
 SUITE_OF = {"plan": ("plan", "--set", "panda,ur5,anytime,scaling"), "near": ("plan", "--set", "near")}
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
+PAGES = [DOCS / name for name in ("benchmarks.md", "benchmarks.zh-CN.md")]
 
 
 def arguments_of(suite, arguments):
@@ -36,15 +37,15 @@ def arguments_of(suite, arguments):
 
 def update(suite, program, arguments):
     begin, end = f"<!-- {suite}: begin -->\n", f"<!-- {suite}: end -->\n"
-    page = DOCS / "benchmarks.md"
     own = [] if suite in ("control", "pick") else arguments_of(suite, arguments)  # these take neither cases nor peers
     command = [program, "--lang", "en", "bench", *SUITE_OF.get(suite, (suite,)), *own]
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(done.returncode)
-    before, rest = page.read_text(encoding="utf-8").split(begin)
-    after = rest.split(end)[1]
-    page.write_text(before + begin + "\n" + done.stdout.rstrip("\n") + "\n\n" + end + after, encoding="utf-8")
+    for page in PAGES:
+        before, rest = page.read_text(encoding="utf-8").split(begin)
+        after = rest.split(end)[1]
+        page.write_text(before + begin + "\n" + done.stdout.rstrip("\n") + "\n\n" + end + after, encoding="utf-8")
 
 
 def update_with_picture(suite, program, arguments):

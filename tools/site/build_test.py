@@ -105,6 +105,12 @@ class PagesTest(unittest.TestCase):
         found = {page.relative_to(build.ROOT).as_posix()[:-3] for page in check_links.pages_of(build.ROOT) if ".zh-CN." not in page.name}
         self.assertEqual(sorted(found - {"README"}), sorted(build.pages()))
 
+    def test_tables_of_benchmarks_are_the_same_in_both_languages(self):
+        def tables(page):
+            return re.findall(r"<!-- (\w+): begin -->\n(.*?)<!-- \1: end -->", (build.ROOT / "docs" / page).read_text(encoding="utf-8"), re.S)
+        self.assertEqual(len(tables("benchmarks.md")), 9)
+        self.assertEqual(tables("benchmarks.md"), tables("benchmarks.zh-CN.md"))
+
     def test_messages_come_whole(self):
         topics = dict(build.messages())
         self.assertIn(("{}: no such file", "{}：文件不存在"), topics["core"])
