@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace mjarm {
 namespace {
@@ -93,7 +94,17 @@ Eigen::Matrix3d rotation_exp(const Eigen::Vector3d& w) {
 }
 
 Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+  constexpr double kParallel = 1e-12;
+  const Eigen::Vector3d a = from.normalized(), b = to.normalized();
+  Eigen::Vector3d axis = a.cross(b);
+  const double sine = axis.norm(), cosine = a.dot(b);
+  if (sine > kParallel) {
+    // Near half a turn little is left of the cross product but rounding.
+    axis -= a * a.dot(axis);
+    return rotation_exp(std::atan2(sine, cosine) * axis.normalized());
+  }
+  if (cosine > 0) return Eigen::Matrix3d::Identity();
+  return rotation_exp(std::numbers::pi * a.unitOrthogonal());
 }
 
 double angle_between(const Eigen::Matrix3d& A, const Eigen::Matrix3d& B) {

@@ -31,9 +31,8 @@ using Quat = Eigen::Quaterniond;
 /// Rotation matrix of the rotation vector `w` [rad] (Rodrigues' formula, series below 1e-4).
 [[nodiscard]] Eigen::Matrix3d rotation_exp(const Eigen::Vector3d& w);
 
-/// The shortest rotation that brings the direction of `from` to that of `to`, neither of them zero;
-/// half a turn about an axis across them where they are opposite. (Eigen's FromTwoVectors, which
-/// takes seconds to compile wherever it is used.)
+/// The rotation by the smallest angle that turns the direction of `from` to that of `to`, neither
+/// of them zero; where they are opposite, about some axis square to both.
 [[nodiscard]] Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from,
                                                const Eigen::Vector3d& to);
 

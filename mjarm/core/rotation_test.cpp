@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mjarm/core/rng.hpp"
 #include "tests/support/constants.hpp"
 #include "tests/support/test_data.hpp"
@@ -151,18 +153,19 @@ TEST(Rotation, QuaternionOfExactHalfTurns) {
   }
 }
 
-TEST(Rotation, BetweenTwoDirectionsIsTheShortestOne) {
-  Rng rng(5);
-  for (int i = 0; i < 300; ++i) {
-    const Eigen::Vector3d a(rng.normal(), rng.normal(), rng.normal());
-    Eigen::Vector3d b(rng.normal(), rng.normal(), rng.normal());
-    if (i % 3 == 0) b = -2 * a + 1e-9 * b;  // opposite
-    if (i == 0) b = -a;
-    const Eigen::Matrix3d R = rotation_between(a, b);
-    EXPECT_LT((R * a.normalized() - b.normalized()).norm(), 1e-7);
-    EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
-    EXPECT_NEAR(R.determinant(), 1, 1e-12);
-    EXPECT_NEAR(rotation_log(R).norm(), std::atan2(a.cross(b).norm(), a.dot(b)), 1e-7);
+TEST(Rotation, TurnsOneDirectionToTheOtherByTheSmallestAngle) {
+  Rng rng(9);
+  for (int i = 0; i < 1000; ++i) {
+    Eigen::Vector3d from(rng.normal(), rng.normal(), rng.normal()), to = -from;
+    if (i % 4 == 0) to = from;
+    if (i % 4 > 1) to += std::pow(10, rng.uniform(-15, 1)) * Eigen::Vector3d::Unit(i % 3);
+    from.normalize();
+    to.normalize();
+    const Eigen::Matrix3d R = rotation_between(2 * from, rng.uniform(0.1, 3) * to);
+    ASSERT_LT((R * from - to).norm(), 1e-11) << i;
+    ASSERT_TRUE((R.transpose() * R).isIdentity(1e-12)) << i;
+    const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+    ASSERT_NEAR(rotation_log(R).norm(), angle, 1e-11) << i;
   }
 }
 

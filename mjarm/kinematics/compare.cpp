@@ -93,19 +93,6 @@ std::string_view name(CauseCode code) noexcept {
   return "tool";
 }
 
-Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  constexpr double kParallel = 1e-12;
-  Eigen::Vector3d axis = from.cross(to);
-  const double sine = axis.norm(), cosine = from.dot(to);
-  if (sine > kParallel) {
-    // Near half a turn little is left of the cross product but rounding.
-    axis -= from * from.dot(axis);
-    return rotation_exp(std::atan2(sine, cosine) * axis.normalized());
-  }
-  if (cosine > 0) return Eigen::Matrix3d::Identity();
-  return rotation_exp(std::numbers::pi * from.unitOrthogonal());
-}
-
 std::vector<int> match_joints(const Arm& first, const Arm& second, bool& by_name) {
   std::vector<int> order;
   for (const ArmJoint& joint : second.joints) {

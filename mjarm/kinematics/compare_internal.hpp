@@ -25,11 +25,6 @@ struct CauseTolerance {
 void add_tool(const Arm& first, const Arm& second, CauseTolerance tolerance,
               std::vector<Cause>& causes);
 
-/// The rotation by the smallest angle that turns the unit vector `from` to `to`; where they are
-/// opposite, about some axis square to both.
-[[nodiscard]] Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from,
-                                               const Eigen::Vector3d& to);
-
 /// For each joint of `second` the index of its partner in `first`: by name where all are found and
 /// `by_name` is set, else by order.
 [[nodiscard]] std::vector<int> match_joints(const Arm& first, const Arm& second, bool& by_name);

@@ -299,21 +299,5 @@ TEST(CompareFigures, MassesAndLimitsThatDiffer) {
   EXPECT_EQ(torque[0].what, "torque");
 }
 
-TEST(RotationBetween, TurnsOneDirectionToTheOtherByTheSmallestAngle) {
-  Rng rng(9);
-  for (int i = 0; i < 1000; ++i) {
-    Eigen::Vector3d from(rng.normal(), rng.normal(), rng.normal()), to = -from;
-    if (i % 4 == 0) to = from;
-    if (i % 4 > 1) to += std::pow(10, rng.uniform(-15, 1)) * Eigen::Vector3d::Unit(i % 3);
-    from.normalize();
-    to.normalize();
-    const Eigen::Matrix3d R = rotation_between(from, to);
-    ASSERT_LT((R * from - to).norm(), 1e-11) << i;
-    ASSERT_TRUE((R.transpose() * R).isIdentity(1e-12)) << i;
-    const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
-    ASSERT_NEAR(rotation_log(R).norm(), angle, 1e-11) << i;
-  }
-}
-
 }  // namespace
 }  // namespace mjarm
