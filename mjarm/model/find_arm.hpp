@@ -25,6 +25,9 @@ struct ArmOptions {
 /// slides, with no free or ball joint between the two: nothing that merely lies somewhere is part
 /// of a design.
 ///
+/// The gripper is what one actuator beyond the last joint moves, or two actuators, one for each of
+/// two fingers of one kind on one body; a hand of more is none.
+///
 /// Without `tip` the arm is the longest chain without fingers (joints with such a name, joints
 /// coupled with a neighbour, branches shorter than their trunk), and the tip is the frame rigidly
 /// after its last joint that bears a usual name (`hand_tcp`, `attachment_site`, `tool0`, ...), else
