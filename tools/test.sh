@@ -196,8 +196,7 @@ run_sanitizer() {
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1:strict_string_checks=1:intercept_tls_get_addr=0}
   export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$root/tools/leaks.supp:print_suppressions=0}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
-  # Mesa's compiler holds more than the 64 locks at once that the search for deadlocks can count, and ends the sanitizer.
-  export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$root/tools/races.supp:detect_deadlocks=0}
+  export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$root/tools/races.supp}
   check "build" build_counted "$1" all
   ((failed)) || run_ctest "$1" --timeout 1200  # some tests take minutes on a busy machine
   finish
