@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "mjarm/core/messages/execution.hpp"
+#include "mjarm/model/gripper_command.hpp"
 #include "mjarm/model/object_shape.hpp"
 
 namespace mjarm {
@@ -104,9 +105,9 @@ MotionClock::Step Execution::next(Sim& sim) {
     const double seconds = move != nullptr && move->close ? move->trajectory.duration() : 0;
     grip_.emplace();
     grip_->steps = static_cast<int>(kGripShare * seconds / sim.model().timestep());
+    grip_->grip = *step.close ? 1 : 0;
     for (const GripperDrive& drive : gripper.drives) {
       grip_->from.push_back(sim.ctrl()[static_cast<std::size_t>(drive.id)]);
-      grip_->to.push_back(*step.close ? drive.ctrl_closed : drive.ctrl_open);
     }
   }
   if (grip_) move_gripper(sim);
@@ -149,7 +150,7 @@ void Execution::move_gripper(Sim& sim) {
   const double share = grip_->done < grip_->steps ? (grip_->done + 1.0) / grip_->steps : 1.0;
   const std::vector<GripperDrive>& drives = plan_->arms.front().gripper->drives;
   for (std::size_t i = 0; i < drives.size(); ++i) {
-    const double from = grip_->from[i], to = grip_->to[i];
+    const double from = grip_->from[i], to = ctrl_for_grip(drives[i], grip_->grip);
     sim.set_ctrl(drives[i].id, share == 1 ? to : from + share * (to - from));
   }
   ++grip_->done;

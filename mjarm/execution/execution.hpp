@@ -113,7 +113,8 @@ class Execution {
 
   /// The command of the gripper on its way.
   struct GripWay {
-    std::vector<double> from, to;  ///< one entry a drive
+    std::vector<double> from;  ///< one entry a drive
+    double grip = 0;           ///< where it goes, 0 open to 1 closed
     int steps = 0, done = 0;
   };
 
